@@ -1,0 +1,34 @@
+"""What is true, and why: one chapter a file, SymPy only, equations numbered, each with its ``prove_*`` functions."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Iterator
+
+from derivations.expression import Expression, Quantity
+
+CHAPTERS = ("frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox")
+
+__all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
+
+
+def expressions() -> Iterator[Expression]:
+    """Every Expression of every chapter, derived on demand."""
+    from derivations import axes, cradle, cutter, deviation, flank, gearbox, meshing
+
+    yield cutter.cutter_surface()
+    yield cradle.cradle_pose()
+    yield flank.flank_family()
+    yield meshing.meshing()
+    yield from (axes.axis_transform(), axes.tool_pose(), axes.cradle_tool_pose())
+    yield from (deviation.point_deviation(), deviation.setting_sensitivity())
+    yield from (deviation.deviation_surface(), deviation.line_entry())
+    yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.desired_position())
+    yield from (gearbox.nearest_position(), gearbox.floor_position(), gearbox.gearbox_step(), gearbox.hobbed_blank())
+
+
+def proofs() -> Iterator[Callable[[], None]]:
+    """Every ``prove_*`` function of every chapter."""
+    for chapter in CHAPTERS:
+        module = importlib.import_module(f"derivations.{chapter}")
+        yield from (getattr(module, name) for name in sorted(vars(module)) if name.startswith("prove_"))

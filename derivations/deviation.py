@@ -1,0 +1,160 @@
+"""Chapter 6. Deviation: what is left on the flank, what a setting does to it, and the surface that sums it up.
+
+    δ = (p_m - R)·n - r_m                                   n outward, + = metal left on       (6.1)
+    ∂δ/∂x = n · ∂R/∂x at fixed u, β, θ                                                         (6.2)
+    δ(X, Y) = c_1 + c_2 X + c_3 Y + c_4 X² + c_5 XY + c_6 Y² + c_7 X³ + ... + c_10 Y³          (6.3)
+
+and where a line p + t d enters the material swept by a blade: in the cutter frame, with a point a + t b,
+
+    q_a t² + 2 q_b t + q_c = 0,   t = q_c / (s √(q_b² - q_a q_c) - q_b)                        (6.4)
+
+which is followed to the tip plane, where the cutter ends.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from derivations import axes, cutter, flank
+from derivations import notation as q
+from derivations.expression import Expression
+from derivations.proof import is_zero
+
+#: Distance reported where the line never meets the blade: farther away than any tooth space is wide. [mm]
+NOWHERE = sp.Integer(1000)
+
+
+@cache
+def point_deviation() -> Expression:
+    """(6.1) as an Expression."""
+    value = (q.tip_center.symbol - q.point_w.symbol).dot(q.normal_w.symbol) - q.tip_radius.symbol
+    return Expression(
+        "point_deviation",
+        "Deviation of a touched point from the nominal flank, along the outward normal (6.1).",
+        (q.tip_center, q.tip_radius, q.point_w, q.normal_w),
+        ((q.deviation, value),),
+        source="the source text's delta = (R_g - R_0)·n, with the tip radius it leaves out and a unit normal",
+    )
+
+
+@cache
+def setting_sensitivity() -> Expression:
+    """(6.2) as an Expression, one element for every setting."""
+    R, n = flank.point(), flank.normal()
+    gradient = sp.Matrix([n.dot(R.diff(setting)) for setting in q.settings.symbols])
+    return Expression(
+        "setting_sensitivity",
+        "Change of the deviation per unit of each setting at a point in mesh, u, beta, theta held (6.2).",
+        (q.u, q.beta, q.theta, q.settings, q.side),
+        ((q.sensitivity, gradient),),
+        source="envelope theorem; the shift of u, beta, theta has no component along the normal",
+    )
+
+
+def monomials() -> sp.Matrix:
+    """1, X, Y, X², XY, Y², X³, X²Y, XY², Y³ (6.3)."""
+    X, Y = q.lengthwise.symbol, q.profilewise.symbol
+    return sp.Matrix([X ** (degree - k) * Y**k for degree in range(4) for k in range(degree + 1)])
+
+
+@cache
+def deviation_surface() -> Expression:
+    """(6.3) as an Expression: the surface and its monomials at one place."""
+    return Expression(
+        "deviation_surface",
+        "Cubic deviation surface in the local system at the reference point (6.3).",
+        (q.lengthwise, q.profilewise, q.surface_coefficients),
+        ((q.surface_deviation, q.surface_coefficients.symbol.dot(monomials())), (q.monomials, monomials())),
+        source="Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, section 2",
+    )
+
+
+def _line_in_cutter() -> tuple[sp.Matrix, sp.Matrix]:
+    """a and b of (6.4): the line in machine coordinates, turned so that the cutter axis is +z."""
+    work_to_machine = sp.Matrix.hstack(*(axes.machine_to_work(sp.eye(3)[:, k]) for k in range(3))).T
+    to_tool = sp.diag(1, -1, -1)  # half a turn about X: the tool looks down
+    a = to_tool * (work_to_machine * (q.line_point.symbol - axes.cutter_center()))
+    b = to_tool * (work_to_machine * q.line_direction.symbol)
+    return a, b
+
+
+def _quadratic(a: sp.Matrix, b: sp.Matrix) -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    """q_a, q_b, q_c of x² + y² - ρ(-z)² = 0 along a + t b (6.4)."""
+    slope = -q.side.symbol * sp.tan(q.blade_pressure_angle.symbol) * b[2]
+    rho = cutter.radius(-a[2])
+    return (
+        b[0] ** 2 + b[1] ** 2 - slope**2,
+        a[0] * b[0] + a[1] * b[1] - rho * slope,
+        a[0] ** 2 + a[1] ** 2 - rho**2,
+    )
+
+
+@cache
+def line_entry() -> Expression:
+    """(6.4) as an Expression: the lower end of the interval of the line inside the material that the blade sweeps."""
+    a, b = _line_in_cutter()
+    q_a, q_b, q_c = _quadratic(a, b)
+    discriminant = q_b**2 - q_a * q_c
+    root = sp.sqrt(sp.Max(discriminant, 0))
+    on_cone = q_c / (q.side.symbol * root - q_b)
+    tip = -a[2] / b[2]
+    below_tip = a[2] + on_cone * b[2] > 0
+    entry = sp.Piecewise(
+        (NOWHERE, discriminant <= 0),
+        (on_cone, sp.Not(below_tip)),
+        (tip, b[2] < 0),
+        (NOWHERE, True),
+    )
+    return Expression(
+        "line_entry",
+        "Where a line, followed along its direction, enters the material swept by the blade at one pose (6.4).",
+        (q.axes, q.pivot_height, q.line_point, q.line_direction, q.blade_point_radius, q.blade_pressure_angle, q.side),
+        ((q.line_distance, entry),),
+        source="line against cone, the root at which the line passes from the metal into the cutter",
+    )
+
+
+def prove_sensitivity_needs_no_shift_of_the_contact_point() -> None:
+    """(6.2) On the flank n·∂R/∂u = n·∂R/∂β = 0 and n·∂R/∂θ = f = 0, so that their shifts do not change δ.
+
+    Then dδ = n·(R_u du + R_β dβ + R_θ dθ + R_x dx) = n·R_x dx, whatever du, dβ, dθ the setting causes.
+    """
+    flank.prove_normal_is_perpendicular_to_the_surface()
+    from derivations import meshing
+
+    meshing.prove_meshing_is_the_normal_part_of_the_surface_velocity()
+
+
+def prove_advance_of_the_work_shifts_the_flank_along_its_axis() -> None:
+    """(6.2) Limit case: X_p moves the whole flank along z_w, so its sensitivity is the z component of n."""
+    n, R = flank.normal(), flank.point()
+    advance = n.dot(R.diff(q.machine_center_to_crossing_point.symbol))
+    assert is_zero(advance - n[2])
+
+
+def prove_turning_the_work_gives_the_lever_arm_of_the_normal() -> None:
+    """(6.2) Limit case: φ_0 turns the flank by -φ_0 about z_w: its sensitivity is -(z_w × R)·n."""
+    n, R = flank.normal(), flank.point()
+    turning = n.dot(R.diff(q.work_rotation_offset.symbol))
+    assert is_zero(turning + sp.Matrix([-R[1], R[0], 0]).dot(n))
+
+
+def prove_line_entry_solves_the_cone_and_enters_the_cutter() -> None:
+    """(6.4) The root satisfies the quadratic, and there the line passes into the cutter: s d(x²+y²-ρ²)/dt < 0."""
+    q_a, q_b, q_c = sp.symbols("q_a q_b q_c", real=True)
+    for side in (1, -1):
+        root = sp.sqrt(q_b**2 - q_a * q_c)
+        t = q_c / (side * root - q_b)
+        assert sp.simplify(q_a * t**2 + 2 * q_b * t + q_c) == 0
+        assert sp.simplify(q_a * t + q_b + side * root) == 0  # half the slope is -s times a square root
+
+
+def prove_deviation_of_a_probe_on_the_flank_is_zero() -> None:
+    """(6.1) Limit case: a tip that touches the nominal flank has its centre at R + r_m n."""
+    R, n = q.point_w.symbol, q.normal_w.symbol
+    value = point_deviation()["deviation"]
+    touching = dict(zip(q.tip_center.symbols, R + q.tip_radius.symbol * n, strict=True))
+    length = sum(component**2 for component in n)
+    assert sp.expand(value.subs(touching) - q.tip_radius.symbol * (length - 1)) == 0

@@ -1,0 +1,138 @@
+"""What a derivation hands over: named SymPy inputs to named SymPy outputs, with units, domains and sentences."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import sympy as sp
+
+_IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One named quantity: what it is, in which unit, of which shape, and where it is valid.
+
+    ``domain`` bounds each element; ``values``, where given, lists the only values allowed (a sign, a truth value).
+    ``scale`` is the size against which an error of an *output* is judged. A vector of unlike elements names them
+    in ``components``; then unit, domain and LaTeX are those of the components.
+    """
+
+    name: str
+    description: str
+    unit: str
+    latex: str
+    domain: tuple[float, float] = (-math.inf, math.inf)
+    shape: tuple[int, ...] = ()
+    kind: Literal["real", "int"] = "real"
+    values: tuple[int, ...] = ()
+    scale: float = 1.0
+    components: tuple[Quantity, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not _IDENTIFIER.match(self.name):
+            raise ValueError(f"quantity name {self.name!r} is no C identifier")
+        if self.components and self.shape != (len(self.components),):
+            raise ValueError(f"{self.name}: shape {self.shape} does not fit {len(self.components)} components")
+        if not self.description or not self.unit:
+            raise ValueError(f"{self.name}: a quantity needs a description and a unit ('1' where it has none)")
+
+    @property
+    def size(self) -> int:
+        return math.prod(self.shape)
+
+    @property
+    def elements(self) -> tuple[Quantity, ...]:
+        """The scalar quantities this one consists of, itself if it is a scalar; matrices row by row."""
+        if self.components:
+            return self.components
+        if not self.shape:
+            return (self,)
+        indices = [""]
+        for extent in self.shape:
+            indices = [f"{index}_{k}" for index in indices for k in range(extent)]
+        return tuple(
+            Quantity(self.name + index, self.description, self.unit, f"{self.latex}_{{{index[1:].replace('_', '')}}}",
+                     self.domain, kind=self.kind, values=self.values, scale=self.scale)
+            for index in indices
+        )  # fmt: skip
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """One SymPy symbol for every element, real (or integer) by assumption."""
+        kind = {"integer": True} if self.kind == "int" else {"real": True}
+        return tuple(sp.Symbol(element.name, **kind) for element in self.elements)
+
+    @property
+    def symbol(self) -> sp.Symbol | sp.ImmutableDenseMatrix:
+        """The symbol of a scalar, the matrix of symbols of a vector or matrix."""
+        if not self.shape:
+            return self.symbols[0]
+        rows, columns = (*self.shape, 1)[:2]
+        return sp.ImmutableDenseMatrix(rows, columns, self.symbols)
+
+
+@dataclass(frozen=True)
+class Expression:
+    """Named inputs to named outputs: what a chapter returns and :mod:`gearmath.lowering` takes.
+
+    ``outputs`` pairs each output quantity with its SymPy expression. ``requires`` lists expressions of the inputs
+    that must be positive besides the domains (a distance from a singular pose, a discriminant).
+
+    Raises ValueError if an output uses a symbol that is no input, or if shapes disagree.
+    """
+
+    name: str
+    description: str
+    inputs: tuple[Quantity, ...]
+    outputs: tuple[tuple[Quantity, sp.Basic | sp.MatrixBase], ...]
+    requires: tuple[sp.Expr, ...] = ()
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        if not _IDENTIFIER.match(self.name):
+            raise ValueError(f"expression name {self.name!r} is no C identifier")
+        names = [quantity.name for quantity in (*self.inputs, *(quantity for quantity, _ in self.outputs))]
+        if len(set(names)) != len(names):
+            raise ValueError(f"{self.name}: a name appears twice among {names}")
+        given = {symbol for quantity in self.inputs for symbol in quantity.symbols}
+        for quantity, value in self.outputs:
+            if len(self.elements_of(value)) != quantity.size:
+                raise ValueError(f"{self.name}: {quantity.name} has shape {quantity.shape}, its expression has not")
+        used = set().union(*(sp.sympify(value).free_symbols for value in (*(v for _, v in self.outputs), *self.requires)))
+        if used - given:
+            raise ValueError(
+                f"{self.name} uses {sorted(map(str, used - given))}, which are not among its inputs "
+                f"{sorted(map(str, given))}: add them to the inputs, or substitute them"
+            )
+
+    @staticmethod
+    def elements_of(value: sp.Basic | sp.MatrixBase) -> tuple[sp.Expr, ...]:
+        """The scalar expressions of an output, matrices row by row."""
+        return tuple(value) if isinstance(value, sp.MatrixBase) else (value,)
+
+    def scalars(self) -> Iterator[tuple[Quantity, sp.Expr]]:
+        """Every scalar output element with its expression."""
+        for quantity, value in self.outputs:
+            yield from zip(quantity.elements, self.elements_of(value), strict=True)
+
+    def __getitem__(self, name: str) -> sp.Basic | sp.MatrixBase:
+        """The SymPy expression of the output called ``name``."""
+        for quantity, value in self.outputs:
+            if quantity.name == name:
+                return value
+        raise KeyError(f"{self.name} has no output {name!r}; it has {[quantity.name for quantity, _ in self.outputs]}")
+
+    def latex(self, name: str) -> str:
+        """The equation of one output as LaTeX, with the LaTeX names of the quantities."""
+        names = {
+            symbol: element.latex
+            for quantity in self.inputs
+            for symbol, element in zip(quantity.symbols, quantity.elements, strict=True)
+        }
+        (output,) = (quantity for quantity, _ in self.outputs if quantity.name == name)
+        return f"{output.latex} = {sp.latex(self[name], symbol_names=names)}"

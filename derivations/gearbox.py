@@ -1,0 +1,204 @@
+"""Chapter 7. The electronic gearbox: from encoder counts of the hob to motor steps of the work, exactly.
+
+    R = G N_encoder / (k N_motor)                          encoder counts per motor step       (7.1)
+    P_desired = e / R = N e / D,   N = k N_motor,  D = G N_encoder                             (7.2)
+    p = floor((2 N e + D) / (2 D))                         the nearest whole step              (7.3)
+    p = floor((N e + a_0) / D),    a_0 = floor(D / 2)      the same, without the factor 2      (7.4)
+    a' = a + d N - s D,  s = [a + d N ≥ D] - [a + d N < 0],  p' = p + s                        (7.5)
+
+(7.5) is the incremental form: the remainder a starts at a_0 and stays in 0 ≤ a < D; one edge d = ±1 gives at most one
+step, if N ≤ D. Then |p - N e / D| ≤ 1/2 for every history. The rule of the source text, floor(e / R), lags up to a
+whole step (7.6). Blank and depth of a spur gear: d_a = m (G + 2), h = f_h m + h_+ (7.7).
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from derivations import notation as q
+from derivations.expression import Expression
+
+_SOURCE = "Digital Control for a Gear Hobbing Machine (Digital Machinist 15-4), generalised to hob starts"
+
+
+def ratio_terms() -> tuple[sp.Expr, sp.Expr]:
+    """N and D of (7.2), motor steps per encoder count as a fraction."""
+    return q.hob_starts.symbol * q.motor_steps.symbol, q.teeth.symbol * q.encoder_counts.symbol
+
+
+def truth(condition: sp.Basic) -> sp.Piecewise:
+    """[condition] of (7.5): 1 where it holds, else 0."""
+    return sp.Piecewise((1, condition), (0, True))
+
+
+@cache
+def gearbox_ratio() -> Expression:
+    """(7.1) as an Expression."""
+    N, D = ratio_terms()
+    return Expression(
+        "gearbox_ratio",
+        "Pulse ratio of the electronic gearbox, encoder counts per motor step (7.1).",
+        (q.teeth, q.hob_starts, q.encoder_counts, q.motor_steps),
+        ((q.pulse_ratio, D / N),),
+        source=_SOURCE + ", eq. 2",
+    )
+
+
+@cache
+def gearbox_terms() -> Expression:
+    """N and D of one job, in integers (7.2)."""
+    N, D = ratio_terms()
+    return Expression(
+        "gearbox_terms",
+        "Ratio of one job as whole numbers: motor steps N per encoder counts D, not reduced (7.2).",
+        (q.teeth, q.hob_starts, q.encoder_counts, q.motor_steps),
+        ((q.steps_numerator, N), (q.steps_denominator, D)),
+        source=_SOURCE + ", eq. 2",
+    )
+
+
+@cache
+def desired_position() -> Expression:
+    """(7.2) as an Expression."""
+    return Expression(
+        "desired_position",
+        "Position the work should have after e encoder counts, in motor steps (7.2).",
+        (q.encoder_position, q.pulse_ratio),
+        ((q.desired_position, q.encoder_position.symbol / q.pulse_ratio.symbol),),
+        source=_SOURCE + ", eq. 3",
+    )
+
+
+@cache
+def nearest_position() -> Expression:
+    """(7.3) as an Expression."""
+    N, D, e = q.steps_numerator.symbol, q.steps_denominator.symbol, q.encoder_position.symbol
+    return Expression(
+        "nearest_position",
+        "Whole motor step nearest to the desired position (7.3).",
+        (q.encoder_position, q.steps_numerator, q.steps_denominator),
+        ((q.nearest_position, sp.floor((2 * N * e + D) / (2 * D), evaluate=False)),),
+        source="rounding to nearest; never more than half a step off",
+    )
+
+
+@cache
+def floor_position() -> Expression:
+    """(7.6), the rule of the source text, as an Expression."""
+    position = sp.floor(q.encoder_position.symbol / q.pulse_ratio.symbol)
+    return Expression(
+        "floor_position",
+        "Steps delivered by the floating rule of the source text, floor(e / R) (7.6).",
+        (q.encoder_position, q.pulse_ratio),
+        ((q.floor_position, position),),
+        source=_SOURCE + ", eq. 4",
+    )
+
+
+@cache
+def gearbox_step() -> Expression:
+    """(7.5) as an Expression: the integer kernel of the firmware."""
+    a = q.remainder.symbol + q.edge.symbol * q.steps_numerator.symbol
+    D = q.steps_denominator.symbol
+    s = truth(a >= D) - truth(a < 0)
+    return Expression(
+        "gearbox_step",
+        "One encoder edge of the electronic gearbox: the step to deliver and the new remainder (7.5).",
+        (q.remainder, q.edge, q.steps_numerator, q.steps_denominator),
+        ((q.step, s), (q.next_remainder, a - s * D)),
+        requires=(D + 1 - q.steps_numerator.symbol, D - q.remainder.symbol),
+        source="incremental form of rounding to nearest, for N <= D",
+    )
+
+
+@cache
+def hobbed_blank() -> Expression:
+    """(7.7) as an Expression."""
+    m = q.module.symbol
+    return Expression(
+        "hobbed_blank",
+        "Blank diameter and depth of cut of a hobbed spur gear (7.7).",
+        (q.teeth, q.module, q.depth_factor, q.depth_extra),
+        (
+            (q.blank_diameter, m * (q.teeth.symbol + 2)),
+            (q.cut_depth, q.depth_factor.symbol * m + q.depth_extra.symbol),
+        ),
+        source=_SOURCE + ": (G + 2)/P and 2.25/P; other depth rules of the field",
+    )
+
+
+#: The table of the source text for R = 3.142: encoder counts, desired position as printed, steps delivered.
+PUBLISHED_TABLE = (
+    (1, "0.318", 0), (2, "0.637", 0), (3, "0.955", 0), (4, "1.273", 1), (5, "1.592", 1),
+    (6, "1.910", 1), (7, "2.228", 2), (8, "2.546", 2), (9, "2.865", 2), (10, "3.183", 3),
+)  # fmt: skip
+
+
+def prove_published_table() -> None:
+    """(7.2, 7.6) The ten rows of the source text: steps delivered exactly, desired positions to the digits printed.
+
+    The text prints R = 3.142, but rows 5 and 9 (1.592 and 2.865) are those of R = π, of which 3.142 is the rounding:
+    with 3.142 they would read 1.591 and 2.864. The steps delivered are the same for both.
+    """
+    e, R = q.encoder_position.symbol, q.pulse_ratio.symbol
+    differing = []
+    for count, printed, delivered in PUBLISHED_TABLE:
+        for ratio in (sp.Rational("3.142"), sp.pi):
+            assert floor_position()["floor_position"].subs({e: count, R: ratio}) == delivered
+            desired = desired_position()["desired_position"].subs({e: count, R: ratio})
+            if sp.floor(desired * 1000 + sp.Rational(1, 2)) != 1000 * sp.Rational(printed):
+                differing.append((count, ratio))
+    assert differing == [(5, sp.Rational("3.142")), (9, sp.Rational("3.142"))]
+
+
+def prove_factor_two_is_not_needed() -> None:
+    """(7.4) floor((Ne + floor(D/2))/D) = floor((2Ne + D)/(2D)), for even D = 2m and for odd D = 2m + 1.
+
+    Even D: the two fractions are the same. Odd D: with Ne = jD + i, 0 ≤ i < D, both numerators lie between the same
+    multiples of D, because they differ by half of one count and a whole number is compared with a whole number.
+    """
+    m, j, i = sp.symbols("m j i", integer=True, nonnegative=True)
+    even, Ne = 2 * m, sp.Symbol("Ne", integer=True)
+    assert sp.simplify((2 * Ne + even) / (2 * even) - (Ne + m) / even) == 0
+    odd = 2 * m + 1
+    with_two = (2 * (j * odd + i) + odd) / (2 * odd) - j  # = (2i + D)/(2D): 1 or more from 2i ≥ D, that is i ≥ m + 1/2
+    without = ((j * odd + i) + m) / odd - j  # = (i + m)/D: 1 or more from i ≥ D - m = m + 1
+    assert sp.simplify(with_two - (2 * i + odd) / (2 * odd)) == 0
+    assert sp.simplify(without - (i + m) / odd) == 0
+    assert sp.simplify((odd - m) - (m + 1)) == 0  # and a whole i ≥ m + 1/2 is a whole i ≥ m + 1
+
+
+def prove_increment_keeps_position_and_remainder_together() -> None:
+    """(7.5) a' + s D = a + d N: so p D + a - N e never changes, and p = floor((N e + a_0)/D) while 0 ≤ a < D."""
+    rule = gearbox_step()
+    a, d, N, D = (quantity.symbol for quantity in rule.inputs)
+    assert sp.expand(rule["next_remainder"] + rule["step"] * D - (a + d * N)) == 0
+
+
+def prove_remainder_stays_in_range() -> None:
+    """(7.5) For 0 ≤ a < D, 0 < N ≤ D and d = ±1 the new remainder is again in 0 ≤ a' < D: case by case."""
+    rule = gearbox_step()
+    remainder, d, numerator, denominator = (quantity.symbol for quantity in rule.inputs)
+    below, rest = sp.symbols("x y", integer=True, nonnegative=True)
+    # A forward edge: either a + N < D, or D ≤ a + N ≤ a + D < 2D. N = D - x; a = D - 1 - y.
+    a, N, D = denominator - 1 - rest, denominator - below, denominator
+    stepped = a + N - D
+    assert sp.expand(stepped - (remainder - below).subs(remainder, a)) == 0  # a' = a - x < D since x ≥ 0
+    # A backward edge: either a - N ≥ 0, or -D ≤ -N ≤ a - N < 0, and a' = a - N + D = a + x ≥ 0.
+    assert sp.expand((a - N + D) - (a + below)) == 0
+    for edge in (1, -1):
+        for values in ((0, 1, 1), (0, 1, 2), (1, 2, 2), (4, 3, 5), (0, 5, 5), (2, 3, 7), (6, 7, 7)):
+            state = dict(zip((remainder, numerator, denominator), values, strict=True)) | {d: edge}
+            assert 0 <= rule["next_remainder"].subs(state) < values[2]
+
+
+def prove_error_is_at_most_half_a_step() -> None:
+    """(7.3) |p - N e/D| = |a_0 - a|/D ≤ 1/2: with 0 ≤ a ≤ D - 1 and a_0 = floor(D/2), at both ends of the range."""
+    m = sp.Symbol("m", integer=True, positive=True)
+    half = sp.Rational(1, 2)
+    for D, start in ((2 * m, m), (2 * m + 1, m)):
+        for end in (0, D - 1):
+            error = sp.simplify(sp.Abs(start - end) / D)
+            assert (sp.simplify(half - error)).is_nonnegative or sp.simplify(half - error) == 0

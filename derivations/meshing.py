@@ -1,0 +1,88 @@
+"""Chapter 4. The equation of meshing: v12 · n = 0.
+
+Per unit of cradle speed the cutter moves with the cradle, the work turns with R_a about its axis:
+
+    v12 = k × (V_q + T r_c) - R_a V_p × (V_ls + T r_c),   V_q = S [cos(q+θ), sin(q+θ), 0]      (4.1)
+    f   = v12 · T n_c = 0                                                                      (4.2)
+
+f is the speed with which the cutter enters the metal along the outward normal's line; it equals n · ∂R/∂θ.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from derivations import cradle, cutter, flank
+from derivations import notation as q
+from derivations.expression import Expression
+from derivations.proof import is_zero
+from derivations.frames import K
+
+
+def relative_velocity() -> sp.Matrix:
+    """v12 of cutter against work at a point of the cutter surface, machine frame (4.1)."""
+    from_centre = cradle.cutter_to_machine(cutter.point())
+    of_cutter = sp.Matrix(K).cross(cradle.radial_vector() + from_centre)
+    of_work = q.ratio_of_roll.symbol * cradle.work_axis().cross(cradle.apex_to_cutter() + from_centre)
+    return of_cutter - of_work
+
+
+def residual() -> sp.Expr:
+    """f (4.2)."""
+    return relative_velocity().dot(cradle.cutter_to_machine(cutter.normal()))
+
+
+@cache
+def meshing() -> Expression:
+    """The equation of meshing as an Expression."""
+    return Expression(
+        "meshing",
+        "Equation of meshing f = v12 · n of the generated flank (4.2); zero where the envelope touches the cutter.",
+        (q.u, q.beta, q.theta, q.settings, q.side),
+        ((q.meshing_residual, residual()),),
+        source="v12 · n = 0 from the relative velocity; equal to n · dR/dtheta and to the closed form of NASA TM-105150",
+    )
+
+
+def nasa_closed_form(h: int, v: dict[str, sp.Symbol]) -> sp.Expr:
+    """The published meshing equation of NASA TM-105150 in its own symbols; h = +1 pinion, -1 gear."""
+    r, psi, s, q_n, L_m, E_m, m_cw = (v[name] for name in "r psi s q L_m E_m m_cw".split())
+    u, theta, phi, root = v["u"], v["theta"], v["phi"], v["mu"] - v["d"]
+    tau = theta - h * q_n + h * phi
+    return (
+        (u - r * sp.cot(psi) * sp.cos(psi)) * sp.cos(root) * sp.sin(tau)
+        + s * (
+            (m_cw - sp.sin(root)) * sp.cos(psi) * sp.sin(theta)
+            - h * sp.cos(root) * sp.sin(psi) * sp.sin(q_n - phi)
+        )
+        + E_m * (sp.cos(root) * sp.sin(psi) + sp.sin(root) * sp.cos(psi) * sp.cos(tau))
+        - L_m * sp.sin(root) * sp.cos(psi) * sp.sin(tau)
+    )  # fmt: skip
+
+
+def prove_meshing_is_the_normal_part_of_the_surface_velocity() -> None:
+    """(4.2) f = n · ∂R/∂θ, the envelope condition, reached by differentiation instead of by velocities."""
+    theta, phi = q.theta.symbol, q.work_rotation_offset.symbol
+    # Rotating both vectors into the frame of the work at this instant cancels Rz(-φ_w) exactly:
+    # n·∂R/∂θ = (W T n_c) · (∂/∂θ(W p) - R_a z × (W p)),  p = V_ls + T r_c.
+    p = cradle.apex_to_cutter() + cradle.cutter_to_machine(cutter.point())
+    turned = (cradle.machine_to_work(p).diff(theta)).subs(phi, -q.ratio_of_roll.symbol * theta)
+    n = flank.normal().subs(phi, -q.ratio_of_roll.symbol * theta)
+    difference = n.dot(turned) - residual()
+    assert is_zero(difference)
+
+
+def prove_meshing_equals_the_published_closed_form() -> None:
+    """(4.2) is the closed form of NASA TM-105150 times a factor without zeros, pinion and gear, both blades."""
+    for h in (1, -1):
+        _, same, v = flank.nasa_family(h)
+        for side in (1, -1):
+            alpha = sp.pi - v["psi"] if side == 1 else v["psi"]
+            height = -side * (v["r"] * sp.cot(alpha) - v["u"] * sp.cos(alpha))
+            values = {**same, q.side.symbol: side, q.blade_pressure_angle.symbol: alpha, q.u.symbol: height}
+            ours = residual().subs(values, simultaneous=True)
+            factor = 1 / v["m_cw"]
+            published = nasa_closed_form(h, v)
+            assert is_zero(ours - factor * published), f"h = {h}, side = {side}"
