@@ -1,0 +1,70 @@
+"""The command ``gearmath``: one sentence and status 2 on bad input, 1 on failure, never a traceback.
+
+Each verb lives in the module of its group and loads what it computes with when it runs, so that ``--help`` is quick.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Sequence
+
+import click
+
+from gearmath import __version__
+from gearmath.errors import ComputationError, InputError
+
+#: verb -> (module, its one-line help; kept here so that the list of verbs needs no import)
+VERBS = {
+    "demo": ("demo", "The whole closed loop on a bundled gear set and a bundled hobbing machine."),
+    "gearbox": ("gearbox", "Electronic gearbox of a hobbing machine: plan a job, simulate the rule."),
+    "flank": ("bevel", "Nominal points and outward normals of one flank."),
+    "nc": ("machine", "NC programs for the vertical 5-axis machine."),
+    "mill": ("machine", "Virtual milling from the program text."),
+    "evaluate": ("quality", "Pitch, profile and topography of a measured member."),
+    "compensate": ("quality", "Corrected machine settings from a measurement."),
+    "export": ("export", "C for the microcontroller and for the CNC post-processor."),
+}
+
+
+class _LazyGroup(click.Group):
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(VERBS)
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        if name not in VERBS:
+            return None
+        module = importlib.import_module(f"gearmath.cli.{VERBS[name][0]}")
+        return getattr(module, name)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, text) for name, (_, text) in VERBS.items()])
+
+
+@click.group(cls=_LazyGroup)
+@click.version_option(__version__, prog_name="gearmath")
+def gearmath() -> None:
+    """Gear cutting from first principles to metal."""
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command and exit with its status."""
+    try:
+        gearmath.main(args=arguments, prog_name="gearmath", standalone_mode=False)
+    except InputError as error:
+        sys.exit(_say(str(error), 2))
+    except ComputationError as error:
+        sys.exit(_say(str(error), 1))
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.ctx.get_help())
+        sys.exit(2)
+    except click.ClickException as error:
+        sys.exit(_say(error.format_message(), 2))
+    except click.Abort:
+        sys.exit(_say("interrupted", 1))
+
+
+def _say(sentence: str, status: int) -> int:
+    click.echo(f"gearmath: {' '.join(sentence.split())}", err=True)
+    return status

@@ -1,0 +1,1 @@
+"""Files that people write: TOML read into frozen models, degrees and inches converted here and nowhere else."""

@@ -1,0 +1,64 @@
+"""TOML into a checked model: what is missing, unknown, not finite or out of range is refused by file, key and value."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib import resources
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from gearmath.errors import InputError
+from gearmath.files import read_text
+
+
+class Spec(BaseModel):
+    """Base of every file model: frozen, no unknown keys, no NaN, no silent conversion of text to numbers."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+SpecT = TypeVar("SpecT", bound=Spec)
+
+_SENTENCES = {
+    "missing": "the key is missing",
+    "extra_forbidden": "no such key is known here",
+    "finite_number": "must be a finite number",
+}
+
+
+def load(path: Path, model: type[SpecT]) -> SpecT:
+    """Read a TOML file into ``model``. Raises InputError with file, key, value and limit in one sentence."""
+    return parse(read_text(path), model, str(path))
+
+
+def parse(text: str, model: type[SpecT], name: str) -> SpecT:
+    """Check TOML text against ``model``; ``name`` is the file's name in the messages."""
+    try:
+        values = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{name}: is no TOML: {error}") from error
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        raise InputError(f"{name}: {_sentence(error)}") from error
+
+
+def bundled(name: str) -> Path:
+    """The path of a file that comes with the package, by its name in ``gearmath/data``."""
+    path = Path(str(resources.files("gearmath") / "data" / name))
+    if not path.is_file():
+        known = sorted(entry.name for entry in path.parent.glob("*.toml"))
+        raise InputError(f"{name}: no such bundled file; there are {', '.join(known)}")
+    return path
+
+
+def _sentence(error: ValidationError) -> str:
+    details = error.errors(include_url=False)
+    first = details[0]
+    key = ".".join(str(part) for part in first["loc"]) or "file"
+    what = _SENTENCES.get(first["type"], first["msg"].removeprefix("Value error, ").removeprefix("Input "))
+    value = "" if first["type"] == "missing" or isinstance(first["input"], dict) else f" = {first['input']!r}"
+    more = f" (and {len(details) - 1} more)" if len(details) > 1 else ""
+    return f"{key}{value}: {what}{more}"
