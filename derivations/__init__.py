@@ -7,23 +7,23 @@ from collections.abc import Callable, Iterator
 
 from derivations.expression import Expression, Quantity
 
-CHAPTERS = ("frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox")
+CHAPTERS = ("frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank")
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
 
 
 def expressions() -> Iterator[Expression]:
     """Every Expression of every chapter, derived on demand."""
-    from derivations import axes, cradle, cutter, deviation, flank, gearbox, meshing
+    from derivations import axes, blank, cradle, cutter, deviation, flank, gearbox, meshing
 
     yield cutter.cutter_surface()
     yield cradle.cradle_pose()
     yield flank.flank_family()
-    yield meshing.meshing()
+    yield from (meshing.meshing(), meshing.contact_start(), blank.flank_place())
     yield from (axes.axis_transform(), axes.tool_pose(), axes.cradle_tool_pose())
     yield from (deviation.point_deviation(), deviation.setting_sensitivity())
-    yield from (deviation.deviation_surface(), deviation.line_entry())
-    yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.desired_position())
+    yield from (deviation.deviation_surface(), deviation.line_entry(), deviation.flank_turning())
+    yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (gearbox.nearest_position(), gearbox.floor_position(), gearbox.gearbox_step(), gearbox.hobbed_blank())
 
 

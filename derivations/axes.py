@@ -84,7 +84,7 @@ def axis_transform() -> Expression:
         (q.settings, q.theta, q.pivot_height),
         ((q.axes, positions()),),
         requires=(_norm(axis_cross()) - SINGULAR_SINE,),
-        source="Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, section 1, with atan2",
+        source="Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, with atan2",
     )
 
 

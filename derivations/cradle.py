@@ -90,7 +90,7 @@ def cradle_pose() -> Expression:
             (q.V_ls, apex_to_cutter()),
             (q.work_angle, work_angle()),
         ),
-        source="Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, section 1, active signs",
+        source="Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, active signs",
     )
 
 

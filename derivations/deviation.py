@@ -8,7 +8,9 @@ and where a line p + t d enters the material swept by a blade: in the cutter fra
 
     q_a t² + 2 q_b t + q_c = 0,   t = q_c / (s √(q_b² - q_a q_c) - q_b)                        (6.4)
 
-which is followed to the tip plane, where the cutter ends.
+which is followed to the tip plane, where the cutter ends. A flank turned by ε about z_w has, to first order,
+
+    δ = ε (z_w × R)·n,   s = ε √(R_x² + R_y²)                                                  (6.5)
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ import sympy as sp
 from derivations import axes, cutter, flank
 from derivations import notation as q
 from derivations.expression import Expression
+from derivations.frames import Rz
 from derivations.proof import is_zero
 
 #: Distance reported where the line never meets the blade: farther away than any tooth space is wide. [mm]
@@ -114,6 +117,32 @@ def line_entry() -> Expression:
         ((q.line_distance, entry),),
         source="line against cone, the root at which the line passes from the metal into the cutter",
     )
+
+
+@cache
+def flank_turning() -> Expression:
+    """(6.5) as an Expression: what pitch is made of."""
+    R, n = q.point_w.symbol, q.normal_w.symbol
+    lever = R[0] * n[1] - R[1] * n[0]
+    angle = q.deviation_in.symbol / lever
+    radius = sp.sqrt(R[0] ** 2 + R[1] ** 2)
+    return Expression(
+        "flank_turning",
+        "Rotation of a tooth flank about the member's axis that explains a deviation, as angle and as arc (6.5).",
+        (q.deviation_in, q.point_w, q.normal_w),
+        ((q.turning, angle), (q.arc, angle * radius)),
+        requires=(sp.Abs(lever) - 1,),
+        source="first-order motion of a rotated surface along its normal",
+    )
+
+
+def prove_turning_explains_its_own_deviation() -> None:
+    """(6.5) The point turned by a small ε has moved by ε (z_w × R)·n along the normal: the derivative at ε = 0."""
+    eps = sp.Symbol("eps", real=True)
+    R, n = q.point_w.symbol, q.normal_w.symbol
+    moved = (Rz(eps) * sp.Matrix(R)).diff(eps).subs(eps, 0).dot(n)
+    value = flank_turning()["turning"].subs(q.deviation_in.symbol, eps * moved)
+    assert sp.simplify(value - eps) == 0
 
 
 def prove_sensitivity_needs_no_shift_of_the_contact_point() -> None:

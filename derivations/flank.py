@@ -50,7 +50,9 @@ def nasa_family(h: int) -> tuple[sp.Matrix, dict[sp.Symbol, sp.Expr], dict[str, 
     v = {name: sp.Symbol(name + "_nasa", real=True) for name in names.split()}
     r, psi, u, theta, phi = v["r"], v["psi"], v["u"], v["theta"], v["phi"]
     mu, d, q_n, s = v["mu"], v["d"], v["q"], v["s"]
-    r_c = sp.Matrix([r * sp.cot(psi) - u * sp.cos(psi), u * sp.sin(psi) * sp.sin(theta), u * sp.sin(psi) * sp.cos(theta)])
+    r_c = sp.Matrix(
+        [r * sp.cot(psi) - u * sp.cos(psi), u * sp.sin(psi) * sp.sin(theta), u * sp.sin(psi) * sp.cos(theta)]
+    )
     turn = sp.Matrix([[1, 0, 0], [0, sp.cos(q_n), -h * sp.sin(q_n)], [0, h * sp.sin(q_n), sp.cos(q_n)]])
     r_s = turn * r_c + sp.Matrix([0, -h * s * sp.sin(q_n), s * sp.cos(q_n)])
     r_m = sp.Matrix([[1, 0, 0], [0, sp.cos(phi), h * sp.sin(phi)], [0, -h * sp.sin(phi), sp.cos(phi)]]) * r_s

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sympy as sp
 
-I = sp.ImmutableDenseMatrix([1, 0, 0])  # noqa: E741 - the axes of the machine frame are called i, j, k
+I = sp.ImmutableDenseMatrix([1, 0, 0])
 J = sp.ImmutableDenseMatrix([0, 1, 0])
 K = sp.ImmutableDenseMatrix([0, 0, 1])
 

@@ -80,6 +80,7 @@ def nearest_position() -> Expression:
         "Whole motor step nearest to the desired position (7.3).",
         (q.encoder_position, q.steps_numerator, q.steps_denominator),
         ((q.nearest_position, sp.floor((2 * N * e + D) / (2 * D), evaluate=False)),),
+        requires=(2**53 - sp.Abs(2 * N * e + D),),  # a double holds the numerator; else it may round across a step
         source="rounding to nearest; never more than half a step off",
     )
 
@@ -94,6 +95,18 @@ def floor_position() -> Expression:
         (q.encoder_position, q.pulse_ratio),
         ((q.floor_position, position),),
         source=_SOURCE + ", eq. 4",
+    )
+
+
+@cache
+def gearbox_start() -> Expression:
+    """a_0 of (7.4) as an Expression."""
+    return Expression(
+        "gearbox_start",
+        "Remainder of the step rule at the start of a job, half of D rounded down (7.4).",
+        (q.steps_denominator,),
+        ((q.first_remainder, sp.floor(q.steps_denominator.symbol / 2)),),
+        source="rounding to nearest",
     )
 
 

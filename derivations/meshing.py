@@ -5,6 +5,12 @@ Per unit of cradle speed the cutter moves with the cradle, the work turns with R
     v12 = k × (V_q + T r_c) - R_a V_p × (V_ls + T r_c),   V_q = S [cos(q+θ), sin(q+θ), 0]      (4.1)
     f   = v12 · T n_c = 0                                                                      (4.2)
 
+Start values for a point given by (z_w, r_w): the cutter circle of an untilted cutter through the point of the crown
+gear in the plane of the work axis, at (d_i, d_j) from the machine centre and at height u above the tip plane:
+
+    d_i = z_w cos Γ + r_w sin Γ - X_p cos Γ,  d_j = -E_m,  u = X_p sin Γ - X_b - z_w sin Γ + r_w cos Γ
+    q + θ = atan2(d_j, d_i) + sign(q) acos((S² + d² - ρ(u)²) / (2 S d))                        (4.3)
+
 f is the speed with which the cutter enters the metal along the outward normal's line; it equals n · ∂R/∂θ.
 """
 
@@ -17,8 +23,8 @@ import sympy as sp
 from derivations import cradle, cutter, flank
 from derivations import notation as q
 from derivations.expression import Expression
-from derivations.proof import is_zero
 from derivations.frames import K
+from derivations.proof import is_zero
 
 
 def relative_velocity() -> sp.Matrix:
@@ -42,13 +48,34 @@ def meshing() -> Expression:
         "Equation of meshing f = v12 · n of the generated flank (4.2); zero where the envelope touches the cutter.",
         (q.u, q.beta, q.theta, q.settings, q.side),
         ((q.meshing_residual, residual()),),
-        source="v12 · n = 0 from the relative velocity; equal to n · dR/dtheta and to the closed form of NASA TM-105150",
+        source="v12 · n = 0; equal to n · dR/dtheta and to the closed form of NASA TM-105150",
+    )
+
+
+@cache
+def contact_start() -> Expression:
+    """(4.3) as an Expression: exact for cutter and crown gear, close enough to start from for a member."""
+    S, gamma, swing = q.radial_distance.symbol, q.machine_root_angle.symbol, q.cradle_angle.symbol
+    z, r, X_p = q.axial.symbol, q.radial.symbol, q.machine_center_to_crossing_point.symbol
+    d_i = z * sp.cos(gamma) + r * sp.sin(gamma) - X_p * sp.cos(gamma)
+    d_j = -q.blank_offset.symbol
+    height = X_p * sp.sin(gamma) - q.sliding_base.symbol - z * sp.sin(gamma) + r * sp.cos(gamma)
+    d = sp.sqrt(d_i**2 + d_j**2)
+    cosine = (S**2 + d**2 - cutter.radius(height) ** 2) / (2 * S * d)
+    polar = sp.atan2(d_j, d_i) + sp.sign(swing) * sp.acos(sp.Max(-1, sp.Min(1, cosine)))
+    beta = sp.atan2(d_j - S * sp.sin(polar), d_i - S * sp.cos(polar)) - polar - q.cutter_swivel.symbol
+    return Expression(
+        "contact_start",
+        "Start values of u, beta, theta for a flank point given by its place on the blank (4.3).",
+        (q.settings, q.side, q.axial, q.radial),
+        ((q.contact, sp.Matrix([height, beta, polar - swing])),),
+        source="law of cosines in the machine plane",
     )
 
 
 def nasa_closed_form(h: int, v: dict[str, sp.Symbol]) -> sp.Expr:
     """The published meshing equation of NASA TM-105150 in its own symbols; h = +1 pinion, -1 gear."""
-    r, psi, s, q_n, L_m, E_m, m_cw = (v[name] for name in "r psi s q L_m E_m m_cw".split())
+    r, psi, s, q_n, L_m, E_m, m_cw = (v[name] for name in ["r", "psi", "s", "q", "L_m", "E_m", "m_cw"])
     u, theta, phi, root = v["u"], v["theta"], v["phi"], v["mu"] - v["d"]
     tau = theta - h * q_n + h * phi
     return (
@@ -86,3 +113,13 @@ def prove_meshing_equals_the_published_closed_form() -> None:
             factor = 1 / v["m_cw"]
             published = nasa_closed_form(h, v)
             assert is_zero(ours - factor * published), f"h = {h}, side = {side}"
+
+
+def prove_start_values_put_the_cutter_circle_through_the_point() -> None:
+    """(4.3) The distance from the cutter centre to the crown-gear point is the cutting radius."""
+    S, d, rho, azimuth = sp.symbols("S d rho azimuth", positive=True)
+    cosine = (S**2 + d**2 - rho**2) / (2 * S * d)
+    for sign in (1, -1):
+        polar = azimuth + sign * sp.acos(cosine)
+        gap = sp.expand_trig(sp.cos(polar - azimuth))
+        assert sp.simplify(S**2 + d**2 - 2 * S * d * gap - rho**2) == 0

@@ -30,11 +30,15 @@ def _count(name: str, latex: str, low: int, high: int, description: str) -> Quan
 # --- cutter -----------------------------------------------------------------------------------------------------
 u = _length("u", "u", 0.0, 15.0, "height of the blade point above the tip plane, along the cutter axis")
 beta = _angle("beta", r"\beta", -pi, pi, "cutter angle of the blade point, about the cutter axis")
-side = Quantity("side", "+1 outer blade (concave flank), -1 inner blade (convex flank)", "1", "s", (-1, 1), values=(-1, 1))
+side = Quantity(
+    "side", "+1 outer blade (concave flank), -1 inner blade (convex flank)", "1", "s", (-1, 1), values=(-1, 1)
+)
 blade_point_radius = _length("blade_point_radius", "r_p", 20.0, 250.0, "radius of the blade tip about the cutter axis")
 blade_pressure_angle = _angle("blade_pressure_angle", r"\alpha", 0.05, 0.6, "angle between blade and cutter axis")
 point_c = _vector("point_c", r"\mathbf{r}_c", "mm", 100.0, 250.0, "point of the cutter surface, cutter frame T")
-normal_c = _vector("normal_c", r"\mathbf{n}_c", "1", 1.0, 1.0, "unit normal of the cutter surface into the cutter, frame T")
+normal_c = _vector(
+    "normal_c", r"\mathbf{n}_c", "1", 1.0, 1.0, "unit normal of the cutter surface into the cutter, frame T"
+)
 
 # --- machine settings -------------------------------------------------------------------------------------------
 radial_distance = _length("radial_distance", "S", 20.0, 200.0, "machine centre to cutter centre in the machine plane")
@@ -64,8 +68,12 @@ settings = Quantity(
 # --- cradle machine ---------------------------------------------------------------------------------------------
 theta = _angle("theta", r"\theta", -1.0, 1.0, "cradle rotation (roll position)")
 work_angle = Quantity("work_angle", "rotation of the work about its axis", "rad", r"\varphi_w", scale=10.0)
-V_c = _vector("V_c", r"\mathbf{V}_c", "1", 1.0, 1.0, "cutter axis, from the cutter head towards the work, machine frame s")
-V_p = _vector("V_p", r"\mathbf{V}_p", "1", 1.0, 1.0, "work axis, from the crossing point towards the heel, machine frame s")
+V_c = _vector(
+    "V_c", r"\mathbf{V}_c", "1", 1.0, 1.0, "cutter axis, from the cutter head towards the work, machine frame s"
+)
+V_p = _vector(
+    "V_p", r"\mathbf{V}_p", "1", 1.0, 1.0, "work axis, from the crossing point towards the heel, machine frame s"
+)
 V_ls = _vector("V_ls", r"\mathbf{V}_{ls}", "mm", 200.0, 500.0, "pitch apex to cutter centre, machine frame s")
 point_w = _vector("point_w", r"\mathbf{R}", "mm", 300.0, 500.0, "point of the tooth surface family, work frame w")
 normal_w = _vector("normal_w", r"\mathbf{n}", "1", 1.0, 1.0, "outward unit normal (out of the metal), work frame w")
@@ -82,27 +90,39 @@ sensitivity = Quantity(
 X = Quantity("X", "position of axis X", "mm", "X", (-500.0, 500.0), scale=300.0)
 Y = Quantity("Y", "position of axis Y", "mm", "Y", (-500.0, 500.0), scale=300.0)
 Z = Quantity("Z", "position of axis Z", "mm", "Z", (-500.0, 900.0), scale=600.0)
-A = Quantity("A", "position of the work axis A, right-handed about the work axis", "rad", "A", (-10.0, 10.0), scale=10.0)
+A = Quantity(
+    "A", "position of the work axis A, right-handed about the work axis", "rad", "A", (-10.0, 10.0), scale=10.0
+)
 B = Quantity("B", "position of the swivel axis B, left-handed about Y", "rad", "B", (-0.2, 1.7), scale=1.0)
 axes = Quantity(
     "axes", "axis positions X, Y, Z, A, B of the vertical machine", "mixed", r"\mathbf{a}", shape=(5,),
     components=(X, Y, Z, A, B),
 )  # fmt: skip
-pivot_height = _length("pivot_height", "R_d + C_t", 0.0, 400.0, "R_d + C_t: height of the blade tips over the B axis at Z = 0")
-cutter_center_w = _vector("cutter_center_w", r"\mathbf{c}", "mm", 300.0, 500.0, "cutter centre in the tip plane, work frame w")
+pivot_height = _length(
+    "pivot_height", "R_d + C_t", 0.0, 400.0, "R_d + C_t: height of the blade tips over the B axis at Z = 0"
+)
+cutter_center_w = _vector(
+    "cutter_center_w", r"\mathbf{c}", "mm", 300.0, 500.0, "cutter centre in the tip plane, work frame w"
+)
 cutter_axis_w = _vector("cutter_axis_w", r"\mathbf{k}_c", "1", 1.0, 1.0, "cutter axis towards the work, work frame w")
 line_point = _vector("line_point", r"\mathbf{p}", "mm", 300.0, 200.0, "point at distance zero of a line, work frame w")
 line_direction = _vector("line_direction", r"\mathbf{d}", "1", 1.0, 1.0, "unit direction of a line, work frame w")
 line_distance = Quantity(
-    "line_distance", "where the line enters the material that the cutter sweeps; 1e3 where it does not", "mm", "t", scale=1000.0
+    "line_distance", "where the line enters the swept blade; 1e3 where it does not", "mm", "t", scale=1000.0
 )  # fmt: skip
 
 # --- deviation --------------------------------------------------------------------------------------------------
-tip_center = _vector("tip_center", r"\mathbf{p}_m", "mm", 300.0, 500.0, "centre of the probe tip at contact, work frame w")
-tip_radius = _length("tip_radius", "r_m", 0.0, 5.0, "effective radius of the probe tip; zero for a corrected contact point")
+tip_center = _vector(
+    "tip_center", r"\mathbf{p}_m", "mm", 300.0, 500.0, "centre of the probe tip at contact, work frame w"
+)
+tip_radius = _length(
+    "tip_radius", "r_m", 0.0, 5.0, "effective radius of the probe tip; zero for a corrected contact point"
+)
 deviation = Quantity("deviation", "along the outward normal; positive = metal left on", "mm", r"\delta", scale=300.0)
 lengthwise = _length("lengthwise", "X_t", -50.0, 50.0, "distance from the reference point along the tooth, toe to heel")
-profilewise = _length("profilewise", "Y_t", -20.0, 20.0, "distance from the reference point up the profile, root to tip")
+profilewise = _length(
+    "profilewise", "Y_t", -20.0, 20.0, "distance from the reference point up the profile, root to tip"
+)
 surface_coefficients = Quantity(
     "surface_coefficients", "coefficients c_1 ... c_10 of the cubic deviation surface, mm per mm^k", "mixed", "c",
     (-1.0, 1.0), shape=(10,),
@@ -117,7 +137,9 @@ surface_deviation = Quantity(
 # --- electronic gearbox -----------------------------------------------------------------------------------------
 teeth = _count("teeth", "G", 1, 999, "teeth of the gear to be cut")
 hob_starts = _count("hob_starts", "k", 1, 10, "starts of the hob")
-encoder_counts = _count("encoder_counts", "N_{encoder}", 1, 40_000, "encoder counts per turn of the hob, after the decoder")
+encoder_counts = _count(
+    "encoder_counts", "N_{encoder}", 1, 40_000, "encoder counts per turn of the hob, after the decoder"
+)
 motor_steps = _count("motor_steps", "N_{motor}", 1, 10_000_000, "motor steps per turn of the work table")
 pulse_ratio = Quantity("pulse_ratio", "encoder counts per motor step", "1", "R", (0.1, 100.0), scale=1.0)
 encoder_position = _count("encoder_position", "e", -(2**31), 2**31, "encoder counts since the start, signed")
@@ -125,11 +147,15 @@ desired_position = Quantity("desired_position", "where the work should be", "ste
 steps_numerator = _count("steps_numerator", "N", 1, 2**30, "N of the ratio N/D in motor steps per encoder count")
 steps_denominator = _count("steps_denominator", "D", 1, 2**30, "D of the ratio N/D in motor steps per encoder count")
 nearest_position = _count("nearest_position", "p", -(2**62), 2**62, "the whole step nearest to the desired position")
-floor_position = _count("floor_position", "N_{delivered}", -(2**62), 2**62, "steps delivered by the rule of the source text")
+floor_position = _count(
+    "floor_position", "N_{delivered}", -(2**62), 2**62, "steps delivered by the rule of the source text"
+)
 edge = Quantity("edge", "one encoder edge: +1 forward, -1 backward", "1", "d", (-1, 1), kind="int", values=(-1, 1))
 remainder = _count("remainder", "a", 0, 2**30 - 1, "state of the step rule, 0 <= remainder < steps_denominator")
 next_remainder = _count("next_remainder", "a'", 0, 2**30 - 1, "state of the step rule after the edge")
-first_remainder = _count("first_remainder", "a_0", 0, 2**29, "state of the step rule at the start: half of D, rounded down")
+first_remainder = _count(
+    "first_remainder", "a_0", 0, 2**29, "state of the step rule at the start: half of D, rounded down"
+)
 step = Quantity("step", "motor step to deliver: +1, 0 or -1", "1", r"\Delta p", (-1, 1), kind="int", values=(-1, 0, 1))
 
 # --- hobbed blank -----------------------------------------------------------------------------------------------
@@ -138,3 +164,32 @@ depth_factor = Quantity("depth_factor", "whole depth in modules", "1", "f_h", (2
 depth_extra = _length("depth_extra", "h_+", 0.0, 0.1, "depth added to the factor by the fine-pitch rule")
 blank_diameter = _length("blank_diameter", "d_a", 0.0, 1e4, "outside diameter of the blank")
 cut_depth = _length("cut_depth", "h", 0.0, 100.0, "whole depth of cut")
+
+# --- bevel blank ------------------------------------------------------------------------------------------------
+pitch_angle = _angle("pitch_angle", r"\delta", 0.1, 1.5, "pitch cone against the member's axis")
+face_angle = _angle("face_angle", r"\delta_a", 0.1, 1.57, "face cone against the member's axis")
+root_angle = _angle("root_angle", r"\delta_f", 0.05, 1.5, "root cone against the member's axis")
+mean_cone_distance = _length("mean_cone_distance", "R_m", 10.0, 400.0, "apex to mean point along the pitch cone")
+face_width = _length("face_width", "b", 2.0, 100.0, "length of the teeth along the pitch cone")
+mean_addendum = _length("mean_addendum", "h_{am}", 0.2, 20.0, "tooth height above the pitch cone at the mean point")
+mean_dedendum = _length("mean_dedendum", "h_{fm}", 0.2, 20.0, "tooth depth below the pitch cone at the mean point")
+clearance = _length("clearance", "c", 0.0, 5.0, "depth of the root that the mating tooth does not reach")
+blank = Quantity(
+    "blank", "blank of one member, pitch apex in the crossing point", "mixed", r"\mathbf{b}", shape=(8,),
+    components=(
+        pitch_angle, face_angle, root_angle, mean_cone_distance, face_width, mean_addendum, mean_dedendum, clearance,
+    ),
+)  # fmt: skip
+across = Quantity("across", "place along the tooth: 0 toe, 1 heel", "1", r"\xi", (0.0, 1.0))
+up = Quantity("up", "place up the working depth: 0 lower limit, 1 tip", "1", r"\eta", (0.0, 1.0))
+axial = Quantity("axial", "coordinate z_w of a flank point", "mm", "z_w", (5.0, 300.0), scale=300.0)
+radial = Quantity("radial", "distance of a flank point from the member's axis", "mm", "r_w", (5.0, 300.0), scale=300.0)
+contact = Quantity(
+    "contact", "surface parameters u, beta, theta of a flank point", "mixed", r"(u, \beta, \theta)", shape=(3,),
+    components=(u, beta, theta), scale=100.0,
+)  # fmt: skip
+turning = Quantity(
+    "turning", "angle by which a flank is turned about z_w to leave this deviation", "rad", r"\varepsilon", scale=1.0
+)
+arc = Quantity("arc", "the same as an arc at the radius of the point", "mm", "s", scale=300.0)
+deviation_in = Quantity("deviation_in", "measured deviation along the outward normal", "mm", r"\delta", (-0.5, 0.5))

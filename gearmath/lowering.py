@@ -42,7 +42,9 @@ class Kernel:
             ("output", self.outputs, self.function.name_out()),
         ):
             if [quantity.name for quantity in quantities] != names:
-                raise ValueError(f"{self.name}: {kind}s {names} of the function do not carry the names of its quantities")
+                raise ValueError(
+                    f"{self.name}: {kind}s {names} of the function do not carry the names of its quantities"
+                )
 
     @property
     def name(self) -> str:
@@ -63,7 +65,7 @@ class Kernel:
         for array, is_many, quantity in zip(arrays, many, self.inputs, strict=True):
             if array.shape != (*((n,) if is_many else ()), *quantity.shape):
                 raise ValueError(f"{self.name}: {quantity.name} has shape {array.shape}, expected {quantity.shape}")
-            flat = array.reshape(n, -1) if is_many else np.broadcast_to(array.reshape(1, -1), (n, quantity.size))
+            flat = np.broadcast_to(array.reshape(n if is_many else 1, quantity.size), (n, quantity.size))
             columns.append(_as_columns(flat, quantity))
         results = _mapped(self.function, n).call(columns) if n else [np.empty((q.size, 0)) for q in self.outputs]
         outputs = []
@@ -80,7 +82,8 @@ class Kernel:
 def _as_columns(rows: np.ndarray, quantity: Quantity) -> np.ndarray:
     if len(quantity.shape) < 2:
         return np.ascontiguousarray(rows.T)
-    return np.hstack([row.reshape(quantity.shape) for row in rows])
+    height, width = quantity.shape
+    return rows.reshape(-1, height, width).transpose(1, 0, 2).reshape(height, len(rows) * width)
 
 
 def _as_rows(columns: np.ndarray, quantity: Quantity, n: int) -> np.ndarray:
@@ -96,6 +99,7 @@ def _mapped(function: ca.Function, n: int) -> ca.Function:
 
 def _fold(operation: Callable) -> Callable:
     return lambda *arguments: functools.reduce(operation, arguments)
+
 
 RULES: Mapping[type, Callable] = {
     sp.Add: _fold(lambda a, b: a + b),
@@ -162,7 +166,7 @@ def lower(expression: Expression) -> Kernel:
 def _walk(node: sp.Basic, values: Mapping[sp.Basic, ca.SX], name: str) -> ca.SX:
     if node in values:
         return values[node]
-    if isinstance(node, sp.Number | sp.NumberSymbol):
+    if isinstance(node, sp.Number | sp.NumberSymbol) and node.is_finite:
         return ca.SX(int(node)) if node.is_Integer else ca.SX(float(node))
     if isinstance(node, sp.logic.boolalg.BooleanAtom):
         return ca.SX(1 if node else 0)

@@ -50,8 +50,14 @@ def bundled(name: str) -> Path:
     path = Path(str(resources.files("gearmath") / "data" / name))
     if not path.is_file():
         known = sorted(entry.name for entry in path.parent.glob("*.toml"))
-        raise InputError(f"{name}: no such bundled file; there are {', '.join(known)}")
+        raise InputError(f"{name}: cannot be read: there is no such file; bundled are {', '.join(known)}")
     return path
+
+
+def find(name: str) -> Path:
+    """A file by its path or, where a bare name is no file here, the bundled file of that name."""
+    path = Path(name)
+    return path if path.is_file() or path.name != name else bundled(name)
 
 
 def _sentence(error: ValidationError) -> str:

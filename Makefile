@@ -1,0 +1,76 @@
+# make demo    the whole idea on a bundled gear set, into gearmath-demo/
+# make test    every check, every test, every notebook
+# make bench   speed, as ratios within one run
+# make golden  own up to a change of the generated C: rewrites tests/golden
+# make clean   removes what these have written, apart from .venv
+#
+# Each builds .venv by itself. Another Python: make demo PYTHON=/path/to/python3.12 - other processes: make test JOBS=4
+
+VENV := .venv
+BIN := $(VENV)/bin
+JOBS ?= 2
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
+NOTEBOOKS := $(wildcard notebooks/*.ipynb)
+
+RECENT := import sys; sys.exit(sys.version_info < (3, 11))
+ifndef PYTHON
+PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 python; do \
+	$$p -c '$(RECENT)' 2>/dev/null && echo $$p && break; done)
+endif
+
+.PHONY: demo test lint notebooks bench golden clean compiler
+.DELETE_ON_ERROR:
+
+demo: $(VENV)/.run compiler
+	$(BIN)/gearmath demo
+
+test: $(VENV)/.test compiler lint
+	$(BIN)/pytest -n $(JOBS) --dist loadscope --benchmark-disable --durations 10 tests
+	$(MAKE) --no-print-directory notebooks
+
+lint: $(VENV)/.test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(if $(NOTEBOOKS),$(BIN)/nbstripout --verify $(NOTEBOOKS))
+
+# filterwarnings is emptied for pytest itself; in the notebooks every warning is an error
+notebooks: $(VENV)/.test
+	$(if $(NOTEBOOKS),PYTHONWARNINGS=error MPLBACKEND=agg $(BIN)/pytest -o filterwarnings= --nbval-lax --nbval-current-env \
+		--nbval-cell-timeout 60 -n $(JOBS) --dist loadscope --durations 5 notebooks)
+
+bench: $(VENV)/.test compiler
+	$(BIN)/pytest -p no:xdist --benchmark-only --benchmark-group-by group tests/benchmarks
+
+golden: $(VENV)/.test
+	$(BIN)/pytest -p no:xdist --update-golden tests/gearmath/export
+	git status --short tests/golden
+
+clean:
+	rm -rf build dist gearmath-demo .benchmarks .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	find derivations gearmath tests notebooks -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(VENV)/.made:
+	@test -n "$(PYTHON)" && $(PYTHON) -c '$(RECENT)' || { echo "gearmath needs Python 3.11 or newer: install it\
+	 (Debian, Ubuntu: apt install python3 python3-venv), or name one with PYTHON=/path/to/python3."; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { echo "$(PYTHON) lacks the venv module: install it\
+	 (Debian, Ubuntu: apt install python3-venv)."; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+$(VENV)/.run: pyproject.toml | $(VENV)/.made
+	@echo "Installing gearmath and what it needs to run into $(VENV), once; this takes about a minute."
+	@$(INSTALL) .
+	@touch $@
+
+$(VENV)/.test: pyproject.toml | $(VENV)/.made
+	@echo "Installing gearmath and what its tests need into $(VENV), once; this takes a minute or two."
+	@$(INSTALL) '.[test]'
+	@touch $(VENV)/.run $@
+
+# asked every time: a compiler may have come or gone
+compiler: | $(VENV)/.made
+	@command -v cc >/dev/null || command -v gcc >/dev/null || { \
+		echo "No C compiler (cc, gcc) was found, so the one in the zig wheel is taken instead."; \
+		$(BIN)/python -c 'import ziglang' 2>/dev/null || $(INSTALL) '.[zig]'; }

@@ -1,0 +1,166 @@
+"""Points of generated flanks: the equation of meshing solved on a grid, for many points in one mapped call.
+
+A point is asked for by its place on the blank, (z_w, r_w). The unknowns are u, β, θ of chapter 3:
+
+    z(R) = z_w,   (R_x² + R_y² - r_w²) / (2 r_w) = 0,   f / S = 0
+
+No point leaves this module that is not converged, or that lies off the blade.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import casadi as ca
+import numpy as np
+
+from derivations import Quantity, notation
+from gearmath.bevel.kernels import kernel
+from gearmath.errors import ComputationError
+from gearmath.lowering import Kernel
+from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+
+#: Newton steps of one call of the kernel; the solver repeats the call where that is not enough.
+NEWTON_STEPS = 5
+_REPEATS = 12
+#: Largest residual of a converged point. [mm]
+TOLERANCE = 1e-9
+#: Largest change of u [mm], β and θ [rad] in one Newton step.
+_STEP_LIMITS = (4.0, 0.3, 0.3)
+#: A blade has this much tolerance at its ends, so that a point on the tip is not lost to rounding. [mm]
+_BLADE_SLACK = 1e-7
+
+residual_size = Quantity("residual_size", "largest residual of place and meshing after the last step", "mm", "r")
+contact_guess = Quantity(
+    "contact_guess", "start values of u, beta, theta", "mixed", "(u, \\beta, \\theta)_0", shape=(3,),
+    components=notation.contact.components,
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FlankPoints:
+    """n points of one flank in the work frame: parameters (n,3), points (n,3) [mm], outward unit normals (n,3)."""
+
+    contact: np.ndarray
+    point: np.ndarray
+    normal: np.ndarray
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Places on a flank, rows root to tip and columns toe to heel, as (z_w, r_w) of shape (rows, columns) [mm]."""
+
+    axial: np.ndarray
+    radial: np.ndarray
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return self.axial.shape  # type: ignore[return-value]
+
+
+def blank_grid(member: Member, rows: int = 5, columns: int = 9, margin: float = 0.1) -> Grid:
+    """The grid of the flank files: ``margin`` of face width and working depth is left out on all four sides."""
+    across, up = (np.linspace(margin, 1 - margin, count) if count > 1 else np.array([0.5]) for count in (columns, rows))
+    up_all, across_all = (array.ravel() for array in np.meshgrid(up, across, indexing="ij"))
+    axial, radial = kernel("flank_place")(member.blank.vector, across_all, up_all)
+    return Grid(axial.reshape(rows, columns), radial.reshape(rows, columns))
+
+
+def _residual(w: ca.SX, settings: ca.SX, side: ca.SX, axial: ca.SX, radial: ca.SX) -> ca.SX:
+    """Residuals [mm] of place and meshing at w = (u, β, θ)."""
+    point, _ = kernel("flank_family").function(w[0], w[1], w[2], settings, side)
+    meshing = kernel("meshing").function(w[0], w[1], w[2], settings, side)
+    off_radius = (point[0] ** 2 + point[1] ** 2 - radial**2) / (2 * radial)
+    return ca.vertcat(point[2] - axial, off_radius, meshing / settings[0])
+
+
+def newton_step(residual: ca.SX, unknowns: ca.SX, limits: tuple[float, ...]) -> ca.SX:
+    """The unknowns (3,) after one Newton step, shortened where a component would change by more than its limit.
+
+    The 3×3 system is solved by cross products of the rows of the Jacobian, which needs no pivoting code in C.
+    """
+    J = ca.jacobian(residual, unknowns)
+    rows = [J[k, :].T for k in range(3)]
+    minors = [ca.cross(rows[1], rows[2]), ca.cross(rows[2], rows[0]), ca.cross(rows[0], rows[1])]
+    step = sum(residual[k] * minors[k] for k in range(3)) / ca.dot(rows[0], minors[0])
+    excess: ca.SX = ca.SX(1)
+    for k, limit in enumerate(limits):
+        excess = ca.fmax(excess, ca.fabs(step[k]) / limit)
+    return unknowns - step / excess
+
+
+@cache
+def flank_point() -> Kernel:
+    """Kernel: start values, settings, side and place in; parameters, point, normal and residual out.
+
+    A fixed number of damped Newton steps, so that the same kernel runs mapped in the VM and as C without a loop bound.
+    """
+    quantities = (notation.contact, notation.settings, notation.side, notation.axial, notation.radial)
+    w, *place = (ca.SX.sym(quantity.name, max(quantity.size, 1)) for quantity in quantities)
+    step = ca.Function("flank_newton_step", [w, *place], [newton_step(_residual(w, *place), w, _STEP_LIMITS)])
+    guess, *given = (ca.MX.sym(quantity.name, max(quantity.size, 1)) for quantity in (contact_guess, *quantities[1:]))
+    solution = guess
+    for _ in range(NEWTON_STEPS):
+        solution = step(solution, *given)
+    surface = ca.Function("flank_at", [w, *place], _surface(w, *place))
+    function = ca.Function(
+        "flank_point", [guess, *given], [solution, *surface(solution, *given)],
+        ["contact_guess", *(quantity.name for quantity in quantities[1:])],
+        ["contact", "point_w", "normal_w", "residual_size"],
+    )  # fmt: skip
+    return Kernel(
+        function,
+        f"Point and outward normal of a generated flank at a place on the blank, {NEWTON_STEPS} damped Newton steps.",
+        (contact_guess, *quantities[1:]),
+        (notation.contact, notation.point_w, notation.normal_w, residual_size),
+        "equation of meshing (4.2) and family (3.1, 3.2)",
+    )
+
+
+def _surface(w: ca.SX, *place: ca.SX) -> list[ca.SX]:
+    point, normal = kernel("flank_family").function(w[0], w[1], w[2], place[0], place[1])
+    return [point, normal, ca.norm_inf(_residual(w, *place))]
+
+
+def solve_places(
+    settings: np.ndarray, side: int, axial: np.ndarray, radial: np.ndarray, start: np.ndarray | None = None
+) -> tuple[FlankPoints, np.ndarray]:
+    """Points at the places (n,), and their residuals (n,) [mm]; what did not converge has a residual to say so."""
+    if start is None:
+        (start,) = kernel("contact_start")(settings, side, axial, radial)
+    contact, point, normal, residual = flank_point()(start, settings, side, axial, radial)
+    for _ in range(_REPEATS):
+        open_ = ~(residual <= TOLERANCE) & np.isfinite(contact).all(axis=1)
+        if not open_.any():
+            break
+        again = flank_point()(contact[open_], settings, side, axial[open_], radial[open_])
+        contact[open_], point[open_], normal[open_], residual[open_] = again
+    return FlankPoints(contact, point, normal), residual
+
+
+def solve_flank(member: Member, name: str, flank: str, grid: Grid) -> FlankPoints:
+    """The points of a grid on one flank, row by row.
+
+    Raises ComputationError naming member, flank, row and column of the first point that does not converge or that
+    lies off the blade.
+    """
+    if flank not in FLANKS:
+        raise ValueError(f"flank = {flank!r}: must be one of {FLANKS}")
+    spec = member.flank(flank)
+    points, residual = solve_places(spec.nominal.vector, SIDES[flank], grid.axial.ravel(), grid.radial.ravel())
+    for failed, what in (
+        (~(residual <= TOLERANCE), "the equation of meshing has no solution near the start value"),
+        (points.contact[:, 0] < -_BLADE_SLACK, "the point lies below the blade tip, on the fillet or beyond"),
+        (
+            points.contact[:, 0] > spec.blade_profile_height + _BLADE_SLACK,
+            f"the point lies above the blade, blade_profile_height = {spec.blade_profile_height} mm",
+        ),
+    ):
+        if failed.any():
+            row, column = divmod(int(np.argmax(failed)), grid.shape[1])
+            height = points.contact[row * grid.shape[1] + column, 0]
+            raise ComputationError(
+                f"{name} {flank} flank, row {row}, column {column}: {what} (blade height {height:.4f} mm)"
+            )
+    return points

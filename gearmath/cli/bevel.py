@@ -1,0 +1,47 @@
+"""``gearmath flank``: nominal points and normals."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+
+from gearmath.cli.common import MEMBER, SET, output
+from gearmath.errors import InputError
+
+_MOST_POINTS = 1_000_000
+
+
+@click.command()
+@SET
+@MEMBER
+@click.option("--flank", "side", type=click.Choice(["concave", "convex"]), required=True, help="Flank of the member.")
+@click.option("--grid", "size", default="5x9", show_default=True, help="Rows (root to tip) x columns (toe to heel).")
+@click.option(
+    "--margin", type=float, default=0.1, show_default=True, help="Part of face and depth left out at each end."
+)
+@output("flank CSV")
+def flank(gear_set: str, member: str, side: str, size: str, margin: float, target: Path) -> None:
+    """Nominal points and outward normals of one flank, as a flank CSV."""
+    from gearmath.bevel.flank import blank_grid
+    from gearmath.machine.mill import nominal_flank
+    from gearmath.specs.bevel_set import load_bevel_set
+    from gearmath.specs.flank_csv import write_flank_csv
+    from gearmath.specs.toml import find
+
+    spec = load_bevel_set(find(gear_set)).member(member)
+    rows, columns = _grid(size)
+    if not 0 <= margin < 0.5:
+        raise InputError(f"--margin {margin:g}: must be at least 0 and less than 0.5, or the grid leaves the blank")
+    grid = blank_grid(spec, rows, columns, margin)
+    write_flank_csv(target, nominal_flank(spec, member, side, grid, margin))
+    click.echo(f"{target}: {rows * columns} points of the {member}'s {side} flank")
+
+
+def _grid(size: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", size)
+    rows, columns = (int(part) for part in match.groups()) if match else (0, 0)
+    if not (rows >= 2 and columns >= 2 and rows * columns <= _MOST_POINTS):
+        raise InputError(f"--grid {size}: must read like 5x9, two or more each way, at most {_MOST_POINTS} points")
+    return rows, columns

@@ -1,0 +1,63 @@
+"""What several verbs share: the same options, tables and progress bars everywhere."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+
+SET = click.argument("gear_set", metavar="SET.toml")
+MEMBER = click.option("--member", type=click.Choice(["pinion", "gear"]), required=True, help="Member of the pair.")
+MACHINE = click.option(
+    "--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine: a file, or a bundled one."
+)
+JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def output(suffix: str) -> Any:
+    """The option -o for one output file."""
+    return click.option(
+        "-o", "--output", "target", type=click.Path(path_type=Path, dir_okay=False), required=True,
+        help=f"File to write ({suffix}).",
+    )  # fmt: skip
+
+
+def echo_json(values: Any) -> None:
+    """Print a result for programs."""
+    click.echo(json.dumps(values, indent=2))
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
+    """Columns as wide as their widest cell, numbers to the right."""
+    cells = [[str(cell) for cell in row] for row in (head, *rows)]
+    widths = [max(len(row[k]) for row in cells) for k in range(len(head))]
+    left = [not isinstance(rows[0][k], int | float) and not _is_number(cells[1][k]) for k in range(len(head))]
+    lines = []
+    for row in cells:
+        padded = (
+            cell.ljust(width) if is_left else cell.rjust(width)
+            for cell, width, is_left in zip(row, widths, left, strict=True)
+        )
+        lines.append("  ".join(padded).rstrip())
+    return "\n".join(lines)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+@contextmanager
+def bar(total: int, unit: str, quiet: bool = False) -> Iterator[Any]:
+    """A progress bar on standard error, only where somebody looks at it."""
+    from tqdm import tqdm
+
+    with tqdm(total=total, unit=unit, disable=True if quiet else None, leave=False, delay=1.0) as progress:
+        yield progress.update

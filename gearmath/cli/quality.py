@@ -1,0 +1,125 @@
+"""``gearmath evaluate`` and ``gearmath compensate``: from a measured member to corrected settings."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gearmath.cli.common import JSON, MEMBER, SET, echo_json, output, table
+
+if TYPE_CHECKING:
+    from gearmath.quality.correction import Correction
+    from gearmath.specs.bevel_set import Member
+    from gearmath.specs.flank_csv import FlankFile
+
+
+@click.command()
+@click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
+@click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
+@click.option("--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), help="Topography and pitch as PNG.")
+@JSON
+def evaluate(measured: Path, gear_set: str, picture: Path | None, as_json: bool) -> None:
+    """Pitch, profile and topography of a measured member."""
+    from gearmath.quality.correction import check_belongs
+    from gearmath.quality.pitch import evaluate_pitch
+    from gearmath.quality.topography import evaluate_topography
+    from gearmath.specs.bevel_set import FLANKS, load_bevel_set
+    from gearmath.specs.flank_csv import read_flank_csv
+    from gearmath.specs.toml import find
+
+    file = read_flank_csv(measured)
+    member = load_bevel_set(find(gear_set)).member(file.member)
+    check_belongs(member, file.member, file)
+    flanks = [flank for flank in FLANKS if len(file.select(flank))]
+    topographies = {flank: evaluate_topography(file, flank, _first_tooth(file, flank)) for flank in flanks}
+    pitches = {flank: pitch for flank in flanks if (pitch := evaluate_pitch(file, member.teeth, flank))}
+    if picture:
+        from gearmath.plot import member_figure, save
+
+        save(member_figure(f"{file.member}, {measured.name}", topographies, {}, list(pitches.values())), picture)
+    values = {
+        flank: {
+            "tooth": topography.tooth,
+            "max_deviation_um": topography.extreme * 1000,
+            "rms_um": topography.rms * 1000,
+            "cubic_surface_residual_um": float(abs(topography.residual).max()) * 1000,
+            "surface_coefficients": topography.coefficients.tolist(),
+        }
+        | (_pitch_values(pitches[flank]) if flank in pitches else {})
+        for flank, topography in topographies.items()
+    }
+    if as_json:
+        echo_json({"member": file.member, "flanks": values})
+        return
+    names = ("max_deviation_um", "rms_um", "cubic_surface_residual_um", "F_p_um", "max_f_pt_um")
+    click.echo(table(
+        ["flank", *names],
+        [[flank, *(f"{row[name]:.3f}" if name in row else "" for name in names)] for flank, row in values.items()],
+    ))  # fmt: skip
+
+
+@click.command()
+@SET
+@MEMBER
+@click.option("--measured", required=True, type=click.Path(path_type=Path), help="Measured flank CSV of the member.")
+@JSON
+@output("corrected set, TOML")
+def compensate(gear_set: str, member: str, measured: Path, as_json: bool, target: Path) -> None:
+    """Corrected machine settings from a measurement; the nominal settings stay in the file under 'design'."""
+    from gearmath.quality.correction import correct
+    from gearmath.specs.bevel_set import load_bevel_set, save_corrected
+    from gearmath.specs.flank_csv import read_flank_csv
+    from gearmath.specs.toml import find
+
+    source = find(gear_set)
+    spec = load_bevel_set(source).member(member)
+    correction = correct(spec, member, read_flank_csv(measured))
+    save_corrected(source, target, member, correction.settings, correction.index)
+    if as_json:
+        echo_json(_correction_values(spec, correction))
+        return
+    rows = [
+        [change["flank"], change["setting"], f"{change['old']:.6f}", f"{change['new']:.6f}", change["unit"]]
+        for change in _correction_values(spec, correction)["changes"]
+    ]
+    click.echo(table(["flank", "setting", "old", "new", "unit"], rows) if rows else "nothing to correct")
+    for group, found in correction.identified.items():
+        click.echo(
+            f"{' and '.join(group)}: RMS {found.rms_before * 1000:.3f} um, expected to remain "
+            f"{found.rms_after * 1000:.3f} um ({found.iterations} iterations)"
+        )
+    click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
+
+
+def _first_tooth(file: FlankFile, flank: str) -> int:
+    return int(file.select(flank).tooth[0])
+
+
+def _pitch_values(pitch: Any) -> dict[str, float]:
+    return {"F_p_um": pitch.total * 1000, "max_f_pt_um": float(abs(pitch.single).max()) * 1000}
+
+
+def _correction_values(member: Member, correction: Correction) -> dict[str, Any]:
+    from derivations import notation
+    from gearmath.quality.correction import setting_changes
+
+    angular = {component.name for component in notation.settings.components if component.unit == "rad"}
+    plain = {component.name for component in notation.settings.components if component.unit == "1"}
+    changes = [
+        {
+            "flank": flank,
+            "setting": name,
+            "old": math.degrees(old) if name in angular else old,
+            "new": math.degrees(new) if name in angular else new,
+            "unit": "deg" if name in angular else "1" if name in plain else "mm",
+        }
+        for flank, name, old, new in setting_changes(member, correction)
+    ]
+    return {
+        "changes": changes,
+        "expected_max_um": {flank: value * 1000 for flank, value in correction.expected.items()},
+        "index_correction_deg": [] if correction.index is None else [math.degrees(v) for v in correction.index],
+    }

@@ -1,0 +1,184 @@
+"""The main job on bundled data, end to end: what ``gearmath demo`` runs, step by step, each step timed and printed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+
+import derivations
+from derivations import flank as flank_chapter
+from derivations import gearbox as gearbox_chapter
+from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.kernels import kernel
+from gearmath.export.cnc import export_cnc
+from gearmath.export.host import compile_kernel, run_edges
+from gearmath.export.teensy import export_teensy
+from gearmath.files import write_text
+from gearmath.gearbox.simulation import Simulation, simulate
+from gearmath.gearbox.train import GearboxPlan, plan
+from gearmath.lowering import lower
+from gearmath.machine.cutting import cutting_program
+from gearmath.machine.mill import mill_member
+from gearmath.machine.reader import execute
+from gearmath.plot import member_figure, save
+from gearmath.quality.correction import correct
+from gearmath.quality.pitch import Pitch, evaluate_pitch
+from gearmath.quality.topography import Topography, evaluate_topography
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES, load_bevel_set, save_corrected
+from gearmath.specs.flank_csv import FlankFile, write_flank_csv
+from gearmath.specs.hobbing import load_hobbing_machine
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.simulated_machine import Probe, SimulatedMachine, load_simulated_machine
+from gearmath.specs.toml import bundled
+
+GEAR_SET, MILLING_MACHINE, SHOP = "nasa_tp3096_12x36.toml", "vertical_5axis.toml", "simulated_shop.toml"
+HOBBING_MACHINE, HOBBED_TEETH, EDGES = "hobbing_plewes.toml", 17, 2_000_000
+
+Say = Callable[[str], object]
+
+
+@dataclass(frozen=True)
+class MemberResult:
+    """True state of one member, without probe noise, after the first cut and after the corrected one."""
+
+    member: str
+    before: dict[str, Topography]
+    after: dict[str, Topography]
+    pitch_before: list[Pitch]
+    pitch_after: list[Pitch]
+
+    @property
+    def profile(self) -> tuple[float, float]:
+        """Largest profile deviation of both flanks, with its sign, before and after [mm]."""
+        first, second = (max((t.extreme for t in state.values()), key=abs) for state in (self.before, self.after))
+        return first, second
+
+    @property
+    def cumulative_pitch(self) -> tuple[float, float]:
+        """F_p, the larger of both flanks, before and after [mm]."""
+        first, second = (max(p.total for p in pitches) for pitches in (self.pitch_before, self.pitch_after))
+        return first, second
+
+
+def run_demo(folder: Path, say: Say) -> list[MemberResult]:
+    """Run everything; programs, measurements, corrected sets, pictures and C are written below ``folder``."""
+    begin = time.perf_counter()
+    folder.mkdir(parents=True, exist_ok=True)
+    with _step(say, "derive in SymPy, lower to CasADi"):
+        kernels = [lower(expression) for expression in derivations.expressions()]
+        say(f"  {len(kernels)} expressions, {sum(k.function.n_instructions() for k in kernels)} operations")
+    with _step(say, "electronic gearbox: compiled integer rule against exact fractions"):
+        _say_gearbox(say, *run_gearbox())
+    with _step(say, "one truth: SymPy in 50 digits, CasADi, compiled C, at 45 points of the pinion"):
+        _say_truth(say, *compare_truths())
+    results = []
+    for member in MEMBERS:
+        with _step(say, f"{member}: program, virtual cutting, measuring, correction, second cut"):
+            result = run_closed_loop(member, folder)
+            results.append(result)
+            figure = member_figure(
+                f"{member}: before and after one correction", result.before, result.after, result.pitch_before,
+                result.pitch_after,
+            )  # fmt: skip
+            save(figure, folder / f"{member}.png")
+            say(f"  picture: {folder / f'{member}.png'}")
+    with _step(say, "export C for the Teensy and for the CNC post-processor"):
+        teensy = export_teensy(load_hobbing_machine(bundled(HOBBING_MACHINE)), folder / "teensy")
+        cnc = export_cnc(folder / "cnc")
+        say(f"  {len(teensy)} files in {folder / 'teensy'}, {len(cnc)} files in {folder / 'cnc'}")
+    say("")
+    say(result_table(results))
+    say("")
+    say(f"all in {time.perf_counter() - begin:.1f} s")
+    return results
+
+
+def run_gearbox() -> tuple[list[tuple[int, float, int]], GearboxPlan, Simulation]:
+    """The table of the source text, the plan of a job, and the compiled step rule over two million reversals."""
+    ratio = 3.142
+    desired, delivered = (lower(f()) for f in (gearbox_chapter.desired_position, gearbox_chapter.floor_position))
+    counts = [row[0] for row in gearbox_chapter.PUBLISHED_TABLE]
+    rows = [(e, float(desired(e, ratio)[0]), int(delivered(e, ratio)[0])) for e in counts]
+    job = plan(load_hobbing_machine(bundled(HOBBING_MACHINE)), HOBBED_TEETH)
+    terms = (job.steps_numerator, job.steps_denominator)
+    return rows, job, simulate(run_edges, terms, job.first_remainder, "reversals", EDGES)
+
+
+def compare_truths() -> tuple[float, int, int]:
+    """Largest difference of CasADi to SymPy [mm], and of how many numbers the C is bit-equal to CasADi."""
+    member = load_bevel_set(bundled(GEAR_SET)).pinion
+    points = solve_flank(member, "pinion", "concave", blank_grid(member))
+    settings, side = member.concave.vector, SIDES["concave"]
+    arguments = (*points.contact.T, settings, side)
+    lowered = np.hstack(kernel("flank_family")(*arguments))
+    compiled = np.hstack(compile_kernel(kernel("flank_family"))(*arguments))
+    expression = flank_chapter.flank_family()
+    exact = [expression.evaluate(*contact, settings, side) for contact in points.contact]
+    worst = max(abs(value - float(number)) for row, values in zip(lowered, exact, strict=True)
+                for number, value in zip(row, values, strict=True))  # fmt: skip
+    return float(worst), int((lowered == compiled).sum()), lowered.size
+
+
+def run_closed_loop(member: str, folder: Path) -> MemberResult:
+    """Cut, measure with a noisy probe, correct, cut again; the result is judged without noise."""
+    shop = load_simulated_machine(bundled(SHOP))
+    source, corrected = bundled(GEAR_SET), folder / f"{member}_corrected.toml"
+    first, measured = _cut_and_measure(source, member, shop, folder / f"{member.upper()}_1.MPF")
+    write_flank_csv(folder / f"{member}_measured.csv", measured)
+    spec = load_bevel_set(source).member(member)
+    correction = correct(spec, member, measured)
+    save_corrected(source, corrected, member, correction.settings, correction.index)
+    second, again = _cut_and_measure(corrected, member, shop, folder / f"{member.upper()}_2.MPF")
+    write_flank_csv(folder / f"{member}_measured_again.csv", again)
+    before, after = ({flank: evaluate_topography(file, flank) for flank in FLANKS} for file in (first, second))
+    pitch_before, pitch_after = (
+        [pitch for flank in FLANKS if (pitch := evaluate_pitch(file, spec.teeth, flank))] for file in (first, second)
+    )
+    return MemberResult(member, before, after, pitch_before, pitch_after)
+
+
+def _cut_and_measure(gear_set: Path, name: str, shop: SimulatedMachine, program: Path) -> tuple[FlankFile, FlankFile]:
+    """The flanks as they are and as the probe sees them, from the program text as written to ``program``."""
+    bevel_set, machine = load_bevel_set(gear_set), load_milling_machine(bundled(MILLING_MACHINE))
+    member = bevel_set.member(name)
+    write_text(program, cutting_program(bevel_set, name, machine, program.stem, range(member.teeth)))
+    path = execute(program.read_text("utf-8"), program.name)
+    perfect_probe = shop.model_copy(update={"probe": Probe()})
+    true, seen = (mill_member(path, member, name, machine, errors) for errors in (perfect_probe, shop))
+    return true, seen
+
+
+def result_table(results: list[MemberResult]) -> str:
+    """The table of the source text, with our figures."""
+    rows = [(f"max profile error ({result.member})", result.profile) for result in results]
+    rows += [(f"cumulative pitch error ({result.member})", result.cumulative_pitch) for result in results]
+    head = f"{'':34}{'initial / um':>14}{'compensated / um':>18}"
+    return "\n".join([head, *(f"{name:34}{old * 1000:14.2f}{new * 1000:18.2f}" for name, (old, new) in rows)])
+
+
+def _say_gearbox(say: Say, rows: list[tuple[int, float, int]], job: GearboxPlan, run: Simulation) -> None:
+    say("  N_e  P_desired  N_delivered   (R = 3.142, the table of the source text)")
+    for count, desired, delivered in rows:
+        say(f"  {count:3d}  {desired:9.3f}  {delivered:11d}")
+    say(f"  {job.teeth} teeth on {job.machine}: {job.steps_numerator}/{job.steps_denominator} steps per count")
+    verdict = "never more than half a step" if run.worst_error <= Fraction(1, 2) else "MORE THAN HALF A STEP"
+    say(f"  {run.edges} edges with reversals: worst error {float(run.worst_error):.6f} steps, {verdict}")
+    say(f"  the float rule on the same edges: worst error {float(run.float_worst_error):.1f} steps")
+
+
+def _say_truth(say: Say, worst: float, equal: int, numbers: int) -> None:
+    say(f"  CasADi to SymPy: at most {worst:.1e} mm; C to CasADi: {equal} of {numbers} numbers are bit-equal")
+
+
+@contextmanager
+def _step(say: Say, title: str) -> Iterator[None]:
+    say(f"* {title}")
+    begin = time.perf_counter()
+    yield
+    say(f"  ({time.perf_counter() - begin:.1f} s)")

@@ -1,0 +1,158 @@
+"""Kernels compiled and called on this computer: the same C that is shipped, at full speed from NumPy."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib.util
+import shutil
+import subprocess
+import sys
+import tempfile
+import weakref
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache, lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from derivations import gearbox
+from gearmath.errors import ComputationError, InputError
+from gearmath.export.c import double_kernel, integer_kernel
+from gearmath.lowering import Kernel, lower
+
+#: Contraction would make a*b + c differ from the two operations that CasADi evaluates.
+FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
+_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
+
+
+@cache
+def find_compiler() -> tuple[str, ...]:
+    """The command that compiles C: cc, gcc, or the compiler of the ziglang wheel (said once on standard error).
+
+    Raises ComputationError that says what to install.
+    """
+    for name in ("cc", "gcc"):
+        if path := shutil.which(name):
+            return (path,)
+    if importlib.util.find_spec("ziglang"):
+        print("gearmath: no C compiler (cc, gcc) is installed, the one of the ziglang wheel is taken", file=sys.stderr)
+        return (sys.executable, "-m", "ziglang", "cc")
+    raise ComputationError(
+        "no C compiler was found: install gcc (Debian: apt install gcc) or the zig wheel (pip install gearmath[zig])"
+    )
+
+
+def compile_library(files: Mapping[str, str]) -> ctypes.CDLL:
+    """Compile the texts of ``files`` (name to text) into one shared library and load it.
+
+    Its folder lives as long as the library object. Raises ComputationError with the compiler's first error.
+    """
+    folder = Path(tempfile.mkdtemp(prefix="gearmath-"))
+    try:
+        for name, text in files.items():
+            (folder / name).write_text(text, "utf-8", newline="\n")
+        library = folder / f"libkernels{_SUFFIX}"
+        sources = [name for name in files if name.endswith(".c")]
+        done = subprocess.run(
+            [*find_compiler(), *FLAGS, *sources, "-o", library.name, "-lm"], cwd=folder, capture_output=True, text=True
+        )
+        if done.returncode:
+            lines = [line for line in done.stderr.splitlines() if "error" in line] or ["no message"]
+            raise ComputationError(f"the C compiler {find_compiler()[0]} failed: {lines[0]}")
+        loaded = ctypes.CDLL(str(library))
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    weakref.finalize(loaded, shutil.rmtree, folder, ignore_errors=True)
+    return loaded
+
+
+@dataclass(frozen=True)
+class CompiledKernel:
+    """A Kernel as machine code, called like the Kernel itself; the loop over the points runs in C."""
+
+    kernel: Kernel
+    library: ctypes.CDLL = field(repr=False)
+
+    @property
+    def name(self) -> str:
+        return self.kernel.name
+
+    def __call__(self, *arguments: np.typing.ArrayLike) -> tuple[np.ndarray, ...]:
+        """Evaluate at one or many points: shapes and broadcasting as in :meth:`gearmath.lowering.Kernel.__call__`."""
+        arrays = [np.ascontiguousarray(argument, dtype=float).reshape(np.shape(argument)) for argument in arguments]
+        if len(arrays) != len(self.kernel.inputs):
+            raise TypeError(f"{self.name} takes {len(self.kernel.inputs)} arguments, {len(arrays)} were given")
+        pairs = list(zip(arrays, self.kernel.inputs, strict=True))
+        many = [array.ndim > len(quantity.shape) for array, quantity in pairs]
+        n = max((len(array) for array, is_many in zip(arrays, many, strict=True) if is_many), default=1)
+        values: list[object] = [ctypes.c_long(n)]
+        for (array, quantity), is_many in zip(pairs, many, strict=True):
+            if array.shape != (*((n,) if is_many else ()), *quantity.shape):
+                raise ValueError(f"{self.name}: {quantity.name} has shape {array.shape}, expected {quantity.shape}")
+            values += [_pointer(array), ctypes.c_long(quantity.size if is_many else 0)]
+        outputs = [np.empty((n, *quantity.shape)) for quantity in self.kernel.outputs]
+        getattr(self.library, f"gm_{self.name}_batch")(*values, *map(_pointer, outputs))
+        return tuple(output if any(many) else output[0] for output in outputs)
+
+
+def compile_kernel(kernel: Kernel) -> CompiledKernel:
+    """The kernel compiled for this computer, once per process for the same C.
+
+    Raises ComputationError where there is no compiler, ExportError where the Kernel cannot become C.
+    """
+    return CompiledKernel(kernel, _library(tuple(double_kernel(kernel).files.items())))
+
+
+@lru_cache(maxsize=64)
+def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
+    return compile_library(dict(files))
+
+
+def _pointer(array: np.ndarray) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)
+
+
+#: Feeds recorded encoder edges to the step rule of the firmware; the remainder is kept as the interrupt keeps it.
+_RUN_EDGES = """\
+#include "gm_gearbox_step.h"
+
+void gm_run_edges(
+    long n, const int8_t *edges, int32_t numerator, int32_t denominator, int32_t *remainder, int8_t *steps)
+{
+  long k;
+  int32_t step;
+  for (k = 0; k < n; ++k) {
+    gm_gearbox_step(*remainder, edges[k], numerator, denominator, &step, remainder);
+    steps[k] = (int8_t)step;
+  }
+}
+"""
+
+
+def run_edges(edges: np.ndarray, numerator: int, denominator: int, remainder: int) -> tuple[np.ndarray, int]:
+    """The steps (n,) int8 that the compiled ``gm_gearbox_step`` delivers for edges (n,) of ±1, and the last remainder.
+
+    Raises InputError where edges or numbers lie outside the domain of the step rule.
+    """
+    values = np.asarray(edges)
+    if values.ndim != 1 or not np.isin(values, (-1, 1)).all():
+        raise InputError("edges: must be a list of +1 and -1")
+    if not 0 < numerator <= denominator <= 2**30:
+        raise InputError(f"ratio {numerator}/{denominator}: N/D must satisfy 0 < N <= D <= 2^30")
+    if not 0 <= remainder < denominator:
+        raise InputError(f"remainder = {remainder}: must satisfy 0 <= remainder < {denominator}")
+    contiguous = np.ascontiguousarray(values, dtype=np.int8)
+    steps = np.empty(len(contiguous), dtype=np.int8)
+    state = ctypes.c_int32(remainder)
+    _step_library().gm_run_edges(
+        ctypes.c_long(len(steps)), _pointer(contiguous), ctypes.c_int32(numerator), ctypes.c_int32(denominator),
+        ctypes.byref(state), _pointer(steps),
+    )  # fmt: skip
+    return steps, state.value
+
+
+@cache
+def _step_library() -> ctypes.CDLL:
+    return compile_library(integer_kernel(lower(gearbox.gearbox_step())).files | {"gm_run_edges.c": _RUN_EDGES})

@@ -1,0 +1,77 @@
+"""A machine that does not stand where its axes say: setting errors and index errors acting on an executed path.
+
+A setting error of the cradle machine is, on the vertical machine, an axis error that depends on the roll position:
+the roll position is recovered from X and Y, and the axes are shifted by what the setting changes there.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import casadi as ca
+import numpy as np
+
+from derivations import Quantity, notation
+from gearmath.bevel.kernels import kernel
+from gearmath.errors import ComputationError
+from gearmath.lowering import Kernel
+from gearmath.specs.simulated_machine import WorkAxis
+
+_GAUSS_NEWTON_STEPS = 40
+#: X and Y of an executed position lie this close to the path of the nominal settings, corrections included. [mm]
+_ON_PATH = 2.0
+
+
+@cache
+def roll_position() -> Kernel:
+    """Kernel: cradle rotation of the settings whose X, Y are nearest to a position, and the distance left there."""
+    x, theta, X, Y = ca.SX.sym("settings", 12), ca.SX.sym("theta"), ca.SX.sym("X"), ca.SX.sym("Y")
+    axes = kernel("axis_transform").function(x, theta, 0)
+    off = axes[:2] - ca.vertcat(X, Y)
+    J = ca.jacobian(off, theta)
+    change = ca.dot(J, off) / ca.dot(J, J)
+    limited = change / ca.fmax(1, ca.fabs(change) / 0.3)
+    step = ca.Function("roll_step", [theta, x, X, Y], [theta - limited])
+    rest = ca.Function("roll_rest", [theta, x, X, Y], [ca.norm_2(off)])
+    arguments = [ca.MX.sym("settings", 12), ca.MX.sym("X"), ca.MX.sym("Y")]
+    solution = ca.MX(0)
+    for _ in range(_GAUSS_NEWTON_STEPS):
+        solution = step(solution, *arguments)
+    off_path = Quantity("off_path", "distance of the position from the path in X and Y", "mm", "d")
+    function = ca.Function(
+        "roll_position", arguments, [solution, rest(solution, *arguments)],
+        ["settings", "X", "Y"], ["theta", "off_path"],
+    )  # fmt: skip
+    return Kernel(
+        function, "Cradle rotation of an executed position, from its X and Y.",
+        (notation.settings, notation.X, notation.Y), (notation.theta, off_path), "(5.1) inverted by Gauss-Newton",
+    )  # fmt: skip
+
+
+def with_setting_errors(axes: np.ndarray, settings: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    """The axis positions (n,5) that settings off by ``errors`` (12,) make of executed positions (n,5).
+
+    Raises ComputationError if a position does not belong to the settings at all.
+    """
+    if not errors.any():
+        return axes
+    theta, off_path = roll_position()(settings, axes[:, 0], axes[:, 1])
+    if not (off_path < _ON_PATH).all():
+        k = int(np.argmax(~(off_path < _ON_PATH)))
+        raise ComputationError(
+            f"position X {axes[k, 0]:.4f} Y {axes[k, 1]:.4f} is {off_path[k]:.4f} mm off the path of the settings; "
+            "was the program made from another set?"
+        )
+    (really,), (meant,) = (kernel("axis_transform")(x, theta, 0.0) for x in (settings + errors, settings))
+    shift = really - meant
+    shift[:, 3] = (shift[:, 3] + math.pi) % (2 * math.pi) - math.pi
+    return axes + shift
+
+
+def index_errors(work_axis: WorkAxis, teeth: int, seed: int) -> np.ndarray:
+    """Error (z,) [rad] of the work axis at every tooth space, seeded."""
+    turn = 2 * math.pi * np.arange(teeth) / teeth
+    harmonic = work_axis.first_harmonic_arcsec * np.sin(turn + math.radians(work_axis.first_harmonic_phase))
+    random = work_axis.random_arcsec * np.random.default_rng(seed).standard_normal(teeth)
+    return np.radians((harmonic + random) / 3600)

@@ -1,0 +1,87 @@
+"""Pictures: topography before and after, and the pitch of a member. The only module that draws."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gearmath.files import write_bytes
+from gearmath.quality.pitch import Pitch
+from gearmath.quality.topography import Topography
+
+#: Colours of "before" and "after" in every picture of this house.
+BEFORE, AFTER = "#c23b22", "#1f6f8b"
+
+
+def draw_topography(axes: Axes, before: Topography, after: Topography | None = None) -> None:
+    """One flank as the measuring room draws it: the nominal grid, and the deviations standing on it, in µm.
+
+    Columns run from toe (left) to heel, rows from root (below) to tip; one row's distance is the size of the largest
+    deviation drawn.
+    """
+    rows, columns = before.deviation.shape
+    scale = 1.0 / max(abs(before.extreme) * 1000, 1e-9)
+    x, y = np.meshgrid(np.arange(columns), np.arange(rows))
+    for line_x, line_y in [*zip(x, y, strict=True), *zip(x.T, y.T, strict=True)]:
+        axes.plot(line_x, line_y, color="#bbbbbb", linewidth=0.6)
+    for topography, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
+        if topography is None:
+            continue
+        z = y + topography.deviation * 1000 * scale
+        for k in range(rows):
+            axes.plot(
+                x[k],
+                z[k],
+                color=color,
+                linewidth=1.2,
+                label=f"{label}: max {topography.extreme * 1000:+.2f} µm" if k == 0 else None,
+            )
+        for k in range(columns):
+            axes.plot(x[:, k], z[:, k], color=color, linewidth=0.5)
+    axes.set_xticks([0, columns - 1], ["toe", "heel"])
+    axes.set_yticks([0, rows - 1], ["root", "tip"])
+    axes.set_title(f"{before.flank} flank", fontsize=10)
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.06), ncol=2, frameon=False)
+    axes.spines[:].set_visible(False)
+
+
+def draw_pitch(axes: Axes, before: Sequence[Pitch], after: Sequence[Pitch] = ()) -> None:
+    """Cumulative pitch deviation of both flanks over the teeth, in µm."""
+    for pitches, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
+        for pitch, style in zip(pitches, ("-", "--"), strict=False):
+            text = f"{label}, {pitch.flank}: F_p {pitch.total * 1000:.1f} µm"
+            axes.plot(pitch.cumulative * 1000, style, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
+    axes.axhline(0, color="#bbbbbb", linewidth=0.6)
+    axes.set_xlabel("tooth")
+    axes.set_ylabel("cumulative pitch deviation / µm")
+    axes.legend(fontsize=7, frameon=False)
+
+
+def member_figure(
+    title: str,
+    before: Mapping[str, Topography],
+    after: Mapping[str, Topography],
+    pitch_before: Sequence[Pitch] = (),
+    pitch_after: Sequence[Pitch] = (),
+) -> Figure:
+    """Both flanks of a member before and after, and its pitch, in one picture."""
+    figure = Figure(figsize=(12, 4), layout="constrained")
+    figure.suptitle(title)
+    for place, flank in zip(figure.subplots(1, 3 if pitch_before else 2), [*before, None], strict=False):
+        if flank is not None:
+            draw_topography(place, before[flank], after.get(flank))
+        else:
+            draw_pitch(place, pitch_before, pitch_after)
+    return figure
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure as PNG in one step, the same bytes for the same figure."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=130, metadata={"Software": None})
+    write_bytes(path, stream.getvalue())

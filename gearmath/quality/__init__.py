@@ -1,0 +1,1 @@
+"""From measured points to what is wrong with a gear, and to the settings that mend it."""

@@ -1,0 +1,184 @@
+"""A spiral bevel gear set: blanks, cutters and machine settings of both members, in REXS vocabulary, mm and degrees."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import tomlkit
+from pydantic import Field, model_validator
+
+from derivations import Quantity, notation
+from gearmath.errors import InputError
+from gearmath.files import read_text, write_text
+from gearmath.specs.toml import Spec, load, parse
+
+MEMBERS = ("pinion", "gear")
+FLANKS = ("concave", "convex")
+#: +1 outer blade cuts the concave flank, -1 inner blade the convex flank, for both hands.
+SIDES = {"concave": 1, "convex": -1}
+SETTINGS = tuple(component.name for component in notation.settings.components)
+#: The settings that belong to the machine and not to the blade: a completing cut shares them.
+MACHINE_SETTINGS = tuple(name for name in SETTINGS if not name.startswith("blade_"))
+_ANGULAR = {component.name for component in notation.settings.components if component.unit == "rad"}
+
+
+class Blank(Spec):
+    """Blank of one member; the pitch apex lies in the crossing point (mm, degrees)."""
+
+    pitch_angle: float = Field(gt=3, lt=87)
+    face_angle: float = Field(gt=3, lt=90)
+    root_angle: float = Field(gt=1, lt=87)
+    mean_cone_distance: float = Field(gt=5, le=1000)
+    face_width: float = Field(gt=1, le=300)
+    mean_addendum: float = Field(gt=0, le=50)
+    mean_dedendum: float = Field(gt=0, le=50)
+    clearance: float = Field(ge=0, le=10)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Blank:
+        if not self.root_angle <= self.pitch_angle <= self.face_angle:
+            raise ValueError(f"root_angle {self.root_angle} <= pitch_angle {self.pitch_angle} <= face_angle must hold")
+        if self.face_width >= self.mean_cone_distance:
+            raise ValueError(
+                f"face_width {self.face_width} must be less than mean_cone_distance {self.mean_cone_distance}"
+            )
+        if self.clearance >= self.mean_dedendum:
+            raise ValueError(f"clearance {self.clearance} must be less than mean_dedendum {self.mean_dedendum}")
+        return self
+
+    @property
+    def vector(self) -> np.ndarray:
+        """The blank as the vector of ``notation.blank`` (8,), mm and rad."""
+        return _vector(self, notation.blank.components)
+
+
+class Settings(Spec):
+    """The settings of machine and cutter of one flank (mm, degrees)."""
+
+    radial_distance: float = Field(gt=0, le=1000)
+    cradle_angle: float = Field(ge=-180, le=180)
+    cutter_tilt: float = Field(ge=-45, le=45)
+    cutter_swivel: float = Field(ge=-360, le=360)
+    blank_offset: float = Field(ge=-200, le=200)
+    sliding_base: float = Field(ge=-200, le=200)
+    machine_center_to_crossing_point: float = Field(ge=-200, le=200)
+    machine_root_angle: float = Field(gt=0, lt=87)
+    ratio_of_roll: float = Field(gt=0.1, le=50)
+    work_rotation_offset: float = Field(ge=-360, le=360)
+    blade_point_radius: float = Field(gt=5, le=500)
+    blade_pressure_angle: float = Field(ge=3, le=45)
+
+    @property
+    def vector(self) -> np.ndarray:
+        """The settings as the vector of ``notation.settings`` (12,), mm and rad."""
+        return _vector(self, notation.settings.components)
+
+
+class Flank(Settings):
+    """How one flank is cut; ``design``, where given, holds the settings of the nominal flank, the others corrected."""
+
+    blade_profile_height: float = Field(gt=0, le=60)
+    design: Settings | None = None
+
+    @property
+    def nominal(self) -> Settings:
+        """The settings whose tooth surface is wanted."""
+        return self.design or self
+
+
+class Member(Spec):
+    """One member of the pair. ``index_correction`` turns each tooth space by that many degrees before it is cut."""
+
+    teeth: int = Field(ge=3, le=400)
+    hand: Literal["left", "right"]
+    cutting: Literal["fixed_setting", "completing"]
+    blank: Blank
+    concave: Flank
+    convex: Flank
+    index_correction: tuple[float, ...] = Field(default=(), strict=False)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Member:
+        if self.index_correction and len(self.index_correction) != self.teeth:
+            raise ValueError(f"index_correction has {len(self.index_correction)} values, the member {self.teeth} teeth")
+        if any(not abs(value) <= 1 for value in self.index_correction):
+            raise ValueError("index_correction must lie between -1 and 1 degree")
+        if self.cutting == "completing":
+            differing = [name for name in MACHINE_SETTINGS if getattr(self.concave, name) != getattr(self.convex, name)]
+            if differing:
+                raise ValueError(f"a completing cut has one {differing[0]} for both flanks, not two")
+        return self
+
+    def flank(self, flank: str) -> Flank:
+        return self.concave if flank == "concave" else self.convex
+
+
+class BevelSet(Spec):
+    """A pair, with where it comes from."""
+
+    title: str = Field(min_length=1, max_length=200)
+    source: str = Field(max_length=1000)
+    shaft_angle: float = Field(gt=0, lt=180)
+    pinion: Member
+    gear: Member
+
+    def member(self, name: str) -> Member:
+        """The member called ``name``. Raises InputError for any name but pinion and gear."""
+        if name not in MEMBERS:
+            raise InputError(f"member = {name!r}: must be pinion or gear")
+        return self.pinion if name == "pinion" else self.gear
+
+
+def load_bevel_set(path: Path) -> BevelSet:
+    """Read a gear set. Raises InputError naming file, key, value and limit."""
+    return load(path, BevelSet)
+
+
+def design_sha256(member: Member) -> str:
+    """What a measurement is judged against: the digest of the nominal settings of a member."""
+    return _digest(member.teeth, *(member.flank(flank).nominal.vector.tolist() for flank in FLANKS))
+
+
+def settings_sha256(member: Member) -> str:
+    """What a program is made from: the digest of the machine settings and index corrections of a member."""
+    vectors = (member.flank(flank).vector.tolist() for flank in FLANKS)
+    return _digest(member.teeth, *vectors, list(member.index_correction))
+
+
+def _digest(*values: object) -> str:
+    return hashlib.sha256(repr(values).encode()).hexdigest()
+
+
+def save_corrected(
+    source: Path,
+    target: Path,
+    member: str,
+    settings: dict[str, np.ndarray],
+    index_correction: np.ndarray | None = None,
+) -> None:
+    """Write the set of ``source``, comments kept, with new settings (12,) of each flank, to ``target``.
+
+    The nominal settings are kept under ``design``. ``index_correction`` (z,) in rad replaces that of the member. The
+    text is checked as a set before anything is written.
+    """
+    document = tomlkit.parse(read_text(source))
+    table: Any = document[member]
+    for flank, vector in settings.items():
+        if "design" not in table[flank]:
+            table[flank]["design"] = {name: table[flank][name] for name in SETTINGS}
+        for name, value in zip(SETTINGS, vector, strict=True):
+            table[flank][name] = round(math.degrees(value) if name in _ANGULAR else float(value), 9)
+    if index_correction is not None:
+        table["index_correction"] = [round(math.degrees(value), 7) for value in index_correction]
+    text = tomlkit.dumps(document)
+    parse(text, BevelSet, str(target))
+    write_text(target, text)
+
+
+def _vector(model: Spec, components: tuple[Quantity, ...]) -> np.ndarray:
+    values = [(getattr(model, component.name), component.unit) for component in components]
+    return np.array([math.radians(value) if unit == "rad" else value for value, unit in values])

@@ -1,0 +1,47 @@
+"""Golden copies of everything that is exported: a change of the C shows as a diff that someone owns up to.
+
+``pytest --update-golden`` rewrites them.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from gearmath.export.cnc import cnc_files
+from gearmath.export.folder import MANIFEST, manifest, write_folder
+from gearmath.export.teensy import teensy_files
+from gearmath.specs.hobbing import load_hobbing_machine
+from gearmath.specs.toml import bundled
+
+GOLDEN = Path(__file__).parents[2] / "golden"
+
+
+def _exports() -> dict[str, dict[str, str]]:
+    machine = load_hobbing_machine(bundled("hobbing_plewes.toml"))
+    return {"teensy": teensy_files(machine), "cnc": cnc_files()}
+
+
+@pytest.mark.parametrize("folder", ["teensy", "cnc"])
+def test_exported_text_equals_the_golden_copy(folder: str, request: pytest.FixtureRequest) -> None:
+    files = _exports()[folder]
+    if request.config.getoption("--update-golden"):
+        write_folder(GOLDEN / folder, files)
+    assert _difference(GOLDEN / folder, {**files, MANIFEST: manifest(files)}) == ""
+
+
+def _difference(folder: Path, files: Mapping[str, str]) -> str:
+    stored = {path.name: path.read_text("utf-8") for path in folder.glob("*") if path.is_file()}
+    lines: list[str] = []
+    for name in sorted(stored.keys() | files.keys()):
+        old, new = stored.get(name, ""), files.get(name, "")
+        lines += difflib.unified_diff(
+            old.splitlines(keepends=True),
+            new.splitlines(keepends=True),
+            f"golden/{folder.name}/{name}",
+            f"exported {name}",
+        )
+    return "".join(lines)

@@ -1,0 +1,86 @@
+"""TOML that is wrong is refused in one line that names file, key, value and limit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from pydantic import Field, model_validator
+
+from gearmath.errors import InputError
+from gearmath.specs.toml import Spec, bundled, load, parse
+
+
+class Blade(Spec):
+    angle_deg: float = Field(gt=0, lt=45)
+    side: str = "outer"
+
+
+class Job(Spec):
+    teeth: int = Field(ge=1, le=999)
+    blade: Blade
+    heights: tuple[float, ...] = Field(default=(), strict=False)
+
+    @model_validator(mode="after")
+    def _few_heights(self) -> Job:
+        if len(self.heights) > 3:
+            raise ValueError(f"heights has {len(self.heights)} entries, at most 3 are allowed")
+        return self
+
+
+GOOD = "teeth = 12\nheights = [1.0, 2.5]\n[blade]\nangle_deg = 20.0\n"
+
+
+def test_good_file_becomes_the_model(tmp_path: Path) -> None:
+    path = tmp_path / "job.toml"
+    path.write_text(GOOD)
+    assert load(path, Job) == Job(teeth=12, blade=Blade(angle_deg=20.0), heights=(1.0, 2.5))
+
+
+@pytest.mark.parametrize(
+    ("change", "parts"),
+    [
+        (("teeth = 12\n", ""), ["teeth", "missing"]),
+        (("teeth = 12\n", "teeth = 12\nteehts = 13\n"), ["teehts = 13", "no such key"]),
+        (("angle_deg = 20.0", "angle_deg = 95.0"), ["blade.angle_deg = 95.0", "less than 45"]),
+        (("angle_deg = 20.0", "angle_deg = nan"), ["blade.angle_deg = nan", "finite"]),
+        (("angle_deg = 20.0", "angle_deg = inf"), ["blade.angle_deg = inf", "finite"]),
+        (("angle_deg = 20.0", 'angle_deg = "20"'), ["blade.angle_deg = '20'", "number"]),
+        (("angle_deg = 20.0", "angle_deg = true"), ["blade.angle_deg = True", "number"]),
+        (("teeth = 12", "teeth = 1000"), ["teeth = 1000", "999"]),
+        (("teeth = 12", "teeth = 12.5"), ["teeth = 12.5", "integer"]),
+        (("[1.0, 2.5]", "[1, 2, 3, 4]"), ["heights has 4 entries, at most 3"]),
+        (("[1.0, 2.5]", "[1.0, nan]"), ["heights.1 = nan", "finite"]),
+        (("[blade]\nangle_deg = 20.0\n", ""), ["blade", "missing"]),
+        (("[blade]", "[blade"), ["is no TOML", "line 3"]),
+        (("teeth = 12", "teeth = 12\nteeth = 13"), ["is no TOML", "line 2"]),
+    ],
+)
+def test_bad_file_is_refused_by_file_key_value_and_limit(change: tuple[str, str], parts: list[str]) -> None:
+    with pytest.raises(InputError) as caught:
+        parse(GOOD.replace(*change), Job, "job.toml")
+    message = str(caught.value)
+    assert message.startswith("job.toml: ")
+    assert "\n" not in message
+    assert [part for part in parts if part not in message] == []
+
+
+def test_further_faults_are_counted() -> None:
+    with pytest.raises(InputError, match=r"\(and 2 more\)"):
+        parse("teeth = 0\nspare = 1\n[blade]\nangle_deg = 0.0\n", Job, "job.toml")
+
+
+def test_missing_file_is_refused_by_name(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"absent\.toml: cannot be read: No such file"):
+        load(tmp_path / "absent.toml", Job)
+
+
+def test_unknown_bundled_file_is_refused_with_the_list_of_those_there_are() -> None:
+    with pytest.raises(InputError, match=r"absent\.toml: cannot be read: there is no such file; bundled are .*nasa_tp3096_12x36\.toml"):
+        bundled("absent.toml")
+    assert bundled("nasa_tp3096_12x36.toml").is_file()
+
+
+def test_models_cannot_be_changed_afterwards() -> None:
+    with pytest.raises(ValueError, match="frozen"):
+        parse(GOOD, Job, "job.toml").teeth = 13  # type: ignore[misc]

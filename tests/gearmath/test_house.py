@@ -1,0 +1,144 @@
+"""The house itself: layers, what may be committed, and that the documents say what is there."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from gearmath.cli import VERBS
+
+ROOT = Path(__file__).parents[2]
+TOP_LEVEL = {
+    ".ci", ".gitignore", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE", "Makefile", "README.md", "derivations", "docs",
+    "gearmath", "notebooks", "pyproject.toml", "tests",
+}  # fmt: skip
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+
+
+def git(*arguments: str) -> list[str]:
+    """The files that git names; a copy without git cannot tell what is committed."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("needs a git checkout")
+    command = ["git", "-c", f"safe.directory={ROOT}", "ls-files", "-z", *arguments]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    return [name for name in listed.split("\0") if name and (ROOT / name).is_file()]
+
+
+def of_the_project() -> list[str]:
+    """Committed files, and those that would be."""
+    return git("--cached", "--others", "--exclude-standard")
+
+
+def texts() -> list[tuple[str, str]]:
+    found = []
+    for name in of_the_project():
+        content = (ROOT / name).read_bytes()
+        if b"\0" not in content:
+            found.append((name, content.decode("utf-8")))
+    return found
+
+
+def pyproject() -> dict:
+    return tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+
+
+def test_layers_hold() -> None:
+    command = [str(Path(sys.executable).with_name("lint-imports")), "--no-cache"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_contributing_shows_the_layers_of_the_contract() -> None:
+    (layers,) = (c["layers"] for c in pyproject()["tool"]["importlinter"]["contracts"] if c["type"] == "layers")
+    drawn = "\n".join(line.removeprefix("gearmath.").replace(" | gearmath.", " | ") for line in layers)
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    assert drawn in "\n".join(line.strip() for line in text.splitlines())
+
+
+@pytest.mark.parametrize("package", ["gearmath", "gearmath.cli"])
+def test_import_loads_nothing_heavy(package: str) -> None:
+    code = (
+        f"import sys, {package}\n"
+        "print(*(n for n in ('casadi', 'sympy', 'numpy', 'matplotlib', 'pydantic') if n in sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
+
+
+def test_top_level_is_what_the_architecture_says() -> None:
+    assert {name.split("/")[0] for name in of_the_project()} == TOP_LEVEL
+
+
+def test_nothing_ignored_is_committed() -> None:
+    assert git("--cached", "--ignored", "--exclude-standard") == []
+
+
+def test_generated_files_are_committed_nowhere_but_in_golden() -> None:
+    marked = [name for name, text in texts() if not name.endswith(".py") and "generated, do not edit" in text.lower()]
+    built = [name for name in of_the_project() if re.search(r"\.(so|o|a|dll|pyc|MPF|stl|whl)$", name)]
+    assert [name for name in marked + built if not name.startswith("tests/golden/")] == []
+
+
+def test_nothing_is_left_to_do_in_a_comment() -> None:
+    marks = re.compile(r"\b(?:TO" + r"DO|FIX" + r"ME)\b")
+    assert [name for name, text in texts() if marks.search(text)] == []
+
+
+def test_no_file_names_a_path_of_one_machine() -> None:
+    paths = re.compile(r"(?<![\w.~])/(?:home|root|work|Users)/\w")
+    assert [name for name, text in texts() if paths.search(text)] == []
+
+
+def test_there_are_notebooks_and_none_stores_an_output() -> None:
+    assert NOTEBOOKS
+    for path in NOTEBOOKS:
+        cells = json.loads(path.read_text("utf-8"))["cells"]
+        stored = [c for c in cells if c.get("outputs") or c.get("execution_count") is not None]
+        assert stored == [], path.name
+
+
+def test_every_notebook_opens_with_words_and_closes_with_an_assertion() -> None:
+    for path in NOTEBOOKS:
+        assert re.fullmatch(r"\d\d_[a-z0-9_]+\.ipynb", path.name)
+        cells = json.loads(path.read_text("utf-8"))["cells"]
+        assert cells[0]["cell_type"] == "markdown", path.name
+        code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+        assert any(isinstance(node, ast.Assert) for node in ast.walk(ast.parse(code[-1]))), path.name
+
+
+def test_functions_of_notebooks_have_at_most_ten_lines() -> None:
+    for path in NOTEBOOKS:
+        for cell in json.loads(path.read_text("utf-8"))["cells"]:
+            tree = ast.parse("".join(cell["source"])) if cell["cell_type"] == "code" else ast.Module([], [])
+            functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+            long = [f.name for f in functions if (f.end_lineno or f.lineno) - f.lineno >= 10]
+            assert long == [], path.name
+
+
+def test_links_of_the_documents_lead_somewhere() -> None:
+    for document in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"):
+        targets = re.findall(r"\]\(([^)#]+)[^)]*\)", (ROOT / document).read_text("utf-8"))
+        local = [target for target in targets if "://" not in target]
+        assert [target for target in local if not (ROOT / target).exists()] == [], document
+
+
+def test_readme_shows_every_verb() -> None:
+    text = (ROOT / "README.md").read_text("utf-8")
+    assert [verb for verb in VERBS if f"`gearmath {verb}" not in text] == []
+
+
+def test_changelog_knows_the_version() -> None:
+    assert f"## {pyproject()['project']['version']}" in (ROOT / "CHANGELOG.md").read_text("utf-8")
+
+
+def test_ci_calls_make_test() -> None:
+    script = ROOT / ".ci" / "run"
+    assert script.stat().st_mode & 0o111
+    assert "make test" in script.read_text("utf-8")

@@ -1,0 +1,63 @@
+/*
+ * gm_axis_transform: generated, do not edit.
+ *
+ * Axis positions of the vertical machine that put the cutter where the cradle machine has it (5.1-5.3).
+ *
+ * in settings[12] [mixed]: machine and cutter settings of one flank
+ *     [0] radial_distance [mm] 20 ... 200: machine centre to cutter centre in the machine plane
+ *     [1] cradle_angle [rad] -1.5 ... 1.5: polar angle of the cutter centre at cradle rotation zero
+ *     [2] cutter_tilt [rad] -0.4 ... 0.4: tilt of the cutter axis against the cradle axis
+ *     [3] cutter_swivel [rad] -3.14159265359 ... 3.14159265359: direction of the tilt, about the cradle axis
+ *     [4] blank_offset [mm] -40 ... 40: work axis to machine centre, along machine axis j
+ *     [5] sliding_base [mm] -20 ... 20: withdrawal of the work along the cradle axis
+ *     [6] machine_center_to_crossing_point [mm] -20 ... 20: advance of the work along its own axis
+ *     [7] machine_root_angle [rad] 0.05 ... 1.45: work axis against the machine plane
+ *     [8] ratio_of_roll [1] 0.5 ... 8: work rotation per cradle rotation
+ *     [9] work_rotation_offset [rad] -3.14159265359 ... 3.14159265359: work rotation at cradle rotation zero
+ *     [10] blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis
+ *     [11] blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
+ * in theta [rad] -1 ... 1: cradle rotation (roll position)
+ * in pivot_height [mm] 0 ... 400: R_d + C_t: height of the blade tips over the B axis at Z = 0
+ * out axes[5] [mixed]: axis positions X, Y, Z, A, B of the vertical machine
+ *     [0] X [mm] -500 ... 500: position of axis X
+ *     [1] Y [mm] -500 ... 500: position of axis Y
+ *     [2] Z [mm] -500 ... 900: position of axis Z
+ *     [3] A [rad] -10 ... 10: position of the work axis A, right-handed about the work axis
+ *     [4] B [rad] -0.2 ... 1.7: position of the swivel axis B, left-handed about Y
+ *
+ * requires: sqrt((-sin(cutter_tilt)*sin(machine_root_angle)*sin(cradle_angle + cutter_swivel + theta) +
+ *     cos(cutter_tilt)*cos(machine_root_angle))**2 +
+ *     sin(cutter_tilt)**2*sin(machine_root_angle)**2*cos(cradle_angle + cutter_swivel + theta)**2 +
+ *     sin(cutter_tilt)**2*cos(machine_root_angle)**2*cos(cradle_angle + cutter_swivel + theta)**2) - 1/20 > 0
+ * source: Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, with atan2
+ * ops: 80 (add 15, atan2 2, cos 4, div 5, mul 34, neg 3, sin 4, sq 5, sqrt 1, sub 7)
+ * work memory: none
+ * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
+ */
+#ifndef GM_AXIS_TRANSFORM_H
+#define GM_AXIS_TRANSFORM_H
+
+/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
+#ifndef GM_DOUBLE_LITERALS
+#define GM_DOUBLE_LITERALS
+typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+void gm_axis_transform(const double settings[12], double theta, double pivot_height, double axes[5]);
+
+void gm_axis_transform_batch(
+    long n,
+    const double *settings, long settings_stride,
+    const double *theta, long theta_stride,
+    const double *pivot_height, long pivot_height_stride,
+    double *axes);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,178 @@
+/* gm_flank_family: generated, do not edit. */
+#include "gm_flank_family.h"
+
+#include <math.h>
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+
+#define casadi_real double
+#define casadi_int int
+#define CASADI_PREFIX(ID) gm_flank_family_ ## ID
+#define casadi_f0 CASADI_PREFIX(f0)
+
+/* flank_family:(u,beta,theta,settings[12],side)->(point_w[3],normal_w[3]) */
+static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
+  casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
+  casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20;
+  a00=arg[3]? arg[3][7] : 0;
+  a01=sin(a00);
+  a02=arg[3]? arg[3][1] : 0;
+  a03=arg[2]? arg[2][0] : 0;
+  a02=(a02+a03);
+  a04=arg[3]? arg[3][3] : 0;
+  a04=(a02+a04);
+  a05=cos(a04);
+  a06=arg[1]? arg[1][0] : 0;
+  a07=cos(a06);
+  a08=arg[3]? arg[3][10] : 0;
+  a09=arg[4]? arg[4][0] : 0;
+  a10=arg[0]? arg[0][0] : 0;
+  a11=(a09*a10);
+  a12=arg[3]? arg[3][11] : 0;
+  a13=tan(a12);
+  a11=(a11*a13);
+  a08=(a08+a11);
+  a11=(a07*a08);
+  a13=(a05*a11);
+  a00=cos(a00);
+  a14=arg[3]? arg[3][6] : 0;
+  a15=(a00*a14);
+  a13=(a13+a15);
+  a15=arg[3]? arg[3][0] : 0;
+  a16=cos(a02);
+  a16=(a15*a16);
+  a13=(a13+a16);
+  a04=sin(a04);
+  a16=arg[3]? arg[3][2] : 0;
+  a17=cos(a16);
+  a06=sin(a06);
+  a08=(a08*a06);
+  a18=(a17*a08);
+  a16=sin(a16);
+  a19=(a16*a10);
+  a18=(a18+a19);
+  a19=(a04*a18);
+  a13=(a13-a19);
+  a19=(a01*a13);
+  a14=(a01*a14);
+  a20=arg[3]? arg[3][5] : 0;
+  a14=(a14-a20);
+  a08=(a16*a08);
+  a14=(a14+a08);
+  a10=(a17*a10);
+  a14=(a14-a10);
+  a10=(a14*a00);
+  a19=(a19-a10);
+  a10=arg[3]? arg[3][9] : 0;
+  a08=arg[3]? arg[3][8] : 0;
+  a08=(a08*a03);
+  a10=(a10+a08);
+  a08=cos(a10);
+  a03=(a19*a08);
+  a20=arg[3]? arg[3][4] : 0;
+  a11=(a04*a11);
+  a20=(a20+a11);
+  a18=(a05*a18);
+  a20=(a20+a18);
+  a02=sin(a02);
+  a15=(a15*a02);
+  a20=(a20+a15);
+  a10=sin(a10);
+  a15=(a20*a10);
+  a03=(a03+a15);
+  if (res[0]!=0) res[0][0]=a03;
+  a20=(a08*a20);
+  a19=(a19*a10);
+  a20=(a20-a19);
+  if (res[0]!=0) res[0][1]=a20;
+  a14=(a01*a14);
+  a13=(a13*a00);
+  a14=(a14+a13);
+  if (res[0]!=0) res[0][2]=a14;
+  a14=sin(a12);
+  a13=(a17*a14);
+  a12=cos(a12);
+  a09=(a09*a12);
+  a06=(a09*a06);
+  a12=(a16*a06);
+  a13=(a13+a12);
+  a12=(a13*a00);
+  a16=(a16*a14);
+  a17=(a17*a06);
+  a16=(a16-a17);
+  a17=(a04*a16);
+  a07=(a07*a09);
+  a09=(a05*a07);
+  a17=(a17+a09);
+  a09=(a01*a17);
+  a12=(a12-a09);
+  a09=(a08*a12);
+  a05=(a05*a16);
+  a04=(a04*a07);
+  a05=(a05-a04);
+  a04=(a10*a05);
+  a09=(a09+a04);
+  if (res[1]!=0) res[1][0]=a09;
+  a08=(a08*a05);
+  a10=(a10*a12);
+  a08=(a08-a10);
+  if (res[1]!=0) res[1][1]=a08;
+  a01=(a01*a13);
+  a17=(a17*a00);
+  a01=(a01+a17);
+  a01=(-a01);
+  if (res[1]!=0) res[1][2]=a01;
+  return 0;
+}
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+void gm_flank_family(
+    double u,
+    double beta,
+    double theta,
+    const double settings[12],
+    double side,
+    double point_w[3],
+    double normal_w[3])
+{
+  const double *arg[5];
+  double *res[2];
+  arg[0] = &u;
+  arg[1] = &beta;
+  arg[2] = &theta;
+  arg[3] = settings;
+  arg[4] = &side;
+  res[0] = point_w;
+  res[1] = normal_w;
+  (void)casadi_f0(arg, res, 0, 0, 0);
+}
+
+void gm_flank_family_batch(
+    long n,
+    const double *u, long u_stride,
+    const double *beta, long beta_stride,
+    const double *theta, long theta_stride,
+    const double *settings, long settings_stride,
+    const double *side, long side_stride,
+    double *point_w,
+    double *normal_w)
+{
+  long k;
+  for (k = 0; k < n; ++k) {
+    gm_flank_family(
+        u[k * u_stride],
+        beta[k * beta_stride],
+        theta[k * theta_stride],
+        settings + k * settings_stride,
+        side[k * side_stride],
+        point_w + k * 3,
+        normal_w + k * 3);
+  }
+}

@@ -1,0 +1,64 @@
+/*
+ * gm_line_entry: generated, do not edit.
+ *
+ * Where a line, followed along its direction, enters the material swept by the blade at one pose (6.4).
+ *
+ * in axes[5] [mixed]: axis positions X, Y, Z, A, B of the vertical machine
+ *     [0] X [mm] -500 ... 500: position of axis X
+ *     [1] Y [mm] -500 ... 500: position of axis Y
+ *     [2] Z [mm] -500 ... 900: position of axis Z
+ *     [3] A [rad] -10 ... 10: position of the work axis A, right-handed about the work axis
+ *     [4] B [rad] -0.2 ... 1.7: position of the swivel axis B, left-handed about Y
+ * in pivot_height [mm] 0 ... 400: R_d + C_t: height of the blade tips over the B axis at Z = 0
+ * in line_point[3] [mm] -200 ... 200: point at distance zero of a line, work frame w
+ * in line_direction[3] [1] -1 ... 1: unit direction of a line, work frame w
+ * in blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis
+ * in blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
+ * in side [1] one of -1, 1: +1 outer blade (concave flank), -1 inner blade (convex flank)
+ * out line_distance [mm]: where the line enters the swept blade; 1e3 where it does not
+ *
+ * source: line against cone, the root at which the line passes from the metal into the cutter
+ * ops: 104 (add 16, cos 2, div 2, fmax 1, if_else_zero 6, le 2, lt 1, mul 39, neg 2, not 3, sin 2, sq 9, sqrt 1,
+ *     sub 17, tan 1)
+ * work memory: none
+ * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
+ */
+#ifndef GM_LINE_ENTRY_H
+#define GM_LINE_ENTRY_H
+
+/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
+#ifndef GM_DOUBLE_LITERALS
+#define GM_DOUBLE_LITERALS
+typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+void gm_line_entry(
+    const double axes[5],
+    double pivot_height,
+    const double line_point[3],
+    const double line_direction[3],
+    double blade_point_radius,
+    double blade_pressure_angle,
+    double side,
+    double *line_distance);
+
+void gm_line_entry_batch(
+    long n,
+    const double *axes, long axes_stride,
+    const double *pivot_height, long pivot_height_stride,
+    const double *line_point, long line_point_stride,
+    const double *line_direction, long line_direction_stride,
+    const double *blade_point_radius, long blade_point_radius_stride,
+    const double *blade_pressure_angle, long blade_pressure_angle_stride,
+    const double *side, long side_stride,
+    double *line_distance);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,51 @@
+/*
+ * gm_tool_pose: generated, do not edit.
+ *
+ * Cutter centre and axis in the work frame, out of the axis positions of the vertical machine (5.4).
+ *
+ * in axes[5] [mixed]: axis positions X, Y, Z, A, B of the vertical machine
+ *     [0] X [mm] -500 ... 500: position of axis X
+ *     [1] Y [mm] -500 ... 500: position of axis Y
+ *     [2] Z [mm] -500 ... 900: position of axis Z
+ *     [3] A [rad] -10 ... 10: position of the work axis A, right-handed about the work axis
+ *     [4] B [rad] -0.2 ... 1.7: position of the swivel axis B, left-handed about Y
+ * in pivot_height [mm] 0 ... 400: R_d + C_t: height of the blade tips over the B axis at Z = 0
+ * out cutter_center_w[3] [mm] -500 ... 500: cutter centre in the tip plane, work frame w
+ * out cutter_axis_w[3] [1] -1 ... 1: cutter axis towards the work, work frame w
+ *
+ * source: inverse of the rotation p_m = M(B) Rz(-A) p_w
+ * ops: 22 (add 2, cos 2, mul 10, neg 3, sin 2, sub 3)
+ * work memory: none
+ * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
+ */
+#ifndef GM_TOOL_POSE_H
+#define GM_TOOL_POSE_H
+
+/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
+#ifndef GM_DOUBLE_LITERALS
+#define GM_DOUBLE_LITERALS
+typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+void gm_tool_pose(
+    const double axes[5],
+    double pivot_height,
+    double cutter_center_w[3],
+    double cutter_axis_w[3]);
+
+void gm_tool_pose_batch(
+    long n,
+    const double *axes, long axes_stride,
+    const double *pivot_height, long pivot_height_stride,
+    double *cutter_center_w,
+    double *cutter_axis_w);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
