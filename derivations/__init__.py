@@ -24,7 +24,14 @@ def expressions() -> Iterator[Expression]:
     yield from (deviation.point_deviation(), deviation.setting_sensitivity())
     yield from (deviation.deviation_surface(), deviation.line_entry(), deviation.flank_turning())
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
-    yield from (gearbox.nearest_position(), gearbox.floor_position(), gearbox.gearbox_step(), gearbox.hobbed_blank())
+    yield from (
+        gearbox.nearest_position(),
+        gearbox.floor_position(),
+        gearbox.gearbox_step(),
+        gearbox.gearbox_edge(),
+        gearbox.encoder_hysteresis(),
+        gearbox.hobbed_blank(),
+    )
 
 
 def proofs() -> Iterator[Callable[[], None]]:

@@ -9,6 +9,17 @@
 (7.5) is the incremental form: the remainder a starts at a_0 and stays in 0 ≤ a < D; one edge d = ±1 gives at most one
 step, if N ≤ D. Then |p - N e / D| ≤ 1/2 for every history. The rule of the source text, floor(e / R), lags up to a
 whole step (7.6). Blank and depth of a spur gear: d_a = m (G + 2), h = f_h m + h_+ (7.7).
+
+Any ratio, also a negative one or one above 1, is N_j = q_j D + N_j' with 0 ≤ N_j' < D; axis j = 1, 2, ... gives
+
+    a' = a + d N_j' - s D,   s as in (7.5),   p' = p + d q_j + s                               (7.8)
+
+over one common denominator, so that |p - Σ N_j e_j / D| ≤ 1/2 for every history of the edges of all axes. Play of H
+counts keeps a dithering encoder from stepping: with x from 0 to H,
+
+    d' = [x + d > H] - [x + d < 0],   x' = x + d - d'                                          (7.9)
+
+passes on an edge only where the play is used up; it costs at most H N / D of position.
 """
 
 from __future__ import annotations
@@ -127,6 +138,37 @@ def gearbox_step() -> Expression:
 
 
 @cache
+def gearbox_edge() -> Expression:
+    """(7.8) as an Expression: any rational ratio, one edge of one axis a call."""
+    a = q.remainder.symbol + q.edge.symbol * q.increment.symbol
+    D = q.steps_denominator.symbol
+    s = truth(a >= D) - truth(a < 0)
+    return Expression(
+        "gearbox_edge",
+        "One encoder edge of one axis, for any ratio q + N'/D: the steps to deliver and the new remainder (7.8).",
+        (q.remainder, q.edge, q.increment, q.base_step, q.steps_denominator),
+        ((q.edge_steps, q.edge.symbol * q.base_step.symbol + s), (q.next_remainder, a - s * D)),
+        requires=(D - q.increment.symbol, D - q.remainder.symbol),
+        source="incremental form of rounding to nearest, several axes over one denominator",
+    )
+
+
+@cache
+def encoder_hysteresis() -> Expression:
+    """(7.9) as an Expression."""
+    moved = q.play.symbol + q.edge.symbol
+    passed = truth(moved > q.hysteresis.symbol) - truth(moved < 0)
+    return Expression(
+        "encoder_hysteresis",
+        "Play of a few counts before a reversal of the encoder is followed (7.9).",
+        (q.play, q.edge, q.hysteresis),
+        ((q.passed_edge, passed), (q.next_play, moved - passed)),
+        requires=(q.hysteresis.symbol + 1 - q.play.symbol,),
+        source="mechanical backlash, in counts",
+    )
+
+
+@cache
 def hobbed_blank() -> Expression:
     """(7.7) as an Expression."""
     m = q.module.symbol
@@ -205,6 +247,32 @@ def prove_remainder_stays_in_range() -> None:
         for values in ((0, 1, 1), (0, 1, 2), (1, 2, 2), (4, 3, 5), (0, 5, 5), (2, 3, 7), (6, 7, 7)):
             state = dict(zip((remainder, numerator, denominator), values, strict=True)) | {d: edge}
             assert 0 <= rule["next_remainder"].subs(state) < values[2]
+
+
+def prove_any_ratio_keeps_position_and_remainder_together() -> None:
+    """(7.8) a' + (d q + s) D = a + d (q D + N'): steps follow the whole ratio of the axis, of either sign."""
+    rule = gearbox_edge()
+    a, d, rest, base, D = (quantity.symbol for quantity in rule.inputs)
+    assert sp.expand(rule["next_remainder"] + rule["edge_steps"] * D - (a + d * (base * D + rest))) == 0
+
+
+def prove_base_step_zero_is_the_simple_rule() -> None:
+    """(7.8) Limit case: with q = 0 it is (7.5)."""
+    simple, general = gearbox_step(), gearbox_edge()
+    values = {q.base_step.symbol: 0, q.increment.symbol: q.steps_numerator.symbol}
+    assert general["edge_steps"].subs(values) == simple["step"]
+    assert sp.expand(general["next_remainder"].subs(values) - simple["next_remainder"]) == 0
+
+
+def prove_play_neither_makes_nor_loses_counts() -> None:
+    """(7.9) x' + d' = x + d: what does not pass is in the play, and the play never leaves 0 ... H."""
+    rule = encoder_hysteresis()
+    x, d, H = (quantity.symbol for quantity in rule.inputs)
+    assert sp.expand(rule["next_play"] + rule["passed_edge"] - (x + d)) == 0
+    for width in range(4):
+        for state in range(width + 1):
+            for edge in (1, -1):
+                assert 0 <= rule["next_play"].subs({x: state, d: edge, H: width}) <= width
 
 
 def prove_error_is_at_most_half_a_step() -> None:
