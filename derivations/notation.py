@@ -160,9 +160,9 @@ step = Quantity("step", "motor step to deliver: +1, 0 or -1", "1", r"\Delta p", 
 base_step = _count("base_step", "q", -64, 64, "whole steps that every edge gives; the ratio is q + N'/D")
 increment = _count("increment", "N'", 0, 2**30 - 1, "rest of the ratio over the base step, 0 <= increment < D")
 edge_steps = _count("edge_steps", r"\Delta p", -65, 65, "motor steps that one edge of one axis gives")
-hysteresis = _count("hysteresis", "H", 0, 1000, "encoder counts of play before a reversal is followed")
-play = _count("play", "x", 0, 1000, "state of the hysteresis, 0 <= play <= hysteresis")
-next_play = _count("next_play", "x'", 0, 1000, "state of the hysteresis after the edge")
+hysteresis = _count("hysteresis", "H", 0, 16, "encoder counts of play before a reversal is followed")
+play = _count("play", "x", 0, 16, "state of the hysteresis, 0 <= play <= hysteresis")
+next_play = _count("next_play", "x'", 0, 16, "state of the hysteresis after the edge")
 passed_edge = Quantity(
     "passed_edge", "edge that is passed on: +1, 0 or -1", "1", "d'", (-1, 1), kind="int", values=(-1, 0, 1)
 )
