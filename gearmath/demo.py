@@ -17,6 +17,7 @@ from derivations import gearbox as gearbox_chapter
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
 from gearmath.export.cnc import export_cnc
+from gearmath.export.folder import new_folder
 from gearmath.export.host import compile_kernel, run_edges
 from gearmath.export.teensy import export_teensy
 from gearmath.files import write_text
@@ -67,9 +68,18 @@ class MemberResult:
 
 
 def run_demo(folder: Path, say: Say) -> list[MemberResult]:
-    """Run everything; programs, measurements, corrected sets, pictures and C are written below ``folder``."""
+    """Run everything; programs, measurements, corrected sets, pictures and C become the content of ``folder``.
+
+    Raises InputError if the folder holds anything that an earlier demo did not write.
+    """
+    with new_folder(folder) as place:
+        results = _run_steps(place, say)
+    say(f"pictures, programs, measurements, corrected sets and C are in {folder}")
+    return results
+
+
+def _run_steps(folder: Path, say: Say) -> list[MemberResult]:
     begin = time.perf_counter()
-    folder.mkdir(parents=True, exist_ok=True)
     with _step(say, "derive in SymPy, lower to CasADi"):
         kernels = [lower(expression) for expression in derivations.expressions()]
         say(f"  {len(kernels)} expressions, {sum(k.function.n_instructions() for k in kernels)} operations")
@@ -87,11 +97,11 @@ def run_demo(folder: Path, say: Say) -> list[MemberResult]:
                 result.pitch_after,
             )  # fmt: skip
             save(figure, folder / f"{member}.png")
-            say(f"  picture: {folder / f'{member}.png'}")
+            say(f"  max profile error {result.profile[0] * 1000:+.2f} -> {result.profile[1] * 1000:+.2f} um")
     with _step(say, "export C for the Teensy and for the CNC post-processor"):
         teensy = export_teensy(load_hobbing_machine(bundled(HOBBING_MACHINE)), folder / "teensy")
         cnc = export_cnc(folder / "cnc")
-        say(f"  {len(teensy)} files in {folder / 'teensy'}, {len(cnc)} files in {folder / 'cnc'}")
+        say(f"  teensy: {len(teensy)} files, cnc: {len(cnc)} files")
     say("")
     say(result_table(results))
     say("")

@@ -6,8 +6,6 @@ from pathlib import Path
 
 import click
 
-from gearmath.errors import InputError
-
 
 @click.command()
 @click.option(
@@ -18,6 +16,4 @@ def demo(folder: Path) -> None:
     """The whole closed loop on a bundled real gear set and a bundled hobbing machine."""
     from gearmath.demo import run_demo
 
-    if folder.exists() and not folder.is_dir():
-        raise InputError(f"{folder}: is no folder")
     run_demo(folder, click.echo)

@@ -10,7 +10,8 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 from gearmath import __version__
@@ -19,11 +20,12 @@ from gearmath.errors import InputError
 MANIFEST = "manifest.json"
 
 
-def write_folder(folder: Path, files: Mapping[str, str]) -> None:
-    """Write ``files`` (relative name to text) and their manifest as the folder's whole content.
+@contextmanager
+def new_folder(folder: Path) -> Iterator[Path]:
+    """A place to build the content of ``folder`` in; on leaving, it gets a manifest and takes the place of the folder.
 
-    The folder is built beside its place and renamed into it. Raises InputError naming the first file that is not
-    listed in the manifest of an existing folder, or why the folder cannot be written.
+    If the body raises, nothing has happened. Raises InputError naming the first file that is not listed in the
+    manifest of an existing folder, or why the folder cannot be written.
     """
     target = Path(os.path.abspath(folder))
     if Path.cwd().is_relative_to(target):
@@ -35,7 +37,10 @@ def write_folder(folder: Path, files: Mapping[str, str]) -> None:
     except OSError as error:
         raise InputError(f"{folder}: cannot be written: {error.strerror}") from error
     try:
-        _fill(beside / "new", files)
+        (beside / "new").mkdir()
+        yield beside / "new"
+        contents = {name: (beside / "new" / name).read_bytes() for name in _names(beside / "new")}
+        (beside / "new" / MANIFEST).write_text(_manifest(contents), "utf-8", newline="\n")
         _exchange(beside, target)
     except OSError as error:
         raise InputError(f"{folder}: cannot be written: {error.strerror}") from error
@@ -43,17 +48,30 @@ def write_folder(folder: Path, files: Mapping[str, str]) -> None:
         shutil.rmtree(beside, ignore_errors=True)
 
 
+def write_folder(folder: Path, files: Mapping[str, str]) -> None:
+    """Write ``files`` (relative name to text) and their manifest as the folder's whole content: see new_folder."""
+    with new_folder(folder) as place:
+        for name, text in files.items():
+            path = place / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, "utf-8", newline="\n")
+
+
 def manifest(files: Mapping[str, str]) -> str:
     """JSON text: the SHA-256 of every file, by name."""
-    hashes = {name: hashlib.sha256(files[name].encode("utf-8")).hexdigest() for name in sorted(files)}
+    return _manifest({name: text.encode("utf-8") for name, text in files.items()})
+
+
+def _manifest(contents: Mapping[str, bytes]) -> str:
+    hashes = {name: hashlib.sha256(contents[name]).hexdigest() for name in sorted(contents)}
     return json.dumps({"written_by": f"gearmath {__version__}", "sha256": hashes}, indent=2) + "\n"
 
 
-def _fill(place: Path, files: Mapping[str, str]) -> None:
-    for name, text in {**files, MANIFEST: manifest(files)}.items():
-        path = place / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, "utf-8", newline="\n")
+def _names(place: Path) -> list[str]:
+    """Every file below a folder, relative to it."""
+    return sorted(
+        path.relative_to(place).as_posix() for path in place.rglob("*") if path.is_symlink() or not path.is_dir()
+    )
 
 
 def _exchange(beside: Path, target: Path) -> None:
@@ -72,12 +90,8 @@ def _exchange(beside: Path, target: Path) -> None:
 def _check_ours(folder: Path, target: Path) -> None:
     if target.is_symlink() or (target.exists() and not target.is_dir()):
         raise InputError(f"{folder}: is no folder")
-    present = sorted(
-        path.relative_to(target).as_posix() for path in target.rglob("*") if path.is_symlink() or not path.is_dir()
-    )
-    if not present:
-        return
-    foreign = [name for name in present if name not in _listed(target)]
+    ours = _listed(target)
+    foreign = [name for name in _names(target) if name not in ours]
     if foreign:
         raise InputError(f"{folder}: holds {foreign[0]}, which no {MANIFEST} of gearmath lists; name another folder")
 
