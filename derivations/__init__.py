@@ -7,19 +7,20 @@ from collections.abc import Callable, Iterator
 
 from derivations.expression import Expression, Quantity
 
-CHAPTERS = ("frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank")
+CHAPTERS = ("frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "generation")
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
 
 
 def expressions() -> Iterator[Expression]:
     """Every Expression of every chapter, derived on demand."""
-    from derivations import axes, blank, cradle, cutter, deviation, flank, gearbox, meshing
+    from derivations import axes, blank, cradle, cutter, deviation, flank, gearbox, generation, meshing
 
     yield cutter.cutter_surface()
     yield cradle.cradle_pose()
     yield flank.flank_family()
     yield from (meshing.meshing(), meshing.contact_start(), blank.flank_place())
+    yield from (generation.straight_generation(), generation.arc_generation())
     yield from (axes.axis_transform(), axes.tool_pose(), axes.cradle_tool_pose())
     yield from (deviation.point_deviation(), deviation.setting_sensitivity())
     yield from (deviation.deviation_surface(), deviation.line_entry(), deviation.flank_turning())

@@ -202,3 +202,24 @@ turning = Quantity(
 )
 arc = Quantity("arc", "the same as an arc at the radius of the point", "mm", "s", scale=300.0)
 deviation_in = Quantity("deviation_in", "measured deviation along the outward normal", "mm", r"\delta", (-0.5, 0.5))
+
+# --- every motion and every blade -------------------------------------------------------------------------------
+motion = Quantity(
+    "motion", "coefficients of theta^1 ... theta^7 (columns) of the machine settings (rows, in their order)", "mixed",
+    "m", (-0.3, 0.3), shape=(10, 7),
+)  # fmt: skip
+index_ratio = Quantity(
+    "index_ratio", "work rotation per cutter rotation, blade groups over teeth; 0 in face milling", "1", r"\iota",
+    (-0.8, 0.8),
+)  # fmt: skip
+blade_offset_angle = _angle("blade_offset_angle", r"\eta", -0.5, 0.5, "turn of the blade's plane about its point")
+arc_angle = _angle("arc_angle", "u", 0.05, 1.5, "angle of the blade's normal against the tip plane, on an arc blade")
+blade_arc = Quantity(
+    "blade_arc", "arc blade: radius and height of its centre, and its radius (positive = convex blade)", "mm",
+    r"\mathbf{a}", shape=(3,),
+    components=(
+        _length("arc_center_radius", r"\rho_b", 20.0, 250.0, "distance of the arc's centre from the cutter axis"),
+        _length("arc_center_height", "h_b", -50.0, 50.0, "height of the arc's centre above the tip plane"),
+        _length("arc_radius", "r", 0.2, 15.0, "radius of the arc"),
+    ),
+)  # fmt: skip

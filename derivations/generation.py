@@ -1,0 +1,189 @@
+"""Chapter 10. Every motion and every blade: one family R(u, β, θ), one equation of meshing.
+
+Settings may move with the cradle, the work may index with the cutter, and the blade may be an arc:
+
+    x_k(θ) = x_k + Σ_j m_kj θ^j,   j = 1 ... 7                       machine settings k        (10.1)
+    φ_w = φ_0(θ) + R_a(θ) θ + ι β,   ι = N_b/z                       indexing of face hobbing  (10.2)
+    ρ = ρ_b + s r cos u,   h = h_b - r sin u                         arc blade, u its normal's angle   (10.3)
+    r_c = Rz(β) [r_p + (ρ - r_p) cos η, (ρ - r_p) sin η, -h]         blade offset angle η      (10.4)
+    R = Rz(-φ_w) W (V_ls + T r_c)                                                              (10.5)
+    n = ±R_u × R_β / |R_u × R_β|,   f = n · R_θ = 0                                            (10.6)
+
+Modified roll is φ_0(θ), helical motion X_b(θ), universal motion all of them. Everything is derived in the frame w
+before it turns, p = W (V_ls + T r_c), where a derivative by a is g_a = p_a - φ_w,a z × p: rotations change no product.
+The spine's (3.1, 3.2, 4.2) are the case m = 0, ι = 0. A Formate flank has no roll: θ = 0 takes the place of f = 0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import sympy as sp
+
+from derivations import cradle, cutter, flank, meshing
+from derivations import notation as q
+from derivations.expression import Expression, Quantity
+from derivations.frames import K, Rz
+from derivations.proof import is_zero
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A blade's edge in its own plane: cutting radius ρ(u), height h(u) and the sign that turns R_u × R_β outwards."""
+
+    radius: sp.Expr
+    height: sp.Expr
+    outward: sp.Expr
+
+
+def straight() -> Profile:
+    """The blade of chapter 1."""
+    side = q.side.symbol
+    radius = q.blade_point_radius.symbol + side * q.u.symbol * sp.tan(q.blade_pressure_angle.symbol)
+    return Profile(radius, q.u.symbol, -side)
+
+
+def arc() -> Profile:
+    """(10.3): edge radius, or a blade of circular arc; r > 0 where the blade is convex."""
+    center_radius, center_height, r = q.blade_arc.symbols
+    u, side = q.arc_angle.symbol, q.side.symbol
+    return Profile(center_radius + side * r * sp.cos(u), center_height - r * sp.sin(u), side * sp.sign(r))
+
+
+def moving_settings() -> dict[sp.Symbol, sp.Expr]:
+    """x_k(θ) of every machine setting, in Horner's form (10.1)."""
+    theta, rows = q.theta.symbol, q.motion.symbol
+    moving = {}
+    for k, setting in enumerate(q.settings.symbols[: rows.rows]):
+        value = sp.S.Zero
+        for power in reversed(range(rows.cols)):
+            value = (value + rows[k, power]) * theta
+        moving[setting] = setting + value
+    return moving
+
+
+@dataclass(frozen=True)
+class Family:
+    """p, φ_w and the three derivatives of the family in the frame w before it turns."""
+
+    point: sp.Matrix
+    work_angle: sp.Expr
+    along_u: sp.Matrix
+    along_beta: sp.Matrix
+    along_theta: sp.Matrix
+    outward: sp.Expr
+
+    @property
+    def normal(self) -> sp.Matrix:
+        """n of (10.6), not yet turned."""
+        cross = self.along_u.cross(self.along_beta)
+        return self.outward * cross / sp.sqrt(sum(component**2 for component in cross))
+
+
+def family(profile: Profile, parameter: Quantity) -> Family:
+    """The family of a blade (10.5) with all motions (10.1, 10.2)."""
+    moving, beta = moving_settings(), q.beta.symbol
+    eta, deviation = q.blade_offset_angle.symbol, profile.radius - q.blade_point_radius.symbol
+    in_plane = sp.Matrix(
+        [q.blade_point_radius.symbol + deviation * sp.cos(eta), deviation * sp.sin(eta), -profile.height]
+    )
+    in_cutter = Rz(beta) * in_plane
+    p = cradle.frame_w() * (cradle.apex_to_cutter() + cradle.cutter_to_machine(in_cutter))
+    p = p.subs(moving, simultaneous=True)
+    phi = cradle.work_angle().subs(moving, simultaneous=True) + q.index_ratio.symbol * beta
+    u, theta = parameter.symbol, q.theta.symbol
+    along = [p.diff(a) - phi.diff(a) * sp.Matrix(K).cross(p) for a in (u, beta, theta)]
+    return Family(p, phi, *along, profile.outward)
+
+
+def _expression(
+    name: str, description: str, profile: Profile, parameter: Quantity, extra: tuple[Quantity, ...]
+) -> Expression:
+    surface = family(profile, parameter)
+    turn, n = Rz(-surface.work_angle), surface.normal
+    cross = surface.along_u.cross(surface.along_beta)
+    return Expression(
+        name,
+        description,
+        (parameter, q.beta, q.theta, q.settings, q.motion, q.index_ratio, q.blade_offset_angle, *extra, q.side),
+        (
+            (q.point_w, turn * surface.point),
+            (q.normal_w, turn * n),
+            (q.meshing_residual, n.dot(surface.along_theta)),
+        ),
+        requires=(sum(component**2 for component in cross) - 1,),
+        source="envelope of a family of surfaces; universal motion as polynomials of the cradle angle",
+    )
+
+
+@cache
+def straight_generation() -> Expression:
+    """(10.5, 10.6) of a straight blade as an Expression."""
+    return _expression(
+        "straight_generation",
+        "Point, outward normal and meshing residual of a straight blade under every motion (10.5, 10.6).",
+        straight(), q.u, (),
+    )  # fmt: skip
+
+
+@cache
+def arc_generation() -> Expression:
+    """(10.5, 10.6) of an arc blade as an Expression: circular-arc flanks and fillets."""
+    return _expression(
+        "arc_generation",
+        "Point, outward normal and meshing residual of an arc blade under every motion (10.3, 10.5, 10.6).",
+        arc(), q.arc_angle, (q.blade_arc,),
+    )  # fmt: skip
+
+
+def _still() -> dict[sp.Symbol, sp.Expr]:
+    """No motion, no indexing, no blade offset: the machine of the chapters 2 to 4."""
+    values = dict.fromkeys(q.motion.symbols, sp.S.Zero)
+    return values | {q.index_ratio.symbol: sp.S.Zero, q.blade_offset_angle.symbol: sp.S.Zero}
+
+
+def prove_still_settings_give_the_family_of_face_milling() -> None:
+    """(10.5) Limit case: universal motion of degree 0 and zero indexing give (3.1)."""
+    surface = family(straight(), q.u)
+    still = (Rz(-surface.work_angle) * surface.point).subs(_still())
+    assert is_zero(still - flank.point())
+
+
+def prove_still_normal_is_the_normal_of_the_cutter() -> None:
+    """(10.6) Limit case: R_u × R_β is the cutter's normal times ρ/cos α, for both blades, so n is that of (3.2)."""
+    surface = family(straight(), q.u)
+    cross = surface.along_u.cross(surface.along_beta).subs(_still())
+    n = (Rz(cradle.work_angle()) * flank.normal()).applyfunc(sp.expand_trig)
+    for side in (1, -1):
+        rho = straight().radius.subs(q.side.symbol, side)
+        difference = surface.outward * cross - n * rho / sp.cos(q.blade_pressure_angle.symbol)
+        assert is_zero(difference.subs(q.side.symbol, side))
+
+
+def prove_still_residual_is_the_equation_of_meshing() -> None:
+    """(10.6) Limit case: with the normal of (3.2), n · R_θ is (4.2)."""
+    surface = family(straight(), q.u)
+    rolling = surface.along_theta.subs(_still())
+    n_c_in_w = cradle.frame_w() * cradle.cutter_to_machine(cutter.normal())
+    assert is_zero(n_c_in_w.dot(rolling) - meshing.residual())
+
+
+def prove_an_arc_touches_a_straight_blade_where_their_normals_agree() -> None:
+    """(10.3) The arc's tangent at u = α has the direction of the straight blade: edge and flank join smoothly."""
+    blade, round_ = straight(), arc()
+    alpha = q.blade_pressure_angle.symbol
+    slope = (round_.radius.diff(q.arc_angle.symbol) / round_.height.diff(q.arc_angle.symbol)).subs(
+        q.arc_angle.symbol, alpha
+    )
+    assert is_zero(slope - blade.radius.diff(q.u.symbol))
+
+
+def prove_derivatives_before_turning_are_those_of_the_family() -> None:
+    """(10.6) Rz(-φ_w) g_a = ∂R/∂a for a moving point p(a) and angle φ(a), whatever they are."""
+    a = sp.Symbol("a", real=True)
+    p = sp.Matrix([sp.Function(f"p{k}")(a) for k in range(3)])
+    phi = sp.Function("phi")(a)
+    turned = (Rz(-phi) * p).diff(a)
+    claimed = Rz(-phi) * (p.diff(a) - phi.diff(a) * sp.Matrix(K).cross(p))
+    assert sp.simplify(turned - claimed) == sp.zeros(3, 1)
