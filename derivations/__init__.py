@@ -16,11 +16,12 @@ def expressions() -> Iterator[Expression]:
     """Every Expression of every chapter, derived on demand."""
     from derivations import axes, blank, cradle, cutter, deviation, flank, gearbox, generation, meshing
 
-    yield cutter.cutter_surface()
+    yield from (cutter.cutter_surface(), cutter.toprem(), cutter.spheric_blade())
+    yield from (cutter.edge_round(), cutter.edge_round_of_arc())
     yield cradle.cradle_pose()
     yield flank.flank_family()
     yield from (meshing.meshing(), meshing.contact_start(), blank.flank_place())
-    yield from (generation.straight_generation(), generation.arc_generation())
+    yield from (generation.straight_generation(), generation.arc_generation(), generation.modified_roll())
     yield from (axes.axis_transform(), axes.tool_pose(), axes.cradle_tool_pose())
     yield from (deviation.point_deviation(), deviation.setting_sensitivity())
     yield from (deviation.deviation_surface(), deviation.line_entry(), deviation.flank_turning())

@@ -6,6 +6,19 @@
 Frame T: origin in the tip plane on the cutter axis, k from the cutter head towards the work, so that a blade point at
 height u above the tip plane has z = -u. s = +1 for the outer blade (concave flank), -1 for the inner blade (convex
 flank). n_c points into the cutter: out of the metal, into the tooth space.
+
+A blade has further sections. Toprem, a straight part of angle α_T below the height h_T, meets the blade there if
+
+    r_pT = r_p + s h_T (tan α - tan α_T)                                                       (1.3)
+
+A blade of circular arc (10.3) of radius r touches the straight one at the height h_r if its centre is at
+
+    ρ_b = ρ(h_r) - s r cos α,   h_b = h_r + r sin α                                            (1.4)
+
+The edge is rounded with radius r_e: tangent to the tip plane and to the straight part, or to an arc of radius r:
+
+    h_e = r_e,   ρ_e = r_p - s r_e (1 - sin α)/cos α,   joined at height r_e (1 - sin α)       (1.5)
+    ρ_e = ρ_b + s sign(r) √((r - r_e)² - (h_b - r_e)²)                                         (1.6)
 """
 
 from __future__ import annotations
@@ -46,6 +59,107 @@ def cutter_surface() -> Expression:
         ((q.point_c, point()), (q.normal_c, normal())),
         source="cone of revolution; NASA TM-105150 eq. for r_c in other axes",
     )
+
+
+@cache
+def toprem() -> Expression:
+    """(1.3) as an Expression."""
+    alpha, side = q.blade_pressure_angle.symbol, q.side.symbol
+    radius_there = q.blade_point_radius.symbol + side * q.toprem_height.symbol * (
+        sp.tan(alpha) - sp.tan(q.toprem_angle.symbol)
+    )
+    return Expression(
+        "toprem",
+        "Point radius of a Toprem section that meets the blade at its height (1.3).",
+        (q.blade_point_radius, q.blade_pressure_angle, q.toprem_angle, q.toprem_height, q.side),
+        ((q.toprem_point_radius, radius_there),),
+        source="two lines through one point",
+    )
+
+
+@cache
+def spheric_blade() -> Expression:
+    """(1.4) as an Expression."""
+    r, height, alpha = q.blade_spheric_radius.symbol, q.reference_height.symbol, q.blade_pressure_angle.symbol
+    center = sp.Matrix([radius(height) - q.side.symbol * r * sp.cos(alpha), height + r * sp.sin(alpha), r])
+    return Expression(
+        "spheric_blade",
+        "Arc of a circular-arc blade that touches the straight blade at a reference height (1.4).",
+        (q.blade_point_radius, q.blade_pressure_angle, q.blade_spheric_radius, q.reference_height, q.side),
+        ((q.blade_arc, center),),
+        source="circle through a point with a given tangent",
+    )
+
+
+@cache
+def edge_round() -> Expression:
+    """(1.5) as an Expression."""
+    r, alpha = q.blade_edge_radius.symbol, q.blade_pressure_angle.symbol
+    flat = (1 - sp.sin(alpha)) / sp.cos(alpha)
+    center = sp.Matrix([q.blade_point_radius.symbol - q.side.symbol * r * flat, r, r])
+    return Expression(
+        "edge_round",
+        "Arc of the rounded edge between tip plane and straight blade, and the height where they join (1.5).",
+        (q.blade_point_radius, q.blade_pressure_angle, q.blade_edge_radius, q.side),
+        ((q.blade_arc, center), (q.joint_height, r * (1 - sp.sin(alpha)))),
+        source="circle tangent to two lines",
+    )
+
+
+@cache
+def edge_round_of_arc() -> Expression:
+    """(1.6) as an Expression."""
+    center_radius, center_height, r = q.main_arc.symbols
+    edge = q.blade_edge_radius.symbol
+    across = sp.sqrt((r - edge) ** 2 - (center_height - edge) ** 2)
+    center = center_radius + q.side.symbol * sp.sign(r) * across
+    joint = sp.asin((center_height - edge) / (r - edge))
+    return Expression(
+        "edge_round_of_arc",
+        "Arc of the rounded edge between tip plane and arc blade, and the normal's angle where they join (1.6).",
+        (q.main_arc, q.blade_edge_radius, q.side),
+        ((q.blade_arc, sp.Matrix([center, edge, edge])), (q.joint_angle, joint)),
+        requires=((r - edge) ** 2 - (center_height - edge) ** 2,),
+        source="circle tangent to a line and to a circle",
+    )
+
+
+def prove_edge_round_touches_tip_plane_and_blade() -> None:
+    """(1.5) The arc's lowest point is in the tip plane, and at u = α it is on the blade at the joint's height."""
+    round_ = edge_round()
+    (center_radius, center_height, r), joint = round_["blade_arc"], round_["joint_height"]
+    alpha, side = q.blade_pressure_angle.symbol, q.side.symbol
+    assert sp.simplify(center_height - r) == 0
+    assert is_zero(center_height - r * sp.sin(alpha) - joint)
+    assert is_zero(center_radius + side * r * sp.cos(alpha) - radius(joint))
+
+
+def prove_edge_round_of_an_arc_touches_it() -> None:
+    """(1.6) At the joint both circles have the same point: the same height and the same cutting radius."""
+    round_ = edge_round_of_arc()
+    center, joint, side = round_["blade_arc"], round_["joint_angle"], q.side.symbol
+    main_radius, main_height, r = q.main_arc.symbols
+    edge = q.blade_edge_radius.symbol
+    assert sp.simplify((center[1] - edge * sp.sin(joint)) - (main_height - r * sp.sin(joint))) == 0
+    # cos(joint) = √(1 - sin²) = √((r - e)² - (h - e)²)/|r - e|, and sign(r)|r - e| = r - e where |r| > e
+    across = sp.sqrt((r - edge) ** 2 - (main_height - edge) ** 2)
+    gap = (center[0] - main_radius) / side - sp.sign(r) * across
+    assert sp.simplify(gap) == 0
+
+
+def prove_toprem_meets_the_blade() -> None:
+    """(1.3) At the height h_T both straight parts have the same cutting radius."""
+    height = q.toprem_height.symbol
+    below = toprem()["toprem_point_radius"] + q.side.symbol * height * sp.tan(q.toprem_angle.symbol)
+    assert is_zero(below - radius(height))
+
+
+def prove_spheric_blade_touches_the_straight_one() -> None:
+    """(1.4) At u = α the arc (10.3) is at the reference height, on the straight blade."""
+    center_radius, center_height, r = spheric_blade()["blade_arc"]
+    alpha, height = q.blade_pressure_angle.symbol, q.reference_height.symbol
+    assert is_zero(center_height - r * sp.sin(alpha) - height)
+    assert is_zero(center_radius + q.side.symbol * r * sp.cos(alpha) - radius(height))
 
 
 def prove_normal_is_the_cross_product_of_the_tangents() -> None:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
 from typing import Literal
 
 import mpmath
@@ -142,6 +144,21 @@ class Expression:
         function = sp.lambdify(symbols, [value for _, value in self.scalars()], "mpmath", cse=True)
         with mpmath.workdps(digits):
             return function(*(mpmath.mpf(float(value)) for value in flat))
+
+    def exact(self, *arguments: Fraction | int) -> tuple[Fraction, ...]:
+        """Every output at one point of rational numbers, exactly; all inputs and outputs scalars.
+
+        Raises TypeError if an output is no rational function of the inputs.
+        """
+        values = self._rational()(*map(Fraction, arguments))
+        if not all(isinstance(value, Fraction | int) for value in values):
+            raise TypeError(f"{self.name} is not rational in its inputs")
+        return tuple(map(Fraction, values))
+
+    @cache  # noqa: B019 - expressions are made once, and live as long as the program
+    def _rational(self) -> Callable[..., list[Fraction]]:
+        symbols = [symbol for quantity in self.inputs for symbol in quantity.symbols]
+        return sp.lambdify(symbols, [value for _, value in self.scalars()], "math")
 
     def latex(self, name: str) -> str:
         """The equation of one output as LaTeX, with the LaTeX names of the quantities."""

@@ -9,8 +9,12 @@ Settings may move with the cradle, the work may index with the cutter, and the b
     R = Rz(-φ_w) W (V_ls + T r_c)                                                              (10.5)
     n = ±R_u × R_β / |R_u × R_β|,   f = n · R_θ = 0                                            (10.6)
 
-Modified roll is φ_0(θ), helical motion X_b(θ), universal motion all of them. Everything is derived in the frame w
-before it turns, p = W (V_ls + T r_c), where a derivative by a is g_a = p_a - φ_w,a z × p: rotations change no product.
+Modified roll is φ_0(θ): with the published coefficients 2C, 6D, 24E, 120F
+
+    φ_w = φ_0 + R_a (θ - C θ² - D θ³ - E θ⁴ - F θ⁵)                                            (10.7)
+
+helical motion is X_b(θ), universal motion all of them. Everything is derived in the frame w before it turns,
+p = W (V_ls + T r_c), where a derivative by a is g_a = p_a - φ_w,a z × p: rotations change no product.
 The spine's (3.1, 3.2, 4.2) are the case m = 0, ι = 0. A Formate flank has no roll: θ = 0 takes the place of f = 0.
 """
 
@@ -115,6 +119,31 @@ def _expression(
         requires=(sum(component**2 for component in cross) - 1,),
         source="envelope of a family of surfaces; universal motion as polynomials of the cradle angle",
     )
+
+
+@cache
+def modified_roll() -> Expression:
+    """(10.7) as an Expression: the row of the motion that belongs to the work rotation offset."""
+    coefficients = [
+        -q.ratio_of_roll.symbol * value / sp.factorial(power)
+        for power, value in zip(range(2, 6), q.roll_coefficients.symbols, strict=True)
+    ]
+    return Expression(
+        "modified_roll",
+        "Motion of the work rotation offset that a modified roll is (10.7).",
+        (q.ratio_of_roll, q.roll_coefficients),
+        ((q.roll_motion, sp.Matrix([0, *coefficients, 0, 0])),),
+        source="Gleason's 2C, 6D, 24E, 120F: derivatives of the roll, hence the factorials",
+    )
+
+
+def prove_modified_roll_has_the_published_derivatives() -> None:
+    """(10.7) The second to fifth derivatives of -φ_w/R_a at θ = 0 are 2C, 6D, 24E and 120F."""
+    theta = q.theta.symbol
+    row = modified_roll()["roll_motion"]
+    roll = sum(value * theta ** (k + 1) for k, value in enumerate(row))
+    for order, value in zip(range(2, 6), q.roll_coefficients.symbols, strict=True):
+        assert sp.simplify(-roll.diff(theta, order).subs(theta, 0) / q.ratio_of_roll.symbol - value) == 0
 
 
 @cache

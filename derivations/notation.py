@@ -174,6 +174,64 @@ depth_extra = _length("depth_extra", "h_+", 0.0, 0.1, "depth added to the factor
 blank_diameter = _length("blank_diameter", "d_a", 0.0, 1e4, "outside diameter of the blank")
 cut_depth = _length("cut_depth", "h", 0.0, 100.0, "whole depth of cut")
 
+# --- hobbing ----------------------------------------------------------------------------------------------------
+pressure_angle = _angle("pressure_angle", r"\alpha_n", 0.15, 0.55, "normal pressure angle of the hob")
+helix_angle = _angle("helix_angle", r"\beta", 0.0, 1.1, "helix angle of the gear at its reference cylinder")
+helix_sign = Quantity("helix_sign", "+1 right-hand, -1 left-hand gear", "1", r"s_\beta", (-1, 1), values=(-1, 1))
+hob_sign = Quantity("hob_sign", "+1 right-hand, -1 left-hand hob", "1", "s_h", (-1, 1), values=(-1, 1))
+feed_sign = Quantity(
+    "feed_sign", "+1 if the counts of the feed go up in climb hobbing, -1 if in conventional", "1", "s_f", (-1, 1),
+    values=(-1, 1),
+)  # fmt: skip
+profile_shift = Quantity("profile_shift", "profile shift in normal modules", "1", "x", (-0.4, 1.0))
+hob_diameter = _length("hob_diameter", "d_0", 5.0, 500.0, "reference diameter of the hob")
+hob_lead_angle = _angle("hob_lead_angle", r"\lambda", 0.0, 1.5, "lead angle of the hob at its reference diameter")
+hob_swivel = _angle(
+    "hob_swivel", r"\eta", -pi, pi, "turn of the hob's axis, counter-clockwise seen from the hob towards the work"
+)
+transverse_module = _length("transverse_module", "m_t", 0.1, 60.0, "module in the plane normal to the gear's axis")
+transverse_pressure_angle = _angle("transverse_pressure_angle", r"\alpha_t", 0.15, 1.2, "pressure angle in that plane")
+base_helix_angle = _angle("base_helix_angle", r"\beta_b", 0.0, 1.1, "helix angle at the base cylinder")
+reference_diameter = _length("reference_diameter", "d", 0.1, 1e5, "diameter of the reference cylinder")
+base_diameter = _length("base_diameter", "d_b", 0.1, 1e5, "diameter of the base cylinder")
+tip_diameter = _length("tip_diameter", "d_{at}", 0.1, 1e5, "outside diameter of the blank of a helical gear")
+gear_lead = Quantity("gear_lead", "travel along the axis in which a tooth goes once round", "mm", "L", scale=1e5)
+spanned_teeth = _count("spanned_teeth", "k", 1, 400, "number of teeth that the span takes in")
+best_spanned_teeth = Quantity(
+    "best_spanned_teeth", "number of teeth at which the span touches at d + 2 x m_n, before rounding", "1", "k_{th}",
+    scale=100.0,
+)  # fmt: skip
+span = _length("span", "W_k", 0.0, 1e5, "base tangent length over the spanned teeth")
+span_contact_diameter = _length("span_contact_diameter", "d_W", 0.0, 1e5, "diameter at which the span touches")
+tooth_thickness = _length("tooth_thickness", "s_n", 0.0, 200.0, "normal tooth thickness at the reference cylinder")
+thickness_half_angle = _angle("thickness_half_angle", r"\psi", 0.0, 3.0, "half the angle of that thickness")
+chordal_thickness = _length("chordal_thickness", r"\bar{s}", 0.0, 200.0, "chord of the tooth thickness")
+chordal_height = _length("chordal_height", r"\bar{h}_a", 0.0, 200.0, "height of the tip above that chord")
+pin_diameter = _length("pin_diameter", "d_p", 0.1, 60.0, "diameter of the measuring pins or balls")
+pin_angle = _angle("pin_angle", r"\varphi", 0.05, 1.3, "transverse pressure angle at the centre of the pin")
+pin_residual = Quantity("pin_residual", "involute of the pin angle less what it must be, zero at it", "rad", "f")
+odd_teeth = Quantity("odd_teeth", "1 for an odd number of teeth, 0 for an even one", "1", "o", (0, 1), values=(0, 1))
+over_pins = _length("over_pins", "M", 0.0, 1e5, "measurement over two pins")
+pin_contact_length = _length(
+    "pin_contact_length", "2 l_p", -1e5, 1e5, "twice the length of the generating line at the contact of the pin"
+)
+pin_contact_diameter = _length("pin_contact_diameter", "d_p'", 0.0, 1e5, "diameter at which the pin touches")
+feed_counts = Quantity("feed_counts", "counts of the feed encoder per mm", "1/mm", "C", (1.0, 10_000.0))
+hob_ratio = Quantity("hob_ratio", "motor steps per count of the hob, signed", "1", r"\kappa_h", scale=1e3)
+feed_ratio = Quantity("feed_ratio", "motor steps per count of the feed, signed", "1", r"\kappa_z", scale=1e6)
+common_denominator = _count("common_denominator", "D", 1, 2**40, "denominator of both ratios")
+travel = _length("travel", "Z", 0.0, 1000.0, "travel of the feed")
+feed_bound = Quantity(
+    "feed_bound", "largest error of the position from rounding the ratio of the feed", "steps", r"\epsilon", scale=1e3
+)
+thread_pitch = _length("thread_pitch", "P", 0.01, 100.0, "pitch of the thread to be cut")
+thread_starts = _count("thread_starts", "k", 1, 10, "starts of the thread")
+thread_sign = Quantity("thread_sign", "+1 right-hand, -1 left-hand thread", "1", "s_t", (-1, 1), values=(-1, 1))
+lead_screw_pitch = _length("lead_screw_pitch", "P_L", 0.01, 100.0, "travel of the carriage per turn of the lead screw")
+lead_screw_ratio = Quantity(
+    "lead_screw_ratio", "motor steps per count of the spindle, signed", "1", r"\kappa_t", scale=1e6
+)
+
 # --- bevel blank ------------------------------------------------------------------------------------------------
 pitch_angle = _angle("pitch_angle", r"\delta", 0.1, 1.5, "pitch cone against the member's axis")
 face_angle = _angle("face_angle", r"\delta_a", 0.1, 1.57, "face cone against the member's axis")
@@ -222,4 +280,30 @@ blade_arc = Quantity(
         _length("arc_center_height", "h_b", -50.0, 50.0, "height of the arc's centre above the tip plane"),
         _length("arc_radius", "r", 0.2, 15.0, "radius of the arc"),
     ),
+)  # fmt: skip
+main_arc = Quantity(
+    "main_arc", "arc of a circular-arc blade: radius and height of its centre, and its radius", "mm", r"\mathbf{a}_r",
+    shape=(3,),
+    components=(
+        _length("main_center_radius", r"\rho_b", -700.0, 900.0, "distance of the arc's centre from the cutter axis"),
+        _length("main_center_height", "h_b", -50.0, 300.0, "height of the arc's centre above the tip plane"),
+        _length("main_radius", "r", 200.0, 800.0, "radius of the arc, positive where the blade is convex"),
+    ),
+)  # fmt: skip
+toprem_angle = _angle("toprem_angle", r"\alpha_T", 0.01, 0.6, "angle between the Toprem section and the cutter axis")
+toprem_height = _length("toprem_height", "h_T", 0.0, 5.0, "height above the tip plane at which Toprem ends")
+toprem_point_radius = _length(
+    "toprem_point_radius", "r_{pT}", 20.0, 250.0, "radius at which Toprem meets the tip plane"
+)
+blade_spheric_radius = _length("blade_spheric_radius", "r", 200.0, 2000.0, "radius of a circular-arc blade")
+reference_height = _length("reference_height", "h_r", 0.0, 15.0, "height at which arc and straight blade touch")
+blade_edge_radius = _length("blade_edge_radius", "r_e", 0.1, 3.0, "radius of the rounded blade edge")
+joint_height = _length("joint_height", "h_j", 0.0, 5.0, "height above the tip plane at which edge and blade join")
+joint_angle = _angle("joint_angle", r"u_j", 0.0, 1.5, "angle of the normal at which edge and arc blade join")
+roll_coefficients = Quantity(
+    "roll_coefficients", "modified roll 2C, 6D, 24E, 120F", "1", "(2C, 6D, 24E, 120F)", (-50.0, 50.0), shape=(4,),
+)  # fmt: skip
+roll_motion = Quantity(
+    "roll_motion", "coefficients of theta^1 ... theta^7 of the work rotation offset", "rad", r"m_{\varphi}",
+    shape=(7,), scale=100.0,
 )  # fmt: skip

@@ -31,7 +31,7 @@ _STEP_LIMITS = (4.0, 0.3, 0.3)
 #: A blade has this much tolerance at its ends, so that a point on the tip is not lost to rounding. [mm]
 _BLADE_SLACK = 1e-7
 
-residual_size = Quantity("residual_size", "largest residual of place and meshing after the last step", "mm", "r")
+residual_size = Quantity("residual_size", "size of the residual of place and meshing after the last step", "mm", "r")
 contact_guess = Quantity(
     "contact_guess", "start values of u, beta, theta", "mixed", "(u, \\beta, \\theta)_0", shape=(3,),
     components=notation.contact.components,
@@ -120,7 +120,8 @@ def flank_point() -> Kernel:
 
 def _surface(w: ca.SX, *place: ca.SX) -> list[ca.SX]:
     point, normal = kernel("flank_family").function(w[0], w[1], w[2], place[0], place[1])
-    return [point, normal, ca.norm_inf(_residual(w, *place))]
+    # norm_2: the largest element would be taken by fmax, which passes over NaN, so that NaN would count as converged
+    return [point, normal, ca.norm_2(_residual(w, *place))]
 
 
 def solve_places(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import tomlkit
@@ -56,6 +56,39 @@ class Blank(Spec):
         return _vector(self, notation.blank.components)
 
 
+_Coefficients = Annotated[tuple[Annotated[float, Field(ge=-1000, le=1000)], ...], Field(strict=False, max_length=7)]
+
+
+class Motion(Spec):
+    """Coefficients of θ^1 ... θ^7 of machine settings, mm and degrees per rad^j; ``modified_roll`` is 2C, 6D, ..."""
+
+    radial_distance: _Coefficients = ()
+    cradle_angle: _Coefficients = ()
+    cutter_tilt: _Coefficients = ()
+    cutter_swivel: _Coefficients = ()
+    blank_offset: _Coefficients = ()
+    sliding_base: _Coefficients = ()
+    machine_center_to_crossing_point: _Coefficients = ()
+    machine_root_angle: _Coefficients = ()
+    ratio_of_roll: _Coefficients = ()
+    work_rotation_offset: _Coefficients = ()
+    modified_roll: Annotated[_Coefficients, Field(max_length=4)] = ()
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """The motion as the matrix of ``notation.motion`` (10,7), mm and rad, without the modified roll."""
+        matrix = np.zeros(notation.motion.shape)
+        for row, name in zip(matrix, MACHINE_SETTINGS, strict=True):
+            values = np.array(getattr(self, name), dtype=float)
+            row[: len(values)] = np.radians(values) if name in _ANGULAR else values
+        return matrix
+
+    @property
+    def roll(self) -> np.ndarray:
+        """2C, 6D, 24E, 120F (4,)."""
+        return np.pad(np.array(self.modified_roll, dtype=float), (0, 4 - len(self.modified_roll)))
+
+
 class Settings(Spec):
     """The settings of machine and cutter of one flank (mm, degrees)."""
 
@@ -82,7 +115,23 @@ class Flank(Settings):
     """How one flank is cut; ``design``, where given, holds the settings of the nominal flank, the others corrected."""
 
     blade_profile_height: float = Field(gt=0, le=60)
+    blade_edge_radius: float = Field(default=0.0, ge=0, le=10)
+    blade_spheric_radius: float | None = Field(default=None, ge=-20_000, le=20_000)
+    blade_reference_height: float = Field(default=0.0, ge=0, le=60)
+    toprem_angle: float | None = Field(default=None, ge=0.5, le=45)
+    toprem_height: float = Field(default=0.0, ge=0, le=10)
+    blade_offset_angle: float = Field(default=0.0, ge=-45, le=45)
+    motion: Motion = Motion()
     design: Settings | None = None
+
+    @model_validator(mode="after")
+    def _blade(self) -> Flank:
+        if self.blade_spheric_radius is not None and abs(self.blade_spheric_radius) < 2 * self.blade_profile_height:
+            limit = 2 * self.blade_profile_height
+            raise ValueError(f"blade_spheric_radius = {self.blade_spheric_radius}: must be at least {limit} in size")
+        if (self.toprem_angle is not None) != (self.toprem_height > 0):
+            raise ValueError("toprem_angle and toprem_height belong together")
+        return self
 
     @property
     def nominal(self) -> Settings:
@@ -96,6 +145,9 @@ class Member(Spec):
     teeth: int = Field(ge=3, le=400)
     hand: Literal["left", "right"]
     cutting: Literal["fixed_setting", "completing"]
+    process: Literal["face_milling", "face_hobbing"] = "face_milling"
+    generation: Literal["generated", "formate"] = "generated"
+    blade_groups: int | None = Field(default=None, ge=1, le=60)
     blank: Blank
     concave: Flank
     convex: Flank
@@ -107,6 +159,10 @@ class Member(Spec):
             raise ValueError(f"index_correction has {len(self.index_correction)} values, the member {self.teeth} teeth")
         if any(not abs(value) <= 1 for value in self.index_correction):
             raise ValueError("index_correction must lie between -1 and 1 degree")
+        if (self.process == "face_hobbing") != (self.blade_groups is not None):
+            raise ValueError("blade_groups belongs to face_hobbing, and face_hobbing needs it")
+        if self.process == "face_hobbing" and self.cutting != "completing":
+            raise ValueError("face_hobbing cuts both flanks at once: cutting must be completing")
         if self.cutting == "completing":
             differing = [name for name in MACHINE_SETTINGS if getattr(self.concave, name) != getattr(self.convex, name)]
             if differing:

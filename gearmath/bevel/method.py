@@ -1,0 +1,88 @@
+"""From the file of a member to what the root finder takes: how a flank is generated, and the sections of its blade."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from derivations import cutter, generation
+from gearmath.bevel.generation import Generation, Section
+from gearmath.lowering import Kernel, lower
+from gearmath.specs.bevel_set import SIDES, Flank, Member
+
+_WORK_ROTATION_ROW = 9  # of the motion: the last machine setting
+
+
+@cache
+def _kernel(name: str) -> Kernel:
+    chapter = generation if name == "modified_roll" else cutter
+    return lower(getattr(chapter, name)())
+
+
+def generation_of(member: Member, flank: str) -> Generation:
+    """How the nominal flank of a member comes about."""
+    spec = member.flank(flank)
+    motion = spec.motion.matrix
+    if spec.motion.modified_roll:
+        (row,) = _kernel("modified_roll")(spec.nominal.ratio_of_roll, spec.motion.roll)
+        motion[_WORK_ROTATION_ROW] += row
+    return Generation(
+        settings=spec.nominal.vector,
+        side=SIDES[flank],
+        motion=motion,
+        index_ratio=member.blade_groups / member.teeth if member.blade_groups else 0.0,
+        blade_offset_angle=math.radians(spec.blade_offset_angle),
+        rolling=member.generation == "generated",
+    )
+
+
+def blade_sections(spec: Flank, side: int) -> dict[str, Section]:
+    """The sections of a blade from the tip upwards: ``edge`` (if rounded), ``toprem`` (if there), ``main``.
+
+    Raises ValueError where they do not join: an edge radius that reaches above the Toprem, or above the blade.
+    """
+    radius, alpha = spec.nominal.blade_point_radius, math.radians(spec.nominal.blade_pressure_angle)
+    sections: dict[str, Section] = {}
+    bottom = 0.0
+    if spec.toprem_angle is not None:
+        bottom, angle = spec.toprem_height, math.radians(spec.toprem_angle)
+        (toprem_radius,) = _kernel("toprem")(radius, alpha, angle, bottom, side)
+        sections["toprem"] = Section(0.0, bottom, float(toprem_radius), angle)
+    sections["main"] = _main(spec, side, bottom)
+    if spec.blade_edge_radius == 0.0:
+        return sections
+    lowest = next(iter(sections))
+    edge, sections[lowest] = _rounded(spec.blade_edge_radius, side, sections[lowest])
+    return {"edge": edge, **sections}
+
+
+def _main(spec: Flank, side: int, bottom: float) -> Section:
+    """The main section: straight, by height; or the arc, by the angle of its normal."""
+    radius, alpha = spec.nominal.blade_point_radius, math.radians(spec.nominal.blade_pressure_angle)
+    if spec.blade_spheric_radius is None:
+        return Section(bottom, spec.blade_profile_height, radius, alpha)
+    (arc,) = _kernel("spheric_blade")(radius, alpha, spec.blade_spheric_radius, spec.blade_reference_height, side)
+    ends = [math.asin((arc[1] - height) / arc[2]) for height in (bottom, spec.blade_profile_height)]
+    return Section(min(ends), max(ends), radius, alpha, _triple(arc))
+
+
+def _rounded(edge_radius: float, side: int, lowest: Section) -> tuple[Section, Section]:
+    """The rounded edge, and the lowest section of the blade without what the rounding takes away."""
+    if lowest.arc is not None:
+        arc, joint = _kernel("edge_round_of_arc")(np.array(lowest.arc), edge_radius, side)
+        # the normal of a convex arc falls from the tip upwards, that of a concave one rises
+        start = float(joint)
+        rest = replace(lowest, upper=start) if lowest.arc[2] > 0 else replace(lowest, lower=start)
+    else:
+        arc, height = _kernel("edge_round")(lowest.point_radius, lowest.pressure_angle, edge_radius, side)
+        rest, start = replace(lowest, lower=float(height)), lowest.pressure_angle
+    if rest.lower >= rest.upper:
+        raise ValueError(f"blade_edge_radius = {edge_radius}: nothing is left of the section above it")
+    return Section(start, math.pi / 2, lowest.point_radius, lowest.pressure_angle, _triple(arc)), rest
+
+
+def _triple(arc: np.ndarray) -> tuple[float, float, float]:
+    return float(arc[0]), float(arc[1]), float(arc[2])
