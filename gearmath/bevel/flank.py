@@ -15,8 +15,11 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
-from derivations import Quantity, notation
+from derivations import notation
+from gearmath.bevel.generation import solve_section
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.newton import TOLERANCE, FlankPoints, contact_guess, newton_step, residual_size
 from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
@@ -24,27 +27,10 @@ from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 #: Newton steps of one call of the kernel; the solver repeats the call where that is not enough.
 NEWTON_STEPS = 5
 _REPEATS = 12
-#: Largest residual of a converged point. [mm]
-TOLERANCE = 1e-9
 #: Largest change of u [mm], β and θ [rad] in one Newton step.
 _STEP_LIMITS = (4.0, 0.3, 0.3)
 #: A blade has this much tolerance at its ends, so that a point on the tip is not lost to rounding. [mm]
 _BLADE_SLACK = 1e-7
-
-residual_size = Quantity("residual_size", "size of the residual of place and meshing after the last step", "mm", "r")
-contact_guess = Quantity(
-    "contact_guess", "start values of u, beta, theta", "mixed", "(u, \\beta, \\theta)_0", shape=(3,),
-    components=notation.contact.components,
-)  # fmt: skip
-
-
-@dataclass(frozen=True)
-class FlankPoints:
-    """n points of one flank in the work frame: parameters (n,3), points (n,3) [mm], outward unit normals (n,3)."""
-
-    contact: np.ndarray
-    point: np.ndarray
-    normal: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -73,21 +59,6 @@ def _residual(w: ca.SX, settings: ca.SX, side: ca.SX, axial: ca.SX, radial: ca.S
     meshing = kernel("meshing").function(w[0], w[1], w[2], settings, side)
     off_radius = (point[0] ** 2 + point[1] ** 2 - radial**2) / (2 * radial)
     return ca.vertcat(point[2] - axial, off_radius, meshing / settings[0])
-
-
-def newton_step(residual: ca.SX, unknowns: ca.SX, limits: tuple[float, ...]) -> ca.SX:
-    """The unknowns (3,) after one Newton step, shortened where a component would change by more than its limit.
-
-    The 3×3 system is solved by cross products of the rows of the Jacobian, which needs no pivoting code in C.
-    """
-    J = ca.jacobian(residual, unknowns)
-    rows = [J[k, :].T for k in range(3)]
-    minors = [ca.cross(rows[1], rows[2]), ca.cross(rows[2], rows[0]), ca.cross(rows[0], rows[1])]
-    step = sum(residual[k] * minors[k] for k in range(3)) / ca.dot(rows[0], minors[0])
-    excess: ca.SX = ca.SX(1)
-    for k, limit in enumerate(limits):
-        excess = ca.fmax(excess, ca.fabs(step[k]) / limit)
-    return unknowns - step / excess
 
 
 @cache
@@ -140,28 +111,40 @@ def solve_places(
     return FlankPoints(contact, point, normal), residual
 
 
+def nominal_points(member: Member, flank: str, grid: Grid) -> tuple[FlankPoints, np.ndarray]:
+    """Points that the main section of the blade cuts on a grid, and their residuals, for every cutting method."""
+    how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
+    place = (grid.axial.ravel(), grid.radial.ravel())
+    if how.still and how.rolling and section.arc is None:
+        return solve_places(how.settings, how.side, *place)
+    points = solve_section(how, section, *place)
+    return points, points.residual
+
+
 def solve_flank(member: Member, name: str, flank: str, grid: Grid) -> FlankPoints:
     """The points of a grid on one flank, row by row.
 
     Raises ComputationError naming member, flank, row and column of the first point that does not converge or that
-    lies off the blade.
+    lies off the main section of the blade.
     """
     if flank not in FLANKS:
         raise ValueError(f"flank = {flank!r}: must be one of {FLANKS}")
-    spec = member.flank(flank)
-    points, residual = solve_places(spec.nominal.vector, SIDES[flank], grid.axial.ravel(), grid.radial.ravel())
+    points, residual = nominal_points(member, flank, grid)
+    section = blade_sections(member.flank(flank), SIDES[flank])["main"]
+    u, unit = points.contact[:, 0], "mm" if section.arc is None else "rad"
     for failed, what in (
         (~(residual <= TOLERANCE), "the equation of meshing has no solution near the start value"),
-        (points.contact[:, 0] < -_BLADE_SLACK, "the point lies below the blade tip, on the fillet or beyond"),
         (
-            points.contact[:, 0] > spec.blade_profile_height + _BLADE_SLACK,
-            f"the point lies above the blade, blade_profile_height = {spec.blade_profile_height} mm",
+            u < section.lower - _BLADE_SLACK,
+            "the point lies below the blade tip or its main section, on the fillet or beyond",
         ),
+        (u > section.upper + _BLADE_SLACK, "the point lies above the blade"),
     ):
         if failed.any():
-            row, column = divmod(int(np.argmax(failed)), grid.shape[1])
-            height = points.contact[row * grid.shape[1] + column, 0]
+            k = int(np.argmax(failed))
+            row, column = divmod(k, grid.shape[1])
             raise ComputationError(
-                f"{name} {flank} flank, row {row}, column {column}: {what} (blade height {height:.4f} mm)"
+                f"{name} {flank} flank, row {row}, column {column}: {what} "
+                f"(u = {u[k]:.4f} {unit}, the main section runs from {section.lower:g} to {section.upper:g} {unit})"
             )
     return points

@@ -15,8 +15,8 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity, generation, notation
-from gearmath.bevel.flank import TOLERANCE, FlankPoints, contact_guess, newton_step, residual_size
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.newton import TOLERANCE, FlankPoints, contact_guess, newton_step, residual_size
 from gearmath.lowering import Kernel, lower
 
 NEWTON_STEPS = 6

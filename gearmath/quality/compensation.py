@@ -17,8 +17,8 @@ import casadi as ca
 import numpy as np
 
 from derivations import notation
-from gearmath.bevel.flank import FlankPoints, contact_guess, newton_step, residual_size
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.newton import FlankPoints, contact_guess, newton_step, residual_size
 from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel
 from gearmath.specs.bevel_set import SETTINGS
@@ -57,7 +57,7 @@ def flank_on_line() -> Kernel:
     # dt/dx = t_x - t_w (h_w)^-1 h_x with h the residual: solve the transposed 3x3 system for the multipliers
     multipliers = ca.solve(ca.jacobian(residual, w).T, ca.jacobian(distance, w).T)
     gradient = ca.jacobian(distance, x).T - ca.jacobian(residual, x).T @ multipliers
-    final = ca.Function("line_at", [w, *given], [distance, gradient, ca.norm_inf(residual)])
+    final = ca.Function("line_at", [w, *given], [distance, gradient, ca.norm_2(residual)])
     guess, *arguments = (ca.MX.sym(name, size) for name, size in (("w", 3), ("x", 12), ("s", 1), ("p", 3), ("n", 3)))
     solution = guess
     for _ in range(_NEWTON_STEPS):

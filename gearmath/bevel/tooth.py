@@ -1,0 +1,150 @@
+"""One whole tooth space: both flanks from tip to root with their fillets, what bounds them, and what is wrong.
+
+A column of the surface lies on a line of constant cone distance r in the axial plane, z_w cos δ + r_w sin δ = r; its
+rows follow the blade from the tip of the tooth down to the tip plane of the cutter: main section, Toprem, rounded edge.
+The root between the two fillets is ruled.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.generation import Section, SurfacePoints, solve_curve, solve_section
+from gearmath.bevel.kernels import kernel
+from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.errors import ComputationError
+from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
+
+#: A blade without edge radius is taken to have this one: no edge that cuts is sharper. [mm]
+SHARP_EDGE = 0.02
+DEFAULT_COLUMNS = 25
+_ROWS = {"main": 17, "toprem": 5, "edge": 9}
+
+
+@dataclass(frozen=True)
+class FlankSurface:
+    """One flank of space 0, rows tip to root, columns toe to heel: points and outward normals (rows, columns, 3).
+
+    ``section`` (rows,) names the part of the blade that cuts a row, ``sense`` (rows, columns) changes its sign where
+    the surface folds back on itself: there it is undercut.
+    """
+
+    flank: str
+    point: np.ndarray
+    normal: np.ndarray
+    section: tuple[str, ...]
+    sense: np.ndarray
+
+    @property
+    def lower_limit(self) -> np.ndarray:
+        """The last row (columns, 3) that the main section cuts: the lower limit of the usable flank."""
+        return self.point[max(k for k, name in enumerate(self.section) if name == "main")]
+
+    @property
+    def undercut(self) -> np.ndarray:
+        """Which points (rows, columns) of the flank proper lie beyond a singular line."""
+        proper = np.array([name != "edge" for name in self.section])
+        reference = np.sign(self.sense[0, self.sense.shape[1] // 2])
+        return proper[:, None] & (np.sign(self.sense) != reference)
+
+
+@dataclass(frozen=True)
+class ToothSpace:
+    """Space 0 of a member: both flanks, with the same number of rows and columns, and the member's pitch [rad]."""
+
+    concave: FlankSurface
+    convex: FlankSurface
+    pitch: float
+
+    def width(self, row: int) -> np.ndarray:
+        """Angle (columns,) [rad] between the flanks, from the one that lies lower about z_w to the other."""
+        low, high = self.ordered
+        return _wrap(_angle(high.point[row]) - _angle(low.point[row]))
+
+    @property
+    def ordered(self) -> tuple[FlankSurface, FlankSurface]:
+        """The flanks in the order of their angle about z_w, across the space."""
+        middle = self.concave.point.shape[1] // 2
+        turn = _wrap(_angle(self.convex.point[0, middle]) - _angle(self.concave.point[0, middle]))
+        return (self.concave, self.convex) if turn > 0 else (self.convex, self.concave)
+
+    @property
+    def top_land(self) -> np.ndarray:
+        """Transverse arc (columns,) [mm] that the space leaves of the tip; zero or less where the tooth is pointed."""
+        low, _ = self.ordered
+        return np.hypot(low.point[0, :, 0], low.point[0, :, 1]) * (self.pitch - self.width(0))
+
+
+def tooth_space(member: Member, name: str, columns: int = DEFAULT_COLUMNS) -> ToothSpace:
+    """Space 0 of a member, whatever the method that cuts it.
+
+    Raises ComputationError naming member, flank, section, row and column of the first point without a solution.
+    """
+    surfaces = [flank_surface(member, name, flank, columns) for flank in FLANKS]
+    return ToothSpace(surfaces[0], surfaces[1], 2 * math.pi / member.teeth)
+
+
+def flank_surface(member: Member, name: str, flank: str, columns: int = DEFAULT_COLUMNS) -> FlankSurface:
+    """One flank of space 0 from the face cone to the bottom of its fillet."""
+    spec = member.flank(flank)
+    sharp = _edged(spec)
+    sections = blade_sections(sharp, SIDES[flank])
+    how = generation_of(member, flank)
+    across = np.linspace(0.0, 1.0, columns)
+    delta = math.radians(member.blank.pitch_angle)
+    direction = (math.cos(delta), math.sin(delta))
+    axial, radial = kernel("flank_place")(member.blank.vector, across, np.ones(columns))
+    distance = axial * direction[0] + radial * direction[1]
+    tip = solve_section(how, sections["main"], axial, radial)
+    _check(tip, name, flank, "main", 1, columns)
+    start, top = tip.contact, tip.contact[:, 0]
+    points: list[SurfacePoints] = []
+    names: list[str] = []
+    for part in reversed(sections):
+        section = sections[part]
+        first, last = _ends(section, top if part == "main" else None, columns)
+        count = _ROWS[part]
+        for fraction in np.linspace(0.0, 1.0, count)[0 if part == "main" else 1 :]:
+            u = first + fraction * (last - first)
+            if part == "edge" and section.arc is not None:
+                start = np.column_stack([u, start[:, 1:]])
+            row = solve_curve(how, section, u, direction, distance, np.column_stack([u, start[:, 1:]]))
+            _check(row, name, flank, part, len(points), columns)
+            points.append(row)
+            names.append(part)
+            start = row.contact
+    stack = [np.stack([getattr(row, field) for row in points]) for field in ("point", "normal", "sense")]
+    return FlankSurface(flank, stack[0], stack[1], tuple(names), stack[2])
+
+
+def _edged(spec: Flank) -> Flank:
+    """The flank with the smallest edge radius that a blade has."""
+    return spec.model_copy(update={"blade_edge_radius": SHARP_EDGE}) if spec.blade_edge_radius == 0 else spec
+
+
+def _ends(section: Section, top: np.ndarray | None, columns: int) -> tuple[np.ndarray, np.ndarray]:
+    """Blade parameters (columns,) at the upper and the lower end of a section; ``top`` where the tooth ends first."""
+    convex_arc = section.arc is not None and section.arc[2] > 0
+    upper, lower = (section.lower, section.upper) if convex_arc else (section.upper, section.lower)
+    return (np.full(columns, upper) if top is None else top), np.full(columns, lower)
+
+
+def _check(points: SurfacePoints, name: str, flank: str, part: str, row: int, columns: int) -> None:
+    lost = ~points.converged
+    if lost.any():
+        column = int(np.argmax(lost))
+        raise ComputationError(
+            f"{name} {flank} flank, {part} section, row {row}, column {column} of {columns}: the equation of meshing "
+            "has no solution there"
+        )
+
+
+def _angle(points: np.ndarray) -> np.ndarray:
+    return np.arctan2(points[..., 1], points[..., 0])
+
+
+def _wrap(angle: np.ndarray) -> np.ndarray:
+    return (angle + math.pi) % (2 * math.pi) - math.pi
