@@ -120,6 +120,50 @@ def flank_surface(member: Member, name: str, flank: str, columns: int = DEFAULT_
     return FlankSurface(flank, stack[0], stack[1], tuple(names), stack[2])
 
 
+def space_figures(member: Member, space: ToothSpace) -> dict[str, float]:
+    """Thickness, top land and faults of a member's teeth, in mm and numbers of points, names as in the JSON.
+
+    The thickness is the transverse arc at the mean point of the pitch cone, found on the surfaces themselves.
+    """
+    thickness = mean_tooth_thickness(member)
+    land = space.top_land
+    return {
+        "mean_transverse_tooth_thickness_mm": thickness,
+        "mean_transverse_pitch_mm": mean_pitch_radius(member) * space.pitch,
+        "top_land_toe_mm": float(land[0]),
+        "top_land_mean_mm": float(land[len(land) // 2]),
+        "top_land_heel_mm": float(land[-1]),
+        "pointed_columns": float((land <= 0).sum()),
+        "undercut_points": float(space.concave.undercut.sum() + space.convex.undercut.sum()),
+    }
+
+
+def mean_pitch_radius(member: Member) -> float:
+    """Radius [mm] of the mean point of the pitch cone."""
+    return member.blank.mean_cone_distance * math.sin(math.radians(member.blank.pitch_angle))
+
+
+def mean_tooth_thickness(member: Member) -> float:
+    """Transverse arc [mm] of the tooth at the mean point of the pitch cone: the pitch less the space."""
+    radius = mean_pitch_radius(member)
+    axial = member.blank.mean_cone_distance * math.cos(math.radians(member.blank.pitch_angle))
+    angles = []
+    for flank in FLANKS:
+        section = blade_sections(member.flank(flank), SIDES[flank])["main"]
+        points = solve_section(generation_of(member, flank), section, np.array([axial]), np.array([radius]))
+        if not points.converged.all():
+            raise ComputationError(f"{flank} flank: the mean point of the pitch cone is not on the flank")
+        angles.append(float(_angle(points.point)[0]))
+    space = abs(float(_wrap(np.array(angles[1] - angles[0]))))
+    return radius * (2 * math.pi / member.teeth - space)
+
+
+def mean_backlash(pinion: Member, gear: Member) -> float:
+    """Transverse backlash [mm] of a pair at the mean point: the pitch less both tooth thicknesses."""
+    pitch = 2 * math.pi * mean_pitch_radius(gear) / gear.teeth
+    return pitch - mean_tooth_thickness(pinion) - mean_tooth_thickness(gear)
+
+
 def _edged(spec: Flank) -> Flank:
     """The flank with the smallest edge radius that a blade has."""
     return spec.model_copy(update={"blade_edge_radius": SHARP_EDGE}) if spec.blade_edge_radius == 0 else spec

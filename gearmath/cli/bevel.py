@@ -1,4 +1,4 @@
-"""``gearmath flank``: nominal points and normals."""
+"""``gearmath flank`` and ``gearmath tooth``: nominal points and normals, and whole teeth."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import MEMBER, SET, output
+from gearmath.cli.common import JSON, MEMBER, SET, echo_json, output, table
 from gearmath.errors import InputError
 
 _MOST_POINTS = 1_000_000
@@ -37,6 +37,33 @@ def flank(gear_set: str, member: str, side: str, size: str, margin: float, targe
     grid = blank_grid(spec, rows, columns, margin)
     write_flank_csv(target, nominal_flank(spec, member, side, grid, margin))
     click.echo(f"{target}: {rows * columns} points of the {member}'s {side} flank")
+
+
+@click.command()
+@SET
+@MEMBER
+@click.option("--columns", type=click.IntRange(3, 400), default=25, show_default=True, help="Columns toe to heel.")
+@click.option("--space", is_flag=True, help="Write the surface of one tooth space, not the closed solid of the member.")
+@JSON
+@output("STL")
+def tooth(gear_set: str, member: str, columns: int, space: bool, as_json: bool, target: Path) -> None:
+    """Whole teeth of a member: thickness, top land, undercut; and an STL."""
+    from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
+    from gearmath.bevel.tooth import space_figures, tooth_space
+    from gearmath.specs.bevel_set import load_bevel_set
+    from gearmath.specs.toml import find
+
+    bevel_set = load_bevel_set(find(gear_set))
+    spec = bevel_set.member(member)
+    surface = tooth_space(spec, member, columns)
+    triangles = space_triangles(surface) if space else member_triangles(spec, surface)
+    write_stl(target, triangles, f"{member} {'space' if space else 'member'}")
+    figures = space_figures(spec, surface)
+    if as_json:
+        echo_json({"triangles": len(triangles), **figures})
+        return
+    click.echo(table(["figure", "value"], [[name, f"{value:.4f}"] for name, value in figures.items()]))
+    click.echo(f"{target}: {len(triangles)} triangles")
 
 
 def _grid(size: str) -> tuple[int, int]:

@@ -10,6 +10,8 @@ from typing import Any
 
 import click
 
+from gearmath.errors import InputError
+
 SET = click.argument("gear_set", metavar="SET.toml")
 MEMBER = click.option("--member", type=click.Choice(["pinion", "gear"]), required=True, help="Member of the pair.")
 MACHINE = click.option(
@@ -24,6 +26,15 @@ def output(suffix: str) -> Any:
         "-o", "--output", "target", type=click.Path(path_type=Path, dir_okay=False), required=True,
         help=f"File to write ({suffix}).",
     )  # fmt: skip
+
+
+@contextmanager
+def about(file: Path) -> Iterator[None]:
+    """Names the file that is to blame for bad input, where what computes with its content cannot know it."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from error
 
 
 def echo_json(values: Any) -> None:

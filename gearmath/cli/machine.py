@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import MACHINE, MEMBER, SET, bar, output
+from gearmath.cli.common import MACHINE, MEMBER, SET, about, bar, output
 from gearmath.errors import InputError
 
 
@@ -64,10 +64,11 @@ def mill(gear_set: str, member: str, machine: str, program: Path, errors: str | 
     from gearmath.specs.toml import find
 
     spec = load_bevel_set(find(gear_set)).member(member)
+    milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
     path = execute(read_text(program), str(program))
-    with bar(2 * spec.teeth, "flank") as progress:
-        measured = mill_member(path, spec, member, load_milling_machine(find(machine)), simulated, progress)
+    with bar(2 * spec.teeth, "flank") as progress, about(program):
+        measured = mill_member(path, spec, member, milling_machine, simulated, progress)
     write_flank_csv(target, measured)
     worst = float(abs(measured.deviation).max()) * 1000
     click.echo(f"{target}: {len(measured)} points, largest deviation {worst:.3f} um")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import JSON, MEMBER, SET, echo_json, output, table
+from gearmath.cli.common import JSON, MEMBER, SET, about, echo_json, output, table
 
 if TYPE_CHECKING:
     from gearmath.quality.correction import Correction
@@ -32,10 +32,11 @@ def evaluate(measured: Path, gear_set: str, picture: Path | None, as_json: bool)
 
     file = read_flank_csv(measured)
     member = load_bevel_set(find(gear_set)).member(file.member)
-    check_belongs(member, file.member, file)
     flanks = [flank for flank in FLANKS if len(file.select(flank))]
-    topographies = {flank: evaluate_topography(file, flank, _first_tooth(file, flank)) for flank in flanks}
-    pitches = {flank: pitch for flank in flanks if (pitch := evaluate_pitch(file, member.teeth, flank))}
+    with about(measured):
+        check_belongs(member, file.member, file)
+        topographies = {flank: evaluate_topography(file, flank, _first_tooth(file, flank)) for flank in flanks}
+        pitches = {flank: pitch for flank in flanks if (pitch := evaluate_pitch(file, member.teeth, flank))}
     if picture:
         from gearmath.plot import member_figure, save
 
@@ -76,7 +77,9 @@ def compensate(gear_set: str, member: str, measured: Path, as_json: bool, target
 
     source = find(gear_set)
     spec = load_bevel_set(source).member(member)
-    correction = correct(spec, member, read_flank_csv(measured))
+    file = read_flank_csv(measured)
+    with about(measured):
+        correction = correct(spec, member, file)
     save_corrected(source, target, member, correction.settings, correction.index)
     if as_json:
         echo_json(_correction_values(spec, correction))

@@ -16,6 +16,8 @@ from gearmath.specs.flank_csv import FlankFile
 
 #: Points of the file and of the set must agree this well, or the file belongs to another set. [mm]
 _SAME_POINT = 0.01
+#: What a correction may add to the RMS of a flank that is as good as perfect: rounding. [mm]
+_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,7 @@ def correct(member: Member, name: str, measured: FlankFile, free: tuple[str, ...
     for group in groups:
         targets = [flank_target(member, name, flank, measured) for flank in group]
         found = identify(targets, free)
-        if found.rms_after > found.rms_before:
+        if found.rms_after > found.rms_before + _ROUNDING:
             raise ComputationError(
                 f"{name} {' and '.join(group)}: no correction makes the flank better "
                 f"(RMS {found.rms_before * 1000:.3f} um); nothing is written"
@@ -60,9 +62,14 @@ def correct(member: Member, name: str, measured: FlankFile, free: tuple[str, ...
 
 
 def flank_target(member: Member, name: str, flank: str, measured: FlankFile, tooth: int | None = None) -> FlankTarget:
-    """One flank of a file with the nominal points of the set. Raises InputError if they are not the same points."""
+    """One flank of a file with the nominal points of the set, of the tooth that has most points if none is given.
+
+    Raises InputError if they are not the same points.
+    """
     points = measured.select(flank)
-    tooth = int(points.tooth.min()) if tooth is None and len(points) else tooth
+    if tooth is None and len(points):
+        teeth, counts = np.unique(points.tooth, return_counts=True)
+        tooth = int(teeth[np.argmax(counts)])  # the one with the whole grid
     points = measured.select(flank, tooth)
     rows, columns = grid_shape(measured)
     if len(points) != rows * columns:

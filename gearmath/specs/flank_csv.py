@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,6 +22,17 @@ HEADER = (
     "member", "member_teeth", "frame", "unit", "grid", "margins", "reference_point", "phase_zeroed", "tip_radius_mm",
     "settings_sha256",
 )  # fmt: skip
+
+_MARGIN = r"(0(\.[0-4]\d*)?|\d(\.\d+)?e-\d\d)"  # as Python prints it: 0.1, 0, 1e-05
+#: What these header values must look like: pattern, and the words that say it.
+_HEADER_VALUES = {
+    "frame": (r"w", "must be w, the work frame"),
+    "unit": (r"mm", "must be mm"),
+    "member_teeth": (r"[1-9]\d{0,2}", "must be a whole number from 1 to 999"),
+    "grid": (r"([2-9]|[1-9]\d{1,5})x([2-9]|[1-9]\d{1,5})", "must read like 5x9, two or more each way"),
+    "margins": (rf"{_MARGIN},{_MARGIN}", "must read like 0.1,0.1, less than 0.5"),
+    "reference_point": (r"\d{1,6},\d{1,6}", "must read like 2,4"),
+}
 
 
 @dataclass(frozen=True)
@@ -98,33 +110,54 @@ def read_flank_csv(path: Path) -> FlankFile:
             key, _, value = line[1:].partition(":")
             header[key.strip()] = value.strip()
         elif line.strip():
-            rows.append([str(number), *next(csv.reader([line]))])
+            rows.append([str(number), *_cells(path, number, line)])
     if not rows or tuple(rows[0][1:]) != COLUMNS:
         raise InputError(f"{path}: is no flank file: the column line must read {','.join(COLUMNS)}")
     missing = [key for key in HEADER if key not in header]
     if missing:
         raise InputError(f"{path}: the header line '# {missing[0]}: ...' is missing")
-    if header["unit"] != "mm":
-        raise InputError(f"{path}: unit = {header['unit']!r}: must be mm")
+    _check_header(path, header)
     records = [_record(path, row) for row in rows[1:]]
     if not records:
         raise InputError(f"{path}: holds no point")
     return _collect(path, header, records)
 
 
+def _check_header(path: Path, header: dict[str, str]) -> None:
+    for key, (pattern, words) in _HEADER_VALUES.items():
+        if not re.fullmatch(pattern, header[key], re.ASCII):
+            raise InputError(f"{path}: {key} = {header[key]!r}: {words}")
+    row, col = (int(part) for part in header["reference_point"].split(","))
+    rows, columns = (int(part) for part in header["grid"].split("x"))
+    if not (row < rows and col < columns):
+        raise InputError(f"{path}: reference_point = {row},{col}: must lie in the grid {rows}x{columns}")
+
+
+def _cells(path: Path, number: int, line: str) -> list[str]:
+    try:
+        return next(csv.reader([line]))
+    except csv.Error as error:
+        raise InputError(f"{path}, line {number}: is no CSV: {error}") from error
+
+
 def _collect(path: Path, header: dict[str, str], records: list[tuple]) -> FlankFile:
     members = {record[0] for record in records}
     if len(members) > 1 or header["member"] not in members:
         raise InputError(f"{path}: one file holds one member, this one {sorted(members | {header['member']})}")
+    rows, columns = (int(part) for part in header["grid"].split("x"))
+    limits = {"tooth": int(header["member_teeth"]), "row": rows, "col": columns}
     seen: set[tuple] = set()
     for record in records:
+        for (name, limit), value in zip(limits.items(), record[2:5], strict=True):
+            if value >= limit:
+                raise InputError(f"{path}: {name} = {value}: the header allows 0 to {limit - 1}")
         if record[1:5] in seen:
             place = f"flank {record[1]}, tooth {record[2]}, row {record[3]}, col {record[4]}"
             raise InputError(f"{path}: the point {place} is there twice")
         seen.add(record[1:5])
-    columns = list(zip(*records, strict=True))
-    numbers = np.array(columns[5:], dtype=float).T
-    flank, tooth, row, col = (np.array(columns[k]) for k in (1, 2, 3, 4))
+    fields = list(zip(*records, strict=True))
+    numbers = np.array(fields[5:], dtype=float).T
+    flank, tooth, row, col = (np.array(fields[k]) for k in (1, 2, 3, 4))
     deviation, uncertainty = numbers[:, 6] / 1000, numbers[:, 7] / 1000
     return FlankFile(
         header, records[0][0], flank, tooth, row, col, numbers[:, :3], numbers[:, 3:6], deviation, uncertainty

@@ -63,8 +63,8 @@ def find(name: str) -> Path:
 def _sentence(error: ValidationError) -> str:
     details = error.errors(include_url=False)
     first = details[0]
-    key = ".".join(str(part) for part in first["loc"]) or "file"
+    key = ".".join(str(part) for part in first["loc"])
     what = _SENTENCES.get(first["type"], first["msg"].removeprefix("Value error, ").removeprefix("Input "))
     value = "" if first["type"] == "missing" or isinstance(first["input"], dict) else f" = {first['input']!r}"
     more = f" (and {len(details) - 1} more)" if len(details) > 1 else ""
-    return f"{key}{value}: {what}{more}"
+    return f"{key}{value}: {what}{more}" if key else f"{what}{more}"

@@ -29,11 +29,11 @@
  *     [2] theta [rad] -1 ... 1: cradle rotation (roll position)
  * out point_w[3] [mm] -500 ... 500: point of the tooth surface family, work frame w
  * out normal_w[3] [1] -1 ... 1: outward unit normal (out of the metal), work frame w
- * out residual_size [mm]: largest residual of place and meshing after the last step
+ * out residual_size [mm]: size of the residual of place and meshing after the last step
  *
  * source: equation of meshing (4.2) and family (3.1, 3.2)
- * ops: 2279 (add 374, cos 114, div 87, fabs 18, fmax 18, mul 1196, neg 1, sin 114, sq 18, sub 310, tan 13, twice
- *     16)
+ * ops: 2279 (add 376, cos 114, div 87, fabs 15, fmax 15, mul 1196, neg 1, sin 114, sq 21, sqrt 1, sub 310, tan
+ *     13, twice 16)
  * work memory: 71 doubles and 0 integers, on the stack
  * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
  */

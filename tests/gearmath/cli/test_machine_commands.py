@@ -1,0 +1,135 @@
+"""``gearmath nc cut`` and ``gearmath mill``: from a set to a program, from the program to measured flanks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gearmath.machine.cutting import cutting_program
+from gearmath.machine.reader import execute
+from gearmath.specs.flank_csv import read_flank_csv
+from gearmath.specs.toml import bundled
+
+SET = "nasa_tp3096_12x36.toml"
+CUT = ("nc", "cut", SET, "--member", "pinion")
+
+
+@pytest.fixture(scope="module")
+def pinion_program(tmp_path_factory, gear_set, vertical):
+    """The program of one space of the pinion, as a file."""
+    path = tmp_path_factory.mktemp("program") / "PINION.MPF"
+    path.write_text(cutting_program(gear_set, "pinion", vertical, "PINION"), "utf-8")
+    return path
+
+
+def test_program_is_called_like_its_file_and_runs_on_the_reader(command, tmp_path):
+    target = tmp_path / "PINION_A.MPF"
+    status, out, err = command(*CUT, "--spaces", "0,3,3", "-o", target)
+    assert (status, err) == (0, "")
+    assert "2 of 12 spaces" in out
+    text = target.read_text("ascii")
+    assert text.startswith("; PINION_A\n")
+    assert text.endswith("M30\n")
+    assert execute(text, "P.MPF").tools == ("PINION_CONCAVE", "PINION_CONVEX")
+
+
+def test_tolerance_feed_and_speed_reach_the_program(command, tmp_path):
+    for name, options in (("FINE", ()), ("COARSE", ("--tolerance-um", "5", "--feed", "150", "--rpm", "90"))):
+        assert command(*CUT, "--spaces", "0", *options, "-o", tmp_path / f"{name}.MPF")[0] == 0
+    fine, coarse = ((tmp_path / f"{name}.MPF").read_text("ascii") for name in ("FINE", "COARSE"))
+    assert fine.count("G93") > 4 * coarse.count("G93")
+    assert "S90.000 M3" in coarse
+    times = []
+    for text in (fine, coarse):
+        path = execute(text, "P.MPF")
+        times.append(path.seconds[~path.rapid & ~np.roll(path.rapid, 1)].sum())  # without plunging
+    assert times[1] / times[0] == pytest.approx(2, rel=0.01)  # half the default feed of 300 mm/min
+
+
+def test_milling_without_errors_leaves_at_most_a_tenth_of_a_micrometre(command, tmp_path, pinion_program):
+    status, out, err = command(
+        "mill", SET, "--member", "pinion", "--program", pinion_program, "-o", tmp_path / "m.csv"
+    )  # fmt: skip
+    assert (status, err) == (0, "")
+    file = read_flank_csv(tmp_path / "m.csv")
+    assert np.abs(file.deviation).max() <= 1e-4
+    assert len(file) == 90
+    assert "90 points, largest deviation 0.0" in out
+
+
+def test_milling_with_errors_shows_them(command, tmp_path, pinion_program):
+    arguments = ("mill", SET, "--member", "pinion", "--program", pinion_program, "--errors", "simulated_shop.toml")
+    assert command(*arguments, "-o", tmp_path / "m.csv")[0] == 0
+    file = read_flank_csv(tmp_path / "m.csv")
+    assert 0.018 < np.abs(file.deviation).max() < 0.032
+    np.testing.assert_allclose(file.uncertainty, 5e-4)
+    assert command(*arguments, "-o", tmp_path / "again.csv")[0] == 0
+    assert (tmp_path / "again.csv").read_bytes() == (tmp_path / "m.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--spaces", "12"), "--spaces 12: must be all, or numbers from 0 to 11"),
+        (("--spaces", "0;1"), "--spaces 0;1: must"),
+        (("--spaces", ""), "--spaces : must"),
+        (("--spaces", "-1"), "--spaces -1: must"),
+        (("--tolerance-um", "0"), "tolerance = 0 um: must lie between 0.001 and 100 um"),
+        (("--tolerance-um", "nan"), "tolerance = nan um: must lie"),
+        (("--feed", "-3"), r"feed = -3.0 mm/min: must be greater than 0"),
+        (("--feed", "nan"), r"feed = nan mm/min: must"),
+        (("--rpm", "1"), "spindle speed = 1.0 rpm: .* 20 to 3000 rpm"),
+        (("--machine", "absent.toml"), r"absent\.toml: cannot be read"),
+        (("--machine", "nasa_tp3096_12x36.toml"), r"nasa_tp3096_12x36\.toml: name: the key is missing"),
+    ],
+)
+def test_bad_cut_is_one_line_and_writes_nothing(refused, tmp_path, options, sentence):
+    refused(sentence, *CUT, *options, "-o", tmp_path / "PART.MPF")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["1ST.MPF", "P-1.MPF", "A_PROGRAM_NAME_THAT_IS_TOO_LONG.MPF", "COM1.MPF"])
+def test_file_name_that_is_no_program_name_is_refused(refused, tmp_path, name):
+    refused("program name ", *CUT, "-o", tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_bad_milling_is_one_line_and_writes_nothing(refused, tmp_path, pinion_program):
+    target = tmp_path / "out" / "m.csv"
+    target.parent.mkdir()
+    text = pinion_program.read_text("ascii")
+    programs = {
+        "line 1, column 1: the word '%' is not understood": "%\n" + text,
+        "the text ends without M30": text[: len(text) // 2].rsplit("\n", 1)[0],
+        r"the program does not cut the concave flank of the pinion": "M30\n",
+        r'cuts with T="HOB"; the pinion is cut with PINION_CONCAVE and PINION_CONVEX': text.replace(
+            "PINION_CONCAVE", "HOB"
+        ),
+    }
+    for number, (sentence, content) in enumerate(programs.items()):
+        path = tmp_path / f"P{number}.MPF"
+        path.write_text(content)
+        refused(rf"P{number}\.MPF.*{sentence}", "mill", SET, "--member", "pinion", "--program", path, "-o", target)
+    good = ("mill", SET, "--member", "pinion", "-o", target, "--program")
+    refused(r"absent\.MPF: cannot be read", *good, tmp_path / "absent.MPF")
+    refused(r"PINION\.MPF.*the gear is cut with GEAR", *good[:3], "gear", *good[4:], pinion_program)
+    refused(r"errors\.toml: cannot be read", *good, pinion_program, "--errors", "errors.toml")
+    refused(r"vertical_5axis\.toml: ", *good, pinion_program, "--errors", "vertical_5axis.toml")
+    broken = tmp_path / "PINION.MPF"
+    broken.write_bytes(b"\xff" + text.encode())
+    refused(r"PINION\.MPF: is no text file: byte 0 is not UTF-8", *good, broken)
+    assert list(target.parent.iterdir()) == []
+
+
+def test_program_of_other_settings_is_a_failure_of_status_1(command, tmp_path, pinion_program):
+    """Run with setting errors, whose roll position is sought on the path of the set: 5 mm of radial distance beside."""
+    text = bundled(SET).read_text("utf-8")
+    other = tmp_path / "other.toml"
+    other.write_text(text.replace("radial_distance = 74.8741708", "radial_distance = 79.8741708"), "utf-8")
+    status, out, err = command(
+        "mill", other, "--member", "pinion", "--program", pinion_program, "--errors", "simulated_shop.toml",
+        "-o", tmp_path / "m.csv",
+    )  # fmt: skip
+    assert (status, out) == (1, "")
+    assert "off the path of the settings" in err
+    assert not (tmp_path / "m.csv").exists()

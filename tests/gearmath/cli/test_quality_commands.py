@@ -1,0 +1,199 @@
+"""``gearmath evaluate`` and ``gearmath compensate``, and the whole loop from verb to verb."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from gearmath.quality.pitch import evaluate_pitch
+from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.flank_csv import read_flank_csv, write_flank_csv
+from gearmath.specs.toml import bundled
+
+SET = "nasa_tp3096_12x36.toml"
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory, mill, gear_set, shop):
+    """The pinion from the simulated shop, all teeth, as a file."""
+    path = tmp_path_factory.mktemp("measured") / "m.csv"
+    write_flank_csv(path, mill(gear_set, "pinion", range(12), shop))
+    return path
+
+
+@pytest.mark.parametrize("member", ["pinion", "gear"])
+def test_the_loop_from_verb_to_verb(command, tmp_path, member):
+    """nc cut, mill with errors, evaluate, compensate, and the same again with the corrected set."""
+    source, figures = SET, []
+    for cycle in (1, 2):
+        program, csv, new = (tmp_path / f"{name}_{cycle}{end}" for name, end in (
+            ("PART", ".MPF"), ("measured", ".csv"), ("corrected", ".toml")))  # fmt: skip
+        assert command("nc", "cut", source, "--member", member, "-o", program)[::2] == (0, "")
+        assert command(
+            "mill", source, "--member", member, "--program", program, "--errors", "simulated_shop.toml", "-o", csv
+        )[::2] == (0, "")  # fmt: skip
+        status, out, _ = command("evaluate", csv, "--set", source, "--json")
+        assert status == 0
+        figures.append(json.loads(out)["flanks"])
+        assert command("compensate", source, "--member", member, "--measured", csv, "-o", new)[::2] == (0, "")
+        source = new
+    first, second = (
+        [max(abs(flank[name]) for flank in figure.values()) for name in ("max_deviation_um", "F_p_um")]
+        for figure in figures
+    )
+    assert 20 < first[0] < 32
+    assert second[0] < 3  # two deviations of 0.5 µm noise more than the best fit
+    assert second[1] < first[1] / 2
+    load_bevel_set(source)
+
+
+def test_evaluation_prints_a_table_and_json_with_the_same_figures(command, measured):
+    status, out, err = command("evaluate", measured, "--set", SET)
+    assert (status, err) == (0, "")
+    head, *rows = [line.split() for line in out.splitlines()]
+    assert head == ["flank", "max_deviation_um", "rms_um", "cubic_surface_residual_um", "F_p_um", "max_f_pt_um"]
+    values = json.loads(command("evaluate", measured, "--set", SET, "--json")[1])
+    assert values["member"] == "pinion"
+    for row in rows:
+        flank = values["flanks"][row[0]]
+        assert [float(cell) for cell in row[1:]] == pytest.approx([flank[name] for name in head[1:]], abs=6e-4)
+        assert len(flank["surface_coefficients"]) == 10
+    assert {row[0] for row in rows} == {"concave", "convex"}
+
+
+def test_figures_are_those_of_the_points_in_the_file(command, measured):
+    """Largest deviation and RMS worked from the text of the CSV alone."""
+    rows = [line.split(",") for line in measured.read_text().splitlines() if line.startswith("pinion,")]
+    values = json.loads(command("evaluate", measured, "--set", SET, "--json")[1])["flanks"]
+    for flank in ("concave", "convex"):
+        here = np.array([float(row[11]) for row in rows if row[1] == flank and row[2] == "0"])
+        assert len(here) == 45
+        assert abs(values[flank]["max_deviation_um"]) == pytest.approx(np.abs(here).max(), abs=1e-6)
+        assert values[flank]["rms_um"] == pytest.approx(np.sqrt(np.mean(here**2)), abs=1e-6)
+
+
+def test_picture_is_a_png(command, measured, tmp_path):
+    assert command("evaluate", measured, "--set", SET, "--plot", tmp_path / "t.png")[0] == 0
+    assert (tmp_path / "t.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_compensation_says_what_it_changed_and_writes_it(command, measured, tmp_path):
+    target = tmp_path / "new.toml"
+    arguments = ("compensate", SET, "--member", "pinion", "--measured", measured, "-o", target)
+    values = json.loads(command(*arguments, "--json")[1])
+    new = load_bevel_set(target).pinion
+    assert values["changes"]
+    for change in values["changes"]:
+        assert getattr(new.flank(change["flank"]), change["setting"]) == pytest.approx(change["new"], abs=1e-8)
+        assert change["unit"] == {"ratio_of_roll": "1"}.get(
+            change["setting"], "deg" if change["setting"].endswith("angle") else "mm"
+        )
+    np.testing.assert_allclose(new.index_correction, values["index_correction_deg"], rtol=0, atol=1e-7)
+    status, out, _ = command(*arguments)
+    assert status == 0
+    assert "radial_distance" in out
+    assert "expected to remain" in out
+    assert "with index corrections for every tooth" in out
+
+
+def test_index_correction_takes_back_the_pitch_that_was_measured(command, measured, tmp_path):
+    """By hand from the file: the mean turning of both flanks against tooth 0, with the other sign."""
+    target = tmp_path / "new.toml"
+    command("compensate", SET, "--member", "pinion", "--measured", measured, "-o", target)
+    file = read_flank_csv(measured)
+    turning = np.mean([evaluate_pitch(file, 12, flank).turning for flank in ("concave", "convex")], axis=0)
+    np.testing.assert_allclose(load_bevel_set(target).pinion.index_correction, -np.degrees(turning), rtol=0, atol=1e-7)
+
+
+def changed(measured, tmp_path, old: str, new: str, count: int = 1):
+    text = measured.read_text("utf-8")
+    assert old in text
+    path = tmp_path / "bad.csv"
+    path.write_text(text.replace(old, new, count), "utf-8")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("# unit: mm", "# unit: inch", "unit = 'inch': must be mm"),
+        ("# grid: 5x9", "# grid: five", "grid = 'five': must read like 5x9"),
+        ("# margins: 0.1,0.1", "# margins: much", "margins = 'much': must"),
+        ("# reference_point: 2,4", "# reference_point: 9,9", "reference_point = 9,9: must lie in the grid 5x9"),
+        ("# member_teeth: 12", "# member_teeth: 13", "member_teeth = 13: the pinion of the set has 12"),
+        ("# settings_sha256: ", "# settings_sha256: 0", "settings_sha256 = 0.*other nominal settings"),
+        ("pinion,concave,0,0,0,", "pinion,concave,0,0,0,nan", "line 12: could not convert"),
+        ("pinion,concave,0,0,0,", "pinion,concave,0,0,0,1", "beside the nominal normal|length"),
+        ("pinion,concave,5,", "pinion,concave,4,", "tooth 4, row 2, col 4 is there twice"),
+    ],
+)
+def test_bad_measurement_is_one_line_with_its_file_and_writes_nothing(refused, measured, tmp_path, old, new, sentence):
+    path = changed(measured, tmp_path, old, new)
+    refused(
+        r"^gearmath: .*bad\.csv.*(" + sentence + ")",
+        "compensate", SET, "--member", "pinion", "--measured", path, "-o", tmp_path / "new.toml",
+    )  # fmt: skip
+    assert [entry.name for entry in tmp_path.iterdir()] == ["bad.csv"]
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("absent.csv", None, "cannot be read: No such file"),
+        ("noise.csv", b"\x89PNG\r\n", "is no text file"),
+        ("empty.csv", b"", "is no flank file"),
+        ("long.csv", b"x" * 200_000, "is no CSV"),
+    ],
+)
+@pytest.mark.parametrize("verb", ["evaluate", "compensate"])
+def test_unreadable_measurement_is_one_line_with_its_file(refused, tmp_path, verb, name, content, sentence):
+    path = tmp_path / name
+    if content is not None:
+        path.write_bytes(content)
+    target = tmp_path / "out.x"
+    arguments = {
+        "evaluate": ("evaluate", path, "--set", SET, "--plot", target),
+        "compensate": ("compensate", SET, "--member", "pinion", "--measured", path, "-o", target),
+    }[verb]
+    refused(rf"{name}.*{sentence}", *arguments)
+    assert not target.exists()
+
+
+def test_measurement_of_the_other_member_is_refused(refused, measured, tmp_path):
+    refused(
+        r"m\.csv: member = 'pinion' in the measured file: must be 'gear'",
+        "compensate", SET, "--member", "gear", "--measured", measured, "-o", tmp_path / "new.toml",
+    )  # fmt: skip
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_measurement_of_another_set_is_refused(refused, measured, tmp_path):
+    other = tmp_path / "other.toml"
+    text = bundled(SET).read_text("utf-8").replace("radial_distance = 74.8741708", "radial_distance = 74.9")
+    other.write_text(text, "utf-8")
+    refused(r"m\.csv: settings_sha256 = ", "evaluate", measured, "--set", other)
+    refused(
+        r"m\.csv: settings_sha256 = ",
+        "compensate", other, "--member", "pinion", "--measured", measured, "-o", tmp_path / "new.toml",
+    )  # fmt: skip
+    assert [entry.name for entry in tmp_path.iterdir()] == ["other.toml"]
+
+
+def test_nominal_file_is_refused(command, refused, tmp_path):
+    path = tmp_path / "nominal.csv"
+    assert command("flank", SET, "--member", "pinion", "--flank", "concave", "-o", path)[0] == 0
+    refused(r"nominal\.csv: .*nominal file", "evaluate", path, "--set", SET)
+    refused(
+        r"nominal\.csv: .*nominal file",
+        "compensate", SET, "--member", "pinion", "--measured", path, "-o", tmp_path / "new.toml",
+    )  # fmt: skip
+    assert not (tmp_path / "new.toml").exists()
+
+
+def test_target_that_cannot_be_written_leaves_nothing_behind(refused, measured, tmp_path):
+    target = tmp_path / "absent" / "new.toml"
+    refused("cannot be written", "compensate", SET, "--member", "pinion", "--measured", measured, "-o", target)
+    refused("cannot be written", "evaluate", measured, "--set", SET, "--plot", tmp_path / "absent" / "t.png")
+    assert list(tmp_path.iterdir()) == []

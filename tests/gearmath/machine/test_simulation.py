@@ -1,0 +1,131 @@
+"""A machine with errors: none change nothing, setting errors act like those settings, index errors become pitch."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.errors import ComputationError
+from gearmath.machine.simulation import index_errors, roll_position, with_setting_errors
+from gearmath.quality.pitch import evaluate_pitch
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES
+from gearmath.specs.simulated_machine import Probe, SimulatedMachine, WorkAxis
+
+ARCSEC = math.radians(1 / 3600)
+
+
+@pytest.fixture(scope="module")
+def setting_errors_only(shop) -> SimulatedMachine:
+    return SimulatedMachine(title="settings", seed=1, pinion=shop.pinion, gear=shop.gear)
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_a_machine_without_errors_changes_nothing(gear_set, mill, member):
+    perfect = SimulatedMachine(title="perfect", seed=5)
+    true, same = mill(gear_set, member), mill(gear_set, member, errors=perfect)
+    np.testing.assert_array_equal(true.deviation, same.deviation)
+    np.testing.assert_array_equal(true.point, same.point)
+    assert np.isnan(same.uncertainty).all()
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_roll_position_is_recovered_from_x_and_y(gear_set, witness, member):
+    for flank in FLANKS:
+        settings, theta = gear_set.member(member).flank(flank).vector, np.linspace(-0.5, 0.5, 101)
+        axes = witness.vertical_axes(settings, theta, 0.0)
+        found, off = roll_position()(settings, axes[:, 0], axes[:, 1])
+        np.testing.assert_allclose(found, theta, rtol=0, atol=1e-10)
+        assert off.max() < 1e-9
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_setting_errors_move_the_axes_to_where_those_settings_have_them(gear_set, shop, witness, member):
+    """Positions off the cradle angle by a whole turn of A and an index angle keep both."""
+    settings, theta = gear_set.member(member).flank("concave").vector, np.linspace(-0.4, 0.4, 41)
+    errors, indexed = shop.setting_errors(member), np.array([0, 0, 0, 2 * np.pi + 0.7, 0])
+    meant, expected = (witness.vertical_axes(x, theta, 500.0) + indexed for x in (settings, settings + errors))
+    np.testing.assert_allclose(with_setting_errors(meant, settings, errors), expected, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_setting_errors_act_like_cutting_with_those_settings(
+    gear_set, mill, setting_errors_only, altered, nominal_settings, member
+):
+    """The right program on the wrong machine leaves what the wrong program leaves on the right machine."""
+    on_wrong_machine = mill(gear_set, member, errors=setting_errors_only)
+    injected = getattr(setting_errors_only, member)
+    wrong = gear_set
+    for flank in FLANKS:
+        spec = gear_set.member(member).flank(flank)
+        off = {name: getattr(spec, name) + getattr(injected, name) for name in type(injected).model_fields}
+        wrong = altered(wrong, member, flank, design=nominal_settings(spec), **off)
+    on_right_machine = mill(wrong, member)
+    np.testing.assert_allclose(on_wrong_machine.deviation, on_right_machine.deviation, rtol=0, atol=5e-5)
+    assert np.abs(on_wrong_machine.deviation).max() > 0.02
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_first_cut_of_the_shop_errs_as_much_as_that_of_the_source_text(gear_set, mill, shop, witness, member):
+    """20 to 30 µm, found by the virtual milling and by brute force on the cradle machine alike.
+
+    The index error of space 0 turns A forward, which is a work rotation offset that is too small.
+    """
+    file = mill(gear_set, member, errors=shop.model_copy(update={"probe": Probe()}))
+    assert 0.02 <= np.abs(file.deviation).max() <= 0.03
+    spec = gear_set.member(member)
+    for flank in FLANKS:
+        nominal = solve_flank(spec, member, flank, blank_grid(spec))
+        wrong = spec.flank(flank).vector + shop.setting_errors(member)
+        wrong[SETTINGS.index("work_rotation_offset")] -= index_errors(shop.work_axis, spec.teeth, shop.seed)[0]
+        left, _ = witness.left_by_cradle(wrong, SIDES[flank], nominal.point, nominal.normal, nominal.contact[:, 2])
+        np.testing.assert_allclose(file.select(flank).deviation, left, rtol=0, atol=1.1e-4)  # straight blocks: 1e-4
+
+
+def test_position_that_does_not_belong_to_the_settings_is_a_failure(gear_set, shop, witness):
+    settings = gear_set.pinion.concave.vector
+    axes = witness.vertical_axes(settings, np.linspace(-0.1, 0.1, 3), 500.0)
+    axes[1, 0] += 5.0
+    sentence = r"^position X .* Y .* is \d\.\d{4} mm off the path of the settings; was the program made from another"
+    with pytest.raises(ComputationError, match=sentence):
+        with_setting_errors(axes, settings, shop.setting_errors("pinion"))
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_index_errors_appear_as_pitch(gear_set, mill, member):
+    """Tooth i is turned by the error of its space: s_i = r (ε_i - ε_0), F_p = r (max ε - min ε)."""
+    spec = gear_set.member(member)
+    work_axis = WorkAxis(first_harmonic_arcsec=60.0, first_harmonic_phase=-20.0, random_arcsec=10.0)
+    shaky = SimulatedMachine(title="index", seed=3, work_axis=work_axis)
+    file = mill(gear_set, member, range(spec.teeth), shaky)
+    errors = index_errors(work_axis, spec.teeth, 3)
+    for flank in FLANKS:
+        pitch = evaluate_pitch(file, spec.teeth, flank)
+        here = file.select(flank, 0)
+        middle = (here.row == 2) & (here.col == 4)
+        radius = float(np.hypot(*here.point[middle][0, :2]))
+        np.testing.assert_allclose(pitch.cumulative, radius * (errors - errors[0]), rtol=0, atol=2e-4)
+        assert pitch.total == pytest.approx(radius * np.ptp(errors), abs=2e-4)  # straight blocks, printed decimals
+
+
+def test_first_harmonic_of_the_work_axis_by_hand():
+    """45″ sin(2π i/12 + 30°): half at space 0, all of it at space 2, none at space 5."""
+    errors = index_errors(WorkAxis(first_harmonic_arcsec=45.0, first_harmonic_phase=30.0), 12, 1) / ARCSEC
+    assert errors[[0, 2, 5, 8, 11]] == pytest.approx([22.5, 45.0, 0.0, -45.0, 0.0], abs=1e-9)
+
+
+def test_random_index_errors_are_seeded_and_of_their_size():
+    axis = WorkAxis(random_arcsec=6.0)
+    first, again, other = (index_errors(axis, 400, seed) for seed in (1, 1, 2))
+    np.testing.assert_array_equal(first, again)
+    assert not np.isclose(first, other).any()
+    assert np.std(first) / ARCSEC == pytest.approx(6.0, rel=0.15)
+
+
+def test_errors_of_a_member_are_in_mm_and_rad_and_the_blades_have_none(shop):
+    errors = dict(zip(SETTINGS, shop.setting_errors("gear"), strict=True))
+    assert errors["radial_distance"] == -0.075
+    assert errors["cradle_angle"] == pytest.approx(0.0225 * math.pi / 180, rel=1e-15)
+    assert errors["blade_point_radius"] == errors["blade_pressure_angle"] == 0

@@ -1,0 +1,81 @@
+"""Pitch of four teeth, worked by hand."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearmath.errors import InputError
+from gearmath.quality.pitch import evaluate_pitch, index_correction, reference_point
+
+UM = 1e-3
+DEVIATIONS = [1 * UM, 4 * UM, -1 * UM, 6 * UM]
+
+
+def test_four_teeth_by_hand(teeth):
+    """Deviations 1, 4, -1, 6 µm in the direction of rotation: s = 0, 3, -2, 5; f_pt = -5, 3, -5, 7; F_p = 7 µm."""
+    pitch = evaluate_pitch(teeth(DEVIATIONS), 4, "concave")
+    np.testing.assert_allclose(pitch.cumulative, np.array([0, 3, -2, 5]) * UM, atol=1e-15)
+    np.testing.assert_allclose(pitch.single, np.array([-5, 3, -5, 7]) * UM, atol=1e-15)
+    assert pitch.total == pytest.approx(7 * UM, abs=1e-15)
+    assert pitch.single.sum() == pytest.approx(0, abs=1e-15)
+    np.testing.assert_allclose(pitch.turning, np.array([0, 3, -2, 5]) * UM / 50, atol=1e-16)
+
+
+def test_normal_that_leans_away_from_the_rotation_takes_a_larger_turn(teeth):
+    """At 60° half of the motion goes along the normal: the same deviations are twice the arc."""
+    pitch = evaluate_pitch(teeth(DEVIATIONS, slope=math.radians(60)), 4, "concave")
+    np.testing.assert_allclose(pitch.cumulative, 2 * np.array([0, 3, -2, 5]) * UM, atol=1e-14)
+
+
+def test_normal_against_the_rotation_turns_the_sign(teeth):
+    pitch = evaluate_pitch(teeth(DEVIATIONS, slope=math.pi), 4, "concave")
+    np.testing.assert_allclose(pitch.cumulative, -np.array([0, 3, -2, 5]) * UM, atol=1e-15)
+
+
+def test_angle_but_not_arc_depends_on_the_radius(teeth):
+    small, large = (evaluate_pitch(teeth(DEVIATIONS, radius=r), 4, "concave") for r in (25.0, 100.0))
+    np.testing.assert_allclose(small.cumulative, large.cumulative, atol=1e-15)
+    np.testing.assert_allclose(small.turning, 4 * large.turning, atol=1e-16)
+
+
+def test_order_of_the_teeth_in_the_file_does_not_matter(teeth):
+    pitch = evaluate_pitch(teeth(DEVIATIONS, order=[2, 0, 3, 1]), 4, "concave")
+    np.testing.assert_allclose(pitch.cumulative, np.array([0, 3, -2, 5]) * UM, atol=1e-15)
+
+
+def test_a_common_deviation_of_all_teeth_is_no_pitch_error(teeth):
+    pitch = evaluate_pitch(teeth([0.02] * 4), 4, "concave")
+    np.testing.assert_allclose(pitch.cumulative, 0, atol=1e-16)
+    assert pitch.total == 0
+
+
+def test_index_correction_turns_back_the_mean_of_both_flanks_and_leaves_tooth_0(teeth):
+    first, second = (evaluate_pitch(teeth(d), 4, "concave") for d in (DEVIATIONS, [0, 1 * UM, 0, 1 * UM]))
+    by_hand = -np.array([0, (3 + 1) / 2, -2 / 2, (5 + 1) / 2]) * UM / 50
+    np.testing.assert_allclose(index_correction([first, second]), by_hand, atol=1e-16)
+
+
+def test_one_tooth_has_no_pitch(teeth):
+    assert evaluate_pitch(teeth(DEVIATIONS, order=[2]), 4, "concave") is None
+    assert evaluate_pitch(teeth(DEVIATIONS), 4, "convex") is None
+
+
+def test_some_but_not_all_teeth_are_refused_by_the_first_that_is_absent(teeth):
+    with pytest.raises(InputError, match=r"^concave flank: tooth 1 was not measured; pitch needs all 4 teeth, or one"):
+        evaluate_pitch(teeth(DEVIATIONS, order=[0, 2, 3]), 4, "concave")
+
+
+def test_points_beside_the_reference_point_are_refused(teeth):
+    with pytest.raises(InputError, match=r"^concave flank: not every tooth has the reference point, row 2, col 4$"):
+        evaluate_pitch(teeth(DEVIATIONS, place=(2, 5)), 4, "concave")
+
+
+@pytest.mark.parametrize("text", ["", "2", "2,4,6", "a,b", "2.0,4"])
+def test_reference_point_that_is_no_pair_is_refused(teeth, text):
+    file = teeth(DEVIATIONS)
+    with pytest.raises(InputError, match=r"^reference_point = .*: must be 'row,col'$"):
+        reference_point(replace(file, header=file.header | {"reference_point": text}))
