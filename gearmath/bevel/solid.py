@@ -33,7 +33,7 @@ def member_triangles(member: Member, space: ToothSpace) -> np.ndarray:
     inner = _rim(member, ring)
     surface = _skin(ring, closed=True)
     toe, heel = (_skin(np.stack([inner[k], ring[k]]), closed=True) for k in (0, -1))
-    inside = _skin(inner[[0, -1]], closed=True)
+    inside = _skin(inner, closed=True)  # column by column: the teeth wind around the axis, and so do the polygons
     return np.concatenate([surface, toe, heel[:, ::-1], inside[:, ::-1]])
 
 
