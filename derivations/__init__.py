@@ -7,14 +7,29 @@ from collections.abc import Callable, Iterator
 
 from derivations.expression import Expression, Quantity
 
-CHAPTERS = ("frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "generation")
+CHAPTERS = (
+    "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
+    "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
+)  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
 
 
 def expressions() -> Iterator[Expression]:
     """Every Expression of every chapter, derived on demand."""
-    from derivations import axes, blank, cradle, cutter, deviation, flank, gearbox, generation, meshing
+    from derivations import (
+        axes,
+        blank,
+        check_dimensions,
+        cradle,
+        cutter,
+        deviation,
+        flank,
+        gearbox,
+        generation,
+        hobbing,
+        meshing,
+    )
 
     yield from (cutter.cutter_surface(), cutter.toprem(), cutter.spheric_blade())
     yield from (cutter.edge_round(), cutter.edge_round_of_arc())
@@ -34,6 +49,26 @@ def expressions() -> Iterator[Expression]:
         gearbox.encoder_hysteresis(),
         gearbox.hobbed_blank(),
     )
+    yield from (hobbing.hob_ratio(), hobbing.feed_ratio(), hobbing.feed_error(), hobbing.lead_screw_ratio())
+    yield from (hobbing.helical_lead(), hobbing.swivel(), hobbing.fed_ratio())
+    yield from (check_dimensions.transverse_gear(), check_dimensions.helical_blank())
+    yield from (check_dimensions.span_teeth(), check_dimensions.span_measurement())
+    yield from (check_dimensions.chordal_thickness(), check_dimensions.pin_equation(), check_dimensions.over_pins())
+    yield from _bevel_blank()
+
+
+def _bevel_blank() -> Iterator[Expression]:
+    from derivations import crown_gear, iso23509, lengthwise, tooth_width
+
+    yield from (iso23509.wheel_size(), iso23509.pitch_cones(), iso23509.crown_gear_factors(), iso23509.mean_depths())
+    yield from (iso23509.taper_angles(), iso23509.cone_angles(), iso23509.cone_apexes(), iso23509.pinion_depth())
+    yield iso23509.blank_ends()
+    yield from (lengthwise.milled_spiral_angle(), lengthwise.hobbing_cutter(), lengthwise.hobbed_spiral_angle())
+    yield from (lengthwise.involute_curvature(), lengthwise.milled_radius())
+    yield from (tooth_width.tooth_thickness(), tooth_width.chordal_tooth(), tooth_width.slot_widths())
+    yield from (tooth_width.virtual_gear(), tooth_width.top_land(), tooth_width.running_interference())
+    yield tooth_width.edge_radii()
+    yield from (crown_gear.crown_gear_flank(), crown_gear.crown_gear_space(), crown_gear.blade_through_point())
 
 
 def proofs() -> Iterator[Callable[[], None]]:

@@ -97,8 +97,11 @@ def family(profile: Profile, parameter: Quantity) -> Family:
     p = p.subs(moving, simultaneous=True)
     phi = cradle.work_angle().subs(moving, simultaneous=True) + q.index_ratio.symbol * beta
     u, theta = parameter.symbol, q.theta.symbol
-    along = [p.diff(a) - phi.diff(a) * sp.Matrix(K).cross(p) for a in (u, beta, theta)]
-    return Family(p, phi, *along, profile.outward)
+
+    def along(a: sp.Symbol) -> sp.Matrix:
+        return p.diff(a) - phi.diff(a) * sp.Matrix(K).cross(p)
+
+    return Family(p, phi, along(u), along(beta), along(theta), profile.outward)
 
 
 def _expression(

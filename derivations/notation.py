@@ -27,6 +27,10 @@ def _count(name: str, latex: str, low: int, high: int, description: str) -> Quan
     return Quantity(name, description, "1", latex, (low, high), kind="int")
 
 
+def _factor(name: str, latex: str, low: float, high: float, description: str) -> Quantity:
+    return Quantity(name, description, "1", latex, (low, high))
+
+
 # --- cutter -----------------------------------------------------------------------------------------------------
 u = _length("u", "u", 0.0, 15.0, "height of the blade point above the tip plane, along the cutter axis")
 beta = _angle("beta", r"\beta", -pi, pi, "cutter angle of the blade point, about the cutter axis")
@@ -99,7 +103,7 @@ axes = Quantity(
     components=(X, Y, Z, A, B),
 )  # fmt: skip
 pivot_height = _length(
-    "pivot_height", "R_d + C_t", 0.0, 400.0, "R_d + C_t: height of the blade tips over the B axis at Z = 0"
+    "pivot_height", "(R_d + C_t)", 0.0, 400.0, "R_d + C_t: height of the blade tips over the B axis at Z = 0"
 )
 cutter_center_w = _vector(
     "cutter_center_w", r"\mathbf{c}", "mm", 300.0, 500.0, "cutter centre in the tip plane, work frame w"
@@ -203,6 +207,7 @@ best_spanned_teeth = Quantity(
 )  # fmt: skip
 span = _length("span", "W_k", 0.0, 1e5, "base tangent length over the spanned teeth")
 span_contact_diameter = _length("span_contact_diameter", "d_W", 0.0, 1e5, "diameter at which the span touches")
+span_face_width = _length("span_face_width", "b_W", 0.0, 1e5, "face width below which a span finds no second contact")
 tooth_thickness = _length("tooth_thickness", "s_n", 0.0, 200.0, "normal tooth thickness at the reference cylinder")
 thickness_half_angle = _angle("thickness_half_angle", r"\psi", 0.0, 3.0, "half the angle of that thickness")
 chordal_thickness = _length("chordal_thickness", r"\bar{s}", 0.0, 200.0, "chord of the tooth thickness")
@@ -223,6 +228,11 @@ common_denominator = _count("common_denominator", "D", 1, 2**40, "denominator of
 travel = _length("travel", "Z", 0.0, 1000.0, "travel of the feed")
 feed_bound = Quantity(
     "feed_bound", "largest error of the position from rounding the ratio of the feed", "steps", r"\epsilon", scale=1e3
+)
+feed_per_turn = _length("feed_per_turn", "f", 0.01, 10.0, "feed per turn of the table")
+cut_sign = Quantity("cut_sign", "+1 climb, -1 conventional hobbing", "1", "c", (-1, 1), values=(-1, 1))
+fed_ratio = Quantity(
+    "fed_ratio", "motor steps per count of the hob at a constant feed, signed", "1", r"\kappa_f", scale=1e3
 )
 thread_pitch = _length("thread_pitch", "P", 0.01, 100.0, "pitch of the thread to be cut")
 thread_starts = _count("thread_starts", "k", 1, 10, "starts of the thread")
@@ -307,3 +317,136 @@ roll_motion = Quantity(
     "roll_motion", "coefficients of theta^1 ... theta^7 of the work rotation offset", "rad", r"m_{\varphi}",
     shape=(7,), scale=100.0,
 )  # fmt: skip
+
+# --- bevel blank to ISO 23509 -----------------------------------------------------------------------------------
+shaft_angle = _angle("shaft_angle", r"\Sigma", 0.6, 2.4, "angle between the axes of the pair")
+pinion_teeth = _count("pinion_teeth", "z_1", 5, 60, "teeth of the pinion")
+wheel_teeth = _count("wheel_teeth", "z_2", 10, 200, "teeth of the wheel")
+gear_ratio = _factor("gear_ratio", "u", 0.1, 40.0, "teeth of the wheel over teeth of the pinion")
+outer_transverse_module = _length("outer_transverse_module", "m_{et}", 0.3, 30.0, "module at the heel, across the axis")
+wheel_outer_pitch_diameter = _length("wheel_outer_pitch_diameter", "d_{e2}", 20.0, 1000.0, "pitch circle at the heel")
+mean_spiral_angle = _angle("mean_spiral_angle", r"\beta_m", 0.0, 0.9, "tooth trace against the cone line at mean point")
+spiral_angle = _angle("spiral_angle", r"\beta", -0.8, 1.3, "tooth trace against the cone line, at a cone distance")
+pinion_pitch_angle = _angle("pinion_pitch_angle", r"\delta_1", 0.1, 1.2, "pitch cone of the pinion against its axis")
+wheel_pitch_angle = _angle("wheel_pitch_angle", r"\delta_2", 0.4, 1.5, "pitch cone of the wheel against its axis")
+cone_distance = _length("cone_distance", "R", 10.0, 400.0, "apex to a place along the pitch cone")
+outer_cone_distance = _length("outer_cone_distance", "R_e", 10.0, 500.0, "apex to heel along the pitch cone")
+inner_cone_distance = _length("inner_cone_distance", "R_i", 5.0, 400.0, "apex to toe along the pitch cone")
+mean_normal_module = _length("mean_normal_module", "m_{mn}", 0.3, 20.0, "module across the tooth at the mean point")
+cutter_radius = _length("cutter_radius", "r_{c0}", 20.0, 250.0, "mean radius of the cutter, at the pitch plane")
+blade_groups = _count("blade_groups", "z_0", 1, 30, "blade groups of a face hobbing cutter")
+cutter_lead_angle = _angle("cutter_lead_angle", r"\nu", 0.0, 1.4, "lead of the blade against the circle it stands on")
+cutter_center_distance = _length(
+    "cutter_center_distance", r"\rho_{P0}", 10.0, 500.0, "axis of the crown gear to the axis of the cutter"
+)
+epicycloid_base_radius = _length("epicycloid_base_radius", r"\rho_b", 5.0, 400.0, "base circle of the epicycloid")
+pressure_angle_drive = _angle("pressure_angle_drive", r"\alpha_{nD}", 0.2, 0.5, "normal angle of the drive side")
+pressure_angle_coast = _angle("pressure_angle_coast", r"\alpha_{nC}", 0.2, 0.5, "normal angle of the coast side")
+mean_normal_pressure_angle = _angle("mean_normal_pressure_angle", r"\alpha_n", 0.2, 0.5, "mean of drive and coast side")
+mean_addendum_factor = _factor("mean_addendum_factor", "c_{ham}", 0.05, 0.6, "wheel mean addendum over working depth")
+tooth_depth_factor = _factor("tooth_depth_factor", "k_d", 1.5, 2.4, "mean working depth in mean normal modules")
+clearance_factor = _factor("clearance_factor", "k_c", 0.05, 0.3, "clearance over mean working depth")
+thickness_factor = _factor("thickness_factor", "k_t", -0.4, 0.4, "thickness exchanged between the members, in modules")
+crown_gear_addendum_factor = _factor("crown_gear_addendum_factor", "k_{hap}", 0.7, 1.2, "basic crown gear addendum")
+crown_gear_dedendum_factor = _factor("crown_gear_dedendum_factor", "k_{hfp}", 0.9, 1.6, "basic crown gear dedendum")
+profile_shift_coefficient = _factor("profile_shift_coefficient", "x_{hm1}", -0.2, 0.8, "profile shift of the pinion")
+thickness_modification = _factor(
+    "thickness_modification", "x_{smn}", -0.2, 0.2, "thickness modification of the pinion without backlash"
+)
+mean_working_depth = _length("mean_working_depth", "h_{mw}", 0.4, 50.0, "depth in which the teeth touch, at mean point")
+mean_whole_depth = _length("mean_whole_depth", "h_m", 0.4, 60.0, "mean addendum and dedendum of one member")
+pinion_mean_addendum = _length("pinion_mean_addendum", "h_{am1}", 0.2, 20.0, "pinion tooth above the pitch cone")
+pinion_mean_dedendum = _length("pinion_mean_dedendum", "h_{fm1}", 0.2, 20.0, "pinion tooth below the pitch cone")
+wheel_mean_addendum = _length("wheel_mean_addendum", "h_{am2}", 0.2, 20.0, "wheel tooth above the pitch cone")
+wheel_mean_dedendum = _length("wheel_mean_dedendum", "h_{fm2}", 0.2, 20.0, "wheel tooth below the pitch cone")
+depth_taper = Quantity(
+    "depth_taper", "0 uniform depth, 1 standard, 2 duplex (constant slot width), 3 tilted root line", "1", "T", (0, 3),
+    kind="int", values=(0, 1, 2, 3),
+)  # fmt: skip
+dedendum_angle_sum = _angle("dedendum_angle_sum", r"\Sigma\theta_f", -1.0, 1.0, "dedendum angles of both members")
+pinion_addendum_angle = _angle("pinion_addendum_angle", r"\theta_{a1}", 0.0, 0.2, "pinion face cone against pitch cone")
+pinion_dedendum_angle = _angle("pinion_dedendum_angle", r"\theta_{f1}", 0.0, 0.2, "pinion root against pitch cone")
+wheel_addendum_angle = _angle("wheel_addendum_angle", r"\theta_{a2}", 0.0, 0.2, "wheel face cone against pitch cone")
+wheel_dedendum_angle = _angle("wheel_dedendum_angle", r"\theta_{f2}", 0.0, 0.2, "wheel root cone against pitch cone")
+pinion_face_angle = _angle("pinion_face_angle", r"\delta_{a1}", 0.1, 1.57, "face cone of the pinion against its axis")
+pinion_root_angle = _angle("pinion_root_angle", r"\delta_{f1}", 0.05, 1.5, "root cone of the pinion against its axis")
+wheel_face_angle = _angle("wheel_face_angle", r"\delta_{a2}", 0.1, 1.57, "face cone of the wheel against its axis")
+wheel_root_angle = _angle("wheel_root_angle", r"\delta_{f2}", 0.05, 1.5, "root cone of the wheel against its axis")
+pinion_face_apex = _length("pinion_face_apex", "t_{zF1}", -100.0, 50.0, "pinion face apex beyond the crossing point")
+pinion_root_apex = _length("pinion_root_apex", "t_{zR1}", -50.0, 100.0, "pinion root apex beyond the crossing point")
+wheel_face_apex = _length("wheel_face_apex", "t_{zF2}", -100.0, 50.0, "wheel face apex beyond the crossing point")
+wheel_root_apex = _length("wheel_root_apex", "t_{zR2}", -50.0, 100.0, "wheel root apex beyond the crossing point")
+outer_addendum = _length("outer_addendum", "h_{ae}", 0.0, 30.0, "tooth above the pitch cone at the heel")
+outer_dedendum = _length("outer_dedendum", "h_{fe}", 0.0, 30.0, "tooth below the pitch cone at the heel")
+outer_whole_depth = _length("outer_whole_depth", "h_e", 0.0, 60.0, "depth of the tooth at the heel")
+inner_addendum = _length("inner_addendum", "h_{ai}", 0.0, 30.0, "tooth above the pitch cone at the toe")
+inner_dedendum = _length("inner_dedendum", "h_{fi}", 0.0, 30.0, "tooth below the pitch cone at the toe")
+inner_whole_depth = _length("inner_whole_depth", "h_i", 0.0, 60.0, "depth of the tooth at the toe")
+outer_pitch_diameter = _length("outer_pitch_diameter", "d_e", 5.0, 1000.0, "pitch circle at the heel")
+mean_pitch_diameter = _length("mean_pitch_diameter", "d_m", 5.0, 900.0, "pitch circle at the mean point")
+inner_pitch_diameter = _length("inner_pitch_diameter", "d_i", 5.0, 800.0, "pitch circle at the toe")
+outer_tip_diameter = _length("outer_tip_diameter", "d_{ae}", 5.0, 1000.0, "outside diameter of the crown")
+outer_root_diameter = _length("outer_root_diameter", "d_{fe}", 5.0, 1000.0, "root circle at the heel")
+inner_tip_diameter = _length("inner_tip_diameter", "d_{ai}", 5.0, 800.0, "tip circle at the toe")
+inner_root_diameter = _length("inner_root_diameter", "d_{fi}", 5.0, 800.0, "root circle at the toe")
+crossing_point_to_mean_point = _length("crossing_point_to_mean_point", "t_{zm}", 0.0, 500.0, "distance along the axis")
+crossing_point_to_crown = _length("crossing_point_to_crown", "t_{xo}", 0.0, 500.0, "along the axis to the crown")
+crossing_point_to_front_crown = _length(
+    "crossing_point_to_front_crown", "t_{xi}", 0.0, 500.0, "distance along the axis to the tip at the toe"
+)
+pinion_root_normal_depth = _length(
+    "pinion_root_normal_depth", "h_{t1}", 0.0, 60.0, "whole depth of the pinion at the crown, square to its root cone"
+)
+backlash = _length("backlash", "j", 0.0, 1.0, "backlash of the pair, of the kind that backlash_kind says")
+backlash_kind = Quantity(
+    "backlash_kind", "0 outer normal, 1 outer transverse, 2 mean normal, 3 mean transverse", "1", "K", (0, 3),
+    kind="int", values=(0, 1, 2, 3),
+)  # fmt: skip
+outer_normal_backlash = _length("outer_normal_backlash", "j_{en}", 0.0, 2.0, "square to the flank, at the heel")
+outer_transverse_backlash = _length("outer_transverse_backlash", "j_{et}", 0.0, 2.0, "backlash as an arc, at the heel")
+mean_normal_backlash = _length("mean_normal_backlash", "j_{mn}", 0.0, 2.0, "backlash square to the flank, mean point")
+mean_transverse_backlash = _length("mean_transverse_backlash", "j_{mt}", 0.0, 2.0, "backlash as an arc, mean point")
+pinion_thickness_coefficient = _factor("pinion_thickness_coefficient", "x_{sm1}", -0.3, 0.3, "with backlash")
+wheel_thickness_coefficient = _factor("wheel_thickness_coefficient", "x_{sm2}", -0.3, 0.3, "with backlash")
+pinion_mean_normal_thickness = _length("pinion_mean_normal_thickness", "s_{mn1}", 0.2, 40.0, "arc across the tooth")
+wheel_mean_normal_thickness = _length("wheel_mean_normal_thickness", "s_{mn2}", 0.2, 40.0, "arc across the tooth")
+mean_normal_thickness = _length("mean_normal_thickness", "s_{mn}", 0.2, 40.0, "arc across the tooth at the mean point")
+mean_transverse_thickness = _length("mean_transverse_thickness", "s_{mt}", 0.2, 60.0, "arc in the plane of rotation")
+mean_normal_diameter = _length("mean_normal_diameter", "d_{mn}", 5.0, 1e4, "pitch circle of the normal section")
+mean_normal_chordal_thickness = _length("mean_normal_chordal_thickness", "s_{mnc}", 0.2, 40.0, "chord across the tooth")
+mean_chordal_addendum = _length("mean_chordal_addendum", "h_{amc}", 0.2, 40.0, "tip above the chord of the thickness")
+
+# --- slot width, top land and edge radius to AGMA 929 -----------------------------------------------------------
+slot_rotation_factor = _factor(
+    "slot_rotation_factor", "k_E", 0.0, 1.3, "half pitches by which the work turns from blade to blade; 0 spread blade"
+)
+normal_pitch = _length("normal_pitch", "p_n", 0.5, 100.0, "pitch across the tooth at the mean point")
+normal_backlash = _length("normal_backlash", "j_n", -5.0, 5.0, "backlash square to the flank, at a cone distance")
+clearance_change = _length("clearance_change", r"\Delta c", 0.0, 2.0, "approach of the teeth that uses up the backlash")
+pinion_slot_width = _length("pinion_slot_width", "W_1", 0.0, 50.0, "width of the slot at the pinion's root")
+wheel_slot_width = _length("wheel_slot_width", "W_2", 0.0, 50.0, "width of the slot at the wheel's root")
+pinion_normal_thickness = _length("pinion_normal_thickness", "s_{n1}", 0.0, 50.0, "arc across the tooth, any place")
+wheel_normal_thickness = _length("wheel_normal_thickness", "s_{n2}", 0.0, 50.0, "arc across the tooth, any place")
+involute_cone_distance = _length("involute_cone_distance", "R_x", 0.0, 500.0, "where the normal pitch is greatest")
+virtual_pitch_radius = _length("virtual_pitch_radius", "r_{np}", 5.0, 1500.0, "pitch circle of the virtual spur gear")
+mate_virtual_pitch_radius = _length("mate_virtual_pitch_radius", "r'_{np}", 5.0, 1500.0, "the same of the mate")
+addendum_here = _length("addendum_here", "h_a", 0.0, 20.0, "tooth above the pitch cone at a cone distance")
+dedendum_here = _length("dedendum_here", "h_f", 0.0, 20.0, "tooth below the pitch cone at a cone distance")
+mate_addendum_here = _length("mate_addendum_here", "h'_a", 0.0, 20.0, "the mate's tooth above its pitch cone")
+normal_thickness = _length("normal_thickness", "s_n", 0.2, 40.0, "arc across the tooth at a cone distance")
+top_land = _length("top_land", "s_{an}", -10.0, 30.0, "width of the tip across the tooth; negative where it is pointed")
+flank_pressure_angle = _angle("flank_pressure_angle", r"\alpha", 0.2, 0.5, "normal pressure angle of one flank")
+interference_height = _length(
+    "interference_height", "h_{inf}", -20.0, 30.0, "root to the lowest point that the mate's tip reaches, on the blade"
+)
+edge_radius_interference = _length("edge_radius_interference", "r_{a01}", -30.0, 50.0, "largest that the mate clears")
+minimum_slot_width = _length("minimum_slot_width", "W_{min}", 0.3, 30.0, "narrowest place of the slot along the tooth")
+blade_flat = _length("blade_flat", r"\Delta_f", 0.0, 2.0, "flat that the edge radius leaves on the blade's tip")
+mutilation = _length("mutilation", "y", 0.001, 0.5, "depth of the fillet that the opposite blade may cut away")
+blade_point_width = _length("blade_point_width", "W_B", 0.0, 30.0, "width of the blade's tip")
+edge_radius_fillet = _length("edge_radius_fillet", "r_{a02}", 0.0, 50.0, "largest that the blade's tip has room for")
+edge_radius_mutilation = _length("edge_radius_mutilation", "r_{a03}", 0.0, 100.0, "largest without mutilation")
+
+# --- crown gear -------------------------------------------------------------------------------------------------
+hand_sign = Quantity("hand_sign", "+1 right-hand, -1 left-hand member", "1", r"s_h'", (-1, 1), values=(-1, 1))
+tilt_direction = _angle("tilt_direction", r"\chi", -1.5, 1.5, "swivel and cradle angle together, of a right-hand member")

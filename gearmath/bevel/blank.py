@@ -66,6 +66,9 @@ class MemberBlank:
         """The blank as a gear set's file has it; the pitch apex lies in the crossing point, as method 0 has it."""
         components = notation.blank.components
         degrees = {q.name: math.degrees(getattr(self, q.name)) for q in components if q.unit == "rad"}
+        # with uniform depth the three angles are one, but for the last bit
+        degrees["face_angle"] = max(degrees["face_angle"], degrees["pitch_angle"])
+        degrees["root_angle"] = min(degrees["root_angle"], degrees["pitch_angle"])
         return Blank(**degrees, **{q.name: getattr(self, q.name) for q in components if q.unit == "mm"})
 
 
