@@ -20,7 +20,10 @@ def export() -> None:
 @click.argument("machine")
 @_FOLDER
 def teensy(machine: str, folder: Path) -> None:
-    """Integer C of the electronic gearbox for the hobbing machine MACHINE (a TOML file, or a bundled one)."""
+    """Arduino sketch folder of the electronic gearbox for MACHINE (a TOML file, or a bundled one).
+
+    Firmware, the machine's constants, wiring diagram and README. The folder's name becomes the sketch's name.
+    """
     from gearmath.export.teensy import export_teensy
     from gearmath.specs.hobbing import load_hobbing_machine
     from gearmath.specs.toml import find

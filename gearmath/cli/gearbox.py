@@ -2,69 +2,108 @@
 
 from __future__ import annotations
 
-import json
+import functools
+from collections.abc import Callable
 from dataclasses import asdict
 from fractions import Fraction
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from gearmath.cli.common import JSON, echo_json
+
 if TYPE_CHECKING:
-    from gearmath.gearbox.simulation import Pattern, Simulation
+    from gearmath.gearbox.helix import Helix
+    from gearmath.gearbox.job import ThreadPlan
+    from gearmath.gearbox.simulation import Pattern
     from gearmath.gearbox.train import GearboxPlan
     from gearmath.specs.hobbing import HobbingMachine
 
 LONG_RUN = 20_000_000  # edges; more of them take over two seconds
 
+_JOB = (
+    click.argument("machine"),
+    click.option("--teeth", type=int, help="Teeth of the gear to be cut (hobbing machine)."),
+    click.option("--pitch", help="Pitch of the thread to be cut, such as 1.25mm or 8tpi (lathe)."),
+    click.option("--starts", type=int, help="Starts of the hob, instead of the machine file's; of the thread."),
+    click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of helix or thread; right if left out."),
+    click.option("--helix", type=float, help="Helix angle in degrees."),
+    click.option("--cut", type=click.Choice(["climb", "conventional"]), help="Way of the feed; climb if left out."),
+    click.option("--feed", help="Feed in mm per turn of the table, for a helix without an encoder on the feed."),
+    click.option("--hob", help="One hob of the machine file, such as 32dp or m1; all of them if left out."),
+    click.option("--shift", type=float, help="Profile shift in modules."),
+    click.option("--pin", type=float, help="Diameter of the measuring pins in mm; 1.68 modules if left out."),
+    click.option("--rpm", type=float, help="Speed of hob or spindle; the highest within the limits if left out."),
+)
+
+
+def _job_options(command: Callable) -> Callable:
+    """The arguments of a job, handed over as ``job``: the plan of it."""
+
+    @functools.wraps(command)
+    def with_plan(machine: str, **options: Any) -> Any:
+        own = {key: options.pop(key) for key in list(options) if key not in _KEYS}
+        return command(job=_plan(_machine(machine), options), **own)
+
+    for option in reversed(_JOB):
+        with_plan = option(with_plan)
+    return with_plan
+
+
+_KEYS = ("teeth", "pitch", "starts", "hand", "helix", "cut", "feed", "hob", "shift", "pin", "rpm")
+_THREAD_KEYS = ("pitch", "starts", "hand", "rpm")
+
 
 @click.group()
 def gearbox() -> None:
-    """Electronic gearbox of a hobbing machine: plan a job, simulate the rule.
+    """Electronic gearbox of a hobbing machine or a lathe: plan a job, simulate the rule.
 
     MACHINE is a TOML file, or the name of one that comes with the package, such as hobbing_plewes.toml.
     """
 
 
 @gearbox.command("plan")
-@click.argument("machine")
-@click.option("--teeth", type=int, required=True, help="Teeth of the gear to be cut.")
-@click.option("--starts", type=int, help="Starts of the hob, instead of those in the machine file.")
-@click.option("--hob", help="One hob of the machine file, such as 32dp or m1; all of them if left out.")
-@click.option("--rpm", type=float, help="Speed of the hob; the highest within the limits if left out.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def plan_job(
-    machine: str, teeth: int, starts: int | None, hob: str | None, rpm: float | None, as_json: bool
-) -> None:  # fmt: skip
-    """Exact ratio, rates against the limits, blank and depth of one job."""
-    from gearmath.gearbox.train import plan
+@_job_options
+@JSON
+def plan_job(job: GearboxPlan | ThreadPlan, as_json: bool) -> None:
+    """Exact ratio, rates against the limits, and what to set and measure."""
+    from gearmath.cli.gearbox_text import plan_text
 
-    job = plan(_machine(machine), teeth, starts, hob, rpm)
-    click.echo(json.dumps(asdict(job), indent=2) if as_json else _plan_text(job))
+    if as_json:
+        echo_json(_values(asdict(job)))
+    else:
+        click.echo(plan_text(job))
 
 
 @gearbox.command("simulate")
-@click.argument("machine")
-@click.option("--teeth", type=int, required=True, help="Teeth of the gear to be cut.")
-@click.option("--starts", type=int, help="Starts of the hob, instead of those in the machine file.")
+@_job_options
 @click.option("--pattern", type=click.Choice(["forward", "dither", "reversals"]), required=True)
 @click.option("--edges", type=click.IntRange(min=1), required=True, help="Encoder edges to run through.")
+@click.option("--start", type=click.IntRange(min=0), default=0, show_default=True, help="Count before the first edge.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the random reversals.")
-@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-def simulate_job(
-    machine: str, teeth: int, starts: int | None, pattern: Pattern, edges: int, seed: int, as_json: bool
+@click.option("--plot", type=click.Path(path_type=Path, dir_okay=False), help="Draw the errors over time (PNG).")
+@JSON
+def simulate(
+    job: GearboxPlan | ThreadPlan, pattern: Pattern, edges: int, start: int, seed: int, plot: Path | None, as_json: bool
 ) -> None:
     """Run the compiled step rule, and the floating rule of the source text beside it; worst errors in steps."""
     from tqdm import tqdm
 
-    from gearmath.export.host import run_edges
-    from gearmath.gearbox.simulation import simulate
-    from gearmath.gearbox.train import plan
+    from gearmath.cli.gearbox_text import simulation_text
+    from gearmath.export.host import run_axes
+    from gearmath.gearbox.simulation import Trace, simulate_job
 
-    job = plan(_machine(machine), teeth, starts)
-    ratio = (job.steps_numerator, job.steps_denominator)
+    trace = Trace(edges)
     with tqdm(total=edges, unit="edge", unit_scale=True, disable=edges < LONG_RUN or None) as bar:
-        result = simulate(run_edges, ratio, job.first_remainder, pattern, edges, seed, bar.update)
-    click.echo(json.dumps(_simulation_values(result, ratio), indent=2) if as_json else _simulation_text(result, ratio))
+        result = simulate_job(run_axes, job.ratio, pattern, edges, seed, bar.update, trace.add, start)
+    if plot is not None:
+        _draw(plot, job, trace)
+    if as_json:
+        terms = ("steps_numerator", "steps_denominator", "feed_numerator")
+        echo_json(_values({key: getattr(job, key) for key in terms} | asdict(result)))
+    else:
+        click.echo(simulation_text(result, job))
 
 
 def _machine(name: str) -> HobbingMachine:
@@ -75,38 +114,67 @@ def _machine(name: str) -> HobbingMachine:
     return load_hobbing_machine(find(name))
 
 
-def _plan_text(job: GearboxPlan) -> str:
-    from gearmath.specs.hobbing import INCH
+def _plan(machine: HobbingMachine, options: dict[str, Any]) -> GearboxPlan | ThreadPlan:
+    """The plan of a gear or of a thread, by the machine's profile."""
+    from gearmath.gearbox.job import plan_thread
+    from gearmath.gearbox.train import plan
 
-    rows = [
-        f"{job.machine}: {job.teeth} teeth, {job.hob_starts}-start hob",
-        f"  R = {job.exact_pulse_ratio} = {job.pulse_ratio:.9g} encoder counts per motor step",
-        f"  hob    {job.rpm:9.1f} rpm   {job.hob_rpm_percent:5.1f} % of the limit ({job.highest_rpm:.1f} rpm at most)",
-        f"  edges  {job.edge_rate_hz:9.0f} Hz",
-        f"  steps  {job.step_rate_hz:9.0f} Hz    {job.step_rate_percent:5.1f} % of the limit",
-        "  hob        blank diameter        depth of cut",
-    ]
-    for blank in job.blanks:
-        diameter, depth = blank.blank_diameter, blank.cut_depth
-        rows.append(
-            f"  {blank.hob:8s} {diameter:9.3f} mm {diameter / INCH:7.4f} in "
-            f"{depth:7.3f} mm {depth / INCH:7.4f} in  ({blank.depth_rule})"
-        )
-    return "\n".join(rows)
+    given = {key: value for key, value in options.items() if value is not None}
+    needed, other = ("pitch", "teeth") if machine.profile == "lathe" else ("teeth", "pitch")
+    if needed not in given or other in given:
+        kind = "lathe" if machine.profile == "lathe" else "hobbing machine"
+        raise click.UsageError(f"{machine.name} is a {kind}: give --{needed}, and no --{other}")
+    if machine.profile == "lathe":
+        unfit = sorted(set(given) - set(_THREAD_KEYS))
+        if unfit:
+            raise click.UsageError(f"--{unfit[0]} has no meaning for a thread")
+        return plan_thread(machine, _pitch(given.pop("pitch")), **given)
+    gear = {key: given[key] for key in ("teeth", "starts", "hob", "rpm", "shift", "pin") if key in given}
+    return plan(machine, **gear, helix=_helix(given))
 
 
-def _simulation_values(result: Simulation, ratio: tuple[int, int]) -> dict[str, Any]:
-    values = {"steps_numerator": ratio[0], "steps_denominator": ratio[1]} | asdict(result)
+def _helix(given: dict[str, Any]) -> Helix | None:
+    from gearmath.errors import InputError
+    from gearmath.gearbox.helix import Helix
+
+    if "helix" not in given:
+        for key in ("hand", "cut", "feed"):
+            if key in given:
+                raise click.UsageError(f"--{key} has no meaning without --helix")
+        return None
+    feed = None
+    if "feed" in given:
+        try:
+            feed = Fraction(given["feed"])
+        except (ValueError, ZeroDivisionError):
+            raise InputError(f"feed = {given['feed']!r}: must be a number of mm per turn of the table") from None
+    return Helix(given["helix"], given.get("hand", "right"), given.get("cut", "climb"), feed)
+
+
+def _pitch(text: str) -> Fraction:
+    from gearmath.errors import InputError
+    from gearmath.specs.ratio import pitch
+
+    try:
+        return pitch(text)
+    except ValueError as error:
+        raise InputError(f"pitch = {text!r}: {error}") from None
+
+
+def _values(values: dict[str, Any]) -> dict[str, Any]:
+    """For JSON: a fraction as number, and exactly beside it."""
     exact = {f"{key}_exact": str(value) for key, value in values.items() if isinstance(value, Fraction)}
     return {key: float(value) if isinstance(value, Fraction) else value for key, value in values.items()} | exact
 
 
-def _simulation_text(result: Simulation, ratio: tuple[int, int]) -> str:
-    return "\n".join([
-        f"{result.edges} edges, {result.pattern}, {ratio[0]}/{ratio[1]} steps per count; the hob ends at count "
-        f"{result.encoder_position}",
-        f"  compiled integer rule    worst error {float(result.worst_error):10.4f} steps, "
-        f"exactly {result.worst_error}; the table ends at step {result.position}",
-        f"  float32 rule             worst error {float(result.float_worst_error):10.4f} steps; "
-        f"the table ends at step {result.float_position}",
-    ])  # fmt: skip
+def _draw(path: Path, job: GearboxPlan | ThreadPlan, trace: Any) -> None:
+    from matplotlib.figure import Figure
+
+    from gearmath.plot import draw_gearbox_error, save
+
+    figure = Figure(figsize=(8, 4), layout="constrained")
+    axes = figure.subplots()
+    done, exact, floating = trace.arrays
+    draw_gearbox_error(axes, done / job.edge_rate_hz, exact, floating)
+    axes.set_title(f"{job.machine}: {job.steps_numerator}/{job.steps_denominator} steps per count, {job.rpm:.0f} rpm")
+    save(figure, path)

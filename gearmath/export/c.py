@@ -37,7 +37,7 @@ class ExportError(ComputationError):
 
 @dataclass(frozen=True)
 class CKernel:
-    """The C of one Kernel: the text of ``<name>.h`` and ``<name>.c``."""
+    """The C of one Kernel: the text of ``<name>.h`` and ``<name>.c``; an inline kernel has only the header."""
 
     name: str
     header: str
@@ -46,7 +46,8 @@ class CKernel:
     @property
     def files(self) -> dict[str, str]:
         """File name to text."""
-        return {f"{self.name}.h": self.header, f"{self.name}.c": self.source}
+        source = {f"{self.name}.c": self.source} if self.source else {}
+        return {f"{self.name}.h": self.header, **source}
 
 
 @dataclass(frozen=True)
@@ -74,9 +75,10 @@ def double_kernel(kernel: Kernel) -> CKernel:
     return _assemble(kernel, memory, _LITERAL_CHECK, declarations, body, f"{typed}\n{wrapper.batch_definition(kernel)}")
 
 
-def integer_kernel(kernel: Kernel, bits: int = 32) -> CKernel:
+def integer_kernel(kernel: Kernel, bits: int = 32, inline: bool = False) -> CKernel:
     """C in whole numbers of 32 or 64 bits, without any floating operation or constant.
 
+    ``inline``: all of it in the header, so that an interrupt has no call and no arguments in memory to pay for.
     Raises ExportError naming the first operation, constant or quantity that is not exact in integers.
     """
     _check_names(kernel)
@@ -90,6 +92,14 @@ def integer_kernel(kernel: Kernel, bits: int = 32) -> CKernel:
     exact = _Body(_LITERAL.sub(r"=\1;", body.text), body.entry, body.sizes)
     declaration = f"{wrapper.declaration(kernel, real)};\n"
     typed = wrapper.definition(kernel, real, body.entry, body.sizes, may_fail=False)
+    if inline:
+        # names of the preprocessor last to the end of what includes the header: the next kernel has the same ones
+        names = re.findall(r"^#define (\w+)", exact.text, flags=re.MULTILINE)
+        forgotten = "".join(f"#undef {name}\n" for name in names)
+        text = exact.text.replace("\nstatic int casadi_f", "\nstatic inline int casadi_f")
+        everything = f"{text}\nstatic inline {typed}\n{forgotten}"
+        with_body = _assemble(kernel, f"work memory: none; {real} only", "#include <stdint.h>\n", everything, exact, "")
+        return CKernel(with_body.name, with_body.header, "")
     return _assemble(kernel, f"work memory: none; {real} only", "#include <stdint.h>\n", declaration, exact, typed)
 
 

@@ -156,3 +156,56 @@ def run_edges(edges: np.ndarray, numerator: int, denominator: int, remainder: in
 @cache
 def _step_library() -> ctypes.CDLL:
     return compile_library(integer_kernel(lower(gearbox.gearbox_step())).files | {"gm_run_edges.c": _RUN_EDGES})
+
+
+#: The same for the general rule in 64 bits, edges of two axes in the order in which they come.
+_RUN_AXES = """\
+#include "gm_gearbox_edge.h"
+
+void gm_run_axes(
+    long n, const int8_t *axes, const int8_t *edges, const int64_t *base, const int64_t *increment,
+    int64_t denominator, int64_t *remainder, int8_t *steps)
+{
+  long k;
+  int64_t step;
+  for (k = 0; k < n; ++k) {
+    gm_gearbox_edge(*remainder, edges[k], increment[axes[k]], base[axes[k]], denominator, &step, remainder);
+    steps[k] = (int8_t)step;
+  }
+}
+"""
+
+
+def run_axes(
+    axes: np.ndarray, edges: np.ndarray, base: tuple[int, int], increment: tuple[int, int], denominator: int,
+    remainder: int,
+) -> tuple[np.ndarray, int]:  # fmt: skip
+    """The steps (n,) int8 that the compiled ``gm_gearbox_edge`` delivers in 64 bits, and the last remainder.
+
+    Edges (n,) of ±1 come on ``axes`` (n,), 0 hob and 1 feed; the ratio of axis j is base[j] + increment[j]/denominator.
+    Raises InputError where edges or numbers lie outside the domain of the rule.
+    """
+    values, places = np.asarray(edges), np.asarray(axes)
+    if values.ndim != 1 or not np.isin(values, (-1, 1)).all():
+        raise InputError("edges: must be a list of +1 and -1")
+    if places.shape != values.shape or not np.isin(places, (0, 1)).all():
+        raise InputError("axes: must be 0 or 1 for every edge")
+    if not 0 < denominator <= 2**62 or not all(0 <= rest < denominator for rest in (*increment, remainder)):
+        raise InputError(f"{increment}/{denominator} from {remainder}: must satisfy 0 <= N', a < D <= 2^62")
+    if max(map(abs, base)) > 64:
+        raise InputError(f"base = {base}: at most 64 whole steps an edge")
+    place, edge = (np.ascontiguousarray(array, dtype=np.int8) for array in (places, values))
+    steps = np.empty(len(edge), dtype=np.int8)
+    pair = ctypes.c_int64 * 2
+    state = ctypes.c_int64(remainder)
+    _axes_library().gm_run_axes(
+        ctypes.c_long(len(steps)), _pointer(place), _pointer(edge), pair(*base), pair(*increment),
+        ctypes.c_int64(denominator), ctypes.byref(state), _pointer(steps),
+    )  # fmt: skip
+    return steps, state.value
+
+
+@cache
+def _axes_library() -> ctypes.CDLL:
+    kernel = lower(gearbox.gearbox_edge())
+    return compile_library(integer_kernel(kernel, bits=64).files | {"gm_run_axes.c": _RUN_AXES})

@@ -1,9 +1,15 @@
-"""Machine-checked proof of the step rule, for all inputs at once, from the very graph that is exported.
+"""Machine-checked proofs of the step rules, for all inputs at once, from the very graphs that are exported.
 
-The instructions of the CasADi function are walked into z3 integer terms, one term an instruction. Proved for
-0 < N ≤ D ≤ limit, 0 ≤ a < D and d = ±1: the remainder stays in 0 ≤ a' < D; a' + s D = a + d N; s is -1, 0 or +1 and
-never against the edge; no instruction leaves the 32-bit range; and, from the first two, |p - N e/D| ≤ 1/2 for every
-history that starts at a = floor(D/2).
+The instructions of the CasADi function are walked into z3 integer terms, one term an instruction.
+
+``gearbox_step``, 0 < N ≤ D ≤ limit, 0 ≤ a < D, d = ±1: the remainder stays in 0 ≤ a' < D; a' + s D = a + d N; s is
+-1, 0 or +1 and never against the edge; no instruction leaves the integers of C; and, from the first two,
+|p - N e/D| ≤ 1/2 for every history that starts at a = floor(D/2).
+
+``gearbox_edge``, any q of its domain, 0 ≤ N' < D ≤ limit, in 32 or 64 bits: the same with the ratio q + N'/D. An edge
+of whatever axis keeps p D + a - Σ N_j e_j, so |p - Σ N_j e_j/D| ≤ 1/2 for every history of the edges of all axes.
+
+``encoder_hysteresis``, 0 ≤ x ≤ H: the play stays in 0 ≤ x' ≤ H, no count is made or lost, what passes is 0 or the edge.
 """
 
 from __future__ import annotations
@@ -14,10 +20,11 @@ from typing import Any
 
 import casadi as ca
 
+from derivations.notation import base_step, hysteresis
 from gearmath.errors import ComputationError
-from gearmath.gearbox.train import WIDEST
 
-INT32 = (-(2**31), 2**31 - 1)
+#: Largest D by the width of the integers: a + N must fit. That these are tight is shown by a test.
+WIDEST = {32: 2**30, 64: 2**62}
 
 
 @dataclass(frozen=True)
@@ -61,7 +68,7 @@ def walk(function: ca.Function, inputs: dict[str, Any]) -> Walk:
     return Walk(outputs, tuple(values))
 
 
-def prove_step_rule(function: ca.Function, limit: int = WIDEST) -> tuple[str, ...]:
+def prove_step_rule(function: ca.Function, limit: int = WIDEST[32]) -> tuple[str, ...]:
     """Prove the five claims of this module for a step rule; returns what was proved, one line a claim.
 
     ``function`` has the arguments and results of ``gearbox_step``. Raises ComputationError with the claim that fails
@@ -73,25 +80,88 @@ def prove_step_rule(function: ca.Function, limit: int = WIDEST) -> tuple[str, ..
     a, d, N, D = (z3.Int(name) for name in names)
     graph = walk(function, dict(zip(names, (a, d, N, D), strict=True)))
     step, following = graph.outputs["step"], graph.outputs["next_remainder"]
-    claims: list[tuple[str, Any]] = [
-        (f"{what} stays within 32 bits", z3.And(value >= INT32[0], value <= INT32[1])) for what, value in graph.values
-    ]
-    claims += [
+    claims = [
+        *_within(z3, graph, 32),
         ("the new remainder is again in 0 <= a' < D", z3.And(following >= 0, following < D)),
         ("a' + s D = a + d N", following + step * D == a + d * N),
         ("the step is -1, 0 or +1", z3.And(step >= -1, step <= 1)),
         ("the step is never against the edge", step * d >= 0),
     ]
-    proved = []
-    for what, claim in claims:
-        for edge in (1, -1):  # a product by a known sign is linear, which z3 decides at once
-            _prove(z3, what, claim, [d == edge, N > 0, N <= D, limit >= D, a >= 0, a < D])
-        proved.append(what)
-    start = z3.Int("start")  # p D - N e = a_0 - a is conserved, so the error is |a_0 - a|/D
-    ranges = [D > 0, 2 * start <= D, 2 * start + 1 >= D, a >= 0, a < D]
+    proved = _prove_for_both_edges(z3, d, claims, [N > 0, N <= D, limit >= D, a >= 0, a < D])
     what = "|p - N e/D| <= 1/2 for every history from a_0 = floor(D/2)"
-    _prove(z3, what, z3.And(2 * (start - a) <= D, 2 * (a - start) <= D), ranges)
+    _prove_half_a_step(z3, what)
     return (*proved, what)
+
+
+def prove_edge_rule(function: ca.Function, bits: int = 32, limit: int | None = None) -> tuple[str, ...]:
+    """Prove the claims of this module for ``gearbox_edge`` in ``bits`` = 32 or 64, D up to ``limit``.
+
+    Returns what was proved, one line a claim. Raises ComputationError with the claim that fails and the inputs that
+    break it.
+    """
+    import z3
+
+    names = ("remainder", "edge", "increment", "base_step", "steps_denominator")
+    a, d, N, q, D = (z3.Int(name) for name in names)
+    graph = walk(function, dict(zip(names, (a, d, N, q, D), strict=True)))
+    steps, following = graph.outputs["edge_steps"], graph.outputs["next_remainder"]
+    low, high = (int(bound) for bound in base_step.domain)
+    claims = [
+        *_within(z3, graph, bits),
+        ("the new remainder is again in 0 <= a' < D", z3.And(following >= 0, following < D)),
+        ("a' + (steps) D = a + d (q D + N')", following + (steps - d * q) * D == a + d * N),
+        ("the steps are d q, or one more or less", z3.And(steps - d * q >= -1, steps - d * q <= 1)),
+        ("the step beyond d q is never against the edge", (steps - d * q) * d >= 0),
+    ]
+    widest = WIDEST[bits] if limit is None else limit
+    proved = _prove_for_both_edges(z3, d, claims, [N >= 0, N < D, widest >= D, a >= 0, a < D, q >= low, q <= high])
+    p, total, first = z3.Ints("position total start")  # total = Σ N_j e_j, of all axes, N_j = q_j D + N_j'
+    s, b = z3.Ints("steps following")
+    what = "an edge of any axis keeps p D + a - N_1 e_1 - N_2 e_2 - ..."
+    conserved = (p + s) * D + b - (total + d * (q * D + N)) == first
+    _prove(z3, what, conserved, [p * D + a - total == first, b + s * D == a + d * (q * D + N)])
+    half = "|p - (N_1 e_1 + N_2 e_2 + ...)/D| <= 1/2 for every history from a_0 = floor(D/2)"
+    _prove_half_a_step(z3, half)
+    return (*proved, what, half)
+
+
+def prove_hysteresis(function: ca.Function, limit: int = int(hysteresis.domain[1])) -> tuple[str, ...]:
+    """Prove the claims of this module for ``encoder_hysteresis`` with H up to ``limit``, as the others do."""
+    import z3
+
+    names = ("play", "edge", "hysteresis")
+    x, d, H = (z3.Int(name) for name in names)
+    graph = walk(function, dict(zip(names, (x, d, H), strict=True)))
+    passed, following = graph.outputs["passed_edge"], graph.outputs["next_play"]
+    claims = [
+        *_within(z3, graph, 32),
+        ("the play stays in 0 <= x' <= H", z3.And(following >= 0, following <= H)),
+        ("x' + d' = x + d", following + passed == x + d),
+        ("what passes is nothing, or the edge", z3.Or(passed == 0, passed == d)),
+        ("an edge passes exactly where the play is used up", (passed == 0) == z3.And(x + d >= 0, x + d <= H)),
+    ]
+    return _prove_for_both_edges(z3, d, claims, [x >= 0, x <= H, limit >= H])
+
+
+def _within(z3: Any, graph: Walk, bits: int) -> list[tuple[str, Any]]:
+    """No instruction overflows."""
+    low, high = -(2 ** (bits - 1)), 2 ** (bits - 1) - 1
+    return [(f"{what} stays within {bits} bits", z3.And(value >= low, value <= high)) for what, value in graph.values]
+
+
+def _prove_for_both_edges(z3: Any, edge: Any, claims: list[tuple[str, Any]], assumptions: list[Any]) -> tuple[str, ...]:
+    for what, claim in claims:
+        for sign in (1, -1):  # a product by a known sign is linear, which z3 decides at once
+            given = (edge, z3.IntVal(sign))
+            _prove(z3, what, z3.substitute(claim, given), [*assumptions, edge == sign])
+    return tuple(what for what, _ in claims)
+
+
+def _prove_half_a_step(z3: Any, what: str) -> None:
+    """p D - N e = a_0 - a is kept, so the error is |a_0 - a|/D."""
+    a, start, D = z3.Ints("remainder start steps_denominator")
+    ranges = [D > 0, 2 * start <= D, 2 * start + 1 >= D, a >= 0, a < D]
+    _prove(z3, what, z3.And(2 * (start - a) <= D, 2 * (a - start) <= D), ranges)
 
 
 def _prove(z3: Any, what: str, claim: Any, assumptions: list[Any]) -> None:

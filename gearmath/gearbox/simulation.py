@@ -14,9 +14,11 @@ from typing import Literal, Protocol
 import numpy as np
 
 from gearmath.errors import ComputationError, InputError
+from gearmath.gearbox.helix import JobRatio
 
 Pattern = Literal["forward", "dither", "reversals"]
 LONGEST_RUN = 5000  # edges between two reversals, at most
+FEED_EVERY = 8  # in a job of two axes, one edge in so many is one of the feed
 
 
 class Runner(Protocol):
@@ -25,6 +27,15 @@ class Runner(Protocol):
     def __call__(
         self, edges: np.ndarray, numerator: int, denominator: int, remainder: int, /
     ) -> tuple[np.ndarray, int]: ...
+
+
+class AxesRunner(Protocol):
+    """The compiled rule of two axes: axes (0 hob, 1 feed), edges, and the ratios of both, to steps and remainder."""
+
+    def __call__(
+        self, axes: np.ndarray, edges: np.ndarray, base: tuple[int, int], increment: tuple[int, int],
+        denominator: int, remainder: int, /,
+    ) -> tuple[np.ndarray, int]: ...  # fmt: skip
 
 
 def pattern(kind: Pattern, edges: int, seed: int = 0, chunk: int = 1 << 20) -> Iterator[np.ndarray]:
@@ -73,13 +84,17 @@ _SOURCES: dict[Pattern, Callable[[np.random.Generator, int], Iterator[np.ndarray
 }
 
 
-def deviations(edges: np.ndarray, steps: np.ndarray, numerator: int, denominator: int, start: int = 0) -> np.ndarray:
+def deviations(
+    edges: np.ndarray, steps: np.ndarray, numerator: int | np.ndarray, denominator: int, start: int = 0
+) -> np.ndarray:
     """p D - N e after every edge, exactly, (n,) int64: the error in units of 1/D step.
 
-    ``start`` is its value before the first edge. Raises ComputationError where 64 bits could overflow.
+    ``numerator`` is N, or (n,) the N of the axis of every edge. ``start`` is the value before the first edge.
+    Raises ComputationError where 64 bits could overflow.
     """
-    if abs(start) + len(edges) * (numerator + denominator) >= 2**63:
-        raise ComputationError(f"{len(edges)} edges at {numerator}/{denominator} are too many for exact 64-bit sums")
+    largest = int(np.abs(numerator).max(initial=0)) + int(np.abs(steps).max(initial=1)) * denominator
+    if abs(start) + len(edges) * largest >= 2**63:
+        raise ComputationError(f"{len(edges)} edges over {denominator} are too many for exact 64-bit sums")
     moves = steps.astype(np.int64) * denominator - edges.astype(np.int64) * numerator
     return start + np.cumsum(moves)
 
@@ -94,13 +109,15 @@ class FloatRule:
     """The floating rule of the public firmware, in float32, vectorised.
 
     On every edge, in whatever direction, the count goes up; a step follows, in the direction of that edge, where
-    round(float32(N/D) * count) exceeds the steps delivered so far, also in float32; at most one step an edge.
+    round(float32(N/D) * count) exceeds the steps delivered so far, also in float32; at most one step an edge. A
+    negative N (which that firmware leaves to its wiring) turns the steps round. It starts after ``count`` edges.
     """
 
-    def __init__(self, numerator: int, denominator: int) -> None:
-        self.factor = np.float32(numerator / denominator)
-        self.count = 0
-        self.delivered = 0
+    def __init__(self, numerator: int, denominator: int, count: int = 0) -> None:
+        self.factor = np.float32(abs(numerator) / denominator)
+        self.sign = -1 if numerator < 0 else 1
+        self.count = count
+        self.delivered = int(np.floor(float(self.factor * np.float32(count)) + 0.5))
 
     def __call__(self, edges: np.ndarray) -> np.ndarray:
         """The int8 steps of the next edges."""
@@ -112,7 +129,7 @@ class FloatRule:
         pulses = np.diff(delivered, prepend=self.delivered)
         self.count += len(edges)
         self.delivered = int(delivered[-1])
-        return (pulses * edges).astype(np.int8)
+        return (self.sign * pulses * edges).astype(np.int8)
 
 
 def _first_not_below(wanted: np.ndarray) -> np.ndarray:
@@ -124,15 +141,45 @@ def _first_not_below(wanted: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Simulation:
-    """Outcome of one run. Errors in steps; positions at the end in counts and steps."""
+    """Outcome of one run. Errors in steps; positions at the end in counts and steps.
+
+    The floating rule knows only the hob; its error is against the hob's part of the motion.
+    """
 
     pattern: Pattern
     edges: int
     encoder_position: int
+    feed_position: int
     position: int
     worst_error: Fraction
     float_position: int
     float_worst_error: Fraction
+
+
+class Trace:
+    """A Record that keeps the largest error of both rules in every stretch of edges, some thousand in all."""
+
+    def __init__(self, edges: int, stretches: int = 1000) -> None:
+        self._size = max(1, edges // stretches)
+        self._done = 0
+        self._parts: list[np.ndarray] = []
+
+    def add(self, exact: np.ndarray, loose: np.ndarray) -> None:
+        """The errors (n,) [steps] of the next edges."""
+        first = np.arange(0, len(exact), self._size)
+        last = np.minimum(first + self._size, len(exact))
+        worst = (np.maximum.reduceat(np.abs(errors), first) for errors in (exact, loose))
+        self._parts.append(np.stack([self._done + last, *worst]))
+        self._done += len(exact)
+
+    @property
+    def arrays(self) -> np.ndarray:
+        """Edges done at the end of every stretch, and the largest errors of exact and floating rule in it, (3, n)."""
+        return np.hstack(self._parts)
+
+
+#: Takes the errors (n,) of the exact and of the floating rule [steps] of the next edges.
+Record = Callable[[np.ndarray, np.ndarray], object]
 
 
 def simulate(
@@ -144,30 +191,82 @@ def simulate(
     seed: int = 0,
     progress: Callable[[int], object] = lambda done: None,
 ) -> Simulation:
-    """Drive the compiled rule and the floating rule through one pattern of edges, at ``ratio`` = (N, D).
+    """Drive the compiled rule for N <= D and the floating rule through one pattern, at ``ratio`` = (N, D).
 
     ``progress`` is told the number of edges done after each chunk. Raises ComputationError if the state of the
     compiled rule breaks a + p D = a_0 + N e after a chunk.
     """
-    numerator, denominator = ratio
-    floating = FloatRule(numerator, denominator)
-    remainder, worst = first_remainder, 0
-    float_worst = deviation = float_deviation = encoder = position = float_position = 0
-    for chunk in pattern(kind, edges, seed):
-        steps, remainder = run(chunk, numerator, denominator, remainder)
-        exact = deviations(chunk, steps, numerator, denominator, deviation)
-        float_steps = floating(chunk)
-        loose = deviations(chunk, float_steps, numerator, denominator, float_deviation)
+
+    def one_axis(
+        axes: np.ndarray, chunk: np.ndarray, base: object, increment: object, denominator: int, remainder: int
+    ) -> tuple[np.ndarray, int]:
+        return run(chunk, ratio[0], denominator, remainder)
+
+    job = JobRatio(ratio[1], (ratio[0], 0))
+    return _drive(one_axis, job, first_remainder, kind, edges, seed, progress, lambda exact, loose: None)
+
+
+def simulate_job(
+    run: AxesRunner,
+    job: JobRatio,
+    kind: Pattern,
+    edges: int,
+    seed: int = 0,
+    progress: Callable[[int], object] = lambda done: None,
+    record: Record = lambda exact, loose: None,
+    start: int = 0,
+) -> Simulation:
+    """The same for any ratio: above 1, negative, or of hob and feed, whose edges then come among those of the hob.
+
+    ``start`` is the count of the hob before the first edge, to begin just below a boundary of the counters.
+    """
+    return _drive(run, job, job.first_remainder, kind, edges, seed, progress, record, start)
+
+
+def _drive(
+    run: AxesRunner, job: JobRatio, first_remainder: int, kind: Pattern, edges: int, seed: int,
+    progress: Callable[[int], object], record: Record, start: int = 0,
+) -> Simulation:  # fmt: skip
+    denominator, base, increment = job.denominator, job.base, job.increment
+    numerators = np.array(job.numerators)
+    floating = FloatRule(job.numerators[0], denominator, start)
+    remainder = (first_remainder + job.numerators[0] * start) % denominator
+    deviation = first_remainder - remainder
+    float_deviation = floating.sign * floating.delivered * denominator - job.numerators[0] * start
+    worst = float_worst = 0
+    sums = np.zeros(4, np.int64)
+    for axes, chunk in _on_axes(job, kind, edges, seed):
+        steps, remainder = run(axes, chunk, base, increment, denominator, remainder)
+        exact = deviations(chunk, steps, numerators[axes], denominator, deviation)
+        float_steps = np.zeros_like(chunk)
+        float_steps[axes == 0] = floating(chunk[axes == 0])
+        loose = deviations(chunk, float_steps, np.where(axes == 0, numerators[0], 0), denominator, float_deviation)
         deviation, float_deviation = int(exact[-1]), int(loose[-1])
         if remainder != first_remainder - deviation:
-            raise ComputationError(f"the step rule at {numerator}/{denominator} left a wrong remainder, {remainder}")
+            raise ComputationError(
+                f"the step rule at {job.numerators}/{denominator} left a wrong remainder, {remainder}"
+            )
         worst = max(worst, int(np.abs(exact).max()))
         float_worst = max(float_worst, int(np.abs(loose).max()))
-        encoder += int(chunk.sum(dtype=np.int64))
-        position += int(steps.sum(dtype=np.int64))
-        float_position += int(float_steps.sum(dtype=np.int64))
+        parts = (chunk[axes == 0], chunk[axes == 1], steps, float_steps)
+        sums += [part.sum(dtype=np.int64) for part in parts]
+        record(exact / denominator, loose / denominator)
         progress(len(chunk))
+    encoder, feed, position, float_position = map(int, sums)
     return Simulation(
-        kind, edges, encoder, position, Fraction(worst, denominator),
+        kind, edges, encoder, feed, position, Fraction(worst, denominator),
         float_position, Fraction(float_worst, denominator),
     )  # fmt: skip
+
+
+def _on_axes(job: JobRatio, kind: Pattern, edges: int, seed: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """The pattern on the hob; in a job of two axes every FEED_EVERY-th edge is one of the feed, in its own pattern."""
+    size = 1 << 20 if job.numerators[1] == 0 else 1 << 18
+    feeds = _SOURCES[kind](np.random.default_rng(seed + 1), size)
+    for chunk in pattern(kind, edges, seed, size):
+        axes = np.zeros(len(chunk), np.int8)
+        if job.numerators[1]:
+            axes[FEED_EVERY - 1 :: FEED_EVERY] = 1
+            chunk = chunk.copy()
+            chunk[axes == 1] = next(feeds)[: int(axes.sum())]
+        yield axes, chunk

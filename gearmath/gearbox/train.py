@@ -1,66 +1,73 @@
-"""From a hobbing machine and a tooth count to one job: exact ratio, rates against the limits, blank and depth."""
+"""Planning a gear on a hobbing machine: its ratio, and blank, depth and check dimensions for every hob."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from fractions import Fraction
-from functools import cache
 
-from derivations import gearbox as chapter
 from derivations import notation as q
-from derivations.expression import Expression, Quantity
 from gearmath.errors import InputError
-from gearmath.lowering import Kernel, lower
-from gearmath.specs.hobbing import Hob, HobbingMachine
+from gearmath.gearbox.dimensions import (
+    Chord,
+    Gear,
+    OverPins,
+    Span,
+    Swivel,
+    blank_diameter,
+    chord,
+    over_pins,
+    span,
+    swivel,
+)
+from gearmath.gearbox.helix import SIGNS, TRAVEL, Cut, Helix, JobRatio, Rounding, helical_ratio, hob_ratio, one_term
+from gearmath.gearbox.job import WIDEST, Job, check_range, job_values, nearest, refusal
+from gearmath.gearbox.kernels import evaluate
+from gearmath.specs.hobbing import Hand, Hob, HobbingMachine
 
-#: Largest N and D of the int32 step rule; gearmath.gearbox.proof shows that this bound is tight.
-WIDEST = int(q.steps_denominator.domain[1])
+__all__ = ["WIDEST", "GearboxPlan", "HelixPlan", "HobbedBlank", "plan"]
 
 
 @dataclass(frozen=True)
 class HobbedBlank:
-    """Blank of one hob: outside diameter and whole depth [mm]."""
+    """A gear cut by one hob: outside diameter and whole depth [mm], and the dimensions that check it.
+
+    Span or measurement over pins is None where none lies on the flanks, the swivel where the hob's diameter is unknown.
+    """
 
     hob: str
     depth_rule: str
     blank_diameter: float
     cut_depth: float
+    swivel: Swivel | None
+    span: Span | None
+    chord: Chord
+    over_pins: OverPins | None
 
 
 @dataclass(frozen=True)
-class GearboxPlan:
-    """One job. N/D motor steps per encoder count, reduced; R = D/N encoder counts per motor step."""
+class HelixPlan:
+    """A helix: lead [mm], and what the rounded ratio costs at most, and really, over ``travel`` mm [steps]."""
 
-    machine: str
+    helix_deg: float
+    hand: Hand
+    cut: Cut
+    feed_mm: float | None
+    lead: float
+    travel: float
+    error_bound_steps: float
+    error_steps: float
+
+
+@dataclass(frozen=True)
+class GearboxPlan(Job):
+    """A gear on a hobbing machine."""
+
     teeth: int
     hob_starts: int
-    steps_numerator: int
-    steps_denominator: int
-    first_remainder: int
-    pulse_ratio: float
-    rpm: float
-    highest_rpm: float
-    edge_rate_hz: float
-    step_rate_hz: float
-    hob_rpm_percent: float
-    step_rate_percent: float
+    hob_hand: Hand
+    profile_shift: float
+    helix: HelixPlan | None
     blanks: tuple[HobbedBlank, ...]
-
-    @property
-    def exact_pulse_ratio(self) -> Fraction:
-        """R as a fraction."""
-        return Fraction(self.steps_denominator, self.steps_numerator)
-
-
-@cache
-def _kernel(name: str) -> Kernel:
-    expression: Expression = getattr(chapter, name)()
-    return lower(expression)
-
-
-def evaluate(name: str, *arguments: float) -> tuple[float, ...]:
-    """The outputs of one expression of the gearbox chapter at one point, through its kernel."""
-    return tuple(float(output) for output in _kernel(name)(*arguments))
 
 
 def plan(
@@ -69,102 +76,67 @@ def plan(
     starts: int | None = None,
     hob: str | None = None,
     rpm: float | None = None,
+    helix: Helix | None = None,
+    shift: float = 0.0,
+    pin: float | None = None,
 ) -> GearboxPlan:
     """The job of cutting ``teeth`` teeth.
 
-    ``starts`` are those of the machine file if not given; ``hob`` is a name of its list (all of them if not given);
-    ``rpm`` is the hob speed, by default the highest that keeps both limits.
+    ``starts`` are those of the machine file if not given; ``hob`` is a name of its list (all of them if not given, but
+    a helix needs one); ``rpm`` is the hob speed, by default the highest that keeps the limits; ``shift`` is the profile
+    shift in modules; ``pin`` the diameter of measuring pins [mm].
     Raises InputError where the ratio or the speed cannot be carried, with the nearest choice that can.
     """
+    if machine.profile != "hobbing":
+        raise InputError(f"teeth = {teeth}: {machine.name} is a lathe, give the pitch of a thread instead")
     starts = machine.hob_starts if starts is None else starts
-    _check_range("teeth", teeth, q.teeth)
-    _check_range("starts", starts, q.hob_starts)
-    reason = refusal(machine, teeth, starts)
+    check_range("teeth", teeth, q.teeth)
+    check_range("starts", starts, q.hob_starts)
+    _check_shift(shift, pin)
+    hobs = _hobs(machine, hob)
+    ratio, rounding = _ratio(machine, teeth, starts, hobs, helix)
+    reason = refusal(machine, ratio)
     if reason:
-        raise InputError(f"{machine.name}: teeth = {teeth}: {reason}; {_nearest(machine, teeth, starts)}")
-    ratio = steps_per_count(machine, teeth, starts)
-    highest = _highest_rpm(machine, ratio)
-    speed = highest if rpm is None else rpm
-    _check_speed(machine, teeth, speed, highest)
-    edge_rate = speed / 60.0 * machine.encoder_counts
-    (pulse_ratio,) = evaluate("gearbox_ratio", *_train(machine, teeth, starts))
-    (step_rate,) = evaluate("desired_position", edge_rate, pulse_ratio)
-    (first_remainder,) = evaluate("gearbox_start", ratio.denominator)
+        other = nearest(
+            "tooth count", teeth, q.teeth,
+            lambda count: refusal(machine, _ratio(machine, count, starts, hobs, helix)[0]) is None,
+        )  # fmt: skip
+        raise InputError(f"{machine.name}: teeth = {teeth}: {reason}; {other}")
     return GearboxPlan(
-        machine=machine.name,
-        teeth=teeth,
-        hob_starts=starts,
-        steps_numerator=ratio.numerator,
-        steps_denominator=ratio.denominator,
-        first_remainder=int(first_remainder),
-        pulse_ratio=pulse_ratio,
-        rpm=speed,
-        highest_rpm=highest,
-        edge_rate_hz=edge_rate,
-        step_rate_hz=step_rate,
-        hob_rpm_percent=100.0 * speed / machine.limits.hob_rpm,
-        step_rate_percent=100.0 * step_rate / machine.limits.step_rate_hz,
-        blanks=tuple(_blank(teeth, chosen) for chosen in _hobs(machine, hob)),
-    )
+        **job_values(machine, ratio, rpm, f"{teeth} teeth"),  # type: ignore[arg-type]
+        teeth=teeth, hob_starts=starts, hob_hand=machine.hob_hand, profile_shift=shift,
+        helix=_helix_plan(teeth, hobs[0], helix, rounding),
+        blanks=tuple(_blank(machine, teeth, starts, chosen, helix, shift, pin) for chosen in hobs),
+    )  # fmt: skip
 
 
-def steps_per_count(machine: HobbingMachine, teeth: int, starts: int) -> Fraction:
-    """N/D, motor steps per encoder count, reduced."""
-    numerator, denominator = evaluate("gearbox_terms", *_train(machine, teeth, starts))
-    return Fraction(int(numerator), int(denominator))
+def _ratio(
+    machine: HobbingMachine, teeth: int, starts: int, hobs: tuple[Hob, ...], helix: Helix | None
+) -> tuple[JobRatio, Rounding | None]:
+    if helix is None:
+        return one_term(hob_ratio(machine, teeth, starts)), None
+    if len(hobs) > 1:
+        names = ", ".join(hob.name for hob in hobs)
+        raise InputError(f"helix = {helix.angle:g}: the lead depends on the hob, choose one of {names}")
+    return helical_ratio(machine, teeth, starts, hobs[0].module_mm, helix)
 
 
-def refusal(machine: HobbingMachine, teeth: int, starts: int) -> str | None:
-    """Why the int32 step rule cannot carry this ratio, or None if it can."""
-    ratio = steps_per_count(machine, teeth, starts)
-    if ratio > 1:
-        return (
-            f"{ratio.numerator}/{ratio.denominator} motor steps per encoder count is more than the one step that "
-            "an edge can deliver"
-        )
-    if ratio.denominator > WIDEST:
-        return (
-            f"the ratio {ratio.numerator}/{ratio.denominator} needs more than {WIDEST}, the limit of 32-bit arithmetic"
-        )
-    return None
+def _helix_plan(teeth: int, hob: Hob, helix: Helix | None, rounding: Rounding | None) -> HelixPlan | None:
+    if helix is None or rounding is None:
+        return None
+    (lead,) = evaluate("helical_lead", teeth, hob.module_mm, helix.beta)
+    feed = None if helix.feed is None else float(helix.feed)
+    return HelixPlan(
+        helix.angle, helix.hand, helix.cut, feed, lead, float(TRAVEL), rounding.bound, rounding.error
+    )  # fmt: skip
 
 
-def _nearest(machine: HobbingMachine, teeth: int, starts: int) -> str:
-    """The feasible tooth count next to ``teeth``, as half a sentence."""
-    low, high = (int(bound) for bound in q.teeth.domain)
-    for other in sorted(range(low, high + 1), key=lambda count: abs(count - teeth)):
-        if refusal(machine, other, starts) is None:
-            return f"the nearest tooth count that can be cut is {other}"
-    return f"no tooth count from {low} to {high} can be cut with this drive train"
-
-
-def _check_range(key: str, value: int, quantity: Quantity) -> None:
-    low, high = (int(bound) for bound in quantity.domain)
-    if not low <= value <= high:
-        raise InputError(f"{key} = {value}: must lie between {low} and {high}")
-
-
-def _highest_rpm(machine: HobbingMachine, ratio: Fraction) -> float:
-    by_steps = machine.limits.step_rate_hz * 60.0 / (machine.encoder_counts * float(ratio))
-    return min(machine.limits.hob_rpm, by_steps)
-
-
-def _check_speed(machine: HobbingMachine, teeth: int, rpm: float, highest: float) -> None:
-    if not 0.0 < rpm < float("inf"):
-        raise InputError(f"rpm = {rpm:g}: must be a positive hob speed")
-    if rpm <= highest:
-        return
-    limits = machine.limits
-    limit = (
-        f"limits.hob_rpm = {limits.hob_rpm:g}"
-        if highest == limits.hob_rpm
-        else f"limits.step_rate_hz = {limits.step_rate_hz:g}"
-    )
-    raise InputError(f"rpm = {rpm:g}: with {teeth} teeth {machine.name} reaches {highest:.1f} rpm within {limit}")
-
-
-def _train(machine: HobbingMachine, teeth: int, starts: int) -> tuple[int, int, int, int]:
-    return teeth, starts, machine.encoder_counts, machine.motor_steps
+def _check_shift(shift: float, pin: float | None) -> None:
+    low, high = q.profile_shift.domain
+    if not low <= shift <= high:
+        raise InputError(f"shift = {shift:g}: must lie between {low:g} and {high:g} modules")
+    if pin is not None and not 0.0 < pin < math.inf:
+        raise InputError(f"pin = {pin:g}: must be a positive diameter in mm")
 
 
 def _hobs(machine: HobbingMachine, name: str | None) -> tuple[Hob, ...]:
@@ -176,6 +148,15 @@ def _hobs(machine: HobbingMachine, name: str | None) -> tuple[Hob, ...]:
     raise InputError(f"hob = {name!r}: {machine.name} has {', '.join(hob.name for hob in machine.hobs)}")
 
 
-def _blank(teeth: int, hob: Hob) -> HobbedBlank:
-    blank_diameter, cut_depth = evaluate("hobbed_blank", teeth, hob.module_mm, *hob.depth_terms)
-    return HobbedBlank(hob.name, hob.depth_rule, blank_diameter, cut_depth)
+def _blank(
+    machine: HobbingMachine, teeth: int, starts: int, hob: Hob, helix: Helix | None, shift: float, pin: float | None
+) -> HobbedBlank:
+    gear = Gear(teeth, hob.module_mm, hob.alpha, 0.0 if helix is None else helix.beta, shift)
+    _, depth = evaluate("hobbed_blank", teeth, hob.module_mm, *hob.depth_terms)
+    stands = None
+    if hob.diameter is not None:
+        hand = 1 if helix is None else helix.sign
+        stands = swivel(gear, SIGNS[machine.hob_hand], hand, starts, hob.diameter)
+    return HobbedBlank(
+        hob.name, hob.depth_rule, blank_diameter(gear), depth, stands, span(gear), chord(gear), over_pins(gear, pin)
+    )

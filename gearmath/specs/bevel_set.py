@@ -148,6 +148,9 @@ class Member(Spec):
     process: Literal["face_milling", "face_hobbing"] = "face_milling"
     generation: Literal["generated", "formate"] = "generated"
     blade_groups: int | None = Field(default=None, ge=1, le=60)
+    #: Sign of the indexing by the cutter's angle: -1 where cutter and crown gear roll on each other from outside, which
+    #: gives the epicycloid of ISO 23509; 1 from inside.
+    indexing_sign: Literal[1, -1] = 1
     blank: Blank
     concave: Flank
     convex: Flank
@@ -161,6 +164,8 @@ class Member(Spec):
             raise ValueError("index_correction must lie between -1 and 1 degree")
         if (self.process == "face_hobbing") != (self.blade_groups is not None):
             raise ValueError("blade_groups belongs to face_hobbing, and face_hobbing needs it")
+        if self.indexing_sign != 1 and self.blade_groups is None:
+            raise ValueError("indexing_sign belongs to face_hobbing")
         if self.process == "face_hobbing" and self.cutting != "completing":
             raise ValueError("face_hobbing cuts both flanks at once: cutting must be completing")
         if self.cutting == "completing":

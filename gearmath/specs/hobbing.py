@@ -1,143 +1,244 @@
-"""The hobbing machine's file: encoder on the hob, stepper on the work table, hobs and limits.
+"""The machine file of an electronic gearbox: a hobbing machine, or a lathe with its lead screw.
 
-Lengths of diametral-pitch hobs are converted here: P teeth per inch of diameter is the module 25.4/P mm.
+What the machine cannot do is refused here, when its file is read: a speed that board, decoder or driver cannot carry,
+a ramp that never ends, numbers beyond the kernels, pins that overlap.
 """
 
 from __future__ import annotations
 
+import math
+import re
 from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, InstanceOf, model_validator
+from pydantic import AfterValidator, AliasChoices, Field, model_validator
 
+from derivations import notation
+from gearmath.specs.board import BOARDS, Board, BoardName, Display, Pins
+from gearmath.specs.drive import Encoder, Feed, LeadScrew, Table
+from gearmath.specs.drivers import Driver
+from gearmath.specs.hob import Hob
+from gearmath.specs.ratio import EXACT_INCH
 from gearmath.specs.toml import Spec, load
 
-INCH = 25.4  # mm
+__all__ = ["Hob", "HobbingMachine", "load_hobbing_machine"]
 
-#: depth rule -> (whole depth in modules, depth added in mm). P rules are for hobs in diametral pitch, m for module.
-DEPTH_RULES = {
-    "2.25/P": (2.25, 0.0),
-    "2.157/P": (2.157, 0.0),
-    "2.2/P+0.002in": (2.2, 0.002 * INCH),
-    "2.25m": (2.25, 0.0),
-}
+#: An LS7184 ignores A and B during its output pulse of 10 us, so that faster edges are lost.
+LS7184_EDGE_RATE = 100_000
+#: Largest denominator of the rule in 32 bits; gearmath.gearbox.proof shows that it is tight.
+NARROW = int(notation.steps_denominator.domain[1])
+LONGEST_RAMP = 10.0  # s
+#: Threads per inch that the firmware takes, in steps of 1/100.
+FINEST_TPI = 1000
 
-
-def _rational(value: object) -> Fraction:
-    """A whole number, or text like "5/2". A decimal number is refused: 0.1 is no exact ratio in binary."""
-    if isinstance(value, bool) or not isinstance(value, int | str):
-        raise ValueError('must be a whole number, or a fraction in quotes such as "5/2"')
-    try:
-        ratio = Fraction(value)
-    except (ValueError, ZeroDivisionError):
-        raise ValueError('must be a whole number, or a fraction in quotes such as "5/2"') from None
-    if not Fraction(1, 1000) <= ratio <= 10_000:
-        raise ValueError("must lie between 1/1000 and 10000")
-    return ratio
+Hand = Literal["right", "left"]
 
 
-Rational = Annotated[InstanceOf[Fraction], BeforeValidator(_rational)]
-
-
-class Encoder(Spec):
-    """Encoder on the hob, and how many of its quadrature edges the decoder counts (LS7184N: x1, x2 or x4)."""
-
-    lines: int = Field(ge=1, le=1_000_000)
-    decoder: Literal[1, 2, 4]
-
-
-class Table(Spec):
-    """Stepper on the work table: steps per motor turn, then the belt and the worm as exact reductions."""
-
-    full_steps: int = Field(ge=1, le=10_000)
-    microsteps: int = Field(ge=1, le=1_024)
-    belt: Rational
-    worm: Rational
-
-    @property
-    def steps_per_turn(self) -> Fraction:
-        return self.full_steps * self.microsteps * self.belt * self.worm
-
-    @model_validator(mode="after")
-    def _whole(self) -> Table:
-        steps = self.steps_per_turn
-        if steps.denominator != 1:
-            raise ValueError(
-                f"{self.full_steps} full steps x {self.microsteps} microsteps x belt {self.belt} x worm {self.worm} "
-                f"= {steps} steps per table turn, which must be a whole number"
-            )
-        return self
-
-
-class Hob(Spec):
-    """One hob: its diametral pitch [1/in] or its module [mm], and the rule for the whole depth of its teeth."""
-
-    diametral_pitch: float | None = Field(default=None, ge=1.0, le=254.0)
-    module: float | None = Field(default=None, ge=0.1, le=25.0)
-    depth_rule: Literal["2.25/P", "2.157/P", "2.2/P+0.002in", "2.25m"]
-
-    @model_validator(mode="after")
-    def _one_size(self) -> Hob:
-        if (self.diametral_pitch is None) == (self.module is None):
-            raise ValueError("a hob needs exactly one of diametral_pitch and module")
-        if self.depth_rule.endswith("m") != (self.module is not None):
-            fitting = [rule for rule in DEPTH_RULES if rule.endswith("m") != self.depth_rule.endswith("m")]
-            raise ValueError(f"depth_rule {self.depth_rule!r} does not fit this hob, use one of {', '.join(fitting)}")
-        return self
-
-    @property
-    def name(self) -> str:
-        """What people call it: 32dp, or m0.5."""
-        return f"{self.diametral_pitch:g}dp" if self.diametral_pitch is not None else f"m{self.module:g}"
-
-    @property
-    def module_mm(self) -> float:
-        """Module [mm]."""
-        return INCH / self.diametral_pitch if self.diametral_pitch is not None else float(self.module or 0.0)
-
-    @property
-    def depth_terms(self) -> tuple[float, float]:
-        """Whole depth in modules, and the depth added to it [mm]."""
-        return DEPTH_RULES[self.depth_rule]
+def _plain(name: str) -> str:
+    if not re.fullmatch(r"[A-Za-z0-9](?:[A-Za-z0-9 .,:;+()_/#=-]*[A-Za-z0-9.)])?", name):
+        raise ValueError("must be of plain letters, digits, spaces and .,:;+-()_/#= because it enters C")
+    return name
 
 
 class Limits(Spec):
-    """What the machine can do: hob speed [1/min] and motor step rate [Hz]."""
+    """What the machine can do: speed of hob or spindle [1/min], rates [steps/s], acceleration [steps/s^2]."""
 
-    hob_rpm: float = Field(gt=0.0, le=20_000.0)
-    step_rate_hz: float = Field(gt=0.0, le=1e6)
+    hob_rpm: float = Field(gt=0.0, le=20_000.0, validation_alias=AliasChoices("hob_rpm", "spindle_rpm"))
+    step_rate_hz: float = Field(ge=10.0, le=1e6)
+    move_rate_hz: float | None = Field(default=None, ge=10.0, le=1e6)
+    """Of a jog or an index move; 2000, or the step rate where that is less, if not given."""
+    acceleration_hz_per_s: float = Field(gt=0.0, le=1e7)
+    lag_steps: int = Field(ge=1, le=30_000)
+    """Steps that may wait before the gearbox trips."""
 
 
 class HobbingMachine(Spec):
-    """A hobbing machine with an electronic gearbox."""
+    """A hobbing machine, or a lathe, with an electronic gearbox. Names as in the generated ``gm_machine.h``."""
 
-    name: str = Field(min_length=1, max_length=60)
-    hob_starts: int = Field(ge=1, le=10)
+    name: Annotated[str, AfterValidator(_plain)] = Field(min_length=1, max_length=60)
+    profile: Literal["hobbing", "lathe"] = "hobbing"
+    board: BoardName
+    hob_starts: int = Field(default=1, ge=1, le=int(notation.hob_starts.domain[1]))
+    hob_hand: Hand = "right"
     encoder: Encoder
-    table: Table
+    table: Table | None = None
+    lead_screw: LeadScrew | None = None
+    feed: Feed | None = None
+    driver: Driver
+    pins: Pins = Pins()
+    display: Display = Display()
     limits: Limits
-    hobs: tuple[Hob, ...] = Field(strict=False, min_length=1)
+    hobs: tuple[Hob, ...] = Field(default=(), strict=False)
 
     @model_validator(mode="after")
-    def _different_hobs(self) -> HobbingMachine:
+    def _fits_together(self) -> HobbingMachine:
+        self._check_profile()
+        self._check_hobs()
+        self._check_pins()
+        self._check_edges()
+        self._check_steps()
+        return self
+
+    def _check_profile(self) -> None:
+        needed, other = ("lead_screw", "table") if self.profile == "lathe" else ("table", "lead_screw")
+        if getattr(self, needed) is None:
+            raise ValueError(f"profile = {self.profile!r} needs the section [{needed}]")
+        unfit = [other] + ["feed", "hobs"] * (self.profile == "lathe")
+        for key in unfit:
+            if getattr(self, key):
+                raise ValueError(f"[{key}] has no meaning with profile = {self.profile!r}")
+        if self.profile == "lathe" and (self.hob_starts, self.hob_hand) != (1, "right"):
+            raise ValueError("hob_starts and hob_hand have no meaning with profile = 'lathe'")
+
+    def _check_hobs(self) -> None:
         names = [hob.name for hob in self.hobs]
+        if self.profile == "hobbing" and not names:
+            raise ValueError("hobs: at least one hob must be listed")
         for name in names:
             if names.count(name) > 1:
                 raise ValueError(f"hob {name} stands in the list of hobs more than once")
-        return self
+
+    def _check_pins(self) -> None:
+        self.pins.check(self.board, self.hardware)
+        for key in ("feed_step", "feed_dir"):
+            if (getattr(self.pins, key) is None) != (self.feed is None):
+                raise ValueError(f"pins.{key} must be given where there is a [feed], and only there")
+
+    def _check_edges(self) -> None:
+        most = int(notation.encoder_counts.domain[1])
+        if self.encoder_counts > most:
+            raise ValueError(
+                f"encoder.lines = {self.encoder.lines} with {self.encoder.decoder} are {self.encoder_counts} counts a "
+                f"turn: the kernels take {most}, use at most {most // self.encoder.edges_per_line} lines"
+            )
+        carried = self.edge_rate_limit
+        what = f"board {self.board}" if carried == self.hardware.highest_edge_rate else "the LS7184"
+        if self.max_edge_rate > carried:
+            raise ValueError(
+                f"limits.hob_rpm = {self.limits.hob_rpm:g} with {self.encoder_counts} counts a turn are "
+                f"{self.max_edge_rate} edges/s: {what} carries {carried}, which is at most "
+                f"{carried * 60 // self.encoder_counts} rpm"
+            )
+
+    def _check_steps(self) -> None:
+        limits, highest = self.limits, self.driver.timing.highest_rate(self.tick_ns)
+        driver = self.driver.name or "of the file"
+        for key in ("step_rate_hz", "move_rate_hz"):
+            rate = getattr(limits, key)
+            if rate is not None and rate > highest:
+                raise ValueError(f"limits.{key} = {rate:g}: driver {driver} on {self.board} takes at most {highest}")
+        if self.move_max_rate > limits.step_rate_hz:
+            raise ValueError(
+                f"limits.move_rate_hz = {limits.move_rate_hz:g}: must not exceed limits.step_rate_hz = "
+                f"{limits.step_rate_hz:g}"
+            )
+        ramp = self.move_max_rate / limits.acceleration_hz_per_s
+        if ramp > LONGEST_RAMP:
+            raise ValueError(
+                f"limits.acceleration_hz_per_s = {limits.acceleration_hz_per_s:g}: a move needs {ramp:.0f} s to reach "
+                f"{self.move_max_rate} steps/s, at least {math.ceil(self.move_max_rate / LONGEST_RAMP)} is needed"
+            )
+
+    # --- the train ------------------------------------------------------------------------------------------------
+    @property
+    def drive(self) -> Table | LeadScrew:
+        """What the motor drives: the table of a hobbing machine, the lead screw of a lathe."""
+        drive = self.lead_screw if self.profile == "lathe" else self.table
+        assert drive is not None  # _check_profile
+        return drive
 
     @property
     def encoder_counts(self) -> int:
-        """Encoder counts per turn of the hob, after the decoder."""
-        return self.encoder.lines * self.encoder.decoder
+        """Encoder counts per turn of the hob (the spindle), after the decoder."""
+        return self.encoder.lines * self.encoder.edges_per_line
 
     @property
     def motor_steps(self) -> int:
-        """Motor steps per turn of the work table."""
-        return int(self.table.steps_per_turn)
+        """Motor steps per turn of the work table (the lead screw)."""
+        return int(self.drive.steps_per_turn)
+
+    @property
+    def lead_screw_pitch(self) -> Fraction:
+        """Pitch of a lathe's lead screw [mm], exactly."""
+        assert self.lead_screw is not None
+        return self.lead_screw.pitch
+
+    @property
+    def feed_counts(self) -> Fraction:
+        """Counts per mm of the feed encoder, exactly; 0 without one."""
+        return self.feed.counts_per_mm if self.feed is not None else Fraction(0)
+
+    @property
+    def feed_climbs(self) -> bool:
+        """Whether the counts of the feed encoder go up in climb hobbing."""
+        return self.feed is not None and self.feed.counts_up == "climb"
+
+    @property
+    def wide(self) -> bool:
+        """Whether some job of this machine needs 64 bits: two axes, or a denominator beyond the 32-bit rule."""
+        if self.profile == "hobbing":
+            widest = int(notation.teeth.domain[1]) * self.encoder_counts
+            return self.feed is not None or widest > NARROW
+        per_mm = Fraction(self.motor_steps) / (self.lead_screw_pitch * self.encoder_counts)
+        metric = (per_mm / 1000).denominator  # every pitch in 1/1000 mm
+        inch = (per_mm * EXACT_INCH * 100).denominator * FINEST_TPI * 100  # every number of threads in 1/100 per inch
+        return max(metric, inch) > NARROW
+
+    # --- board, driver and limits in the units of the firmware ------------------------------------------------------
+    @property
+    def hardware(self) -> Board:
+        """The board's own figures."""
+        return BOARDS[self.board]
+
+    @property
+    def tick_ns(self) -> int:
+        """Period of the step timer."""
+        return self.hardware.tick_ns
+
+    @property
+    def timing_ticks(self) -> tuple[int, int, int, int]:
+        """Step high, step low, DIR set-up and DIR hold, in ticks of the step timer."""
+        return self.driver.timing.ticks(self.tick_ns)
+
+    @property
+    def step_active_low(self) -> bool:
+        """Level of the board's pin during a step."""
+        return self.driver.pin_active_low(self.driver.step_active)
+
+    @property
+    def dir_active_low(self) -> bool:
+        """Level of the board's pin for DIR forward."""
+        return self.driver.pin_active_low(self.driver.dir_active)
+
+    @property
+    def enable_active_low(self) -> bool:
+        """Level of the board's pin that enables the driver."""
+        return self.driver.pin_active_low(self.driver.enable_active)
+
+    @property
+    def max_edge_rate(self) -> int:
+        """Encoder edges per second at the highest speed, rounded up."""
+        return math.ceil(self.limits.hob_rpm / 60.0 * self.encoder_counts)
+
+    @property
+    def edge_rate_limit(self) -> int:
+        """Encoder edges per second that board and decoder carry."""
+        board = self.hardware.highest_edge_rate
+        return board if self.encoder.decoder == "hardware" else min(board, LS7184_EDGE_RATE)
+
+    @property
+    def max_step_rate(self) -> int:
+        """Motor steps per second while following."""
+        return int(self.limits.step_rate_hz)
+
+    @property
+    def move_max_rate(self) -> int:
+        """Motor steps per second of a jog or an index move."""
+        limits = self.limits
+        return int(min(2000.0, limits.step_rate_hz) if limits.move_rate_hz is None else limits.move_rate_hz)
 
 
 def load_hobbing_machine(path: Path) -> HobbingMachine:
-    """Read a hobbing machine's TOML file. Raises InputError with file, key, value and limit in one sentence."""
+    """Read a machine file. Raises InputError with file, key, value and limit in one sentence."""
     return load(path, HobbingMachine)

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -39,6 +40,11 @@ def parse(text: str, model: type[SpecT], name: str) -> SpecT:
         values = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{name}: is no TOML: {error}") from error
+    return checked(values, model, name)
+
+
+def checked(values: Mapping[str, Any], model: type[SpecT], name: str) -> SpecT:
+    """Check values by key against ``model``; ``name`` is what they belong to in the messages."""
     try:
         return model.model_validate(values)
     except ValidationError as error:

@@ -18,19 +18,19 @@ def machine() -> HobbingMachine:
     return load_hobbing_machine(bundled("hobbing_plewes.toml"))
 
 
-def test_teensy_folder_holds_kernels_constants_and_instructions(
-    tmp_path: Path, machine: HobbingMachine, capsys: pytest.CaptureFixture
-) -> None:
-    main(["export", "teensy", str(bundled("hobbing_plewes.toml")), "-o", str(tmp_path / "fw")])
-    assert {path.name for path in (tmp_path / "fw").iterdir()} == {
-        "gm_gearbox_step.h", "gm_gearbox_step.c", "gm_gearbox_terms.h", "gm_gearbox_terms.c", "gm_machine.h",
-        "README.md", "manifest.json",
-    }  # fmt: skip
-    constants = (tmp_path / "fw" / "gm_machine.h").read_text()
-    assert f"#define GM_ENCODER_COUNTS {1024 * 4}\n" in constants
-    assert f"#define GM_MOTOR_STEPS {200 * 4 * 2 * 10}\n" in constants
-    assert "#define GM_HOB_STARTS 1\n" in constants
-    assert "6 files" in capsys.readouterr().out
+def test_teensy_folder_is_a_whole_sketch(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    for _ in range(2):  # a folder of ours is replaced
+        main(["export", "teensy", str(bundled("hobbing_plewes.toml")), "-o", str(tmp_path / "hobber")])
+    written = {path.name for path in (tmp_path / "hobber").iterdir()}
+    assert {
+        "hobber.ino", "gm_machine.h", "gm_core.h", "gm_core.c", "gm_gearbox_edge.h", "gm_encoder_hysteresis.h",
+        "gm_job.c", "gm_ui.c", "gm_store.c", "wiring.svg", "README.md", "manifest.json",
+    } <= written  # fmt: skip
+    constants = (tmp_path / "hobber" / "gm_machine.h").read_text()
+    assert f"#define GM_ENCODER_COUNTS {1024 * 4} " in constants
+    assert f"#define GM_MOTOR_STEPS {200 * 4 * 2 * 10} " in constants
+    assert "#define GM_HOB_STARTS 1 " in constants
+    assert f"{len(written) - 1} files" in capsys.readouterr().out
 
 
 def test_cnc_folder_is_written_and_replaced(tmp_path: Path) -> None:
@@ -43,6 +43,14 @@ def test_cnc_folder_is_written_and_replaced(tmp_path: Path) -> None:
     ("arguments", "words"),
     [
         (["export", "teensy", "absent.toml", "-o", "x"], "absent.toml: cannot be read"),
+        (
+            ["export", "teensy", "hobbing_plewes.toml", "-o", "{foreign}/my gears"],
+            "the folder's name becomes the sketch's",
+        ),
+        (
+            ["export", "teensy", "{foreign}/wrong.toml", "-o", "{foreign}/x"],
+            "wrong.toml: pins: knob_b = 2: the pin is already",
+        ),
         (["export", "cnc", "-o", "{foreign}"], "holds mine.txt"),
         (["export", "cnc"], "Missing option"),
     ],
@@ -51,12 +59,16 @@ def test_bad_input_is_one_sentence_and_status_2(
     arguments: list[str], words: str, tmp_path: Path, capsys: pytest.CaptureFixture
 ) -> None:
     (tmp_path / "mine.txt").write_text("mine")
+    (tmp_path / "wrong.toml").write_text(
+        bundled("hobbing_plewes.toml").read_text().replace("[pins]", "[pins]\nknob_b = 2")
+    )
     with pytest.raises(SystemExit) as ended:
         main([argument.format(foreign=tmp_path) for argument in arguments])
     assert ended.value.code == 2
     message = capsys.readouterr().err
     assert words in message
     assert message.count("\n") == 1
+    assert {path.name for path in tmp_path.iterdir()} == {"mine.txt", "wrong.toml"}
 
 
 def test_machine_beyond_the_domain_of_the_kernels_is_refused(machine: HobbingMachine) -> None:
@@ -66,5 +78,6 @@ def test_machine_beyond_the_domain_of_the_kernels_is_refused(machine: HobbingMac
 
 
 def test_name_of_the_machine_cannot_break_the_comment(machine: HobbingMachine) -> None:
-    header = teensy_files(machine.model_copy(update={"name": "evil */ #error \\"}))["gm_machine.h"]
-    assert " * evil * / #error /\n" in header
+    header = teensy_files(machine.model_copy(update={"name": 'evil */ #error " \\'}))["gm_machine.h"]
+    assert ' * evil * / #error " /\n' in header
+    assert '#define GM_NAME "evil * / #error \' /"\n' in header

@@ -22,7 +22,7 @@ GOLDEN = Path(__file__).parents[2] / "golden"
 
 def _exports() -> dict[str, dict[str, str]]:
     machine = load_hobbing_machine(bundled("hobbing_plewes.toml"))
-    return {"teensy": teensy_files(machine), "cnc": cnc_files()}
+    return {"teensy": teensy_files(machine, "teensy"), "cnc": cnc_files()}
 
 
 @pytest.mark.parametrize("folder", ["teensy", "cnc"])

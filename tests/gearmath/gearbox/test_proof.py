@@ -1,11 +1,12 @@
-"""The proof of the step rule, and that it can fail: beyond its range, and on broken rules."""
+"""The proofs of the step rules, and that they can fail: beyond their range, and on broken rules."""
 
 import casadi as ca
 import pytest
 
+from derivations.gearbox import encoder_hysteresis, gearbox_edge
 from gearmath.errors import ComputationError
-from gearmath.gearbox.proof import prove_step_rule
-from gearmath.gearbox.train import WIDEST
+from gearmath.gearbox.proof import WIDEST, prove_edge_rule, prove_hysteresis, prove_step_rule
+from gearmath.lowering import lower
 
 
 def rule(step, following=None):
@@ -27,9 +28,9 @@ def test_exported_rule_is_proved_for_all_inputs(step_kernel):
 
 
 def test_limit_is_two_to_the_thirty_and_tight(step_kernel):
-    assert WIDEST == 2**30
+    assert WIDEST[32] == 2**30
     with pytest.raises(ComputationError, match=r"sum .* stays within 32 bits; .*steps_denominator = 1073741825"):
-        prove_step_rule(step_kernel.function, WIDEST + 1)
+        prove_step_rule(step_kernel.function, WIDEST[32] + 1)
 
 
 @pytest.mark.parametrize(
@@ -55,3 +56,68 @@ def test_operation_without_a_meaning_in_whole_numbers_is_refused():
     halved = rule(lambda x, D: ca.floor(x / D))
     with pytest.raises(ComputationError, match="no whole-number meaning"):
         prove_step_rule(halved)
+
+
+def edge_rule(steps, following):
+    """A rule with the arguments of gearbox_edge from its equations."""
+    names = ("remainder", "edge", "increment", "base_step", "steps_denominator")
+    a, d, N, q, D = symbols = [ca.SX.sym(name) for name in names]
+    s = (a + d * N >= D) - (a + d * N < 0)
+    outputs = [steps(d, q, s), following(a + d * N, s, D)]
+    return ca.Function("rule", symbols, outputs, list(names), ["edge_steps", "next_remainder"])
+
+
+def remains(x, s, D):
+    return x - s * D
+
+
+@pytest.mark.parametrize("bits", [32, 64])
+def test_exported_edge_rule_is_proved_for_any_ratio_and_several_axes(bits):
+    function = lower(gearbox_edge()).function
+    proved = prove_edge_rule(function, bits)
+    assert "a' + (steps) D = a + d (q D + N')" in proved
+    assert "|p - (N_1 e_1 + N_2 e_2 + ...)/D| <= 1/2 for every history from a_0 = floor(D/2)" in proved
+    assert sum(f"{bits} bits" in claim for claim in proved) == function.n_instructions() - function.n_out()
+
+
+@pytest.mark.parametrize("bits", [32, 64])
+def test_range_of_the_edge_rule_is_tight(bits):
+    assert WIDEST[bits] == 2 ** (bits - 2)
+    with pytest.raises(
+        ComputationError, match=rf"stays within {bits} bits; .*steps_denominator = {2 ** (bits - 2) + 1}"
+    ):
+        prove_edge_rule(lower(gearbox_edge()).function, bits, WIDEST[bits] + 1)
+
+
+@pytest.mark.parametrize(
+    ("broken", "claim"),
+    [
+        (edge_rule(lambda d, q, s: q + s, remains), "(steps) D"),  # the base step goes forward on every edge
+        (edge_rule(lambda d, q, s: d * q - s, remains), "(steps) D"),
+        (edge_rule(lambda d, q, s: d * q + s, lambda x, s, D: x - s * D + s), "(steps) D"),  # 1/D lost a step
+        (edge_rule(lambda d, q, s: d * q + s, lambda x, s, D: x), "0 <= a' < D"),  # the remainder runs away
+        (edge_rule(lambda d, q, s: 1024 * d * q * q * q * q + s, remains), "32 bits"),
+    ],
+)
+def test_broken_edge_rule_is_not_proved(broken, claim):
+    with pytest.raises(ComputationError) as caught:
+        prove_edge_rule(broken)
+    assert str(caught.value).startswith("not true: ")
+    assert claim in str(caught.value)
+
+
+def test_exported_hysteresis_is_proved():
+    proved = prove_hysteresis(lower(encoder_hysteresis()).function)
+    assert {"the play stays in 0 <= x' <= H", "x' + d' = x + d"} < set(proved)
+
+
+def test_hysteresis_that_loses_a_count_is_not_proved():
+    x, d, H = (ca.SX.sym(name) for name in ("x", "d", "H"))
+    passed = (x + d > H) - (x + d < 0)
+    names = ["play", "edge", "hysteresis"]
+    outputs = ["passed_edge", "next_play"]
+    broken = ca.Function("rule", [x, d, H], [passed, (x + d) * (passed == 0)], names, outputs)
+    with pytest.raises(ComputationError, match=r"not true: x' \+ d' = x \+ d; for .*hysteresis = "):
+        prove_hysteresis(broken)
+    with pytest.raises(ComputationError, match="hysteresis = 2147483648"):
+        prove_hysteresis(lower(encoder_hysteresis()).function, 2**31)

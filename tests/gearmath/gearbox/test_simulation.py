@@ -8,8 +8,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearmath.errors import ComputationError, InputError
-from gearmath.export.host import run_edges
-from gearmath.gearbox.simulation import FloatRule, Pattern, deviations, pattern, simulate, worst_error
+from gearmath.export.host import run_axes, run_edges
+from gearmath.gearbox.helix import JobRatio, one_term
+from gearmath.gearbox.simulation import (
+    FloatRule,
+    Pattern,
+    Trace,
+    deviations,
+    pattern,
+    simulate,
+    simulate_job,
+    worst_error,
+)
 
 
 def job(teeth: int) -> tuple[int, int]:
@@ -131,3 +141,62 @@ def test_wrong_remainder_is_noticed():
 def test_no_edges_are_refused():
     with pytest.raises(InputError, match="edges = 0"):
         run(10, "forward", 0)
+
+
+# --- any ratio ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["forward", "dither", "reversals"])
+@pytest.mark.parametrize(
+    "ratio",
+    [one_term(Fraction(125, 192)), one_term(Fraction(-20, 3)), JobRatio(25_000_128, (3_255_225, -1_451_586))],
+    ids=["slow", "fast and backwards", "helical"],
+)
+def test_rule_of_two_axes_is_never_more_than_half_a_step_off(ratio, kind):
+    result = simulate_job(run_axes, ratio, kind, 2_000_000, seed=3)
+    assert result.worst_error <= Fraction(1, 2)
+    wanted = result.encoder_position * ratio.numerators[0] + result.feed_position * ratio.numerators[1]
+    assert result.position == (2 * wanted + ratio.denominator) // (2 * ratio.denominator)
+    assert (result.feed_position != 0) == (ratio.numerators[1] != 0 and kind != "dither")
+
+
+def test_both_rules_for_one_axis_agree():
+    general = simulate_job(run_axes, one_term(Fraction(125, 192)), "reversals", 500_000, seed=4)
+    simple = simulate(run_edges, (125, 192), 96, "reversals", 500_000, seed=4)
+    assert general == simple
+
+
+def test_float_rule_falls_behind_for_ever_above_one_step_an_edge():
+    result = simulate_job(run_axes, one_term(Fraction(125, 64)), "forward", 100_000)
+    assert result.float_position == 100_000  # one step an edge at most, where 125/64 are wanted
+    assert float(result.float_worst_error) == 100_000 * 61 / 64
+
+
+@pytest.mark.parametrize("boundary", [2**16, 2**24, 2**31, 2**32])
+def test_exact_rule_passes_the_boundaries_of_the_counters(boundary):
+    ratio = one_term(Fraction(16000, 4096 * 127))
+    result = simulate_job(run_axes, ratio, "reversals", 100_000, seed=5, start=boundary - 1000)
+    assert result.worst_error <= Fraction(1, 2)
+    ends = [
+        (2 * ratio.numerators[0] * count + ratio.denominator) // (2 * ratio.denominator)
+        for count in (boundary - 1000, boundary - 1000 + result.encoder_position)
+    ]
+    assert result.position == ends[1] - ends[0]
+
+
+def test_float_rule_stops_where_its_count_does():
+    """At 2^26 counts a float32 has steps of 8 counts: the product no longer follows single edges."""
+    result = simulate_job(run_axes, one_term(Fraction(125, 192)), "forward", 100_000, start=2**26)
+    assert float(result.float_worst_error) > 2.0
+    assert result.worst_error <= Fraction(1, 2)
+
+
+def test_trace_keeps_the_worst_of_every_stretch():
+    trace = Trace(1000, stretches=10)
+    exact, loose = np.linspace(-0.5, 0.4, 1000), np.arange(1000.0)
+    for part in (slice(0, 250), slice(250, 1000)):
+        trace.add(exact[part], loose[part])
+    done, worst, float_worst = trace.arrays
+    assert done[-1] == 1000
+    assert (worst.max(), float_worst.max()) == (0.5, 999.0)
+    assert np.array_equal(float_worst, done - 1)

@@ -5,7 +5,8 @@ from fractions import Fraction
 import pytest
 
 from gearmath.errors import InputError
-from gearmath.gearbox.train import WIDEST, plan
+from gearmath.gearbox.job import WIDEST, plan_thread
+from gearmath.gearbox.train import plan
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
 from gearmath.specs.toml import bundled, parse
 
@@ -27,7 +28,7 @@ def plewes() -> HobbingMachine:
 
 
 def test_ten_teeth_on_the_first_machine_of_the_text_give_2_56():
-    job = plan(machine(decoder="1", microsteps="1"), 10)  # 1024 counts, 4000 steps
+    job = plan(machine(decoder='"ls7184_x1"', microsteps="1"), 10)  # 1024 counts, 4000 steps
     assert job.exact_pulse_ratio == Fraction("2.56")
     assert job.pulse_ratio == 2.56
     assert (job.steps_numerator, job.steps_denominator, job.first_remainder) == (25, 64, 32)
@@ -38,15 +39,27 @@ def test_ten_teeth_on_the_first_machine_of_the_text_give_2_56():
     [({}, Fraction(40960, 16000)), ({"worm": "5"}, Fraction(40960, 8000)), ({"lines": "200"}, Fraction(8000, 16000))],
 )  # fmt: skip
 def test_ratios_of_the_edited_machines_of_the_text(changes, ratio):
-    if ratio < 1:  # 16000 steps to 800 counts: the text says nothing of it, an edge would have to give two steps
-        with pytest.raises(InputError, match="2/1 motor steps per encoder count"):
-            plan(machine(**changes), 10)
-    else:
-        assert plan(machine(**changes), 10).exact_pulse_ratio == ratio
+    assert plan(machine(**changes), 10).exact_pulse_ratio == ratio
+
+
+def test_several_steps_an_edge_are_a_base_and_a_rest():
+    """16000 steps to 800 counts and 3 teeth: 20/3 steps an edge, 6 of them every time."""
+    job = plan(machine(lines="200"), 3)
+    assert Fraction(job.steps_numerator, job.steps_denominator) == Fraction(20, 3)
+    assert (job.base_steps, job.increments) == ((6, 0), (2, 0))
+    assert job.highest_rpm == pytest.approx(40000 / (16000 / 3) * 60)
+    assert not job.carried_at_every_speed
 
 
 def test_ratio_of_multi_start_hob(plewes):
     assert plan(plewes, 30, starts=3).exact_pulse_ratio == plan(plewes, 10).exact_pulse_ratio
+
+
+def test_left_hand_hob_turns_the_table_the_other_way(plewes):
+    left, right = plan(machine(hob_hand='"left"'), 30), plan(plewes, 30)
+    assert left.exact_pulse_ratio == -right.exact_pulse_ratio == -Fraction(192, 25)
+    assert left.step_rate_hz == right.step_rate_hz > 0
+    assert (left.base_steps, left.increments) == ((-1, 0), (192 - 25, 0))
 
 
 def test_rates_of_the_field_reference(plewes):
@@ -99,9 +112,9 @@ def test_blanks_of_the_source_text(plewes):
         (0, {}, ("teeth = 0", "between 1 and 999")),
         (-3, {}, ("teeth = -3", "between")),
         (1000, {}, ("teeth = 1000", "999")),
-        (3, {}, ("teeth = 3", "125/96", "nearest tooth count that can be cut is 4")),
         (10, {"starts": 0}, ("starts = 0", "between 1")),
-        (7, {"starts": 3}, ("nearest tooth count that can be cut is 12",)),  # 48000/4096 = 11.7
+        (10, {"shift": 1.2}, ("shift = 1.2", "-0.4 and 1")),
+        (10, {"pin": -1.0}, ("pin = -1", "positive")),
         (10, {"hob": "20dp"}, ("20dp", "32dp, 36dp", "m1")),
         (10, {"rpm": 0.0}, ("rpm = 0", "positive")),
         (10, {"rpm": float("nan")}, ("rpm = nan", "positive")),
@@ -116,17 +129,73 @@ def test_what_cannot_be_met_is_refused_with_the_nearest_choice(plewes, teeth, op
         assert word in str(caught.value)
 
 
-def test_ratio_too_wide_for_32_bits_is_refused_with_the_nearest_choice():
-    wide = machine(lines="999983", microsteps="1", full_steps="1", belt="1", worm="10")
-    with pytest.raises(InputError, match="32-bit arithmetic") as caught:
-        plan(wide, 997)
-    nearest = int(str(caught.value).rsplit(" ", 1)[1])
-    job = plan(wide, nearest)
-    assert job.steps_denominator <= WIDEST
-    between = range(min(nearest, 997) + 1, max(nearest, 997) + 1)
-    assert all(Fraction(10, 4 * 999983 * teeth).denominator > WIDEST for teeth in between)
+def test_steps_that_may_not_wait_are_refused_with_the_nearest_choice():
+    """800 counts, 16000 steps, lag of 2: one edge of 9 teeth would give up to 3 steps (20/9)."""
+    small = machine(lines="200", lag_steps="2")
+    with pytest.raises(
+        InputError, match=r"20/9 .* up to 3 at once, all that .*lag_steps lets wait is 2; .* cut is 10$"
+    ):
+        plan(small, 9)
+    assert plan(small, 10).base_steps == (2, 0)
+
+
+def test_more_than_64_steps_an_edge_are_beyond_the_rule():
+    """100 counts, 16000 steps: 80 steps an edge for 2 teeth, 53 1/3 for 3."""
+    with pytest.raises(InputError, match=r"80 motor steps .* up to 80 at once, the most .* is 64; .* is 3$"):
+        plan(machine(lines="25"), 2)
 
 
 def test_hopeless_drive_train_is_said_to_be_hopeless():
     with pytest.raises(InputError, match="no tooth count from 1 to 999"):
-        plan(machine(lines="1", decoder="1"), 20)
+        plan(machine(lines="1", decoder='"ls7184_x1"', lag_steps="2"), 20)
+
+
+# --- threads ------------------------------------------------------------------------------------------------------
+
+LATHE = bundled("lathe_example.toml").read_text("utf-8")
+
+
+@pytest.fixture(scope="module")
+def lathe() -> HobbingMachine:
+    return parse(LATHE, HobbingMachine, "lathe.toml")
+
+
+@pytest.mark.parametrize(
+    ("pitch", "starts", "hand", "turns"),
+    [
+        (Fraction(127, 40), 1, "right", Fraction(1)),  # 8 tpi on a screw of 8 tpi: turn for turn
+        (Fraction(127, 80), 1, "right", Fraction(1, 2)),  # 16 tpi
+        (Fraction(127, 5) / Fraction(23, 2), 1, "left", -Fraction(16, 23)),  # 11 1/2 tpi
+        (Fraction(127, 100), 1, "right", Fraction(2, 5)),  # 1.27 mm = 20 tpi: the wheel with 127 teeth
+        (Fraction(1), 1, "right", Fraction(40, 127)),
+        (Fraction(3, 2), 4, "left", -Fraction(240, 127)),
+    ],
+)
+def test_turns_of_the_lead_screw_per_turn_of_the_spindle(lathe, pitch, starts, hand, turns):
+    job = plan_thread(lathe, pitch, starts, hand, rpm=100.0)
+    assert Fraction(job.steps_numerator, job.steps_denominator) * 4000 / 4800 == turns
+    assert job.lead == starts * pitch
+    assert job.feed_numerator == 0
+
+
+def test_metric_screw_cuts_inch_threads_exactly():
+    """2 mm screw, 8 tpi: 127/80 turns; the old change wheel of 127 teeth."""
+    metric = parse(LATHE.replace('"8tpi"', '"2mm"'), HobbingMachine, "lathe.toml")
+    job = plan_thread(metric, Fraction(127, 40), rpm=100.0)
+    assert Fraction(job.steps_numerator, job.steps_denominator) * 4000 / 4800 == Fraction(127, 80)
+
+
+def test_thread_beyond_32_bits_is_refused():
+    """5987 lines and a pitch of prime numbers: D is 5987 x 127 x 999983."""
+    prime = parse(LATHE.replace("lines = 1000", "lines = 5987"), HobbingMachine, "lathe.toml")
+    assert not prime.wide
+    with pytest.raises(InputError, match=r"/760336074067 needs more than 1073741824, the limit of 32-bit arithmetic"):
+        plan_thread(prime, Fraction(999_979, 999_983))
+    assert plan_thread(prime, Fraction(999, 1000), rpm=10.0).steps_denominator < WIDEST
+
+
+def test_a_lathe_cuts_no_gear_and_a_hobbing_machine_no_thread(lathe, plewes):
+    with pytest.raises(InputError, match="lathe, give the pitch"):
+        plan(lathe, 10)
+    with pytest.raises(InputError, match="hobbing machine, give the number of teeth"):
+        plan_thread(plewes, Fraction(2))

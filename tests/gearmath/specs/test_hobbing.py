@@ -1,4 +1,4 @@
-"""The hobbing machine's file: the two machines of the source text, and what is refused."""
+"""The machine file: the machines of the source text, the lathe, and what is refused when a file is read."""
 
 from fractions import Fraction
 
@@ -8,7 +8,14 @@ from gearmath.errors import InputError
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
 from gearmath.specs.toml import bundled, parse
 
-PLEWES = bundled("hobbing_plewes.toml").read_text("utf-8")
+PLEWES, HELICAL, LATHE = (
+    bundled(name).read_text("utf-8") for name in ("hobbing_plewes.toml", "hobbing_helical.toml", "lathe_example.toml")
+)
+
+
+def changed(text: str, old: str, new: str) -> HobbingMachine:
+    assert old in text
+    return parse(text.replace(old, new, 1), HobbingMachine, "machine.toml")
 
 
 def test_bundled_machine_is_the_one_of_the_source_text():
@@ -17,12 +24,23 @@ def test_bundled_machine_is_the_one_of_the_source_text():
     assert [hob.diametral_pitch for hob in machine.hobs] == [32, 36, 48, 60, 60.8, 64, 80, 105, 126, None]
     assert machine.hobs[-1].module == 1.0
     assert machine.hobs[-1].module_mm == 1.0
+    assert (machine.profile, machine.board, machine.display.kind) == ("hobbing", "teensy32", "adafruit292")
+
+
+def test_default_pins_are_the_wiring_of_the_source_text():
+    """Knob on 2 and 3, its button on 4; LS7184 on 6 and 7; STEP 13, DIR 8; display on A4, A5, which are 18 and 19."""
+    pins = dict(load_hobbing_machine(bundled("hobbing_plewes.toml")).pins.used())
+    assert pins == {
+        "knob_a": 2, "knob_b": 3, "button": 4, "encoder_step": 6, "encoder_dir": 7, "step_out": 13, "dir_out": 8,
+        "sda": 18, "scl": 19,
+    }  # fmt: skip
 
 
 def test_second_bundled_machine_has_the_metric_hobs_of_the_second_example():
     machine = load_hobbing_machine(bundled("hobbing_metric.toml"))
     assert [hob.diametral_pitch for hob in machine.hobs][:8] == [32, 36, 48, 60, 64, 80, 105, 126]
     assert [hob.module for hob in machine.hobs][8:] == [0.5, 1.0, 1.5]
+    assert [(hob.unit, hob.size_thousandths) for hob in machine.hobs[7:9]] == [("inch", 126_000), ("mm", 500)]
 
 
 @pytest.mark.parametrize(
@@ -31,12 +49,14 @@ def test_second_bundled_machine_has_the_metric_hobs_of_the_second_example():
         ("worm = 10", "worm = 5", 4096, 8000),  # source text: "800 x 2 x 5"
         ("lines = 1024", "lines = 200", 800, 16000),  # source text: "200 x 4 = 800"
         ("microsteps = 4", "microsteps = 1", 4096, 4000),  # source text: "200 x 2 x 10 = 4000"
-        ("decoder = 4", "decoder = 1", 1024, 16000),  # MODE pin at 0
+        ('"ls7184_x4"', '"ls7184_x1"', 1024, 16000),  # MODE pin at 0
+        ('"ls7184_x4"', '"ls7184_x2"', 2048, 16000),  # MODE pin at 1
+        ('"ls7184_x4"', '"hardware"', 4096, 16000),
         ('belt = "2/1"', 'belt = "127/50"', 4096, 20320),  # 800 x 2.54 x 10, exact
     ],
 )
 def test_drive_trains_of_the_source_text(old, new, counts, steps):
-    machine = parse(PLEWES.replace(old, new), HobbingMachine, "machine.toml")
+    machine = changed(PLEWES, old, new)
     assert (machine.encoder_counts, machine.motor_steps) == (counts, steps)
 
 
@@ -46,33 +66,112 @@ def test_rationals_are_exact():
     assert machine.motor_steps == 800 * 355
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "words"),
-    [
-        ("worm = 10", 'worm = "1/3"', ("table", "1600/3", "whole number")),
-        ("worm = 10", "worm = 10.5", ("table.worm", "10.5", "fraction")),
-        ("worm = 10", "worm = true", ("table.worm", "True", "whole number")),
-        ("worm = 10", 'worm = "1/0"', ("table.worm", "1/0", "fraction")),
-        ("worm = 10", "worm = 0", ("table.worm", "0", "between")),
-        ("decoder = 4", "decoder = 3", ("encoder.decoder", "3", "1, 2 or 4")),
-        ("lines = 1024", "", ("encoder.lines", "missing")),
-        ("lines = 1024", "lines = 1024\nwires = 2", ("encoder.wires", "2", "known")),
-        ("hob_starts = 1", "hob_starts = 0", ("hob_starts", "0", "1")),
-        ("module = 1.0", "module = nan", ("hobs.9.module", "nan", "finite")),
-        ("module = 1.0", "module = 1.0\ndiametral_pitch = 32.0", ("hobs.9", "exactly one")),
-        ("module = 1.0", "", ("hobs.9", "exactly one")),
-        ('"2.25m"', '"2.25/P"', ("hobs.9", "2.25/P", "2.25m")),
-        ('"2.25m"', '"2m"', ("hobs.9.depth_rule", "2m", "2.157/P")),
-        ("= 36.0", "= 32.0", ("32dp", "more than once")),
-        ("hob_rpm = 800.0", "hob_rpm = -1.0", ("limits.hob_rpm", "-1", "0")),
-    ],
-)
-def test_bad_input_is_refused_in_one_sentence(old, new, words):
-    assert old in PLEWES
+def test_lathe_has_its_screw_exactly():
+    machine = load_hobbing_machine(bundled("lathe_example.toml"))
+    assert machine.lead_screw_pitch == Fraction(127, 40)  # 25.4 mm / 8
+    assert (machine.encoder_counts, machine.motor_steps, machine.limits.hob_rpm) == (4000, 4800, 1000.0)
+    assert changed(LATHE, '"8tpi"', '"1.25mm"').lead_screw_pitch == Fraction(5, 4)
+    assert changed(LATHE, '"8tpi"', '"23/2tpi"').lead_screw_pitch == Fraction(254, 115)
+
+
+def test_numbers_for_the_firmware():
+    machine = load_hobbing_machine(bundled("hobbing_plewes.toml"))
+    assert (machine.tick_ns, machine.timing_ticks) == (5000, (2, 2, 2, 2))
+    assert (machine.step_active_low, machine.dir_active_low, machine.enable_active_low) == (False, False, False)
+    assert machine.max_edge_rate == 54_614  # 800/60 x 4096 = 54613.3
+    assert (machine.max_step_rate, machine.move_max_rate) == (40_000, 2000)
+    faster = changed(PLEWES, '"teensy32"', '"teensy41"')
+    assert (faster.tick_ns, faster.timing_ticks) == (2000, (5, 5, 5, 5))
+
+
+def test_two_axes_or_a_fine_screw_need_64_bits():
+    assert not load_hobbing_machine(bundled("hobbing_plewes.toml")).wide  # 999 x 4096 is far below 2^30
+    assert not changed(PLEWES, "lines = 1024", "lines = 1875").wide
+    helical = load_hobbing_machine(bundled("hobbing_helical.toml"))
+    assert helical.wide
+    assert (helical.feed_counts, helical.feed_climbs) == (1000, True)
+    assert not load_hobbing_machine(bundled("lathe_example.toml")).wide
+    assert changed(LATHE, '"8tpi"', '"999983/99991mm"').wide
+
+
+BAD = [
+    (PLEWES, "worm = 10", 'worm = "1/3"', ("table", "1600/3", "whole number")),
+    (PLEWES, "worm = 10", "worm = 10.5", ("table.worm", "10.5", "fraction")),
+    (PLEWES, "worm = 10", "worm = true", ("table.worm", "True", "whole number")),
+    (PLEWES, "worm = 10", 'worm = "1/0"', ("table.worm", "1/0", "fraction")),
+    (PLEWES, "worm = 10", 'worm = "1000003/999983"', ("table.worm", "1000000")),
+    (PLEWES, "worm = 10", "worm = 0", ("table.worm", "0", "between")),
+    (PLEWES, "worm = 10", "worm = 9999", ("table", "15998400", "10000000")),
+    (PLEWES, 'decoder = "ls7184_x4"', "", ("encoder.decoder", "missing")),
+    (PLEWES, '"ls7184_x4"', '"ls7184_x3"', ("encoder.decoder", "ls7184_x3", "'hardware'")),
+    (PLEWES, '"ls7184_x4"', '"ls7184_x4"\nhysteresis = 17', ("encoder.hysteresis", "17", "16")),
+    (PLEWES, "lines = 1024", "", ("encoder.lines", "missing")),
+    (PLEWES, "lines = 1024", "lines = 0", ("encoder.lines", "0", "1")),
+    (PLEWES, "lines = 1024", "lines = 1024\nwires = 2", ("encoder.wires", "2", "known")),
+    (PLEWES, "lines = 1024", "lines = 10001", ("encoder.lines = 10001", "40004", "at most 10000 lines")),
+    (PLEWES, "lines = 1024", "lines = 2000", ("limits.hob_rpm = 800", "106667", "100000", "at most 750 rpm")),
+    (PLEWES, 'worm = 10\n', 'worm = 10\n[feed]\ncounts_per_mm = 0.5\ncounts_up = "climb"\n', ("feed.counts_per_mm",)),
+    (PLEWES, 'worm = 10\n', 'worm = 10\n[feed]\ncounts_per_mm = 5\ncounts_up = "climb"\n', ("pins.feed_step",)),
+    (PLEWES, "[pins]", "[pins]\nfeed_step = 9\nfeed_dir = 10", ("pins.feed_step", "[feed]")),
+    (PLEWES, "hob_starts = 1", "hob_starts = 0", ("hob_starts", "0", "1")),
+    (PLEWES, "module = 1.0", "module = nan", ("hobs.9.module", "nan", "finite")),
+    (PLEWES, "module = 1.0", "module = 1.0\ndiametral_pitch = 32.0", ("hobs.9", "exactly one")),
+    (PLEWES, "module = 1.0", "", ("hobs.9", "exactly one")),
+    (PLEWES, "module = 1.0", "module = 1.0001", ("hobs.9", "1.0001", "three decimals")),
+    (PLEWES, "module = 1.0", "module = 1.0\ndiameter = 4.0", ("hobs.9", "diameter = 4", "five modules")),
+    (PLEWES, '"2.25m"', '"2.25/P"', ("hobs.9", "2.25/P", "2.25m")),
+    (PLEWES, '"2.25m"', '"2m"', ("hobs.9.depth_rule", "2m", "2.157/P")),
+    (PLEWES, "= 36.0", "= 32.0", ("32dp", "more than once")),
+    (PLEWES, "hob_rpm = 800.0", "hob_rpm = -1.0", ("limits.hob_rpm", "-1", "0")),
+    (PLEWES, "step_rate_hz = 40000.0", "step_rate_hz = 50001.0", ("step_rate_hz = 50001", "unsure", "at most 50000")),
+    (PLEWES, 'name = "unsure"', 'name = "tb6560"', ("step_rate_hz = 40000", "tb6560", "at most 3333")),
+    (PLEWES, "acceleration_hz_per_s = 8000.0", "acceleration_hz_per_s = 199.0", ("199", "10 s", "at least 200")),
+    (PLEWES, "acceleration_hz_per_s = 8000.0", "", ("limits.acceleration_hz_per_s", "missing")),
+    (PLEWES, "lag_steps = 100", "lag_steps = 0", ("limits.lag_steps", "0", "1")),
+    (PLEWES, "lag_steps = 100", "lag_steps = 100\nmove_rate_hz = 45000.0", ("move_rate_hz = 45000", "step_rate_hz")),
+    (PLEWES, 'name = "unsure"', 'name = "m541"', ("driver", "m541", "known are", "m542")),
+    (PLEWES, 'name = "unsure"\n', "", ("driver", "name of a driver", "step_high_ns")),
+    (PLEWES, '"open_collector"', '"inverted"', ("driver.output", "inverted", "open_collector")),
+    (PLEWES, "[pins]", "[pins]\nindex = 13", ("pins", "index = 13", "already that of step_out")),
+    (PLEWES, "[pins]", "[pins]\nestop = 18", ("estop = 18", "sda")),
+    (PLEWES, "[pins]", "[pins]\nestop = 34", ("pins.estop = 34", "teensy32", "0 to 33")),
+    (PLEWES, "[pins]", "[pins]\nsda = 16", ("pins.sda", "16", "18")),
+    (PLEWES, "[pins]", "[pins]\nbutton = -1", ("pins.button", "-1", "0")),
+    (PLEWES, '"teensy32"', '"teensy35"', ("board", "teensy35", "teensy41")),
+    (PLEWES, '"adafruit292"', '"adafruit292"\naddress = 0x39', ("display", "0x39", "0x20 to 0x27")),
+    (PLEWES, 'board = "teensy32"', 'board = "teensy32"\nprofile = "lathe"', ("lead_screw",)),
+    (HELICAL, "counts_per_mm = 1000", "counts_per_mm = 0", ("feed.counts_per_mm", "0", "between")),
+    (HELICAL, 'counts_up = "climb"', "", ("feed.counts_up", "missing")),
+    (LATHE, '"8tpi"', '"8 threads"', ("lead_screw.pitch", "8 threads", "23/2tpi")),
+    (LATHE, '"8tpi"', '"0tpi"', ("lead_screw.pitch", "0tpi")),
+    (LATHE, '"8tpi"', '"3/0mm"', ("lead_screw.pitch", "3/0mm")),
+    (LATHE, '"8tpi"', '"101mm"', ("lead_screw.pitch", "100 mm")),
+    (LATHE, "[pins]", "[pins]\nfeed_dir = 20", ("pins.feed_dir", "[feed]")),
+    (LATHE, 'profile = "lathe"', 'profile = "lathe"\nhob_hand = "left"', ("hob_hand", "lathe")),
+    (LATHE, 'profile = "lathe"\n', "", ("profile = 'hobbing'", "[table]")),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "old", "new", "words"), BAD)
+def test_bad_input_is_refused_in_one_sentence(text, old, new, words):
     with pytest.raises(InputError) as caught:
-        parse(PLEWES.replace(old, new, 1), HobbingMachine, "machine.toml")
+        changed(text, old, new)
     message = str(caught.value)
     assert message.startswith("machine.toml: ")
     assert "\n" not in message
     for word in words:
         assert word in message
+
+
+@pytest.mark.parametrize(
+    "name", ['say \\"hello\\"', "back\\\\slash", "end */ here", "what??/", "Größe", "line\\nbreak", "a`b", "", " pad"]
+)
+def test_free_text_that_would_break_c_is_refused(name):
+    with pytest.raises(InputError, match="name"):
+        changed(PLEWES, "Hobbing machine of Digital Machinist 15-4", name)
+
+
+def test_an_opto_coupler_between_transistor_and_motor_leaves_the_pin_active_high():
+    """The source text writes STEP high, waits, writes it low, through a 2N2222 that pulls the input down."""
+    assert not load_hobbing_machine(bundled("hobbing_plewes.toml")).step_active_low
+    assert changed(PLEWES, '"open_collector"', '"direct"').step_active_low

@@ -1,0 +1,91 @@
+"""What ``gearmath gearbox`` prints for people: the plan of a job, and what a simulation found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gearmath.gearbox.job import Job, ThreadPlan
+from gearmath.gearbox.simulation import Simulation
+from gearmath.gearbox.train import GearboxPlan, HobbedBlank
+from gearmath.specs.ratio import EXACT_INCH, INCH
+
+
+def plan_text(job: Job) -> str:
+    """The plan of a gear or of a thread."""
+    if isinstance(job, ThreadPlan):
+        rows = [*_thread(job), *_rates(job, "spindle")]
+    else:
+        assert isinstance(job, GearboxPlan)
+        rows = [*_gear(job), *_rates(job, "hob"), *(row for blank in job.blanks for row in _blank(blank))]
+    return "\n".join(rows)
+
+
+def simulation_text(result: Simulation, job: Job) -> str:
+    """What became of the compiled rule and of the floating one."""
+    feed = f" and {job.feed_numerator}/{job.steps_denominator} of the feed" if job.feed_numerator else ""
+    moved = f" and the feed at {result.feed_position}" if job.feed_numerator else ""
+    return "\n".join([
+        f"{result.edges} edges, {result.pattern}, {job.steps_numerator}/{job.steps_denominator} steps per count{feed}; "
+        f"the hob ends at count {result.encoder_position}{moved}",
+        f"  compiled integer rule    worst error {float(result.worst_error):10.4f} steps, "
+        f"exactly {result.worst_error}; the table ends at step {result.position}",
+        f"  float32 rule             worst error {float(result.float_worst_error):10.4f} steps; "
+        f"the table ends at step {result.float_position}",
+    ])  # fmt: skip
+
+
+def _rates(job: Job, what: str) -> Iterator[str]:
+    most = f"({job.highest_rpm:.1f} rpm at most)"
+    yield f"  {what:7s}{job.rpm:9.1f} rpm   {job.hob_rpm_percent:5.1f} % of the limit {most}"
+    yield f"  edges  {job.edge_rate_hz:9.0f} Hz    {job.edge_rate_percent:5.1f} % of the limit"
+    yield f"  steps  {job.step_rate_hz:9.0f} Hz    {job.step_rate_percent:5.1f} % of the limit"
+    if not job.carried_at_every_speed and not isinstance(job, ThreadPlan):
+        yield f"  the firmware refuses this job while limits.hob_rpm is more than {int(job.highest_rpm)}"
+
+
+def _thread(job: ThreadPlan) -> Iterator[str]:
+    tpi = EXACT_INCH / job.pitch
+    yield f"{job.machine}: {job.hand}-hand thread of {float(job.pitch):.6g} mm ({float(tpi):.6g} tpi)"
+    if job.starts > 1:
+        yield f"  {job.starts} starts, lead {float(job.lead):.6g} mm"
+    yield f"  R = {job.exact_pulse_ratio} = {job.pulse_ratio:.9g} encoder counts per motor step"
+
+
+def _gear(job: GearboxPlan) -> Iterator[str]:
+    shift = f", profile shift {job.profile_shift:g}" if job.profile_shift else ""
+    yield f"{job.machine}: {job.teeth} teeth{shift}, {job.hob_starts}-start {job.hob_hand}-hand hob"
+    yield f"  R = {job.exact_pulse_ratio} = {job.pulse_ratio:.9g} encoder counts per motor step"
+    if job.helix is None:
+        return
+    helix = job.helix
+    yield f"  helix {helix.helix_deg:g} deg {helix.hand} hand, lead {helix.lead:.4f} mm, {helix.cut} cut"
+    if helix.feed_mm is None:
+        yield f"  feed {job.feed_numerator}/{job.steps_denominator} motor steps per count of the feed encoder"
+    else:
+        yield f"  feed {helix.feed_mm:g} mm per turn of the table, to be kept: its ratio is in R"
+    yield (
+        f"  rounding the lead costs {helix.error_steps:.1e} steps over {helix.travel:g} mm "
+        f"({helix.error_bound_steps:.1e} at most)"
+    )
+
+
+def _blank(blank: HobbedBlank) -> Iterator[str]:
+    yield f"  {blank.hob}"
+    yield f"    blank diameter {_length(blank.blank_diameter)}"
+    yield f"    depth of cut   {_length(blank.cut_depth)}  ({blank.depth_rule})"
+    if blank.swivel is not None:
+        turn = "counter-clockwise" if blank.swivel.swivel > 0 else "clockwise"
+        yield (
+            f"    hob swivel     {abs(blank.swivel.swivel):9.3f} deg {turn}, seen from the hob towards the work "
+            f"(lead angle {blank.swivel.lead_angle:.3f} deg)"
+        )
+    if blank.span is not None:
+        needs = f", face width over {blank.span.face_width:.2f} mm" if blank.span.face_width else ""
+        yield f"    span           {_length(blank.span.length)}  over {blank.span.teeth} teeth{needs}"
+    yield f"    chord          {_length(blank.chord.thickness)}  at {blank.chord.height:.4f} mm below the tip"
+    if blank.over_pins is not None:
+        yield f"    over pins      {_length(blank.over_pins.length)}  of {blank.over_pins.pin:.4g} mm"
+
+
+def _length(value: float) -> str:
+    return f"{value:9.4f} mm {value / INCH:8.4f} in"

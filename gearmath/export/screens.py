@@ -1,0 +1,131 @@
+"""What the pages of the firmware's display mean: the chapters of the README about display and faults.
+
+The labels are those of ``firmware/gm_screen.c``; a test compares them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gearmath.export.markdown import paragraph, table
+from gearmath.specs.hobbing import HobbingMachine
+
+Row = tuple[str, str]
+
+_JOB_OF_A_GEAR: tuple[Row, ...] = (
+    ("Teeth", "teeth of the gear; turning fast counts by 5 and by 25"),
+    ("Steps", "first number of the exact ratio in lowest terms: so many motor steps ..."),
+    ("Edges", "... for so many counts of the hob encoder"),
+    ("Hob", "diametral pitch (DP) or module (m) of the hob, and its number in the list of the machine file"),
+    ("Blank", "outside diameter of the blank, in inch for a DP hob, in mm for a module hob"),
+    ("Depth", "whole depth of the cut by the rule that stands in the last line"),
+    ("Hob starts", "starts and hand of the hob"),
+    ("Right hand, Left hand", "helix angle of the gear on its pitch cylinder"),
+    ("Lead", "length in which the helix turns once; irrational, kept to 1/100 step over 500 mm of feed"),
+)
+_FED: tuple[Row, ...] = (("Feed", "of a helical gear: axial feed per turn of the table, to be kept constant"),)
+_JOB_OF_A_THREAD: tuple[Row, ...] = (
+    ("Pitch", "pitch of the thread in mm, or threads per inch (tpi); exact, an inch being 127/5 mm"),
+    ("Feed/turn", "feed of the carriage per turn of the spindle"),
+    ("Thread starts", "starts of the thread; its lead is the pitch times the starts"),
+    ("Steps", "first number of the exact ratio in lowest terms: so many motor steps ..."),
+    ("Edges", "... for so many counts of the spindle encoder"),
+)
+_RUN_OF_A_GEAR: tuple[Row, ...] = (
+    ("Hob max", "highest speed of the hob for this job: its own limit, or what the motor's steps allow"),
+    ("Hob", "its speed now, in turns per minute"),
+    ("Table", "its speed now (first page), its angle since the start of the job (second page)"),
+    ("Lag", "motor steps that wait; 0 or 1 is usual"),
+    ("Hob turns", "since the start of the job (second page)"),
+    ("Tooth", "the tooth under the hob, counted from the start (second page)"),
+)
+_RUN_OF_A_THREAD: tuple[Row, ...] = (
+    ("Right, Left, Feed", "first line: hand and pitch of the thread, or the feed"),
+    ("Max speed", "highest speed of the spindle for this job: its own limit, or what the motor's steps allow"),
+    ("Spindle", "its speed now, in turns per minute"),
+    ("Thread start", "number of the start that is cut"),
+    ("Lag", "motor steps that wait; 0 or 1 is usual"),
+    ("Turns", "of the spindle since the start of the job (second page)"),
+    ("Place", "travel of the carriage since the start of the job (second page)"),
+)
+_CHECKS: tuple[Row, ...] = (("Steps", "motor steps since the start of the job (third page)"),)
+_OTHERS: tuple[Row, ...] = (
+    ("Jog by", "what one detent moves, once a press has armed the knob"),
+    ("Moved", "sum of the detents since then"),
+    ("Counted, Wanted", "encoder counts of the test, and what one turn must give"),
+    ("Turn", "motor steps of the one-turn test"),
+)
+_DIVIDE: tuple[Row, ...] = (
+    ("Divide by", "divisions of a full turn; where the table stands becomes 0"),
+    ("Go to", "division that a press moves to; each is rounded by itself, so that nothing adds up"),
+    ("Angle", "angle of that division"),
+)
+
+
+def screens(machine: HobbingMachine) -> Iterator[str]:
+    """The chapter about the display."""
+    yield "## Using it"
+    yield ""
+    yield from paragraph(
+        "Turn the knob to choose or to change, press to go on, hold for a second to go back or to the menu. While it "
+        "runs, turning shows three pages and a press asks `Stop?`; nothing there changes the ratio. The motor moves "
+        "only after `Start?` yes, `run on`, an armed jog, a press on `go`, or the one-turn test. A press stops a move."
+    )
+    yield from paragraph(
+        "After power-up the last job is offered again, but not its phase: that is lost, and a start must be confirmed. "
+        "After `Stop?` the phase is kept, and `run on` waits until both are in mesh again."
+    )
+    yield "### What every number means"
+    yield ""
+    yield from table(("label", "meaning"), _quoted(_rows(machine)))
+
+
+def _rows(machine: HobbingMachine) -> Iterator[Row]:
+    lathe = machine.profile == "lathe"
+    yield from _JOB_OF_A_THREAD if lathe else _JOB_OF_A_GEAR
+    if not lathe and machine.feed is None:
+        yield from _FED
+    yield from _RUN_OF_A_THREAD if lathe else _RUN_OF_A_GEAR
+    if machine.pins.index is not None:
+        yield ("Checked", "turns in which the index pulse has confirmed the count (third page)")
+    yield from _CHECKS
+    if machine.feed is not None:
+        yield ("Feed", "axial feed since the start of the job (third page)")
+    yield from _OTHERS
+    if not lathe:
+        yield from _DIVIDE
+
+
+def faults(machine: HobbingMachine) -> Iterator[str]:
+    """The chapter about faults."""
+    leading = "spindle" if machine.profile == "lathe" else "hob"
+    yield "## Faults"
+    yield ""
+    yield from paragraph(
+        "A fault stops the motor and loses the phase. It stays on the display until its cause is gone and the button "
+        "is held."
+    )
+    if machine.pins.healthy is None:
+        yield from paragraph(f"**This machine has no fail-safe output: stop the {leading} yourself, at once.**")
+    yield from table(("page", "meaning"), _quoted(_faults(machine, leading)))
+
+
+def _faults(machine: HobbingMachine, leading: str) -> Iterator[Row]:
+    limits = machine.limits
+    if machine.pins.estop is not None:
+        yield ("EMERGENCY STOP", "its contact is open, or its wire is broken")
+    yield (
+        "FAULT table lags",
+        f"more than {limits.lag_steps} steps waited: the motor cannot keep up with the {leading}",
+    )
+    yield ("FAULT hob too fast", f"more than {machine.max_edge_rate} encoder counts per second: {limits.hob_rpm:g} rpm")
+    yield ("FAULT hob turned", f"the {leading} turned during a jog or an index move")
+    if machine.pins.index is not None:
+        yield (
+            "FAULT hob encoder",
+            "a turn was `off by` so many counts, too many (+) or too few (-): cable, noise, coupling, output pulse",
+        )
+
+
+def _quoted(rows: Iterator[Row]) -> Iterator[Row]:
+    return ((", ".join(f"`{word}`" for word in label.split(", ")), text) for label, text in rows)

@@ -1,0 +1,161 @@
+"""The ratio of a job: steps per count of hob and feed, as whole numbers over one denominator.
+
+The hob's term is exact. The lead of a helix is irrational: the term of the feed is rounded, so that over a travel of
+500 mm the table is never more than 1/100 step away from the true helix. The firmware does the same in integers.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+from gearmath.errors import InputError
+from gearmath.gearbox.kernels import evaluate, expression, precise
+from gearmath.specs.hobbing import Hand, HobbingMachine
+
+#: Travel [mm] over which the error of the rounded term stays within 1/PART step; GM_HELIX_... of the firmware.
+TRAVEL, PART = 500, 100
+STEEPEST = 60.0  # degrees
+SIGNS: dict[str, int] = {"right": 1, "left": -1, "climb": 1, "conventional": -1}
+
+Cut = Literal["climb", "conventional"]
+
+
+@dataclass(frozen=True)
+class JobRatio:
+    """p = (N_hob e_hob + N_feed e_feed) / D, rounded to the nearest whole step; numerators carry their signs."""
+
+    denominator: int
+    numerators: tuple[int, int]
+
+    @property
+    def base(self) -> tuple[int, int]:
+        """q of (7.8): whole steps that every edge of the axis gives, rounded down."""
+        hob, feed = self.numerators
+        return hob // self.denominator, feed // self.denominator
+
+    @property
+    def increment(self) -> tuple[int, int]:
+        """N' of (7.8): the rest, 0 <= N' < D."""
+        hob, feed = self.numerators
+        return hob % self.denominator, feed % self.denominator
+
+    @property
+    def first_remainder(self) -> int:
+        """a_0 of (7.4)."""
+        return int(evaluate("gearbox_start", self.denominator)[0])
+
+    @property
+    def steps_per_edge(self) -> int:
+        """The most steps that one edge can give."""
+        return max(-(-abs(numerator) // self.denominator) for numerator in self.numerators)
+
+
+@dataclass(frozen=True)
+class Helix:
+    """A helix to be cut: angle [degrees], hand, and how. ``feed`` [mm per table turn] only without a feed encoder."""
+
+    angle: float
+    hand: Hand = "right"
+    cut: Cut = "climb"
+    feed: Fraction | None = None
+
+    @property
+    def beta(self) -> float:
+        """Helix angle [rad]."""
+        return math.radians(self.angle)
+
+    @property
+    def sign(self) -> int:
+        """s_β: +1 right-hand."""
+        return SIGNS[self.hand]
+
+
+def one_term(ratio: Fraction) -> JobRatio:
+    """A job that the hob (or the spindle) alone leads."""
+    return JobRatio(ratio.denominator, (ratio.numerator, 0))
+
+
+def two_terms(hob: Fraction, feed: Fraction, feed_counts: Fraction) -> JobRatio:
+    """The least multiple of the hob's denominator that keeps the bound of this module, and the feed rounded to it.
+
+    ``feed`` is κ_z to many digits, ``feed_counts`` are the counts per mm.
+    """
+    counts = math.ceil(TRAVEL * PART * feed_counts)
+    denominator = hob.denominator * (counts // 2 // hob.denominator + 1)
+    size = math.floor(abs(feed) * denominator + Fraction(1, 2))
+    return JobRatio(denominator, (int(hob * denominator), size if feed > 0 else -size))
+
+
+def convergent(value: Fraction, needed: int) -> Fraction:
+    """The first convergent p/q of a continued fraction that is known to be within 1/``needed`` of ``value``.
+
+    Known from |value - p/q| <= 1/(q q'), where q' is the next denominator; the firmware chooses in the same way.
+    """
+    before, now, rest = (0, 1), (1, 0), value
+    while True:
+        whole, rest = divmod(rest, 1)
+        before, now = now, (int(whole) * now[0] + before[0], int(whole) * now[1] + before[1])
+        if rest == 0:
+            return Fraction(*now)
+        rest = 1 / rest
+        if now[1] * (math.floor(rest) * now[1] + before[1]) > needed:
+            return Fraction(*now)
+
+
+@dataclass(frozen=True)
+class Rounding:
+    """What rounding an irrational ratio costs [steps] over TRAVEL: the bound that is promised, and what it is."""
+
+    bound: float
+    error: float
+
+
+def helical_ratio(
+    machine: HobbingMachine, teeth: int, starts: int, module: float, helix: Helix
+) -> tuple[JobRatio, Rounding]:
+    """The ratio of a helical gear, and what its rounding costs.
+
+    Raises InputError where the angle is none, or where a feed must be given or must not.
+    """
+    if not 0.0 < helix.angle <= STEEPEST:
+        raise InputError(f"helix = {helix.angle:g}: must be more than 0 and at most {STEEPEST:g} degrees")
+    if machine.feed is None:
+        return _fed(machine, teeth, starts, module, helix)
+    if helix.feed is not None:
+        raise InputError(f"feed = {float(helix.feed):g}: {machine.name} has an encoder on the feed, leave it out")
+    hob = hob_ratio(machine, teeth, starts)
+    counts_up = 1 if machine.feed_climbs else -1
+    counts = float(machine.feed_counts)
+    exact = precise("feed_ratio", counts_up, helix.sign, teeth, module, helix.beta, machine.motor_steps, counts)
+    ratio = two_terms(hob, exact, machine.feed_counts)
+    (bound,) = evaluate("feed_error", counts, TRAVEL, ratio.denominator)
+    rounded = Fraction(ratio.numerators[1], ratio.denominator)
+    return ratio, Rounding(bound, float(abs(exact - rounded) * machine.feed_counts * TRAVEL))
+
+
+def hob_ratio(machine: HobbingMachine, teeth: int, starts: int) -> Fraction:
+    """κ_h, motor steps per count of the hob, exactly; negative for a left-hand hob."""
+    train = (SIGNS[machine.hob_hand], teeth, starts, machine.encoder_counts, machine.motor_steps)
+    return expression("hob_ratio").exact(*train)[0]
+
+
+def _fed(machine: HobbingMachine, teeth: int, starts: int, module: float, helix: Helix) -> tuple[JobRatio, Rounding]:
+    """A helix without an encoder on the feed: one term, right for one feed and one direction of it."""
+    if helix.feed is None:
+        raise InputError(
+            f"helix = {helix.angle:g}: {machine.name} has no encoder on the feed, so the feed per turn of the table "
+            "must be given and kept"
+        )
+    if not Fraction(1, 1000) <= helix.feed < 10:
+        raise InputError(f"feed = {float(helix.feed):g}: must lie between 0.001 and 10 mm per turn of the table")
+    exact = precise(
+        "fed_ratio", SIGNS[machine.hob_hand], helix.sign, SIGNS[helix.cut], teeth, starts, module, helix.beta,
+        float(helix.feed), machine.encoder_counts, machine.motor_steps,
+    )  # fmt: skip
+    counts = Fraction(TRAVEL * teeth * machine.encoder_counts) / helix.feed
+    found = convergent(abs(exact), math.ceil(2 * PART * counts))
+    rounding = Rounding(1 / (2 * PART * starts), float(abs(abs(exact) - found) * counts / starts))
+    return one_term(found if exact > 0 else -found), rounding

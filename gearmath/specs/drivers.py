@@ -1,0 +1,116 @@
+"""Step motor drivers: the four times a driver asks for, by name or in nanoseconds, and the levels it takes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import astuple, dataclass
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from gearmath.specs.toml import Spec
+
+
+@dataclass(frozen=True)
+class StepTiming:
+    """Shortest times of a driver [ns]: step pulse, pause after it, DIR before the pulse and after it.
+
+    ``confirmed`` says that a publication of the maker or of LinuxCNC states these figures; the others are cautious.
+    """
+
+    step_high: int
+    step_low: int
+    dir_setup: int
+    dir_hold: int
+    confirmed: bool = True
+
+    def ticks(self, tick_ns: int) -> tuple[int, int, int, int]:
+        """The four times in whole ticks of the step timer, rounded up, at least one each."""
+        return tuple(max(1, math.ceil(time / tick_ns)) for time in astuple(self)[:4])  # type: ignore[return-value]
+
+    def highest_rate(self, tick_ns: int) -> int:
+        """Steps per second at most: a pulse and a pause, each in whole ticks."""
+        high, low, _, _ = self.ticks(tick_ns)
+        return 1_000_000_000 // ((high + low) * tick_ns)
+
+
+#: Published in LinuxCNC's tables of step timing and stepconf, unless marked.
+DRIVERS = {
+    "gecko201": StepTiming(500, 4000, 1000, 20_000),
+    "gecko210": StepTiming(500, 4000, 1000, 20_000),
+    "gecko212": StepTiming(500, 4000, 1000, 20_000),
+    "gecko202": StepTiming(500, 4500, 1000, 20_000),
+    "gecko201x": StepTiming(500, 3000, 1000, 20_000),
+    "gecko203v": StepTiming(1000, 2000, 200, 200),
+    # 1000, 2000, 200, 200 before LinuxCNC's issue #577: too short for the 3.3 V of a Teensy
+    "gecko_g540": StepTiming(5000, 5000, 10_000, 10_000),
+    "m542": StepTiming(1500, 1500, 5000, 8000),
+    "dm556": StepTiming(2500, 2500, 5000, 10_000),
+    "dm422": StepTiming(7500, 7500, 5000, 20_000),
+    "dm860t": StepTiming(5000, 5000, 5000, 5000),
+    "a4988": StepTiming(1000, 1000, 200, 200),
+    "drv8825": StepTiming(1900, 1900, 650, 650),
+    "xylotex_8s3": StepTiming(2000, 1000, 200, 200),
+    "keling_4030": StepTiming(5000, 5000, 20_000, 20_000),
+    "sherline": StepTiming(22_000, 22_000, 100_000, 100_000),
+    "tb6560": StepTiming(150_000, 150_000, 150_000, 150_000),
+    "tmc2208": StepTiming(100, 100, 20, 20),
+    "tmc2209": StepTiming(100, 100, 20, 20),
+    # 3 us and more are in use, one board needed 30 us
+    "tb6600": StepTiming(10_000, 10_000, 10_000, 10_000, confirmed=False),
+    "unsure": StepTiming(10_000, 10_000, 10_000, 10_000, confirmed=False),
+}
+
+Level = Literal["high", "low"]
+
+
+class Driver(Spec):
+    """Driver of the step motor: its times by name or all four in nanoseconds, and the levels at its own inputs.
+
+    ``output`` is what stands between board and driver; an open-collector transistor inverts every level. A driver with
+    opto-couplers fed from +5 V is active where its input is pulled low.
+    """
+
+    name: str | None = None
+    step_high_ns: int | None = Field(default=None, ge=0, le=1_000_000)
+    step_low_ns: int | None = Field(default=None, ge=0, le=1_000_000)
+    dir_setup_ns: int | None = Field(default=None, ge=0, le=1_000_000)
+    dir_hold_ns: int | None = Field(default=None, ge=0, le=1_000_000)
+    output: Literal["open_collector", "direct"]
+    step_active: Level
+    dir_active: Level = "low"
+    enable_active: Level = "low"
+    invert_direction: bool = False
+
+    @model_validator(mode="after")
+    def _one_timing(self) -> Driver:
+        times = self._times
+        if self.name is None and None in times.values():
+            raise ValueError(f"the name of a driver, or all of {', '.join(times)} must be given")
+        if self.name is not None:
+            if self.name not in DRIVERS:
+                raise ValueError(
+                    f"name = {self.name!r}: no such driver is known; known are {', '.join(DRIVERS)}; "
+                    f"any other is given by {', '.join(times)}"
+                )
+            given = [key for key, time in times.items() if time is not None]
+            if given:
+                raise ValueError(f"name = {self.name!r} and {given[0]} both state times, use one of them")
+        return self
+
+    @property
+    def _times(self) -> dict[str, int | None]:
+        keys = ("step_high_ns", "step_low_ns", "dir_setup_ns", "dir_hold_ns")
+        return {key: getattr(self, key) for key in keys}
+
+    @property
+    def timing(self) -> StepTiming:
+        """The four times [ns]."""
+        if self.name is not None:
+            return DRIVERS[self.name]
+        step_high, step_low, dir_setup, dir_hold = (time or 0 for time in self._times.values())
+        return StepTiming(step_high, step_low, dir_setup, dir_hold)
+
+    def pin_active_low(self, level: Level) -> bool:
+        """Whether the pin of the board is low where the driver's input has its active ``level``."""
+        return (level == "low") != (self.output == "open_collector")

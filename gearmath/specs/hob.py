@@ -1,0 +1,81 @@
+"""One hob: its size, the rule for the depth of its teeth, its diameter.
+
+Lengths of diametral-pitch hobs are converted here: P teeth per inch of diameter is the module 25.4/P mm.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from gearmath.specs.ratio import INCH
+from gearmath.specs.toml import Spec
+
+#: depth rule -> (whole depth in modules, depth added in mm). P rules are for hobs in diametral pitch, m for module.
+DEPTH_RULES = {
+    "2.25/P": (2.25, 0.0),
+    "2.157/P": (2.157, 0.0),
+    "2.2/P+0.002in": (2.2, 0.002 * INCH),
+    "2.25m": (2.25, 0.0),
+}
+
+
+class Hob(Spec):
+    """One hob: its diametral pitch [1/in] or its module [mm], and the rule for the whole depth of its teeth."""
+
+    diametral_pitch: float | None = Field(default=None, ge=1.0, le=254.0)
+    module: float | None = Field(default=None, ge=0.1, le=25.0)
+    depth_rule: Literal["2.25/P", "2.157/P", "2.2/P+0.002in", "2.25m"]
+    diameter: float | None = Field(default=None, gt=0.0, le=500.0)
+    """Reference diameter [mm], where the lead angle is taken; only the swivel angle needs it."""
+    pressure_angle: float = Field(default=20.0, ge=10.0, le=30.0)
+    """Normal pressure angle [degrees]."""
+
+    @model_validator(mode="after")
+    def _one_size(self) -> Hob:
+        if (self.diametral_pitch is None) == (self.module is None):
+            raise ValueError("a hob needs exactly one of diametral_pitch and module")
+        if self.depth_rule.endswith("m") != (self.module is not None):
+            fitting = [rule for rule in DEPTH_RULES if rule.endswith("m") != self.depth_rule.endswith("m")]
+            raise ValueError(f"depth_rule {self.depth_rule!r} does not fit this hob, use one of {', '.join(fitting)}")
+        if abs(self._size * 1000 - self.size_thousandths) > 1e-6:
+            raise ValueError(f"size {self._size:g}: more than the three decimals that the display keeps")
+        if self.diameter is not None and self.diameter <= 5.0 * self.module_mm:
+            raise ValueError(f"diameter = {self.diameter:g}: must be more than five modules of {self.module_mm:g} mm")
+        return self
+
+    @property
+    def _size(self) -> float:
+        return self.diametral_pitch if self.diametral_pitch is not None else float(self.module or 0.0)
+
+    @property
+    def name(self) -> str:
+        """What people call it: 32dp, or m0.5."""
+        return f"{self.diametral_pitch:g}dp" if self.diametral_pitch is not None else f"m{self.module:g}"
+
+    @property
+    def unit(self) -> Literal["inch", "mm"]:
+        """In which unit its gears are shown."""
+        return "inch" if self.diametral_pitch is not None else "mm"
+
+    @property
+    def size_thousandths(self) -> int:
+        """Diametral pitch or module, times 1000: a whole number."""
+        return round(self._size * 1000)
+
+    @property
+    def module_mm(self) -> float:
+        """Normal module [mm]."""
+        return INCH / self.diametral_pitch if self.diametral_pitch is not None else float(self.module or 0.0)
+
+    @property
+    def alpha(self) -> float:
+        """Normal pressure angle [rad]."""
+        return math.radians(self.pressure_angle)
+
+    @property
+    def depth_terms(self) -> tuple[float, float]:
+        """Whole depth in modules, and the depth added to it [mm]."""
+        return DEPTH_RULES[self.depth_rule]

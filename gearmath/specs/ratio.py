@@ -1,0 +1,59 @@
+"""Exact numbers in files: fractions in quotes, and pitches in mm or threads per inch."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+from typing import Annotated
+
+from pydantic import BeforeValidator, InstanceOf
+
+INCH = 25.4  # mm
+#: The same, exactly.
+EXACT_INCH = Fraction(127, 5)
+
+#: Largest numerator and denominator of a fraction in a file: products of a few of them stay within 63 bits.
+LARGEST = 1_000_000
+
+_PITCH = re.compile(r"\s*(\d+(?:\.\d+|/\d+)?)\s*(mm|tpi)\s*\Z")
+
+
+def _rational(value: object) -> Fraction:
+    """A whole number, or text like "5/2". A decimal number is refused: 0.1 is no exact ratio in binary."""
+    if isinstance(value, bool) or not isinstance(value, int | str):
+        raise ValueError('must be a whole number, or a fraction in quotes such as "5/2"')
+    try:
+        ratio = Fraction(value)
+    except (ValueError, ZeroDivisionError):
+        raise ValueError('must be a whole number, or a fraction in quotes such as "5/2"') from None
+    if not Fraction(1, 1000) <= ratio <= 10_000:
+        raise ValueError("must lie between 1/1000 and 10000")
+    return _small(ratio)
+
+
+def pitch(value: object) -> Fraction:
+    """Pitch [mm] of text such as "2mm", "1.25mm", "8tpi" or "23/2tpi", exactly; an inch is 127/5 mm.
+
+    Raises ValueError where it is none, or outside 1/100 to 100 mm.
+    """
+    match = _PITCH.match(value) if isinstance(value, str) else None
+    try:
+        number = Fraction(match[1]) if match else Fraction(0)
+    except ZeroDivisionError:
+        number = Fraction(0)
+    if match is None or number == 0:
+        raise ValueError('must be a pitch such as "2mm", "1.25mm", "8tpi" or "23/2tpi"')
+    length = number if match[2] == "mm" else EXACT_INCH / number
+    if not Fraction(1, 100) <= length <= 100:
+        raise ValueError("must lie between 0.01 mm and 100 mm")
+    return _small(length)
+
+
+def _small(ratio: Fraction) -> Fraction:
+    if max(ratio.numerator, ratio.denominator) > LARGEST:
+        raise ValueError(f"numerator and denominator must not exceed {LARGEST}")
+    return ratio
+
+
+Rational = Annotated[InstanceOf[Fraction], BeforeValidator(_rational)]
+Pitch = Annotated[InstanceOf[Fraction], BeforeValidator(pitch)]

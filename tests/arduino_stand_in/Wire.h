@@ -1,0 +1,15 @@
+/* Stand-in; signatures of WireIMXRT.h and WireKinetis.h of Teensyduino's Wire. */
+#ifndef TwoWire_h
+#define TwoWire_h
+
+#include <stdint.h>
+
+class TwoWire {
+ public:
+  void begin();
+  void setClock(uint32_t frequency);
+};
+
+extern TwoWire Wire;
+
+#endif

@@ -1,0 +1,77 @@
+/* A board in memory: pins, EEPROM, display, clock, interrupts. The tests turn its encoders and read its pins. */
+#include "stand_in.h"
+
+#include "Adafruit_LiquidCrystal.h"
+#include "EEPROM.h"
+#include "Encoder.h"
+#include "LiquidCrystal_I2C.h"
+
+stand_in_board stand_in;
+TwoWire Wire;
+EEPROMClass EEPROM;
+
+extern "C" {
+void pinMode(uint8_t pin, uint8_t mode) { stand_in.mode[pin] = mode; }
+uint8_t digitalReadFast(uint8_t pin) { return stand_in.level[pin]; }
+void digitalWriteFast(uint8_t pin, uint8_t val) { stand_in.level[pin] = val; }
+void attachInterrupt(uint8_t pin, void (*function)(void), int mode) {
+  stand_in.handler[pin] = function;
+  stand_in.edge[pin] = mode;
+}
+uint32_t millis(void) { return stand_in.now_ms; }
+void stand_in_mask(int masked) { stand_in.masked = masked; }
+void stand_in_priority(int irq, uint8_t priority) {
+  stand_in.priority_of_pins = priority;
+  stand_in.last_irq = irq;
+}
+}
+
+bool IntervalTimer::begin(void (*funct)(void), unsigned int microseconds) {
+  stand_in.tick = funct;
+  stand_in.tick_us = microseconds;
+  return true;
+}
+void IntervalTimer::priority(uint8_t n) { stand_in.priority_of_timer = n; }
+
+void TwoWire::begin() {}
+void TwoWire::setClock(uint32_t frequency) { stand_in.i2c_clock = frequency; }
+
+uint8_t EEPROMClass::read(int idx) { return stand_in.eeprom[idx]; }
+void EEPROMClass::update(int idx, uint8_t val) {
+  stand_in.eeprom[idx] = val;
+  ++stand_in.eeprom_writes;
+}
+
+Encoder::Encoder(uint8_t pin1, uint8_t) : pin_(pin1) {}
+int32_t Encoder::read() { return stand_in.count[pin_]; }
+
+static void lcd_start() {
+  for (int k = 0; k < 80; ++k) {
+    stand_in.lcd[k] = ' ';
+  }
+}
+static size_t lcd_put(uint8_t value) {
+  stand_in.lcd[stand_in.lcd_row * 20 + stand_in.lcd_column] = (char)value;
+  ++stand_in.lcd_column; /* on the glass, the next one after a line's end is another line: the sketch must say so */
+  ++stand_in.lcd_writes;
+  return 1;
+}
+static void lcd_goto(uint8_t col, uint8_t row) {
+  stand_in.lcd_column = col;
+  stand_in.lcd_row = row;
+}
+
+Adafruit_LiquidCrystal::Adafruit_LiquidCrystal(uint8_t, TwoWire *) {}
+bool Adafruit_LiquidCrystal::begin(uint8_t, uint8_t, uint8_t) {
+  lcd_start();
+  return true;
+}
+void Adafruit_LiquidCrystal::setBacklight(uint8_t) {}
+void Adafruit_LiquidCrystal::setCursor(uint8_t col, uint8_t row) { lcd_goto(col, row); }
+size_t Adafruit_LiquidCrystal::write(uint8_t value) { return lcd_put(value); }
+
+LiquidCrystal_I2C::LiquidCrystal_I2C(uint8_t, uint8_t, uint8_t) {}
+void LiquidCrystal_I2C::init() { lcd_start(); }
+void LiquidCrystal_I2C::backlight() {}
+void LiquidCrystal_I2C::setCursor(uint8_t col, uint8_t row) { lcd_goto(col, row); }
+size_t LiquidCrystal_I2C::write(uint8_t value) { return lcd_put(value); }

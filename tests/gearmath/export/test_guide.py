@@ -1,0 +1,104 @@
+"""The generated README: it says what this machine is, what its display shows, and nothing breaks it."""
+
+from __future__ import annotations
+
+import re
+from fnmatch import fnmatch
+from importlib import resources
+
+import pytest
+
+from gearmath.export.guide import guide
+from gearmath.export.markdown import escaped
+from gearmath.export.teensy import teensy_files
+from gearmath.export.wiring import wiring_svg
+from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
+from gearmath.specs.toml import bundled
+
+MACHINES = ("hobbing_plewes", "hobbing_metric", "hobbing_helical", "lathe_example")
+
+
+def machine(name: str) -> HobbingMachine:
+    return load_hobbing_machine(bundled(f"{name}.toml"))
+
+
+def screen() -> str:
+    folder = resources.files("gearmath") / "export" / "firmware"
+    return "".join((folder / name).read_text("utf-8") for name in ("gm_screen.c", "gm_draw.c", "gm_ui.c"))
+
+
+def test_every_file_of_the_folder_is_explained() -> None:
+    text = guide(machine("hobbing_plewes"), "gearbox")
+    listed = re.findall(r"`([\w.*]+)`", text[: text.index("## Flashing")])
+    for name in (*teensy_files(machine("hobbing_plewes"), "gearbox"), "manifest.json"):
+        assert name == "README.md" or any(fnmatch(name, pattern) for pattern in listed), name
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_pin_table_is_that_of_the_machine(name: str) -> None:
+    given = machine(name)
+    rows = re.findall(r"^\| (\d+) \| `(\w+)` \|", guide(given, "gearbox"), flags=re.MULTILINE)
+    assert {(key, int(number)) for number, key in rows} == set(given.pins.used())
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_label_and_page_that_is_explained_exists_on_the_display(name: str) -> None:
+    text = guide(machine(name), "gearbox")
+    explained = re.findall(r"`([^`]+)`", text[text.index("## Commissioning") :])
+    for label in explained:
+        assert label in screen() or label == "invert_direction", label
+
+
+def test_every_number_on_the_display_is_explained() -> None:
+    texts = "".join(guide(machine(name), "gearbox") for name in MACHINES)
+    calls = re.findall(r"gm_(?:quantity|count|length|rpm|pitch)\(ui, [^,]+, ([^;]*?)\);", screen())
+    labels = {label for call in calls for label in re.findall(r'"([A-Z][^"]+)"', call)}
+    assert len(labels) > 20
+    explain_themselves = {"RUNS", "Set limit", "Cable? off by"}
+    assert {label for label in labels if f"`{label}`" not in texts} <= explain_themselves
+
+
+@pytest.mark.parametrize("decoder", ["ls7184_x1", "ls7184_x2", "ls7184_x4"])
+def test_mode_jumper_is_that_of_the_data_sheet_and_of_the_source_text(decoder: str) -> None:
+    """Shorting pin 2 of the terminal to ground (pin 3) is x1, to 5 V (pin 1) x2, leaving it open x4."""
+    base = machine("hobbing_plewes")
+    text = guide(base.model_copy(update={"encoder": base.encoder.model_copy(update={"decoder": decoder})}), "gearbox")
+    (jumper,) = re.findall(r"\*\*MODE, pin 6 of the LS7184N:\s(.*?)\*\*", text, flags=re.DOTALL)
+    sought = {"ls7184_x1": "pins 2 and 3", "ls7184_x2": "pins 1 and 2", "ls7184_x4": "no jumper"}[decoder]
+    assert sought in " ".join(jumper.split())
+    assert f"{1024 * int(decoder[-1])} counts per turn" in text
+
+
+def test_output_pulse_of_the_decoder_leaves_room_for_the_next_edge() -> None:
+    # 800 rpm x 4096 counts = 54613.3 edges/s, half of the mean distance of 18.3 us
+    assert "must stay below 9155 ns" in " ".join(guide(machine("hobbing_plewes"), "gearbox").split())
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_part_of_the_drawing_is_in_the_list_of_parts(name: str) -> None:
+    text, svg = guide(machine(name), "gearbox"), wiring_svg(machine(name))
+    drawn = set(re.findall(r"\b(T\d|R\d|RB\d|C\d|K1|LS7184N|74LVC245|BSS138|LM7805)\b", svg))
+    parts = text[text.index("## Parts") : text.index("## Wiring")]
+    assert {part for part in drawn if part not in parts} == set()
+
+
+def test_driver_gets_at_least_the_times_it_asks_for() -> None:
+    rows = re.findall(r"\| (\d+) ns \| (\d+) ns \|", guide(machine("hobbing_helical"), "gearbox"))
+    assert [int(asked) for asked, _ in rows] == [2500, 2500, 5000, 10_000]  # dm556 in LinuxCNC's table
+    assert all(int(given) >= int(asked) for asked, given in rows)
+
+
+@pytest.mark.parametrize("name", ["# x | `y` *z* <b>&", "a\n\n# second", "[link](http://x)", "back\\slash_under_"])
+def test_free_text_means_nothing_to_markdown(name: str) -> None:
+    text = guide(machine("hobbing_plewes").model_copy(update={"name": name}), "gearbox")
+    assert text.count("\n# ") == 0
+    (title,) = re.findall(r"^# Electronic gearbox: (.*)$", text, flags=re.MULTILINE)
+    assert title == escaped(name)
+    assert not re.search(r"(?<!\\)[`*_\[\]|#<]", title)
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_tables_have_the_cells_of_their_heads(name: str) -> None:
+    for block in re.findall(r"(?:^\|.*\n)+", guide(machine(name), "gearbox"), flags=re.MULTILINE):
+        cells = {len(re.findall(r"(?<!\\)\|", line)) for line in block.splitlines()}
+        assert len(cells) == 1, block

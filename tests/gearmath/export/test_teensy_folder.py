@@ -1,0 +1,426 @@
+"""The exported sketch folder: it compiles and links for every board, calls only what exists, and runs.
+
+The Arduino API is the stand-in of ``tests/arduino_stand_in``, whose signatures are those of the Teensy cores.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from elftools.elf.elffile import ELFFile
+
+from gearmath.errors import InputError
+from gearmath.export.teensy import export_teensy, teensy_files
+from gearmath.specs.drive import Feed
+from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
+from gearmath.specs.toml import bundled
+
+STAND_IN = Path(__file__).parents[2] / "arduino_stand_in"
+MACHINES = ("hobbing_plewes", "hobbing_metric", "hobbing_helical", "lathe_example")
+STRICT = ("-Wall", "-Wextra", "-Werror", "-O1")
+#: What the Teensy 3.x cores add: no literal of the firmware may lose by it.
+SINGLE = "-fsingle-precision-constant"
+CXX = ("-std=c++17", "-fno-exceptions", "-fno-rtti")
+#: board -> what Teensyduino defines, then the processor for GCC and for zig
+BOARDS = {
+    "teensy32": (("-DARDUINO_TEENSY32", "-D__MK20DX256__"), ("-mcpu=cortex-m4",), "cortex_m4"),
+    "teensy40": (("-DARDUINO_TEENSY40", "-D__IMXRT1062__"), ("-mcpu=cortex-m7",), "cortex_m7"),
+    "teensy41": (("-DARDUINO_TEENSY41", "-D__IMXRT1062__"), ("-mcpu=cortex-m7",), "cortex_m7"),
+}
+_FLOATING = re.compile(r"__aeabi_(?:c?[df]\w+|[iul]{1,2}2[df])|__[a-z]+[sd]f[0-9a-z]*")
+
+
+def machine(name: str) -> HobbingMachine:
+    return load_hobbing_machine(bundled(f"{name}.toml"))
+
+
+def with_pins(base: HobbingMachine, **pins: int) -> HobbingMachine:
+    return base.model_copy(update={"pins": base.pins.model_copy(update=pins)})
+
+
+def variants() -> Iterator[HobbingMachine]:
+    """Every optional wire with and without, on every board, with both displays and both decoders."""
+    boards = tuple(itertools.product(BOARDS, ("adafruit292", "pcf8574"), ("ls7184_x4", "hardware")))
+    wires = tuple(itertools.product((False, True), repeat=5))
+    for chosen, board in zip(wires, itertools.cycle(boards), strict=False):
+        yield _variant(machine("hobbing_plewes"), board, chosen)
+    for board in boards:
+        yield _variant(machine("hobbing_metric"), board, (True,) * 5)
+
+
+def _variant(base: HobbingMachine, board: tuple[str, str, str], wires: tuple[bool, ...]) -> HobbingMachine:
+    feed, index, estop, healthy, enable = wires
+    pins = dict(
+        [("feed_step", 9), ("feed_dir", 10)] * feed + [("index", 11)] * index + [("estop", 12)] * estop
+        + [("healthy", 14)] * healthy + [("enable", 15)] * enable
+    )  # fmt: skip
+    changed = with_pins(base, **pins)
+    update = {
+        "board": board[0],
+        "display": base.display.model_copy(update={"kind": board[1]}),
+        "encoder": base.encoder.model_copy(update={"decoder": board[2]}),
+        "feed": Feed(counts_per_mm=200, counts_up="climb") if feed else None,
+    }
+    return changed.model_copy(update=update)
+
+
+def write(files: dict[str, str], folder: Path) -> Path:
+    """The folder, with a file that does what the Arduino tools do with a sketch."""
+    folder.mkdir(exist_ok=True)
+    for name, text in files.items():
+        (folder / name).write_text(text, "utf-8")
+    (sketch,) = (name for name in files if name.endswith(".ino"))
+    (folder / "sketch.cpp").write_text(f'#include <Arduino.h>\n#include "{sketch}"\n')
+    return folder
+
+
+def run(folder: Path, *command: str) -> None:
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, f"{' '.join(command)}\n{done.stderr}"
+
+
+def c_files(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.glob("*.c"))
+
+
+def code_of(text: str) -> str:
+    """C without its comments, its strings and the names of its headers."""
+    return re.sub(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\])*"|<[^>\n]*>', " ", text, flags=re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def arm() -> str:
+    if shutil.which("arm-none-eabi-gcc") is None or shutil.which("arm-none-eabi-g++") is None:
+        pytest.skip("needs arm-none-eabi-gcc")
+    return "arm-none-eabi-"
+
+
+@pytest.mark.slow
+def test_every_variant_compiles_for_its_board(tmp_path: Path, arm: str) -> None:
+    for changed in variants():
+        defines, processor, _ = BOARDS[changed.board]
+        folder = write(teensy_files(changed), tmp_path / "gearbox")
+        run(folder, f"{arm}gcc", *processor, "-mthumb", "-std=c99", *STRICT, SINGLE, "-fsyntax-only", *c_files(folder))
+        flags = (*processor, "-mthumb", *CXX, *STRICT, SINGLE, *defines, f"-I{STAND_IN}")
+        run(folder, f"{arm}g++", *flags, "-fsyntax-only", "sketch.cpp")
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_bundled_machine_links_without_any_floating_call(name: str, tmp_path: Path, arm: str) -> None:
+    given = machine(name)
+    defines, processor, _ = BOARDS[given.board]
+    folder = write(teensy_files(given), tmp_path / "gearbox")
+    common = (*processor, "-mthumb", "-mfloat-abi=soft", "-Os", "-Wall", "-Wextra", "-Werror", SINGLE)
+    run(folder, f"{arm}gcc", *common, "-std=c99", "-c", *c_files(folder))
+    ours = ("stand_in.cpp", "main.cpp")
+    sources = ["sketch.cpp", *(str(STAND_IN / source) for source in ours)]
+    run(folder, f"{arm}g++", *common, *CXX, *defines, f"-I{STAND_IN}", "-c", *sources)
+    objects = sorted(path.name for path in folder.glob("*.o"))
+    run(folder, f"{arm}gcc", *processor, "-mthumb", "--specs=nosys.specs", *objects, "-o", "sketch.elf")
+    with (folder / "sketch.elf").open("rb") as stream:
+        names = {symbol.name for symbol in ELFFile(stream).get_section_by_name(".symtab").iter_symbols()}
+    assert {"gm_core_tick", "gm_ui_event", "main"} <= names
+    assert [symbol for symbol in names if _FLOATING.fullmatch(symbol)] == []
+
+
+def test_the_search_for_floating_calls_finds_them() -> None:
+    for symbol in (
+        "__aeabi_dmul",
+        "__aeabi_fadd",
+        "__aeabi_i2d",
+        "__aeabi_ul2f",
+        "__aeabi_cdcmple",
+        "__muldf3",
+        "__floatsisf",
+    ):
+        assert _FLOATING.fullmatch(symbol), symbol
+    for symbol in ("__aeabi_ldivmod", "__aeabi_idiv0", "__aeabi_uldivmod", "__aeabi_memset"):
+        assert not _FLOATING.fullmatch(symbol), symbol
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_clang_accepts_the_folder_for_its_processor(name: str, tmp_path: Path) -> None:
+    given = machine(name)
+    defines, _, processor = BOARDS[given.board]
+    folder = write(teensy_files(given), tmp_path / "gearbox")
+    zig = (sys.executable, "-m", "ziglang")
+    common = (
+        "-target", "thumb-freestanding-eabi", f"-mcpu={processor}", "-mfloat-abi=soft", "-ffreestanding", *STRICT,
+        "-isystem", str(STAND_IN / "freestanding"), "-c",
+    )  # fmt: skip
+    for source in c_files(folder):
+        run(folder, *zig, "cc", *common, "-std=c99", source, "-o", "one.o")
+    run(folder, *zig, "c++", *common, *CXX, *defines, f"-I{STAND_IN}", "sketch.cpp", "-o", "sketch.o")
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_firmware_holds_no_floating_constant_and_no_floating_type(name: str) -> None:
+    for file, text in teensy_files(machine(name)).items():
+        if not file.endswith((".c", ".h", ".ino")):
+            continue
+        code = code_of(text)
+        assert not re.search(r"(?<![\w.])\d+\.|\.\d|(?<![\w.])\d+[eE][+-]?\d|\b(?:float|double)\b", code), file
+    # and the search finds one
+    assert re.search(r"(?<![\w.])\d+\.|\.\d", "x = 1.5;")
+
+
+def test_interrupts_and_the_run_loop_wait_for_nothing() -> None:
+    files = teensy_files(machine("hobbing_helical"))
+    for file in ("gearbox.ino", "gm_core.c"):
+        assert not re.search(r"\bdelay|while \(!|for \(;;\)|while \(1\)", code_of(files[file])), file
+
+
+def test_wrong_board_is_refused_by_the_compiler(tmp_path: Path, arm: str) -> None:
+    folder = write(teensy_files(machine("hobbing_plewes")), tmp_path / "gearbox")
+    defines, processor, _ = BOARDS["teensy41"]
+    command = [f"{arm}g++", *processor, "-mthumb", *CXX, *defines, "-fsyntax-only", f"-I{STAND_IN}", "sketch.cpp"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert done.returncode != 0
+    assert "this machine has a Teensy 3.2: choose it under Tools, Board" in done.stderr
+
+
+# --- the folder ---------------------------------------------------------------------------------------------------
+def test_sketch_carries_the_name_of_its_folder(tmp_path: Path) -> None:
+    names = export_teensy(machine("hobbing_plewes"), tmp_path / "Hobber-2")
+    assert [name for name in names if name.endswith(".ino")] == ["Hobber-2.ino"]
+    assert {path.name for path in (tmp_path / "Hobber-2").iterdir()} == {*names, "manifest.json"}
+
+
+@pytest.mark.parametrize("name", ["my gears", "-x", ".hidden", "Zahnräder", "a" * 64, "a;b"])
+def test_folder_that_cannot_be_a_sketch_is_refused_and_not_made(name: str, tmp_path: Path) -> None:
+    with pytest.raises(
+        InputError, match=r"the folder's name becomes the sketch's name, which takes 1 to 63 plain letters"
+    ):
+        export_teensy(machine("hobbing_plewes"), tmp_path / name)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_numbers_of_the_machine_stand_in_the_header(name: str) -> None:
+    given = machine(name)
+    text = teensy_files(given)["gm_machine.h"]
+    macros = {key: int(value) for key, value in re.findall(r"^#define (GM_\w+) (-?\d+)", text, flags=re.MULTILINE)}
+    assert macros["GM_ENCODER_COUNTS"] == given.encoder.lines * 4
+    for key, number in given.pins.used():
+        assert macros[f"GM_PIN_{key.upper()}"] == number
+    assert macros["GM_HOBS"] == len(given.hobs) == text.count("  {GM_")
+    if given.profile == "lathe":
+        # 4800 steps a turn of a screw of 8 threads per inch
+        assert Fraction(macros["GM_SCREW_STEPS_NUM"], macros["GM_SCREW_STEPS_DEN"]) == 4800 * 8 / Fraction("25.4")
+    else:
+        assert macros["GM_MOTOR_STEPS"] == 200 * 4 * 2 * 10
+    # driver times in whole ticks, never shorter than asked for
+    asked = given.driver.timing
+    for ticks, time in zip(
+        ("STEP_HIGH", "STEP_LOW", "DIR_SETUP", "DIR_HOLD"),
+        (asked.step_high, asked.step_low, asked.dir_setup, asked.dir_hold),
+        strict=True,
+    ):
+        given_ns = macros[f"GM_{ticks}_TICKS"] * macros["GM_TICK_NS"]
+        assert time <= given_ns < time + macros["GM_TICK_NS"]
+
+
+def test_open_collector_inverts_the_level_at_the_pin() -> None:
+    base = machine("hobbing_plewes")
+    for output, active, low in (("open_collector", "low", 0), ("open_collector", "high", 1), ("direct", "low", 1)):
+        driver = base.driver.model_copy(update={"output": output, "step_active": active})
+        text = teensy_files(base.model_copy(update={"driver": driver}))["gm_machine.h"]
+        assert f"#define GM_STEP_ACTIVE_LOW {low} " in text
+
+
+# --- the sketch at work, on this computer -------------------------------------------------------------------------
+class Board:
+    """One board in memory, in the hands of an operator."""
+
+    def __init__(self, library: Path, eeprom: bytes = b"") -> None:
+        self.board = ctypes.CDLL(str(library))
+        self.board.board_position.restype = ctypes.c_long
+        self.board.board_bad_pulses.restype = ctypes.c_long
+        self.board.board_power_up(eeprom, ctypes.c_long(len(eeprom)))
+        self.wait(500)
+
+    def wait(self, ms: int) -> None:
+        self.board.board_pass(ctypes.c_long(ms))
+
+    def press(self, ms: int = 100) -> None:
+        self.board.board_press(ctypes.c_long(ms))
+
+    def knob(self, detents: int) -> None:
+        self.board.board_knob(detents)
+
+    def hob(self, edges: int, forward: bool = True, ticks: int = 4) -> None:
+        self.board.board_hob(ctypes.c_long(edges), int(forward), ctypes.c_long(ticks))
+
+    def display(self) -> list[str]:
+        text = ctypes.create_string_buffer(80)
+        self.board.board_display(text)
+        letters = text.raw.decode("ascii")
+        return [letters[row * 20 : row * 20 + 20].rstrip() for row in range(4)]
+
+    def eeprom(self) -> bytes:
+        copy = ctypes.create_string_buffer(4284)
+        self.board.board_eeprom(copy)
+        return copy.raw
+
+    def start(self) -> None:
+        """From power-up through the pages of the job to "Start?" yes."""
+        for _ in range(12):
+            if self.display()[3].startswith("Start?"):
+                break
+            self.press()
+        self.knob(1)
+        assert self.display()[3] == "Start?    no  >yes<"
+        self.press()
+
+
+@pytest.fixture(scope="module")
+def power_up(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Board]:
+    """``power_up(machine, eeprom)``: a board with that machine's sketch, compiled for this computer."""
+    if shutil.which("g++") is None or shutil.which("gcc") is None:
+        pytest.skip("needs g++")
+    built: dict[str, Path] = {}
+
+    def make(given: HobbingMachine, eeprom: bytes = b"") -> Board:
+        key = given.model_dump_json()
+        if key not in built:
+            built[key] = _build(given, tmp_path_factory.mktemp("sketch"))
+        fresh = tmp_path_factory.mktemp("power") / "board.so"  # another file is another memory
+        shutil.copy(built[key], fresh)
+        return Board(fresh, eeprom)
+
+    return make
+
+
+def _build(given: HobbingMachine, place: Path) -> Path:
+    folder = write(teensy_files(given), place / "gearbox")
+    defines = BOARDS[given.board][0]
+    common = ("-O1", "-fPIC", "-Wall", "-Wextra", "-Werror")
+    run(folder, "gcc", *common, "-std=c99", "-c", *c_files(folder))
+    sources = ("sketch.cpp", str(STAND_IN / "stand_in.cpp"), str(STAND_IN / "board.cpp"))
+    run(folder, "g++", *common, *CXX, *defines, f"-I{STAND_IN}", "-I.", "-c", *sources)
+    run(folder, "gcc", "-shared", *sorted(path.name for path in folder.glob("*.o")), "-o", "board.so")
+    return folder / "board.so"
+
+
+def test_motor_follows_the_hob_through_the_pins(power_up: Callable[..., Board]) -> None:
+    board = power_up(machine("hobbing_plewes"))
+    board.start()
+    assert board.display()[3].startswith("Lag")
+    steps_per_edge = Fraction(16000, 24 * 4096)  # the job of a first power-up: 24 teeth
+    turned = 0
+    for edges, forward in ((40960, True), (5000, False), (1, False), (12345, True)):
+        board.hob(edges, forward)
+        board.wait(2)
+        turned += edges if forward else -edges
+        assert abs(board.board.board_position() - turned * steps_per_edge) <= Fraction(1, 2)
+    assert board.board.board_bad_pulses() == 0
+
+
+def test_channels_of_the_boards_own_decoder_follow_too(power_up: Callable[..., Board]) -> None:
+    base = machine("hobbing_plewes")
+    board = power_up(base.model_copy(update={"encoder": base.encoder.model_copy(update={"decoder": "hardware"})}))
+    board.start()
+    board.hob(12000, ticks=5)
+    board.hob(500, forward=False, ticks=5)
+    board.wait(2)
+    assert board.board.board_position() == round(11500 * Fraction(16000, 24 * 4096))
+
+
+def test_feed_counts_turn_the_table_forward_in_a_conventional_cut(power_up: Callable[..., Board]) -> None:
+    """Right-hand helix, right-hand hob: T = (k/z) H / (1 - f/L), so travel in the conventional direction adds."""
+    given = machine("hobbing_helical")
+    board = power_up(given)
+    for _ in range(12):
+        if board.display()[0].startswith("Helix none"):
+            break
+        board.press()
+    board.knob(8)
+    assert board.display()[0].startswith("Right hand"), board.display()
+    board.start()
+    up = int(not given.feed_climbs)
+    board.board.board_feed(ctypes.c_long(2000), up, ctypes.c_long(50))
+    board.wait(5)
+    assert board.board.board_position() > 0
+    board.board.board_feed(ctypes.c_long(2000), 1 - up, ctypes.c_long(50))
+    board.wait(5)
+    assert board.board.board_position() == 0
+
+
+def test_edges_and_ticks_have_one_priority(power_up: Callable[..., Board]) -> None:
+    for name in ("hobbing_plewes", "hobbing_helical"):
+        board, given = power_up(machine(name)), machine(name)
+        assert board.board.board_priority(0) == board.board.board_priority(1) == 16
+        assert board.board.board_tick_us() * 1000 == given.tick_ns
+        for pin in (given.pins.step_out, given.pins.dir_out):
+            assert board.board.board_mode(pin) == 1  # OUTPUT
+        assert board.board.board_mode(given.pins.button) == 2  # INPUT_PULLUP
+
+
+def test_display_is_written_only_where_its_text_changed(power_up: Callable[..., Board]) -> None:
+    board = power_up(machine("hobbing_plewes"))
+    assert board.display() == ["No stored job", " 24 teeth      32 DP", "PHASE IS LOST", "Press: check the job"]
+    written = board.board.board_writes()
+    assert written == sum(not letter.isspace() for row in board.display() for letter in row)
+    board.wait(2000)
+    assert board.board.board_writes() == written
+
+
+def test_confirmed_job_comes_back_after_power_off_and_its_phase_does_not(power_up: Callable[..., Board]) -> None:
+    first = power_up(machine("hobbing_plewes"))
+    first.press()
+    first.knob(7)
+    first.start()
+    first.wait(1500)
+    assert first.board.board_eeprom_writes() == 40
+    again = power_up(machine("hobbing_plewes"), first.eeprom())
+    assert again.display() == ["Last job restored", " 31 teeth      32 DP", "PHASE IS LOST", "Press: check the job"]
+    again.hob(4096)
+    again.wait(10)
+    assert again.board.board_position() == 0  # nothing moves before a confirmation
+
+
+def test_nothing_is_written_to_the_eeprom_while_the_hob_turns(power_up: Callable[..., Board]) -> None:
+    board = power_up(machine("lathe_example"))
+    for _ in range(40):  # the spindle runs already when the job is confirmed
+        board.hob(40, ticks=10)
+        board.wait(30)
+    board.start()
+    before = board.board.board_eeprom_writes()
+    for _ in range(50):
+        board.hob(40, ticks=10)
+        board.wait(30)
+    assert board.board.board_eeprom_writes() == before
+
+
+def test_open_emergency_stop_ends_on_the_fault_page_and_lets_the_relay_go(power_up: Callable[..., Board]) -> None:
+    given = machine("hobbing_helical")
+    board = power_up(given)
+    assert board.board.board_level(given.pins.healthy) == 1
+    board.start()
+    board.board.board_estop(1)
+    board.wait(500)
+    assert board.display()[0] == "EMERGENCY STOP"
+    assert board.board.board_level(given.pins.healthy) == 0
+    still = board.board.board_position()
+    board.hob(4096, ticks=20)
+    assert board.board.board_position() == still
+
+
+def test_button_bounces_and_long_presses_are_told_apart(power_up: Callable[..., Board]) -> None:
+    board = power_up(machine("hobbing_plewes"))
+    shown = board.display()
+    board.press(5)  # a bounce
+    assert board.display() == shown
+    board.press(100)
+    assert board.display()[0].startswith("Teeth")
+    board.press(1500)  # a long press: back to the menu
+    assert board.display()[0] == "Menu"
