@@ -24,13 +24,18 @@ class StepTiming:
     dir_hold: int
     confirmed: bool = True
 
-    def ticks(self, tick_ns: int) -> tuple[int, int, int, int]:
-        """The four times in whole ticks of the step timer, rounded up, at least one each."""
-        return tuple(max(1, math.ceil(time / tick_ns)) for time in astuple(self)[:4])  # type: ignore[return-value]
+    def ticks(self, tick_ns: int, jitter_ns: int) -> tuple[int, int, int, int]:
+        """The four times in whole ticks of the step timer, rounded up, at least one each.
 
-    def highest_rate(self, tick_ns: int) -> int:
+        A tick may come late by ``jitter_ns``, which shortens what it should have begun; the cautious figures of
+        unconfirmed drivers hold this already.
+        """
+        late = jitter_ns if self.confirmed else 0
+        return tuple(max(1, math.ceil((time + late) / tick_ns)) for time in astuple(self)[:4])  # type: ignore[return-value]
+
+    def highest_rate(self, tick_ns: int, jitter_ns: int) -> int:
         """Steps per second at most: a pulse and a pause, each in whole ticks."""
-        high, low, _, _ = self.ticks(tick_ns)
+        high, low, _, _ = self.ticks(tick_ns, jitter_ns)
         return 1_000_000_000 // ((high + low) * tick_ns)
 
 

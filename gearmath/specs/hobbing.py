@@ -48,7 +48,7 @@ class Limits(Spec):
     step_rate_hz: float = Field(ge=10.0, le=1e6)
     move_rate_hz: float | None = Field(default=None, ge=10.0, le=1e6)
     """Of a jog or an index move; 2000, or the step rate where that is less, if not given."""
-    acceleration_hz_per_s: float = Field(gt=0.0, le=1e7)
+    acceleration_hz_per_s: float = Field(ge=1.0, le=1e7)
     lag_steps: int = Field(ge=1, le=30_000)
     """Steps that may wait before the gearbox trips."""
 
@@ -122,7 +122,7 @@ class HobbingMachine(Spec):
             )
 
     def _check_steps(self) -> None:
-        limits, highest = self.limits, self.driver.timing.highest_rate(self.tick_ns)
+        limits, highest = self.limits, self.driver.timing.highest_rate(self.tick_ns, self.hardware.jitter_ns)
         driver = self.driver.name or "of the file"
         for key in ("step_rate_hz", "move_rate_hz"):
             rate = getattr(limits, key)
@@ -199,7 +199,7 @@ class HobbingMachine(Spec):
     @property
     def timing_ticks(self) -> tuple[int, int, int, int]:
         """Step high, step low, DIR set-up and DIR hold, in ticks of the step timer."""
-        return self.driver.timing.ticks(self.tick_ns)
+        return self.driver.timing.ticks(self.tick_ns, self.hardware.jitter_ns)
 
     @property
     def step_active_low(self) -> bool:

@@ -194,7 +194,7 @@ PLEWES = bundled("hobbing_plewes.toml").read_text("utf-8")
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('name = "unsure"', 'name = "tb6560"', ("limits.step_rate_hz = 40000", "tb6560", "at most 3333")),
+        ('name = "unsure"', 'name = "tb6560"', ("limits.step_rate_hz = 40000", "tb6560", "at most 3225")),
         ("[pins]", "[pins]\nindex = 13", ("pins: index = 13", "already that of step_out")),
         ('name = "unsure"', 'name = "nema"', ("driver: name = 'nema'", "known are gecko201")),
         ('decoder = "ls7184_x4"\n', "", ("encoder.decoder", "missing")),

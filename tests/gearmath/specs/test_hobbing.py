@@ -124,7 +124,7 @@ BAD = [
     (PLEWES, "= 36.0", "= 32.0", ("32dp", "more than once")),
     (PLEWES, "hob_rpm = 800.0", "hob_rpm = -1.0", ("limits.hob_rpm", "-1", "0")),
     (PLEWES, "step_rate_hz = 40000.0", "step_rate_hz = 50001.0", ("step_rate_hz = 50001", "unsure", "at most 50000")),
-    (PLEWES, 'name = "unsure"', 'name = "tb6560"', ("step_rate_hz = 40000", "tb6560", "at most 3333")),
+    (PLEWES, 'name = "unsure"', 'name = "tb6560"', ("step_rate_hz = 40000", "tb6560", "at most 3225")),
     (PLEWES, "acceleration_hz_per_s = 8000.0", "acceleration_hz_per_s = 199.0", ("199", "10 s", "at least 200")),
     (PLEWES, "acceleration_hz_per_s = 8000.0", "", ("limits.acceleration_hz_per_s", "missing")),
     (PLEWES, "lag_steps = 100", "lag_steps = 0", ("limits.lag_steps", "0", "1")),

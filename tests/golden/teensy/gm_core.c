@@ -78,14 +78,14 @@ static void trip(gm_core *core, gm_fault fault)
 
 /* --- the edge ----------------------------------------------------------------------------------------------- */
 
-static void pace(gm_core *core)
+static void pace(gm_core *core, uint32_t waiting)
 {
   uint32_t interval = core->now - core->edge_at;
   core->edge_at = core->now;
   core->gap = 0;
-  if (core->pending > 1 || core->pending < -1) {
+  if (waiting > 1) {
     if (interval > GM_LONGEST_INTERVAL) interval = GM_LONGEST_INTERVAL;
-    core->gap = interval / magnitude(core->pending);
+    core->gap = interval / waiting;
   }
   if (core->pace > core->gap) core->pace = core->gap;
 }
@@ -158,6 +158,7 @@ static void stand_by(gm_core *core, int32_t steps)
 void gm_core_edge(gm_core *core, int axis, int edge)
 {
   gm_wide steps;
+  uint32_t waiting;
   int32_t passed = edge;
   core->edges[axis] += edge;
   if (axis == GM_HOB) {
@@ -177,10 +178,11 @@ void gm_core_edge(gm_core *core, int axis, int edge)
     return;
   }
   core->pending += (int32_t)steps;
-  if (core->pending > GM_MAX_LAG || core->pending < -GM_MAX_LAG) {
+  waiting = magnitude(core->pending);
+  if (waiting > GM_MAX_LAG) {
     trip(core, GM_LAG);
   } else if (axis == GM_HOB) {
-    pace(core);
+    pace(core, waiting);
   }
 }
 
