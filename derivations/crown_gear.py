@@ -19,9 +19,9 @@ M follows from the motion of the blade against the work, r_c0 k × e - ι V_p ×
     sin ν = ι R_m sin δ cos θ_f cos ψ / (r_c0 √(cos² θ_f cos² ψ + sin² ψ))                     (14.6)
 
 ι < 0, cutter and crown gear rolling on each other from outside, is the epicycloid of (12.2); ι = 0 is face milling.
-The blade stands square to its path if η = -ν. A blade of angle α passes through the radius ρ at the height u if
+The blade stands square to its path if η = -ν. A flank is half the width w of the space from that wall if its blade has
 
-    d_u = s u tan α,   r_p = √(ρ² - d_u² sin² η) - d_u cos η                                   (14.7)
+    r_p = r_c0 + s (w/2 - u tan α)/cos η                                                       (14.7)
 
 All this is a right-hand member; the left-hand one has -q, -η and the swivel π - j. A Formate member is the same, with
 the cradle held at θ = 0.
@@ -152,19 +152,21 @@ def crown_gear_space() -> Expression:
     )  # fmt: skip
 
 
+def point_radius() -> sp.Expr:
+    """r_p (14.7)."""
+    off = q.space_width.symbol / 2 - q.u.symbol * sp.tan(q.blade_pressure_angle.symbol)
+    return q.cutter_radius.symbol + q.side.symbol * off / sp.cos(q.blade_offset_angle.symbol)
+
+
 @cache
-def blade_through_point() -> Expression:
+def blade_in_space() -> Expression:
     """(14.7) as an Expression."""
-    off = q.side.symbol * q.u.symbol * sp.tan(q.blade_pressure_angle.symbol)
-    eta = q.blade_offset_angle.symbol
-    radius = sp.sqrt(q.cutter_radius.symbol**2 - (off * sp.sin(eta)) ** 2) - off * sp.cos(eta)
     return Expression(
-        "blade_through_point",
-        "Point radius of a blade that has a given radius at a given height (14.7).",
-        (q.cutter_radius, q.u, q.blade_pressure_angle, q.blade_offset_angle, q.side),
-        ((q.blade_point_radius, radius),),
-        requires=(q.cutter_radius.symbol**2 - (off * sp.sin(eta)) ** 2 - 1,),
-        source="Pythagoras in the cutter's plane",
+        "blade_in_space",
+        "Point radius of the blade whose flank is half the width of the space from its middle (14.7).",
+        (q.cutter_radius, q.space_width, q.u, q.blade_pressure_angle, q.blade_offset_angle, q.side),
+        ((q.blade_point_radius, point_radius()),),
+        source="distances along the normal of the path, in the plane of the blade",
     )
 
 
@@ -244,10 +246,10 @@ def prove_uniform_depth_gives_the_epicycloid_of_the_standard() -> None:
     assert is_zero(center.dot(center) - lengthwise.center_distance_squared(lead))
 
 
-def prove_the_blade_passes_through_its_radius() -> None:
-    """(14.7) The point of (10.4) at height u has the distance ρ from the cutter axis."""
-    off, eta, r = sp.Symbol("d_u", real=True), q.blade_offset_angle.symbol, q.cutter_radius.symbol
-    root = sp.Symbol("root", positive=True)
-    point_radius = root - off * sp.cos(eta)
-    distance_squared = (point_radius + off * sp.cos(eta)) ** 2 + (off * sp.sin(eta)) ** 2
-    assert is_zero(distance_squared.subs(root**2, r**2 - (off * sp.sin(eta)) ** 2) - r**2)
+def prove_the_flanks_are_half_the_width_from_the_middle() -> None:
+    """(14.7) The point of (10.4) at height u is s w/2 from the wall, along the plane of the blade."""
+    eta, side, r = q.blade_offset_angle.symbol, q.side.symbol, q.cutter_radius.symbol
+    off = side * q.u.symbol * sp.tan(q.blade_pressure_angle.symbol)
+    from_wall = sp.Matrix([point_radius() + off * sp.cos(eta) - r, off * sp.sin(eta)])
+    along = from_wall.dot(sp.Matrix([sp.cos(eta), sp.sin(eta)]))
+    assert is_zero(along - side * q.space_width.symbol / 2)

@@ -9,6 +9,7 @@ No point leaves this module that is not converged, or that lies off the blade.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 
@@ -16,7 +17,7 @@ import casadi as ca
 import numpy as np
 
 from derivations import notation
-from gearmath.bevel.generation import solve_section
+from gearmath.bevel.generation import Generation, Section, SurfacePoints, solve_curve, solve_section, turning_sense
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.newton import TOLERANCE, FlankPoints, contact_guess, newton_step, residual_size
@@ -31,6 +32,9 @@ _REPEATS = 12
 _STEP_LIMITS = (4.0, 0.3, 0.3)
 #: A blade has this much tolerance at its ends, so that a point on the tip is not lost to rounding. [mm]
 _BLADE_SLACK = 1e-7
+#: Points in which a blade is followed to its tip in search of a singular line.
+_FOLLOWED = 60
+_UNDERCUT = "the flank is undercut there, its surface turns back on itself"
 
 
 @dataclass(frozen=True)
@@ -116,7 +120,9 @@ def nominal_points(member: Member, flank: str, grid: Grid) -> tuple[FlankPoints,
     how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
     place = (grid.axial.ravel(), grid.radial.ravel())
     if how.still and how.rolling and section.arc is None:
-        return solve_places(how.settings, how.side, *place)
+        simple, residual = solve_places(how.settings, how.side, *place)
+        if (residual <= TOLERANCE).all():
+            return simple, residual
     points = solve_section(how, section, *place)
     return points, points.residual
 
@@ -124,27 +130,64 @@ def nominal_points(member: Member, flank: str, grid: Grid) -> tuple[FlankPoints,
 def solve_flank(member: Member, name: str, flank: str, grid: Grid) -> FlankPoints:
     """The points of a grid on one flank, row by row.
 
-    Raises ComputationError naming member, flank, row and column of the first point that does not converge or that
-    lies off the main section of the blade.
+    Raises ComputationError naming member, flank, row and column of the first point that does not converge, that is
+    undercut, or that lies off the main section of the blade.
     """
     if flank not in FLANKS:
         raise ValueError(f"flank = {flank!r}: must be one of {FLANKS}")
-    points, residual = nominal_points(member, flank, grid)
-    section = blade_sections(member.flank(flank), SIDES[flank])["main"]
+    how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
+    found, residual = nominal_points(member, flank, grid)
+    sense = turning_sense(how, section, found.contact)
+    points = SurfacePoints(found.contact, found.point, found.normal, residual, sense)
     u, unit = points.contact[:, 0], "mm" if section.arc is None else "rad"
+    short, long = u < section.lower - _BLADE_SLACK, u > section.upper + _BLADE_SLACK
+    below, above = (long, short) if section.tip_is_upper else (short, long)
     for failed, what in (
-        (~(residual <= TOLERANCE), "the equation of meshing has no solution near the start value"),
-        (
-            u < section.lower - _BLADE_SLACK,
-            "the point lies below the blade tip or its main section, on the fillet or beyond",
-        ),
-        (u > section.upper + _BLADE_SLACK, "the point lies above the blade"),
+        (~points.converged, "the equation of meshing has no solution near the start value"),
+        (_turned_back(points, grid), _UNDERCUT),
+        (below, "the point lies below the blade tip or its main section, on the fillet or beyond"),
+        (above, "the point lies above the blade"),
     ):
         if failed.any():
             k = int(np.argmax(failed))
             row, column = divmod(k, grid.shape[1])
+            if not points.converged[k] and _folds_above(how, section, points, grid, k, member.blank.pitch_angle):
+                what = _UNDERCUT
             raise ComputationError(
                 f"{name} {flank} flank, row {row}, column {column}: {what} "
                 f"(u = {u[k]:.4f} {unit}, the main section runs from {section.lower:g} to {section.upper:g} {unit})"
             )
     return points
+
+
+def _turned_back(points: SurfacePoints, grid: Grid) -> np.ndarray:
+    """Which points (n,) lie beyond a singular line: their sense is not that of the reference point."""
+    rows, columns = grid.shape
+    reference = points.sense[(rows // 2) * columns + columns // 2]
+    return np.sign(points.sense) != np.sign(reference)
+
+
+def _folds_above(
+    how: Generation, section: Section, points: SurfacePoints, grid: Grid, k: int, pitch_angle: float
+) -> bool:
+    """Whether the flank turns back on itself between point k and the nearest one found: it is undercut there.
+
+    The blade is followed from that point to its tip, at its cone distance: at the singular line the sense vanishes.
+    """
+    found = np.flatnonzero(points.converged)
+    if not len(found) or not np.isfinite(grid.axial.ravel()[k] + grid.radial.ravel()[k]):
+        return False
+    place = np.stack([grid.axial.ravel(), grid.radial.ravel()], axis=1)
+    nearest = found[np.argmin(np.linalg.norm(place[found] - place[k], axis=1))]
+    delta = math.radians(pitch_angle)
+    direction = (math.cos(delta), math.sin(delta))
+    start, distance = points.contact[nearest], place[nearest] @ direction
+    tip = section.upper if section.tip_is_upper else section.lower
+    for u in np.linspace(start[0], tip, _FOLLOWED)[1:]:
+        one = solve_curve(how, section, np.array([u]), direction, np.array([distance]), np.array([[u, *start[1:]]]))
+        if not one.converged[0]:
+            return False
+        if np.sign(one.sense[0]) != np.sign(points.sense[nearest]):
+            return True
+        start = one.contact[0]
+    return False

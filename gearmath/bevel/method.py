@@ -10,8 +10,9 @@ import numpy as np
 
 from derivations import cutter, generation
 from gearmath.bevel.generation import Generation, Section
+from gearmath.errors import InputError
 from gearmath.lowering import Kernel, lower
-from gearmath.specs.bevel_set import SIDES, Flank, Member
+from gearmath.specs.bevel_set import SIDES, Flank, Member, Motion
 
 _WORK_ROTATION_ROW = 9  # of the motion: the last machine setting
 
@@ -33,10 +34,29 @@ def generation_of(member: Member, flank: str) -> Generation:
         settings=spec.nominal.vector,
         side=SIDES[flank],
         motion=motion,
-        index_ratio=member.blade_groups / member.teeth if member.blade_groups else 0.0,
+        index_ratio=member.indexing_sign * (member.blade_groups or 0) / member.teeth,
         blade_offset_angle=math.radians(spec.blade_offset_angle),
         rolling=member.generation == "generated",
     )
+
+
+def require_plain(member: Member, name: str, what: str) -> None:
+    """Refuse what so far only knows face milling: a generated flank, settings at rest, a straight blade.
+
+    Raises InputError naming the member, what it was asked for, and what stands against it.
+    """
+    against = [
+        text
+        for text, is_so in (
+            ("face hobbed", member.process == "face_hobbing"),
+            ("Formate cut", member.generation == "formate"),
+            ("cut with settings that move", any(member.flank(flank).motion != Motion() for flank in SIDES)),
+            ("cut with arc blades", any(member.flank(flank).blade_spheric_radius is not None for flank in SIDES)),
+        )
+        if is_so
+    ]
+    if against:
+        raise InputError(f"{name}: {what} is there for plain face milling only; this member is {' and '.join(against)}")
 
 
 def blade_sections(spec: Flank, side: int) -> dict[str, Section]:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gearmath import __version__
+from gearmath.bevel.method import require_plain
 from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, roll_nodes
 from gearmath.machine.program import Pass, block_seconds, write_program
 from gearmath.specs.bevel_set import BevelSet, settings_sha256
@@ -40,6 +41,7 @@ def cutting_program(
     Raises InputError for singular poses, travel and speed limits, and a tolerance out of range.
     """
     member = bevel_set.member(name)
+    require_plain(member, name, "a cutting program")
     angles = tooth_angles(member.teeth, member.index_correction)
     passes = []
     for cut in Cut.of(member, name):

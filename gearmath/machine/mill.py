@@ -10,6 +10,7 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.method import require_plain
 from gearmath.errors import InputError
 from gearmath.machine.milling import Blade, remaining
 from gearmath.machine.path import Cut
@@ -65,6 +66,7 @@ def mill_member(
     shop; without it they are perfect. Raises InputError if the program cuts with a tool that is not of this member, or
     leaves a flank uncut.
     """
+    require_plain(member, name, "virtual milling")
     cuts = {cut.tool: cut for cut in Cut.of(member, name)}
     for tool in path.tools:
         if tool not in cuts:

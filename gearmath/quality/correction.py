@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.method import require_plain
 from gearmath.errors import ComputationError, InputError
 from gearmath.quality.compensation import FREE, FlankTarget, Identification, identify, predicted
 from gearmath.quality.pitch import evaluate_pitch, index_correction
@@ -41,6 +42,7 @@ def correct(member: Member, name: str, measured: FlankFile, free: tuple[str, ...
     ComputationError if the correction would make a flank worse.
     """
     check_belongs(member, name, measured)
+    require_plain(member, name, "compensation")
     groups = [FLANKS] if member.cutting == "completing" else [(flank,) for flank in FLANKS]
     settings: dict[str, np.ndarray] = {}
     identified: dict[tuple[str, ...], Identification] = {}

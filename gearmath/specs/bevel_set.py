@@ -168,11 +168,32 @@ class Member(Spec):
             raise ValueError("indexing_sign belongs to face_hobbing")
         if self.process == "face_hobbing" and self.cutting != "completing":
             raise ValueError("face_hobbing cuts both flanks at once: cutting must be completing")
+        for flank in FLANKS:
+            self._check_cutter(flank)
         if self.cutting == "completing":
             differing = [name for name in MACHINE_SETTINGS if getattr(self.concave, name) != getattr(self.convex, name)]
+            if self.concave.motion != self.convex.motion:
+                differing.append("motion")
             if differing:
                 raise ValueError(f"a completing cut has one {differing[0]} for both flanks, not two")
         return self
+
+    def _check_cutter(self, name: str) -> None:
+        """Whether the cutter of a flank can stand in the tooth at all: what fails here has no real contact."""
+        spec, blank = self.flank(name), self.blank
+        highest = blank.face_angle + abs(spec.cutter_tilt)
+        if spec.machine_root_angle > highest:
+            raise ValueError(
+                f"{name}.machine_root_angle = {spec.machine_root_angle:g}: beyond the blank, it must be at most "
+                f"face_angle + |cutter_tilt| = {highest:g}"
+            )
+        S, r, R = spec.radial_distance, spec.blade_point_radius, blank.mean_cone_distance
+        slack = abs(spec.blank_offset) + abs(spec.machine_center_to_crossing_point) + spec.blade_profile_height
+        if not abs(S - r) - slack <= R <= S + r + slack:
+            raise ValueError(
+                f"{name}.blade_point_radius = {r:g}: no real contact, the cutter does not reach the mean point: "
+                f"it must lie between {abs(R - S) - slack:.4g} and {R + S + slack:.4g}"
+            )
 
     def flank(self, flank: str) -> Flank:
         return self.concave if flank == "concave" else self.convex
@@ -187,6 +208,12 @@ class BevelSet(Spec):
     pinion: Member
     gear: Member
 
+    @model_validator(mode="after")
+    def _mates(self) -> BevelSet:
+        if self.pinion.hand == self.gear.hand:
+            raise ValueError(f"pinion and gear are both {self.pinion.hand} hand: a pair has one of each hand")
+        return self
+
     def member(self, name: str) -> Member:
         """The member called ``name``. Raises InputError for any name but pinion and gear."""
         if name not in MEMBERS:
@@ -200,18 +227,21 @@ def load_bevel_set(path: Path) -> BevelSet:
 
 
 def design_sha256(member: Member) -> str:
-    """What a measurement is judged against: the digest of the nominal settings of a member."""
-    return _digest(member.teeth, *(member.flank(flank).nominal.vector.tolist() for flank in FLANKS))
+    """What a measurement is judged against: the digest of all that makes the nominal flanks of a member."""
+    return _digest(member, [member.flank(flank).nominal.vector.tolist() for flank in FLANKS])
 
 
 def settings_sha256(member: Member) -> str:
-    """What a program is made from: the digest of the machine settings and index corrections of a member."""
-    vectors = (member.flank(flank).vector.tolist() for flank in FLANKS)
-    return _digest(member.teeth, *vectors, list(member.index_correction))
+    """What a program is made from: the digest of the method, the machine settings and the index corrections."""
+    return _digest(member, [member.flank(flank).vector.tolist() for flank in FLANKS], list(member.index_correction))
 
 
-def _digest(*values: object) -> str:
-    return hashlib.sha256(repr(values).encode()).hexdigest()
+def _digest(member: Member, *settings: list) -> str:
+    """The digest of settings together with the cutting method and the blades, which no correction changes."""
+    method = member.model_dump(include={"teeth", "process", "generation", "blade_groups", "indexing_sign"})
+    others = {"design", *SETTINGS}
+    blades = [member.flank(flank).model_dump(exclude=others) for flank in FLANKS]
+    return hashlib.sha256(repr((sorted(method.items()), blades, *settings)).encode()).hexdigest()
 
 
 def save_corrected(
@@ -243,3 +273,19 @@ def save_corrected(
 def _vector(model: Spec, components: tuple[Quantity, ...]) -> np.ndarray:
     values = [(getattr(model, component.name), component.unit) for component in components]
     return np.array([math.radians(value) if unit == "rad" else value for value, unit in values])
+
+
+def set_text(gear_set: BevelSet) -> str:
+    """A gear set as the text of its file, without what has its default value; numbers to nine decimals."""
+    values = gear_set.model_dump(exclude_defaults=True)
+    head = "# Lengths in mm, angles in degrees.\n"
+    return head + tomlkit.dumps(_plain(values))
+
+
+def _plain(value: Any) -> Any:
+    """Tables, lists and rounded numbers, without a negative zero."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return round(value, 9) + 0.0 if isinstance(value, float) else value

@@ -16,7 +16,7 @@ from scipy.optimize import fsolve
 
 from derivations import generation
 from gearmath.bevel.flank import blank_grid
-from gearmath.bevel.generation import generation_point
+from gearmath.bevel.generation_kernels import generation_point
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.export.host import compile_kernel

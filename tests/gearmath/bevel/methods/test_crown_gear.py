@@ -1,0 +1,99 @@
+"""Settings of the crown gear: the mean point comes out as asked for, and the bundled sets are what they say."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gearmath.bevel.blank import blank_of
+from gearmath.bevel.crown_gear import Method, with_motion
+from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.generation import solve_section
+from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.tooth import mean_backlash, space_figures, tooth_space
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES, BevelSet, load_bevel_set, set_text
+from gearmath.specs.toml import bundled, parse
+
+ENTRIES = json.loads((Path(__file__).parent / "bundled_sets.json").read_text())
+HOBBED = {"blade_groups": 13, "cutter_radius": 76.0}
+
+
+def at_mean_point(member, flank):
+    """Spiral and pressure angle [degree], and the sense of the trace, where the flank meets the pitch cone."""
+    delta = np.radians(member.blank.pitch_angle)
+    place = member.blank.mean_cone_distance * np.array([np.cos(delta), np.sin(delta)])
+    section = blade_sections(member.flank(flank), SIDES[flank])["main"]
+    points = solve_section(generation_of(member, flank), section, place[:1], place[1:])
+    assert points.converged.all()
+    n, polar = points.normal[0], np.arctan2(points.point[0, 1], points.point[0, 0])
+    along = np.array([np.sin(delta) * np.cos(polar), np.sin(delta) * np.sin(polar), np.cos(delta)])
+    around = np.array([-np.sin(polar), np.cos(polar), 0.0])
+    out = np.cross(along, around)
+    out *= np.sign(out[0] * np.cos(polar) + out[1] * np.sin(polar))
+    trace = np.cross(n, out)
+    return (
+        np.degrees(np.arctan(abs((n @ along) / (n @ around)))), np.degrees(np.arcsin(n @ out)),
+        np.sign((trace @ along) * (trace @ around)),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.08])
+@pytest.mark.parametrize("hand", ["left", "right"])
+@pytest.mark.parametrize("flank", FLANKS)
+def test_flank_cut_alone_has_spiral_and_pressure_angle_at_the_mean_point(pair, hand, tilt, flank):
+    made = pair(Method("fixed_setting", tilt=tilt, tilt_direction=0.4), hand=hand, pressure_angle_drive=22.0)
+    spiral, pressure, turn = at_mean_point(made.pinion, flank)
+    assert pressure == pytest.approx(22.0 if flank == "concave" else 20.0, abs=1e-6)
+    assert spiral == pytest.approx(35.0, abs=1e-6)
+    assert turn == (1 if hand == "right" else -1)
+
+
+@pytest.mark.parametrize("changes", [{}, HOBBED], ids=["milled", "hobbed"])
+@pytest.mark.parametrize("member", MEMBERS)
+@pytest.mark.parametrize("hand", ["left", "right"])
+def test_flanks_cut_together_have_the_spiral_angle_between_them(pair, changes, member, hand):
+    made = pair(hand=hand, **changes)
+    spirals, pressures, turns = zip(*(at_mean_point(made.member(member), flank) for flank in FLANKS), strict=True)
+    assert np.mean(spirals) == pytest.approx(35.0, abs=0.1)
+    assert spirals == pytest.approx([35.0, 35.0], abs=2.0)
+    # blade angle plus or minus θ_f sin ψ, of which the mean is the blade angle
+    assert np.mean(pressures) == pytest.approx(20.0, abs=0.2)
+    assert set(turns) == {1 if made.member(member).hand == "right" else -1}
+
+
+@pytest.mark.parametrize("changes", [{}, HOBBED], ids=["milled", "hobbed"])
+@pytest.mark.parametrize("gear", [Method(), Method(generation="formate")], ids=["generated", "Formate"])
+def test_pair_has_the_backlash_of_the_blank(pair, design, changes, gear):
+    """Spaces come from the thicknesses of ISO 23509; the flanks, found by root finding, give its backlash back."""
+    wanted = blank_of(design(**changes)).mean_transverse_backlash
+    made = pair(Method(), gear, **changes)
+    assert mean_backlash(made.pinion, made.gear) == pytest.approx(wanted, abs=0.04)  # mm: pitch cone against plane
+
+
+@pytest.mark.parametrize("name", ENTRIES)
+def test_bundled_set_is_what_the_crown_gear_generates(pair, name):
+    entry = ENTRIES[name]
+    made = pair(Method(**entry["pinion"]), Method(**entry["gear"]), title=entry["title"], **entry["data"])
+    if entry["motion"]:
+        motion = {key: tuple(values) for key, values in entry["motion"].items()}
+        made = made.model_copy(update={"pinion": with_motion(made.pinion, **motion)})
+    assert set_text(made) == bundled(name).read_text()
+    assert "not published" in load_bevel_set(bundled(name)).source
+    assert parse(set_text(made), BevelSet, name) == load_bevel_set(bundled(name))
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+@pytest.mark.parametrize("name", ENTRIES)
+def test_bundled_set_has_whole_teeth(name, member):
+    """All 45 points of both flanks, no undercut, no pointed tooth, and the pair does not jam."""
+    gear_set = load_bevel_set(bundled(name))
+    spec = gear_set.member(member)
+    for flank in FLANKS:
+        solve_flank(spec, member, flank, blank_grid(spec))
+    figures = space_figures(spec, tooth_space(spec, member))
+    assert figures["undercut_points"] == figures["pointed_columns"] == 0
+    assert figures["top_land_heel_mm"] > 0.3
+    assert 0.05 < mean_backlash(gear_set.pinion, gear_set.gear) < 0.3  # mm
