@@ -41,7 +41,7 @@ notebooks: $(VENV)/.test
 		--nbval-cell-timeout 60 -n $(JOBS) --dist loadscope --durations 5 notebooks)
 
 bench: $(VENV)/.test compiler
-	$(BIN)/pytest -p no:xdist --benchmark-only --benchmark-group-by group tests/benchmarks
+	$(BIN)/pytest -p no:xdist --benchmark-only --benchmark-group-by group --capture no tests/benchmarks
 
 golden: $(VENV)/.test
 	$(BIN)/pytest -p no:xdist --update-golden tests/gearmath/export
