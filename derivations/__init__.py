@@ -10,6 +10,7 @@ from derivations.expression import Expression, Quantity
 CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
+    "sweep", "probing",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -29,6 +30,8 @@ def expressions() -> Iterator[Expression]:
         generation,
         hobbing,
         meshing,
+        probing,
+        sweep,
     )
 
     yield from (cutter.cutter_surface(), cutter.toprem(), cutter.spheric_blade())
@@ -37,9 +40,15 @@ def expressions() -> Iterator[Expression]:
     yield flank.flank_family()
     yield from (meshing.meshing(), meshing.contact_start(), blank.flank_place())
     yield from (generation.straight_generation(), generation.arc_generation(), generation.modified_roll())
+    yield generation.touching_blade()
     yield from (axes.axis_transform(), axes.tool_pose(), axes.cradle_tool_pose())
+    yield from (axes.seen_from_tool(), axes.moved_settings(), axes.cutter_phase())
     yield from (deviation.point_deviation(), deviation.setting_sensitivity())
     yield from (deviation.deviation_surface(), deviation.line_entry(), deviation.flank_turning())
+    yield from (sweep.line_in_cone(), sweep.first_removed(), sweep.place_in_cutter())
+    yield from (sweep.cutter_excess(), sweep.seated())
+    yield from (probing.probe_target(), probing.space_azimuth(), probing.probe_axes(), probing.probe_tip())
+    yield from (probing.touched_point(), probing.ring_calibration(), probing.sphere_residual())
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (
         gearbox.nearest_position(),

@@ -113,7 +113,16 @@ def line_entry() -> Expression:
     return Expression(
         "line_entry",
         "Where a line, followed along its direction, enters the material swept by the blade at one pose (6.4).",
-        (q.axes, q.pivot_height, q.line_point, q.line_direction, q.blade_point_radius, q.blade_pressure_angle, q.side),
+        (
+            q.axes,
+            q.pivot_height,
+            q.line_point,
+            q.line_direction,
+            q.blade_point_radius,
+            q.blade_pressure_angle,
+            q.side,
+            q.pivot_offset,
+        ),
         ((q.line_distance, entry),),
         source="line against cone, the root at which the line passes from the metal into the cutter",
     )

@@ -22,7 +22,8 @@ class Quantity:
 
     ``domain`` bounds each element; ``values``, where given, lists the only values allowed (a sign, a truth value).
     ``scale`` is the size against which an error of an *output* is judged. A vector of unlike elements names them
-    in ``components``; then unit, domain and LaTeX are those of the components.
+    in ``components``; then unit, domain and LaTeX are those of the components. ``default`` is the value of every
+    element where a call leaves out this quantity and all that follow it.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Quantity:
     values: tuple[int, ...] = ()
     scale: float = 1.0
     components: tuple[Quantity, ...] = ()
+    default: float | None = None
 
     def __post_init__(self) -> None:
         if not _IDENTIFIER.match(self.name):

@@ -55,6 +55,22 @@ def arc() -> Profile:
     return Profile(center_radius + side * r * sp.cos(u), center_height - r * sp.sin(u), side * sp.sign(r))
 
 
+@cache
+def touching_blade() -> Expression:
+    """The straight blade that touches an arc blade (10.3) at u, as an Expression."""
+    profile, u = arc(), q.arc_angle.symbol
+    return Expression(
+        "touching_blade",
+        "Point radius and pressure angle of the straight blade that touches an arc blade at one point (10.3).",
+        (q.arc_angle, q.blade_arc, q.side),
+        (
+            (q.touching_point_radius, profile.radius - q.side.symbol * profile.height * sp.tan(u)),
+            (q.touching_pressure_angle, u),
+        ),
+        source="tangent of the arc, followed to the tip plane",
+    )
+
+
 def moving_settings() -> dict[sp.Symbol, sp.Expr]:
     """x_k(θ) of every machine setting, in Horner's form (10.1)."""
     theta, rows = q.theta.symbol, q.motion.symbol
@@ -209,6 +225,14 @@ def prove_an_arc_touches_a_straight_blade_where_their_normals_agree() -> None:
         q.arc_angle.symbol, alpha
     )
     assert is_zero(slope - blade.radius.diff(q.u.symbol))
+
+
+def prove_touching_blade_meets_the_arc_with_its_slope() -> None:
+    """(10.3) At u, the straight blade has the radius ρ(u) at the height h(u), and dρ/dh of the arc."""
+    round_, side, u = arc(), q.side.symbol, q.arc_angle.symbol
+    radius, angle = (value for _, value in touching_blade().outputs)
+    assert is_zero(radius + side * round_.height * sp.tan(angle) - round_.radius)
+    assert is_zero(round_.radius.diff(u) - side * sp.tan(angle) * round_.height.diff(u))
 
 
 def prove_derivatives_before_turning_are_those_of_the_family() -> None:

@@ -105,6 +105,14 @@ axes = Quantity(
 pivot_height = _length(
     "pivot_height", "(R_d + C_t)", 0.0, 400.0, "R_d + C_t: height of the blade tips over the B axis at Z = 0"
 )
+pivot_offset = Quantity(
+    "pivot_offset", "B axis to pitch apex, in the axes of the work at A = 0; zero where none is given", "mm",
+    r"\mathbf{e}", (-100.0, 100.0), shape=(3,), scale=100.0, default=0.0,
+)  # fmt: skip
+point_m = _vector(
+    "point_m", r"\mathbf{r}", "mm", 500.0, 1000.0, "point of the work from the cutter centre, axes of the machine"
+)
+psi = Quantity("psi", "position of the cutter's axis C at cutter angle zero", "rad", r"\psi")
 cutter_center_w = _vector(
     "cutter_center_w", r"\mathbf{c}", "mm", 300.0, 500.0, "cutter centre in the tip plane, work frame w"
 )
@@ -114,6 +122,44 @@ line_direction = _vector("line_direction", r"\mathbf{d}", "1", 1.0, 1.0, "unit d
 line_distance = Quantity(
     "line_distance", "where the line enters the swept blade; 1e3 where it does not", "mm", "t", scale=1000.0
 )  # fmt: skip
+line_start = _length("line_start", "t_s", -20.0, 0.0, "where on a line the search begins, within the tooth")
+line_place = _length("line_place", "t", -20.0, 20.0, "distance along a line from its point")
+blade_slope = Quantity("blade_slope", "tan of the blade's angle against the cutter axis", "1", r"\tau", (0.05, 0.7))
+line_lower = _length("line_lower", "t_1", -100.0, 100.0, "where a line comes into a cone; above its end if never")
+line_upper = _length("line_upper", "t_2", -100.0, 100.0, "where a line leaves a cone")
+hole_lower = _length("hole_lower", "t_3", -100.0, 100.0, "where a line comes into the inner cone")
+hole_upper = _length("hole_upper", "t_4", -100.0, 100.0, "where a line leaves the inner cone")
+
+
+def _blade(which: str, mark: str, low: float, high: float) -> Quantity:
+    text = f"of the {which} blade"
+    return Quantity(
+        f"{which}_blade", f"straight or curved flank and rounded edge {text}", "mixed", rf"\mathbf{{b}}_{mark}",
+        shape=(7,),
+        components=(
+            _length(f"{which}_flank_radius", f"r_{mark}", low, high, f"point radius of the cone at the flank {text}"),
+            _angle(f"{which}_flank_angle", rf"\alpha_{mark}", 0.05, 0.6, f"pressure angle {text}"),
+            Quantity(f"{which}_curvature", f"curvature of the flank {text}, convex positive", "1/mm",
+                     rf"\kappa_{mark}", (-0.005, 0.005)),
+            _length(f"{which}_reference", f"h_{{r{mark}}}", 0.0, 10.0, f"height where arc and cone touch {text}"),
+            _length(f"{which}_edge_center", rf"\rho_{{e{mark}}}", low, high, f"radius of the edge's centre {text}"),
+            _length(f"{which}_edge_radius", f"r_{{e{mark}}}", 0.0, 3.0, f"radius of the rounded edge {text}"),
+            _angle(f"{which}_joint", f"u_{{j{mark}}}", 0.05, 0.6, f"normal's angle where edge and flank join {text}"),
+        ),
+    )  # fmt: skip
+
+
+outer_blade = _blade("outer", "o", 40.0, 250.0)
+inner_blade = _blade("inner", "i", 40.0, 250.0)
+tip_height = _length("tip_height", "h", -20.0, 20.0, "height of a place above the tip plane of the cutter")
+axis_distance = _length("axis_distance", r"\rho", 20.0, 270.0, "distance of a place from the cutter axis")
+excess = Quantity("excess", "distance outside of the cutter, negative within it", "mm", "E", scale=300.0)
+eccentricity = _length("eccentricity", "e", 0.0, 1.0, "distance of the work's axis from the axis that turns it")
+eccentricity_azimuth = _angle("eccentricity_azimuth", r"\mu", -pi, pi, "direction of the eccentricity in the work")
+work_tilt = _angle("work_tilt", r"\varepsilon", 0.0, 0.02, "tilt of the work's axis against the axis that turns it")
+tilt_azimuth = _angle("tilt_azimuth", r"\lambda", -pi, pi, "azimuth of the axis of the tilt in the work")
+seated_point = _vector("seated_point", r"\mathbf{R}_a", "mm", 300.0, 500.0, "point of the seated work, turning with A")
+seated_normal = _vector("seated_normal", r"\mathbf{n}_a", "1", 1.0, 1.0, "its outward unit normal, turning with A")
 
 # --- deviation --------------------------------------------------------------------------------------------------
 tip_center = _vector(
@@ -137,6 +183,25 @@ monomials = Quantity(
 surface_deviation = Quantity(
     "surface_deviation", "deviation that the cubic surface gives at one point", "mm", r"\delta", scale=1e5
 )  # fmt: skip
+
+# --- probing ----------------------------------------------------------------------------------------------------
+standoff = _length("standoff", "s", -5.0, 20.0, "distance of the tip from the flank along the outward normal")
+opposite_w = _vector(
+    "opposite_w", r"\mathbf{R}'", "mm", 300.0, 500.0, "point of the opposite flank at the same place, work frame w"
+)
+probe_height = _length("probe_height", "H", 0.0, 900.0, "height of the tip over the B axis at Z = 0")
+tip_offset = _vector("tip_offset", r"\mathbf{o}", "mm", 1.0, 5.0, "tip off the spindle axis and off its height, X Y Z")
+stylus_w = _vector("stylus_w", r"\mathbf{k}_m", "1", 1.0, 1.0, "direction of the stylus, tip to spindle, work frame w")
+contact_point = _vector("contact_point", r"\mathbf{P}", "mm", 300.0, 500.0, "corrected contact point, work frame w")
+first_trigger = _length("first_trigger", "X_1", -500.0, 500.0, "position at the touch on the low side of the ring")
+last_trigger = _length("last_trigger", "X_2", -500.0, 500.0, "position at the touch on the high side of the ring")
+ring_center = _length("ring_center", "L", -500.0, 500.0, "known position of the centre of the ring")
+ring_diameter = _length("ring_diameter", "D", 5.0, 200.0, "inner diameter of the calibration ring")
+axis_offset = _length("axis_offset", "o", -5.0, 5.0, "offset of the tip along one axis")
+trigger = _vector("trigger", r"\mathbf{p}", "mm", 300.0, 500.0, "positions X, Y, Z at which the probe triggered")
+sphere_center = _vector("sphere_center", r"\mathbf{c}", "mm", 300.0, 500.0, "centre of the calibration sphere, X Y Z")
+sphere_radius = _length("sphere_radius", "R_s", 2.0, 50.0, "radius of the calibration sphere")
+sphere_rest = _length("sphere_rest", r"\rho", -1e3, 1e3, "distance that a touch on the sphere leaves unexplained")
 
 # --- electronic gearbox -----------------------------------------------------------------------------------------
 teeth = _count("teeth", "G", 1, 999, "teeth of the gear to be cut")
@@ -276,6 +341,10 @@ motion = Quantity(
     "motion", "coefficients of theta^1 ... theta^7 (columns) of the machine settings (rows, in their order)", "mixed",
     "m", (-0.3, 0.3), shape=(10, 7),
 )  # fmt: skip
+settings_at = Quantity(
+    "settings_at", "machine and cutter settings of one flank at a cradle rotation", "mixed", r"\mathbf{x}(\theta)",
+    shape=(12,), scale=100.0,
+)  # fmt: skip
 index_ratio = Quantity(
     "index_ratio", "work rotation per cutter rotation, blade groups over teeth; 0 in face milling", "1", r"\iota",
     (-0.8, 0.8),
@@ -291,6 +360,12 @@ blade_arc = Quantity(
         _length("arc_radius", "r", 0.2, 15.0, "radius of the arc"),
     ),
 )  # fmt: skip
+touching_point_radius = Quantity(
+    "touching_point_radius", "point radius of the straight blade that touches an arc blade", "mm", "r_{pt}", scale=1e4
+)
+touching_pressure_angle = _angle(
+    "touching_pressure_angle", r"\alpha_t'", 0.0, 1.57, "its angle against the cutter axis"
+)
 main_arc = Quantity(
     "main_arc", "arc of a circular-arc blade: radius and height of its centre, and its radius", "mm", r"\mathbf{a}_r",
     shape=(3,),

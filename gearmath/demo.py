@@ -25,8 +25,8 @@ from gearmath.gearbox.simulation import Simulation, simulate
 from gearmath.gearbox.train import GearboxPlan, plan
 from gearmath.lowering import lower
 from gearmath.machine.cutting import cutting_program
+from gearmath.machine.executor import execute
 from gearmath.machine.mill import mill_member
-from gearmath.machine.reader import execute
 from gearmath.plot import member_figure, save
 from gearmath.quality.correction import correct
 from gearmath.quality.pitch import Pitch, evaluate_pitch

@@ -54,9 +54,13 @@ class Kernel:
         """Evaluate at one or many points, in one mapped call.
 
         Each argument has the shape of its quantity, or that shape with one axis of n points in front; what has no
-        such axis is the same for all points. Outputs have the axis in front if any argument has it.
+        such axis is the same for all points. Outputs have the axis in front if any argument has it. Arguments may be
+        left out at the end where their quantities have a default.
         """
         arrays = [np.asarray(argument, dtype=float) for argument in arguments]
+        left_out = self.inputs[len(arrays) :]
+        if all(quantity.default is not None for quantity in left_out):
+            arrays += [np.full(quantity.shape, quantity.default, dtype=float) for quantity in left_out]
         if len(arrays) != len(self.inputs):
             raise TypeError(f"{self.name} takes {len(self.inputs)} arguments, {len(arrays)} were given")
         many = [array.ndim > len(quantity.shape) for array, quantity in zip(arrays, self.inputs, strict=True)]

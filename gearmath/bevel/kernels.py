@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from derivations import axes, blank, deviation, flank, meshing
+from derivations import axes, blank, deviation, flank, generation, meshing, probing
 from gearmath.lowering import Kernel, lower
 
 _EXPRESSIONS = {
@@ -14,11 +14,22 @@ _EXPRESSIONS = {
     "flank_place": blank.flank_place,
     "axis_transform": axes.axis_transform,
     "tool_pose": axes.tool_pose,
+    "seen_from_tool": axes.seen_from_tool,
+    "moved_settings": axes.moved_settings,
+    "cutter_phase": axes.cutter_phase,
+    "touching_blade": generation.touching_blade,
     "point_deviation": deviation.point_deviation,
     "setting_sensitivity": deviation.setting_sensitivity,
     "deviation_surface": deviation.deviation_surface,
     "line_entry": deviation.line_entry,
     "flank_turning": deviation.flank_turning,
+    "probe_target": probing.probe_target,
+    "space_azimuth": probing.space_azimuth,
+    "probe_axes": probing.probe_axes,
+    "probe_tip": probing.probe_tip,
+    "touched_point": probing.touched_point,
+    "ring_calibration": probing.ring_calibration,
+    "sphere_residual": probing.sphere_residual,
 }
 
 

@@ -23,17 +23,22 @@ def _kernel(name: str) -> Kernel:
     return lower(getattr(chapter, name)())
 
 
-def generation_of(member: Member, flank: str) -> Generation:
-    """How the nominal flank of a member comes about."""
-    spec = member.flank(flank)
+def motion_of(spec: Flank) -> np.ndarray:
+    """The motion (10,7) of the machine settings of a flank, modified roll included."""
     motion = spec.motion.matrix
     if spec.motion.modified_roll:
         (row,) = _kernel("modified_roll")(spec.nominal.ratio_of_roll, spec.motion.roll)
         motion[_WORK_ROTATION_ROW] += row
+    return motion
+
+
+def generation_of(member: Member, flank: str) -> Generation:
+    """How the nominal flank of a member comes about."""
+    spec = member.flank(flank)
     return Generation(
         settings=spec.nominal.vector,
         side=SIDES[flank],
-        motion=motion,
+        motion=motion_of(spec),
         index_ratio=member.indexing_sign * (member.blade_groups or 0) / member.teeth,
         blade_offset_angle=math.radians(spec.blade_offset_angle),
         rolling=member.generation == "generated",

@@ -22,6 +22,8 @@ VERBS = {
     "tooth": ("bevel", "Whole teeth of a member: figures, and an STL of a space or of the whole member."),
     "nc": ("machine", "NC programs for the vertical 5-axis machine."),
     "mill": ("machine", "Virtual milling from the program text."),
+    "touches": ("probe", "Raw touches of a probe to measured points."),
+    "calibrate": ("probe", "The tip of the probe from its touches on ring and sphere."),
     "evaluate": ("quality", "Pitch, profile and topography of a measured member."),
     "compensate": ("quality", "Corrected machine settings from a measurement."),
     "export": ("export", "C for the microcontroller and for the CNC post-processor."),

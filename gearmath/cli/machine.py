@@ -3,16 +3,28 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from gearmath.cli.common import MACHINE, MEMBER, SET, about, bar, output
+from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    from gearmath.machine.executor import MachinePath
+    from gearmath.specs.bevel_set import Member
+    from gearmath.specs.milling_machine import MillingMachine
+    from gearmath.specs.simulated_machine import SimulatedMachine
 
 
 @click.group()
 def nc() -> None:
     """NC programs for the vertical 5-axis machine (SINUMERIK 840D sl)."""
+
+
+nc.add_command(probe)
+nc.add_command(nc_calibrate)
 
 
 @nc.command()
@@ -21,26 +33,27 @@ def nc() -> None:
 @MACHINE
 @click.option("--spaces", default="all", show_default=True, help="Tooth spaces to cut: all, or numbers such as 0,1,2.")
 @click.option("--tolerance-um", type=float, default=0.1, show_default=True, help="Flank deviation by straight blocks.")
-@click.option(
-    "--feed", type=float, default=300.0, show_default=True, help="Generating feed of the cutter centre, mm/min."
-)
+@click.option("--feed", type=float, default=300.0, show_default=True, help="Feed of the cutter past the tooth, mm/min.")
 @click.option("--rpm", type=float, default=120.0, show_default=True, help="Spindle speed.")
+@click.option("--roughing-stock", type=float, default=0.0, help="Rough first and leave this much, mm; 0 for none.")
+@click.option("--finishing-stock", type=float, default=0.0, help="Stock that stays on the finished flanks, mm.")
+@click.option("--dry-run", is_flag=True, help="Cut air: everything above the work, without coolant.")
 @output(".MPF; its name becomes the program name")
 def cut(
-    gear_set: str, member: str, machine: str, spaces: str, tolerance_um: float, feed: float, rpm: float, target: Path
+    gear_set: str, member: str, machine: str, spaces: str, tolerance_um: float, feed: float, rpm: float,
+    roughing_stock: float, finishing_stock: float, dry_run: bool, target: Path,
 ) -> None:  # fmt: skip
     """The cutting program of a member."""
     from gearmath.files import write_text
-    from gearmath.machine.cutting import cutting_program
+    from gearmath.machine.cutting import Job, job_program
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     bevel_set = load_bevel_set(find(gear_set))
     wanted = _spaces(spaces, bevel_set.member(member).teeth)
-    text = cutting_program(
-        bevel_set, member, load_milling_machine(find(machine)), target.stem, wanted, tolerance_um / 1000, feed, rpm
-    )
+    job = Job(wanted, tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
+    text = job_program(bevel_set, member, load_milling_machine(find(machine)), target.stem, job)
     write_text(target, text)
     click.echo(f"{target}: {len(wanted)} of {bevel_set.member(member).teeth} spaces, {text.count(chr(10))} blocks")
 
@@ -51,12 +64,21 @@ def cut(
 @MACHINE
 @click.option("--program", required=True, type=click.Path(path_type=Path), help="NC program to run.")
 @click.option("--errors", help="What is wrong with the machine: a TOML file, or the bundled simulated_shop.toml.")
+@click.option(
+    "--report", type=click.Path(path_type=Path, dir_okay=False),
+    help="Also write a JSON file of gouges, uncut stock, collisions, axis speeds and time.",
+)  # fmt: skip
+@click.option("--report-tolerance-um", type=click.FloatRange(0.01, 1000), default=1.0, show_default=True,
+              help="Deviation on flank, fillet or root that the report counts as a fault.")  # fmt: skip
 @output("flank CSV")
-def mill(gear_set: str, member: str, machine: str, program: Path, errors: str | None, target: Path) -> None:
+def mill(
+    gear_set: str, member: str, machine: str, program: Path, errors: str | None, report: Path | None,
+    report_tolerance_um: float, target: Path,
+) -> None:  # fmt: skip
     """Virtual milling from the program text: the deviations it leaves, as a measured flank CSV."""
     from gearmath.files import read_text
+    from gearmath.machine.executor import execute
     from gearmath.machine.mill import mill_member
-    from gearmath.machine.reader import execute
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
@@ -72,6 +94,31 @@ def mill(gear_set: str, member: str, machine: str, program: Path, errors: str | 
     write_flank_csv(target, measured)
     worst = float(abs(measured.deviation).max()) * 1000
     click.echo(f"{target}: {len(measured)} points, largest deviation {worst:.3f} um")
+    if report is not None:
+        _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000)
+
+
+def _write_report(
+    target: Path, path: MachinePath, spec: Member, member: str, machine: MillingMachine,
+    errors: SimulatedMachine | None, tolerance: float,
+) -> None:  # fmt: skip
+    import json
+
+    from gearmath.export.host import compile_kernel
+    from gearmath.files import write_text
+    from gearmath.machine.report import milling_report
+
+    with bar(5 * spec.teeth, "surface") as progress:
+        found = milling_report(path, spec, member, machine, errors, tolerance, evaluator=compile_kernel,
+                               progress=progress)  # fmt: skip
+    write_text(target, json.dumps(found.as_dict(), indent=2) + "\n")
+    seconds = found.timing.feed_seconds + found.timing.rapid_seconds
+    click.echo(f"{target}: {seconds:.0f} s, {len(found.gouges)} surfaces gouged, {len(found.uncut)} with stock, "
+               f"{len(found.collisions)} collisions")  # fmt: skip
+    for state in found.gouges[:5]:
+        click.echo(f"  space {state.space}, {state.surface}: {state.lowest * 1000:.3f} um, line {state.line}")
+    for one in found.collisions[:5]:
+        click.echo(f"  {one.cutter} and {one.work}: {one.depth:.3f} mm deep, line {one.lines[0]}")
 
 
 def _spaces(text: str, teeth: int) -> list[int]:

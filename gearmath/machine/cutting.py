@@ -1,24 +1,79 @@
-"""From the settings of a member to the text of its cutting program."""
+"""From the settings of a member to the text of its cutting program: the whole job, tool by tool.
+
+A stock is left by withdrawing the cutter along its own axis, which is Z: a cone that moves along its axis by d stands
+parallel to itself at d sin(pressure angle), so that the flanks keep the same stock everywhere, and the root d. Where
+one cutter has two pressure angles, the smaller one sets d, and the other flank keeps somewhat more.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearmath import __version__
-from gearmath.bevel.method import require_plain
-from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, roll_nodes
-from gearmath.machine.program import Pass, block_seconds, write_program
-from gearmath.specs.bevel_set import BevelSet, settings_sha256
+from gearmath.bevel.flank import blank_grid
+from gearmath.errors import InputError
+from gearmath.machine.blocks import TOLERANCES, roll_nodes
+from gearmath.machine.feeds import block_seconds
+from gearmath.machine.passes import Pass
+from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
+from gearmath.machine.program import write_program
+from gearmath.specs.bevel_set import BevelSet, Member, settings_sha256
 from gearmath.specs.milling_machine import MillingMachine
 
-#: Speed of the cutter centre along its path while generating. [mm/min]
+#: Speed of the cutter past the tooth while it generates. [mm/min]
 DEFAULT_FEED = 300.0
 DEFAULT_SPINDLE_RPM = 120.0
 #: Retract above the highest pass. [mm]
 CLEARANCE = 40.0
+#: A dry run keeps the cutter this far above its cut. [mm]
+DRY_LIFT = 60.0
+_MOST_STOCK = 5.0
+#: A roughing pass may deviate by this part of its stock.
+_ROUGH_SHARE = 0.05
+#: A plunge starts this many tooth depths above the bottom, and a bit [mm]; at the bottom the cutter turns this often.
+_PLUNGE_DEPTHS, _PLUNGE_MARGIN, _SPARK_OUT_TURNS = 2.0, 5.0, 1.5
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a program does: tooth spaces, tolerance and stocks [mm] along the tooth normal, feed [mm/min] at the tooth.
+
+    ``roughing_stock`` above ``finishing_stock`` adds a roughing pass of all spaces before the finishing one;
+    ``finishing_stock`` is what stays on the finished flanks. A dry run cuts air above the work, without coolant.
+    """
+
+    spaces: Sequence[int] = (0,)
+    tolerance: float = DEFAULT_TOLERANCE
+    feed: float = DEFAULT_FEED
+    spindle_rpm: float = DEFAULT_SPINDLE_RPM
+    roughing_stock: float = 0.0
+    finishing_stock: float = 0.0
+    dry_run: bool = False
+
+    def __post_init__(self) -> None:
+        for key in ("roughing_stock", "finishing_stock"):
+            if not 0.0 <= getattr(self, key) <= _MOST_STOCK:
+                raise InputError(f"{key} = {getattr(self, key)} mm: must lie between 0 and {_MOST_STOCK:g} mm")
+        if 0.0 < self.roughing_stock <= self.finishing_stock:
+            raise InputError(
+                f"roughing_stock = {self.roughing_stock} mm: must be more than the finishing_stock "
+                f"{self.finishing_stock} mm, or 0 for no roughing"
+            )
+        if not len(self.spaces):
+            raise InputError("spaces: there is no tooth space to cut")
+
+    @property
+    def stages(self) -> tuple[tuple[str, float, float], ...]:
+        """Name, stock and tolerance [mm] of each turn through all spaces."""
+        finish = ("finish", self.finishing_stock, self.tolerance)
+        if self.roughing_stock == 0.0:
+            return (finish,)
+        coarse = min(max(self.tolerance, _ROUGH_SHARE * self.roughing_stock), TOLERANCES[1])
+        return ("rough", self.roughing_stock, coarse), finish
 
 
 def tooth_angles(teeth: int, correction: Sequence[float] = ()) -> np.ndarray:
@@ -35,31 +90,90 @@ def cutting_program(
     tolerance: float = DEFAULT_TOLERANCE,
     feed: float = DEFAULT_FEED,
     spindle_rpm: float = DEFAULT_SPINDLE_RPM,
+    **options: float,
 ) -> str:
-    """The program that cuts tooth ``spaces`` of a member; ``tolerance`` [mm] along the tooth normal, feed [mm/min].
+    """The program that cuts tooth ``spaces`` of a member; tolerance [mm] along the tooth normal, feed [mm/min].
 
-    Raises InputError for singular poses, travel and speed limits, and a tolerance out of range.
+    ``options`` are further fields of :class:`Job`. Raises InputError for singular poses, travel and speed limits, a
+    tolerance out of range, and a face hobbed member.
     """
+    job = Job(tuple(spaces), tolerance, feed, spindle_rpm, **options)  # type: ignore[arg-type]
+    return job_program(bevel_set, name, machine, program_name, job)
+
+
+def job_program(bevel_set: BevelSet, name: str, machine: MillingMachine, program_name: str, job: Job) -> str:
+    """The program of a job on one member. Raises InputError as :func:`cutting_program`."""
     member = bevel_set.member(name)
-    require_plain(member, name, "a cutting program")
-    angles = tooth_angles(member.teeth, member.index_correction)
-    passes = []
-    for cut in Cut.of(member, name):
-        theta = roll_nodes(member, cut, tolerance, machine.pivot_height)
-        axes = axis_positions(member.flank(cut.flanks[0]), theta, machine.pivot_height)
-        seconds = block_seconds(axes, machine, feed)
-        for space in spaces:
-            indexed = axes + np.array([0, 0, 0, angles[space], 0])
-            passes.append(Pass(cut.tool, f"space {space} {' and '.join(cut.flanks)}", int(space), indexed, seconds))
+    passes = list(_passes(member, name, machine, job))
     header = (
         f"gearmath {__version__} cutting program",
         f"set: {_plain(bevel_set.title)}",
         f"member: {name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}",
         f"settings sha256: {settings_sha256(member)}",
-        f"flank tolerance: {tolerance * 1000:g} um along the tooth normal",
+        f"flank tolerance: {job.tolerance * 1000:g} um along the tooth normal",
+        *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
+        f"feed: {job.feed:g} mm/min at the tooth",
+        *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
         f"machine: {_plain(machine.name)}",
+        f"cutting time: {sum(one.seconds.sum() + one.dwell for one in passes):.1f} s",
     )
-    return write_program(program_name, header, passes, machine, spindle_rpm, CLEARANCE)
+    return write_program(
+        program_name, header, passes, machine, job.spindle_rpm, CLEARANCE, coolant=not job.dry_run
+    )  # fmt: skip
+
+
+def _passes(member: Member, name: str, machine: MillingMachine, job: Job) -> Iterator[Pass]:
+    """All passes in their order: tool by tool, roughing before finishing, space by space."""
+    if member.process == "face_hobbing":
+        raise InputError(
+            f"{name}: is face hobbed: the cutter's rotation would have to be the sixth axis C of the program, which is "
+            "not written yet"
+        )
+    angles = tooth_angles(member.teeth, member.index_correction)
+    if not all(0 <= space < member.teeth for space in job.spaces):
+        raise InputError(f"{name}: spaces = {list(job.spaces)}: must be numbers from 0 to {member.teeth - 1}")
+    for cut in Cut.of(member, name):
+        _check_motions(member, name, cut)
+        for stage, stock, tolerance in job.stages:
+            theta, first = _first_pass(member, cut, machine, replace(job, tolerance=tolerance))
+            first.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
+            for space in job.spaces:
+                label = f"space {space} {' and '.join(cut.flanks)}" + (f" {stage}" if len(job.stages) > 1 else "")
+                indexed = first.axes + np.array([0, 0, 0, angles[space], 0])
+                axes = within_travel(indexed, theta, machine, f"{name}, {label}")
+                yield replace(first, label=label, tooth=int(space), axes=axes)
+
+
+def _first_pass(member: Member, cut: Cut, machine: MillingMachine, job: Job) -> tuple[np.ndarray, Pass]:
+    """Cradle rotations and the pass through space 0: rolled, or for Formate plunged at cradle rotation zero."""
+    flank = member.flank(cut.flanks[0])
+    tooth = _middle_of_tooth(member, cut)
+    if member.generation == "formate":
+        theta = np.zeros(2)
+        axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
+        depth = member.blank.mean_addendum + member.blank.mean_dedendum
+        axes[0, 2] += _PLUNGE_DEPTHS * depth + _PLUNGE_MARGIN
+        dwell = _SPARK_OUT_TURNS * 60.0 / job.spindle_rpm if job.spindle_rpm > 0 else 0.0
+    else:
+        theta = roll_nodes(member, cut, job.tolerance, machine.pivot_height, machine.pivot)
+        axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
+        dwell = 0.0
+    return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell)
+
+
+def _middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
+    """The middle of the first flank of a pass (3,)."""
+    return flank_points(member, cut.flanks[0], blank_grid(member, 1, 1)).point[0]
+
+
+def _flattest(member: Member, cut: Cut) -> float:
+    """The smaller pressure angle [rad] of the blades of a pass."""
+    return min(math.radians(member.flank(flank).blade_pressure_angle) for flank in cut.flanks)
+
+
+def _check_motions(member: Member, name: str, cut: Cut) -> None:
+    if len({repr(member.flank(flank).motion) for flank in cut.flanks}) > 1:
+        raise InputError(f"{name}: motion: one cutter cuts both flanks at once, so that both must have the same motion")
 
 
 def _plain(text: str) -> str:

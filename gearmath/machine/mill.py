@@ -9,14 +9,13 @@ from collections.abc import Callable
 import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
-from gearmath.bevel.kernels import kernel
-from gearmath.bevel.method import require_plain
+from gearmath.bevel.tooth import ToothSpace, tooth_space
 from gearmath.errors import InputError
-from gearmath.machine.milling import Blade, remaining
-from gearmath.machine.path import Cut
-from gearmath.machine.reader import MachinePath
-from gearmath.machine.simulation import index_errors, roll_position, with_setting_errors
-from gearmath.specs.bevel_set import FLANKS, SIDES, Member, design_sha256
+from gearmath.machine.executor import MachinePath
+from gearmath.machine.milling import Evaluator, Removal, removal
+from gearmath.machine.run import Run, runs_of
+from gearmath.machine.simulation import mounted
+from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
@@ -47,7 +46,7 @@ def nominal_flank(
     """The nominal points of one flank of one tooth as a flank file."""
     points = solve_flank(member, name, flank, grid)
     row, col = (index.ravel() for index in np.indices(grid.shape))
-    turn = _about_axis(2 * math.pi * tooth / member.teeth)
+    turn = about_axis(2 * math.pi * tooth / member.teeth)
     header = flank_header(member, name, grid, margin)
     return flank_file(header, name, flank, tooth, row, col, points.point @ turn.T, points.normal @ turn.T)
 
@@ -62,24 +61,21 @@ def mill_member(
 ) -> FlankFile:
     """What a program leaves on a member: the whole grid of the first space cut, the reference point of the others.
 
-    Deviations are against the nominal flanks. ``errors`` makes machine, work axis and probe those of a simulated
-    shop; without it they are perfect. Raises InputError if the program cuts with a tool that is not of this member, or
-    leaves a flank uncut.
+    Every point is exposed to all passes of all tools, so that a neighbour's pass that cuts into it is seen. Deviations
+    are against the nominal flanks. ``errors`` makes machine, work axis and probe those of a simulated shop; without it
+    they are perfect. Raises InputError if the program cuts with a tool that is not of this member, or leaves a flank
+    uncut.
     """
-    require_plain(member, name, "virtual milling")
-    cuts = {cut.tool: cut for cut in Cut.of(member, name)}
-    for tool in path.tools:
-        if tool not in cuts:
-            raise InputError(f'the program cuts with T="{tool}"; the {name} is cut with {" and ".join(cuts)}')
+    runs = runs_of(path, member, name, machine, errors, _root_of(member, name))
     grid = blank_grid(member, margin=MARGIN)
+    nominals = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
     files = []
-    for index, tool in enumerate(path.tools):
-        run = _Run(path, index, member, cuts[tool], machine, errors, name)
-        for flank in cuts[tool].flanks:
-            nominal = nominal_flank(member, name, flank, grid)
+    for run in runs:
+        for flank in run.cut.flanks:
             for space in run.spaces:
-                wanted = nominal if space == run.spaces[0] else _reference_only(nominal)
-                files.append(run.measure(wanted, flank, space))
+                wanted = nominals[flank] if space == run.spaces[0] else _reference_only(nominals[flank])
+                start = -0.5 * thickness(wanted.point, nominals[_other(flank)].point, member.teeth)
+                files.append(_measure(runs, member, machine, errors, wanted, flank, space, start))
                 progress(1)
     missing = [flank for flank in FLANKS if not any(file.flank[0] == flank for file in files)]
     if missing:
@@ -87,61 +83,60 @@ def mill_member(
     return _probed(join(files), name, errors)
 
 
-class _Run:
-    """The blocks of one tool with the machine's errors, and which tooth space each of its passes cuts."""
+def thickness(point: np.ndarray, opposite: np.ndarray, teeth: int) -> np.ndarray:
+    """Distance (n,) [mm] of flank points (n,3) from the points (m,3) of the other flank of the same tooth.
 
-    def __init__(
-        self, path: MachinePath, tool: int, member: Member, cut: Cut, machine: MillingMachine,
-        errors: SimulatedMachine | None, name: str,
-    ) -> None:  # fmt: skip
-        here = path.tool == tool
-        self._member, self._cut, self._machine = member, cut, machine
-        self.axes = path.axes[here]
-        self.cutting = ~path.rapid[here]
-        settings = member.flank(cut.flanks[0]).nominal.vector
-        number = np.cumsum(~self.cutting)  # a rapid block begins a new pass
-        self.space = np.full(len(number), -1)
-        for k in np.unique(number[self.cutting]):
-            rows = np.flatnonzero((number == k) & self.cutting)
-            middle = rows[len(rows) // 2]
-            self.space[rows] = self._space_at(settings, self.axes[middle])
-        self.spaces: list[int] = list(dict.fromkeys(self.space[self.space >= 0].tolist()))
-        if errors is not None:
-            self.axes = self._really(settings, errors, name)
+    ``opposite`` belongs to the same space; the flank on the tooth's other side is a pitch away, on the side away from
+    the space.
+    """
+    across = np.arctan2(*(opposite.mean(axis=0)[[1, 0]])) - np.arctan2(*(point.mean(axis=0)[[1, 0]]))
+    away = -math.copysign(1.0, math.remainder(float(across), 2 * math.pi))
+    turned = opposite @ about_axis(away * 2 * math.pi / teeth).T
+    return np.linalg.norm(point[:, None] - turned[None], axis=2).min(axis=1)
 
-    def _space_at(self, settings: np.ndarray, position: np.ndarray) -> int:
-        """The space that A is indexed to: what A shows beyond the roll, in pitches."""
-        theta, _ = roll_position()(settings, position[0], position[1])
-        (unindexed,) = kernel("axis_transform")(settings, theta, self._machine.pivot_height)
-        pitches = (position[3] - unindexed[3]) * self._member.teeth / (2 * math.pi)
-        return round(pitches) % self._member.teeth
 
-    def _really(self, settings: np.ndarray, errors: SimulatedMachine, name: str) -> np.ndarray:
-        axes = with_setting_errors(self.axes, settings, errors.setting_errors(name))
-        index = index_errors(errors.work_axis, self._member.teeth, errors.seed)
-        turned = np.where(self.space >= 0, index[self.space], 0.0)
-        return axes + turned[:, None] * np.array([0, 0, 0, 1, 0])
+def _root_of(member: Member, name: str) -> ToothSpace | None:
+    """The space whose root a fixed-setting cutter has to fit in; a completing one is what its blades are."""
+    if member.cutting == "completing":
+        return None
+    return tooth_space(member, name, 7)
 
-    def measure(self, nominal: FlankFile, flank: str, space: int) -> FlankFile:
-        """The deviations that the passes of a space leave at nominal points, which are given for tooth 0.
 
-        The swept cone has no inner edge, so that only the passes of the space itself can be asked.
-        """
-        spec = self._member.flank(flank)
-        turn = _about_axis(2 * math.pi * space / self._member.teeth)
-        point, normal = nominal.point @ turn.T, nominal.normal @ turn.T
-        blade = Blade(spec.blade_point_radius, math.radians(spec.blade_pressure_angle), SIDES[flank])
-        deviation = remaining(
-            self.axes, self.cutting & (self.space == space), blade, self._machine.pivot_height, point, normal
-        )
-        if np.isnan(deviation).any():
-            k = int(np.argmax(np.isnan(deviation)))
-            place = f"row {nominal.row[k]}, col {nominal.col[k]}"
-            raise InputError(f"the program leaves the {flank} flank of space {space} uncut at {place}")
-        return flank_file(
-            nominal.header, nominal.member, flank, space, nominal.row, nominal.col,
-            point + deviation[:, None] * normal, normal, deviation,
-        )  # fmt: skip
+def _measure(
+    runs: list[Run], member: Member, machine: MillingMachine, errors: SimulatedMachine | None, nominal: FlankFile,
+    flank: str, space: int, start: np.ndarray,
+) -> FlankFile:  # fmt: skip
+    """The deviations that all passes leave at nominal points, which are given for tooth 0."""
+    turn = about_axis(2 * math.pi * space / member.teeth)
+    point, normal = nominal.point @ turn.T, nominal.normal @ turn.T
+    left = expose(runs, machine, errors, point, normal, start)
+    deviation = left.distance
+    if np.isnan(deviation).any():
+        k = int(np.argmax(np.isnan(deviation)))
+        place = f"row {nominal.row[k]}, col {nominal.col[k]}"
+        raise InputError(f"the program leaves the {flank} flank of space {space} uncut at {place}")
+    return flank_file(
+        nominal.header, nominal.member, flank, space, nominal.row, nominal.col,
+        point + deviation[:, None] * normal, normal, deviation,
+    )  # fmt: skip
+
+
+def expose(
+    runs: list[Run], machine: MillingMachine, errors: SimulatedMachine | None, point: np.ndarray, normal: np.ndarray,
+    start: np.ndarray, evaluator: Evaluator = lambda k: k, progress: Callable[[int], object] = lambda _: None,
+) -> Removal:  # fmt: skip
+    """What all tools leave of lines of the work; ``block`` counts through the blocks of all runs."""
+    where, along = mounted(point, normal, errors)
+    left, offset = Removal(np.full(len(point), np.nan), np.full(len(point), -1)), 0
+    for run in runs:
+        pose = (machine.pivot_height, machine.pivot)
+        found = removal(run.axes, run.cutting, run.cutter, pose, where, along, start, progress, evaluator)
+        left, offset = left.joined(found, offset), offset + len(run.axes)
+    return left
+
+
+def _other(flank: str) -> str:
+    return FLANKS[1 - FLANKS.index(flank)]
 
 
 def _reference_only(file: FlankFile) -> FlankFile:
@@ -164,6 +159,7 @@ def _probed(file: FlankFile, name: str, errors: SimulatedMachine | None) -> Flan
     )  # fmt: skip
 
 
-def _about_axis(angle: float) -> np.ndarray:
+def about_axis(angle: float) -> np.ndarray:
+    """The rotation (3,3) by an angle [rad] about z_w."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])

@@ -1,30 +1,27 @@
-"""The way of the cutter through one tooth space: roll range, axis positions, and how finely to divide them.
-
-G1 moves all axes linearly from node to node. Between two nodes the cutter leaves the exact path; what counts is what
-that does to the flank, measured along the tooth normal.
-"""
+"""The exact way of the cutter through one tooth space: passes, roll range, and axis positions at a cradle rotation."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from derivations.axes import SINGULAR_SINE
-from gearmath.bevel.flank import FlankPoints, blank_grid, solve_places
+from gearmath.bevel.flank import Grid, blank_grid, solve_places
+from gearmath.bevel.generation import solve_section
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.method import blade_sections, generation_of, motion_of
+from gearmath.bevel.newton import TOLERANCE, FlankPoints
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
+from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
 
 #: How far the flank may deviate from nominal because of straight blocks. [mm]
 DEFAULT_TOLERANCE = 1e-4
-#: Part of the tolerance that chords may use; the rest is for the printed decimals.
-_CHORD_SHARE = 0.8
 #: The roll begins and ends this far outside the contact of the whole flank. [rad]
-_OVERRUN = math.radians(2.0)
-#: Step of the cradle with which the chord error is probed. [rad]
-_PROBE = math.radians(1.0)
+OVERRUN = math.radians(2.0)
+_APEX_ON_B_AXIS = np.zeros(3)
 
 
 @dataclass(frozen=True)
@@ -42,27 +39,51 @@ class Cut:
         return tuple(Cut(f"{name}_{flank}".upper(), (flank,)) for flank in FLANKS)
 
 
+def flank_points(member: Member, flank: str, grid: Grid) -> FlankPoints:
+    """Points that the main section of the blade cuts with the settings as they are, for every cutting method.
+
+    Those without a solution are left out: the corners of a grid may lie beyond what the blade reaches.
+    """
+    spec = member.flank(flank)
+    how = replace(generation_of(member, flank), settings=spec.vector)
+    section = blade_sections(spec, SIDES[flank])["main"]
+    place = (grid.axial.ravel(), grid.radial.ravel())
+    if how.still and how.rolling and section.arc is None:
+        points, residual = solve_places(how.settings, how.side, *place)
+    else:
+        points = solve_section(how, section, *place)
+        residual = points.residual
+    found = residual <= TOLERANCE
+    if not found.any():
+        raise InputError(f"{flank} flank: the equation of meshing has no solution anywhere on the flank")
+    return FlankPoints(points.contact[found], points.point[found], points.normal[found])
+
+
 def whole_flank(member: Member, flank: str) -> FlankPoints:
-    """Points over the whole face and working depth, without the solver's refusal of points off the blade."""
-    grid = blank_grid(member, 7, 13, 0.0)
-    points, _ = solve_places(member.flank(flank).vector, SIDES[flank], grid.axial.ravel(), grid.radial.ravel())
-    return points
+    """Points over the whole face and working depth."""
+    return flank_points(member, flank, blank_grid(member, 7, 13, 0.0))
 
 
 def roll_range(member: Member, cut: Cut) -> tuple[float, float]:
     """Cradle rotations [rad] between which the cutter generates all of the flanks of a pass."""
     theta = np.concatenate([whole_flank(member, flank).contact[:, 2] for flank in cut.flanks])
-    return float(theta.min()) - _OVERRUN, float(theta.max()) + _OVERRUN
+    return float(theta.min()) - OVERRUN, float(theta.max()) + OVERRUN
 
 
-def axis_positions(flank: Flank, theta: np.ndarray, pivot_height: float) -> np.ndarray:
-    """X, Y, Z, A, B (n,5) [mm, rad] at cradle rotations (n,), A continuous.
+def axis_positions(
+    flank: Flank, theta: np.ndarray, pivot_height: float, pivot_offset: np.ndarray = _APEX_ON_B_AXIS
+) -> np.ndarray:
+    """X, Y, Z, A, B (n,5) [mm, rad] at cradle rotations (n,), moving settings included.
 
-    Raises InputError naming the cradle angle at which the cutter axis is (nearly) parallel to the work axis.
+    Of the two poses of (5.5) it is always the one with B below 90 degrees. A is continuous: it starts within half a
+    turn of zero, and no step to the next row is longer than half a turn. Raises InputError naming the cradle angle at
+    which the cutter axis is (nearly) parallel to the work axis.
     """
-    settings = flank.vector
-    sine = np.sin(np.pi / 2 - (axes := kernel("axis_transform")(settings, theta, pivot_height)[0])[:, 4])
-    singular = ~(np.abs(sine) >= float(SINGULAR_SINE))
+    settings, motion = flank.vector, motion_of(flank)
+    if motion.any():
+        (settings,) = kernel("moved_settings")(settings, motion, theta)
+    (axes,) = kernel("axis_transform")(settings, theta, pivot_height, pivot_offset)
+    singular = ~(np.abs(np.cos(axes[:, 4])) >= float(SINGULAR_SINE))
     if singular.any():
         at = math.degrees(theta[int(np.argmax(singular))])
         raise InputError(
@@ -70,36 +91,27 @@ def axis_positions(flank: Flank, theta: np.ndarray, pivot_height: float) -> np.n
             f"|V_c x V_p| = {float(SINGULAR_SINE)}: the work axis A has no position there"
         )
     axes[:, 3] = np.unwrap(axes[:, 3])
+    if len(axes):
+        axes[:, 3] -= 2 * math.pi * np.round(axes[0, 3] / (2 * math.pi))
     return axes
 
 
-def chord_error(flank: Flank, side: int, points: FlankPoints, width: float, pivot_height: float) -> np.ndarray:
-    """Deviation (n,) [mm] at flank points if a block of ``width`` [rad] has its middle at their cradle rotation."""
-    theta = points.contact[:, 2]
-    first, last = (axis_positions(flank, theta + half, pivot_height) for half in (-width / 2, width / 2))
-    last[:, 3] += 2 * math.pi * np.round((first[:, 3] - last[:, 3]) / (2 * math.pi))
-    (distance,) = kernel("line_entry")(
-        (first + last) / 2, pivot_height, points.point, points.normal, flank.blade_point_radius,
-        math.radians(flank.blade_pressure_angle), side,
-    )  # fmt: skip
-    return distance
+def within_travel(axes: np.ndarray, theta: np.ndarray, machine: MillingMachine, what: str) -> np.ndarray:
+    """The positions (n,5), A by whole turns where a counting axis needs it to stay within its travel.
 
-
-def roll_nodes(member: Member, cut: Cut, tolerance: float, pivot_height: float) -> np.ndarray:
-    """Cradle rotations (n,) [rad] of the block ends: equal blocks, just short enough for the tolerance.
-
-    The chord error grows with the square of the block, which gives the number of blocks from one probe.
+    Raises InputError naming ``what``, the cradle angle, axis, value and limit of the first position out of travel.
     """
-    if not 1e-6 <= tolerance <= 0.1:
-        raise InputError(f"tolerance = {tolerance * 1000:g} um: must lie between 0.001 and 100 um")
-    start, end = roll_range(member, cut)
-    worst = max(
-        float(
-            np.abs(
-                chord_error(member.flank(flank), SIDES[flank], whole_flank(member, flank), _PROBE, pivot_height)
-            ).max()
+    low, high = machine.travel.T
+    if math.isfinite(low[3]):
+        turns = math.ceil((low[3] - axes[:, 3].min()) / (2 * math.pi) - 1e-12)
+        axes = axes + 2 * math.pi * turns * np.array([0, 0, 0, 1, 0])
+    outside = np.argwhere((axes < low) | (axes > high))
+    if outside.size:
+        point, axis = outside[0]
+        scale = UNITS_PER_INTERNAL[axis]
+        raise InputError(
+            f"{what}: axis {AXES[axis]} = {axes[point, axis] * scale:.5f} {UNITS[axis]} at cradle angle "
+            f"{math.degrees(theta[point]):.3f} deg: {machine.name} travels {low[axis] * scale:g} to "
+            f"{high[axis] * scale:g} {UNITS[axis]}"
         )
-        for flank in cut.flanks
-    )
-    width = _PROBE * math.sqrt(_CHORD_SHARE * tolerance / worst)
-    return np.linspace(start, end, 1 + math.ceil((end - start) / width))
+    return axes

@@ -12,11 +12,11 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
-from derivations import Quantity, notation
+from derivations import Quantity, notation, sweep
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
-from gearmath.lowering import Kernel
-from gearmath.specs.simulated_machine import WorkAxis
+from gearmath.lowering import Kernel, lower
+from gearmath.specs.simulated_machine import SimulatedMachine, WorkAxis
 
 _GAUSS_NEWTON_STEPS = 40
 #: X and Y of an executed position lie this close to the path of the nominal settings, corrections included. [mm]
@@ -27,7 +27,7 @@ _ON_PATH = 2.0
 def roll_position() -> Kernel:
     """Kernel: cradle rotation of the settings whose X, Y are nearest to a position, and the distance left there."""
     x, theta, X, Y = ca.SX.sym("settings", 12), ca.SX.sym("theta"), ca.SX.sym("X"), ca.SX.sym("Y")
-    axes = kernel("axis_transform").function(x, theta, 0)
+    axes = kernel("axis_transform").function(x, theta, 0, ca.DM.zeros(3))
     off = axes[:2] - ca.vertcat(X, Y)
     J = ca.jacobian(off, theta)
     change = ca.dot(J, off) / ca.dot(J, J)
@@ -75,3 +75,28 @@ def index_errors(work_axis: WorkAxis, teeth: int, seed: int) -> np.ndarray:
     harmonic = work_axis.first_harmonic_arcsec * np.sin(turn + math.radians(work_axis.first_harmonic_phase))
     random = work_axis.random_arcsec * np.random.default_rng(seed).standard_normal(teeth)
     return np.radians((harmonic + random) / 3600)
+
+
+def with_axis_errors(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
+    """Where axes (n,5) that are told to stand somewhere really stand: offsets, X out of square, A unevenly divided."""
+    wrong = errors.axes
+    real = axes + wrong.offsets
+    real[:, 0] += wrong.squareness_x_z_um_per_m * 1e-6 * axes[:, 2]
+    for harmonic in wrong.A_harmonics:
+        amplitude = math.radians(harmonic.amplitude_arcsec / 3600)
+        real[:, 3] += amplitude * np.sin(harmonic.order * axes[:, 3] + math.radians(harmonic.phase))
+    return real
+
+
+def mounted(point: np.ndarray, normal: np.ndarray, errors: SimulatedMachine | None) -> tuple[np.ndarray, ...]:
+    """Points and normals (n,3) of the work, in the frame that turns with A: tilted about the apex, then moved."""
+    if errors is None:
+        return point, normal
+    seat = errors.mounting
+    where = (seat.eccentricity, math.radians(seat.eccentricity_direction))
+    return _seated()(point, normal, *where, math.radians(seat.tilt), math.radians(seat.tilt_direction))
+
+
+@cache
+def _seated() -> Kernel:
+    return lower(sweep.seated())

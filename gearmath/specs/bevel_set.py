@@ -116,6 +116,8 @@ class Flank(Settings):
 
     blade_profile_height: float = Field(gt=0, le=60)
     blade_edge_radius: float = Field(default=0.0, ge=0, le=10)
+    #: Of a fixed-setting cutter, which has another side (mm); without it the root of the space decides.
+    blade_point_width: float | None = Field(default=None, gt=0, le=60)
     blade_spheric_radius: float | None = Field(default=None, ge=-20_000, le=20_000)
     blade_reference_height: float = Field(default=0.0, ge=0, le=60)
     toprem_angle: float | None = Field(default=None, ge=0.5, le=45)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from gearmath.specs.toml import Spec, load
 
@@ -29,17 +29,26 @@ _Speeds = Annotated[tuple[Annotated[_Number, Field(gt=0)], _Number], Field(stric
 
 
 class TravelAxis(Spec):
-    """An axis between two ends: X, Y, Z in mm and mm/min, B in degrees and degrees/min."""
+    """An axis between two ends: X, Y, Z in mm and mm/min, B in degrees and degrees/min; mm/s² and degrees/s²."""
 
     travel: _Range
     max_speed_per_min: float = Field(gt=0)
+    max_acceleration: float = Field(gt=0)
 
 
-class ModuloAxis(Spec):
-    """An axis that turns without end and counts from 0 to 360 degrees."""
+class WorkAxis(Spec):
+    """The work spindle: a modulo axis turns without end and counts 0 to 360 degrees, a counting one has a travel."""
 
-    modulo: Literal[True]
+    modulo: bool
+    travel: _Range | None = None
     max_speed_per_min: float = Field(gt=0)
+    max_acceleration: float = Field(gt=0)
+
+    @model_validator(mode="after")
+    def _one_way_to_count(self) -> WorkAxis:
+        if self.modulo != (self.travel is None):
+            raise ValueError("travel belongs to an axis with modulo = false, and such an axis needs it")
+        return self
 
 
 class Axes(Spec):
@@ -48,8 +57,22 @@ class Axes(Spec):
     X: TravelAxis
     Y: TravelAxis
     Z: TravelAxis
-    A: ModuloAxis
+    A: WorkAxis
     B: TravelAxis
+
+
+class Control(Spec):
+    """Options of the control that the head of a program sets; what is left out stays as the control has it."""
+
+    path_mode: Literal["G60", "G64", "G642"] | None = None
+    jerk: Literal["BRISK", "SOFT"] | None = None
+    feed_forward: bool | None = None
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The words of the head."""
+        forward = {None: None, True: "FFWON", False: "FFWOF"}[self.feed_forward]
+        return tuple(word for word in (self.path_mode, self.jerk, forward) if word is not None)
 
 
 class MillingMachine(Spec):
@@ -60,9 +83,18 @@ class MillingMachine(Spec):
     """R_d [mm]: gauge line of the spindle over the B axis at Z = 0."""
     tool_length: float = Field(gt=0)
     """C_t [mm]: gauge line to the blade tips."""
+    pivot_offset: Annotated[tuple[_Number, _Number, _Number], Field(strict=False)] = (0.0, 0.0, 0.0)
+    """e [mm] of equation (5.1): B axis to pitch apex along x_w, y_w, z_w at A = 0; at B = 0 these are Z, Y, -X."""
     work_offset: Literal["G54", "G55", "G56", "G57"]
+    cutter_direction: Literal["M3", "M4"] = "M3"
     spindle_speed_rpm: _Speeds
     axes: Axes
+    control: Control = Control()
+
+    @property
+    def pivot(self) -> np.ndarray:
+        """e of equation (5.1), (3,) mm."""
+        return np.array(self.pivot_offset)
 
     @property
     def pivot_height(self) -> float:
@@ -71,17 +103,23 @@ class MillingMachine(Spec):
 
     @property
     def travel(self) -> np.ndarray:
-        """Lowest and highest position of X Y Z A B, (5, 2) mm and rad; infinite for the modulo axis."""
-        axes = self.axes
-        endless = (-np.inf, np.inf)
-        limits = np.array([axes.X.travel, axes.Y.travel, axes.Z.travel, endless, axes.B.travel])
+        """Lowest and highest position of X Y Z A B, (5, 2) mm and rad; infinite for a modulo axis."""
+        limits = np.array([axis.travel or (-np.inf, np.inf) for axis in self._all])
         return limits / UNITS_PER_INTERNAL[:, None]
 
     @property
     def max_speed(self) -> np.ndarray:
         """Highest speed of X Y Z A B, (5,) mm/s and rad/s."""
-        axes = (self.axes.X, self.axes.Y, self.axes.Z, self.axes.A, self.axes.B)
-        return np.array([axis.max_speed_per_min for axis in axes]) / UNITS_PER_INTERNAL / 60.0
+        return np.array([axis.max_speed_per_min for axis in self._all]) / UNITS_PER_INTERNAL / 60.0
+
+    @property
+    def max_acceleration(self) -> np.ndarray:
+        """Highest acceleration of X Y Z A B, (5,) mm/s² and rad/s²."""
+        return np.array([axis.max_acceleration for axis in self._all]) / UNITS_PER_INTERNAL
+
+    @property
+    def _all(self) -> tuple[TravelAxis, TravelAxis, TravelAxis, WorkAxis, TravelAxis]:
+        return self.axes.X, self.axes.Y, self.axes.Z, self.axes.A, self.axes.B
 
 
 def load_milling_machine(path: Path) -> MillingMachine:

@@ -46,6 +46,60 @@ class WorkAxis(Spec):
     random_arcsec: float = Field(default=0.0, ge=0, le=600)
 
 
+class Harmonic(Spec):
+    """A periodic error of the work axis, ``order`` periods a turn, at every position and not only at the spaces."""
+
+    order: int = Field(ge=1, le=1000)
+    amplitude_arcsec: float = Field(ge=0, le=600)
+    phase: float = Field(default=0.0, ge=-360, le=360)
+
+
+class AxisErrors(Spec):
+    """Geometric errors of the axes: offsets in mm and degrees, and X to Z out of square: X moves with Z (µm/m)."""
+
+    X: float = Field(default=0.0, ge=-1, le=1)
+    Y: float = Field(default=0.0, ge=-1, le=1)
+    Z: float = Field(default=0.0, ge=-1, le=1)
+    A: float = Field(default=0.0, ge=-1, le=1)
+    B: float = Field(default=0.0, ge=-1, le=1)
+    squareness_x_z_um_per_m: float = Field(default=0.0, ge=-1000, le=1000)
+    A_harmonics: tuple[Harmonic, ...] = Field(default=(), strict=False, max_length=20)
+
+    @property
+    def offsets(self) -> np.ndarray:
+        """Offsets of X Y Z A B (5,), mm and rad."""
+        return np.array([self.X, self.Y, self.Z, math.radians(self.A), math.radians(self.B)])
+
+
+class Mounting(Spec):
+    """How the work sits on its axis: eccentricity (mm) and tilt (degrees), each with its direction in the work."""
+
+    eccentricity: float = Field(default=0.0, ge=0, le=1)
+    eccentricity_direction: float = Field(default=0.0, ge=-360, le=360)
+    tilt: float = Field(default=0.0, ge=0, le=1)
+    tilt_direction: float = Field(default=0.0, ge=-360, le=360)
+
+
+class CutterHead(Spec):
+    """The head above the blades: a cylinder of a radius beyond the outer blade's tip (mm), then the spindle (mm)."""
+
+    beyond_tip: float = Field(default=0.0, ge=-50, le=100)
+    height: float = Field(default=60.0, gt=0, le=500)
+    spindle_radius: float = Field(default=60.0, gt=0, le=500)
+
+
+class Fixture(Spec):
+    """What holds the work (mm): the shank behind the back cone, and the fixture behind the shank.
+
+    ``shank_radius`` 0 takes 60 % of the heel's root radius.
+    """
+
+    shank_radius: float = Field(default=0.0, ge=0, le=1000)
+    shank_length: float = Field(default=60.0, gt=0, le=1000)
+    radius: float = Field(default=40.0, gt=0, le=1000)
+    length: float = Field(default=100.0, gt=0, le=2000)
+
+
 class Probe(Spec):
     """Standard deviation of one measured deviation."""
 
@@ -60,6 +114,10 @@ class SimulatedMachine(Spec):
     pinion: SettingErrors = SettingErrors()
     gear: SettingErrors = SettingErrors()
     work_axis: WorkAxis = WorkAxis()
+    axes: AxisErrors = AxisErrors()
+    mounting: Mounting = Mounting()
+    cutter_head: CutterHead = CutterHead()
+    fixture: Fixture = Fixture()
     probe: Probe = Probe()
 
     def setting_errors(self, member: str) -> np.ndarray:

@@ -46,10 +46,11 @@ def poses() -> tuple[np.ndarray, np.ndarray, float]:
 @pytest.mark.benchmark(group="axis transform")
 def test_axis_transforms_per_second_in_c_against_numpy(benchmark, poses, host_compiler) -> None:
     compiled = compile_kernel(lower(axes.axis_transform()))
-    (ours,) = benchmark(compiled, *poses)
+    (ours,) = benchmark(compiled, *poses, np.zeros(3))
     np.testing.assert_allclose(ours, numpy_axes(*poses), atol=1e-8)  # mm and rad
     in_c, in_numpy = (
-        min(timeit.repeat(lambda run=run: run(*poses), number=1, repeat=7)) for run in (compiled, numpy_axes)
+        min(timeit.repeat(lambda run=run, more=more: run(*poses, *more), number=1, repeat=7))
+        for run, more in ((compiled, (np.zeros(3),)), (numpy_axes, ()))
     )
     benchmark.extra_info["transforms_per_second_c"] = round(N / in_c)
     benchmark.extra_info["transforms_per_second_numpy"] = round(N / in_numpy)

@@ -15,9 +15,9 @@ import pytest
 
 from gearmath import cli
 from gearmath.machine.cutting import cutting_program
+from gearmath.machine.executor import MachinePath, execute
 from gearmath.machine.mill import mill_member
 from gearmath.machine.path import DEFAULT_TOLERANCE
-from gearmath.machine.reader import MachinePath, execute
 from gearmath.specs.bevel_set import SETTINGS, BevelSet, Settings, load_bevel_set
 from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine

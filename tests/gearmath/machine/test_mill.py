@@ -11,8 +11,8 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
 from gearmath.machine.cutting import cutting_program
+from gearmath.machine.executor import execute
 from gearmath.machine.mill import mill_member
-from gearmath.machine.reader import execute
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES, design_sha256
 
 

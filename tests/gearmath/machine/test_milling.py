@@ -9,7 +9,8 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.machine import milling
-from gearmath.machine.milling import Blade, remaining
+from gearmath.machine.cutter import Body, Cutter, Profile
+from gearmath.machine.milling import Blade, entry_along_block, remaining
 from gearmath.specs.bevel_set import SIDES
 
 RADIUS, ALPHA, HEIGHT = 60.0, math.radians(20.0), 500.0
@@ -102,7 +103,7 @@ def test_closest_approach_is_found_within_a_block():
 
 
 def test_lines_are_taken_in_parts_and_each_is_counted_once(monkeypatch):
-    monkeypatch.setattr(milling, "_CHUNK", 30)  # memory for fifteen lines of one block
+    monkeypatch.setattr(milling, "_LINES", 15)
     point, normal = across(np.linspace(-20, 9, 40), x=RADIUS + 8.0, direction=-1.0)
     counts = []
     left = remaining(plunge(10.0), CUTTING, OUTER, HEIGHT, point, normal, counts.append)
@@ -112,7 +113,7 @@ def test_lines_are_taken_in_parts_and_each_is_counted_once(monkeypatch):
 
 @pytest.mark.parametrize(("member", "flank"), [("pinion", "concave"), ("pinion", "convex"), ("gear", "convex")])
 def test_a_real_program_leaves_what_dense_sampling_finds(gear_set, vertical, program, witness, member, flank):
-    """Every block near contact in 300 poses of the witness, its own cone and its own kinematics; a coarse program."""
+    """Every block near contact in 1500 poses of the witness, its own cone and its own kinematics; a coarse program."""
     spec = gear_set.member(member)
     path = program(gear_set, member, (0,), 2e-3)
     used = path.tool == (path.tools.index("PINION_CONVEX") if (member, flank) == ("pinion", "convex") else 0)
@@ -138,8 +139,78 @@ def test_a_real_program_leaves_what_dense_sampling_finds(gear_set, vertical, pro
     block = ends[at // 21]
     for offset in (-1, 0, 1):  # the best block and its neighbours, densely
         k = np.clip(block + offset, ends[0], ends[-1])
-        dense = np.linspace(0, 1, 300)[:, None]
+        dense = np.linspace(0, 1, 1500)[:, None]
         poses = axes[k - 1][:, None] + dense * (axes[k] - axes[k - 1])[:, None]
         found = np.minimum(found, sample(poses)[0])
     assert np.abs(left - found).max() < 1e-7  # mm
     assert np.ptp(left) > 1e-4  # not an empty comparison
+
+
+def outermost(h, radius, alpha, edge, curvature=0.0, touching=0.0):
+    """Half-width of a blade (side +1) over its height by plane geometry: circle on tip plane and blade, then blade."""
+    straight = radius + h * np.tan(alpha)
+    if curvature:
+        big = 1 / curvature  # the circle that touches the straight blade at the height ``touching``
+        center = (radius + touching * np.tan(alpha) - big * np.cos(alpha), touching + big * np.sin(alpha))
+        straight = center[0] + np.sign(big) * np.sqrt(big**2 - (h - center[1]) ** 2)
+    if not edge:
+        return straight
+    center, low = radius + edge * np.tan(alpha) - edge / np.cos(alpha), np.clip(h, 0.0, edge)
+    rounded = center + np.sqrt(edge**2 - (low - edge) ** 2)
+    return np.where(h < edge * (1 - np.sin(alpha)), rounded, straight)
+
+
+@pytest.mark.parametrize(
+    ("edges", "curvature"), [((0.0, 0.0), 0.0), ((0.6, 0.4), 0.0), ((1.2, 1.2), 0.0), ((0.0, 0.0), 0.002)]
+)
+def test_first_part_of_a_line_taken_away_by_an_annulus_is_what_sampling_finds(edges, curvature):
+    """Random lines through the tip of a cutter of 2.4 mm point width, in steps of 2 µm; its axis is z_w, its tip up."""
+    radii, alphas, start, n = (77.4, 75.0), (0.36, 0.42), -2.0, 400
+    generator = np.random.default_rng(16)
+    point = generator.uniform([74.0, -1.0, -4.0], [78.5, 1.0, 1.0], (n, 3))
+    direction = generator.normal(size=(n, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+
+    t = np.arange(start, 6.0, 2e-3)
+    places = point[:, None] + t[:, None] * direction[:, None]
+    h, rho = -places[..., 2], np.hypot(places[..., 0], places[..., 1])
+    above = np.maximum(h, 0.0)
+    outer = outermost(above, radii[0], alphas[0], edges[0], curvature, 3.0)
+    inner = 2 * radii[1] - outermost(above, radii[1], alphas[1], edges[1])
+    taken = (h >= 0) & (rho <= outer) & (rho >= inner)
+    sampled = np.where(taken.any(axis=1), t[taken.argmax(axis=1)], np.inf)
+
+    def blade(k, side, bend):
+        r, a = radii[k], alphas[k]
+        edge = edges[k]
+        return Profile(r, a, bend, 3.0, r - side * edge * (1 - math.sin(a)) / math.cos(a), edge, a)
+
+    body = Body(0.0, blade(0, 1, curvature), blade(1, -1, 0.0), 12.0)
+    axes = np.array([0.0, 0.0, HEIGHT, 0.0, np.pi / 2])
+    (found,) = entry_along_block(body.sharp)(
+        axes, axes, 0.0, HEIGHT, np.zeros(3), 0.0, point, direction, start, body.annulus, body.outer.vector,
+        body.inner.vector,
+    )  # fmt: skip
+    both = np.isfinite(sampled) & (found < 5.9)
+    late = sampled[both] - found[both]
+    assert both.sum() > 150
+    # a grazing line leaves within one step, unseen by the samples
+    assert ((late > -1e-6) & (late < 2e-3 + 1e-6)).mean() > 0.98
+    assert (np.isfinite(sampled) != (found < 5.9)).mean() < 0.02
+    inside = both & (found > start)
+    at = point[inside] + found[inside, None] * direction[inside]
+    depth, radius = -at[:, 2], np.hypot(at[:, 0], at[:, 1])
+    off = [
+        np.abs(depth),
+        np.abs(radius - outermost(depth, radii[0], alphas[0], edges[0], curvature, 3.0)),
+        np.abs(radius - 2 * radii[1] + outermost(depth, radii[1], alphas[1], edges[1])),
+    ]  # fmt: skip
+    assert np.min(off, axis=0).max() < 1e-3  # on a surface to 1e-7, radially more where an edge is almost level
+
+
+def test_cutter_is_hollow_so_that_a_tooth_in_its_middle_stays():
+    """The line from the axis outwards meets the inner blade at 75 mm, not the far side's disc."""
+    cutter = Cutter((Body(0.0, Profile(77.0, 0.3), Profile(75.0, 0.3), 12.0),), 12.0)
+    point = np.array([[60.0, 0.0, 8.0]])
+    left = remaining(plunge(10.0), CUTTING, cutter, HEIGHT, point, np.array([[1.0, 0.0, 0.0]]))
+    assert left[0] == pytest.approx(15.0 - 2.0 * math.tan(0.3), abs=1e-9)

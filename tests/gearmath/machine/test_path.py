@@ -7,7 +7,7 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_places
 from gearmath.errors import InputError
-from gearmath.machine.path import Cut, axis_positions, chord_error, roll_nodes, roll_range, whole_flank
+from gearmath.machine.path import Cut, axis_positions, roll_range, whole_flank, within_travel
 from gearmath.specs.bevel_set import MEMBERS, SIDES
 
 HEIGHT = 500.0
@@ -38,49 +38,6 @@ def test_roll_reaches_past_the_contact_of_every_point_of_the_flank(gear_set, mem
         assert end > points.contact[:, 2].max() + np.radians(1.5)
 
 
-@each_cut
-def test_nodes_rise_in_equal_steps_over_the_whole_roll(gear_set, member, number):
-    spec, cut = gear_set.member(member), the_cut(gear_set, member, number)
-    nodes = roll_nodes(spec, cut, 1e-4, HEIGHT)
-    assert (nodes[0], nodes[-1]) == roll_range(spec, cut)
-    steps = np.diff(nodes)
-    assert (steps > 0).all()
-    np.testing.assert_allclose(steps, steps.mean(), rtol=1e-9)
-
-
-@each_cut
-def test_a_hundredth_of_the_tolerance_takes_ten_times_the_blocks(gear_set, member, number):
-    spec, cut = gear_set.member(member), the_cut(gear_set, member, number)
-    coarse, fine = (len(roll_nodes(spec, cut, tolerance, HEIGHT)) - 1 for tolerance in (1e-2, 1e-4))
-    assert fine == pytest.approx(10 * coarse, abs=10)
-
-
-@each_cut
-def test_chord_error_is_that_of_the_cone_halfway_between_two_poses(gear_set, member, number, witness):
-    """Against the witness: the cone at the mean of the axis positions of both ends of the block, two degrees wide."""
-    spec, cut, width = gear_set.member(member), the_cut(gear_set, member, number), np.radians(2.0)
-    for flank in cut.flanks:
-        settings, points = spec.flank(flank), whole_flank(spec, flank)
-        ends = [
-            witness.vertical_axes(settings.vector, points.contact[:, 2] + half, HEIGHT)
-            for half in (-width / 2, width / 2)
-        ]
-        ends[1][:, 3] += 2 * np.pi * np.round((ends[0][:, 3] - ends[1][:, 3]) / (2 * np.pi))
-        pose = witness.vertical_pose((ends[0] + ends[1]) / 2, HEIGHT)
-        left = witness.entry(*pose, *settings.vector[10:], SIDES[flank], points.point, points.normal)
-        error = chord_error(settings, SIDES[flank], points, width, HEIGHT)
-        below_tip = points.contact[:, 0] < 0.2  # there the tip cuts, at another angle
-        np.testing.assert_allclose(error[~below_tip], left[~below_tip], rtol=0, atol=1e-9)
-        assert np.abs(error).max() > 1e-3  # a block of two degrees is seen on the flank
-
-
-@pytest.mark.parametrize("tolerance", [0.0, -1e-4, 9e-7, 0.2, float("nan"), float("inf")])
-def test_tolerance_out_of_range_is_refused_with_the_limits(gear_set, tolerance):
-    cut = the_cut(gear_set, "gear", 0)
-    with pytest.raises(InputError, match=r"^tolerance = .* um: must lie between 0.001 and 100 um$"):
-        roll_nodes(gear_set.gear, cut, tolerance, HEIGHT)
-
-
 @pytest.mark.parametrize("member", MEMBERS)
 def test_whole_flank_reaches_from_the_lower_limit_to_the_tip(gear_set, member):
     spec = gear_set.member(member)
@@ -98,3 +55,32 @@ def test_axis_positions_are_those_of_the_conventions(gear_set, witness):
     expected = witness.vertical_axes(gear_set.gear.concave.vector, theta, HEIGHT)
     expected[:, 3] = np.unwrap(expected[:, 3])
     np.testing.assert_allclose(axes, expected, rtol=0, atol=1e-11)
+
+
+def counting(vertical, low, high):
+    """The machine with an axis A that counts from ``low`` to ``high`` degrees."""
+    A = vertical.axes.A.model_copy(update={"modulo": False, "travel": (low, high)})
+    return vertical.model_copy(update={"axes": vertical.axes.model_copy(update={"A": A})})
+
+
+def test_a_counting_axis_starts_in_the_turn_that_keeps_it_within_travel(gear_set, vertical):
+    theta = np.linspace(-0.2, 0.2, 9)
+    axes = axis_positions(gear_set.gear.concave, theta, HEIGHT)
+    assert (np.degrees(axes[:, 3]) < 100).all()
+    moved = within_travel(axes, theta, counting(vertical, 500.0, 1000.0), "gear")
+    turns = (moved[:, 3] - axes[:, 3]) / (2 * np.pi)
+    np.testing.assert_allclose(turns, np.ceil((500 - np.degrees(axes[:, 3].min())) / 360), atol=1e-12)
+    np.testing.assert_array_equal(moved[:, [0, 1, 2, 4]], axes[:, [0, 1, 2, 4]])
+    with pytest.raises(InputError, match=r"^gear: axis A = .* degrees at cradle angle .* deg: .* travels 0 to 5 degr"):
+        within_travel(axes, theta, counting(vertical, 0.0, 5.0), "gear")
+
+
+def test_out_of_travel_is_refused_with_the_cradle_angle_where_it_happens(gear_set, vertical):
+    """X rises with the cradle here: the first rotation beyond the limit is named."""
+    theta = np.radians([-10.0, -5.0, 0.0, 5.0])
+    axes = axis_positions(gear_set.gear.concave, theta, HEIGHT)
+    short = vertical.axes.X.model_copy(update={"travel": (-400.0, float(axes[1:3, 0].mean()))})
+    machine = vertical.model_copy(update={"axes": vertical.axes.model_copy(update={"X": short})})
+    assert (np.diff(axes[:, 0]) > 0).all()
+    with pytest.raises(InputError, match=rf"^gear: axis X = {axes[2, 0]:.5f} mm at cradle angle 0\.000 deg: "):
+        within_travel(axes, theta, machine, "gear")

@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 
 from gearmath.errors import InputError
-from gearmath.machine.program import Pass, block_seconds, write_program
-from gearmath.machine.reader import execute
-from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.machine.executor import execute
+from gearmath.machine.feeds import block_seconds
+from gearmath.machine.program import Pass, write_program
+from gearmath.specs.milling_machine import Control, load_milling_machine
 from gearmath.specs.toml import bundled
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 TOOLS = ("PINION_CONCAVE", "PINION_CONVEX")
+TOOTH = np.array([20.0, 10.0, 70.0])
 
 
 def a_pass(tool=TOOLS[0], tooth=0, points=25, seed=0):
@@ -23,7 +25,7 @@ def a_pass(tool=TOOLS[0], tooth=0, points=25, seed=0):
     # on its way A crosses 0, and X, Z pass through 0 as well
     start, end = np.array([-60.0, -80.0, -5.0, -0.6, -0.01]), np.array([70.0, 90.0, 6.0, 0.9, 0.3])
     axes = start + (end - start) * s + noise + [0, 0, 0, 2 * np.pi * tooth / 12 * 29, 0]
-    return Pass(tool, "pinion roll", tooth, axes, block_seconds(axes, MACHINE, 250.0))
+    return Pass(tool, "pinion roll", tooth, axes, block_seconds(axes, MACHINE, 250.0, TOOTH))
 
 
 def the_passes():
@@ -101,7 +103,7 @@ def test_lint():
     number = r"-?\d+\.\d+"
     words = {
         "N": r"N\d+",
-        "code": r"(?:G(?:0|1|17|40|54|90|710|93|94)|M(?:3|5|6|8|9|30))",
+        "code": r"(?:G(?:0|1|17|40|54|64|90|710|93|94)|M(?:3|5|6|8|9|30)|SOFT|FFWON)",
         "mm": r"[XYZ]-?\d+\.\d{5}",
         "A": r"A=DC\(\d+\.\d{6}\)",
         "B": r"B-?\d+\.\d{6}",
@@ -152,13 +154,38 @@ def test_header_and_program_start():
     ]
 
 
-def test_block_times_follow_the_feed_or_the_slowest_axis():
-    axes = np.array([[0, 0, 0, 0, 0], [3, 4, 0, 0, 0], [3, 4, 12, np.pi, 0], [3, 4, 12, np.pi, np.pi / 2]])
-    # 5 mm at 300 mm/min; half a turn at 20 rpm takes 1.5 s, less than 12 mm in 2.4 s; a quarter at 10 rpm
-    np.testing.assert_allclose(block_seconds(axes, MACHINE, 300.0), [1.0, 2.4, 1.5], rtol=1e-14)
-    np.testing.assert_allclose(block_seconds(axes, MACHINE, 6000.0), [0.05, 1.5, 1.5], rtol=1e-14)
-    with pytest.raises(InputError, match=r"feed = 0\.0 mm/min: must be greater than 0"):
-        block_seconds(axes, MACHINE, 0.0)
+def test_a_counting_axis_is_written_as_it_counts():
+    axis = MACHINE.axes.A.model_copy(update={"modulo": False, "travel": (-360.0, 7200.0)})
+    counting = MACHINE.model_copy(update={"axes": MACHINE.axes.model_copy(update={"A": axis})})
+    passes = [a_pass(tooth=tooth) for tooth in (0, 5)]  # of 12: more than twelve turns on
+    text = written(passes, machine=counting)
+    assert "DC(" not in text
+    assert execute(text, "P.MPF").axes[cutting_rows(execute(text, "P.MPF")), 3] == pytest.approx(
+        np.concatenate([one.axes[1:, 3] for one in passes]), abs=np.radians(5.1e-7)
+    )
+
+
+def test_direction_of_the_cutter_and_options_of_the_control_come_from_the_machine_file():
+    control = Control(path_mode="G64", jerk="SOFT", feed_forward=True)
+    text = written(machine=MACHINE.model_copy(update={"cutter_direction": "M4", "control": control}))
+    assert text.split("\n")[4] == "N20 G64 SOFT FFWON"
+    assert " M3\n" not in text
+    assert text.count("S80.000 M4\n") == 2
+    assert written(machine=MACHINE.model_copy(update={"control": Control(feed_forward=False)})).count("FFWOF") == 1
+    assert execute(text, "P.MPF").spindle_on.all()
+
+
+def test_a_dwell_stands_between_the_cut_and_the_retract():
+    lines = written(changed(dwell=0.75)).split("\n")
+    (row,) = (k for k, line in enumerate(lines) if " G4 " in line)
+    assert lines[row].endswith("G4 F0.750000000")
+    assert "G93 G1" in lines[row - 1]
+    assert "G94 G0 Z" in lines[row + 1]
+
+
+def test_without_coolant_there_is_no_m8():
+    assert "M8" in written()
+    assert "M8" not in written(coolant=False)
 
 
 @pytest.mark.parametrize("name", ["AB", "_A", "a" * 24, "CONE", "COM10", "AB_1"])
@@ -195,9 +222,11 @@ def test_the_longest_comment_stays_within_a_block():
         (changed((2, 3), np.inf), r"axis A = inf at point 2: must be finite"),
         (changed(seconds=np.full(24, 1e-3)), r"axis X = .* mm/min in block 0: .* allows 20000 mm/min"),
         (changed((slice(5, None), 3), 9.0), r"axis A = .* degrees/min in block 4: .* allows 7200 degrees/min"),
-        (changed((slice(5, None), 3), 9.0, seconds=np.full(24, 9.0)), r"axis A turns .* in block 4: .* less than 180"),
+        (changed((slice(5, None), 3), 9.0, seconds=np.full(24, 20.0)), r"axis A turns .* in block 4: .* less than 180"),
         (changed(seconds=np.zeros(24)), r"time = 0\.0 s of block 0: must be 0\.0001 to 100000 s"),
         (changed(seconds=np.full(24, np.nan)), r"time = nan s of block 0"),
+        (changed(seconds=np.full(24, 0.05)), r"axis X = .* mm/s2 in block 0: .* allows 3000 mm/s2"),
+        (changed(dwell=-1.0), r"dwell = -1\.0 s: must be 0 to 100000 s"),
         (changed(seconds=np.ones(25)), r"has positions \(25, 5\) and times \(25,\)"),
         (changed(tool='A"B'), r"tool = 'A\"B': must be 1 to 31 letters"),
     ],

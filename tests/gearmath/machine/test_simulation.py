@@ -9,10 +9,16 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.errors import ComputationError
-from gearmath.machine.simulation import index_errors, roll_position, with_setting_errors
+from gearmath.machine.simulation import (
+    index_errors,
+    mounted,
+    roll_position,
+    with_axis_errors,
+    with_setting_errors,
+)
 from gearmath.quality.pitch import evaluate_pitch
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES
-from gearmath.specs.simulated_machine import Probe, SimulatedMachine, WorkAxis
+from gearmath.specs.simulated_machine import AxisErrors, Harmonic, Mounting, Probe, SimulatedMachine, WorkAxis
 
 ARCSEC = math.radians(1 / 3600)
 
@@ -129,3 +135,67 @@ def test_errors_of_a_member_are_in_mm_and_rad_and_the_blades_have_none(shop):
     assert errors["radial_distance"] == -0.075
     assert errors["cradle_angle"] == pytest.approx(0.0225 * math.pi / 180, rel=1e-15)
     assert errors["blade_point_radius"] == errors["blade_pressure_angle"] == 0
+
+
+def wrong(**what):
+    return SimulatedMachine(title="wrong", seed=0, **what)
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_machine_that_stands_too_high_leaves_the_sine_of_the_pressure_angle(gear_set, mill, member):
+    """By hand: the cone moves along its own axis, off the metal by d sin α along the normal, on both flanks."""
+    file = mill(gear_set, member, errors=wrong(axes=AxisErrors(Z=0.02)))
+    for flank in FLANKS:
+        alpha = math.radians(gear_set.member(member).flank(flank).blade_pressure_angle)
+        np.testing.assert_allclose(file.select(flank).deviation, 0.02 * math.sin(alpha), rtol=0, atol=1.2e-4)
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_offset_of_the_work_axis_turns_every_flank(gear_set, mill, member):
+    """δ = ε (z_w × R)·n: 0.01 degrees."""
+    file = mill(gear_set, member, errors=wrong(axes=AxisErrors(A=0.01)))
+    for flank in FLANKS:
+        here = solve_flank(gear_set.member(member), member, flank, blank_grid(gear_set.member(member)))
+        lever = here.point[:, 0] * here.normal[:, 1] - here.point[:, 1] * here.normal[:, 0]
+        np.testing.assert_allclose(file.select(flank).deviation, math.radians(0.01) * lever, rtol=0, atol=1.5e-4)
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_eccentric_and_tilted_work_deviates_by_what_it_is_moved_against_the_cutter(gear_set, mill, member):
+    """The cutter's surface stays, the nominal one moves by e + ω × R: δ = -(e + ω × R)·n, to first order."""
+    seat = Mounting(eccentricity=0.02, eccentricity_direction=35.0, tilt=0.01, tilt_direction=-70.0)
+    file = mill(gear_set, member, errors=wrong(mounting=seat))
+    at, about = math.radians(35.0), math.radians(-70.0)
+    e = 0.02 * np.array([math.cos(at), math.sin(at), 0.0])
+    omega = math.radians(0.01) * np.array([math.cos(about), math.sin(about), 0.0])
+    for flank in FLANKS:
+        here = solve_flank(gear_set.member(member), member, flank, blank_grid(gear_set.member(member)))
+        expected = -((e + np.cross(omega, here.point)) * here.normal).sum(axis=1)
+        np.testing.assert_allclose(file.select(flank).deviation, expected, rtol=0, atol=2e-4)
+        assert np.ptp(expected) > 1e-3
+
+
+def test_axes_out_of_square_and_unevenly_divided_by_hand():
+    """100 µm/m over 300 mm of Z is 30 µm of X; 20″ of third order at A = 30° with a phase of 0 is all of it."""
+    axes = np.array([[1.0, 2.0, 300.0, math.radians(30.0), 0.5]])
+    errors = wrong(
+        axes=AxisErrors(Y=0.5, squareness_x_z_um_per_m=100.0, A_harmonics=(Harmonic(order=3, amplitude_arcsec=20.0),))
+    )
+    moved = with_axis_errors(axes, errors) - axes
+    np.testing.assert_allclose(moved, [[0.03, 0.5, 0.0, 20.0 * ARCSEC, 0.0]], rtol=0, atol=1e-12)
+
+
+def test_work_that_sits_well_stays_where_it_is():
+    generator = np.random.default_rng(5)
+    point, normal = generator.normal(size=(2, 4, 3))
+    for errors in (None, wrong()):
+        again = mounted(point, normal, errors)
+        np.testing.assert_allclose(again, (point, normal), rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("X", 1.5), ("B", -2.0), ("squareness_x_z_um_per_m", 2000.0), ("A_harmonics", ({"order": 0},))]
+)
+def test_axis_errors_beyond_their_limits_are_refused(key, value):
+    with pytest.raises(ValueError, match=key):
+        AxisErrors(**{key: value})

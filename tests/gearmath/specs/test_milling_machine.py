@@ -19,6 +19,20 @@ def test_bundled_machine_in_mm_rad_and_seconds():
     # 20000 mm/min, 15000 mm/min, 20 rpm and 10 rpm
     speeds = [1000 / 3, 1000 / 3, 250, 20 * 2 * np.pi / 60, 10 * 2 * np.pi / 60]
     np.testing.assert_allclose(machine.max_speed, speeds, rtol=1e-15)
+    accelerations = [3000, 3000, 3000, 300 * np.pi / 180, 200 * np.pi / 180]
+    np.testing.assert_allclose(machine.max_acceleration, accelerations, rtol=1e-15)
+    assert machine.pivot.tolist() == [0, 0, 0]
+
+
+def test_a_counting_work_axis_has_a_travel():
+    text = TEXT.replace("modulo = true", "modulo = false\ntravel = [-90.0, 450.0]")
+    np.testing.assert_allclose(parse(text, MillingMachine, "m").travel[3], [-np.pi / 2, 5 * np.pi / 2], rtol=1e-15)
+
+
+def test_control_options_become_words_in_the_order_of_the_dialect():
+    text = TEXT + '\n[control]\npath_mode = "G642"\njerk = "BRISK"\nfeed_forward = false\n'
+    assert parse(text, MillingMachine, "m").control.words == ("G642", "BRISK", "FFWOF")
+    assert parse(TEXT, MillingMachine, "m").control.words == ()
 
 
 @pytest.mark.parametrize(
@@ -30,8 +44,12 @@ def test_bundled_machine_in_mm_rad_and_seconds():
         ("[-10.0, 100.0]", "[100.0, -10.0]", r"axes.B.travel = .*100.0, -10.0.: the first value must be less"),
         ("[-10.0, 100.0]", '["-10", 100.0]', r"axes.B.travel.0 = '-10': should be a valid number"),
         ("[-10.0, 100.0]", "[-10.0]", r"axes.B.travel.1: the key is missing"),
-        ("modulo = true", "modulo = false", r"axes.A.modulo = False: should be True"),
-        ("modulo = true", "modulo = true\ntravel = [0.0, 90.0]", r"axes.A.travel = .*: no such key is known here"),
+        ("modulo = true", "modulo = false", r"axes.A: travel belongs to an axis with modulo = false"),
+        ("modulo = true", "modulo = true\ntravel = [0.0, 90.0]", r"axes.A: travel belongs to an axis with modulo"),
+        ("max_acceleration = 300.0", "max_acceleration = 0.0", r"axes.A.max_acceleration = 0.0: should be greater"),
+        ("max_acceleration = 300.0", "", r"axes.A.max_acceleration: the key is missing"),
+        ('"M3"', '"M5"', r"cutter_direction = 'M5': should be 'M3' or 'M4'"),
+        ("pivot_offset = [0.0, 0.0, 0.0]", "pivot_offset = [0.0, 0.0]", r"pivot_offset.2: the key is missing"),
         ("[20.0, 3000.0]", "[-20.0, 3000.0]", r"spindle_speed_rpm.0 = -20.0: should be greater than 0"),
         ('"G54"', '"G53"', r"work_offset = 'G53': should be 'G54', 'G55', 'G56' or 'G57'"),
         ("= 3600.0", "= -1.0", r"axes.B.max_speed_per_min = -1.0: should be greater than 0"),

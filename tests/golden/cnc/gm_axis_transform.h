@@ -18,6 +18,8 @@
  *     [11] blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
  * in theta [rad] -1 ... 1: cradle rotation (roll position)
  * in pivot_height [mm] 0 ... 400: R_d + C_t: height of the blade tips over the B axis at Z = 0
+ * in pivot_offset[3] [mm] -100 ... 100: B axis to pitch apex, in the axes of the work at A = 0; zero where none
+ *     is given
  * out axes[5] [mixed]: axis positions X, Y, Z, A, B of the vertical machine
  *     [0] X [mm] -500 ... 500: position of axis X
  *     [1] Y [mm] -500 ... 500: position of axis Y
@@ -30,7 +32,7 @@
  *     sin(cutter_tilt)**2*sin(machine_root_angle)**2*cos(cradle_angle + cutter_swivel + theta)**2 +
  *     sin(cutter_tilt)**2*cos(machine_root_angle)**2*cos(cradle_angle + cutter_swivel + theta)**2) - 1/20 > 0
  * source: Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, with atan2
- * ops: 80 (add 15, atan2 2, cos 4, div 5, mul 34, neg 3, sin 4, sq 5, sqrt 1, sub 7)
+ * ops: 89 (add 19, atan2 2, cos 4, div 5, mul 38, neg 3, sin 4, sq 5, sqrt 1, sub 8)
  * work memory: none
  * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
  */
@@ -47,13 +49,19 @@ typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
 extern "C" {
 #endif
 
-void gm_axis_transform(const double settings[12], double theta, double pivot_height, double axes[5]);
+void gm_axis_transform(
+    const double settings[12],
+    double theta,
+    double pivot_height,
+    const double pivot_offset[3],
+    double axes[5]);
 
 void gm_axis_transform_batch(
     long n,
     const double *settings, long settings_stride,
     const double *theta, long theta_stride,
     const double *pivot_height, long pivot_height_stride,
+    const double *pivot_offset, long pivot_offset_stride,
     double *axes);
 
 #ifdef __cplusplus

@@ -27,132 +27,137 @@ static casadi_real casadi_fmax(casadi_real x, casadi_real y) {
 #endif
 }
 
-/* line_entry:(axes[5],pivot_height,line_point[3],line_direction[3],blade_point_radius,blade_pressure_angle,side)->(line_distance) */
+/* line_entry:(axes[5],pivot_height,line_point[3],line_direction[3],blade_point_radius,blade_pressure_angle,side,pivot_offset[3])->(line_distance) */
 static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a00, a01, a02, a03, a04, a05, a06, a07, a08, a09, a10, a11;
-  casadi_real a12, a13, a14, a15, a16, a17, a18, a19, a20, a21;
+  casadi_real a12, a13, a14, a15, a16, a17, a18;
   a00=0.;
   a01=arg[0]? arg[0][3] : 0;
-  a02=cos(a01);
-  a03=arg[0]? arg[0][4] : 0;
-  a04=sin(a03);
+  a02=sin(a01);
+  a03=arg[2]? arg[2][0] : 0;
+  a04=arg[0]? arg[0][1] : 0;
+  a05=arg[7]? arg[7][1] : 0;
+  a04=(a04-a05);
   a05=(a02*a04);
-  a06=arg[2]? arg[2][0] : 0;
-  a01=sin(a01);
-  a07=arg[0]? arg[0][1] : 0;
-  a08=(a01*a07);
-  a06=(a06+a08);
-  a08=arg[0]? arg[0][2] : 0;
-  a09=arg[1]? arg[1][0] : 0;
+  a03=(a03+a05);
+  a01=cos(a01);
+  a05=arg[0]? arg[0][2] : 0;
+  a06=arg[1]? arg[1][0] : 0;
+  a05=(a05-a06);
+  a06=arg[0]? arg[0][4] : 0;
+  a07=cos(a06);
+  a08=(a05*a07);
+  a09=arg[7]? arg[7][0] : 0;
   a08=(a08-a09);
-  a03=cos(a03);
-  a09=(a08*a03);
-  a10=arg[0]? arg[0][0] : 0;
-  a11=(a04*a10);
-  a09=(a09-a11);
-  a11=(a02*a09);
-  a06=(a06-a11);
-  a11=(a05*a06);
-  a12=(a01*a04);
-  a13=arg[2]? arg[2][1] : 0;
-  a09=(a01*a09);
-  a13=(a13-a09);
-  a07=(a02*a07);
-  a13=(a13-a07);
-  a07=(a12*a13);
-  a11=(a11+a07);
-  a07=arg[2]? arg[2][2] : 0;
-  a08=(a04*a08);
-  a07=(a07+a08);
-  a10=(a03*a10);
-  a07=(a07+a10);
-  a10=(a07*a03);
-  a11=(a11+a10);
-  a10=casadi_sq(a11);
+  a06=sin(a06);
+  a09=arg[0]? arg[0][0] : 0;
+  a10=(a06*a09);
+  a08=(a08-a10);
+  a10=(a01*a08);
+  a03=(a03-a10);
+  a10=(a02*a03);
+  a11=arg[2]? arg[2][1] : 0;
+  a08=(a02*a08);
+  a11=(a11-a08);
+  a04=(a01*a04);
+  a11=(a11-a04);
+  a04=(a01*a11);
+  a10=(a10-a04);
+  a04=casadi_sq(a10);
   a08=(a01*a06);
-  a09=(a02*a13);
-  a08=(a08-a09);
-  a09=casadi_sq(a08);
-  a10=(a10+a09);
-  a09=arg[4]? arg[4][0] : 0;
-  a14=(a02*a03);
-  a06=(a14*a06);
-  a15=(a01*a03);
-  a13=(a15*a13);
-  a16=(a06+a13);
-  a07=(a07*a04);
-  a16=(a16-a07);
-  a17=arg[5]? arg[5][0] : 0;
-  a17=tan(a17);
-  a18=arg[6]? arg[6][0] : 0;
-  a19=(a17*a18);
-  a20=(a16*a19);
-  a09=(a09+a20);
-  a20=casadi_sq(a09);
-  a10=(a10-a20);
-  a20=arg[3]? arg[3][0] : 0;
-  a05=(a05*a20);
-  a21=arg[3]? arg[3][1] : 0;
-  a12=(a12*a21);
-  a05=(a05+a12);
-  a12=arg[3]? arg[3][2] : 0;
-  a03=(a03*a12);
-  a05=(a05+a03);
-  a03=casadi_sq(a05);
-  a01=(a01*a20);
-  a02=(a02*a21);
-  a01=(a01-a02);
-  a02=casadi_sq(a01);
-  a03=(a03+a02);
-  a14=(a14*a20);
-  a15=(a15*a21);
+  a12=(a08*a03);
+  a13=(a02*a06);
+  a14=(a13*a11);
+  a12=(a12+a14);
+  a14=arg[2]? arg[2][2] : 0;
+  a15=arg[7]? arg[7][2] : 0;
   a14=(a14+a15);
-  a04=(a04*a12);
-  a14=(a14-a04);
-  a04=casadi_sq(a14);
-  a17=casadi_sq(a17);
-  a04=(a04*a17);
-  a17=casadi_sq(a18);
-  a04=(a04*a17);
-  a03=(a03-a04);
-  a03=(a10*a03);
-  a05=(a05*a11);
-  a01=(a01*a08);
-  a05=(a05+a01);
-  a19=(a14*a19);
-  a19=(a19*a09);
-  a05=(a05-a19);
-  a19=casadi_sq(a05);
-  a03=(a03-a19);
-  a19=(a00<=a03);
-  a09=1000.;
-  a01=(a19?a09:0);
-  a19=(!a19);
+  a05=(a06*a05);
+  a14=(a14+a05);
+  a09=(a07*a09);
+  a14=(a14+a09);
+  a09=(a14*a07);
+  a12=(a12+a09);
+  a09=casadi_sq(a12);
+  a04=(a04+a09);
+  a09=arg[4]? arg[4][0] : 0;
+  a05=(a01*a07);
+  a03=(a05*a03);
+  a15=(a02*a07);
+  a11=(a15*a11);
+  a03=(a03+a11);
+  a14=(a14*a06);
+  a03=(a03-a14);
+  a14=arg[5]? arg[5][0] : 0;
+  a14=tan(a14);
+  a11=arg[6]? arg[6][0] : 0;
+  a16=(a14*a11);
+  a17=(a03*a16);
+  a09=(a09+a17);
+  a17=casadi_sq(a09);
+  a04=(a04-a17);
+  a17=arg[3]? arg[3][0] : 0;
+  a08=(a08*a17);
+  a18=arg[3]? arg[3][1] : 0;
+  a13=(a13*a18);
+  a08=(a08+a13);
+  a13=arg[3]? arg[3][2] : 0;
+  a07=(a07*a13);
+  a08=(a08+a07);
+  a07=casadi_sq(a08);
+  a02=(a02*a17);
+  a01=(a01*a18);
+  a02=(a02-a01);
+  a01=casadi_sq(a02);
+  a07=(a07+a01);
+  a05=(a05*a17);
+  a15=(a15*a18);
+  a05=(a05+a15);
+  a06=(a06*a13);
+  a05=(a05-a06);
+  a06=casadi_sq(a05);
+  a14=casadi_sq(a14);
+  a06=(a06*a14);
+  a14=casadi_sq(a11);
+  a06=(a06*a14);
   a07=(a07-a06);
-  a07=(a07-a13);
+  a07=(a04*a07);
+  a10=(a10*a02);
+  a08=(a08*a12);
+  a10=(a10+a08);
+  a16=(a05*a16);
+  a16=(a16*a09);
+  a10=(a10-a16);
+  a16=casadi_sq(a10);
+  a07=(a07-a16);
+  a16=(a00<=a07);
+  a09=1000.;
+  a08=(a16?a09:0);
+  a16=(!a16);
+  a07=(-a07);
+  a07=casadi_fmax(a00,a07);
+  a07=sqrt(a07);
+  a11=(a11*a07);
+  a11=(a11-a10);
+  a04=(a04/a11);
+  a11=(a05*a04);
+  a11=(a03+a11);
+  a11=(-a11);
+  a11=(a11<=a00);
+  a04=(a11?a04:0);
+  a11=(!a11);
+  a00=(a00<a05);
+  a03=(a03/a05);
   a03=(-a03);
-  a03=casadi_fmax(a00,a03);
-  a03=sqrt(a03);
-  a18=(a18*a03);
-  a18=(a18-a05);
-  a10=(a10/a18);
-  a18=(a14*a10);
-  a07=(a07-a18);
-  a07=(a07<=a00);
-  a10=(a07?a10:0);
-  a07=(!a07);
-  a00=(a00<a14);
-  a16=(a16/a14);
-  a16=(-a16);
-  a16=(a00?a16:0);
+  a03=(a00?a03:0);
   a00=(!a00);
   a00=(a00?a09:0);
-  a16=(a16+a00);
-  a07=(a07?a16:0);
-  a10=(a10+a07);
-  a19=(a19?a10:0);
-  a01=(a01+a19);
-  if (res[0]!=0) res[0][0]=a01;
+  a03=(a03+a00);
+  a11=(a11?a03:0);
+  a04=(a04+a11);
+  a16=(a16?a04:0);
+  a08=(a08+a16);
+  if (res[0]!=0) res[0][0]=a08;
   return 0;
 }
 
@@ -168,9 +173,10 @@ void gm_line_entry(
     double blade_point_radius,
     double blade_pressure_angle,
     double side,
+    const double pivot_offset[3],
     double *line_distance)
 {
-  const double *arg[7];
+  const double *arg[8];
   double *res[1];
   arg[0] = axes;
   arg[1] = &pivot_height;
@@ -179,6 +185,7 @@ void gm_line_entry(
   arg[4] = &blade_point_radius;
   arg[5] = &blade_pressure_angle;
   arg[6] = &side;
+  arg[7] = pivot_offset;
   res[0] = line_distance;
   (void)casadi_f0(arg, res, 0, 0, 0);
 }
@@ -192,6 +199,7 @@ void gm_line_entry_batch(
     const double *blade_point_radius, long blade_point_radius_stride,
     const double *blade_pressure_angle, long blade_pressure_angle_stride,
     const double *side, long side_stride,
+    const double *pivot_offset, long pivot_offset_stride,
     double *line_distance)
 {
   long k;
@@ -204,6 +212,7 @@ void gm_line_entry_batch(
         blade_point_radius[k * blade_point_radius_stride],
         blade_pressure_angle[k * blade_pressure_angle_stride],
         side[k * side_stride],
+        pivot_offset + k * pivot_offset_stride,
         line_distance + k);
   }
 }

@@ -15,11 +15,13 @@
  * in blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis
  * in blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
  * in side [1] one of -1, 1: +1 outer blade (concave flank), -1 inner blade (convex flank)
+ * in pivot_offset[3] [mm] -100 ... 100: B axis to pitch apex, in the axes of the work at A = 0; zero where none
+ *     is given
  * out line_distance [mm]: where the line enters the swept blade; 1e3 where it does not
  *
  * source: line against cone, the root at which the line passes from the metal into the cutter
- * ops: 104 (add 16, cos 2, div 2, fmax 1, if_else_zero 6, le 2, lt 1, mul 39, neg 2, not 3, sin 2, sq 9, sqrt 1,
- *     sub 17, tan 1)
+ * ops: 106 (add 18, cos 2, div 2, fmax 1, if_else_zero 6, le 2, lt 1, mul 39, neg 3, not 3, sin 2, sq 9, sqrt 1,
+ *     sub 16, tan 1)
  * work memory: none
  * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
  */
@@ -44,6 +46,7 @@ void gm_line_entry(
     double blade_point_radius,
     double blade_pressure_angle,
     double side,
+    const double pivot_offset[3],
     double *line_distance);
 
 void gm_line_entry_batch(
@@ -55,6 +58,7 @@ void gm_line_entry_batch(
     const double *blade_point_radius, long blade_point_radius_stride,
     const double *blade_pressure_angle, long blade_pressure_angle_stride,
     const double *side, long side_stride,
+    const double *pivot_offset, long pivot_offset_stride,
     double *line_distance);
 
 #ifdef __cplusplus

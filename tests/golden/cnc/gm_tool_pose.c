@@ -14,7 +14,7 @@
 #define CASADI_PREFIX(ID) gm_tool_pose_ ## ID
 #define casadi_f0 CASADI_PREFIX(f0)
 
-/* tool_pose:(axes[5],pivot_height)->(cutter_center_w[3],cutter_axis_w[3]) */
+/* tool_pose:(axes[5],pivot_height,pivot_offset[3])->(cutter_center_w[3],cutter_axis_w[3]) */
 static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw, casadi_real* w, int mem) {
   casadi_real a0, a1, a2, a3, a4, a5, a6, a7, a8, a9;
   a0=arg[0]? arg[0][2] : 0;
@@ -23,6 +23,8 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   a1=arg[0]? arg[0][4] : 0;
   a2=cos(a1);
   a3=(a0*a2);
+  a4=arg[2]? arg[2][0] : 0;
+  a3=(a3-a4);
   a1=sin(a1);
   a4=arg[0]? arg[0][0] : 0;
   a5=(a1*a4);
@@ -30,20 +32,24 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
   a5=arg[0]? arg[0][3] : 0;
   a6=cos(a5);
   a7=(a3*a6);
-  a5=sin(a5);
   a8=arg[0]? arg[0][1] : 0;
-  a9=(a5*a8);
+  a9=arg[2]? arg[2][1] : 0;
+  a8=(a8-a9);
+  a5=sin(a5);
+  a9=(a8*a5);
   a7=(a7-a9);
   if (res[0]!=0) res[0][0]=a7;
+  a8=(a8*a6);
   a3=(a5*a3);
-  a8=(a6*a8);
-  a3=(a3+a8);
-  if (res[0]!=0) res[0][1]=a3;
+  a8=(a8+a3);
+  if (res[0]!=0) res[0][1]=a8;
+  a8=arg[2]? arg[2][2] : 0;
   a0=(a1*a0);
+  a8=(a8+a0);
   a4=(a2*a4);
-  a0=(a0+a4);
-  a0=(-a0);
-  if (res[0]!=0) res[0][2]=a0;
+  a8=(a8+a4);
+  a8=(-a8);
+  if (res[0]!=0) res[0][2]=a8;
   a6=(a2*a6);
   a6=(-a6);
   if (res[1]!=0) res[1][0]=a6;
@@ -61,13 +67,15 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 void gm_tool_pose(
     const double axes[5],
     double pivot_height,
+    const double pivot_offset[3],
     double cutter_center_w[3],
     double cutter_axis_w[3])
 {
-  const double *arg[2];
+  const double *arg[3];
   double *res[2];
   arg[0] = axes;
   arg[1] = &pivot_height;
+  arg[2] = pivot_offset;
   res[0] = cutter_center_w;
   res[1] = cutter_axis_w;
   (void)casadi_f0(arg, res, 0, 0, 0);
@@ -77,6 +85,7 @@ void gm_tool_pose_batch(
     long n,
     const double *axes, long axes_stride,
     const double *pivot_height, long pivot_height_stride,
+    const double *pivot_offset, long pivot_offset_stride,
     double *cutter_center_w,
     double *cutter_axis_w)
 {
@@ -85,6 +94,7 @@ void gm_tool_pose_batch(
     gm_tool_pose(
         axes + k * axes_stride,
         pivot_height[k * pivot_height_stride],
+        pivot_offset + k * pivot_offset_stride,
         cutter_center_w + k * 3,
         cutter_axis_w + k * 3);
   }

@@ -10,11 +10,13 @@
  *     [3] A [rad] -10 ... 10: position of the work axis A, right-handed about the work axis
  *     [4] B [rad] -0.2 ... 1.7: position of the swivel axis B, left-handed about Y
  * in pivot_height [mm] 0 ... 400: R_d + C_t: height of the blade tips over the B axis at Z = 0
+ * in pivot_offset[3] [mm] -100 ... 100: B axis to pitch apex, in the axes of the work at A = 0; zero where none
+ *     is given
  * out cutter_center_w[3] [mm] -500 ... 500: cutter centre in the tip plane, work frame w
  * out cutter_axis_w[3] [1] -1 ... 1: cutter axis towards the work, work frame w
  *
- * source: inverse of the rotation p_m = M(B) Rz(-A) p_w
- * ops: 22 (add 2, cos 2, mul 10, neg 3, sin 2, sub 3)
+ * source: inverse of p_m = M(B) (Rz(-A) p_w + e)
+ * ops: 25 (add 3, cos 2, mul 10, neg 3, sin 2, sub 5)
  * work memory: none
  * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
  */
@@ -34,6 +36,7 @@ extern "C" {
 void gm_tool_pose(
     const double axes[5],
     double pivot_height,
+    const double pivot_offset[3],
     double cutter_center_w[3],
     double cutter_axis_w[3]);
 
@@ -41,6 +44,7 @@ void gm_tool_pose_batch(
     long n,
     const double *axes, long axes_stride,
     const double *pivot_height, long pivot_height_stride,
+    const double *pivot_offset, long pivot_offset_stride,
     double *cutter_center_w,
     double *cutter_axis_w);
 

@@ -7,29 +7,37 @@ from pathlib import Path
 import pytest
 
 from gearmath import cli
+from gearmath.bevel.flank import blank_grid
+from gearmath.errors import InputError
+from gearmath.machine.mill import nominal_flank
+from gearmath.quality.correction import correct
 from gearmath.specs.bevel_set import Motion, design_sha256, load_bevel_set, settings_sha256
 from gearmath.specs.toml import bundled
 
 
+def test_program_of_a_face_hobbed_member_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "CUT.MPF"
+    with pytest.raises(SystemExit) as stopped:
+        cli.main(["nc", "cut", "crown_gear_hobbed_14x39.toml", "--member", "pinion", "-o", str(target)])
+    assert stopped.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "pinion: is face hobbed" in line
+    assert not target.exists()
+
+
 @pytest.mark.parametrize(
-    ("gear_set", "member", "words"),
+    ("gear_set", "name", "words"),
     [
         ("crown_gear_hobbed_14x39.toml", "pinion", "face hobbed"),
         ("crown_gear_formate_14x39.toml", "gear", "Formate cut"),
         ("crown_gear_universal_14x39.toml", "pinion", "cut with settings that move"),
     ],
 )
-def test_program_of_another_method_is_refused(
-    gear_set: str, member: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    target = tmp_path / "CUT.MPF"
-    with pytest.raises(SystemExit) as stopped:
-        cli.main(["nc", "cut", gear_set, "--member", member, "-o", str(target)])
-    assert stopped.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert f"{member}: a cutting program is there for plain face milling only" in line
-    assert words in line
-    assert not target.exists()
+def test_compensation_of_another_method_is_refused(gear_set: str, name: str, words: str) -> None:
+    member = load_bevel_set(bundled(gear_set)).member(name)
+    nominal = nominal_flank(member, name, "concave", blank_grid(member))
+    with pytest.raises(InputError, match=rf"{name}: compensation is there for plain face milling only; .*{words}"):
+        correct(member, name, nominal)
 
 
 def test_digests_tell_methods_apart() -> None:

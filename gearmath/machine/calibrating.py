@@ -1,0 +1,127 @@
+"""Calibration programs: a ring for radius and offset of the tip in X and Y, a sphere for all of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from gearmath import __version__
+from gearmath.errors import InputError
+from gearmath.machine.probe_words import Blocks
+from gearmath.machine.probing import APPROACH, APPROACH_FEED, CLEARANCE, MEASURING_FEED
+from gearmath.specs.calibration import Calibration, Ring, Sphere
+from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
+from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING
+
+#: Targets in the ring, low and high, for X and for Y.
+PAIRS = (RING[:2], RING[2:])
+#: Touches on the sphere: the pole, then rings at these angles from it, with so many touches each.
+_POLAR = (30.0, 60.0, 85.0)
+_AROUND = 8
+
+
+def sphere_directions() -> np.ndarray:
+    """Unit vectors (n,3) from the centre of the sphere to its touches."""
+    directions = [(0.0, 0.0, 1.0)]
+    for polar in np.radians(_POLAR):
+        for azimuth in 2 * math.pi * np.arange(_AROUND) / _AROUND:
+            directions.append(
+                (math.sin(polar) * math.cos(azimuth), math.sin(polar) * math.sin(azimuth), math.cos(polar))
+            )
+    return np.array(directions)
+
+
+def calibration_program(machine: MillingMachine, calibration: Calibration, program_name: str) -> str:
+    """The program that touches ring and sphere, as far as the calibration file has them.
+
+    Raises InputError if it has neither, and for positions out of travel.
+    """
+    if calibration.ring is None and calibration.sphere is None:
+        raise InputError("the calibration file has neither ring nor sphere: there is nothing to touch")
+    blocks = Blocks(program_name, machine.axes.A.modulo)
+    header = (f"gearmath {__version__} calibration program", f"machine: {machine.name}", f"probe: {calibration.name}")
+
+    def body() -> Iterator[str]:
+        yield from blocks.start(machine.work_offset, CALIBRATION_COLUMNS)
+        level, top = _level(machine, calibration), blocks.length("Z", float(machine.travel[2, 1]))
+        yield f"G0 {top}"
+        yield f"G0 {' '.join(blocks.axes(np.zeros(5))[3:])}"
+        if calibration.ring is not None:
+            yield from _ring(blocks, calibration, calibration.ring, level)
+            yield f"G0 {top}"
+        if calibration.sphere is not None:
+            yield from _sphere(blocks, calibration, calibration.sphere, level)
+            yield f"G0 {top}"
+        yield "M30"
+
+    return blocks.text(header, body())
+
+
+def _level(machine: MillingMachine, calibration: Calibration) -> float:
+    """Z of all sideways motion: well above ring and sphere. Raises InputError where the travel does not allow it."""
+    ring, sphere = calibration.ring, calibration.sphere
+    heights = [0.0 if ring is None else ring.center[2] + calibration.stylus_length]
+    if sphere is not None:
+        heights.append(sphere.center[2] + sphere.diameter / 2 + calibration.tip_radius + CLEARANCE)
+    level = max(heights) - min(calibration.offset[2], 0.0)
+    low, high = machine.travel.T
+    for place in (ring, sphere):
+        if place is None:
+            continue
+        reach = place.diameter / 2 + calibration.tip_radius + APPROACH
+        for axis, (least, most) in enumerate(
+            ((place.center[0] - reach, place.center[0] + reach), (place.center[1] - reach, place.center[1] + reach),
+             (place.center[2], level))
+        ):  # fmt: skip
+            if least < low[axis] or most > high[axis]:
+                scale = UNITS_PER_INTERNAL[axis]
+                raise InputError(
+                    f"{type(place).__name__.lower()}: axis {AXES[axis]} = {least:.3f} to {most:.3f} {UNITS[axis]}: "
+                    f"{machine.name} travels {low[axis] * scale:g} to {high[axis] * scale:g} {UNITS[axis]}"
+                )
+    return level
+
+
+def _ring(blocks: Blocks, calibration: Calibration, ring: Ring, level: float) -> Iterator[str]:
+    """Touches along X, along Y through the middle found, and along X again through the middle of these."""
+    x, y, z = np.array(ring.center) - calibration.tip_offset
+    reach = ring.diameter / 2 - calibration.tip_radius + calibration.overtravel
+    yield "; ring"
+    yield f"G0 {blocks.length('X', x)} {blocks.length('Y', y)}"
+    yield f"G0 {blocks.length('Z', level)}"
+    yield from blocks.guarded(blocks.length("Z", z), APPROACH_FEED, level)
+    yield f"R10={_number(x)} R11={_number(y)}"
+    for axis, parameter, pair in (("X", 200, PAIRS[0]), ("Y", 201, PAIRS[1]), ("X", 200, PAIRS[0])):
+        center = "R10" if axis == "X" else "R11"
+        for sign, store, target in (("-", "R12", pair[0]), ("+", "R13", pair[1])):
+            to = f"{axis}={center}{sign}{_number(reach)}"
+            end = f"{to} Y=IC(0) Z=IC(0)" if axis == "X" else f"X=IC(0) {to} Z=IC(0)"
+            yield from blocks.touch(end, "X=R10 Y=R11", MEASURING_FEED, APPROACH_FEED, level, up=False)
+            yield f"{store}=R{parameter}"
+            yield from blocks.hand_over(target)
+        yield f"{center}=(R12+R13)/2"
+        yield f"G1 X=R10 Y=R11 F{APPROACH_FEED:.3f}"
+
+
+def _sphere(blocks: Blocks, calibration: Calibration, sphere: Sphere, level: float) -> Iterator[str]:
+    """Touches along the normals of the sphere; down to each of them from above, outside of the sphere."""
+    center, reach = np.array(sphere.center) - calibration.tip_offset, sphere.diameter / 2 + calibration.tip_radius
+    yield "; sphere"
+    yield f"G0 {' '.join(blocks.axes(np.array([*center, 0.0, 0.0]))[:2])}"
+    yield f"G0 {blocks.length('Z', level)}"
+    for direction in sphere_directions():
+        start, end = (center + (reach + off) * direction for off in (APPROACH, -calibration.overtravel))
+        x, y, z, *_ = blocks.axes(np.array([*start, 0.0, 0.0]))
+        yield f"G0 {x} {y}"
+        yield from blocks.guarded(z, APPROACH_FEED, level)
+        target = " ".join(blocks.axes(np.array([*end, 0.0, 0.0]))[:3])
+        yield from blocks.touch(target, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level)
+        yield from blocks.hand_over("sphere")
+
+
+def _number(value: float) -> str:
+    """A number in an expression; a negative one in parentheses."""
+    text = f"{value:.5f}"
+    return f"({text})" if value < 0 else text

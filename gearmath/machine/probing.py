@@ -1,0 +1,211 @@
+"""Probing programs: every tooth at the reference point for pitch, a grid of both flanks for topography.
+
+The stylus enters a space from above, square to the root cone, and touches along the outward normal; outside of the
+space it moves at a height that clears the whole member at every position of A.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from gearmath import __version__
+from gearmath.bevel.flank import Grid, blank_grid, solve_flank
+from gearmath.bevel.kernels import kernel
+from gearmath.errors import InputError
+from gearmath.machine.probe_words import Blocks
+from gearmath.specs.bevel_set import FLANKS, BevelSet, Member, design_sha256
+from gearmath.specs.calibration import Calibration
+from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
+
+#: The tip starts its touch this far from the flank, or half way to the opposite one. [mm]
+APPROACH = 1.5
+#: Least distance from which a touch may start. [mm]
+_LEAST_APPROACH = 0.1
+#: Height of all sideways motion above the highest point of the member. [mm]
+CLEARANCE = 5.0
+MEASURING_FEED, APPROACH_FEED = 100.0, 800.0
+
+
+@dataclass(frozen=True)
+class Targets:
+    """n touches in their order: where they are, and positions X Y Z A B (n,5) in mm and rad, A and B standing still."""
+
+    flank: np.ndarray
+    tooth: np.ndarray
+    row: np.ndarray
+    col: np.ndarray
+    start: np.ndarray
+    touch: np.ndarray
+    end: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.tooth)
+
+    def pick(self, keep: np.ndarray) -> Targets:
+        return Targets(*(getattr(self, part.name)[keep] for part in fields(self)))
+
+
+def probe_height(machine: MillingMachine, calibration: Calibration) -> float:
+    """H [mm] of equation (15.3)."""
+    return machine.gauge_line_height + calibration.length
+
+
+def tip_positions(
+    tip: np.ndarray, A: np.ndarray, B: float, machine: MillingMachine, calibration: Calibration
+) -> np.ndarray:
+    """Positions X Y Z A B (n,5) that put the tip at places (n,3) of the work."""
+    height = probe_height(machine, calibration)
+    (axes,) = kernel("probe_axes")(tip, A, B, height, calibration.tip_offset, machine.pivot)
+    return axes
+
+
+def probe_targets(
+    member: Member,
+    name: str,
+    machine: MillingMachine,
+    calibration: Calibration,
+    topography: Sequence[int] = (0,),
+    pitch: bool = True,
+    grid: Grid | None = None,
+) -> Targets:
+    """The touches of a member: the whole grid on the teeth of ``topography``, the reference point on all others.
+
+    Raises InputError naming flank, row and column where the tip has no room between the flanks.
+    """
+    if not all(0 <= tooth < member.teeth for tooth in topography):
+        raise InputError(f"{name}: teeth = {list(topography)}: must be numbers from 0 to {member.teeth - 1}")
+    grid = blank_grid(member) if grid is None else grid
+    flanks = [_of_one_flank(member, name, flank, grid, machine, calibration) for flank in FLANKS]
+    rows, columns = grid.shape
+    parts = []
+    for tooth in range(member.teeth):
+        for one in flanks:
+            whole = tooth in topography
+            if whole or pitch:
+                keep = np.full(len(one), whole) | ((one.row == rows // 2) & (one.col == columns // 2))
+                parts.append(_turned(one.pick(keep), tooth, member.teeth))
+    if not parts:
+        raise InputError(f"{name}: there is nothing to probe: neither a tooth for topography, nor pitch")
+    joined = (np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Targets))
+    return Targets(*joined)
+
+
+def _of_one_flank(
+    member: Member, name: str, flank: str, grid: Grid, machine: MillingMachine, calibration: Calibration
+) -> Targets:
+    """The touches of the whole grid of one flank of space 0."""
+    (other,) = (each for each in FLANKS if each != flank)
+    points, opposite = (solve_flank(member, name, each, grid) for each in (flank, other))
+    row, col = (index.ravel() for index in np.indices(grid.shape))
+    r = calibration.tip_radius
+    (touch,) = kernel("probe_target")(points.point, points.normal, r, 0.0)
+    (room,) = kernel("point_deviation")(touch, r, opposite.point, opposite.normal)
+    standoff = np.minimum(APPROACH, room / 2)
+    if (standoff < _LEAST_APPROACH).any():
+        k = int(np.argmin(standoff))
+        raise InputError(
+            f"{name} {flank} flank, row {row[k]}, col {col[k]}: tip_radius = {r} mm: leaves {room[k]:.3f} mm to the "
+            f"opposite flank, {2 * _LEAST_APPROACH:g} mm are needed"
+        )
+    (A,) = kernel("space_azimuth")(points.point, opposite.point)
+    positions = []
+    for distance in (standoff, np.zeros(len(row)), np.full(len(row), -calibration.overtravel)):
+        (tip,) = kernel("probe_target")(points.point, points.normal, r, distance)
+        positions.append(tip_positions(tip, A, math.radians(member.blank.root_angle), machine, calibration))
+    n = len(row)
+    return Targets(np.full(n, flank), np.zeros(n, dtype=int), row, col, *positions)
+
+
+def _turned(targets: Targets, tooth: int, teeth: int) -> Targets:
+    """The same touches in another space: only A is different."""
+    turn = 2 * math.pi * tooth / teeth * np.array([0, 0, 0, 1, 0])
+    positions = (getattr(targets, name) + turn for name in ("start", "touch", "end"))
+    return Targets(targets.flank, np.full(len(targets), tooth), targets.row, targets.col, *positions)
+
+
+def clear_heights(member: Member, machine: MillingMachine, calibration: Calibration) -> tuple[float, float]:
+    """Z [mm] at which the tip clears the member at every A: with B at the root angle, and with any B."""
+    axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 1.0]), np.ones(2))
+    tips = np.stack([radial, np.zeros(2), axial], axis=1)
+    here = tip_positions(tips, np.zeros(2), math.radians(member.blank.root_angle), machine, calibration)
+    farthest = float(np.linalg.norm(tips, axis=1).max() + np.linalg.norm(machine.pivot))
+    margin = calibration.tip_radius + CLEARANCE
+    anywhere = probe_height(machine, calibration) + farthest - calibration.offset[2]
+    return float(here[:, 2].max()) + margin, anywhere + margin
+
+
+def probing_program(
+    bevel_set: BevelSet,
+    name: str,
+    machine: MillingMachine,
+    calibration: Calibration,
+    program_name: str,
+    topography: Sequence[int] = (0,),
+    pitch: bool = True,
+) -> str:
+    """The program that probes a member. Raises InputError for travel, room, and a name that the control refuses."""
+    member = bevel_set.member(name)
+    targets = probe_targets(member, name, machine, calibration, topography, pitch)
+    level, anywhere = clear_heights(member, machine, calibration)
+    targets = _within_travel(targets, name, machine, (level, anywhere))
+    header = (
+        f"gearmath {__version__} probing program",
+        f"set: {bevel_set.title}",
+        f"member: {name}, {member.teeth} teeth, {member.hand} hand",
+        f"settings sha256: {design_sha256(member)}",
+        f"machine: {machine.name}",
+        f"probe: {calibration.name}, tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm",
+        f"{len(targets)} touches",
+        "R102 counts the runs, R101 the points offered, R103 those that a host has acknowledged",
+        "R104 = 1, set before the start: a host reads R200 to R205 of every point, and the program waits for it",
+    )
+    blocks = Blocks(program_name, machine.axes.A.modulo)
+    return blocks.text(header, _body(blocks, targets, name, machine, level, anywhere))
+
+
+def _body(
+    blocks: Blocks, targets: Targets, name: str, machine: MillingMachine, level: float, anywhere: float
+) -> Iterator[str]:
+    yield from blocks.start(machine.work_offset)
+    yield f"G0 {blocks.length('Z', anywhere)}"
+    x, y, _, a, b = blocks.axes(targets.start[0])
+    yield f"G0 {x} {y} {a} {b}"
+    yield f"G0 {blocks.length('Z', level)}"
+    for k in range(len(targets)):
+        flank, place = targets.flank[k], (int(targets.tooth[k]), int(targets.row[k]), int(targets.col[k]))
+        yield f"; {flank}, tooth {place[0]}, row {place[1]}, col {place[2]}"
+        x, y, z, a, b = blocks.axes(targets.start[k])
+        yield f"G0 {x} {y} {a} {b}"
+        yield from blocks.guarded(z, APPROACH_FEED, level)
+        end = " ".join(blocks.axes(targets.end[k])[:3])
+        yield from blocks.touch(end, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level)
+        yield from blocks.hand_over(f"{name},{flank},{place[0]},{place[1]},{place[2]}")
+    yield f"G0 {blocks.length('Z', anywhere)}"
+    yield "M30"
+
+
+def _within_travel(targets: Targets, name: str, machine: MillingMachine, heights: tuple[float, float]) -> Targets:
+    """The targets, A by whole turns where a counting axis needs it. Raises InputError naming point, axis and limit."""
+    low, high = machine.travel.T
+    if math.isfinite(low[3]):
+        turns = np.ceil((low[3] - targets.start[:, 3]) / (2 * math.pi) - 1e-12)
+        shift = 2 * math.pi * turns[:, None] * np.array([0, 0, 0, 1, 0])
+        positions = (getattr(targets, part) + shift for part in ("start", "touch", "end"))
+        targets = Targets(targets.flank, targets.tooth, targets.row, targets.col, *positions)
+    raised = np.repeat(targets.start[:1], 2, axis=0)
+    raised[:, 2] = heights
+    for what, axes in (("the start", targets.start), ("the end", targets.end), ("the height above", raised)):
+        outside = np.argwhere((axes < low) | (axes > high))
+        if outside.size:
+            k, axis = outside[0]
+            scale = UNITS_PER_INTERNAL[axis]
+            place = f"{targets.flank[k]} flank, tooth {targets.tooth[k]}, row {targets.row[k]}, col {targets.col[k]}"
+            raise InputError(
+                f"{name} {place}, {what} of the touch: axis {AXES[axis]} = {axes[k, axis] * scale:.5f} {UNITS[axis]}: "
+                f"{machine.name} travels {low[axis] * scale:g} to {high[axis] * scale:g} {UNITS[axis]}"
+            )
+    return targets

@@ -1,0 +1,61 @@
+"""What is to be known of a program before metal is cut: gouges and stock, collisions, axis speeds and time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+
+from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+from gearmath.machine.collision import Collision, collisions
+from gearmath.machine.executor import MachinePath
+from gearmath.machine.milling import Evaluator
+from gearmath.machine.run import runs_of
+from gearmath.machine.stock import DEFAULT_COLUMNS, DEFAULT_TOLERANCE, SurfaceState, surface_states
+from gearmath.machine.timing import Timing, timing
+from gearmath.specs.bevel_set import Member
+from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.simulated_machine import SimulatedMachine
+
+
+@dataclass(frozen=True)
+class MillingReport:
+    """Everything that a program does to a member and to the machine; lengths in mm, ``tolerance`` too."""
+
+    member: str
+    tolerance: float
+    surfaces: tuple[SurfaceState, ...]
+    collisions: tuple[Collision, ...]
+    timing: Timing
+
+    @property
+    def gouges(self) -> tuple[SurfaceState, ...]:
+        """Surfaces that are cut deeper than the tolerance allows."""
+        return tuple(state for state in self.surfaces if state.gouged)
+
+    @property
+    def uncut(self) -> tuple[SurfaceState, ...]:
+        """Surfaces on which more than the tolerance is left."""
+        return tuple(state for state in self.surfaces if state.uncut)
+
+    def as_dict(self) -> dict[str, object]:
+        """For JSON."""
+        return asdict(self)
+
+
+def milling_report(
+    path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None = None,
+    tolerance: float = DEFAULT_TOLERANCE, columns: int = DEFAULT_COLUMNS, evaluator: Evaluator = lambda k: k,
+    progress: Callable[[int], object] = lambda _: None,
+) -> MillingReport:  # fmt: skip
+    """The report of a whole program. ``progress`` is called for every surface of every space, five to a space.
+
+    Raises InputError if a tool is not of this member.
+    """
+    space = tooth_space(member, name, columns)
+    runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
+    states = surface_states(
+        path, member, name, machine, errors, None, tolerance, columns, runs, evaluator, progress, space
+    )  # fmt: skip
+    shop = errors or SimulatedMachine(title="no errors", seed=0)
+    met = collisions(path, runs, member, machine, shop.cutter_head, shop.fixture)
+    return MillingReport(name, tolerance, tuple(states), tuple(met), timing(path, machine))

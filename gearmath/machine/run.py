@@ -1,0 +1,82 @@
+"""An executed program tool by tool: where its axes really stand, with what cutter, and which space each pass cuts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.tooth import ToothSpace
+from gearmath.errors import InputError
+from gearmath.machine.cutter import Cutter, cutter_of
+from gearmath.machine.executor import MachinePath
+from gearmath.machine.path import Cut, axis_positions, roll_range
+from gearmath.machine.simulation import index_errors, with_axis_errors, with_setting_errors
+from gearmath.specs.bevel_set import Member
+from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.simulated_machine import SimulatedMachine
+
+#: Positions of the nominal path that a pass is compared with, to see which space it is indexed to.
+_NOMINAL_POSITIONS = 201
+
+
+@dataclass(frozen=True)
+class Run:
+    """The blocks of one tool: real axis positions (n,5), which of them cut (n,), and the space (n,) of each, or -1.
+
+    ``line`` (n,) is the number of the line in the program text.
+    """
+
+    cut: Cut
+    cutter: Cutter
+    axes: np.ndarray
+    cutting: np.ndarray
+    space: np.ndarray
+    line: np.ndarray
+
+    @property
+    def spaces(self) -> list[int]:
+        """The tooth spaces in the order in which they are cut."""
+        return list(dict.fromkeys(self.space[self.space >= 0].tolist()))
+
+
+def runs_of(
+    path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None,
+    space: ToothSpace | None = None, edge_radius: float = 0.0,
+) -> list[Run]:  # fmt: skip
+    """The program's tools in their order. Raises InputError if one of them is not of this member."""
+    cuts = {cut.tool: cut for cut in Cut.of(member, name)}
+    for tool in path.tools:
+        if tool not in cuts:
+            raise InputError(f'the program cuts with T="{tool}"; the {name} is cut with {" and ".join(cuts)}')
+    runs = []
+    for index, tool in enumerate(path.tools):
+        here = path.tool == index
+        axes, cutting, cut = path.axes[here], ~path.rapid[here], cuts[tool]
+        indexed = _spaces(axes, cutting, member, cut, machine)
+        if errors is not None:
+            settings = member.flank(cut.flanks[0]).nominal.vector
+            axes = with_setting_errors(axes, settings, errors.setting_errors(name))
+            turned = np.where(indexed >= 0, index_errors(errors.work_axis, member.teeth, errors.seed)[indexed], 0.0)
+            axes = with_axis_errors(axes + turned[:, None] * np.array([0, 0, 0, 1, 0]), errors)
+        cutter = cutter_of(member, cut.flanks, space, edge_radius)
+        runs.append(Run(cut, cutter, axes, cutting, indexed, path.line[here]))
+    return runs
+
+
+def _spaces(axes: np.ndarray, cutting: np.ndarray, member: Member, cut: Cut, machine: MillingMachine) -> np.ndarray:
+    """The space (n,) that A is indexed to in every pass: what A shows beyond the roll, in pitches."""
+    theta = (
+        np.linspace(*roll_range(member, cut), _NOMINAL_POSITIONS) if member.generation == "generated" else np.zeros(2)
+    )
+    nominal = axis_positions(member.flank(cut.flanks[0]), theta, machine.pivot_height, machine.pivot)
+    number = np.cumsum(~cutting)  # a rapid block begins a new pass
+    space = np.full(len(number), -1)
+    for k in np.unique(number[cutting]):
+        rows = np.flatnonzero((number == k) & cutting)
+        middle = axes[rows[len(rows) // 2]]
+        away = np.hypot(nominal[:, 0] - middle[0], nominal[:, 1] - middle[1])
+        pitches = (middle[3] - nominal[int(away.argmin()), 3]) * member.teeth / (2 * math.pi)
+        space[rows] = round(pitches) % member.teeth
+    return space

@@ -1,0 +1,79 @@
+"""The calibrated probe: its tip as the machine found it, its stylus, and the artefacts it was calibrated on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import tomlkit
+from pydantic import Field, model_validator
+
+from gearmath.files import read_text, write_text
+from gearmath.specs.toml import Spec, load, parse
+
+_Number = Annotated[float, Field(strict=True)]
+_Place = Annotated[tuple[_Number, _Number, _Number], Field(strict=False)]
+
+
+class Ring(Spec):
+    """Calibration ring: centre of its bore in X Y Z of the machine, at the height to touch, and its diameter."""
+
+    center: _Place
+    diameter: float = Field(ge=5, le=200)
+
+
+class Sphere(Spec):
+    """Calibration sphere: centre in X Y Z of the machine, and diameter."""
+
+    center: _Place
+    diameter: float = Field(ge=4, le=100)
+
+
+class Calibration(Spec):
+    """A touch probe in the tool spindle, mm; ``offset`` and ``tip_radius`` are what calibration finds."""
+
+    name: str = Field(min_length=1, max_length=200)
+    length: float = Field(gt=0, le=600)
+    """Gauge line of the spindle to the centre of the tip."""
+    tip_radius: float = Field(gt=0, le=5)
+    offset: _Place = (0.0, 0.0, 0.0)
+    """Centre of the tip off the spindle axis in X and Y, and off ``length`` in Z."""
+    stylus_radius: float = Field(gt=0, le=5)
+    stylus_length: float = Field(gt=0, le=200)
+    overtravel: float = Field(default=0.5, gt=0, le=5)
+    """How far a touch may be searched for beyond its nominal place."""
+    ring: Ring | None = None
+    sphere: Sphere | None = None
+
+    @model_validator(mode="after")
+    def _sizes(self) -> Calibration:
+        if any(not abs(value) <= 5 for value in self.offset):
+            raise ValueError("offset must lie between -5 and 5 mm")
+        if self.stylus_radius >= self.tip_radius:
+            raise ValueError(f"stylus_radius {self.stylus_radius} must be less than tip_radius {self.tip_radius}")
+        if self.stylus_length >= self.length:
+            raise ValueError(f"stylus_length {self.stylus_length} must be less than length {self.length}")
+        if self.ring is not None and self.ring.diameter <= 4 * self.tip_radius:
+            raise ValueError(f"ring.diameter {self.ring.diameter} must be greater than 4 tip_radius")
+        return self
+
+    @property
+    def tip_offset(self) -> np.ndarray:
+        """o of equation (15.3), (3,) mm."""
+        return np.array(self.offset)
+
+
+def load_calibration(path: Path) -> Calibration:
+    """Read a calibration file. Raises InputError naming file, key, value and limit."""
+    return load(path, Calibration)
+
+
+def save_calibration(source: Path, target: Path, tip_radius: float, offset: np.ndarray) -> None:
+    """Write the calibration of ``source``, comments kept, with a new tip to ``target``, whole or not at all."""
+    document = tomlkit.parse(read_text(source))
+    document["tip_radius"] = round(float(tip_radius), 7)
+    document["offset"] = [round(float(value), 7) for value in offset]
+    text = tomlkit.dumps(document)
+    parse(text, Calibration, str(target))
+    write_text(target, text)

@@ -1,0 +1,245 @@
+"""From raw touches to the measured flank: the whole way from the probing program's text, and ring and sphere."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.errors import InputError
+from gearmath.machine.calibrating import calibration_program, sphere_directions
+from gearmath.machine.executor import run_program
+from gearmath.machine.probe_machine import ProbeMachine
+from gearmath.machine.probing import probing_program
+from gearmath.quality.pitch import evaluate_pitch
+from gearmath.quality.touches import calibrate_on_ring, calibrate_on_sphere, measured_member
+from gearmath.specs.bevel_set import FLANKS, MEMBERS
+from gearmath.specs.calibration import Calibration, load_calibration, save_calibration
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import bundled
+from gearmath.specs.touch_csv import read_calibration_csv, read_touch_csv
+
+MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
+PROBE = load_calibration(bundled("probe.toml"))
+BENT = PROBE.model_copy(update={"offset": (0.031, -0.047, 0.012), "tip_radius": 0.7432})
+OFF_AXIS = MACHINE.model_copy(update={"pivot_offset": (1.5, -2.25, 30.0)})
+
+
+def measured(gear_set, tmp_path, member, machine=MACHINE, probe=PROBE, stock=None, **options):
+    """Program text, read back and run against the member, its result file read and evaluated."""
+    spec = gear_set.member(member)
+    text = probing_program(gear_set, member, machine, probe, "PROBE", **options)
+    there = ProbeMachine(spec, member, machine, probe, *([stock] if stock else []))
+    done = run_program(text, "PROBE.MPF", there)
+    assert done.alarm is None
+    file = tmp_path / "raw.csv"
+    file.write_text(done.files["PROBE_T"])
+    return measured_member(read_touch_csv(file), spec, member, machine, probe)
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+@pytest.mark.parametrize(("machine", "probe"), [(MACHINE, PROBE), (OFF_AXIS, BENT)], ids=["plain", "offsets"])
+def test_probing_the_nominal_member_gives_back_exactly_its_flanks(gear_set, tmp_path, member, machine, probe):
+    """0.01 um is asked; the text of the result file keeps nine decimals."""
+    spec = gear_set.member(member)
+    file = measured(gear_set, tmp_path, member, machine, probe)
+    assert len(file) == 2 * (45 + spec.teeth - 1)
+    assert np.abs(file.deviation).max() <= 1e-5  # mm
+    for flank in FLANKS:
+        nominal = solve_flank(spec, member, flank, blank_grid(spec))
+        for tooth in range(spec.teeth):
+            turn = 2 * math.pi * tooth / spec.teeth
+            c, s = math.cos(turn), math.sin(turn)
+            here = file.select(flank, tooth)
+            places = here.row * 9 + here.col
+            expected = nominal.point[places] @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+            assert len(here) == (45 if tooth == 0 else 1)
+            # beside the normal the printed program moves the point by its five decimals, which is no deviation
+            np.testing.assert_allclose(here.point, expected, rtol=0, atol=2e-5)
+
+
+def test_metal_left_on_comes_back_as_pitch_and_deviation(gear_set, tmp_path):
+    """7 um on every convex flank, and tooth 3 a further 4 um: single pitch by the lever of the normal."""
+
+    def stock(flank, tooth):
+        return (0.007 if flank == "convex" else 0.0) + (0.004 if tooth == 3 else 0.0)
+
+    spec = gear_set.member("pinion")
+    file = measured(gear_set, tmp_path, "pinion", stock=stock)
+    for flank in FLANKS:
+        expected = np.array([stock(flank, tooth) for tooth in file.select(flank).tooth])
+        np.testing.assert_allclose(file.select(flank).deviation, expected, rtol=0, atol=1e-5)
+        pitch = evaluate_pitch(file, spec.teeth, flank)
+        here = file.select(flank, 0)
+        middle = (here.row == 2) & (here.col == 4)
+        point, normal = here.point[middle][0], here.normal[middle][0]
+        arc = 0.004 / (np.cross([0, 0, 1], point) @ normal) * math.hypot(*point[:2])
+        np.testing.assert_allclose(pitch.cumulative, np.where(np.arange(12) == 3, arc, 0.0), rtol=0, atol=3e-5)
+
+
+def test_wrong_tip_radius_shifts_every_deviation_by_its_error(gear_set, tmp_path):
+    """Touched with 0.75 mm, evaluated with 0.74 mm: 10 um of metal everywhere."""
+    text = probing_program(gear_set, "gear", MACHINE, PROBE, "PROBE", pitch=False)
+    spec = gear_set.member("gear")
+    file = tmp_path / "raw.csv"
+    file.write_text(run_program(text, "P", ProbeMachine(spec, "gear", MACHINE, PROBE)).files["PROBE_T"])
+    smaller = PROBE.model_copy(update={"tip_radius": 0.74})
+    result = measured_member(read_touch_csv(file), spec, "gear", MACHINE, smaller)
+    np.testing.assert_allclose(result.deviation, 0.01, rtol=0, atol=1e-5)
+    assert result.header["tip_radius_mm"] == "0.74"
+
+
+def test_touches_of_another_member_or_set_up_are_refused(gear_set, tmp_path):
+    text = probing_program(gear_set, "gear", MACHINE, PROBE, "PROBE", topography=(), pitch=True)
+    spec = gear_set.member("gear")
+    file = tmp_path / "raw.csv"
+    file.write_text(run_program(text, "P", ProbeMachine(spec, "gear", MACHINE, PROBE)).files["PROBE_T"])
+    touches = read_touch_csv(file)
+    with pytest.raises(InputError, match="the touches are of the gear, not of the pinion"):
+        measured_member(touches, gear_set.member("pinion"), "pinion", MACHINE, PROBE)
+    longer = PROBE.model_copy(update={"length": 210.0})
+    with pytest.raises(InputError, match=r"concave flank, tooth 0, row 2, col 4: the touch lies 10\.0.. mm from"):
+        measured_member(touches, spec, "gear", MACHINE, longer)
+    for key, value in (("row", 5), ("col", 9), ("tooth", 36)):
+        wrong = replace(touches, **{key: np.full(len(touches), value)})
+        with pytest.raises(InputError, match=f"{key} = {value}"):
+            measured_member(wrong, spec, "gear", MACHINE, PROBE)
+
+
+class Artefacts:
+    """Ring and sphere in plain geometry: the true tip stops where it is one radius from their surface."""
+
+    def __init__(self, true: Calibration, shift: np.ndarray | None = None) -> None:
+        self.true, self.shift = true, np.zeros(3) if shift is None else shift
+
+    def __call__(self, start, end):
+        first, last = (where[:3] + self.true.tip_offset + self.shift for where in (start, end))
+        way = last - first
+        parts = []
+        ring, sphere, r = self.true.ring, self.true.sphere, self.true.tip_radius
+        if np.hypot(*(first - ring.center)[:2]) < 50:
+            parts += _roots((first - ring.center)[:2], way[:2], ring.diameter / 2 - r, leaving=True)
+        if np.hypot(*(first - sphere.center)[:2]) < 50:
+            parts += _roots(first - sphere.center, way, sphere.diameter / 2 + r, leaving=False)
+        parts = [part for part in parts if 0 <= part <= 1]
+        return start + min(parts) * (end - start) if parts else None
+
+
+def _roots(first, way, radius, leaving):
+    """Parts of the way at which it leaves or enters a circle or a sphere."""
+    a, b, c = way @ way, first @ way, first @ first - radius**2
+    if a == 0 or b * b - a * c < 0:
+        return []
+    root = math.sqrt(b * b - a * c)
+    return [(-b + root) / a if leaving else (-b - root) / a]
+
+
+@cache
+def calibration_file(shift: tuple = (0.0, 0.0, 0.0)) -> str:
+    text = calibration_program(MACHINE, PROBE, "CAL")
+    done = run_program(text, "CAL.MPF", Artefacts(BENT, np.array(shift)))
+    assert done.alarm is None
+    return done.files["CAL_T"]
+
+
+def test_sphere_gives_back_the_tip_that_touched_it(tmp_path):
+    (tmp_path / "c.csv").write_text(calibration_file())
+    touches = read_calibration_csv(tmp_path / "c.csv")
+    assert (touches.target == "sphere").sum() == len(sphere_directions()) == 25
+    tip = calibrate_on_sphere(touches, PROBE.sphere, PROBE)
+    assert tip.radius == pytest.approx(0.7432, abs=1e-8)
+    np.testing.assert_allclose(tip.offset, BENT.offset, rtol=0, atol=1e-8)
+    assert tip.residual < 1e-8
+
+
+def test_ring_gives_back_radius_and_offset_although_the_first_touches_are_off_centre(tmp_path):
+    (tmp_path / "c.csv").write_text(calibration_file())
+    tip = calibrate_on_ring(read_calibration_csv(tmp_path / "c.csv"), PROBE.ring)
+    # five decimals in the program leave the second axis off its middle by up to 5e-6 mm: second order, nothing
+    assert tip.radius == pytest.approx(0.7432, abs=1e-7)
+    np.testing.assert_allclose(tip.offset, [0.031, -0.047, 0.0], rtol=0, atol=1e-7)
+    assert tip.residual < 1e-7
+
+
+def test_sphere_calibration_is_the_mean_where_the_touches_scatter(tmp_path):
+    """1 um of noise on each touch, 25 touches: tip within a micrometre, and the residual says how they scatter."""
+    (tmp_path / "c.csv").write_text(calibration_file())
+    touches = read_calibration_csv(tmp_path / "c.csv")
+    noise = np.random.default_rng(7).normal(0.0, 1e-3, touches.axes.shape) * [1, 1, 1, 0, 0]
+    tip = calibrate_on_sphere(replace(touches, axes=touches.axes + noise), PROBE.sphere, PROBE)
+    assert abs(tip.radius - 0.7432) < 1e-3
+    assert np.abs(tip.offset - BENT.offset).max() < 1e-3
+    assert 1e-3 < tip.residual < 4e-3
+
+
+def test_calibration_with_too_few_touches_is_refused(tmp_path):
+    (tmp_path / "c.csv").write_text(calibration_file())
+    touches = read_calibration_csv(tmp_path / "c.csv")
+    keep = touches.target != "ring_y_low"
+    with pytest.raises(InputError, match="the touch 'ring_y_low' is missing"):
+        calibrate_on_ring(replace(touches, target=touches.target[keep], axes=touches.axes[keep]), PROBE.ring)
+    with pytest.raises(InputError, match="4 touches on the sphere: at least 5 are needed"):
+        calibrate_on_sphere(replace(touches, target=touches.target[:10], axes=touches.axes[:10]), PROBE.sphere, PROBE)
+
+
+def test_commands_go_from_calibration_to_measured_flank(gear_set, tmp_path, command):
+    """nc calibrate -> calibrate -> nc probe -> touches -> evaluate, file by file, with a tip that nobody knew."""
+    raw, tip = tmp_path / "cal.csv", tmp_path / "tip.toml"
+    assert command("nc", "calibrate", "-o", tmp_path / "CAL.MPF")[0] == 0
+    text = (tmp_path / "CAL.MPF").read_text()
+    raw.write_text(run_program(text, "CAL", Artefacts(BENT)).files["CAL_T"])
+    status, out, _ = command("calibrate", raw, "-o", tip)
+    assert status == 0
+    assert "tip radius 0.74320 mm, offset 0.03100, -0.04700, 0.01200 mm, residual 0.000 um" in out
+    found = load_calibration(tip)
+    assert found.tip_radius == pytest.approx(0.7432, abs=1e-6)
+    machine = ["--calibration", tip]
+    status, out, _ = command(
+        "nc", "probe", bundled("nasa_tp3096_12x36.toml"), "--member", "pinion", *machine, "-o", tmp_path / "PP.MPF"
+    )
+    assert (status, out.split(": ")[1].split(",")[0]) == (0, "112 touches")
+    there = ProbeMachine(gear_set.member("pinion"), "pinion", MACHINE, BENT)
+    raw.write_text(run_program((tmp_path / "PP.MPF").read_text(), "PP", there).files["PP_T"])
+    status, out, _ = command(
+        "touches", raw, "--set", "nasa_tp3096_12x36.toml", *machine, "-o", tmp_path / "M.csv"
+    )  # fmt: skip
+    assert status == 0
+    assert "112 points of run 1, largest deviation 0.000 um" in out
+    status, out, _ = command("evaluate", tmp_path / "M.csv", "--set", "nasa_tp3096_12x36.toml")
+    assert status == 0
+    assert "F_p_um" in out
+
+
+def test_bad_input_of_the_commands_is_one_sentence(tmp_path, refused):
+    empty = tmp_path / "empty.csv"
+    empty.write_text("")
+    nasa = "nasa_tp3096_12x36.toml"
+    out = ["-o", tmp_path / "M.csv"]
+    refused("empty.csv: holds no touch", "touches", empty, "--set", nasa, *out)
+    refused("empty.csv: holds no touch", "calibrate", empty, *out)
+    refused("no_such.csv", "touches", tmp_path / "no_such.csv", "--set", nasa, *out)
+    probe = ["nc", "probe", nasa, "--member", "gear"]
+    refused("--topography 99: must be all, none, or numbers from 0 to 35", *probe, "--topography", "99", *out)
+    refused("there is nothing to probe", *probe, "--topography", "none", "--no-pitch", "-o", tmp_path / "PP.MPF")
+    refused("program name '1P'", *probe, "-o", tmp_path / "1P.MPF")
+    bare = tmp_path / "bare.toml"
+    bare.write_text("\n".join(bundled("probe.toml").read_text().split("\n[ring]")[:1]))
+    refused(
+        "bare.toml: the calibration file has neither ring nor sphere", "nc", "calibrate", "--calibration", bare, *out
+    )
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bare.toml", "empty.csv"]
+
+
+def test_calibration_is_written_whole_with_its_comments(tmp_path):
+    save_calibration(bundled("probe.toml"), tmp_path / "new.toml", 0.7512345, np.array([0.01, 0.02, -0.03]))
+    text = (tmp_path / "new.toml").read_text()
+    assert "# spindle gauge line to the centre of the tip" in text
+    new = load_calibration(tmp_path / "new.toml")
+    assert (new.tip_radius, new.offset) == (0.7512345, (0.01, 0.02, -0.03))
+    with pytest.raises(InputError, match=r"stylus_radius 0\.5 must be less than tip_radius 0\.4"):
+        save_calibration(bundled("probe.toml"), tmp_path / "bad.toml", 0.4, np.zeros(3))
+    assert not (tmp_path / "bad.toml").exists()
