@@ -76,33 +76,21 @@ class Job:
         return ("rough", self.roughing_stock, coarse), finish
 
 
+_ONE_SPACE = Job()
+
+
 def tooth_angles(teeth: int, correction: Sequence[float] = ()) -> np.ndarray:
     """Angle (z,) [rad] of each tooth space about z_w, from its number and never summed; ``correction`` in degrees."""
     return 2 * math.pi * np.arange(teeth) / teeth + np.radians(correction if len(correction) else np.zeros(teeth))
 
 
 def cutting_program(
-    bevel_set: BevelSet,
-    name: str,
-    machine: MillingMachine,
-    program_name: str,
-    spaces: Sequence[int] = (0,),
-    tolerance: float = DEFAULT_TOLERANCE,
-    feed: float = DEFAULT_FEED,
-    spindle_rpm: float = DEFAULT_SPINDLE_RPM,
-    **options: float,
+    bevel_set: BevelSet, name: str, machine: MillingMachine, program_name: str, job: Job = _ONE_SPACE
 ) -> str:
-    """The program that cuts tooth ``spaces`` of a member; tolerance [mm] along the tooth normal, feed [mm/min].
+    """The text of the program of a job on one member.
 
-    ``options`` are further fields of :class:`Job`. Raises InputError for singular poses, travel and speed limits, a
-    tolerance out of range, and a face hobbed member.
+    Raises InputError for singular poses, travel and speed limits, a tolerance out of range, and a face hobbed member.
     """
-    job = Job(tuple(spaces), tolerance, feed, spindle_rpm, **options)  # type: ignore[arg-type]
-    return job_program(bevel_set, name, machine, program_name, job)
-
-
-def job_program(bevel_set: BevelSet, name: str, machine: MillingMachine, program_name: str, job: Job) -> str:
-    """The program of a job on one member. Raises InputError as :func:`cutting_program`."""
     member = bevel_set.member(name)
     passes = list(_passes(member, name, machine, job))
     header = (

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from gearmath import cli
-from gearmath.machine.cutting import cutting_program
+from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import MachinePath, execute
 from gearmath.machine.mill import mill_member
 from gearmath.machine.path import DEFAULT_TOLERANCE
@@ -61,7 +61,7 @@ def program(vertical: MillingMachine) -> Callable[..., MachinePath]:
     def run(
         gear_set: BevelSet, member: str, spaces: Iterable[int] = (0,), tolerance: float = DEFAULT_TOLERANCE
     ) -> MachinePath:
-        return execute(cutting_program(gear_set, member, vertical, "PART", tuple(spaces), tolerance), "PART.MPF")
+        return execute(cutting_program(gear_set, member, vertical, "PART", Job(tuple(spaces), tolerance)), "PART.MPF")
 
     return run
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
-from gearmath.machine.cutting import cutting_program
+from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute, run_program
 from gearmath.machine.milling import Blade, remaining
 from gearmath.specs.bevel_set import SIDES
@@ -319,7 +319,7 @@ def test_measured_positions_need_stopre_and_their_axis():
 
 def short_program(gear_set, vertical, member, blocks=5):
     """Some blocks from the middle of a real roll, with head and end: text, and the numbers of their lines."""
-    lines = cutting_program(gear_set, member, vertical, "CUT", (0,), 1e-4).split("\n")
+    lines = cutting_program(gear_set, member, vertical, "CUT", Job((0,), 1e-4)).split("\n")
     head = next(k for k, line in enumerate(lines) if line.startswith("N10 "))
     tool_end = next(k for k, line in enumerate(lines) if " M5 M9" in line)
     cut = [line for line in lines[:tool_end] if " G93 " in line]

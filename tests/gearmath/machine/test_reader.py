@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from gearmath.errors import InputError
-from gearmath.machine.cutting import cutting_program
+from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
 from gearmath.machine.nc_expression import Constant, Operation, Variable
 from gearmath.machine.nc_tree import Block, Branch, Command, Definition, Loop, Word
@@ -158,7 +158,7 @@ NO = Word("", Constant(0.0), 0)
 @pytest.mark.parametrize("member", ["pinion", "gear"])
 @pytest.mark.parametrize("options", [{}, {"roughing_stock": 0.3, "finishing_stock": 0.1}, {"dry_run": True}])
 def test_writer_reader_writer_gives_the_same_text(gear_set, member, options):
-    text = cutting_program(gear_set, member, MACHINE, "CUT", (0, 7), 1e-3, **options)
+    text = cutting_program(gear_set, member, MACHINE, "CUT", Job((0, 7), 1e-3, **options))
     again = written_again(text)
     assert again == text
 
