@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearmath.bevel.method import require_plain
 from gearmath.bevel.tooth import ToothSpace
 from gearmath.errors import InputError
 from gearmath.machine.cutter import Cutter, cutter_of
@@ -56,8 +57,10 @@ def runs_of(
         axes, cutting, cut = path.axes[here], ~path.rapid[here], cuts[tool]
         indexed = _spaces(axes, cutting, member, cut, machine)
         if errors is not None:
-            settings = member.flank(cut.flanks[0]).nominal.vector
-            axes = with_setting_errors(axes, settings, errors.setting_errors(name))
+            settings, setting_errors = member.flank(cut.flanks[0]).nominal.vector, errors.setting_errors(name)
+            if setting_errors.any():
+                require_plain(member, name, "a setting error of the simulated machine")
+            axes = with_setting_errors(axes, settings, setting_errors, machine.pivot)
             turned = np.where(indexed >= 0, index_errors(errors.work_axis, member.teeth, errors.seed)[indexed], 0.0)
             axes = with_axis_errors(axes + turned[:, None] * np.array([0, 0, 0, 1, 0]), errors)
         cutter = cutter_of(member, cut.flanks, space, edge_radius)

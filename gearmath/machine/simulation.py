@@ -27,43 +27,47 @@ _ON_PATH = 2.0
 def roll_position() -> Kernel:
     """Kernel: cradle rotation of the settings whose X, Y are nearest to a position, and the distance left there."""
     x, theta, X, Y = ca.SX.sym("settings", 12), ca.SX.sym("theta"), ca.SX.sym("X"), ca.SX.sym("Y")
-    axes = kernel("axis_transform").function(x, theta, 0, ca.DM.zeros(3))
+    pivot = ca.SX.sym("pivot_offset", 3)
+    axes = kernel("axis_transform").function(x, theta, 0, pivot)
     off = axes[:2] - ca.vertcat(X, Y)
     J = ca.jacobian(off, theta)
     change = ca.dot(J, off) / ca.dot(J, J)
     limited = change / ca.fmax(1, ca.fabs(change) / 0.3)
-    step = ca.Function("roll_step", [theta, x, X, Y], [theta - limited])
-    rest = ca.Function("roll_rest", [theta, x, X, Y], [ca.norm_2(off)])
-    arguments = [ca.MX.sym("settings", 12), ca.MX.sym("X"), ca.MX.sym("Y")]
+    step = ca.Function("roll_step", [theta, x, X, Y, pivot], [theta - limited])
+    rest = ca.Function("roll_rest", [theta, x, X, Y, pivot], [ca.norm_2(off)])
+    arguments = [ca.MX.sym("settings", 12), ca.MX.sym("X"), ca.MX.sym("Y"), ca.MX.sym("pivot_offset", 3)]
     solution = ca.MX(0)
     for _ in range(_GAUSS_NEWTON_STEPS):
         solution = step(solution, *arguments)
     off_path = Quantity("off_path", "distance of the position from the path in X and Y", "mm", "d")
     function = ca.Function(
         "roll_position", arguments, [solution, rest(solution, *arguments)],
-        ["settings", "X", "Y"], ["theta", "off_path"],
+        ["settings", "X", "Y", "pivot_offset"], ["theta", "off_path"],
     )  # fmt: skip
     return Kernel(
         function, "Cradle rotation of an executed position, from its X and Y.",
-        (notation.settings, notation.X, notation.Y), (notation.theta, off_path), "(5.1) inverted by Gauss-Newton",
+        (notation.settings, notation.X, notation.Y, notation.pivot_offset), (notation.theta, off_path),
+        "(5.1) inverted by Gauss-Newton",
     )  # fmt: skip
 
 
-def with_setting_errors(axes: np.ndarray, settings: np.ndarray, errors: np.ndarray) -> np.ndarray:
+def with_setting_errors(
+    axes: np.ndarray, settings: np.ndarray, errors: np.ndarray, pivot_offset: np.ndarray
+) -> np.ndarray:
     """The axis positions (n,5) that settings off by ``errors`` (12,) make of executed positions (n,5).
 
     Raises ComputationError if a position does not belong to the settings at all.
     """
     if not errors.any():
         return axes
-    theta, off_path = roll_position()(settings, axes[:, 0], axes[:, 1])
+    theta, off_path = roll_position()(settings, axes[:, 0], axes[:, 1], pivot_offset)
     if not (off_path < _ON_PATH).all():
         k = int(np.argmax(~(off_path < _ON_PATH)))
         raise ComputationError(
             f"position X {axes[k, 0]:.4f} Y {axes[k, 1]:.4f} is {off_path[k]:.4f} mm off the path of the settings; "
             "was the program made from another set?"
         )
-    (really,), (meant,) = (kernel("axis_transform")(x, theta, 0.0) for x in (settings + errors, settings))
+    (really,), (meant,) = (kernel("axis_transform")(x, theta, 0.0, pivot_offset) for x in (settings + errors, settings))
     shift = really - meant
     shift[:, 3] = (shift[:, 3] + math.pi) % (2 * math.pi) - math.pi
     return axes + shift

@@ -7,8 +7,12 @@ import math
 import numpy as np
 import pytest
 
+from derivations.axes import cradle_tool_pose
 from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
+from gearmath.lowering import lower
+from gearmath.machine.path import axis_positions
 from gearmath.machine.simulation import (
     index_errors,
     mounted,
@@ -42,7 +46,7 @@ def test_roll_position_is_recovered_from_x_and_y(gear_set, witness, member):
     for flank in FLANKS:
         settings, theta = gear_set.member(member).flank(flank).vector, np.linspace(-0.5, 0.5, 101)
         axes = witness.vertical_axes(settings, theta, 0.0)
-        found, off = roll_position()(settings, axes[:, 0], axes[:, 1])
+        found, off = roll_position()(settings, axes[:, 0], axes[:, 1], np.zeros(3))
         np.testing.assert_allclose(found, theta, rtol=0, atol=1e-10)
         assert off.max() < 1e-9
 
@@ -53,7 +57,19 @@ def test_setting_errors_move_the_axes_to_where_those_settings_have_them(gear_set
     settings, theta = gear_set.member(member).flank("concave").vector, np.linspace(-0.4, 0.4, 41)
     errors, indexed = shop.setting_errors(member), np.array([0, 0, 0, 2 * np.pi + 0.7, 0])
     meant, expected = (witness.vertical_axes(x, theta, 500.0) + indexed for x in (settings, settings + errors))
-    np.testing.assert_allclose(with_setting_errors(meant, settings, errors), expected, rtol=0, atol=1e-8)
+    np.testing.assert_allclose(with_setting_errors(meant, settings, errors, np.zeros(3)), expected, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_setting_errors_put_the_cutter_where_those_settings_have_it_also_off_the_pivot(gear_set, shop, member):
+    pivot, theta = np.array([12.0, -7.0, 30.0]), np.linspace(-0.2, 0.2, 21)
+    flank, errors = gear_set.member(member).concave, shop.setting_errors(member)
+    axes = axis_positions(flank, theta, 500.0, pivot)
+    shifted = with_setting_errors(axes, flank.vector, errors, pivot)
+    found = kernel("tool_pose")(shifted, 500.0, pivot)
+    expected = lower(cradle_tool_pose())(flank.vector + errors, theta)
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_allclose(one, other, rtol=0, atol=1e-8)
 
 
 @pytest.mark.parametrize("member", MEMBERS)
@@ -96,7 +112,7 @@ def test_position_that_does_not_belong_to_the_settings_is_a_failure(gear_set, sh
     axes[1, 0] += 5.0
     sentence = r"^position X .* Y .* is \d\.\d{4} mm off the path of the settings; was the program made from another"
     with pytest.raises(ComputationError, match=sentence):
-        with_setting_errors(axes, settings, shop.setting_errors("pinion"))
+        with_setting_errors(axes, settings, shop.setting_errors("pinion"), np.zeros(3))
 
 
 @pytest.mark.parametrize("member", MEMBERS)
