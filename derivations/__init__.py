@@ -49,6 +49,7 @@ def expressions() -> Iterator[Expression]:
     yield from (sweep.cutter_excess(), sweep.seated())
     yield from (probing.probe_target(), probing.space_azimuth(), probing.probe_axes(), probing.probe_tip())
     yield from (probing.touched_point(), probing.ring_calibration(), probing.sphere_residual())
+    yield probing.effective_radius()
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (
         gearbox.nearest_position(),

@@ -201,6 +201,12 @@ axis_offset = _length("axis_offset", "o", -5.0, 5.0, "offset of the tip along on
 trigger = _vector("trigger", r"\mathbf{p}", "mm", 300.0, 500.0, "positions X, Y, Z at which the probe triggered")
 sphere_center = _vector("sphere_center", r"\mathbf{c}", "mm", 300.0, 500.0, "centre of the calibration sphere, X Y Z")
 sphere_radius = _length("sphere_radius", "R_s", 2.0, 50.0, "radius of the calibration sphere")
+touch_normal = _vector(
+    "touch_normal", r"\mathbf{m}", "1", 1.0, 1.0, "unit normal out of what is touched, axes of the machine"
+)
+lobing = _length("lobing", "a", 0.0, 0.02, "amplitude by which the effective radius varies around the stylus")
+lobing_phase = _angle("lobing_phase", r"\varphi_0", -pi, pi, "azimuth of a lobe of the effective radius")
+effective_radius = _length("effective_radius", "r", 0.0, 5.0, "radius of the tip that a touch in its direction has")
 sphere_rest = _length("sphere_rest", r"\rho", -1e3, 1e3, "distance that a touch on the sphere leaves unexplained")
 
 # --- electronic gearbox -----------------------------------------------------------------------------------------

@@ -25,6 +25,11 @@ Calibration. In a ring of diameter D, whose centre is known to lie at L, touches
 and on a sphere of radius R_s and known centre c, touches at p leave, whatever their direction,
 
     |p + o - c| - (R_s + r) = 0                                                                (15.7)
+
+A probe on three points triggers later where it presses between two of them. With m the outward normal of what is
+touched, φ its azimuth about the stylus and θ its angle from the stylus, the effective radius is
+
+    r(m) = r + a cos 3(φ - φ_0) sin θ                                                          (15.8)
 """
 
 from __future__ import annotations
@@ -147,6 +152,21 @@ def sphere_residual() -> Expression:
     )
 
 
+@cache
+def effective_radius() -> Expression:
+    """(15.8) as an Expression."""
+    x, y, _ = q.touch_normal.symbol
+    lobes = sp.cos(3 * (sp.atan2(y, x) - q.lobing_phase.symbol)) * sp.sqrt(x**2 + y**2)
+    return Expression(
+        "effective_radius",
+        "Radius of the tip that a touch in its direction has, with the three lobes of its pre-travel (15.8).",
+        (q.touch_normal, q.tip_radius, q.lobing, q.lobing_phase),
+        ((q.effective_radius, q.tip_radius.symbol + q.lobing.symbol * lobes),),
+        requires=(sp.sqrt(x**2 + y**2) - sp.Rational(1, 100),),
+        source="Estler et al., Precision Engineering 1996/97: pre-travel of three-point probes",
+    )
+
+
 def prove_tip_of_the_positions_is_where_it_was_wanted() -> None:
     """(15.3, 15.4) Forward after inverse is the identity, whatever A, B, the offsets and the height."""
     position = probe_axes()["axes"]
@@ -219,3 +239,24 @@ def prove_sphere_leaves_nothing_for_the_tip_that_touched_it() -> None:
     assert is_zero(off.dot(off) - reach**2)
     rest = sphere_residual()["sphere_rest"].subs(dict(zip(q.trigger.symbols, trigger, strict=True)), simultaneous=True)
     assert is_zero((rest + reach) ** 2 - reach**2)
+
+
+def prove_lobes_come_back_every_third_of_a_turn_and_leave_the_stylus_alone() -> None:
+    """(15.8) It is the real part of (x + iy)³ e^(-3iφ_0) / (x² + y²), which a turn of m by 120° leaves as it is.
+
+    A turn by 60° changes its sign, and as it is of the first degree in x and y it vanishes along the stylus.
+    """
+    x, y, length = sp.symbols("x y length", positive=True)
+    phase = q.lobing_phase.symbol
+
+    def lobes(x: sp.Expr, y: sp.Expr) -> sp.Expr:
+        power = sp.expand((x + sp.I * y) ** 3 * (sp.cos(3 * phase) - sp.I * sp.sin(3 * phase)))
+        return sp.re(power) / (x**2 + y**2)
+
+    at = dict(zip(q.touch_normal.symbols, (x, y, 0), strict=True))
+    value = (effective_radius()["effective_radius"] - q.tip_radius.symbol).subs(at) / q.lobing.symbol
+    assert sp.simplify(sp.expand_trig(value.expand()) - sp.expand_trig(lobes(x, y))) == 0
+    for by, sign in ((sp.Rational(2, 3) * sp.pi, 1), (sp.pi / 3, -1)):
+        turned = lobes(x * sp.cos(by) - y * sp.sin(by), x * sp.sin(by) + y * sp.cos(by))
+        assert sp.simplify(turned - sign * lobes(x, y)) == 0
+    assert sp.simplify(lobes(length * x, length * y) - length * lobes(x, y)) == 0

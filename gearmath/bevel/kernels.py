@@ -30,6 +30,7 @@ _EXPRESSIONS = {
     "touched_point": probing.touched_point,
     "ring_calibration": probing.ring_calibration,
     "sphere_residual": probing.sphere_residual,
+    "effective_radius": probing.effective_radius,
 }
 
 

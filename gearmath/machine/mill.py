@@ -126,7 +126,7 @@ def expose(
     start: np.ndarray, evaluator: Evaluator = lambda k: k, progress: Callable[[int], object] = lambda _: None,
 ) -> Removal:  # fmt: skip
     """What all tools leave of lines of the work; ``block`` counts through the blocks of all runs."""
-    where, along = mounted(point, normal, errors)
+    where, along = mounted(point, normal, errors.mounting) if errors is not None else (point, normal)
     left, offset = Removal(np.full(len(point), np.nan), np.full(len(point), -1)), 0
     for run in runs:
         pose = (machine.pivot_height, machine.pivot)

@@ -13,7 +13,7 @@ from gearmath.errors import InputError
 from gearmath.machine.cutter import Cutter, cutter_of
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.path import Cut, axis_positions, roll_range
-from gearmath.machine.simulation import index_errors, with_axis_errors, with_setting_errors
+from gearmath.machine.simulation import divisions, index_errors, with_axis_errors, with_setting_errors
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
@@ -54,18 +54,29 @@ def runs_of(
     runs = []
     for index, tool in enumerate(path.tools):
         here = path.tool == index
-        axes, cutting, cut = path.axes[here], ~path.rapid[here], cuts[tool]
+        axes, cutting, cut, line = path.axes[here], ~path.rapid[here], cuts[tool], path.line[here]
         indexed = _spaces(axes, cutting, member, cut, machine)
         if errors is not None:
             settings, setting_errors = member.flank(cut.flanks[0]).nominal.vector, errors.setting_errors(name)
             if setting_errors.any():
                 require_plain(member, name, "a setting error of the simulated machine")
+            axes, own = _divided(axes, np.where(cutting[1:], divisions(axes, errors), 1))
+            cutting, indexed, line = cutting[own], indexed[own], line[own]
             axes = with_setting_errors(axes, settings, setting_errors, machine.pivot)
             turned = np.where(indexed >= 0, index_errors(errors.work_axis, member.teeth, errors.seed)[indexed], 0.0)
             axes = with_axis_errors(axes + turned[:, None] * np.array([0, 0, 0, 1, 0]), errors)
         cutter = cutter_of(member, cut.flanks, space, edge_radius)
-        runs.append(Run(cut, cutter, axes, cutting, indexed, path.line[here]))
+        runs.append(Run(cut, cutter, axes, cutting, indexed, line))
     return runs
+
+
+def _divided(axes: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Positions (m,5) with every block in so many equal parts (n-1,), and the block (m,) that each one belongs to."""
+    own = np.repeat(np.arange(1, len(axes)), parts)
+    last = np.cumsum(parts)
+    share = (np.arange(1, len(own) + 1) - (last - parts)[own - 1]) / parts[own - 1]
+    between = axes[own] - (1.0 - share)[:, None] * (axes[own] - axes[own - 1])
+    return np.concatenate([axes[:1], between]), np.concatenate([[0], own])
 
 
 def _spaces(axes: np.ndarray, cutting: np.ndarray, member: Member, cut: Cut, machine: MillingMachine) -> np.ndarray:

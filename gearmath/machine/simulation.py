@@ -16,11 +16,14 @@ from derivations import Quantity, notation, sweep
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel, lower
-from gearmath.specs.simulated_machine import SimulatedMachine, WorkAxis
+from gearmath.specs.milling_machine import AXES
+from gearmath.specs.simulated_machine import Mounting, SimulatedMachine, WorkAxis
 
 _GAUSS_NEWTON_STEPS = 40
 #: X and Y of an executed position lie this close to the path of the nominal settings, corrections included. [mm]
 _ON_PATH = 2.0
+#: A periodic error is followed in this many straight parts of its period, to a hundredth of its amplitude.
+_PARTS_OF_A_PERIOD = 24
 
 
 @cache
@@ -89,14 +92,27 @@ def with_axis_errors(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
     for harmonic in wrong.A_harmonics:
         amplitude = math.radians(harmonic.amplitude_arcsec / 3600)
         real[:, 3] += amplitude * np.sin(harmonic.order * axes[:, 3] + math.radians(harmonic.phase))
+    for screw in wrong.screws:
+        axis = AXES.index(screw.axis)
+        turn = 2 * math.pi * axes[:, axis] / screw.lead + math.radians(screw.phase)
+        real[:, axis] += screw.amplitude_um / 1000 * np.sin(turn)
     return real
 
 
-def mounted(point: np.ndarray, normal: np.ndarray, errors: SimulatedMachine | None) -> tuple[np.ndarray, ...]:
+def divisions(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
+    """Parts (n-1,) into which blocks between positions (n,5) must fall for periodic axis errors to be followed."""
+    wrong = errors.axes
+    periods = np.zeros(len(axes) - 1)
+    way = np.abs(np.diff(axes, axis=0))
+    for harmonic in wrong.A_harmonics:
+        periods = np.maximum(periods, harmonic.order * way[:, 3] / (2 * math.pi))
+    for screw in wrong.screws:
+        periods = np.maximum(periods, way[:, AXES.index(screw.axis)] / screw.lead)
+    return np.maximum(np.ceil(_PARTS_OF_A_PERIOD * periods), 1).astype(int)
+
+
+def mounted(point: np.ndarray, normal: np.ndarray, seat: Mounting) -> tuple[np.ndarray, ...]:
     """Points and normals (n,3) of the work, in the frame that turns with A: tilted about the apex, then moved."""
-    if errors is None:
-        return point, normal
-    seat = errors.mounting
     where = (seat.eccentricity, math.radians(seat.eccentricity_direction))
     return _seated()(point, normal, *where, math.radians(seat.tilt), math.radians(seat.tilt_direction))
 

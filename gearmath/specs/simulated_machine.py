@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from pydantic import Field
@@ -54,6 +55,15 @@ class Harmonic(Spec):
     phase: float = Field(default=0.0, ge=-360, le=360)
 
 
+class Screw(Spec):
+    """Error of a ball screw that comes back with every turn: a sine over the travel, ``lead`` (mm) a period."""
+
+    axis: Literal["X", "Y", "Z"]
+    lead: float = Field(ge=1, le=100)
+    amplitude_um: float = Field(ge=0, le=100)
+    phase: float = Field(default=0.0, ge=-360, le=360)
+
+
 class AxisErrors(Spec):
     """Geometric errors of the axes: offsets in mm and degrees, and X to Z out of square: X moves with Z (µm/m)."""
 
@@ -64,6 +74,7 @@ class AxisErrors(Spec):
     B: float = Field(default=0.0, ge=-1, le=1)
     squareness_x_z_um_per_m: float = Field(default=0.0, ge=-1000, le=1000)
     A_harmonics: tuple[Harmonic, ...] = Field(default=(), strict=False, max_length=20)
+    screws: tuple[Screw, ...] = Field(default=(), strict=False, max_length=20)
 
     @property
     def offsets(self) -> np.ndarray:
@@ -78,6 +89,27 @@ class Mounting(Spec):
     eccentricity_direction: float = Field(default=0.0, ge=-360, le=360)
     tilt: float = Field(default=0.0, ge=0, le=1)
     tilt_direction: float = Field(default=0.0, ge=-360, le=360)
+
+
+class Drift(Spec):
+    """How far the work has moved in X Y Z of the machine by the end of a run (µm), evenly from its beginning."""
+
+    X_um: float = Field(default=0.0, ge=-1000, le=1000)
+    Y_um: float = Field(default=0.0, ge=-1000, le=1000)
+    Z_um: float = Field(default=0.0, ge=-1000, le=1000)
+
+    @property
+    def vector(self) -> np.ndarray:
+        """At the end of the run (3,), mm."""
+        return np.array([self.X_um, self.Y_um, self.Z_um]) / 1000
+
+
+class Measuring(Spec):
+    """The clamping in which a finished member is measured, and how the measuring machine drifts during a run."""
+
+    pinion: Mounting = Mounting()
+    gear: Mounting = Mounting()
+    drift: Drift = Drift()
 
 
 class CutterHead(Spec):
@@ -101,9 +133,15 @@ class Fixture(Spec):
 
 
 class Probe(Spec):
-    """Standard deviation of one measured deviation."""
+    """Standard deviation of one touch, how many touches of a point are averaged, and the lobes of the pre-travel.
+
+    The effective radius varies by ``lobing_um`` cos 3(azimuth - ``lobing_phase``) sin(angle to the stylus), (15.8).
+    """
 
     sigma_um: float = Field(default=0.0, ge=0, le=100)
+    touches: int = Field(default=1, ge=1, le=100)
+    lobing_um: float = Field(default=0.0, ge=0, le=20)
+    lobing_phase: float = Field(default=0.0, ge=-360, le=360)
 
 
 class SimulatedMachine(Spec):
@@ -116,6 +154,7 @@ class SimulatedMachine(Spec):
     work_axis: WorkAxis = WorkAxis()
     axes: AxisErrors = AxisErrors()
     mounting: Mounting = Mounting()
+    measuring: Measuring = Measuring()
     cutter_head: CutterHead = CutterHead()
     fixture: Fixture = Fixture()
     probe: Probe = Probe()
@@ -123,6 +162,10 @@ class SimulatedMachine(Spec):
     def setting_errors(self, member: str) -> np.ndarray:
         """Setting errors (12,) of a member, mm and rad."""
         return (self.pinion if member == "pinion" else self.gear).vector
+
+    def measuring_clamp(self, member: str) -> Mounting:
+        """How a member sits while it is measured."""
+        return self.measuring.pinion if member == "pinion" else self.measuring.gear
 
 
 def load_simulated_machine(path: Path) -> SimulatedMachine:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
 from gearmath.lowering import lower
+from gearmath.machine.mill import mill_member
 from gearmath.machine.path import axis_positions
 from gearmath.machine.simulation import (
     index_errors,
@@ -22,7 +24,7 @@ from gearmath.machine.simulation import (
 )
 from gearmath.quality.pitch import evaluate_pitch
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES
-from gearmath.specs.simulated_machine import AxisErrors, Harmonic, Mounting, Probe, SimulatedMachine, WorkAxis
+from gearmath.specs.simulated_machine import AxisErrors, Harmonic, Mounting, Probe, Screw, SimulatedMachine, WorkAxis
 
 ARCSEC = math.radians(1 / 3600)
 
@@ -201,12 +203,42 @@ def test_axes_out_of_square_and_unevenly_divided_by_hand():
     np.testing.assert_allclose(moved, [[0.03, 0.5, 0.0, 20.0 * ARCSEC, 0.0]], rtol=0, atol=1e-12)
 
 
+def test_ball_screw_errs_with_every_turn_by_hand():
+    """A quarter turn of a lead of 8 mm after its zero is all of the 3 µm, on the axis of the screw only."""
+    screw = Screw(axis="Y", lead=8.0, amplitude_um=3.0, phase=-90.0)
+    axes = np.array([[1.0, 4.0, 300.0, 0.1, 0.5], [1.0, 6.0, 300.0, 0.1, 0.5]])
+    moved = with_axis_errors(axes, wrong(axes=AxisErrors(screws=(screw,)))) - axes
+    np.testing.assert_allclose(moved[:, 1], [0.003, 0.0], rtol=0, atol=1e-12)
+    assert not moved[:, [0, 2, 3, 4]].any()
+
+
+def test_ball_screw_ripple_does_not_hide_between_the_ends_of_blocks(gear_set, program, vertical):
+    """A coarse program, whose blocks are longer than a turn of the screw, and the same with each block in 32 parts."""
+    screw = wrong(axes=AxisErrors(screws=(Screw(axis="X", lead=2.0, amplitude_um=5.0),)))
+    coarse = program(gear_set, "gear", tolerance=5e-3)
+    blocks = np.flatnonzero(~coarse.rapid)
+    assert np.abs(np.diff(coarse.axes, axis=0))[blocks - 1, 0].max() > 2.0
+    parts = np.where(coarse.rapid, 1, 32)
+    own = np.repeat(np.arange(len(coarse.axes)), parts)
+    share = np.concatenate([np.arange(1, n + 1) / n for n in parts])[:, None]
+    axes = coarse.axes[own - 1] * (1 - share) + coarse.axes[own] * share
+    axes[0] = coarse.axes[0]
+    others = {name: getattr(coarse, name)[own] for name in ("rapid", "tool", "line", "seconds", "spindle_on")}
+    fine = replace(coarse, axes=axes, **others)
+    member = gear_set.gear
+    none, one, other = (
+        mill_member(path, member, "gear", vertical, errors).deviation
+        for path, errors in ((coarse, None), (coarse, screw), (fine, screw))
+    )
+    assert np.abs(one - none).max() > 1e-3
+    # 24 chords to a period of 5 um leave out 0.04 um
+    np.testing.assert_allclose(one, other, rtol=0, atol=6e-5)
+
+
 def test_work_that_sits_well_stays_where_it_is():
     generator = np.random.default_rng(5)
     point, normal = generator.normal(size=(2, 4, 3))
-    for errors in (None, wrong()):
-        again = mounted(point, normal, errors)
-        np.testing.assert_allclose(again, (point, normal), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(mounted(point, normal, Mounting()), (point, normal), rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(
