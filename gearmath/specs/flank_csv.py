@@ -39,7 +39,8 @@ _HEADER_VALUES = {
 class FlankFile:
     """The points of one member: index arrays (n,), points and outward normals (n,3), deviations and u (n,) [mm].
 
-    ``deviation`` and ``uncertainty`` are NaN where the file is silent.
+    ``deviation`` and ``uncertainty`` are NaN where the file is silent. Points stand in the order of measuring; those
+    of tooth = number of teeth are points of tooth 0 measured again.
     """
 
     header: dict[str, str]
@@ -144,17 +145,7 @@ def _collect(path: Path, header: dict[str, str], records: list[tuple]) -> FlankF
     members = {record[0] for record in records}
     if len(members) > 1 or header["member"] not in members:
         raise InputError(f"{path}: one file holds one member, this one {sorted(members | {header['member']})}")
-    rows, columns = (int(part) for part in header["grid"].split("x"))
-    limits = {"tooth": int(header["member_teeth"]), "row": rows, "col": columns}
-    seen: set[tuple] = set()
-    for record in records:
-        for (name, limit), value in zip(limits.items(), record[2:5], strict=True):
-            if value >= limit:
-                raise InputError(f"{path}: {name} = {value}: the header allows 0 to {limit - 1}")
-        if record[1:5] in seen:
-            place = f"flank {record[1]}, tooth {record[2]}, row {record[3]}, col {record[4]}"
-            raise InputError(f"{path}: the point {place} is there twice")
-        seen.add(record[1:5])
+    _check_places(path, header, records)
     fields = list(zip(*records, strict=True))
     numbers = np.array(fields[5:], dtype=float).T
     flank, tooth, row, col = (np.array(fields[k]) for k in (1, 2, 3, 4))
@@ -162,6 +153,24 @@ def _collect(path: Path, header: dict[str, str], records: list[tuple]) -> FlankF
     return FlankFile(
         header, records[0][0], flank, tooth, row, col, numbers[:, :3], numbers[:, 3:6], deviation, uncertainty
     )
+
+
+def _check_places(path: Path, header: dict[str, str], records: list[tuple]) -> None:
+    """Every point once, within the header's counts; tooth = member_teeth is tooth 0 measured again, and only that."""
+    rows, columns = (int(part) for part in header["grid"].split("x"))
+    limits = {"tooth": int(header["member_teeth"]), "row": rows, "col": columns}
+    first = {(record[1], *record[3:5]) for record in records if record[2] == 0}
+    seen: set[tuple] = set()
+    for record in records:
+        for (name, limit), value in zip(limits.items(), record[2:5], strict=True):
+            again = name == "tooth" and value == limit
+            if value >= limit and not (again and (record[1], *record[3:5]) in first):
+                only = f", and {limit} for a point of tooth 0 measured again" if again else ""
+                raise InputError(f"{path}: {name} = {value}: the header allows 0 to {limit - 1}{only}")
+        if record[1:5] in seen:
+            place = f"flank {record[1]}, tooth {record[2]}, row {record[3]}, col {record[4]}"
+            raise InputError(f"{path}: the point {place} is there twice")
+        seen.add(record[1:5])
 
 
 def _record(path: Path, row: list[str]) -> tuple:

@@ -47,6 +47,19 @@ def test_file_of_the_contract_is_read(tmp_path):
     np.testing.assert_array_equal(file.uncertainty, [0.0005, np.nan])
 
 
+def test_tooth_of_the_number_of_teeth_is_tooth_0_measured_again_and_nothing_else(tmp_path):
+    again = "gear,concave,36,0,0,76.5,-3.25,25.125,0.6,-0.8,0,13.5,0.5\n"
+    file = read(tmp_path, TEXT + again)
+    assert file.tooth.tolist() == [0, 35, 36]
+    write_flank_csv(tmp_path / "b.csv", file)
+    np.testing.assert_array_equal(read_flank_csv(tmp_path / "b.csv").tooth, file.tooth)
+    for other in (again.replace("concave", "convex"), again.replace("36,0,0", "36,0,1")):
+        with pytest.raises(InputError, match=r"tooth = 36: the header allows 0 to 35, and 36 for a point of tooth 0 m"):
+            read(tmp_path, TEXT + other)
+    with pytest.raises(InputError, match=r"tooth = 37: the header allows 0 to 35$"):
+        read(tmp_path, TEXT + again.replace("36", "37"))
+
+
 def test_files_of_the_contract_are_written_as_they_were_read(tmp_path):
     write_flank_csv(tmp_path / "again.csv", read(tmp_path, TEXT))
     lines = (tmp_path / "again.csv").read_text("utf-8").splitlines()
