@@ -10,7 +10,7 @@ from derivations.expression import Expression, Quantity
 CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
-    "sweep", "probing",
+    "sweep", "probing", "registration",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -31,6 +31,7 @@ def expressions() -> Iterator[Expression]:
         hobbing,
         meshing,
         probing,
+        registration,
         sweep,
     )
 
@@ -47,6 +48,7 @@ def expressions() -> Iterator[Expression]:
     yield from (deviation.deviation_surface(), deviation.line_entry(), deviation.flank_turning())
     yield from (sweep.line_in_cone(), sweep.first_removed(), sweep.place_in_cutter())
     yield from (sweep.cutter_excess(), sweep.seated())
+    yield from (registration.unseated(), registration.motion_sensitivity())
     yield from (probing.probe_target(), probing.space_azimuth(), probing.probe_axes(), probing.probe_tip())
     yield from (probing.touched_point(), probing.ring_calibration(), probing.sphere_residual())
     yield probing.effective_radius()

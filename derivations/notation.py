@@ -161,6 +161,11 @@ tilt_azimuth = _angle("tilt_azimuth", r"\lambda", -pi, pi, "azimuth of the axis 
 seated_point = _vector("seated_point", r"\mathbf{R}_a", "mm", 300.0, 500.0, "point of the seated work, turning with A")
 seated_normal = _vector("seated_normal", r"\mathbf{n}_a", "1", 1.0, 1.0, "its outward unit normal, turning with A")
 
+motion_sensitivity = Quantity(
+    "motion_sensitivity", "deviation per unit of a small motion of the work: along x, y, z and about x, y, z", "mixed",
+    r"\partial\delta/\partial(\mathbf{t}, \boldsymbol{\omega})", shape=(6,), scale=1000.0,
+)  # fmt: skip
+
 # --- deviation --------------------------------------------------------------------------------------------------
 tip_center = _vector(
     "tip_center", r"\mathbf{p}_m", "mm", 300.0, 500.0, "centre of the probe tip at contact, work frame w"

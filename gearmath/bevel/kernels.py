@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from derivations import axes, blank, deviation, flank, generation, meshing, probing
+from derivations import axes, blank, deviation, flank, generation, meshing, probing, registration
 from gearmath.lowering import Kernel, lower
 
 _EXPRESSIONS = {
@@ -31,6 +31,8 @@ _EXPRESSIONS = {
     "ring_calibration": probing.ring_calibration,
     "sphere_residual": probing.sphere_residual,
     "effective_radius": probing.effective_radius,
+    "unseated": registration.unseated,
+    "motion_sensitivity": registration.motion_sensitivity,
 }
 
 

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.machine.mill import flank_header
+from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
 
 HEADER = {
@@ -63,5 +67,84 @@ def plane() -> Callable[..., FlankFile]:
             header, "pinion", "concave", 0, row[mixed], col[mixed], point[mixed], normal[mixed],
             np.broadcast_to(deviation(along, up), along.shape)[mixed],
         )  # fmt: skip
+
+    return make
+
+
+#: Steps of the differences by which the witness finds normals and slopes: mm, rad, rad, mm.
+_STEPS = np.array([1e-4, 1e-5, 1e-5, 1e-4])
+
+
+def _about(axis: np.ndarray, angle: float | np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Rodrigues' rotation of vectors (n,3) about one axis."""
+    c, s = np.cos(angle)[..., None], np.sin(angle)[..., None]
+    return vector * c + np.cross(axis, vector) * s + axis * (vector @ axis)[..., None] * (1 - c)
+
+
+@pytest.fixture(scope="session")
+def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
+    """``clamped(member, name, seat, teeth, places, index, form)``: what a probe finds on a work that sits badly.
+
+    The work's surface is the witness's cutter surface, grown by ``form(flank, z_w, radius)`` along its normal and
+    turned by ``index[flank][tooth]``; it is tilted, moved off, and met by the nominal normal of every point: four
+    equations (place, and no volume swept) for u, beta, theta and the deviation, by Newton with differences. Nothing of
+    the seat, the normals or the meshing is gearmath's. ``seat`` is (e_x, e_y, tilt_x, tilt_y).
+    """
+
+    def met(member, flank, nominal, keep, i, seat, turn, form):
+        x, side = member.flank(flank).nominal.vector, SIDES[flank]
+        axis_z, pitch = np.array([0.0, 0.0, 1.0]), 2 * np.pi * i / member.teeth
+        point, normal = (_about(axis_z, np.asarray(pitch), v[keep]) for v in (nominal.point, nominal.normal))
+        outward = nominal.normal[keep]
+        e, tilt = np.array([*seat[:2], 0.0]), np.array([*seat[2:], 0.0])
+        size = np.linalg.norm(tilt)
+        axis = tilt / size if size else np.array([1.0, 0.0, 0.0])
+
+        def surface(v):
+            return witness.surface(v[:, 0], v[:, 1], v[:, 2], x, side)
+
+        def slopes(v):
+            steps = [np.eye(4)[k] * _STEPS[k] for k in range(3)]
+            return [(surface(v + h) - surface(v - h)) / (2 * h.sum()) for h in steps]
+
+        def off(v):
+            s = surface(v)
+            u, b, th = slopes(v)
+            n = np.cross(u, b)
+            n /= np.linalg.norm(n, axis=1, keepdims=True)
+            n *= np.sign(np.sum(n * outward, axis=1, keepdims=True))
+            grown = s + form(flank, s[:, 2], np.hypot(s[:, 0], s[:, 1]))[:, None] * n
+            there = _about(axis_z, np.asarray(pitch + turn), grown)
+            touched = point + v[:, 3:] * normal
+            back = _about(axis, np.asarray(-size), touched - e)
+            return np.hstack([there - back, (np.sum(n * th, axis=1) / x[0])[:, None]])
+
+        v = np.hstack([nominal.contact[keep], np.zeros((len(point), 1))])
+        for _ in range(5):
+            jacobian = np.stack(
+                [(off(v + np.eye(4)[k] * _STEPS[k]) - off(v - np.eye(4)[k] * _STEPS[k])) / (2 * _STEPS[k])
+                 for k in range(4)], axis=2,
+            )  # fmt: skip
+            v = v - np.linalg.solve(jacobian, off(v)[..., None])[..., 0]
+        assert np.abs(off(v)).max() < 1e-8
+        return point, normal, v[:, 3]
+
+    def make(
+        member: Member, name: str, seat: Sequence[float] = (0, 0, 0, 0), teeth: Sequence[int] = range(8),
+        places: Sequence[int] | None = None, index: dict[str, np.ndarray] | None = None,
+        form: Callable = lambda flank, z, r: 0 * z, whole: Sequence[int] = (), grid: tuple[int, int] = (5, 9),
+    ) -> FlankFile:  # fmt: skip
+        grid_ = blank_grid(member, *grid)
+        row, col = (each.ravel() for each in np.indices(grid))
+        header, files = flank_header(member, name, grid_), []
+        nominals = {flank: solve_flank(member, name, flank, grid_) for flank in FLANKS}
+        for i in teeth:
+            for flank in FLANKS:
+                turn = index[flank][i % member.teeth] if index else 0.0
+                keep = np.arange(len(row)) if places is None or i in whole else np.array(places)
+                point, normal, found = met(member, flank, nominals[flank], keep, i, np.array(seat), turn, form)
+                touched = point + found[:, None] * normal
+                files.append(flank_file(header, name, flank, i, row[keep], col[keep], touched, normal, found))
+        return join(files)
 
     return make

@@ -1,0 +1,108 @@
+"""The nominal flanks behind a measured file: which point each row means, and how far a point lies from its flank."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.flank import Grid, blank_grid, nominal_points, solve_flank
+from gearmath.bevel.newton import TOLERANCE
+from gearmath.errors import ComputationError, InputError
+from gearmath.quality.topography import grid_shape
+from gearmath.specs.bevel_set import FLANKS, Member
+from gearmath.specs.flank_csv import FlankFile
+
+#: A measured point may lie this far beside its nominal normal. [mm]
+SAME_POINT = 0.01
+_MM_PER_INCH = 25.4
+
+
+@dataclass(frozen=True)
+class NominalRows:
+    """What the n rows of a file mean: nominal points and outward normals (n,3), and the turn (n,) [rad] of each tooth.
+
+    ``tooth`` counts tooth 0 measured again as tooth 0.
+    """
+
+    point: np.ndarray
+    normal: np.ndarray
+    turn: np.ndarray
+    tooth: np.ndarray
+
+
+def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
+    """The nominal point and normal of every row, in the work frame.
+
+    Raises ComputationError if the grid does not lie on the flank.
+    """
+    rows, columns = grid_shape(file)
+    grid = blank_grid(member, rows, columns, float(file.header["margins"].split(",")[0]))
+    point, normal = np.empty((len(file), 3)), np.empty((len(file), 3))
+    tooth = file.tooth % member.teeth
+    turn = 2 * math.pi * tooth / member.teeth
+    for flank in FLANKS:
+        here = file.flank == flank
+        if here.any():
+            solved = solve_flank(member, name, flank, grid)
+            place = file.row[here] * columns + file.col[here]
+            point[here] = turned(solved.point[place], turn[here])
+            normal[here] = turned(solved.normal[place], turn[here])
+    return NominalRows(point, normal, turn, tooth)
+
+
+def turned(vector: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Vectors (n,3) turned about z_w, each by its angle (n,) [rad]."""
+    c, s = np.cos(angle), np.sin(angle)
+    x, y, z = vector.T
+    return np.stack([c * x - s * y, s * x + c * y, z], axis=1)
+
+
+def distance_from_flank(
+    member: Member, flank: str, point: np.ndarray, turn: np.ndarray, normal: np.ndarray, expected: np.ndarray
+) -> np.ndarray:
+    """Signed distance (n,) [mm] of points (n,3) from the nominal flank of their teeth, positive out of the metal.
+
+    ``normal`` (n,3) and ``expected`` (n,) say roughly where the foot of each point is. The tangent plane of the
+    surface at the foot's z_w and radius is as good as the surface: the foot lies within a µm of where it touches.
+    Raises ComputationError where the surface has no such place.
+    """
+    at = turned(point, -turn)
+    foot = at - expected[:, None] * turned(normal, -turn)
+    place = Grid(foot[:, 2], np.hypot(foot[:, 0], foot[:, 1]))
+    surface, residual = nominal_points(member, flank, place)
+    if not (residual <= TOLERANCE).all():
+        k = int(np.argmax(~(residual <= TOLERANCE)))
+        raise ComputationError(f"{flank} flank: the nominal surface does not reach the point at {point[k].round(3)} mm")
+    return np.sum((at - surface.point) * surface.normal, axis=1)
+
+
+def check_points(file: FlankFile, rows: NominalRows) -> None:
+    """Raise InputError, with the likeliest cause, where a measured point does not lie on its nominal normal."""
+    touched = file.point - file.deviation[:, None] * file.normal
+    apart = np.nan_to_num(np.linalg.norm(touched - rows.point, axis=1))
+    if not (apart > SAME_POINT).any():
+        return
+    k = int(np.argmax(apart > SAME_POINT))
+    place = f"{file.flank[k]} flank, tooth {file.tooth[k]}, row {file.row[k]}, col {file.col[k]}"
+    raise InputError(
+        f"{place}: the measured point lies {apart[k]:.4f} mm beside the nominal normal, the limit is {SAME_POINT} mm; "
+        f"{_likeliest_cause(file, rows)}"
+    )
+
+
+def _likeliest_cause(file: FlankFile, rows: NominalRows) -> str:
+    """What would make most of the points fit."""
+    fits = {
+        "the numbers are inches: convert the file to mm": file.point * _MM_PER_INCH,
+        "the file is of the other hand": file.point * [1, -1, 1],
+        "x and y are exchanged": file.point[:, [1, 0, 2]],
+    }
+    for words, point in fits.items():
+        if np.median(np.linalg.norm(point - rows.point, axis=1)) < 1.0:
+            return words
+    shift = np.linalg.norm(file.point - rows.point, axis=1)
+    if np.median(shift) < SAME_POINT:
+        return f"{int((shift > SAME_POINT).sum())} of {len(file)} points are off the flank"
+    return "is the file of this set, member, hand and grid, in mm?"
