@@ -26,9 +26,10 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
     "--topography", default="0", show_default=True, help="Teeth whose whole flanks are probed: all, none, or numbers."
 )
 @click.option("--pitch/--no-pitch", default=True, show_default=True, help="Probe the reference point of every tooth.")
+@click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Touches of every point.")
 @output(_PROGRAM)
 def probe(
-    gear_set: str, member: str, machine: str, calibration: str, topography: str, pitch: bool, target: Path
+    gear_set: str, member: str, machine: str, calibration: str, topography: str, pitch: bool, repeat: int, target: Path
 ) -> None:  # fmt: skip
     """The probing program of a member."""
     from gearmath.files import write_text
@@ -42,10 +43,10 @@ def probe(
     teeth = _teeth(topography, bevel_set.member(member).teeth)
     text = probing_program(
         bevel_set, member, load_milling_machine(find(machine)), load_calibration(find(calibration)), target.stem,
-        teeth, pitch,
+        teeth, pitch, repeat,
     )  # fmt: skip
     write_text(target, text)
-    click.echo(f"{target}: {text.count('R205=$')} touches, {text.count(chr(10))} blocks")
+    click.echo(f"{target}: {repeat * text.count('R205=$')} touches, {text.count(chr(10))} blocks")
 
 
 @click.command("calibrate")

@@ -1,5 +1,6 @@
 """Probing programs: every tooth at the reference point for pitch, a grid of both flanks for topography.
 
+After the last tooth the reference points of tooth 0 are touched again, as tooth z: what differs is drift.
 The stylus enters a space from above, square to the root cone, and touches along the outward normal; outside of the
 space it moves at a height that clears the whole member at every position of A.
 """
@@ -28,6 +29,8 @@ _LEAST_APPROACH = 0.1
 #: Height of all sideways motion above the highest point of the member. [mm]
 CLEARANCE = 5.0
 MEASURING_FEED, APPROACH_FEED = 100.0, 800.0
+#: Counts the touches of one point.
+_COUNTER = "UTOUCH"
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,7 @@ def probe_targets(
 ) -> Targets:
     """The touches of a member: the whole grid on the teeth of ``topography``, the reference point on all others.
 
+    With ``pitch``, the reference points of tooth 0 come once more at the end, as tooth z, A standing as for tooth 0.
     Raises InputError naming flank, row and column where the tip has no room between the flanks.
     """
     if not all(0 <= tooth < member.teeth for tooth in topography):
@@ -82,7 +86,7 @@ def probe_targets(
     flanks = [_of_one_flank(member, name, flank, grid, machine, calibration) for flank in FLANKS]
     rows, columns = grid.shape
     parts = []
-    for tooth in range(member.teeth):
+    for tooth in range(member.teeth + 1):
         for one in flanks:
             whole = tooth in topography
             if whole or pitch:
@@ -121,8 +125,8 @@ def _of_one_flank(
 
 
 def _turned(targets: Targets, tooth: int, teeth: int) -> Targets:
-    """The same touches in another space: only A is different."""
-    turn = 2 * math.pi * tooth / teeth * np.array([0, 0, 0, 1, 0])
+    """The same touches in another space: only A is different, and for tooth z that of tooth 0."""
+    turn = 2 * math.pi * (tooth % teeth) / teeth * np.array([0, 0, 0, 1, 0])
     positions = (getattr(targets, name) + turn for name in ("start", "touch", "end"))
     return Targets(targets.flank, np.full(len(targets), tooth), targets.row, targets.col, *positions)
 
@@ -146,8 +150,12 @@ def probing_program(
     program_name: str,
     topography: Sequence[int] = (0,),
     pitch: bool = True,
+    repeat: int = 1,
 ) -> str:
-    """The program that probes a member. Raises InputError for travel, room, and a name that the control refuses."""
+    """The program that probes a member, every point ``repeat`` times one after the other.
+
+    Raises InputError for travel, room, and a name that the control refuses.
+    """
     member = bevel_set.member(name)
     targets = probe_targets(member, name, machine, calibration, topography, pitch)
     level, anywhere = clear_heights(member, machine, calibration)
@@ -159,17 +167,20 @@ def probing_program(
         f"settings sha256: {design_sha256(member)}",
         f"machine: {machine.name}",
         f"probe: {calibration.name}, tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm",
-        f"{len(targets)} touches",
+        f"{len(targets)} points" + (f", each touched {repeat} times" if repeat > 1 else ""),
         "R102 counts the runs, R101 the points offered, R103 those that a host has acknowledged",
         "R104 = 1, set before the start: a host reads R200 to R205 of every point, and the program waits for it",
     )
     blocks = Blocks(program_name, machine.axes.A.modulo)
-    return blocks.text(header, _body(blocks, targets, name, machine, level, anywhere))
+    return blocks.text(header, _body(blocks, targets, name, machine, (level, anywhere), repeat))
 
 
 def _body(
-    blocks: Blocks, targets: Targets, name: str, machine: MillingMachine, level: float, anywhere: float
+    blocks: Blocks, targets: Targets, name: str, machine: MillingMachine, heights: tuple[float, float], repeat: int
 ) -> Iterator[str]:
+    level, anywhere = heights
+    if repeat > 1:
+        yield f"DEF INT {_COUNTER}"
     yield from blocks.start(machine.work_offset)
     yield f"G0 {blocks.length('Z', anywhere)}"
     x, y, _, a, b = blocks.axes(targets.start[0])
@@ -182,8 +193,14 @@ def _body(
         yield f"G0 {x} {y} {a} {b}"
         yield from blocks.guarded(z, APPROACH_FEED, level)
         end = " ".join(blocks.axes(targets.end[k])[:3])
-        yield from blocks.touch(end, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level)
-        yield from blocks.hand_over(f"{name},{flank},{place[0]},{place[1]},{place[2]}")
+        called = f"{name},{flank},{place[0]},{place[1]},{place[2]}"
+        if repeat > 1:
+            yield f"FOR {_COUNTER}=1 TO {repeat}"
+        yield from blocks.touch(end, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level, up=repeat == 1)
+        yield from blocks.hand_over(called)
+        if repeat > 1:
+            yield "ENDFOR"
+            yield f"G0 {blocks.length('Z', level)}"
     yield f"G0 {blocks.length('Z', anywhere)}"
     yield "M30"
 

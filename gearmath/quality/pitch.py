@@ -42,7 +42,7 @@ def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:
     Raises InputError if some, but not all, of the teeth were measured.
     """
     points = file.select(flank)
-    measured = np.unique(points.tooth)
+    measured = np.unique(points.tooth[points.tooth < teeth])  # tooth z is tooth 0 again
     if len(measured) <= 1:
         return None
     if len(measured) != teeth:
@@ -51,7 +51,7 @@ def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:
             f"{flank} flank: tooth {absent[0]} was not measured; pitch needs all {teeth} teeth, or one only"
         )
     row, col = reference_point(file)
-    here = (points.row == row) & (points.col == col)
+    here = (points.row == row) & (points.col == col) & (points.tooth < teeth)
     order = np.argsort(points.tooth[here])
     if not np.array_equal(points.tooth[here][order], np.arange(teeth)):
         raise InputError(f"{flank} flank: not every tooth has the reference point, row {row}, col {col}")

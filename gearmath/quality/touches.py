@@ -9,7 +9,7 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError, InputError
 from gearmath.machine.calibrating import PAIRS
@@ -17,12 +17,14 @@ from gearmath.machine.mill import flank_header
 from gearmath.machine.probing import probe_height
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration, Ring, Sphere
-from gearmath.specs.flank_csv import FlankFile, flank_file, join
+from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.touch_csv import CalibrationTouches, Touches
 
 #: A touch this far from its nominal place is of another point, set or set-up. [mm]
 _SAME_POINT = 3.0
+#: Touches of one point this far from their mean are not all of the flank. [mm]
+_SAME_TOUCH = 0.02
 _STEPS, _CONVERGED = 20, 1e-12
 
 
@@ -40,45 +42,84 @@ def measured_member(
 ) -> FlankFile:
     """The corrected contact points (15.5) of the touches, with their deviations from the nominal flanks.
 
-    Raises InputError for touches of another member, off the grid, or far from their nominal place.
+    Points come in the order in which they were touched; tooth z is tooth 0 again. The touches of one point are
+    averaged, and ``uncertainty`` is that of the average, from the scatter of all points; one touch tells none.
+    Raises InputError for touches of another member, off the grid, far from their nominal place or from each other.
     """
     if touches.member != name:
         raise InputError(f"the touches are of the {touches.member}, not of the {name}")
     grid = blank_grid(member)
     rows, columns = grid.shape
-    for what, values, limit in (
-        ("row", touches.row, rows), ("col", touches.col, columns), ("tooth", touches.tooth, member.teeth)
+    for what, values, last in (
+        ("row", touches.row, rows - 1), ("col", touches.col, columns - 1), ("tooth", touches.tooth, member.teeth)
     ):  # fmt: skip
-        if (values >= limit).any():
-            raise InputError(
-                f"{what} = {int(values.max())}: the {name} and its grid {rows}x{columns} end at {limit - 1}"
-            )
-    header = {**flank_header(member, name, grid), "tip_radius_mm": f"{calibration.tip_radius:g}"}
-    (tip, _) = kernel("probe_tip")(
+        if (values > last).any():
+            raise InputError(f"{what} = {int(values.max())}: the {name} and its grid {rows}x{columns} end at {last}")
+    tip, _ = kernel("probe_tip")(
         touches.axes, probe_height(machine, calibration), calibration.tip_offset, machine.pivot
     )
-    files = []
+    point, normal = _nominal(touches, member, name, grid)
+    contact, deviation = kernel("touched_point")(tip, calibration.tip_radius, point, normal)
+    _check_place(contact - point, touches)
+    header = {**flank_header(member, name, grid), "tip_radius_mm": f"{calibration.tip_radius:g}"}
+    return _averaged(header, touches, contact, normal, deviation)
+
+
+def _nominal(touches: Touches, member: Member, name: str, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Points and normals (n,3) that the touches were meant for."""
+    point, normal = np.empty((2, len(touches), 3))
+    turn = 2 * math.pi * touches.tooth / member.teeth
+    c, s, o = np.cos(turn), np.sin(turn), np.zeros(len(touches))
+    about_axis = np.array([[c, -s, o], [s, c, o], [o, o, o + 1]])
+    place = touches.row * grid.shape[1] + touches.col
     for flank in (flank for flank in FLANKS if (touches.flank == flank).any()):
+        here = touches.flank == flank
         nominal = solve_flank(member, name, flank, grid)
-        for tooth in np.unique(touches.tooth[touches.flank == flank]):
-            here = (touches.flank == flank) & (touches.tooth == tooth)
-            row, col = touches.row[here], touches.col[here]
-            place = row * columns + col
-            turn = _about_axis(2 * math.pi * int(tooth) / member.teeth)
-            point, normal = nominal.point[place] @ turn.T, nominal.normal[place] @ turn.T
-            contact, deviation = kernel("touched_point")(tip[here], calibration.tip_radius, point, normal)
-            _check_place(contact - point, flank, int(tooth), row, col)
-            files.append(flank_file(header, name, flank, int(tooth), row, col, contact, normal, deviation))
-    return join(files)
+        point[here], normal[here] = nominal.point[place[here]], nominal.normal[place[here]]
+    return np.einsum("ijn,nj->ni", about_axis, point), np.einsum("ijn,nj->ni", about_axis, normal)
 
 
-def _check_place(off: np.ndarray, flank: str, tooth: int, row: np.ndarray, col: np.ndarray) -> None:
-    distance = np.linalg.norm(off, axis=1)
-    if (distance > _SAME_POINT).any():
-        k = int(np.argmax(distance))
+def _averaged(
+    header: dict[str, str], touches: Touches, contact: np.ndarray, normal: np.ndarray, deviation: np.ndarray
+) -> FlankFile:
+    """One row a point: means of its touches, and the uncertainty of the mean from the scatter of all points."""
+    places = np.stack([touches.flank == FLANKS[0], touches.tooth, touches.row, touches.col])
+    first = np.flatnonzero(np.append(True, (np.diff(places.astype(int), axis=1) != 0).any(axis=0)))
+    count = np.diff(np.append(first, len(touches)))
+    point_of = np.repeat(np.arange(len(first)), count)
+    mean = np.add.reduceat(deviation, first) / count
+    off = deviation - mean[point_of]
+    _check_scatter(off, touches)
+    more = len(touches) - len(first)
+    sigma = math.sqrt(float(off @ off) / more) if more else math.nan
+    return FlankFile(
+        header, touches.member, touches.flank[first], touches.tooth[first], touches.row[first], touches.col[first],
+        np.add.reduceat(contact, first) / count[:, None], normal[first], mean, sigma / np.sqrt(count),
+    )  # fmt: skip
+
+
+def _named(touches: Touches, k: int) -> str:
+    return f"{touches.flank[k]} flank, tooth {touches.tooth[k]}, row {touches.row[k]}, col {touches.col[k]}"
+
+
+def _check_scatter(off: np.ndarray, touches: Touches) -> None:
+    wide = np.abs(off) > _SAME_TOUCH
+    if wide.any():
+        k = int(np.argmax(wide))
         raise InputError(
-            f"{flank} flank, tooth {tooth}, row {row[k]}, col {col[k]}: the touch lies {distance[k]:.3f} mm from its "
-            f"nominal place, the limit is {_SAME_POINT} mm; is it of this set, machine and calibration?"
+            f"{_named(touches, k)}: one of its touches lies {abs(off[k]) * 1000:.1f} um from their mean, the limit is "
+            f"{_SAME_TOUCH * 1000:g} um; was there a chip on the flank, or did the probe miss it?"
+        )
+
+
+def _check_place(off: np.ndarray, touches: Touches) -> None:
+    distance = np.linalg.norm(off, axis=1)
+    far = distance > _SAME_POINT
+    if far.any():
+        k = int(np.argmax(far))
+        raise InputError(
+            f"{_named(touches, k)}: the touch lies {distance[k]:.3f} mm from its nominal place, the limit is "
+            f"{_SAME_POINT} mm; is it of this set, machine and calibration?"
         )
 
 
@@ -129,8 +170,3 @@ def _sphere_rows(n: int) -> ca.Function:
     residual = kernel("sphere_residual").function
     rest = ca.vertcat(*(residual(triggers[:, k], tip[:3], tip[3], center, radius) for k in range(n)))
     return ca.Function("sphere_rows", [triggers, tip, center, radius], [rest, ca.jacobian(rest, tip)])
-
-
-def _about_axis(angle: float) -> np.ndarray:
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])

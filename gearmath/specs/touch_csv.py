@@ -25,7 +25,10 @@ _LARGEST = 1e5
 
 @dataclass(frozen=True)
 class Touches:
-    """The touches of one run on one member: index arrays (n,), axis positions X Y Z A B (n,5) in mm and rad."""
+    """The touches of one run on one member: index arrays (n,), axis positions X Y Z A B (n,5) in mm and rad.
+
+    Touches of one point follow each other. Tooth z is tooth 0, touched again at the end.
+    """
 
     run: int
     member: str
@@ -120,11 +123,15 @@ def _collected(path: Path, run: int, records: list[dict]) -> Touches:
         raise InputError(f"{path}, run {run}: one run measures one member, this one {' and '.join(members)}")
     _check_points(path, run, records)
     seen: dict[tuple, int] = {}
+    before: tuple = ()
     for record in records:
         place = tuple(record[name] for name in ("flank", "tooth", "row", "col"))
-        if place in seen:
-            raise InputError(f"{path}, line {record['line']}: the point of line {seen[place]} is there twice")
-        seen[place] = record["line"]
+        if place in seen and place != before:
+            raise InputError(
+                f"{path}, line {record['line']}: the point of line {seen[place]} is there twice; touches of one point "
+                "must follow each other"
+            )
+        seen[place], before = record["line"], place
     tooth, row, col = (np.array([int(record[name]) for record in records]) for name in ("tooth", "row", "col"))
     return Touches(run, members[0], np.array([record["flank"] for record in records]), tooth, row, col, _axes(records))
 

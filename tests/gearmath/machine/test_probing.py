@@ -64,7 +64,7 @@ def test_every_touch_is_within_a_micrometre_of_where_it_should_be(gear_set, memb
     done, _ = probed(gear_set, member, machine, probe)
     touched = done.path.axes[done.path.measuring][1::2]
     rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[1:]]
-    assert len(touched) == len(rows) == 2 * (45 + spec.teeth - 1)
+    assert len(touched) == len(rows) == 2 * (45 + spec.teeth)
     tips, _ = tip_in_work(touched, machine, probe)
     nominal = {flank: solve_flank(spec, member, flank, blank_grid(spec)) for flank in FLANKS}
     for tip, (_, _, _, flank, tooth, row, col, *_) in zip(tips, rows, strict=True):
@@ -73,6 +73,34 @@ def test_every_touch_is_within_a_micrometre_of_where_it_should_be(gear_set, memb
         c, s = math.cos(turn), math.sin(turn)
         expected = nominal[flank].point[k] + probe.tip_radius * nominal[flank].normal[k]
         assert np.linalg.norm(tip - np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ expected) <= 1e-3
+
+
+def test_tooth_0_is_touched_again_at_the_end_where_it_was_touched_first(gear_set):
+    """Both flanks, at the same positions, A of a counting axis too; without pitch there is no second time."""
+    for machine in (MACHINE, COUNTING):
+        targets = probe_targets(gear_set.gear, "gear", machine, PROBE)
+        assert targets.tooth[-2:].tolist() == [36, 36]
+        assert targets.flank[-2:].tolist() == list(FLANKS)
+        for k in (-2, -1):
+            first = (targets.tooth == 0) & (targets.flank == targets.flank[k]) & (targets.row == 2) & (targets.col == 4)
+            for positions in (targets.start, targets.touch, targets.end):
+                np.testing.assert_array_equal(positions[k], positions[first][0])
+    assert probe_targets(gear_set.gear, "gear", MACHINE, PROBE, pitch=False).tooth.max() == 0
+
+
+def test_repeated_touches_follow_each_other_without_leaving_the_space(gear_set):
+    """Three touches a point, each from its start; between them the tip moves along the way of the touch only."""
+    done, _ = probed(gear_set, "pinion", topography=(), repeat=3)
+    rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[1:]]
+    assert [row[1] for row in rows] == [str(k) for k in range(1, 3 * 26 + 1)]
+    assert all(rows[3 * k][3:7] == rows[3 * k + j][3:7] for k in range(26) for j in (1, 2))
+    once, _ = probed(gear_set, "pinion", topography=())
+    single = [line.split(",") for line in once.files["PROBE_T"].splitlines()[1:]]
+    assert [row[2:] for row in rows[::3]] == [row[2:] for row in single]
+    measuring = np.flatnonzero(done.path.measuring)
+    between = [k for k in measuring if k + 2 in measuring and k + 1 not in measuring]
+    assert len(between) == 2 * 26
+    assert not done.path.rapid[[k + 1 for k in between]].any()
 
 
 @pytest.mark.parametrize("member", MEMBERS)
@@ -165,9 +193,9 @@ def test_host_gets_every_point_once_and_in_order(gear_set):
         return {103: parameters[101]}
 
     done, _ = probed(gear_set, "pinion", host=host, parameters={102: 4, 104: 1}, topography=())
-    assert [row[0] for row in seen] == list(range(1, 25))
+    assert [row[0] for row in seen] == list(range(1, 27))
     rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[1:]]
-    assert [row[0] for row in rows] == ["5"] * 24
+    assert [row[0] for row in rows] == ["5"] * 26
     expected = [[float(row[1]), *map(float, row[7:])] for row in rows]
     np.testing.assert_allclose(seen, expected, rtol=0, atol=1e-9)
 
@@ -200,6 +228,7 @@ def test_missing_metal_and_metal_in_the_way_stop_the_program_after_a_retract(gea
 PROGRAMS = {
     "pinion": lambda s: probing_program(s, "pinion", MACHINE, PROBE, "PROBE_PINION"),
     "gear": lambda s: probing_program(s, "gear", OFF_AXIS, BENT, "PROBE_GEAR", topography=range(3)),
+    "repeated": lambda s: probing_program(s, "pinion", MACHINE, PROBE, "PROBE_PINION", repeat=4),
     "counting": lambda s: probing_program(s, "gear", COUNTING, PROBE, "_P", topography=()),
     "calibration": lambda s: calibration_program(MACHINE, PROBE, "CALIBRATE"),
 }
@@ -219,7 +248,8 @@ def test_lint(gear_set, which):
         r"|R\d+=(?:R\d+(?:\+1)?|0|\(R12\+R13\)/2|\$A[AC]_ME?[AM]\[[XYZAB1]\]|\(?-?\d+\.\d{5}\)?)"
     )
     whole = re.compile(
-        r"DEF INT UERR|IF (?:\$A_PROBE\[1\]<>0|\$AC_MEA\[1\]<>0|R205==0|UERR<>0|R104==1)|ENDIF|ENDWHILE"
+        r"DEF INT U(?:ERR|TOUCH)|FOR UTOUCH=1 TO \d+|ENDFOR"
+        r"|IF (?:\$A_PROBE\[1\]<>0|\$AC_MEA\[1\]<>0|R205==0|UERR<>0|R104==1)|ENDIF|ENDWHILE"
         r'|WHILE R103<>R101|SETAL\(6500[0-3]\)|MSG\("[a-z ]+"\)|WRITE\(UERR,"[A-Z_]{1,24}",[A-Za-z0-9_,"<]+\)'
     )
     modulo = which != "counting"
@@ -236,8 +266,8 @@ def test_lint(gear_set, which):
             assert blocks[count].endswith("STOPRE")
         for angle in re.findall(rf"DC\(({number})\)", rest):
             assert 0 <= float(angle) < 360
-    opened = len(re.findall(r" IF ", text)), text.count(" WHILE ")
-    assert opened == (text.count("ENDIF"), text.count("ENDWHILE"))
+    opened = len(re.findall(r" IF ", text)), text.count(" WHILE "), text.count(" FOR ")
+    assert opened == (text.count("ENDIF"), text.count("ENDWHILE"), text.count("ENDFOR"))
     assert text == PROGRAMS[which](gear_set)
 
 

@@ -47,17 +47,18 @@ def test_probing_the_nominal_member_gives_back_exactly_its_flanks(gear_set, tmp_
     """0.01 um is asked; the text of the result file keeps nine decimals."""
     spec = gear_set.member(member)
     file = measured(gear_set, tmp_path, member, machine, probe)
-    assert len(file) == 2 * (45 + spec.teeth - 1)
+    assert len(file) == 2 * (45 + spec.teeth)  # tooth 0 again at the end, as tooth z
     assert np.abs(file.deviation).max() <= 1e-5  # mm
     for flank in FLANKS:
         nominal = solve_flank(spec, member, flank, blank_grid(spec))
-        for tooth in range(spec.teeth):
+        for tooth in range(spec.teeth + 1):
             turn = 2 * math.pi * tooth / spec.teeth
             c, s = math.cos(turn), math.sin(turn)
             here = file.select(flank, tooth)
             places = here.row * 9 + here.col
             expected = nominal.point[places] @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
             assert len(here) == (45 if tooth == 0 else 1)
+            assert np.isnan(here.uncertainty).all()  # one touch says nothing of its scatter
             # beside the normal the printed program moves the point by its five decimals, which is no deviation
             np.testing.assert_allclose(here.point, expected, rtol=0, atol=2e-5)
 
@@ -104,7 +105,7 @@ def test_touches_of_another_member_or_set_up_are_refused(gear_set, tmp_path):
     longer = PROBE.model_copy(update={"length": 210.0})
     with pytest.raises(InputError, match=r"concave flank, tooth 0, row 2, col 4: the touch lies 10\.0.. mm from"):
         measured_member(touches, spec, "gear", MACHINE, longer)
-    for key, value in (("row", 5), ("col", 9), ("tooth", 36)):
+    for key, value in (("row", 5), ("col", 9), ("tooth", 37)):
         wrong = replace(touches, **{key: np.full(len(touches), value)})
         with pytest.raises(InputError, match=f"{key} = {value}"):
             measured_member(wrong, spec, "gear", MACHINE, PROBE)
@@ -201,14 +202,14 @@ def test_commands_go_from_calibration_to_measured_flank(gear_set, tmp_path, comm
     status, out, _ = command(
         "nc", "probe", bundled("nasa_tp3096_12x36.toml"), "--member", "pinion", *machine, "-o", tmp_path / "PP.MPF"
     )
-    assert (status, out.split(": ")[1].split(",")[0]) == (0, "112 touches")
+    assert (status, out.split(": ")[1].split(",")[0]) == (0, "114 touches")
     there = ProbeMachine(gear_set.member("pinion"), "pinion", MACHINE, BENT)
     raw.write_text(run_program((tmp_path / "PP.MPF").read_text(), "PP", there).files["PP_T"])
     status, out, _ = command(
         "touches", raw, "--set", "nasa_tp3096_12x36.toml", *machine, "-o", tmp_path / "M.csv"
     )  # fmt: skip
     assert status == 0
-    assert "112 points of run 1, largest deviation 0.000 um" in out
+    assert "114 points of run 1, largest deviation 0.000 um" in out
     status, out, _ = command("evaluate", tmp_path / "M.csv", "--set", "nasa_tp3096_12x36.toml")
     assert status == 0
     assert "F_p_um" in out

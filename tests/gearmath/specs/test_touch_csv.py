@@ -66,13 +66,20 @@ def test_the_last_run_is_taken_unless_another_is_asked_for(tmp_path):
         ([ROWS[0][:-1] + "0"], r"line 1: triggered = 0: the probe touched nothing"),
         ([ROWS[0], ROWS[2]], r"line 2: point = 3: must be 2, without a gap"),
         ([ROWS[1]], r"run 1: begins with point 2: points count from 0 or 1"),
-        ([ROWS[0], ROWS[0].replace("1,1", "1,2", 1)], r"line 2: the point of line 1 is there twice"),
+        ([*ROWS[:2], ROWS[0].replace("1,1", "1,3", 1)], r"line 3: the point of line 1 is there twice; touches of one"),
         ([ROWS[0], ROWS[1].replace("gear", "pinion")], r"run 1: one run measures one member, this one gear and pinion"),
     ],
 )
 def test_what_is_no_run_of_touches_is_refused(tmp_path, lines, sentence):
     with pytest.raises(InputError, match=rf"raw\.csv.*{sentence}"):
         read(tmp_path, *lines)
+
+
+def test_touches_of_one_point_follow_each_other(tmp_path):
+    """As --repeat has them; and tooth z is a tooth like others here."""
+    again = [ROWS[0].replace("1,1", f"1,{k}", 1) for k in (1, 2, 3)]
+    last = ROWS[0].replace("1,1", "1,4", 1).replace("concave,0", "concave,36")
+    assert read(tmp_path, *again, last).tooth.tolist() == [0, 0, 0, 36]
 
 
 def test_missing_file_is_one_sentence(tmp_path):
