@@ -10,7 +10,7 @@ from derivations.expression import Expression, Quantity
 CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
-    "sweep", "probing", "registration",
+    "sweep", "probing", "registration", "spacing",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -32,6 +32,7 @@ def expressions() -> Iterator[Expression]:
         meshing,
         probing,
         registration,
+        spacing,
         sweep,
     )
 
@@ -49,6 +50,8 @@ def expressions() -> Iterator[Expression]:
     yield from (sweep.line_in_cone(), sweep.first_removed(), sweep.place_in_cutter())
     yield from (sweep.cutter_excess(), sweep.seated())
     yield from (registration.unseated(), registration.motion_sensitivity())
+    yield from (spacing.ball_shift(), spacing.flank_allowance(), spacing.tooth_at_points())
+    yield from (spacing.mean_module(), spacing.tolerance_diameter(), spacing.spacing_tolerances())
     yield from (probing.probe_target(), probing.space_azimuth(), probing.probe_axes(), probing.probe_tip())
     yield from (probing.touched_point(), probing.ring_calibration(), probing.sphere_residual())
     yield probing.effective_radius()

@@ -214,6 +214,30 @@ lobing_phase = _angle("lobing_phase", r"\varphi_0", -pi, pi, "azimuth of a lobe 
 effective_radius = _length("effective_radius", "r", 0.0, 5.0, "radius of the tip that a touch in its direction has")
 sphere_rest = _length("sphere_rest", r"\rho", -1e3, 1e3, "distance that a touch on the sphere leaves unexplained")
 
+# --- spacing of the teeth ---------------------------------------------------------------------------------------
+opposite_normal = _vector(
+    "opposite_normal", r"\mathbf{n}'", "1", 1.0, 1.0, "outward unit normal of the opposite flank, work frame w"
+)
+opposite_deviation = Quantity("opposite_deviation", "deviation of the opposite flank", "mm", r"\delta'", (-0.5, 0.5))
+radial_shift = Quantity("radial_shift", "radial shift of a ball in a tooth space", "mm", r"\Delta_r", scale=10.0)
+tangential_shift = Quantity(
+    "tangential_shift", "shift around the axis of a ball in a tooth space", "mm", r"\Delta_t", scale=10.0
+)  # fmt: skip
+allowance = Quantity("allowance", "metal left on a flank, along the circle", "mm", "E", scale=300.0)
+arc_deviation = Quantity("arc_deviation", "deviation of the thickness of a tooth, as an arc", "mm", "E_s", (-1.0, 1.0))
+tooth_arc = _length("tooth_arc", "s", -5000.0, 5000.0, "thickness of a tooth along the circle through its points")
+tooth_chord = _length("tooth_chord", "s_c", -2000.0, 2000.0, "straight thickness of a tooth between its points")
+chord_deviation = Quantity("chord_deviation", "deviation of the thickness of a tooth, straight", "mm", "E_c")
+trace_angle = _angle("trace_angle", r"\beta", 0.0, 1.6, "spiral angle at the mean point, by the normal of a flank")
+module_found = _length("module_found", "m_{mn}", 0.0, 500.0, "mean normal module by the spiral angle of a flank")
+tolerance_diameter = _length("tolerance_diameter", "d_T", 5.0, 2500.0, "diameter at half the working depth")
+accuracy_grade = Quantity("accuracy_grade", "grade of accuracy, 2 is finest", "1", "B", (2, 11), kind="int")
+single_pitch_tolerance = Quantity("single_pitch_tolerance", "allowed single pitch", "um", "f_{ptT}", scale=100.0)
+cumulative_pitch_tolerance = Quantity(
+    "cumulative_pitch_tolerance", "allowed cumulative pitch", "um", "F_{pT}", scale=100.0
+)  # fmt: skip
+runout_tolerance = Quantity("runout_tolerance", "allowed runout", "um", "F_{rT}", scale=100.0)
+
 # --- electronic gearbox -----------------------------------------------------------------------------------------
 teeth = _count("teeth", "G", 1, 999, "teeth of the gear to be cut")
 hob_starts = _count("hob_starts", "k", 1, 10, "starts of the hob")

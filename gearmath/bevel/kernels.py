@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from derivations import axes, blank, deviation, flank, generation, meshing, probing, registration
+from derivations import axes, blank, deviation, flank, generation, meshing, probing, registration, spacing
 from gearmath.lowering import Kernel, lower
 
 _EXPRESSIONS = {
@@ -33,6 +33,12 @@ _EXPRESSIONS = {
     "effective_radius": probing.effective_radius,
     "unseated": registration.unseated,
     "motion_sensitivity": registration.motion_sensitivity,
+    "ball_shift": spacing.ball_shift,
+    "flank_allowance": spacing.flank_allowance,
+    "tooth_at_points": spacing.tooth_at_points,
+    "mean_module": spacing.mean_module,
+    "tolerance_diameter": spacing.tolerance_diameter,
+    "spacing_tolerances": spacing.spacing_tolerances,
 }
 
 

@@ -3,7 +3,7 @@
     s_i = r (θ_i - θ_0 - 2π i/z),   f_pt,i = s_i - s_(i-1),   F_p = max s - min s
 
 with s_z = s_0, so that the f_pt sum to zero. The angles come from the deviations by (6.5); the tooth angles 2π i/z
-are already in the nominal points.
+are already in the nominal points. Tooth 0 measured again at the end shows the drift, which is taken out beforehand.
 """
 
 from __future__ import annotations
@@ -14,16 +14,22 @@ import numpy as np
 
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.quality.drift import without_drift
 from gearmath.specs.flank_csv import FlankFile
 
 
 @dataclass(frozen=True)
 class Pitch:
-    """Pitch of one flank: turning (z,) [rad] and cumulative deviation s (z,) [mm] of every tooth against tooth 0."""
+    """Pitch of one flank: turning (z,) [rad] and cumulative deviation s (z,) [mm] of every tooth against tooth 0.
+
+    Both are NaN for a tooth whose point has no deviation. ``drift`` is the arc [mm] by which tooth 0 had moved when it
+    was measured again, None where it was not.
+    """
 
     flank: str
     turning: np.ndarray
     cumulative: np.ndarray
+    drift: float | None = None
 
     @property
     def single(self) -> np.ndarray:
@@ -33,7 +39,13 @@ class Pitch:
     @property
     def total(self) -> float:
         """F_p [mm]."""
-        return float(np.ptp(self.cumulative))
+        return float(np.nanmax(self.cumulative) - np.nanmin(self.cumulative))
+
+    @property
+    def largest_single(self) -> float:
+        """The f_pt that is largest in size, without its sign [mm]; NaN where no two neighbours were measured."""
+        sizes = np.abs(self.single)
+        return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else float("nan")
 
 
 def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:
@@ -41,8 +53,27 @@ def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:
 
     Raises InputError if some, but not all, of the teeth were measured.
     """
+    file, drifts = without_drift(file, teeth)
+    points = reference_rows(file, teeth, flank)
+    if points is None:
+        return None
+    turning, arc = kernel("flank_turning")(points.deviation, points.point, points.normal)
+    start = int(np.argmax(np.isfinite(arc)))  # tooth 0, or the first that has a deviation
+    drift = None
+    if flank in drifts:
+        (_, moved) = kernel("flank_turning")(drifts[flank].closure, points.point[0], points.normal[0])
+        drift = float(moved)
+    return Pitch(flank, turning - turning[start], arc - arc[start], drift)
+
+
+def reference_rows(file: FlankFile, teeth: int, flank: str) -> FlankFile | None:
+    """The reference point of every tooth, by tooth; None where only one tooth was measured.
+
+    Raises InputError if some, but not all, of the teeth were measured.
+    """
     points = file.select(flank)
-    measured = np.unique(points.tooth[points.tooth < teeth])  # tooth z is tooth 0 again
+    points = points.pick(points.tooth < teeth)
+    measured = np.unique(points.tooth)
     if len(measured) <= 1:
         return None
     if len(measured) != teeth:
@@ -51,14 +82,11 @@ def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:
             f"{flank} flank: tooth {absent[0]} was not measured; pitch needs all {teeth} teeth, or one only"
         )
     row, col = reference_point(file)
-    here = (points.row == row) & (points.col == col) & (points.tooth < teeth)
-    order = np.argsort(points.tooth[here])
-    if not np.array_equal(points.tooth[here][order], np.arange(teeth)):
+    points = points.pick((points.row == row) & (points.col == col))
+    points = points.pick(np.argsort(points.tooth))
+    if not np.array_equal(points.tooth, np.arange(teeth)):
         raise InputError(f"{flank} flank: not every tooth has the reference point, row {row}, col {col}")
-    turning, arc = kernel("flank_turning")(
-        points.deviation[here][order], points.point[here][order], points.normal[here][order]
-    )
-    return Pitch(flank, turning - turning[0], arc - arc[0])
+    return points
 
 
 def reference_point(file: FlankFile) -> tuple[int, int]:

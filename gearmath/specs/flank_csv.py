@@ -59,8 +59,11 @@ class FlankFile:
         keep = self.flank == flank
         if tooth is not None:
             keep &= self.tooth == tooth
-        arrays = (getattr(self, name)[keep] for name in _ARRAYS)
-        return FlankFile(self.header, self.member, *arrays)
+        return self.pick(keep)
+
+    def pick(self, keep: np.ndarray) -> FlankFile:
+        """The points that an index array or a mask keeps."""
+        return FlankFile(self.header, self.member, *(getattr(self, name)[keep] for name in _ARRAYS))
 
     def __len__(self) -> int:
         return len(self.tooth)

@@ -1,0 +1,238 @@
+"""Chapter 19. Spacing of the teeth: runout of a ball in a space, thickness of a tooth, and what is allowed of them.
+
+A ball lies in a tooth space, middle at azimuth A (15.2), and touches both flanks at their reference points, with
+outward normals n and n'. Flanks that stand by δ and δ' out of their places move it by Δ = Δ_r e_r + Δ_t e_t, radially
+and around the axis, so that it stays in touch with both:
+
+    Δ·n = δ,   Δ·n' = δ'                                                                       (19.1)
+    Δ_r = (δ n'_t - δ' n_t) / (n_r n'_t - n'_r n_t),   Δ_t = (n_r δ' - n'_r δ) / (n_r n'_t - n'_r n_t)
+
+Runout F_r is the range of Δ_r over the spaces; a gear eccentric by e has Δ_r = e cos(A - μ). At the radius r of the
+reference points a flank makes its tooth thicker, along the circle, by
+
+    E = δ r / |n·(z_w × R)|                                                                    (19.2)
+
+and the tooth between two spaces is thicker by the sum of its flanks. With γ the angle between the two flanks of a
+space, its arc and chord are, and its chord changes with its arc by
+
+    s = r (2π/z - γ),   s_c = 2 r sin(s / 2r),   E_c = E_s cos(s / 2r)                         (19.3)
+
+The spiral angle at the mean point follows from a flank's normal, by its parts along the pitch cone's generatrix g and
+around the axis; from it the module, and the diameter at half the working depth:
+
+    tan β = |n·g| / |n·e_t|,   m_mn = 2 R_m sin δ cos β / z                                    (19.4)
+    d_T = 2 R_m sin δ + 2 (h_am - h_mw/2) cos δ,   h_mw = h_am + h_fm - c                      (19.5)
+
+Tolerances of grade B in µm, m_mn and d_T in mm, not confirmed against the standard:
+
+    f_ptT = (0.003 d_T + 0.3 m_mn + 5) √2^(B-4),   F_pT = (0.025 d_T + 0.3 m_mn + 19) √2^(B-4),   F_rT = 0.8 F_pT (19.6)
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from derivations import blank
+from derivations import notation as q
+from derivations.expression import Expression
+from derivations.frames import Rz
+from derivations.proof import is_zero
+
+#: Tolerances for m_mn = 4 and d_T = 170 that others computed, to 0.1 µm: grade, f_pt, F_p, F_r.
+PUBLISHED_TOLERANCES = ((4, "6.7", "24.4", "19.6"), (6, "13.4", "48.9", "39.1"), (7, "19.0", "69.2", "55.3"))
+
+
+def _lever(point: sp.Matrix, normal: sp.Matrix) -> sp.Expr:
+    """n·(z_w × R)."""
+    return point[0] * normal[1] - point[1] * normal[0]
+
+
+@cache
+def ball_shift() -> Expression:
+    """(19.1) as an Expression; both points stand for one space."""
+    R, other = q.point_w.symbol, q.opposite_w.symbol
+    x, y = R[0] + other[0], R[1] + other[1]
+    length = sp.sqrt(x**2 + y**2)
+    outward, around = sp.Matrix([x, y, 0]) / length, sp.Matrix([-y, x, 0]) / length
+    n, m = sp.Matrix(q.normal_w.symbol), sp.Matrix(q.opposite_normal.symbol)
+    n_r, n_t, m_r, m_t = n.dot(outward), n.dot(around), m.dot(outward), m.dot(around)
+    d, e = q.deviation_in.symbol, q.opposite_deviation.symbol
+    wedge = n_r * m_t - m_r * n_t
+    return Expression(
+        "ball_shift",
+        "Radial and tangential shift of a ball that touches both flanks of a space (19.1).",
+        (q.deviation_in, q.point_w, q.normal_w, q.opposite_deviation, q.opposite_w, q.opposite_normal),
+        ((q.radial_shift, (d * m_t - e * n_t) / wedge), (q.tangential_shift, (n_r * e - m_r * d) / wedge)),
+        requires=(sp.Abs(n_r * m_t - m_r * n_t) - sp.Rational(1, 10), x**2 + y**2 - 1),
+        source="a ball between two planes; definition of this house, close to a ball probe in the space",
+    )
+
+
+@cache
+def flank_allowance() -> Expression:
+    """(19.2) as an Expression."""
+    R, n = q.point_w.symbol, q.normal_w.symbol
+    lever = sp.Abs(_lever(R, n))
+    return Expression(
+        "flank_allowance",
+        "How much thicker one flank makes its tooth, along the circle through its point (19.2).",
+        (q.deviation_in, q.point_w, q.normal_w),
+        ((q.allowance, q.deviation_in.symbol * sp.sqrt(R[0] ** 2 + R[1] ** 2) / lever),),
+        requires=(lever - 1,),
+        source="(6.5) with the sign of metal left on",
+    )
+
+
+def _arc() -> tuple[sp.Expr, sp.Expr]:
+    """s and r of (19.3)."""
+    R, other = q.point_w.symbol, q.opposite_w.symbol
+    radius = sp.sqrt(R[0] ** 2 + R[1] ** 2)
+    angle = sp.atan2(sp.Abs(R[0] * other[1] - R[1] * other[0]), R[0] * other[0] + R[1] * other[1])
+    return radius * (2 * sp.pi / q.teeth.symbol - angle), radius
+
+
+@cache
+def tooth_at_points() -> Expression:
+    """(19.3) as an Expression."""
+    s, radius = _arc()
+    half = s / (2 * radius)
+    return Expression(
+        "tooth_at_points",
+        "Arc and chord of a tooth at the points of the flanks of a space, and the chord's deviation (19.3).",
+        (q.point_w, q.opposite_w, q.teeth, q.arc_deviation),
+        (
+            (q.tooth_arc, s),
+            (q.tooth_chord, 2 * radius * sp.sin(half)),
+            (q.chord_deviation, q.arc_deviation.symbol * sp.cos(half)),
+        ),
+        requires=(q.point_w.symbol[0] ** 2 + q.point_w.symbol[1] ** 2 - 1,),
+        source="circle through points of equal radius and height",
+    )
+
+
+@cache
+def mean_module() -> Expression:
+    """(19.4) as an Expression."""
+    delta, R, n = q.pitch_angle.symbol, q.point_w.symbol, q.normal_w.symbol
+    radius = sp.sqrt(R[0] ** 2 + R[1] ** 2)
+    along = (n[0] * R[0] + n[1] * R[1]) / radius * sp.sin(delta) + n[2] * sp.cos(delta)
+    beta = sp.atan2(sp.Abs(along), sp.Abs(_lever(R, n)) / radius)
+    module = 2 * q.mean_cone_distance.symbol * sp.sin(delta) * sp.cos(beta) / q.teeth.symbol
+    return Expression(
+        "mean_module",
+        "Spiral angle and module at the mean point, from the normal of a flank there (19.4).",
+        (q.pitch_angle, q.mean_cone_distance, q.teeth, q.point_w, q.normal_w),
+        ((q.trace_angle, beta), (q.module_found, module)),
+        requires=(radius - 1, sp.Abs(_lever(R, n)) - 1),
+        source="trace of the flank on the pitch cone",
+    )
+
+
+@cache
+def tolerance_diameter() -> Expression:
+    """(19.5) as an Expression."""
+    delta, added = q.pitch_angle.symbol, q.mean_addendum.symbol
+    working = added + q.mean_dedendum.symbol - q.clearance.symbol
+    value = 2 * q.mean_cone_distance.symbol * sp.sin(delta) + 2 * (added - working / 2) * sp.cos(delta)
+    return Expression(
+        "tolerance_diameter",
+        "Diameter at half the working depth of the mean section (19.5).",
+        (q.blank,),
+        ((q.tolerance_diameter, value),),
+        source="ISO 17485:2006 as quoted by others, unconfirmed",
+    )
+
+
+@cache
+def spacing_tolerances() -> Expression:
+    """(19.6) as an Expression."""
+    d, m = q.tolerance_diameter.symbol, q.mean_normal_module.symbol
+    step = 2 ** ((q.accuracy_grade.symbol - 4) / sp.Integer(2))
+    share = 3 * m / 10
+    cumulative = (d / 40 + share + 19) * step
+    return Expression(
+        "spacing_tolerances",
+        "Tolerances of single pitch, cumulative pitch and runout, unrounded and unconfirmed (19.6).",
+        (q.mean_normal_module, q.tolerance_diameter, q.accuracy_grade),
+        (
+            (q.single_pitch_tolerance, (3 * d / 1000 + share + 5) * step),
+            (q.cumulative_pitch_tolerance, cumulative),
+            (q.runout_tolerance, 4 * cumulative / 5),
+        ),
+        source="ISO 17485:2006 as quoted by others, unconfirmed",
+    )
+
+
+def prove_ball_follows_the_planes_that_it_touches() -> None:
+    """(19.1) The shift keeps the distance from both planes, and a gear moved by e carries its ball along by e·e_r."""
+    e_x, e_y = sp.symbols("e_x e_y", real=True)
+    shift = ball_shift()
+    R, other = q.point_w.symbol, q.opposite_w.symbol
+    x, y = R[0] + other[0], R[1] + other[1]
+    n, m = sp.Matrix(q.normal_w.symbol), sp.Matrix(q.opposite_normal.symbol)
+    length = sp.sqrt(x**2 + y**2)
+    moved = (shift["radial_shift"] * sp.Matrix([x, y, 0]) + shift["tangential_shift"] * sp.Matrix([-y, x, 0])) / length
+    assert sp.simplify(moved.dot(n) - q.deviation_in.symbol) == 0
+    assert sp.simplify(moved.dot(m) - q.opposite_deviation.symbol) == 0
+    e = sp.Matrix([e_x, e_y, 0])
+    eccentric = {q.deviation_in.symbol: e.dot(n), q.opposite_deviation.symbol: e.dot(m)}
+    assert sp.simplify(shift["radial_shift"].subs(eccentric) - (e_x * x + e_y * y) / length) == 0
+
+
+def prove_allowance_is_the_arc_that_turns_the_flank() -> None:
+    """(19.2) A flank turned by E/r leaves the deviation δ, in the sense in which its normal looks."""
+    eps = sp.Symbol("eps", real=True)
+    R, n = sp.Matrix(q.point_w.symbol), sp.Matrix(q.normal_w.symbol)
+    radius = sp.sqrt(R[0] ** 2 + R[1] ** 2)
+    rate = (Rz(eps) * R).diff(eps).subs(eps, 0).dot(n)
+    turned = flank_allowance()["allowance"] / radius * sp.Abs(rate)
+    assert sp.simplify(turned - q.deviation_in.symbol) == 0
+
+
+def prove_arc_and_chord_are_those_of_the_circle() -> None:
+    """(19.3) Flanks at azimuth 0 and γ: the next space begins at 2π/z, and the distance there is the chord."""
+    r, gamma, half = sp.symbols("r gamma half", positive=True)
+    end, next_ = (r * sp.Matrix([sp.cos(a), sp.sin(a)]) for a in (gamma, gamma + 2 * half))
+    s, chord = 2 * r * half, 2 * r * sp.sin(half)  # the pitch is γ and twice the half
+    assert is_zero((end - next_).dot(end - next_) - chord**2)
+    assert is_zero(chord.diff(half) - sp.cos(half) * s.diff(half))
+    given = dict(zip(q.point_w.symbols, (r, 0, 5), strict=True))
+    given |= dict(zip(q.opposite_w.symbols, (r * sp.cos(sp.pi / 6), r * sp.sin(sp.pi / 6), 5), strict=True))
+    value = _arc()[0].subs(given).subs(q.teeth.symbol, 9)
+    assert sp.simplify(value - r * (2 * sp.pi / 9 - sp.pi / 6)) == 0
+
+
+def prove_spiral_angle_does_not_depend_on_the_pressure_angle() -> None:
+    """(19.4) A flank through the trace cos β g + sin β e_t with any pressure angle has that β, on every pitch cone."""
+    alpha, beta, delta = sp.symbols("alpha beta delta", positive=True)
+    generatrix = sp.Matrix([sp.sin(delta), 0, sp.cos(delta)])
+    around, out = sp.Matrix([0, 1, 0]), sp.Matrix([sp.cos(delta), 0, -sp.sin(delta)])
+    trace = sp.cos(beta) * generatrix + sp.sin(beta) * around
+    n = sp.cos(alpha) * (sp.cos(beta) * around - sp.sin(beta) * generatrix) + sp.sin(alpha) * out
+    assert is_zero(n.dot(trace))
+    assert is_zero(n.dot(generatrix) * sp.cos(beta) + n.dot(around) * sp.sin(beta))
+
+
+def prove_module_is_that_of_the_published_sample() -> None:
+    """(19.4) ISO 23509:2016 sample 1: 14 teeth, d_m = 54.918, β_m = 35°, m_mn = 3.213 to its printed digits."""
+    module = sp.Rational(54918, 1000) * sp.cos(sp.pi * 35 / 180) / 14
+    assert abs(sp.N(module) - sp.Rational(3213, 1000)) < sp.Rational(5, 10_000)
+
+
+def prove_tolerance_diameter_lies_at_half_the_working_depth() -> None:
+    """(19.5) It is the radius (8.1) of the middle between tip and lower limit of the working depth, twice."""
+    along = {q.across.symbol: sp.Rational(1, 2)}
+    tip, limit = blank.addendum(), q.clearance.symbol - blank.dedendum()
+    _, radius = blank.place((tip + limit) / 2)
+    assert is_zero(2 * radius.subs(along) - tolerance_diameter()["tolerance_diameter"])
+
+
+def prove_tolerances_are_those_of_the_self_check() -> None:
+    """(19.6) m_mn = 4, d_T = 170: what others print for grades 4, 6 and 7, to half a unit of their last digit."""
+    values = spacing_tolerances()
+    for grade, *printed in PUBLISHED_TOLERANCES:
+        given = {q.mean_normal_module.symbol: 4, q.tolerance_diameter.symbol: 170, q.accuracy_grade.symbol: grade}
+        for (_, value), text in zip(values.outputs, printed, strict=True):
+            assert abs(sp.N(value.subs(given)) - sp.Rational(text)) <= sp.Rational(5, 100) + sp.Rational(1, 10**9)

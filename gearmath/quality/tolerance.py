@@ -1,0 +1,129 @@
+"""Tolerances of pitch and runout in the manner of ISO 17485:2006, as others quote it: unconfirmed, no conformity.
+
+The formulas (19.6) were not checked against the standard. Grades are given only within the scope that is known of it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearmath.bevel.flank import Grid, nominal_points
+from gearmath.bevel.kernels import kernel
+from gearmath.bevel.newton import TOLERANCE
+from gearmath.errors import ComputationError, InputError
+from gearmath.specs.bevel_set import FLANKS, Member
+
+GRADES = range(2, 12)
+#: Scope of the standard: teeth, mean normal module [mm], tolerance diameter [mm].
+SCOPE = {"teeth": (5, 400), "mean_normal_module": (1.0, 50.0), "tolerance_diameter": (5.0, 2500.0)}
+CAVEAT = "ISO 17485 formulas unconfirmed: no conformity claimed"
+
+
+@dataclass(frozen=True)
+class GearData:
+    """What tolerances depend on: teeth, mean normal module and tolerance diameter [mm], mean spiral angle [rad]."""
+
+    teeth: int
+    mean_normal_module: float
+    tolerance_diameter: float
+    mean_spiral_angle: float
+
+    @property
+    def outside(self) -> str | None:
+        """What is outside of the scope, as a sentence; None where nothing is."""
+        for name, (low, high) in SCOPE.items():
+            value = getattr(self, name)
+            if not low <= value <= high:
+                return f"{name} = {value:g}: the formulas hold from {low:g} to {high:g}"
+        return None
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Tolerances [µm] of single pitch, cumulative pitch and runout: by the formulas, and rounded."""
+
+    grade: int
+    exact: dict[str, float]
+
+    @property
+    def rounded(self) -> dict[str, float]:
+        return {name: rounded(value) for name, value in self.exact.items()}
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Measured figures [µm] and the grade of each; None where even the coarsest is exceeded. ``grade`` is the worst."""
+
+    data: GearData
+    measured: dict[str, float]
+    grades: dict[str, int | None]
+    remark: str
+
+    @property
+    def grade(self) -> int | None:
+        found = list(self.grades.values())
+        return max(found) if found and None not in found else None  # type: ignore[type-var]
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "grade": self.grade,
+            "grades": self.grades,
+            "mean_normal_module": self.data.mean_normal_module,
+            "tolerance_diameter": self.data.tolerance_diameter,
+            "remark": self.remark,
+        }
+
+
+def iso17485(mean_normal_module: float, tolerance_diameter: float, grade: int) -> Tolerances:
+    """Tolerances of one grade. Raises InputError outside of grades 2 to 11."""
+    if grade not in GRADES:
+        raise InputError(f"grade = {grade}: must be {GRADES[0]} to {GRADES[-1]}")
+    values = kernel("spacing_tolerances")(mean_normal_module, tolerance_diameter, grade)
+    return Tolerances(grade, dict(zip(("f_pt", "F_p", "F_r"), map(float, values), strict=True)))
+
+
+def rounded(value: float) -> float:
+    """A tolerance [µm] as tables print it: above 10 whole, from 5 to 10 to halves, below 5 to tenths."""
+    step = 1.0 if value > 10 else 0.5 if value >= 5 else 0.1
+    return round(math.floor(value / step + 0.5) * step, 1)
+
+
+def gear_data(member: Member, name: str) -> GearData:
+    """Teeth, module and tolerance diameter of a member; the spiral angle is the mean of both flanks at the mean point.
+
+    Raises ComputationError where a flank does not reach the mean point.
+    """
+    blank = member.blank
+    delta, distance = math.radians(blank.pitch_angle), blank.mean_cone_distance
+    place = Grid(np.array([distance * math.cos(delta)]), np.array([distance * math.sin(delta)]))
+    angles, modules = [], []
+    for flank in FLANKS:
+        points, residual = nominal_points(member, flank, place)
+        if not residual[0] <= TOLERANCE:
+            raise ComputationError(f"{name} {flank} flank: it does not reach the mean point")
+        angle, module = kernel("mean_module")(delta, distance, member.teeth, points.point[0], points.normal[0])
+        angles.append(float(angle))
+        modules.append(float(module))
+    (diameter,) = kernel("tolerance_diameter")(blank.vector)
+    return GearData(member.teeth, float(np.mean(modules)), float(diameter), float(np.mean(angles)))
+
+
+def judge(member: Member, name: str, measured: dict[str, float]) -> Verdict:
+    """The grades of measured ``f_pt``, ``F_p``, ``F_r`` [mm]: of each the finest whose rounded tolerance holds it.
+
+    Outside of the scope there are no grades, and the remark says why.
+    """
+    data = gear_data(member, name)
+    values = {key: value * 1000 for key, value in measured.items()}
+    if data.outside is not None:
+        return Verdict(data, values, {}, f"no grade: {data.outside}")
+    allowed = [iso17485(data.mean_normal_module, data.tolerance_diameter, grade) for grade in GRADES]
+    grades = {
+        key: next((each.grade for each in allowed if abs(value) <= each.rounded[key]), None)
+        for key, value in values.items()
+    }
+    return Verdict(data, values, grades, CAVEAT)
