@@ -10,7 +10,7 @@ from derivations.expression import Expression, Quantity
 CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
-    "sweep", "probing", "registration", "spacing",
+    "sweep", "probing", "registration", "spacing", "compensation",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -22,6 +22,7 @@ def expressions() -> Iterator[Expression]:
         axes,
         blank,
         check_dimensions,
+        compensation,
         cradle,
         cutter,
         deviation,
@@ -55,6 +56,9 @@ def expressions() -> Iterator[Expression]:
     yield from (probing.probe_target(), probing.space_azimuth(), probing.probe_axes(), probing.probe_tip())
     yield from (probing.touched_point(), probing.ring_calibration(), probing.sphere_residual())
     yield probing.effective_radius()
+    yield from (compensation.straight_sensitivity(), compensation.arc_sensitivity())
+    yield from (compensation.coefficient_sensitivity(), compensation.arc_height(), compensation.root_place())
+    yield from (compensation.conjugate_place(), compensation.stock_rates())
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (
         gearbox.nearest_position(),

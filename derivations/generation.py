@@ -185,7 +185,7 @@ def arc_generation() -> Expression:
     )  # fmt: skip
 
 
-def _still() -> dict[sp.Symbol, sp.Expr]:
+def still() -> dict[sp.Symbol, sp.Expr]:
     """No motion, no indexing, no blade offset: the machine of the chapters 2 to 4."""
     values = dict.fromkeys(q.motion.symbols, sp.S.Zero)
     return values | {q.index_ratio.symbol: sp.S.Zero, q.blade_offset_angle.symbol: sp.S.Zero}
@@ -194,14 +194,14 @@ def _still() -> dict[sp.Symbol, sp.Expr]:
 def prove_still_settings_give_the_family_of_face_milling() -> None:
     """(10.5) Limit case: universal motion of degree 0 and zero indexing give (3.1)."""
     surface = family(straight(), q.u)
-    still = (Rz(-surface.work_angle) * surface.point).subs(_still())
-    assert is_zero(still - flank.point())
+    resting = (Rz(-surface.work_angle) * surface.point).subs(still())
+    assert is_zero(resting - flank.point())
 
 
 def prove_still_normal_is_the_normal_of_the_cutter() -> None:
     """(10.6) Limit case: R_u × R_β is the cutter's normal times ρ/cos α, for both blades, so n is that of (3.2)."""
     surface = family(straight(), q.u)
-    cross = surface.along_u.cross(surface.along_beta).subs(_still())
+    cross = surface.along_u.cross(surface.along_beta).subs(still())
     n = (Rz(cradle.work_angle()) * flank.normal()).applyfunc(sp.expand_trig)
     for side in (1, -1):
         rho = straight().radius.subs(q.side.symbol, side)
@@ -212,7 +212,7 @@ def prove_still_normal_is_the_normal_of_the_cutter() -> None:
 def prove_still_residual_is_the_equation_of_meshing() -> None:
     """(10.6) Limit case: with the normal of (3.2), n · R_θ is (4.2)."""
     surface = family(straight(), q.u)
-    rolling = surface.along_theta.subs(_still())
+    rolling = surface.along_theta.subs(still())
     n_c_in_w = cradle.frame_w() * cradle.cutter_to_machine(cutter.normal())
     assert is_zero(n_c_in_w.dot(rolling) - meshing.residual())
 

@@ -561,3 +561,24 @@ edge_radius_mutilation = _length("edge_radius_mutilation", "r_{a03}", 0.0, 100.0
 hand_sign = Quantity("hand_sign", "+1 right-hand, -1 left-hand member", "1", r"s_h'", (-1, 1), values=(-1, 1))
 tilt_direction = _angle("tilt_direction", r"\chi", -1.5, 1.5, "swivel and cradle angle together, right-hand member")
 space_width = _length("space_width", "w", 0.0, 40.0, "normal width of the tooth space at the mean point")
+
+# --- compensation -----------------------------------------------------------------------------------------------
+setting_rates = Quantity(
+    "setting_rates", "shift of a flank along a line per unit of every setting", "mixed",
+    r"\partial t/\partial\mathbf{x}", (-300.0, 300.0), shape=(12,), scale=1000.0,
+)  # fmt: skip
+motion_rates = Quantity(
+    "motion_rates", "shift of a flank along a line per unit of every coefficient of the motion", "mixed",
+    r"\partial t/\partial m", shape=(10, 7), scale=1000.0,
+)  # fmt: skip
+arc_tip_height = Quantity("arc_tip_height", "height of a point of an arc blade above the tip plane", "mm", "h_u")
+cone_place = _length("cone_place", "L", -500.0, 500.0, "cone distance of a point, along the pitch cone")
+cone_depth = _length("cone_depth", "D", -500.0, 500.0, "depth of a point below the pitch cone")
+mate_ratio = _factor("mate_ratio", "z_m/z", 0.1, 10.0, "teeth of the mate over teeth of the member")
+meeting_angle = Quantity("meeting_angle", "rotation at which a point of a flank meets the mate", "rad", r"\psi")
+mate_axial = _length("mate_axial", "z_m", -500.0, 500.0, "coordinate of that point along the axis of the mate")
+mate_radial = _length("mate_radial", "r_m", 0.0, 500.0, "distance of that point from the axis of the mate")
+turning_rate = Quantity("turning_rate", "stock gained per radian of a rotation of the work", "mm/rad",
+                        r"\partial\delta/\partial\varepsilon", scale=300.0)  # fmt: skip
+advance_rate = Quantity("advance_rate", "stock gained per mm of an advance along the work's axis", "1",
+                        r"\partial\delta/\partial a")  # fmt: skip

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from functools import cache
 
-from derivations import axes, blank, deviation, flank, generation, meshing, probing, registration, spacing
+from derivations import (
+    axes, blank, compensation, cutter, deviation, flank, generation, meshing, probing, registration, spacing,
+)  # fmt: skip
 from gearmath.lowering import Kernel, lower
 
 _EXPRESSIONS = {
@@ -18,6 +20,9 @@ _EXPRESSIONS = {
     "moved_settings": axes.moved_settings,
     "cutter_phase": axes.cutter_phase,
     "touching_blade": generation.touching_blade,
+    "spheric_blade": cutter.spheric_blade,
+    "straight_generation": generation.straight_generation,
+    "arc_generation": generation.arc_generation,
     "point_deviation": deviation.point_deviation,
     "setting_sensitivity": deviation.setting_sensitivity,
     "deviation_surface": deviation.deviation_surface,
@@ -39,6 +44,13 @@ _EXPRESSIONS = {
     "mean_module": spacing.mean_module,
     "tolerance_diameter": spacing.tolerance_diameter,
     "spacing_tolerances": spacing.spacing_tolerances,
+    "straight_sensitivity": compensation.straight_sensitivity,
+    "arc_sensitivity": compensation.arc_sensitivity,
+    "coefficient_sensitivity": compensation.coefficient_sensitivity,
+    "arc_height": compensation.arc_height,
+    "root_place": compensation.root_place,
+    "conjugate_place": compensation.conjugate_place,
+    "stock_rates": compensation.stock_rates,
 }
 
 

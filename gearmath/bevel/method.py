@@ -23,11 +23,12 @@ def _kernel(name: str) -> Kernel:
     return lower(getattr(chapter, name)())
 
 
-def motion_of(spec: Flank) -> np.ndarray:
-    """The motion (10,7) of the machine settings of a flank, modified roll included."""
-    motion = spec.motion.matrix
-    if spec.motion.modified_roll:
-        (row,) = _kernel("modified_roll")(spec.nominal.ratio_of_roll, spec.motion.roll)
+def motion_of(spec: Flank, nominal: bool = False) -> np.ndarray:
+    """The motion (10,7) of the machine settings of a flank, modified roll included; ``nominal`` before a correction."""
+    moving = spec.nominal_motion if nominal else spec.motion
+    motion = moving.matrix
+    if moving.modified_roll:
+        (row,) = _kernel("modified_roll")(spec.nominal.ratio_of_roll, moving.roll)
         motion[_WORK_ROTATION_ROW] += row
     return motion
 
@@ -38,11 +39,17 @@ def generation_of(member: Member, flank: str) -> Generation:
     return Generation(
         settings=spec.nominal.vector,
         side=SIDES[flank],
-        motion=motion_of(spec),
+        motion=motion_of(spec, nominal=True),
         index_ratio=member.indexing_sign * (member.blade_groups or 0) / member.teeth,
         blade_offset_angle=math.radians(spec.blade_offset_angle),
         rolling=member.generation == "generated",
     )
+
+
+def cut_generation_of(member: Member, flank: str) -> Generation:
+    """How a flank comes about with the settings and the motion that the machine is really set to, corrections kept."""
+    spec = member.flank(flank)
+    return replace(generation_of(member, flank), settings=spec.vector, motion=motion_of(spec))
 
 
 def require_plain(member: Member, name: str, what: str) -> None:

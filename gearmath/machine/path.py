@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from derivations.axes import SINGULAR_SINE
 from gearmath.bevel.flank import Grid, blank_grid, solve_places
 from gearmath.bevel.generation import solve_section
 from gearmath.bevel.kernels import kernel
-from gearmath.bevel.method import blade_sections, generation_of, motion_of
+from gearmath.bevel.method import blade_sections, cut_generation_of, motion_of
 from gearmath.bevel.newton import TOLERANCE, FlankPoints
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
@@ -45,7 +45,7 @@ def flank_points(member: Member, flank: str, grid: Grid) -> FlankPoints:
     Those without a solution are left out: the corners of a grid may lie beyond what the blade reaches.
     """
     spec = member.flank(flank)
-    how = replace(generation_of(member, flank), settings=spec.vector)
+    how = cut_generation_of(member, flank)
     section = blade_sections(spec, SIDES[flank])["main"]
     place = (grid.axial.ravel(), grid.radial.ravel())
     if how.still and how.rolling and section.arc is None:

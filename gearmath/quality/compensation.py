@@ -4,109 +4,206 @@ The deviation that settings x leave at a nominal point, along its outward normal
 
     t(x) = (R(u, β, θ; x) - P)·n   with   e1·(R - P) = e2·(R - P) = 0,  f(u, β, θ; x) = 0
 
-for tangents e1, e2 of the nominal flank, and its gradient by the implicit function theorem. A bounded
+for tangents e1, e2 of the nominal flank, for every cutting method; its gradient is (20.1, 20.2). A bounded
 Levenberg-Marquardt iteration makes t(x) equal to what was measured; the correction takes the difference back.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
-import casadi as ca
 import numpy as np
 
-from derivations import notation
+from gearmath.bevel.generation import Generation
 from gearmath.bevel.kernels import kernel
-from gearmath.bevel.newton import FlankPoints, contact_guess, newton_step, residual_size
+from gearmath.bevel.newton import FlankPoints
 from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel
+from gearmath.quality.deviation_surface import surface_map
+from gearmath.quality.least_squares import compensation_step, minimize
+from gearmath.quality.on_line import Kind, flank_on_line
+from gearmath.quality.root_line import RootLine
+from gearmath.quality.variables import FREE, SIZE, Variable, parts, variables_of, whole
 from gearmath.specs.bevel_set import SETTINGS
 
-#: How far a setting may be changed, mm or rad: beyond this something else is wrong with the machine.
-BOUNDS = {
-    "radial_distance": 1.0, "cradle_angle": 0.02, "blank_offset": 1.0, "sliding_base": 1.0,
-    "machine_center_to_crossing_point": 1.0, "machine_root_angle": 0.01, "ratio_of_roll": 0.02,
-}  # fmt: skip
-#: The settings that are corrected: those of the machine, without tilt; cradle angle stands also for work rotation.
-FREE = tuple(BOUNDS)
-
-_NEWTON_STEPS = 6
 _LINE_TOLERANCE = 1e-9
-_STEP_LIMITS = (1.0, 0.05, 0.05)
-_MOST_ITERATIONS = 60
-#: Converged when a step changes the predicted deviation by less than this. [mm]
-_SMALL_STEP = 1e-9
+#: A root line that goes beyond its limit counts so many times its length against the deviations.
+_ROOT_WEIGHT = 100.0
+
+#: How a Kernel is run: as it stands, or compiled first (``gearmath.export.host.compile_kernel``).
+Run = Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]
 
 
-@cache
-def flank_on_line() -> Kernel:
-    """Kernel: where the flank of other settings crosses a line, and the gradient of that distance by the settings."""
-    w = ca.SX.sym("contact", 3)
-    quantities = (notation.settings, notation.side, notation.line_point, notation.line_direction)
-    x, side, point, normal = (ca.SX.sym(quantity.name, max(quantity.size, 1)) for quantity in quantities)
-    surface, _ = kernel("flank_family").function(w[0], w[1], w[2], x, side)
-    off = surface - point
-    e1 = ca.vertcat(normal[1], -normal[0], 0) / ca.sqrt(normal[0] ** 2 + normal[1] ** 2)
-    e2 = ca.cross(normal, e1)
-    meshing = kernel("meshing").function(w[0], w[1], w[2], x, side) / x[0]
-    residual = ca.vertcat(ca.dot(e1, off), ca.dot(e2, off), meshing)
-    given = [x, side, point, normal]
-    step = ca.Function("line_newton_step", [w, *given], [newton_step(residual, w, _STEP_LIMITS)])
-    distance = ca.dot(normal, off)
-    # dt/dx = t_x - t_w (h_w)^-1 h_x with h the residual: solve the transposed 3x3 system for the multipliers
-    multipliers = ca.solve(ca.jacobian(residual, w).T, ca.jacobian(distance, w).T)
-    gradient = ca.jacobian(distance, x).T - ca.jacobian(residual, x).T @ multipliers
-    final = ca.Function("line_at", [w, *given], [distance, gradient, ca.norm_2(residual)])
-    guess, *arguments = (ca.MX.sym(name, size) for name, size in (("w", 3), ("x", 12), ("s", 1), ("p", 3), ("n", 3)))
-    solution = guess
-    for _ in range(_NEWTON_STEPS):
-        solution = step(solution, *arguments)
-    function = ca.Function(
-        "flank_on_line", [guess, *arguments], [solution, *final(solution, *arguments)],
-        ["contact_guess", *(quantity.name for quantity in quantities)],
-        ["contact", "deviation", "sensitivity", "residual_size"],
-    )  # fmt: skip
-    return Kernel(
-        function,
-        "Deviation at a nominal point of the flank that other settings cut, with its gradient by the settings.",
-        (contact_guess, *quantities),
-        (notation.contact, notation.deviation, notation.sensitivity, residual_size),
-        "(3.1), (4.2) on a line; implicit function theorem",
-    )
+def as_it_stands(kernel: Kernel) -> Kernel:
+    """The Kernel itself, run by CasADi."""
+    return kernel
 
 
 @dataclass(frozen=True)
 class FlankTarget:
-    """One measured flank: nominal settings (12,), side, nominal points, measured deviations (n,) [mm]."""
+    """One measured flank: how it was cut, its nominal points (n,) and the deviations measured there (n,) [mm].
 
-    settings: np.ndarray
-    side: int
+    ``how.settings`` and ``how.motion`` are what the machine was set to. ``arc_blade`` holds radius and reference height
+    of an arc blade [mm]. ``place`` (n,2) holds X and Y of (6.3) for the fit of a deviation surface, ``root`` where the
+    root line is to be held, and ``used`` (grid,) which points of the whole grid these are; ``absent`` are the others.
+    """
+
+    how: Generation
     nominal: FlankPoints
     deviation: np.ndarray
+    arc_blade: tuple[float, float] | None = None
+    place: np.ndarray | None = None
+    root: RootLine | None = None
+    used: np.ndarray | None = None
+    absent: FlankPoints | None = None
+
+    @property
+    def left_out(self) -> FlankTarget | None:
+        """The points of the grid that were not measured, as a target without deviation; None if there are none."""
+        if self.absent is None or not len(self.absent.point):
+            return None
+        return replace(self, nominal=self.absent, deviation=np.zeros(len(self.absent.point)), used=None, absent=None)
+
+    @property
+    def grid_points(self) -> int:
+        """How many points the whole grid has."""
+        return len(self.deviation) if self.used is None else len(self.used)
+
+    def plus(self, deviation: np.ndarray) -> FlankTarget:
+        """The target with deviations (grid,) [mm] added to what was measured."""
+        return replace(self, deviation=self.deviation + (deviation if self.used is None else deviation[self.used]))
+
+    @property
+    def kind(self) -> Kind:
+        if self.arc_blade is not None:
+            return "arc"
+        return "plain" if self.how.still and self.how.rolling else "straight"
+
+    @property
+    def settings(self) -> np.ndarray:
+        """The settings (12,) that the machine was set to, mm and rad."""
+        return self.how.settings
+
+    @property
+    def vector(self) -> np.ndarray:
+        """Settings and motion that the machine was set to, as one vector (82,)."""
+        return whole(self.how.settings, self.how.motion)
+
+    def given(self, vectors: np.ndarray, kind: Kind) -> tuple:
+        """The arguments of ``on_line.INPUTS`` for whole vectors (...,82)."""
+        settings, motion = parts(vectors)
+        if kind == "plain":
+            return settings, self.how.side
+        cut = (settings, motion, self.how.index_ratio, self.how.blade_offset_angle, *(self.arc_blade or ()))
+        return *cut, self.how.side, float(self.how.rolling)
 
 
 @dataclass(frozen=True)
 class Identification:
-    """Setting errors (12,) that explain the measurement; RMS of deviation before and of what they leave [mm]."""
+    """What explains a measurement, and how well it is known.
 
-    errors: np.ndarray
+    ``values`` (p,) [mm, rad] are the changes of ``variables``; ``rms_before`` and ``rms_after`` the RMS of the measured
+    deviation and of what they leave [mm]. ``jacobian`` (m,p) [mm] is that of the deviations of all targets, one after
+    the other, by the variables in parts of their bounds, at the solution; ``singular_values`` (p,) [mm] are its own.
+    ``residual`` (m,) [mm] is predicted less measured deviation. ``weighting`` (c,m) makes of the deviations what was
+    fitted. ``active`` names the bounds and limits that hold the solution back.
+    """
+
+    variables: tuple[Variable, ...]
+    values: np.ndarray
     rms_before: float
     rms_after: float
     iterations: int
-    singular_values: np.ndarray
+    converged: bool
+    jacobian: np.ndarray
+    residual: np.ndarray
+    weighting: np.ndarray | None = None
+    active: tuple[str, ...] = ()
+    singular_values: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "singular_values", np.linalg.svd(self.jacobian, compute_uv=False))
+
+    @property
+    def scale(self) -> np.ndarray:
+        """The bounds (p,) by which the variables are scaled, mm or rad."""
+        return np.array([variable.bound for variable in self.variables])
+
+    @property
+    def index(self) -> np.ndarray:
+        """The place (p,) of every variable in the whole vector (82,) of a flank; below 12 it is a setting."""
+        return np.array([variable.index for variable in self.variables])
+
+    def change(self, target: int = 0) -> np.ndarray:
+        """The identified errors of one target as a whole vector (82,)."""
+        return spread(self.variables, self.values, target)
+
+    @property
+    def errors(self) -> np.ndarray:
+        """The setting errors (12,) of the first target, mm and rad."""
+        return self.change()[: len(SETTINGS)]
+
+    @property
+    def motion(self) -> np.ndarray:
+        """The errors (10,7) of the motion, mm and rad."""
+        return parts(self.change())[1]
+
+    @cached_property
+    def gain(self) -> np.ndarray:
+        """How the values depend on the measured deviations: their derivative (p,m) [mm or rad per mm].
+
+        What lies below the floor of the solver, and what a bound holds, does not depend on them.
+        """
+        loose = np.array([variable.label not in self.active for variable in self.variables])
+        weighting = np.eye(len(self.jacobian)) if self.weighting is None else self.weighting
+        inverse = np.zeros((len(self.variables), len(weighting)))
+        inverse[loose] = np.linalg.pinv(weighting @ self.jacobian[:, loose], rcond=RANK)
+        return self.scale[:, None] * (inverse @ weighting)
 
 
-def predicted(target: FlankTarget, settings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Deviation (n,) [mm] that ``settings`` leave at the nominal points, and its gradient (n,12).
+#: Singular values below this part of the largest do not count: their directions are left alone.
+RANK = 1e-6
 
+
+def spread(variables: Sequence[Variable], values: np.ndarray, target: int) -> np.ndarray:
+    """Values (...,p) of variables as whole vectors (...,82) of one target."""
+    vector = np.zeros((*values.shape[:-1], SIZE))
+    for k, variable in enumerate(variables):
+        if variable.target in (None, target):
+            vector[..., variable.index] += values[..., k]
+    return vector
+
+
+def located(
+    target: FlankTarget, vectors: np.ndarray, run: Run = as_it_stands, moving: bool = True
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Deviations (n,) [mm] of settings and motions (82,), their gradient, and which points (n,) were not found.
+
+    ``vectors`` may also be (n,82), one for every point. The gradient is (n,82), or (n,12) if not ``moving``: by the
+    settings alone.
+    """
+    nominal, kind = target.nominal, target.kind
+    if kind == "plain" and np.any(vectors[..., len(SETTINGS) :]):
+        kind = "straight"
+    contact, deviation, gradient, residual = run(flank_on_line(kind))(
+        nominal.contact, *target.given(vectors, kind), nominal.point, nominal.normal
+    )
+    if moving:
+        (motion,) = kernel("coefficient_sensitivity")(contact[:, 2], gradient)
+        gradient = np.concatenate([gradient, motion.reshape(len(gradient), -1)], axis=1)
+    return deviation, gradient, ~(residual <= _LINE_TOLERANCE)
+
+
+def predicted(target: FlankTarget, settings: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray]:
+    """Deviation (n,) [mm] that settings leave at the nominal points, and its gradient by them.
+
+    ``settings`` are (12,), with the motion of the target and a gradient (n,12), or the whole vector (82,) and (n,82).
     Raises ComputationError if the surface does not cross the normal of one of the points.
     """
-    nominal = target.nominal
-    _, deviation, gradient, residual = flank_on_line()(
-        nominal.contact, settings, target.side, nominal.point, nominal.normal
-    )
-    failed = ~(residual <= _LINE_TOLERANCE)
+    vector = settings if len(settings) == SIZE else np.concatenate([settings, target.vector[len(SETTINGS) :]])
+    deviation, gradient, failed = located(target, vector, run, len(settings) == SIZE)
     if failed.any():
         raise ComputationError(
             f"the flank of the changed settings does not cross the normal of point {int(np.argmax(failed))}"
@@ -114,42 +211,109 @@ def predicted(target: FlankTarget, settings: np.ndarray) -> tuple[np.ndarray, np
     return deviation, gradient
 
 
-def identify(targets: list[FlankTarget], free: tuple[str, ...] = FREE) -> Identification:
-    """The setting errors, common to all targets, whose exact flanks fit the measured deviations best.
+@dataclass(frozen=True)
+class Problem:
+    """The least-squares problem of some targets: what the solver calls, in scaled variables."""
 
-    Levenberg-Marquardt in variables scaled by BOUNDS, and kept within them; a step is taken only if it makes the fit
-    better on the re-solved surface.
+    targets: Sequence[FlankTarget]
+    variables: tuple[Variable, ...]
+    weighting: np.ndarray | None
+    root_limit: float | None
+    run: Run = as_it_stands
+
+    @cached_property
+    def measured(self) -> np.ndarray:
+        return np.concatenate([target.deviation for target in self.targets])
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        return np.array([variable.bound for variable in self.variables])
+
+    @cached_property
+    def index(self) -> np.ndarray:
+        return np.array([variable.index for variable in self.variables])
+
+    @cached_property
+    def moving(self) -> bool:
+        """Whether coefficients of a motion are among the variables."""
+        return bool((self.index >= len(SETTINGS)).any())
+
+    def deviations(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+        """Residual (m,) of the points and its Jacobian (m,p); None where a point is not found."""
+        values, jacobians = [], []
+        for k, target in enumerate(self.targets):
+            deviation, gradient, failed = located(target, target.vector + self.change(v, k), self.run, self.moving)
+            if failed.any():
+                return None
+            values.append(deviation)
+            jacobians.append(self.columns(gradient, k))
+        return np.concatenate(values) - self.measured, np.concatenate(jacobians)
+
+    def change(self, v: np.ndarray, target: int) -> np.ndarray:
+        return spread(self.variables, v * self.scale, target)
+
+    def columns(self, gradient: np.ndarray, target: int) -> np.ndarray:
+        """The columns (n,p) of the variables of a gradient (n,82), or (n,12) if nothing moves, of one target."""
+        mine = np.array([variable.target in (None, target) for variable in self.variables])
+        return gradient[:, self.index] * (self.scale * mine)
+
+    def root(self, v: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """How far the root lines sink at toe and heel (2,) [mm], and their gradients (2,p), of those that have one."""
+        moved = []
+        for k, target in enumerate(self.targets):
+            if target.root is not None:
+                sunk, gradient = target.root.sunk(target.vector, target.vector + self.change(v, k))
+                moved.append((sunk, self.columns(gradient, k)))
+        return moved
+
+    def __call__(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+        found = self.deviations(v)
+        if found is None:
+            return None
+        residual, jacobian = found
+        if self.weighting is not None:
+            residual, jacobian = self.weighting @ residual, self.weighting @ jacobian
+        if self.root_limit is not None:
+            try:
+                roots = self.root(v)
+            except ComputationError:
+                return None
+            for sunk, gradient in roots:
+                beyond = np.sign(sunk) * np.maximum(np.abs(sunk) - self.root_limit, 0)
+                residual = np.concatenate([residual, _ROOT_WEIGHT * beyond])
+                jacobian = np.concatenate([jacobian, _ROOT_WEIGHT * gradient * (beyond != 0)[:, None]])
+        return residual, jacobian
+
+
+def identify(
+    targets: Sequence[FlankTarget], free: Sequence[str] = FREE, *, objective: str = "points",
+    weights: np.ndarray | None = None, root_limit: float | None = None, run: Run = as_it_stands,
+) -> Identification:  # fmt: skip
+    """The errors, common to all targets, whose exact flanks fit the measured deviations best.
+
+    ``objective`` is "points", or "surface" for the coefficients of the cubic deviation surfaces (6.3) with ``weights``
+    (10,). Where targets have a root line, it sinks or rises by at most ``root_limit`` [mm]. Bounded Levenberg-Marquardt
+    in variables scaled by their bounds; a step is taken only if it makes the fit better on the re-solved surface, and
+    directions that the flanks do not show (singular value below 1e-6 of the largest) are left alone.
     """
-    index = np.array([SETTINGS.index(name) for name in free])
-    scale = np.array([BOUNDS[name] for name in free])
-    measured = np.concatenate([target.deviation for target in targets])
+    variables = variables_of(free, len(targets))
+    weighting = surface_map(targets, weights) if objective == "surface" else None
+    problem = Problem(targets, variables, weighting, root_limit, run)
+    bound = np.ones(len(variables))
+    found = minimize(problem, -bound, bound, run(compensation_step(len(variables))))
+    residual, jacobian = problem.deviations(found.variables)  # type: ignore[misc]
+    rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (problem.measured, residual))
+    held = [variable.label for variable, v in zip(variables, found.variables, strict=True) if abs(v) >= 1]
+    if root_limit is not None and any((np.abs(sunk) >= root_limit).any() for sunk, _ in problem.root(found.variables)):
+        held.append("root line")
+    return Identification(
+        variables, found.variables * problem.scale, rms_before, rms_after, found.iterations, found.converged, jacobian,
+        residual, weighting, tuple(held),
+    )  # fmt: skip
 
-    def fit(v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        errors = np.zeros(len(SETTINGS))
-        errors[index] = v * scale
-        parts = [predicted(target, target.settings + errors) for target in targets]
-        jacobian = np.concatenate([gradient[:, index] for _, gradient in parts]) * scale
-        return np.concatenate([deviation for deviation, _ in parts]) - measured, jacobian
 
-    v, damping, iterations = np.zeros(len(free)), 1e-6, 0
-    residual, jacobian = fit(v)
-    singular_values = np.linalg.svd(jacobian, compute_uv=False)
-    while iterations < _MOST_ITERATIONS:
-        iterations += 1
-        normal_matrix = jacobian.T @ jacobian
-        ridge = damping * np.trace(normal_matrix) / len(v) * np.eye(len(v))
-        step = np.clip(v - np.linalg.solve(normal_matrix + ridge, jacobian.T @ residual), -1, 1) - v
-        tried, tried_jacobian = fit(v + step)
-        if tried @ tried < residual @ residual:
-            change = np.abs(jacobian @ step).max()
-            v, residual, jacobian, damping = v + step, tried, tried_jacobian, damping / 10
-            if change < _SMALL_STEP:
-                break
-        else:
-            damping *= 10
-            if damping > 1e6 or np.abs(jacobian @ step).max() < _SMALL_STEP:
-                break
-    errors = np.zeros(len(SETTINGS))
-    errors[index] = v * scale
-    rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (measured, residual))
-    return Identification(errors, rms_before, rms_after, iterations, singular_values)
+def with_deviations(targets: Sequence[FlankTarget], deviations: np.ndarray) -> list[FlankTarget]:
+    """The targets with other deviations (m,), one target after the other."""
+    ends = np.cumsum([len(target.deviation) for target in targets])
+    pieces = np.split(deviations, ends[:-1])
+    return [replace(target, deviation=piece) for target, piece in zip(targets, pieces, strict=True)]

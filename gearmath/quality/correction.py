@@ -2,98 +2,130 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.bevel.method import require_plain
 from gearmath.errors import ComputationError, InputError
-from gearmath.quality.compensation import FREE, FlankTarget, Identification, identify, predicted
+from gearmath.quality.analysis import Analysis, analyse
+from gearmath.quality.compensation import RANK, FlankTarget, Identification, Run, as_it_stands, identify, located
 from gearmath.quality.pitch import evaluate_pitch, index_correction
-from gearmath.quality.topography import grid_shape
-from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member, design_sha256
+from gearmath.quality.target import flank_target
+from gearmath.quality.variables import NAMES, free_settings, parts, whole
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member, design_sha256
 from gearmath.specs.flank_csv import FlankFile
 
-#: Points of the file and of the set must agree this well, or the file belongs to another set. [mm]
-_SAME_POINT = 0.01
 #: What a correction may add to the RMS of a flank that is as good as perfect: rounding. [mm]
 _ROUNDING = 1e-6
+#: A point that was left out must be predicted this well: the variance of the prediction against that of one point.
+_LEVERAGE = 4.0
+#: How far a correction may move the root line at toe and heel [mm]. Peers hold 0.025 mm when they design; a machine
+#: whose root angle or base is off by as much as the bundled shop's needs more.
+ROOT_LIMIT = 0.15
 
 
 @dataclass(frozen=True)
 class Correction:
     """Corrected settings (12,) of each flank, what was identified for each group of flanks, and index corrections.
 
-    ``expected`` is the largest deviation [mm] that the model expects to remain, per flank; ``index`` (z,) [rad] is
-    None where pitch was not measured.
+    ``motions`` (10,7) of each flank, without the modified roll, is empty where no motion was corrected. ``expected`` is
+    the largest deviation [mm] that the model expects to remain, per flank; ``root`` how much higher or deeper (+) the
+    root line at toe and heel (2,) [mm] will be than it was cut. ``analysis`` was made before anything was corrected,
+    ``left_out`` says per flank how many points of the grid were not used. ``index`` (z,) [rad] is None where pitch was
+    not measured.
     """
 
     settings: dict[str, np.ndarray]
     identified: dict[tuple[str, ...], Identification]
     expected: dict[str, float]
     index: np.ndarray | None
+    motions: dict[str, np.ndarray]
+    analysis: dict[tuple[str, ...], Analysis]
+    root: dict[str, np.ndarray]
+    left_out: dict[str, int]
 
 
-def correct(member: Member, name: str, measured: FlankFile, free: tuple[str, ...] = FREE) -> Correction:
+def correct(
+    member: Member, name: str, measured: FlankFile, free: Sequence[str] | None = None, *, objective: str = "points",
+    higher_order: bool = False, few: bool = False, root_limit: float | None = ROOT_LIMIT,
+    added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None, run: Run = as_it_stands,
+) -> Correction:  # fmt: skip
     """The settings that make up for what was measured on a member.
 
-    Flanks of a completing cut share their correction. Raises InputError if the file is not of this member, and
-    ComputationError if the correction would make a flank worse.
+    Flanks of a completing cut share their correction. ``free`` names what may change, by default the settings that suit
+    the cutting method and, with ``higher_order``, motions; ``few`` takes of them the fewest that lose little.
+    ``excluded`` (points of the file,) marks points that are not to be used; ``added`` gives for each flank deviations
+    [mm] on the grid that are corrected besides, such as those of the mate.
+
+    Raises InputError if the file is not of this member or does not determine the settings, and ComputationError if the
+    correction would make a flank worse.
     """
     check_belongs(member, name, measured)
-    require_plain(member, name, "compensation")
+    names = tuple(free) if free is not None else free_settings(member, higher_order)
     groups = [FLANKS] if member.cutting == "completing" else [(flank,) for flank in FLANKS]
-    settings: dict[str, np.ndarray] = {}
-    identified: dict[tuple[str, ...], Identification] = {}
-    expected: dict[str, float] = {}
+    found = Correction({}, {}, {}, _index(member, measured), {}, {}, {}, {})
     for group in groups:
-        targets = [flank_target(member, name, flank, measured) for flank in group]
-        found = identify(targets, free)
-        if found.rms_after > found.rms_before + _ROUNDING:
-            raise ComputationError(
-                f"{name} {' and '.join(group)}: no correction makes the flank better "
-                f"(RMS {found.rms_before * 1000:.3f} um); nothing is written"
-            )
-        identified[group] = found
-        for flank, target in zip(group, targets, strict=True):
-            settings[flank] = member.flank(flank).nominal.vector - found.errors
-            remaining = target.deviation - predicted(target, member.flank(flank).vector + found.errors)[0]
-            expected[flank] = float(np.abs(remaining).max())
-    return Correction(settings, identified, expected, _index(member, measured))
+        targets = [flank_target(member, name, flank, measured, excluded=excluded) for flank in group]
+        found.left_out.update({f: t.grid_points - len(t.deviation) for f, t in zip(group, targets, strict=True)})
+        _check_determined(name, group, targets, names)
+        if added:
+            targets = [target.plus(added[flank]) for flank, target in zip(group, targets, strict=True)]
+        analysis = analyse(targets, names, run=run)
+        if few:
+            analysis = analyse(targets, analysis.choose().names, run=run)
+        found.analysis[group] = analysis
+        result = identify(
+            targets, analysis.names, objective=objective, root_limit=root_limit, run=run
+        )  # fmt: skip
+        _refuse_worse(name, group, targets, result)
+        found.identified[group] = result
+        for k, (flank, target) in enumerate(zip(group, targets, strict=True)):
+            _settle(found, member, flank, target, result, k)
+    return found
 
 
-def flank_target(member: Member, name: str, flank: str, measured: FlankFile, tooth: int | None = None) -> FlankTarget:
-    """One flank of a file with the nominal points of the set, of the tooth that has most points if none is given.
-
-    Raises InputError if they are not the same points.
-    """
-    points = measured.select(flank)
-    if tooth is None and len(points):
-        teeth, counts = np.unique(points.tooth, return_counts=True)
-        tooth = int(teeth[np.argmax(counts)])  # the one with the whole grid
-    points = measured.select(flank, tooth)
-    rows, columns = grid_shape(measured)
-    if len(points) != rows * columns:
-        raise InputError(f"{flank} flank: {len(points)} points were measured, the grid {rows}x{columns} needs all")
-    order = np.lexsort((points.col, points.row))
-    deviation = points.deviation[order]
-    if np.isnan(deviation).any():
-        raise InputError(f"{flank} flank: deviation_um is empty; is this a nominal file?")
-    margin = float(measured.header["margins"].split(",")[0])
-    nominal = solve_flank(member, name, flank, blank_grid(member, rows, columns, margin))
-    turn = 2 * np.pi * int(points.tooth[0]) / member.teeth
-    c, s = np.cos(turn), np.sin(turn)
-    back = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
-    touched = points.point[order] @ back.T - deviation[:, None] * nominal.normal
-    apart = np.linalg.norm(touched - nominal.point, axis=1)
-    if apart.max() > _SAME_POINT:
-        k = int(np.argmax(apart))
+def _check_determined(name: str, group: Sequence[str], targets: Sequence[FlankTarget], names: Sequence[str]) -> None:
+    """Raise InputError where the points that are left do not tell what the settings do at those left out."""
+    if all(target.left_out is None for target in targets):
+        return
+    known = analyse(targets, names).jacobian
+    whole_grid = analyse([target.left_out or target for target in targets], names).jacobian
+    spread = np.linalg.pinv(known, rcond=RANK)
+    worst = float(np.max(np.sum((whole_grid @ spread) ** 2, axis=1)))
+    if len(known) < known.shape[1] or worst > _LEVERAGE:
         raise InputError(
-            f"{flank} flank, row {k // columns}, col {k % columns}: the measured point lies {apart[k]:.4f} mm beside "
-            f"the nominal normal, the limit is {_SAME_POINT} mm; is the file in mm, and of this set and hand?"
+            f"{name} {' and '.join(group)}: {len(known)} points are left of "
+            f"{sum(target.grid_points for target in targets)}: too few to tell what {len(names)} settings do at the "
+            "others; measure them, or free fewer settings"
         )
-    return FlankTarget(member.flank(flank).vector, SIDES[flank], nominal, deviation)
+
+
+def _refuse_worse(name: str, group: Sequence[str], targets: Sequence[FlankTarget], result: Identification) -> None:
+    """Raise ComputationError where a correction makes its flanks worse, together or one of them for the other."""
+    ends = np.cumsum([len(target.deviation) for target in targets])[:-1]
+    pieces = np.split(result.residual, ends)
+    before = [np.sqrt(np.mean(target.deviation**2)) for target in targets]
+    after = [np.sqrt(np.mean(piece**2)) for piece in pieces]
+    worse = result.rms_after > result.rms_before + _ROUNDING
+    if worse:
+        figures = ", ".join(f"{b * 1000:.3f} to {a * 1000:.3f} um" for b, a in zip(before, after, strict=True))
+        raise ComputationError(
+            f"{name} {' and '.join(group)}: no correction makes the flank better (RMS {figures}); nothing is written"
+        )
+
+
+def _settle(found: Correction, member: Member, flank: str, target: FlankTarget, result: Identification, k: int) -> None:
+    """Enter the corrected settings of one flank, and what is expected of it."""
+    spec, change = member.flank(flank), result.change(k)
+    errors, moved = parts(change)
+    found.settings[flank] = spec.nominal.vector - errors
+    if moved.any() or spec.nominal_motion != spec.motion:
+        found.motions[flank] = spec.nominal_motion.matrix - moved
+    deviation, _, _ = located(target, target.vector + change)
+    found.expected[flank] = float(np.abs(target.deviation - deviation).max())
+    if target.root is not None:
+        found.root[flank] = -target.root.sunk(target.vector, target.vector + change)[0]
 
 
 def check_belongs(member: Member, name: str, measured: FlankFile) -> None:
@@ -119,10 +151,16 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
 
 
 def setting_changes(member: Member, correction: Correction) -> list[tuple[str, str, float, float]]:
-    """(flank, setting, old, new) of every setting that changes, mm and rad."""
-    return [
-        (flank, name, float(old), float(new))
-        for flank, vector in correction.settings.items()
-        for name, old, new in zip(SETTINGS, member.flank(flank).vector, vector, strict=True)
-        if old != new
-    ]
+    """(flank, setting, old, new) of every setting and coefficient of a motion that changes, mm and rad."""
+    changes = []
+    for flank, vector in correction.settings.items():
+        spec = member.flank(flank)
+        motion = spec.motion.matrix
+        pairs = whole(spec.vector, motion), whole(vector, correction.motions.get(flank, motion))
+        changes += [
+            (flank, name, float(old), float(new)) for name, old, new in zip(NAMES, *pairs, strict=True) if old != new
+        ]
+    return changes
+
+
+__all__ = ["ROOT_LIMIT", "SETTINGS", "Correction", "check_belongs", "correct", "flank_target", "setting_changes"]

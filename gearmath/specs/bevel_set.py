@@ -111,6 +111,12 @@ class Settings(Spec):
         return _vector(self, notation.settings.components)
 
 
+class Design(Settings):
+    """The settings of the nominal flank of a corrected one; ``motion`` where the motion was corrected too."""
+
+    motion: Motion | None = None
+
+
 class Flank(Settings):
     """How one flank is cut; ``design``, where given, holds the settings of the nominal flank, the others corrected."""
 
@@ -124,7 +130,7 @@ class Flank(Settings):
     toprem_height: float = Field(default=0.0, ge=0, le=10)
     blade_offset_angle: float = Field(default=0.0, ge=-45, le=45)
     motion: Motion = Motion()
-    design: Settings | None = None
+    design: Design | None = None
 
     @model_validator(mode="after")
     def _blade(self) -> Flank:
@@ -139,6 +145,11 @@ class Flank(Settings):
     def nominal(self) -> Settings:
         """The settings whose tooth surface is wanted."""
         return self.design or self
+
+    @property
+    def nominal_motion(self) -> Motion:
+        """The motion of the settings whose tooth surface is wanted."""
+        return (self.design.motion if isinstance(self.design, Design) else None) or self.motion
 
 
 class Member(Spec):
@@ -230,19 +241,26 @@ def load_bevel_set(path: Path) -> BevelSet:
 
 def design_sha256(member: Member) -> str:
     """What a measurement is judged against: the digest of all that makes the nominal flanks of a member."""
-    return _digest(member, [member.flank(flank).nominal.vector.tolist() for flank in FLANKS])
+    nominal = [member.flank(flank).nominal.vector.tolist() for flank in FLANKS]
+    return _digest(member, [member.flank(flank).nominal_motion for flank in FLANKS], nominal)
 
 
 def settings_sha256(member: Member) -> str:
     """What a program is made from: the digest of the method, the machine settings and the index corrections."""
-    return _digest(member, [member.flank(flank).vector.tolist() for flank in FLANKS], list(member.index_correction))
+    actual = [member.flank(flank).vector.tolist() for flank in FLANKS]
+    return _digest(
+        member, [member.flank(flank).motion for flank in FLANKS], actual, list(member.index_correction)
+    )  # fmt: skip
 
 
-def _digest(member: Member, *settings: list) -> str:
-    """The digest of settings together with the cutting method and the blades, which no correction changes."""
+def _digest(member: Member, motions: list[Motion], *settings: list) -> str:
+    """The digest of settings and motions together with the method and the blades, which no correction changes."""
     method = member.model_dump(include={"teeth", "process", "generation", "blade_groups", "indexing_sign"})
     others = {"design", *SETTINGS}
-    blades = [member.flank(flank).model_dump(exclude=others) for flank in FLANKS]
+    blades = [
+        member.flank(flank).model_dump(exclude=others) | {"motion": motion.model_dump()}
+        for flank, motion in zip(FLANKS, motions, strict=True)
+    ]
     return hashlib.sha256(repr((sorted(method.items()), blades, *settings)).encode()).hexdigest()
 
 
@@ -252,11 +270,13 @@ def save_corrected(
     member: str,
     settings: dict[str, np.ndarray],
     index_correction: np.ndarray | None = None,
+    motions: dict[str, np.ndarray] | None = None,
 ) -> None:
     """Write the set of ``source``, comments kept, with new settings (12,) of each flank, to ``target``.
 
-    The nominal settings are kept under ``design``. ``index_correction`` (z,) in rad replaces that of the member. The
-    text is checked as a set before anything is written.
+    The nominal settings are kept under ``design``. ``index_correction`` (z,) in rad replaces that of the member, and
+    ``motions`` (10,7) of each flank, without the modified roll, its motion. The text is checked as a set before
+    anything is written.
     """
     document = tomlkit.parse(read_text(source))
     table: Any = document[member]
@@ -265,11 +285,26 @@ def save_corrected(
             table[flank]["design"] = {name: table[flank][name] for name in SETTINGS}
         for name, value in zip(SETTINGS, vector, strict=True):
             table[flank][name] = round(math.degrees(value) if name in _ANGULAR else float(value), 9)
+    for flank, matrix in (motions or {}).items():
+        _save_motion(table[flank], matrix)
     if index_correction is not None:
         table["index_correction"] = [round(math.degrees(value), 7) for value in index_correction]
     text = tomlkit.dumps(document)
     parse(text, BevelSet, str(target))
     write_text(target, text)
+
+
+def _save_motion(table: Any, matrix: np.ndarray) -> None:
+    """A motion (10,7) into the table of a flank; the nominal one goes under ``design``, the modified roll stays."""
+    before = dict(table.get("motion", {}))
+    if "motion" not in table["design"]:
+        table["design"]["motion"] = before
+    motion = {"modified_roll": before["modified_roll"]} if "modified_roll" in before else {}
+    for row, name in zip(matrix, MACHINE_SETTINGS, strict=True):
+        values = np.trim_zeros(np.round(np.degrees(row) if name in _ANGULAR else row, 9), "b")
+        if len(values):
+            motion[name] = values.tolist()
+    table["motion"] = motion
 
 
 def _vector(model: Spec, components: tuple[Quantity, ...]) -> np.ndarray:

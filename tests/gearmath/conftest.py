@@ -18,7 +18,7 @@ from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import MachinePath, execute
 from gearmath.machine.mill import mill_member
 from gearmath.machine.path import DEFAULT_TOLERANCE
-from gearmath.specs.bevel_set import SETTINGS, BevelSet, Settings, load_bevel_set
+from gearmath.specs.bevel_set import SETTINGS, BevelSet, Design, Settings, load_bevel_set
 from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.simulated_machine import SimulatedMachine, load_simulated_machine
@@ -98,7 +98,7 @@ def altered() -> Callable[..., BevelSet]:
 @pytest.fixture(scope="session")
 def nominal_settings() -> Callable[..., Settings]:
     """The settings of a flank as they stand, to be kept as its design."""
-    return lambda flank: Settings(**{name: getattr(flank, name) for name in SETTINGS})
+    return lambda flank: Design(**{name: getattr(flank, name) for name in SETTINGS})
 
 
 @pytest.fixture

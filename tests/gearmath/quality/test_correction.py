@@ -171,10 +171,12 @@ def header(file: FlankFile, **values: str) -> FlankFile:
         (lambda f: replace(f, deviation=f.deviation * 25.4), r"row \d, col \d: the measured point lies 0\.\d{4} mm"),
         (lambda f: replace(f, point=f.point * [1, -1, 1]), r"of this set and hand\?$"),
         (lambda f: replace(f, deviation=np.full(len(f), np.nan)), r"deviation_um is empty; is this a nominal file"),
-        (lambda f: f.select("convex"), r"^concave flank: 0 points were measured, the grid 5x9 needs all$"),
-        (lambda f: f.select("concave"), r"^convex flank: 0 points were measured, the grid 5x9 needs all$"),
-        (lambda f: header(f, grid="4x9"), r"^concave flank: 45 points were measured, the grid 4x9 needs all$"),
-        (lambda f: header(f, grid="9x5"), r"mm beside the nominal normal"),
+        (lambda f: f.select("convex"), r"^concave flank: 0 points were measured, the grid 5x9 needs them$"),
+        (lambda f: f.select("concave"), r"^convex flank: 0 points were measured, the grid 5x9 needs them$"),
+        (lambda f: header(f, grid="4x9"), r"^concave flank: row 4, col 0 lies outside of the grid 4x9$"),
+        (lambda f: header(f, grid="9x5"), r"^concave flank: row 0, col 5 lies outside of the grid 9x5$"),
+        (lambda f: header(f, grid="6x10"), r"mm beside the nominal normal"),
+        (lambda f: join([f, f]), r"^concave flank: row 0, col 0 was measured twice$"),
         (lambda f: header(f, margins="0.2,0.2"), r"mm beside the nominal normal"),
         (lambda f: replace(f, tooth=f.tooth + 1), r"mm beside the nominal normal"),
     ],
@@ -191,11 +193,33 @@ def test_nominal_file_of_both_flanks_is_refused(gear_set):
         correct(gear_set.pinion, "pinion", nominal)
 
 
-def test_some_missing_points_are_refused(gear_set, measured):
-    kept = np.arange(len(measured)) != 17
-    few = replace(measured, **{name: getattr(measured, name)[kept] for name in (
+def without(file: FlankFile, dropped: np.ndarray) -> FlankFile:
+    """The file without some of its points."""
+    return replace(file, **{name: getattr(file, name)[~dropped] for name in (
         "flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")})  # fmt: skip
-    with pytest.raises(InputError, match=r"^concave flank: 44 points were measured"):
+
+
+def test_points_that_are_missing_empty_or_excluded_are_left_out_and_said(gear_set, measured):
+    """A column in the middle is gone: the settings that the other points give mend the flank all the same."""
+    gone = (measured.flank == "concave") & (measured.col == 4)
+    whole, fewer = (correct(gear_set.pinion, "pinion", f) for f in (measured, without(measured, gone)))
+    assert whole.left_out == {"concave": 0, "convex": 0}
+    assert fewer.left_out == {"concave": 5, "convex": 0}
+    assert max(fewer.expected.values()) < 3e-4
+    empty = replace(measured, deviation=np.where(gone, np.nan, measured.deviation))
+    marked = replace(measured, deviation=np.where(gone, 0.3, measured.deviation))
+    marked = replace(marked, point=measured.point + (marked.deviation - measured.deviation)[:, None] * measured.normal)
+    for other in (correct(gear_set.pinion, "pinion", empty), correct(gear_set.pinion, "pinion", marked, excluded=gone)):
+        np.testing.assert_allclose(other.settings["concave"], fewer.settings["concave"], rtol=0, atol=1e-12)
+        assert other.left_out == fewer.left_out
+
+
+@pytest.mark.parametrize("kept", [lambda f: f.col < 4, lambda f: f.row == 2, lambda f: (f.row < 2) & (f.col % 4 == 0)])
+def test_too_few_points_to_tell_the_settings_apart_are_refused(gear_set, measured, kept):
+    few = without(measured, (measured.flank == "concave") & ~kept(measured))
+    with pytest.raises(
+        InputError, match=r"^pinion concave: \d+ points are left of 45: too few to tell what 7 settings"
+    ):
         correct(gear_set.pinion, "pinion", few)
 
 

@@ -1,0 +1,286 @@
+"""Chapter 20. Compensation: what settings and motions do to a flank along a line, its root, its mate and its stock.
+
+The flank of other settings crosses a line P + t d at a point with the normal n. Whatever the cutting method,
+
+    ∂t/∂x_k = n·R_k / (n·d)                     R_k = ∂R/∂x_k at fixed u, β, θ                    (20.1)
+    ∂t/∂m_kj = θ^j ∂t/∂x_k                      the motion (10.1) of a machine setting            (20.2)
+
+The root line is where the tip of the blade touches the flank: at the height zero, which on an arc blade is
+
+    h(u) = h_b - r sin u = 0                                                                      (20.3)
+
+at a cone distance L, its depth below the pitch cone D:  L = z_w cos δ + r_w sin δ,  D = z_w sin δ - r_w cos δ  (20.4)
+
+A point G of a flank with the normal n meets the mate, whose axis a makes the shaft angle Σ with z_w, when its member
+has turned by ψ: with M = G × n and m = √(M_x² + M_y²), the relative rotation ω = a + (z_m/z) z_w has no moment,
+
+    ω·Rz(ψ) M = 0:   ψ = -atan2(M_y, M_x) ± acos(-(cos Σ + z_m/z) M_z / (m sin Σ))                 (20.5)
+    place on the mate:   z_m = a·Rz(ψ) G,   r_m = |Rz(ψ) G - z_m a|                                (20.6)
+
+where z_m, z are the teeth of mate and member: metal left on there comes to the mate as metal left on it. Turned by ε
+and moved on by a, a flank has more stock by
+
+    ε (z_w × R)·n + a n_z                                                                          (20.7)
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import sympy as sp
+
+from derivations import cradle, cutter, flank, generation
+from derivations import notation as q
+from derivations.expression import Expression, Quantity
+from derivations.frames import J, K, Rz, rotation
+from derivations.generation import Profile
+from derivations.proof import is_zero
+
+
+def spheric() -> Profile:
+    """The arc blade (10.3) whose arc follows from its point radius and pressure angle (1.4)."""
+    profile, center = generation.arc(), cutter.spheric_blade()["blade_arc"]
+    values = dict(zip(q.blade_arc.symbols, center, strict=True))
+    return Profile(*(value.subs(values, simultaneous=True) for value in (profile.radius, profile.height, sp.S.One)))
+
+
+def _rates(profile: Profile) -> tuple[list[sp.Matrix], sp.Expr]:
+    """∂R/∂x_k for every setting in the frame w before it turns, and φ_w, both at settings still to be moved.
+
+    The derivative by x_k is that by x_k(θ): they differ by what does not depend on x_k.
+    """
+    eta, off = q.blade_offset_angle.symbol, profile.radius - q.blade_point_radius.symbol
+    in_plane = sp.Matrix([q.blade_point_radius.symbol + off * sp.cos(eta), off * sp.sin(eta), -profile.height])
+    in_cutter = Rz(q.beta.symbol) * in_plane
+    p = cradle.frame_w() * (cradle.apex_to_cutter() + cradle.cutter_to_machine(in_cutter))
+    phi, axis = cradle.work_angle(), sp.Matrix(K)
+    rates = [p.diff(x) - phi.diff(x) * axis.cross(p) for x in q.settings.symbols]
+    return rates, phi
+
+
+def _sensitivity(name: str, description: str, profile: Profile, parameter: Quantity, *extra: Quantity) -> Expression:
+    """(20.1) of a blade as an Expression."""
+    rates, phi = _rates(profile)
+    back = Rz(phi + q.index_ratio.symbol * q.beta.symbol)  # out of the frame w before it turns
+    n, d = sp.Matrix(q.normal_w.symbol), sp.Matrix(q.line_direction.symbol)
+    unturned = back * n
+    return Expression(
+        name,
+        description,
+        (
+            parameter, q.beta, q.theta, q.settings, q.index_ratio, q.blade_offset_angle, *extra, q.side, q.normal_w,
+            q.line_direction,
+        ),
+        ((q.sensitivity, sp.Matrix([unturned.dot(rate) / n.dot(d) for rate in rates])),),
+        requires=(n.dot(d) ** 2 - sp.Rational(1, 100),),
+        source="envelope theorem along a line: the shift of u, beta, theta stays in the surface",
+    )  # fmt: skip
+
+
+@cache
+def straight_sensitivity() -> Expression:
+    """(20.1) of a straight blade as an Expression; the settings are those at the cradle rotation (10.1)."""
+    return _sensitivity(
+        "straight_sensitivity",
+        "Shift along a line of the flank that a straight blade cuts, per unit of each setting (20.1).",
+        generation.straight(), q.u,
+    )  # fmt: skip
+
+
+@cache
+def arc_sensitivity() -> Expression:
+    """(20.1) of an arc blade as an Expression; the arc moves with point radius and pressure angle."""
+    return _sensitivity(
+        "arc_sensitivity",
+        "Shift along a line of the flank that an arc blade cuts, per unit of each setting (20.1).",
+        spheric(), q.arc_angle, q.blade_spheric_radius, q.reference_height,
+    )  # fmt: skip
+
+
+@cache
+def coefficient_sensitivity() -> Expression:
+    """(20.2) as an Expression."""
+    rows, columns = q.motion.shape
+    theta, gradient = q.theta.symbol, q.setting_rates.symbol
+    return Expression(
+        "coefficient_sensitivity",
+        "Shift of a flank along a line per unit of each coefficient of the motion (20.2).",
+        (q.theta, q.setting_rates),
+        ((q.motion_rates, sp.Matrix(rows, columns, lambda k, j: gradient[k] * theta ** (j + 1))),),
+        source="chain rule through (10.1)",
+    )
+
+
+@cache
+def arc_height() -> Expression:
+    """(20.3) as an Expression."""
+    return Expression(
+        "arc_height",
+        "Height above the tip plane of a point of an arc blade (20.3).",
+        (q.arc_angle, q.blade_arc),
+        ((q.arc_tip_height, generation.arc().height),),
+        source="(10.3)",
+    )
+
+
+@cache
+def root_place() -> Expression:
+    """(20.4) as an Expression."""
+    delta = q.pitch_angle.symbol
+    R = q.point_w.symbol
+    r = sp.sqrt(R[0] ** 2 + R[1] ** 2)
+    return Expression(
+        "root_place",
+        "Cone distance of a point and its depth below the pitch cone (20.4).",
+        (q.point_w, q.pitch_angle),
+        (
+            (q.cone_place, R[2] * sp.cos(delta) + r * sp.sin(delta)),
+            (q.cone_depth, R[2] * sp.sin(delta) - r * sp.cos(delta)),
+        ),
+        requires=(R[0] ** 2 + R[1] ** 2 - 1,),
+        source="rotation of the axial plane by the pitch angle",
+    )
+
+
+def _mate_axis() -> sp.Matrix:
+    sigma = q.shaft_angle.symbol
+    return sp.Matrix([sp.sin(sigma), 0, sp.cos(sigma)])
+
+
+@cache
+def conjugate_place() -> Expression:
+    """(20.5, 20.6) as an Expression; ``side`` takes the branch."""
+    point, n, sigma = sp.Matrix(q.point_w.symbol), sp.Matrix(q.normal_w.symbol), q.shaft_angle.symbol
+    moment = point.cross(n)
+    across = sp.sqrt(moment[0] ** 2 + moment[1] ** 2)
+    needed, greatest = -(sp.cos(sigma) + q.mate_ratio.symbol) * moment[2], across * sp.sin(sigma)
+    psi = q.side.symbol * sp.acos(needed / greatest) - sp.atan2(moment[1], moment[0])
+    # Rz(psi) G along the mate's axis and across it, from the turned point alone
+    turned = Rz(psi) * point
+    axial = _mate_axis().dot(turned)
+    off = turned - axial * _mate_axis()
+    return Expression(
+        "conjugate_place",
+        "Rotation at which a point of a flank meets the mate, and its place on the mate (20.5, 20.6).",
+        (q.point_w, q.normal_w, q.shaft_angle, q.mate_ratio, q.side),
+        (
+            (q.meeting_angle, psi),
+            (q.mate_axial, axial),
+            (q.mate_radial, sp.sqrt(sum(component**2 for component in off))),
+        ),
+        requires=(greatest**2 * sp.Rational(99, 100) - needed**2, across**2 - 1),
+        source="gear meshing of two fixed axes with a constant ratio, solved for the angle",
+    )
+
+
+@cache
+def stock_rates() -> Expression:
+    """(20.7) as an Expression."""
+    R, n = q.point_w.symbol, q.normal_w.symbol
+    return Expression(
+        "stock_rates",
+        "Stock gained per unit of a rotation of the work and of an advance along its axis (20.7).",
+        (q.point_w, q.normal_w),
+        ((q.turning_rate, R[0] * n[1] - R[1] * n[0]), (q.advance_rate, n[2])),
+        source="first-order motion of a rigid body along the normals",
+    )
+
+
+def prove_rates_are_those_of_the_family_of_face_milling() -> None:
+    """(20.1) Limit case: without motion and indexing, Rz(-φ_w) R_k is ∂R/∂x_k of (3.1), which (6.2) takes along n."""
+    still = generation.still()
+    rates, phi = _rates(generation.straight())
+    point = flank.point()
+    for setting, rate in zip(q.settings.symbols, rates, strict=True):
+        assert is_zero(Rz(-phi) * rate.subs(still) - point.diff(setting)), setting.name
+
+
+def prove_shift_along_a_line_is_that_of_the_implicit_function() -> None:
+    """(20.1) For a surface F(r, x) = 0: dt/dx = -F_x/(F_r·d); with n = F_r/|F_r| and n·R_x = -F_x/|F_r| the same."""
+    a, b, c, x, size = sp.symbols("a b c x size", positive=True)
+    d = sp.Matrix(sp.symbols("d1:4", real=True))
+    gradient = sp.Matrix([a, b, c])  # F_r
+    implicit = -x / gradient.dot(d)  # x stands for F_x
+    n = gradient / size
+    # a point that stays on the surface at fixed parameters moves by R_x with F_r·R_x + F_x = 0
+    normal_part = -x / size
+    assert sp.simplify(implicit - normal_part / n.dot(d)) == 0
+
+
+def prove_motion_enters_through_the_moved_setting_alone() -> None:
+    """(20.2) ∂x_k(θ)/∂m_kj = θ^j and ∂x_k(θ)/∂x_k = 1, for every setting and power."""
+    moving, rows = generation.moving_settings(), q.motion.symbol
+    for k, (setting, value) in enumerate(moving.items()):
+        assert value.diff(setting) == 1
+        for j in range(rows.cols):
+            assert sp.expand(value.diff(rows[k, j]) - q.theta.symbol ** (j + 1)) == 0
+            others = [other for other in moving if other is not setting]
+            assert all(moving[other].diff(rows[k, j]) == 0 for other in others)
+
+
+def prove_spheric_blade_keeps_its_arc() -> None:
+    """(20.1) The blade of ``spheric`` has the arc's points: at u = α it is on the straight blade, at the height h_r."""
+    profile, alpha = spheric(), q.blade_pressure_angle.symbol
+    at = {q.arc_angle.symbol: alpha}
+    assert is_zero(profile.height.subs(at) - q.reference_height.symbol)
+    assert is_zero(profile.radius.subs(at) - cutter.radius(q.reference_height.symbol))
+
+
+def prove_depth_and_cone_distance_are_a_rotation_of_the_axial_plane() -> None:
+    """(20.4) L² + D² = z² + r², and a point of the pitch cone has the depth zero."""
+    place = root_place()
+    L, D = place["cone_place"], place["cone_depth"]
+    R = q.point_w.symbol
+    assert is_zero(L**2 + D**2 - (R[0] ** 2 + R[1] ** 2 + R[2] ** 2))
+    s, delta = sp.Symbol("s", positive=True), q.pitch_angle.symbol
+    on_cone = dict(zip(q.point_w.symbols, (s * sp.sin(delta), 0, s * sp.cos(delta)), strict=True))
+    assert is_zero(D.subs(on_cone).subs(sp.Abs(sp.sin(delta)), sp.sin(delta)).replace(sp.Abs, lambda value: value))
+
+
+def prove_meeting_angle_satisfies_the_equation_of_meshing() -> None:
+    """(20.5) n·v = 0 for v = ω × G, both turned by ψ, in the general form M_x cos ψ - M_y sin ψ = C."""
+    mx, my, c, psi = sp.symbols("M_x M_y C psi", real=True)
+    m, mu = sp.symbols("m mu", positive=True)
+    polar = {mx: m * sp.cos(mu), my: m * sp.sin(mu)}
+    x_part = (Rz(psi) * sp.Matrix([mx, my, 0]))[0].subs(polar)
+    for branch in (1, -1):
+        solved = x_part.subs(psi, branch * sp.acos(c / m) - mu)
+        assert sp.simplify(sp.expand_trig(solved) - c) == 0
+
+
+def prove_relative_rotation_lies_along_the_pitch_line() -> None:
+    """(20.5) On the common generatrix of the pitch cones, at δ from z_w with sin δ_m/sin δ = z_m/z, nothing slides."""
+    sigma, delta = sp.symbols("Sigma delta", positive=True)
+    along = sp.Matrix([sp.sin(delta), 0, sp.cos(delta)])
+    ratio = sp.sin(sigma - delta) / sp.sin(delta)
+    omega = sp.Matrix([sp.sin(sigma), 0, sp.cos(sigma)]) + ratio * sp.Matrix(K)
+    assert is_zero(omega.cross(along))
+
+
+def prove_place_on_the_mate_is_that_in_its_own_frame() -> None:
+    """(20.6) In axes turned by Ry(Σ), the third coordinate is z_m and the rest has the length r_m."""
+    sigma = sp.Symbol("Sigma", real=True)
+    r = sp.Matrix(sp.symbols("x y z", real=True))
+    own = rotation(sp.Matrix(J), -sigma) * r
+    axis = sp.Matrix([sp.sin(sigma), 0, sp.cos(sigma)])
+    axial = axis.dot(r)
+    off = r - axial * axis
+    assert is_zero(own[2] - axial)
+    assert is_zero(own[0] ** 2 + own[1] ** 2 - off.dot(off))
+
+
+def prove_height_of_an_arc_falls_to_the_tip_plane_where_its_sine_says_so() -> None:
+    """(20.3) At sin u = h_b/r the arc is in the tip plane."""
+    _, center_height, r = q.blade_arc.symbols
+    at = arc_height()["arc_tip_height"].subs(q.arc_angle.symbol, sp.asin(center_height / r))
+    assert is_zero(at)
+
+
+def prove_stock_of_a_turned_and_advanced_flank_is_its_first_order_motion() -> None:
+    """(20.7) The derivatives of (Rz(ε) R + a z_w)·n by ε and a at zero."""
+    eps, a = sp.symbols("eps a", real=True)
+    R, n = sp.Matrix(q.point_w.symbol), sp.Matrix(q.normal_w.symbol)
+    moved = (Rz(eps) * R + a * sp.Matrix(K)).dot(n)
+    rates = stock_rates()
+    assert is_zero(moved.diff(eps).subs(eps, 0) - rates["turning_rate"])
+    assert is_zero(moved.diff(a) - rates["advance_rate"])

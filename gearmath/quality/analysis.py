@@ -1,0 +1,167 @@
+"""What a correction can do, before it is done: which settings the flanks tell apart, and what none of them can mend.
+
+With the Jacobian J of the deviations by the settings, each in parts of its bound, J = U S Vᵀ: a direction whose
+singular value is small moves the flank little, and two settings whose columns are parallel cannot be told apart. What
+is measured and lies outside of the columns is the projection residual (I - U Uᵀ) δ: no correction gets below it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gearmath.quality.compensation import RANK, FlankTarget, Problem, Run, as_it_stands, located
+from gearmath.quality.variables import FREE, Variable, variables_of
+
+#: Columns whose directions agree this well move the flank alike. [cosine]
+ALIKE = 0.999
+#: A direction with less than this part of the largest singular value is weak.
+WEAK = 0.01
+#: Settings are chosen until no more is lost than this part of what all of them leave, or this much. [mm]
+_LOSS_PART, _LOSS = 0.05, 5e-5
+#: A setting that belongs to a direction has at least this part of its largest component.
+_NAMED = 0.3
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The fewest settings that lose little: names in the order in which they were taken, and RMS left [mm] after each.
+
+    ``loss`` is what they leave more than all settings would, in the RMS [mm].
+    """
+
+    names: tuple[str, ...]
+    left: tuple[float, ...]
+    loss: float
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """Sensitivity of some targets to free settings, by which any correction is judged beforehand.
+
+    ``jacobian`` (m,p) [mm] is by the variables in parts of their bounds, at the settings as they are; ``deviation``
+    (m,) [mm] what was measured.
+    """
+
+    names: tuple[str, ...]
+    variables: tuple[Variable, ...]
+    jacobian: np.ndarray
+    deviation: np.ndarray
+
+    @cached_property
+    def _svd(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return np.linalg.svd(self.jacobian, full_matrices=False)
+
+    @property
+    def singular_values(self) -> np.ndarray:
+        """(p,) [mm], the largest first: the norm by which a unit change moves the deviations."""
+        return self._svd[1]
+
+    @property
+    def rank(self) -> int:
+        """How many directions of the settings the flanks show at all."""
+        return int(np.sum(self.singular_values > RANK * self.singular_values[0]))
+
+    @property
+    def rms(self) -> float:
+        """RMS of what was measured [mm]."""
+        return float(np.sqrt(np.mean(self.deviation**2)))
+
+    @property
+    def best_rms(self) -> float:
+        """RMS of the projection residual [mm]: what any correction by these settings leaves."""
+        return self._left(self.jacobian)
+
+    def _left(self, jacobian: np.ndarray) -> float:
+        return float(np.sqrt(np.mean(projection_residual(jacobian, self.deviation) ** 2)))
+
+    @cached_property
+    def alike(self) -> tuple[tuple[str, str, float], ...]:
+        """Pairs of settings that move the flank alike, with the cosine of their columns (negative: opposite ways)."""
+        size = np.linalg.norm(self.jacobian, axis=0)
+        seen = [k for k in range(len(size)) if size[k] > RANK * self.singular_values[0]]
+        unit = self.jacobian[:, seen] / size[seen]
+        cosine = unit.T @ unit
+        return tuple(
+            (self.variables[seen[a]].label, self.variables[seen[b]].label, float(cosine[a, b]))
+            for a in range(len(seen))
+            for b in range(a + 1, len(seen))
+            if abs(cosine[a, b]) >= ALIKE
+        )
+
+    @property
+    def unseen(self) -> tuple[str, ...]:
+        """Settings that do not move the flank at all."""
+        size = np.linalg.norm(self.jacobian, axis=0)
+        return tuple(
+            variable.label
+            for variable, length in zip(self.variables, size, strict=True)
+            if length <= RANK * self.singular_values[0]
+        )
+
+    def direction(self, k: int) -> dict[str, float]:
+        """The settings that make up direction k, in parts of their bounds, the largest component positive."""
+        row = self._svd[2][k]
+        row = row * np.sign(row[np.argmax(np.abs(row))])
+        named = {v.label: float(c) for v, c in zip(self.variables, row, strict=True) if c and abs(c) >= _NAMED}
+        return dict(sorted(named.items(), key=lambda item: -abs(item[1])))
+
+    @property
+    def weak(self) -> tuple[int, ...]:
+        """The directions whose singular value is below one hundredth of the largest: hardly told apart."""
+        return tuple(int(k) for k in np.flatnonzero(self.singular_values < WEAK * self.singular_values[0]))
+
+    @property
+    def correction(self) -> np.ndarray:
+        """The change (p,) in parts of the bounds that takes the deviation away, to first order, with least change."""
+        return np.linalg.pinv(self.jacobian, rcond=RANK) @ self.deviation
+
+    @property
+    def is_simple(self) -> bool:
+        """Whether strong directions alone, within the bounds, take away all that can be: the target is simple.
+
+        A complex target needs weak directions, and with them large changes that nearly cancel each other.
+        """
+        U, S, V = self._svd
+        strong = WEAK * S[0] <= S
+        change = V[strong].T @ ((U[:, strong].T @ self.deviation) / S[strong])
+        left = self.deviation - self.jacobian @ change
+        enough = float(np.sqrt(np.mean(left**2))) <= max(self.best_rms * (1 + _LOSS_PART), self.best_rms + _LOSS)
+        return enough and bool((np.abs(change) <= 1).all())
+
+    def choose(self) -> Choice:
+        """The fewest settings, taken one by one, each that with which the least is left, until little is lost."""
+        best, taken, left = self.best_rms, [], []  # type: ignore[var-annotated]
+        names = list(self.names)
+        while names:
+            trial = {name: self._left(self._columns([*taken, name])) for name in names}
+            name = min(trial, key=lambda one: trial[one])
+            taken.append(name)
+            names.remove(name)
+            left.append(trial[name])
+            if left[-1] <= max(best * (1 + _LOSS_PART), best + _LOSS):
+                break
+        return Choice(tuple(taken), tuple(left), left[-1] - best)
+
+    def _columns(self, names: Sequence[str]) -> np.ndarray:
+        return self.jacobian[:, [k for k, variable in enumerate(self.variables) if variable.name in names]]
+
+
+def analyse(targets: Sequence[FlankTarget], free: Sequence[str] = FREE, run: Run = as_it_stands) -> Analysis:
+    """What the free settings can do to the deviations of some targets, common to all of them."""
+    variables = variables_of(free, len(targets))
+    problem = Problem(targets, variables, None, None, run)
+    rows = [
+        problem.columns(located(target, target.vector, run, problem.moving)[1], k) for k, target in enumerate(targets)
+    ]
+    return Analysis(tuple(free), variables, np.concatenate(rows), problem.measured)
+
+
+def projection_residual(jacobian: np.ndarray, deviation: np.ndarray) -> np.ndarray:
+    """What of deviations (m,) lies outside of the columns of a Jacobian (m,p): no setting can take it away."""
+    U, S, _ = np.linalg.svd(jacobian, full_matrices=False)
+    shown = U[:, RANK * S[0] < S]
+    return deviation - shown @ (shown.T @ deviation)

@@ -1,0 +1,147 @@
+"""Bounded, scaled Levenberg-Marquardt with a trust region: one step as a Kernel, and the iteration that judges steps.
+
+The variables are scaled by their bounds, so that a change is as large as the part of its bound that it takes. A step
+solves, in a few passes that fix what has reached its bound,
+
+    (JᵀJ + λ μ I) s = -Jᵀr,   lower <= v + s <= upper,   μ the mean of the diagonal of JᵀJ
+
+λ is the trust region: it falls where the exact residual follows the prediction, and grows where it does not, or where
+there is no residual at all. It never falls below a floor, so that a direction whose singular value is less than 1e-6
+of the largest is left alone: among solutions that fit alike, the one that changes least.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import casadi as ca
+import numpy as np
+
+from derivations import Quantity
+from gearmath.lowering import Kernel
+
+#: Least damping, against the mean of the diagonal of JᵀJ: the square of the singular value that still counts.
+FLOOR = 1e-13
+#: Passes of one step, each fixing what has run against its bound in the pass before.
+_PASSES = 4
+#: The first step trusts the model this far; a step that is refused makes λ at least so large.
+_FIRST, _REFUSED = 1e-9, 1e-6
+_LARGEST = 1e8
+_MOST_ITERATIONS = 60
+#: Converged: an undamped step would change the residual by less than this in the RMS, and less than this part. [mm]
+_STILL, _STILL_PART = 1e-10, 1e-7
+
+Fit = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray] | None]
+
+
+def _quantity(name: str, description: str, latex: str, *shape: int) -> Quantity:
+    return Quantity(name, description, "mixed", latex, shape=shape)
+
+
+@cache
+def compensation_step(p: int) -> Kernel:
+    """Kernel: one damped least-squares step of p scaled variables within their bounds, and what it promises.
+
+    ``promised`` is what the linear model says that the sum of squared residuals falls by.
+    """
+    matrix, fixed = ca.SX.sym("matrix", p, p), ca.SX.sym("fixed", p)
+    right, place = ca.SX.sym("right", p), ca.SX.sym("place", p)
+    keep = 1 - fixed
+    masked = matrix * (keep @ keep.T) + ca.diag(fixed)
+    # what is fixed has its place, and pulls at the others through the matrix
+    solved = _solve(masked, keep * (right - matrix @ (fixed * place)) + fixed * place)
+    solve = ca.Function("solve", [matrix, fixed, right, place], [solved])
+    quantities = (
+        _quantity("normal_matrix", "transposed Jacobian times Jacobian of the residuals, scaled", "J^TJ", p, p),
+        _quantity("gradient", "transposed Jacobian times residuals, scaled", "J^Tr", p),
+        _quantity("variables", "scaled variables now", r"\mathbf{v}", p),
+        _quantity("lower", "least scaled variables; as the greatest where a variable is not free", r"\mathbf{v}_-", p),
+        _quantity("upper", "greatest scaled variables", r"\mathbf{v}_+", p),
+        Quantity("damping", "damping against the mean of the diagonal", "1", r"\lambda", (0.0, 1e9)),
+    )
+    A, g, v, lower, upper, damping = (ca.MX.sym(q.name, *(q.shape or (1,))) for q in quantities)
+    damped = A + damping * (ca.trace(A) / p + 1e-300) * ca.MX.eye(p)
+    low, high = lower - v, upper - v
+    fixed_now = ca.logic_or(ca.logic_and(low >= 0, g >= 0), ca.logic_and(high <= 0, g <= 0))
+    place_now = ca.fmin(ca.fmax(0, low), high)
+    for _ in range(_PASSES):
+        step = solve(damped, fixed_now, -g, place_now)
+        place_now = ca.if_else(fixed_now, place_now, ca.fmin(ca.fmax(step, low), high))
+        fixed_now = ca.logic_or(fixed_now, ca.logic_or(step < low, step > high))
+    step = place_now
+    function = ca.Function(
+        "compensation_step", [A, g, v, lower, upper, damping],
+        [step, -(2 * ca.dot(g, step) + ca.bilin(A, step, step))],
+        [quantity.name for quantity in quantities], ["step", "promised"],
+    )  # fmt: skip
+    return Kernel(
+        function,
+        f"One bounded Levenberg-Marquardt step of {p} scaled settings, and the fall of the sum of squares it promises.",
+        quantities,
+        (
+            _quantity("step", "change of the scaled variables", r"\mathbf{s}", p),
+            Quantity("promised", "fall of the sum of squares by the linear model", "mm2", "p"),
+        ),
+        "Levenberg-Marquardt in scaled variables, active set of bounds",
+    )
+
+
+def _solve(matrix: ca.SX, right: ca.SX) -> ca.SX:
+    """The solution (p,) of a positive definite system by Cholesky's factors, without pivoting code in C."""
+    p = right.shape[0]
+    R = ca.chol(matrix)  # upper: Rᵀ R
+    y: list[ca.SX] = []
+    for k in range(p):
+        y.append((right[k] - sum((R[j, k] * y[j] for j in range(k)), ca.SX(0))) / R[k, k])
+    x: list[ca.SX] = [ca.SX(0)] * p
+    for k in reversed(range(p)):
+        x[k] = (y[k] - sum((R[k, j] * x[j] for j in range(k + 1, p)), ca.SX(0))) / R[k, k]
+    return ca.vertcat(*x)
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """Scaled variables (p,), residual (m,) and Jacobian (m,p) there, steps tried, and whether it converged."""
+
+    variables: np.ndarray
+    residual: np.ndarray
+    jacobian: np.ndarray
+    iterations: int
+    converged: bool
+
+
+def minimize(fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | None = None) -> Minimum:
+    """The variables within their bounds at which the residuals of ``fit`` are least, from zero on.
+
+    ``fit`` returns residuals (m,) and their Jacobian (m,p), or None where the surface cannot be found; it must succeed
+    at zero. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls.
+    """
+    p = len(lower)
+    step = step or compensation_step(p)
+    v, damping, iterations = np.zeros(p), _FIRST, 0
+    start = fit(v)
+    if start is None:
+        raise ValueError("there is no residual at the start")
+    residual, jacobian = start
+    while iterations < _MOST_ITERATIONS:
+        cost, matrix, gradient = residual @ residual, jacobian.T @ jacobian, jacobian.T @ residual
+        _, possible = step(matrix, gradient, v, lower, upper, FLOOR)
+        if possible <= len(residual) * _STILL**2 + _STILL_PART**2 * cost:
+            return Minimum(v, residual, jacobian, iterations, True)
+        iterations += 1
+        change, promised = step(matrix, gradient, v, lower, upper, damping)
+        tried = fit(np.clip(v + change, lower, upper)) if np.isfinite(change).all() else None
+        gained = -np.inf if tried is None else cost - tried[0] @ tried[0]
+        if tried is None or gained <= 0:
+            damping = max(16 * damping, _REFUSED)
+            if damping > _LARGEST:
+                break
+            continue
+        v, (residual, jacobian) = np.clip(v + change, lower, upper), tried
+        if gained > 0.75 * promised:
+            damping = max(damping / 100, FLOOR)
+        elif gained < 0.25 * promised:
+            damping *= 4
+    return Minimum(v, residual, jacobian, iterations, False)

@@ -1,0 +1,106 @@
+"""What a correction may change: settings and coefficients of their motion, each with its bound, by name.
+
+A coefficient of θ^j of a machine setting is called ``radial_distance.j``. The whole of a flank is one vector (82,):
+the 12 settings, then the motion (10,7) row by row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from derivations import notation
+from gearmath.errors import InputError
+from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS, Member
+
+#: How far a setting may be changed, mm or rad: beyond this something else is wrong with the machine.
+BOUNDS = {
+    "radial_distance": 1.0, "cradle_angle": 0.02, "cutter_tilt": 0.02, "cutter_swivel": 0.2, "blank_offset": 1.0,
+    "sliding_base": 1.0, "machine_center_to_crossing_point": 1.0, "machine_root_angle": 0.01, "ratio_of_roll": 0.02,
+    "work_rotation_offset": 0.02, "blade_point_radius": 1.0, "blade_pressure_angle": 0.01,
+}  # fmt: skip
+#: The settings that are corrected: those of the machine, without tilt; cradle angle stands also for work rotation.
+FREE = (
+    "radial_distance", "cradle_angle", "blank_offset", "sliding_base", "machine_center_to_crossing_point",
+    "machine_root_angle", "ratio_of_roll",
+)  # fmt: skip
+#: The motions that are corrected besides, when asked: modified roll, helical motion, and those of the cutter's centre.
+HIGHER_ORDER = (
+    "work_rotation_offset.2", "work_rotation_offset.3", "sliding_base.1", "sliding_base.2", "radial_distance.1",
+    "blank_offset.1",
+)  # fmt: skip
+#: A coefficient of θ^j may move the machine as far as the setting may be off, where the cradle has turned by this.
+_ROLL = 0.5
+
+_POWERS = notation.motion.shape[1]
+#: The names of the whole vector (82,) of a flank.
+NAMES = (*SETTINGS, *(f"{name}.{power}" for name in MACHINE_SETTINGS for power in range(1, _POWERS + 1)))
+SIZE = len(NAMES)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One column of a fit: a name, and the target it belongs to, or None where all targets share it."""
+
+    name: str
+    target: int | None = None
+
+    @property
+    def index(self) -> int:
+        """Its place in the whole vector (82,) of a flank."""
+        return NAMES.index(self.name)
+
+    @property
+    def bound(self) -> float:
+        """How far it may be changed, mm or rad (per rad^j)."""
+        name, _, power = self.name.partition(".")
+        return BOUNDS[name] / _ROLL ** int(power or 0)
+
+    @property
+    def label(self) -> str:
+        """The name, with the number of its target where it does not belong to all."""
+        return self.name if self.target is None else f"{self.name}[{self.target}]"
+
+
+def variables_of(names: Sequence[str], targets: int) -> tuple[Variable, ...]:
+    """The columns of a fit of so many targets: machine settings are shared, every target has its own blade.
+
+    Raises InputError naming a name that is no setting and no coefficient of a motion, or that is there twice.
+    """
+    found: list[Variable] = []
+    for name in names:
+        if name not in NAMES:
+            raise InputError(
+                f"setting = {name!r}: must be one of {', '.join(SETTINGS)}, or a coefficient of a motion like "
+                f"{HIGHER_ORDER[0]} (name.1 to name.{_POWERS})"
+            )
+        if any(variable.name == name for variable in found):
+            raise InputError(f"setting = {name!r}: is named twice")
+        own = name.startswith("blade_") and targets > 1
+        found += [Variable(name, k) for k in range(targets)] if own else [Variable(name)]
+    if not found:
+        raise InputError("settings: at least one must be free")
+    return tuple(found)
+
+
+def free_settings(member: Member, higher_order: bool = False) -> tuple[str, ...]:
+    """The settings that are corrected where none are named.
+
+    A Formate flank does not roll: the work rotation takes the place of the ratio of roll, and nothing moves.
+    """
+    if member.generation == "formate":
+        return tuple("work_rotation_offset" if name == "ratio_of_roll" else name for name in FREE)
+    return FREE + (HIGHER_ORDER if higher_order else ())
+
+
+def whole(settings: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Settings (12,) and motion (10,7) as the whole vector (82,) of a flank."""
+    return np.concatenate([settings, motion.ravel()])
+
+
+def parts(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Settings (...,12) and motion (...,10,7) of whole vectors (...,82)."""
+    settings, motion = vector[..., : len(SETTINGS)], vector[..., len(SETTINGS) :]
+    return settings, motion.reshape(*motion.shape[:-1], *notation.motion.shape)
