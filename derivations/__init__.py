@@ -58,7 +58,7 @@ def expressions() -> Iterator[Expression]:
     yield probing.effective_radius()
     yield from (compensation.straight_sensitivity(), compensation.arc_sensitivity())
     yield from (compensation.coefficient_sensitivity(), compensation.arc_height(), compensation.root_place())
-    yield from (compensation.conjugate_place(), compensation.stock_rates())
+    yield compensation.conjugate_place()
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (
         gearbox.nearest_position(),

@@ -1,8 +1,8 @@
-"""Chapter 20. Compensation: what settings and motions do to a flank along a line, its root, its mate and its stock.
+"""Chapter 20. Compensation: what settings and motions do to a flank along a line and to its root, and what a mate feels.
 
 The flank of other settings crosses a line P + t d at a point with the normal n. Whatever the cutting method,
 
-    ∂t/∂x_k = n·R_k / (n·d)                     R_k = ∂R/∂x_k at fixed u, β, θ                    (20.1)
+    ∂t/∂x_k = n·R_k / (n·d)                     R_k = ∂R/∂x_k(θ) at fixed u, β, θ                 (20.1)
     ∂t/∂m_kj = θ^j ∂t/∂x_k                      the motion (10.1) of a machine setting            (20.2)
 
 The root line is where the tip of the blade touches the flank: at the height zero, which on an arc blade is
@@ -17,10 +17,9 @@ has turned by ψ: with M = G × n and m = √(M_x² + M_y²), the relative rotat
     ω·Rz(ψ) M = 0:   ψ = -atan2(M_y, M_x) ± acos(-(cos Σ + z_m/z) M_z / (m sin Σ))                 (20.5)
     place on the mate:   z_m = a·Rz(ψ) G,   r_m = |Rz(ψ) G - z_m a|                                (20.6)
 
-where z_m, z are the teeth of mate and member: metal left on there comes to the mate as metal left on it. Turned by ε
-and moved on by a, a flank has more stock by
-
-    ε (z_w × R)·n + a n_z                                                                          (20.7)
+where z_m, z are the teeth of mate and member. Both surfaces have their normal in common there: the envelope of a
+flank that is displaced by δ along its normals is displaced by δ. So metal left on the flank does to the pair what as
+much metal left on the mate does, at that place.
 """
 
 from __future__ import annotations
@@ -173,19 +172,6 @@ def conjugate_place() -> Expression:
     )
 
 
-@cache
-def stock_rates() -> Expression:
-    """(20.7) as an Expression."""
-    R, n = q.point_w.symbol, q.normal_w.symbol
-    return Expression(
-        "stock_rates",
-        "Stock gained per unit of a rotation of the work and of an advance along its axis (20.7).",
-        (q.point_w, q.normal_w),
-        ((q.turning_rate, R[0] * n[1] - R[1] * n[0]), (q.advance_rate, n[2])),
-        source="first-order motion of a rigid body along the normals",
-    )
-
-
 def prove_rates_are_those_of_the_family_of_face_milling() -> None:
     """(20.1) Limit case: without motion and indexing, Rz(-φ_w) R_k is ∂R/∂x_k of (3.1), which (6.2) takes along n."""
     still = generation.still()
@@ -274,13 +260,3 @@ def prove_height_of_an_arc_falls_to_the_tip_plane_where_its_sine_says_so() -> No
     _, center_height, r = q.blade_arc.symbols
     at = arc_height()["arc_tip_height"].subs(q.arc_angle.symbol, sp.asin(center_height / r))
     assert is_zero(at)
-
-
-def prove_stock_of_a_turned_and_advanced_flank_is_its_first_order_motion() -> None:
-    """(20.7) The derivatives of (Rz(ε) R + a z_w)·n by ε and a at zero."""
-    eps, a = sp.symbols("eps a", real=True)
-    R, n = sp.Matrix(q.point_w.symbol), sp.Matrix(q.normal_w.symbol)
-    moved = (Rz(eps) * R + a * sp.Matrix(K)).dot(n)
-    rates = stock_rates()
-    assert is_zero(moved.diff(eps).subs(eps, 0) - rates["turning_rate"])
-    assert is_zero(moved.diff(a) - rates["advance_rate"])

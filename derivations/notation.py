@@ -578,7 +578,3 @@ mate_ratio = _factor("mate_ratio", "z_m/z", 0.1, 10.0, "teeth of the mate over t
 meeting_angle = Quantity("meeting_angle", "rotation at which a point of a flank meets the mate", "rad", r"\psi")
 mate_axial = _length("mate_axial", "z_m", -500.0, 500.0, "coordinate of that point along the axis of the mate")
 mate_radial = _length("mate_radial", "r_m", 0.0, 500.0, "distance of that point from the axis of the mate")
-turning_rate = Quantity("turning_rate", "stock gained per radian of a rotation of the work", "mm/rad",
-                        r"\partial\delta/\partial\varepsilon", scale=300.0)  # fmt: skip
-advance_rate = Quantity("advance_rate", "stock gained per mm of an advance along the work's axis", "1",
-                        r"\partial\delta/\partial a")  # fmt: skip

@@ -5,7 +5,17 @@ from __future__ import annotations
 from functools import cache
 
 from derivations import (
-    axes, blank, compensation, cutter, deviation, flank, generation, meshing, probing, registration, spacing,
+    axes,
+    blank,
+    compensation,
+    cutter,
+    deviation,
+    flank,
+    generation,
+    meshing,
+    probing,
+    registration,
+    spacing,
 )  # fmt: skip
 from gearmath.lowering import Kernel, lower
 
@@ -50,7 +60,6 @@ _EXPRESSIONS = {
     "arc_height": compensation.arc_height,
     "root_place": compensation.root_place,
     "conjugate_place": compensation.conjugate_place,
-    "stock_rates": compensation.stock_rates,
 }
 
 
