@@ -1,4 +1,4 @@
-"""Chapter 20. Compensation: what settings and motions do to a flank along a line and to its root, and what a mate feels.
+"""Chapter 20. Compensation: what settings and motions do to a flank on a line and to its root, and what a mate feels.
 
 The flank of other settings crosses a line P + t d at a point with the normal n. Whatever the cutting method,
 
