@@ -203,14 +203,31 @@ last_trigger = _length("last_trigger", "X_2", -500.0, 500.0, "position at the to
 ring_center = _length("ring_center", "L", -500.0, 500.0, "known position of the centre of the ring")
 ring_diameter = _length("ring_diameter", "D", 5.0, 200.0, "inner diameter of the calibration ring")
 axis_offset = _length("axis_offset", "o", -5.0, 5.0, "offset of the tip along one axis")
+ring_axis = Quantity(
+    "ring_axis",
+    "known place of the axis of the ring, X Y",
+    "mm",
+    r"\mathbf{L}",
+    (-500.0, 500.0),
+    shape=(2,),
+    scale=300.0,
+)
+ring_rest = _length("ring_rest", r"\rho", -1e3, 1e3, "distance that a touch in the ring leaves unexplained")
+seat_height = _length("seat_height", "D", 0.0, 900.0, "height of the seat of the ring: Z of a tip centre there")
+ring_height = _length("ring_height", "F", 1.0, 100.0, "height of the ring above its seat")
+face_trigger = _length("face_trigger", "Z_c", 0.0, 900.0, "position of Z at the touch on the face of the ring")
 trigger = _vector("trigger", r"\mathbf{p}", "mm", 300.0, 500.0, "positions X, Y, Z at which the probe triggered")
 sphere_center = _vector("sphere_center", r"\mathbf{c}", "mm", 300.0, 500.0, "centre of the calibration sphere, X Y Z")
 sphere_radius = _length("sphere_radius", "R_s", 2.0, 50.0, "radius of the calibration sphere")
 touch_normal = _vector(
     "touch_normal", r"\mathbf{m}", "1", 1.0, 1.0, "unit normal out of what is touched, axes of the machine"
 )
-lobing = _length("lobing", "a", 0.0, 0.02, "amplitude by which the effective radius varies around the stylus")
-lobing_phase = _angle("lobing_phase", r"\varphi_0", -pi, pi, "azimuth of a lobe of the effective radius")
+lobing = Quantity(
+    "lobing", "lobes of the effective radius: amplitude times cosine and sine of three times the azimuth of one", "mm",
+    r"\mathbf{a}", (-0.02, 0.02), shape=(2,), scale=1.0, default=0.0,
+)  # fmt: skip
+lobing_amplitude = _length("lobing_amplitude", "a", 0.0, 0.02, "amplitude of the lobes of the effective radius")
+lobing_phase = _angle("lobing_phase", r"\varphi_0", -pi / 3, pi / 3, "azimuth of a lobe of the effective radius")
 effective_radius = _length("effective_radius", "r", 0.0, 5.0, "radius of the tip that a touch in its direction has")
 sphere_rest = _length("sphere_rest", r"\rho", -1e3, 1e3, "distance that a touch on the sphere leaves unexplained")
 

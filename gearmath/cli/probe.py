@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from gearmath.cli.common import MACHINE, MEMBER, SET, about, output
 from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    from gearmath.quality.calibration import Tip
 
 _PROGRAM = ".MPF; its name becomes the program name"
 CALIBRATION = click.option(
@@ -99,29 +105,47 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
 @click.command()
 @_RAW
 @CALIBRATION
+@click.option("--lobing", is_flag=True, help="Also find the lobes of the pre-travel, from the touches on the sphere.")
 @_RUN
 @output("calibration, TOML")
-def calibrate(raw: Path, calibration: str, run: int | None, target: Path) -> None:
+def calibrate(raw: Path, calibration: str, lobing: bool, run: int | None, target: Path) -> None:
     """The tip of the probe from its touches on the sphere or, where there are none, in the ring."""
-    from gearmath.quality.touches import calibrate_on_ring, calibrate_on_sphere
+    from gearmath.quality.calibration import calibrate_on_ring, calibrate_on_sphere
     from gearmath.specs.calibration import load_calibration, save_calibration
     from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import read_calibration_csv
+    from gearmath.specs.touch_csv import SPHERE, read_calibration_csv
 
     source = find(calibration)
     before, found = load_calibration(source), read_calibration_csv(raw, run)
     with about(raw):
-        if before.sphere is not None and (found.target == "sphere").any():
-            tip = calibrate_on_sphere(found, before.sphere, before)
-            offset = tip.offset
+        if before.sphere is not None and (found.target == SPHERE).any():
+            tip = calibrate_on_sphere(found, before.sphere, before, lobing)
+        elif lobing:
+            raise InputError("--lobing needs touches on the sphere; there are none")
         elif before.ring is not None:
-            tip = calibrate_on_ring(found, before.ring)
-            offset = tip.offset + before.tip_offset * (0, 0, 1)  # the ring tells nothing of Z
+            tip = calibrate_on_ring(found, before.ring, before)
         else:
             raise InputError(f"{source} has neither the ring nor the sphere that was touched")
-    save_calibration(source, target, tip.radius, offset)
-    place = ", ".join(f"{value:.5f}" for value in offset)
-    click.echo(f"{target}: tip radius {tip.radius:.5f} mm, offset {place} mm, residual {tip.residual * 1000:.3f} um")
+    save_calibration(source, target, tip.radius, tip.offset, tip.lobes)
+    for line in _tip_lines(tip):
+        click.echo(line)
+    click.echo(f"{target}: written")
+
+
+def _tip_lines(tip: Tip) -> Iterator[str]:
+    """Every value with its standard uncertainty, then what the touches do not fit."""
+    yield f"tip radius {tip.radius:.5f} mm, u {_um(tip.radius_uncertainty)}"
+    for axis, value, u in zip("XYZ", tip.offset, tip.offset_uncertainty, strict=True):
+        yield f"offset {axis} {value:.5f} mm, " + ("kept" if math.isnan(u) and axis == "Z" else f"u {_um(u)}")
+    if tip.lobes[0] > 0.0:
+        yield f"lobes {tip.lobes[0] * 1000:.3f} um, at {math.degrees(tip.lobes[1]):.2f} degrees"
+    yield (
+        f"{len(tip.fit.residuals)} touches: noise {_um(tip.fit.noise)}, largest residual {tip.residual * 1000:.3f} um"
+    )
+
+
+def _um(value: float) -> str:
+    return "not known" if math.isnan(value) else f"{value * 1000:.3f} um"
 
 
 def _teeth(text: str, teeth: int) -> list[int]:

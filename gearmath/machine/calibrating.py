@@ -1,4 +1,4 @@
-"""Calibration programs: a ring for radius and offset of the tip in X and Y, a sphere for all of it."""
+"""Calibration programs: a ring for radius and offset of the tip, its face for that in Z, a sphere for all of it."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from gearmath import __version__
 from gearmath.errors import InputError
 from gearmath.machine.probe_words import Blocks
 from gearmath.machine.probing import APPROACH, APPROACH_FEED, CLEARANCE, MEASURING_FEED
-from gearmath.specs.calibration import Calibration, Ring, Sphere
+from gearmath.specs.calibration import Calibration, Face, Ring, Sphere
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
-from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING
+from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING, RING_FACE, SPHERE
 
 #: Targets in the ring, low and high, for X and for Y.
 PAIRS = (RING[:2], RING[2:])
@@ -51,6 +51,9 @@ def calibration_program(machine: MillingMachine, calibration: Calibration, progr
         if calibration.ring is not None:
             yield from _ring(blocks, calibration, calibration.ring, level)
             yield f"G0 {top}"
+            if calibration.ring.face is not None:
+                yield from _face(blocks, calibration, calibration.ring, calibration.ring.face, level)
+                yield f"G0 {top}"
         if calibration.sphere is not None:
             yield from _sphere(blocks, calibration, calibration.sphere, level)
             yield f"G0 {top}"
@@ -63,6 +66,8 @@ def _level(machine: MillingMachine, calibration: Calibration) -> float:
     """Z of all sideways motion: well above ring and sphere. Raises InputError where the travel does not allow it."""
     ring, sphere = calibration.ring, calibration.sphere
     heights = [0.0 if ring is None else ring.center[2] + calibration.stylus_length]
+    if ring is not None and ring.face is not None:
+        heights.append(ring.face.seat + ring.face.height + calibration.tip_radius + CLEARANCE)
     if sphere is not None:
         heights.append(sphere.center[2] + sphere.diameter / 2 + calibration.tip_radius + CLEARANCE)
     level = max(heights) - min(calibration.offset[2], 0.0)
@@ -71,6 +76,8 @@ def _level(machine: MillingMachine, calibration: Calibration) -> float:
         if place is None:
             continue
         reach = place.diameter / 2 + calibration.tip_radius + APPROACH
+        if isinstance(place, Ring) and place.face is not None:
+            reach = max(reach, (place.diameter + place.face.width) / 2)
         for axis, (least, most) in enumerate(
             ((place.center[0] - reach, place.center[0] + reach), (place.center[1] - reach, place.center[1] + reach),
              (place.center[2], level))
@@ -105,6 +112,23 @@ def _ring(blocks: Blocks, calibration: Calibration, ring: Ring, level: float) ->
         yield f"G1 X=R10 Y=R11 F{APPROACH_FEED:.3f}"
 
 
+def _face(blocks: Blocks, calibration: Calibration, ring: Ring, face: Face, level: float) -> Iterator[str]:
+    """Touches from above in the middle of the wall, at the four sides of the bore."""
+    x, y, _ = np.array(ring.center) - calibration.tip_offset
+    height = face.seat + face.height + calibration.tip_radius - calibration.tip_offset[2]
+    away = (ring.diameter + face.width) / 2
+    yield "; face of the ring"
+    for off_x, off_y in ((-away, 0.0), (away, 0.0), (0.0, -away), (0.0, away)):
+        place = f"{blocks.length('X', x + off_x)} {blocks.length('Y', y + off_y)}"
+        start = blocks.length("Z", height + APPROACH)
+        yield f"G0 {place}"
+        yield f"G0 {blocks.length('Z', level)}"
+        yield from blocks.guarded(start, APPROACH_FEED, level)
+        end = f"X=IC(0) Y=IC(0) {blocks.length('Z', height - calibration.overtravel)}"
+        yield from blocks.touch(end, start, MEASURING_FEED, APPROACH_FEED, level)
+        yield from blocks.hand_over(RING_FACE)
+
+
 def _sphere(blocks: Blocks, calibration: Calibration, sphere: Sphere, level: float) -> Iterator[str]:
     """Touches along the normals of the sphere; down to each of them from above, outside of the sphere."""
     center, reach = np.array(sphere.center) - calibration.tip_offset, sphere.diameter / 2 + calibration.tip_radius
@@ -118,7 +142,7 @@ def _sphere(blocks: Blocks, calibration: Calibration, sphere: Sphere, level: flo
         yield from blocks.guarded(z, APPROACH_FEED, level)
         target = " ".join(blocks.axes(np.array([*end, 0.0, 0.0]))[:3])
         yield from blocks.touch(target, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level)
-        yield from blocks.hand_over("sphere")
+        yield from blocks.hand_over(SPHERE)
 
 
 def _number(value: float) -> str:

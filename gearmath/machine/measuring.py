@@ -14,6 +14,7 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
+from gearmath.machine.probing import lobing
 from gearmath.machine.simulation import mounted
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
@@ -35,8 +36,7 @@ def measure_member(true: FlankFile, member: Member, name: str, shop: SimulatedMa
     axes[:, :3] += np.linspace(0.0, 1.0, len(file))[:, None] * shop.measuring.drift.vector
     seen, _ = kernel("probe_tip")(axes, *place[2:])
     (normal,) = kernel("probe_axes")(file.normal, *place)  # about the origin: the normal in the axes of the machine
-    lobing = (shop.probe.lobing_um / 1000, math.radians(shop.probe.lobing_phase))
-    (late,) = kernel("effective_radius")(normal[:, :3], 0.0, *lobing)
+    (late,) = kernel("effective_radius")(normal[:, :3], 0.0, lobing(shop.probe))
     _, deviation = kernel("touched_point")(seen, 0.0, nominal, file.normal)
     sigma = shop.probe.sigma_um / 1000 / math.sqrt(shop.probe.touches)
     noise = np.random.default_rng([shop.seed, zlib.crc32(name.encode()), run]).standard_normal(len(file))

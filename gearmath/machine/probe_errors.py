@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from gearmath.bevel.kernels import kernel
 from gearmath.machine.control import Probe
+from gearmath.machine.probing import lobing
 from gearmath.machine.simulation import with_axis_errors
 from gearmath.specs.simulated_machine import SimulatedMachine
 
@@ -38,7 +37,6 @@ class ErringProbe:
         way = (end - start)[:3]
         length = float(np.linalg.norm(way))
         share = float(np.linalg.norm((found - real[0])[:3]) / np.linalg.norm((real[1] - real[0])[:3]))
-        lobing = (self.shop.probe.lobing_um / 1000, math.radians(self.shop.probe.lobing_phase))
-        (early,) = kernel("effective_radius")(-way / length, 0.0, *lobing)
+        (early,) = kernel("effective_radius")(-way / length, 0.0, lobing(self.shop.probe))
         off = float(early) + self.shop.probe.sigma_um / 1000 * self._random.standard_normal()
         return start + (share - off / length) * (end - start)

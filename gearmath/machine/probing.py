@@ -21,6 +21,7 @@ from gearmath.machine.probe_words import Blocks
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member, design_sha256
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
+from gearmath.specs.simulated_machine import Probe
 
 #: The tip starts its touch this far from the flank, or half way to the opposite one. [mm]
 APPROACH = 1.5
@@ -55,6 +56,12 @@ class Targets:
 def probe_height(machine: MillingMachine, calibration: Calibration) -> float:
     """H [mm] of equation (15.3)."""
     return machine.gauge_line_height + calibration.length
+
+
+def lobing(probe: Calibration | Probe) -> np.ndarray:
+    """Lobes (2,) [mm] of equation (15.8)."""
+    (lobes,) = kernel("lobing_of")(probe.lobing_um / 1000, math.radians(probe.lobing_phase))
+    return lobes
 
 
 def tip_positions(

@@ -1,40 +1,26 @@
-"""From raw touches to measured points, and from touches on ring and sphere to the tip that made them."""
+"""From raw touches to measured points: corrected for the tip, averaged, with the deviation from the nominal flank."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cache
 
-import casadi as ca
 import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
-from gearmath.errors import ComputationError, InputError
-from gearmath.machine.calibrating import PAIRS
+from gearmath.errors import InputError
 from gearmath.machine.mill import flank_header
-from gearmath.machine.probing import probe_height
+from gearmath.machine.probing import lobing, probe_height
 from gearmath.specs.bevel_set import FLANKS, Member
-from gearmath.specs.calibration import Calibration, Ring, Sphere
+from gearmath.specs.calibration import Calibration
 from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.milling_machine import MillingMachine
-from gearmath.specs.touch_csv import CalibrationTouches, Touches
+from gearmath.specs.touch_csv import Touches
 
 #: A touch this far from its nominal place is of another point, set or set-up. [mm]
 _SAME_POINT = 3.0
 #: Touches of one point this far from their mean are not all of the flank. [mm]
 _SAME_TOUCH = 0.02
-_STEPS, _CONVERGED = 20, 1e-12
-
-
-@dataclass(frozen=True)
-class Tip:
-    """A calibrated tip: effective radius and offset (3,) [mm], and the largest residual of its touches [mm]."""
-
-    radius: float
-    offset: np.ndarray
-    residual: float
 
 
 def measured_member(
@@ -59,7 +45,10 @@ def measured_member(
         touches.axes, probe_height(machine, calibration), calibration.tip_offset, machine.pivot
     )
     point, normal = _nominal(touches, member, name, grid)
-    contact, deviation = kernel("touched_point")(tip, calibration.tip_radius, point, normal)
+    # at the origin of the work, without offsets: the normal in the axes of the machine
+    (machine_normal,) = kernel("probe_axes")(normal, *touches.axes[:, 3:].T, 0.0, np.zeros(3), np.zeros(3))
+    (radius,) = kernel("effective_radius")(machine_normal[:, :3], calibration.tip_radius, lobing(calibration))
+    contact, deviation = kernel("touched_point")(tip, radius, point, normal)
     _check_place(contact - point, touches)
     header = {**flank_header(member, name, grid), "tip_radius_mm": f"{calibration.tip_radius:g}"}
     return _averaged(header, touches, contact, normal, deviation)
@@ -121,52 +110,3 @@ def _check_place(off: np.ndarray, touches: Touches) -> None:
             f"{_named(touches, k)}: the touch lies {distance[k]:.3f} mm from its nominal place, the limit is "
             f"{_SAME_POINT} mm; is it of this set, machine and calibration?"
         )
-
-
-def calibrate_on_ring(touches: CalibrationTouches, ring: Ring) -> Tip:
-    """Radius and X, Y offsets of the tip out of the centred pairs of touches in a ring (15.6); Z is not found.
-
-    Raises InputError where a touch of a pair is missing.
-    """
-    offset, radii = np.zeros(3), []
-    for axis, pair in enumerate(PAIRS):
-        places = []
-        for target in pair:
-            found = touches.axes[touches.target == target, axis]
-            if not len(found):
-                raise InputError(f"the touch {target!r} is missing: the ring needs {', '.join(sum(PAIRS, ()))}")
-            places.append(found[-1])  # the last pair is the centred one
-        (offset[axis],), (radius,) = kernel("ring_calibration")(
-            np.array(places[:1]), np.array(places[1:]), ring.center[axis], ring.diameter
-        )
-        radii.append(float(radius))
-    return Tip(float(np.mean(radii)), offset, float(np.ptp(radii)) / 2)
-
-
-def calibrate_on_sphere(touches: CalibrationTouches, sphere: Sphere, start: Calibration) -> Tip:
-    """Radius and offset of the tip that leave the touches on a sphere the least residual (15.7), by Gauss-Newton.
-
-    Raises InputError for too few touches, ComputationError if no tip explains them.
-    """
-    triggers = touches.axes[touches.target == "sphere", :3]
-    if len(triggers) < 5:
-        raise InputError(f"{len(triggers)} touches on the sphere: at least 5 are needed")
-    center, radius = np.array(sphere.center), sphere.diameter / 2
-    tip = np.array([*start.offset, start.tip_radius])
-    for _ in range(_STEPS):
-        rest, slope = (np.array(out) for out in _sphere_rows(len(triggers))(triggers.T, tip, center, radius))
-        change, *_ = np.linalg.lstsq(slope, -rest.ravel(), rcond=None)
-        tip = tip + change
-        if np.abs(change).max() < _CONVERGED:
-            return Tip(float(tip[3]), tip[:3], float(np.abs(rest).max()))
-    raise ComputationError(f"no tip explains the touches on the sphere: after {_STEPS} steps it still changes")
-
-
-@cache
-def _sphere_rows(n: int) -> ca.Function:
-    """Residuals (n,) of the touches (3,n), and their derivatives by the tip (n,4): offset and radius."""
-    triggers, tip = ca.SX.sym("triggers", 3, n), ca.SX.sym("tip", 4)
-    center, radius = ca.SX.sym("center", 3), ca.SX.sym("radius")
-    residual = kernel("sphere_residual").function
-    rest = ca.vertcat(*(residual(triggers[:, k], tip[:3], tip[3], center, radius) for k in range(n)))
-    return ca.Function("sphere_rows", [triggers, tip, center, radius], [rest, ca.jacobian(rest, tip)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -16,11 +17,23 @@ _Number = Annotated[float, Field(strict=True)]
 _Place = Annotated[tuple[_Number, _Number, _Number], Field(strict=False)]
 
 
+class Face(Spec):
+    """The ring's face around its bore: D and F of equation (15.11), and the width of the wall between bore and rim.
+
+    ``seat`` is the Z at which the tip's centre would stand in the plane that the ring sits on.
+    """
+
+    seat: float
+    height: float = Field(gt=0, le=200)
+    width: float = Field(ge=4, le=200)
+
+
 class Ring(Spec):
     """Calibration ring: centre of its bore in X Y Z of the machine, at the height to touch, and its diameter."""
 
     center: _Place
     diameter: float = Field(ge=5, le=200)
+    face: Face | None = None
 
 
 class Sphere(Spec):
@@ -41,6 +54,9 @@ class Calibration(Spec):
     """Centre of the tip off the spindle axis in X and Y, and off ``length`` in Z."""
     stylus_radius: float = Field(gt=0, le=5)
     stylus_length: float = Field(gt=0, le=200)
+    lobing_um: float = Field(default=0.0, ge=0, le=20)
+    """Amplitude of the lobes of the effective radius (15.8), and in degrees the azimuth of one of them."""
+    lobing_phase: float = Field(default=0.0, ge=-360, le=360)
     overtravel: float = Field(default=0.5, gt=0, le=5)
     """How far a touch may be searched for beyond its nominal place."""
     ring: Ring | None = None
@@ -69,11 +85,22 @@ def load_calibration(path: Path) -> Calibration:
     return load(path, Calibration)
 
 
-def save_calibration(source: Path, target: Path, tip_radius: float, offset: np.ndarray) -> None:
-    """Write the calibration of ``source``, comments kept, with a new tip to ``target``, whole or not at all."""
+def save_calibration(
+    source: Path, target: Path, tip_radius: float, offset: np.ndarray, lobes: tuple[float, float] = (0.0, 0.0)
+) -> None:
+    """Write the calibration of ``source``, comments kept, with a new tip to ``target``, whole or not at all.
+
+    ``lobes`` are amplitude [mm] and azimuth [rad]; an amplitude of 0 leaves them out.
+    """
     document = tomlkit.parse(read_text(source))
     document["tip_radius"] = round(float(tip_radius), 7)
     document["offset"] = [round(float(value), 7) for value in offset]
+    values = {"lobing_um": round(lobes[0] * 1000, 4), "lobing_phase": round(math.degrees(lobes[1]), 4)}
+    for key, value in values.items():
+        if key in document:
+            document.remove(key)
+        if lobes[0] > 0.0:
+            document[key] = value
     text = tomlkit.dumps(document)
     parse(text, Calibration, str(target))
     write_text(target, text)

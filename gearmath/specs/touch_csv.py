@@ -14,10 +14,11 @@ from gearmath.files import read_text
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
 
 COLUMNS = ("run", "point", "member", "flank", "tooth", "row", "col", "X", "Y", "Z", "A", "B", "triggered")
-#: Columns of the touches on ring and sphere, and what is touched.
+#: Columns of the touches on ring, its face, the spheres on table and work, and what is touched.
 CALIBRATION_COLUMNS = ("run", "point", "target", "X", "Y", "Z", "A", "B", "triggered")
 RING = ("ring_x_low", "ring_x_high", "ring_y_low", "ring_y_high")
-_NAMES = {"member": MEMBERS, "flank": FLANKS, "target": (*RING, "sphere")}
+RING_FACE, SPHERE, WORK_SPHERE = "ring_face", "sphere", "work_sphere"
+_NAMES = {"member": MEMBERS, "flank": FLANKS, "target": (*RING, RING_FACE, SPHERE, WORK_SPHERE)}
 _WHOLE = ("run", "point", "tooth", "row", "col", "triggered")
 #: No axis of a machine is longer [mm], or turned further [degrees].
 _LARGEST = 1e5

@@ -12,6 +12,7 @@ import pytest
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.machine.mill import flank_header
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.specs.calibration import Calibration
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
 
 HEADER = {
@@ -148,3 +149,40 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
         return join(files)
 
     return make
+
+
+class _Artefacts:
+    """Ring and sphere in plain geometry: the true tip stops where it is one radius from their surface."""
+
+    def __init__(self, true: Calibration) -> None:
+        self.true = true
+
+    def __call__(self, start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+        first, last = (where[:3] + self.true.tip_offset for where in (start, end))
+        way = last - first
+        parts: list[float] = []
+        ring, sphere, r = self.true.ring, self.true.sphere, self.true.tip_radius
+        away = float(np.hypot(*(first - ring.center)[:2]))
+        if away < ring.diameter / 2:
+            parts += _roots((first - ring.center)[:2], way[:2], ring.diameter / 2 - r, leaving=True)
+        elif away < ring.diameter / 2 + ring.face.width and way[2] < 0:
+            parts += [(ring.face.seat + ring.face.height + r - first[2]) / way[2]]
+        if np.hypot(*(first - sphere.center)[:2]) < 50:
+            parts += _roots(first - sphere.center, way, sphere.diameter / 2 + r, leaving=False)
+        parts = [part for part in parts if 0 <= part <= 1]
+        return start + min(parts) * (end - start) if parts else None
+
+
+def _roots(first: np.ndarray, way: np.ndarray, radius: float, leaving: bool) -> list[float]:
+    """Parts of the way at which it leaves or enters a circle or a sphere."""
+    a, b, c = way @ way, first @ way, first @ first - radius**2
+    if a == 0 or b * b - a * c < 0:
+        return []
+    root = math.sqrt(b * b - a * c)
+    return [(-b + root) / a if leaving else (-b - root) / a]
+
+
+@pytest.fixture(scope="session")
+def artefacts() -> type[_Artefacts]:
+    """``artefacts(calibration)``: ring, its face and sphere, for a probe with the tip of the calibration."""
+    return _Artefacts

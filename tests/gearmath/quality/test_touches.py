@@ -1,27 +1,27 @@
-"""From raw touches to the measured flank: the whole way from the probing program's text, and ring and sphere."""
+"""From raw touches to the measured flank: the whole way from the probing program's text."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.errors import InputError
-from gearmath.machine.calibrating import calibration_program, sphere_directions
 from gearmath.machine.executor import run_program
+from gearmath.machine.probe_errors import ErringProbe
 from gearmath.machine.probe_machine import ProbeMachine
 from gearmath.machine.probing import probing_program
 from gearmath.quality.pitch import evaluate_pitch
-from gearmath.quality.touches import calibrate_on_ring, calibrate_on_sphere, measured_member
+from gearmath.quality.touches import measured_member
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
-from gearmath.specs.calibration import Calibration, load_calibration, save_calibration
+from gearmath.specs.calibration import load_calibration
 from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.simulated_machine import Probe, SimulatedMachine
 from gearmath.specs.toml import bundled
-from gearmath.specs.touch_csv import read_calibration_csv, read_touch_csv
+from gearmath.specs.touch_csv import read_touch_csv
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 PROBE = load_calibration(bundled("probe.toml"))
@@ -111,91 +111,32 @@ def test_touches_of_another_member_or_set_up_are_refused(gear_set, tmp_path):
             measured_member(wrong, spec, "gear", MACHINE, PROBE)
 
 
-class Artefacts:
-    """Ring and sphere in plain geometry: the true tip stops where it is one radius from their surface."""
-
-    def __init__(self, true: Calibration, shift: np.ndarray | None = None) -> None:
-        self.true, self.shift = true, np.zeros(3) if shift is None else shift
-
-    def __call__(self, start, end):
-        first, last = (where[:3] + self.true.tip_offset + self.shift for where in (start, end))
-        way = last - first
-        parts = []
-        ring, sphere, r = self.true.ring, self.true.sphere, self.true.tip_radius
-        if np.hypot(*(first - ring.center)[:2]) < 50:
-            parts += _roots((first - ring.center)[:2], way[:2], ring.diameter / 2 - r, leaving=True)
-        if np.hypot(*(first - sphere.center)[:2]) < 50:
-            parts += _roots(first - sphere.center, way, sphere.diameter / 2 + r, leaving=False)
-        parts = [part for part in parts if 0 <= part <= 1]
-        return start + min(parts) * (end - start) if parts else None
+def test_lobes_of_the_probe_are_taken_off_by_the_direction_of_the_touch(gear_set, tmp_path):
+    """Measured with lobes of 3 um: known to the calibration nothing is left, unknown what they make of each normal."""
+    spec = gear_set.member("pinion")
+    text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PROBE", topography=())
+    lobes = SimulatedMachine(title="lobes", seed=1, probe=Probe(lobing_um=3.0, lobing_phase=20.0))
+    there = ErringProbe(ProbeMachine(spec, "pinion", MACHINE, PROBE), lobes)
+    file = tmp_path / "raw.csv"
+    file.write_text(run_program(text, "PROBE.MPF", there).files["PROBE_T"])
+    touches = read_touch_csv(file)
+    known = PROBE.model_copy(update={"lobing_um": 3.0, "lobing_phase": 20.0})
+    right, wrong = (measured_member(touches, spec, "pinion", MACHINE, probe) for probe in (known, PROBE))
+    np.testing.assert_allclose(right.deviation, 0.0, rtol=0, atol=1e-5)
+    assert 1e-3 < np.abs(wrong.deviation).max() <= 3.01e-3
 
 
-def _roots(first, way, radius, leaving):
-    """Parts of the way at which it leaves or enters a circle or a sphere."""
-    a, b, c = way @ way, first @ way, first @ first - radius**2
-    if a == 0 or b * b - a * c < 0:
-        return []
-    root = math.sqrt(b * b - a * c)
-    return [(-b + root) / a if leaving else (-b - root) / a]
-
-
-@cache
-def calibration_file(shift: tuple = (0.0, 0.0, 0.0)) -> str:
-    text = calibration_program(MACHINE, PROBE, "CAL")
-    done = run_program(text, "CAL.MPF", Artefacts(BENT, np.array(shift)))
-    assert done.alarm is None
-    return done.files["CAL_T"]
-
-
-def test_sphere_gives_back_the_tip_that_touched_it(tmp_path):
-    (tmp_path / "c.csv").write_text(calibration_file())
-    touches = read_calibration_csv(tmp_path / "c.csv")
-    assert (touches.target == "sphere").sum() == len(sphere_directions()) == 25
-    tip = calibrate_on_sphere(touches, PROBE.sphere, PROBE)
-    assert tip.radius == pytest.approx(0.7432, abs=1e-8)
-    np.testing.assert_allclose(tip.offset, BENT.offset, rtol=0, atol=1e-8)
-    assert tip.residual < 1e-8
-
-
-def test_ring_gives_back_radius_and_offset_although_the_first_touches_are_off_centre(tmp_path):
-    (tmp_path / "c.csv").write_text(calibration_file())
-    tip = calibrate_on_ring(read_calibration_csv(tmp_path / "c.csv"), PROBE.ring)
-    # five decimals in the program leave the second axis off its middle by up to 5e-6 mm: second order, nothing
-    assert tip.radius == pytest.approx(0.7432, abs=1e-7)
-    np.testing.assert_allclose(tip.offset, [0.031, -0.047, 0.0], rtol=0, atol=1e-7)
-    assert tip.residual < 1e-7
-
-
-def test_sphere_calibration_is_the_mean_where_the_touches_scatter(tmp_path):
-    """1 um of noise on each touch, 25 touches: tip within a micrometre, and the residual says how they scatter."""
-    (tmp_path / "c.csv").write_text(calibration_file())
-    touches = read_calibration_csv(tmp_path / "c.csv")
-    noise = np.random.default_rng(7).normal(0.0, 1e-3, touches.axes.shape) * [1, 1, 1, 0, 0]
-    tip = calibrate_on_sphere(replace(touches, axes=touches.axes + noise), PROBE.sphere, PROBE)
-    assert abs(tip.radius - 0.7432) < 1e-3
-    assert np.abs(tip.offset - BENT.offset).max() < 1e-3
-    assert 1e-3 < tip.residual < 4e-3
-
-
-def test_calibration_with_too_few_touches_is_refused(tmp_path):
-    (tmp_path / "c.csv").write_text(calibration_file())
-    touches = read_calibration_csv(tmp_path / "c.csv")
-    keep = touches.target != "ring_y_low"
-    with pytest.raises(InputError, match="the touch 'ring_y_low' is missing"):
-        calibrate_on_ring(replace(touches, target=touches.target[keep], axes=touches.axes[keep]), PROBE.ring)
-    with pytest.raises(InputError, match="4 touches on the sphere: at least 5 are needed"):
-        calibrate_on_sphere(replace(touches, target=touches.target[:10], axes=touches.axes[:10]), PROBE.sphere, PROBE)
-
-
-def test_commands_go_from_calibration_to_measured_flank(gear_set, tmp_path, command):
+def test_commands_go_from_calibration_to_measured_flank(gear_set, tmp_path, command, artefacts):
     """nc calibrate -> calibrate -> nc probe -> touches -> evaluate, file by file, with a tip that nobody knew."""
     raw, tip = tmp_path / "cal.csv", tmp_path / "tip.toml"
     assert command("nc", "calibrate", "-o", tmp_path / "CAL.MPF")[0] == 0
     text = (tmp_path / "CAL.MPF").read_text()
-    raw.write_text(run_program(text, "CAL", Artefacts(BENT)).files["CAL_T"])
+    raw.write_text(run_program(text, "CAL", artefacts(BENT)).files["CAL_T"])
     status, out, _ = command("calibrate", raw, "-o", tip)
     assert status == 0
-    assert "tip radius 0.74320 mm, offset 0.03100, -0.04700, 0.01200 mm, residual 0.000 um" in out
+    assert "tip radius 0.74320 mm, u 0.000 um" in out
+    assert "offset Y -0.04700 mm, u 0.000 um" in out
+    assert "25 touches: noise 0.000 um, largest residual 0.000 um" in out
     found = load_calibration(tip)
     assert found.tip_radius == pytest.approx(0.7432, abs=1e-6)
     machine = ["--calibration", tip]
@@ -233,14 +174,3 @@ def test_bad_input_of_the_commands_is_one_sentence(tmp_path, refused):
         "bare.toml: the calibration file has neither ring nor sphere", "nc", "calibrate", "--calibration", bare, *out
     )
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bare.toml", "empty.csv"]
-
-
-def test_calibration_is_written_whole_with_its_comments(tmp_path):
-    save_calibration(bundled("probe.toml"), tmp_path / "new.toml", 0.7512345, np.array([0.01, 0.02, -0.03]))
-    text = (tmp_path / "new.toml").read_text()
-    assert "# spindle gauge line to the centre of the tip" in text
-    new = load_calibration(tmp_path / "new.toml")
-    assert (new.tip_radius, new.offset) == (0.7512345, (0.01, 0.02, -0.03))
-    with pytest.raises(InputError, match=r"stylus_radius 0\.5 must be less than tip_radius 0\.4"):
-        save_calibration(bundled("probe.toml"), tmp_path / "bad.toml", 0.4, np.zeros(3))
-    assert not (tmp_path / "bad.toml").exists()
