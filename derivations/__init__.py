@@ -10,7 +10,7 @@ from derivations.expression import Expression, Quantity
 CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
-    "sweep", "probing", "registration", "spacing", "compensation",
+    "sweep", "probing", "registration", "spacing", "compensation", "touch_errors",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -35,6 +35,7 @@ def expressions() -> Iterator[Expression]:
         registration,
         spacing,
         sweep,
+        touch_errors,
     )
 
     yield from (cutter.cutter_surface(), cutter.toprem(), cutter.spheric_blade())
@@ -60,6 +61,7 @@ def expressions() -> Iterator[Expression]:
     yield from (compensation.straight_sensitivity(), compensation.arc_sensitivity())
     yield from (compensation.coefficient_sensitivity(), compensation.arc_height(), compensation.root_place())
     yield compensation.conjugate_place()
+    yield touch_errors.touch_error()
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (
         gearbox.nearest_position(),

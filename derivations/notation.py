@@ -194,6 +194,20 @@ standoff = _length("standoff", "s", -5.0, 20.0, "distance of the tip from the fl
 opposite_w = _vector(
     "opposite_w", r"\mathbf{R}'", "mm", 300.0, 500.0, "point of the opposite flank at the same place, work frame w"
 )
+touch_errors = Quantity(
+    "touch_errors", "errors of the machine that measures, and growth of the work", "mixed", r"\mathbf{e}", shape=(6,),
+    components=(
+        Quantity("X_error", "error of axis X", "mm", "e_X", (-0.1, 0.1)),
+        Quantity("Y_error", "error of axis Y", "mm", "e_Y", (-0.1, 0.1)),
+        Quantity("Z_error", "error of axis Z", "mm", "e_Z", (-0.1, 0.1)),
+        Quantity("A_error", "error of the work axis A", "rad", "e_A", (-1e-3, 1e-3)),
+        Quantity("squareness", "shift of X for every mm of Z", "1", r"\sigma", (-1e-3, 1e-3)),
+        Quantity("growth", "part by which the work is larger than its drawing", "1", r"\varepsilon", (-1e-3, 1e-3)),
+    ),
+)  # fmt: skip
+seeming_deviation = Quantity(
+    "seeming_deviation", "deviation that a perfect flank seems to have", "mm", r"\delta_e", scale=1000.0
+)
 probe_height = _length("probe_height", "H", 0.0, 900.0, "height of the tip over the B axis at Z = 0")
 tip_offset = _vector("tip_offset", r"\mathbf{o}", "mm", 1.0, 5.0, "tip off the spindle axis and off its height, X Y Z")
 stylus_w = _vector("stylus_w", r"\mathbf{k}_m", "1", 1.0, 1.0, "direction of the stylus, tip to spindle, work frame w")

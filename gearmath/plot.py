@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from gearmath.files import write_bytes
 from gearmath.quality.pitch import Pitch
 from gearmath.quality.topography import Topography
+from gearmath.quality.uncertainty import Uncertain
 
 #: Colours of "before" and "after" in every picture of this house.
 BEFORE, AFTER = "#c23b22", "#1f6f8b"
@@ -77,6 +78,30 @@ def member_figure(
             draw_topography(place, before[flank], after.get(flank))
         else:
             draw_pitch(place, pitch_before, pitch_after)
+    return figure
+
+
+def uncertainty_figure(title: str, found: Sequence[Uncertain]) -> Figure:
+    """Single pitch of both flanks and the figures in µm beside it, each with its interval of 95 %."""
+    figure = Figure(figsize=(12, 4), layout="constrained")
+    figure.suptitle(title)
+    left, right = figure.subplots(1, 2)
+    for flank, color in zip(dict.fromkeys(one.figure.flank for one in found), (BEFORE, AFTER), strict=False):
+        here = [one for one in found if one.figure.flank == flank and one.figure.unit == "um"]
+        pitch = [one for one in here if one.figure.name.startswith("f_pt_")]
+        rest = [one for one in here if one not in pitch]
+        for axes, some in ((left, pitch), (right, rest)):
+            value = np.array([one.value for one in some]) * 1000
+            ends = np.array([one.interval for one in some]).reshape(-1, 2).T * 1000
+            spread = np.abs(ends - value)
+            axes.errorbar(range(len(some)), value, spread, fmt=".", color=color, capsize=3, label=flank)
+        right.set_xticks(range(len(rest)), [one.figure.name for one in rest], rotation=30, fontsize=8)
+    left.set_xlabel("tooth")
+    left.set_ylabel("single pitch deviation / µm")
+    right.set_ylabel("µm, with its interval of 95 %")
+    for axes in (left, right):
+        axes.axhline(0, color="#bbbbbb", linewidth=0.6)
+        axes.legend(fontsize=8, frameon=False)
     return figure
 
 

@@ -16,7 +16,8 @@ from derivations import (
     probing,
     registration,
     spacing,
-)  # fmt: skip
+    touch_errors,
+)
 from gearmath.lowering import Kernel, lower
 
 _EXPRESSIONS = {
@@ -64,6 +65,7 @@ _EXPRESSIONS = {
     "arc_height": compensation.arc_height,
     "root_place": compensation.root_place,
     "conjugate_place": compensation.conjugate_place,
+    "touch_error": touch_errors.touch_error,
 }
 
 

@@ -26,6 +26,7 @@ VERBS = {
     "calibrate": ("probe", "The tip of the probe from its touches on ring and sphere."),
     "evaluate": ("quality", "Pitch, profile and topography of a measured member."),
     "compensate": ("quality", "Corrected machine settings from a measurement."),
+    "uncertainty": ("uncertainty", "How sure the figures of a measured member are."),
     "export": ("export", "C for the microcontroller and for the CNC post-processor."),
 }
 

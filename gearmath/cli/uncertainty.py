@@ -1,0 +1,153 @@
+"""``gearmath uncertainty``: how sure the figures of a measured member are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gearmath.cli.common import JSON, MACHINE, MEMBER, about, bar, echo_json, table
+from gearmath.cli.probe import CALIBRATION
+from gearmath.errors import ComputationError, InputError
+
+if TYPE_CHECKING:
+    from gearmath.quality.covariance import Covariance
+    from gearmath.quality.uncertainty import Uncertain
+    from gearmath.specs.bevel_set import Member
+    from gearmath.specs.flank_csv import FlankFile
+
+SIGMA = click.option(
+    "--sigma-um", type=float,
+    help="Standard uncertainty of every point, nothing in common, in place of u_um of the file.",
+)  # fmt: skip
+_BUNDLED = "measurement.toml"
+
+
+@click.command()
+@click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
+@click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
+@MEMBER
+@SIGMA
+@click.option(
+    "--model",
+    help=f"How well the machine measures: a file, or a bundled one.  [default: u_um of the file, or else {_BUNDLED}]",
+)
+@MACHINE
+@CALIBRATION
+@click.option("--draws", default=20_000, show_default=True, type=click.IntRange(1000, 10_000_000), help="Monte Carlo.")
+@click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0), help="Of the draws.")
+@click.option("--workers", type=click.IntRange(1, 1024), help="Threads, or workers of the cluster.  [default: all]")
+@click.option("--cluster", metavar="ADDRESS", help="Scheduler of a dask cluster that draws; needs the extra 'cluster'.")
+@click.option("--resume", type=click.Path(path_type=Path, dir_okay=False), help="Results file to keep and continue.")
+@click.option("-o", "--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), help="Figures as PNG.")
+@JSON
+def uncertainty(
+    measured: Path, gear_set: str, member: str, sigma_um: float | None, model: str | None, machine: str,
+    calibration: str, draws: int, seed: int, workers: int | None, cluster: str | None, resume: Path | None,
+    picture: Path | None, as_json: bool,
+) -> None:  # fmt: skip
+    """Standard uncertainties and 95 % intervals of everything that a measurement says."""
+    from gearmath.quality.correction import check_belongs
+    from gearmath.quality.figures import figures_of
+    from gearmath.quality.uncertainty import uncertain_figures
+    from gearmath.specs.bevel_set import load_bevel_set
+    from gearmath.specs.flank_csv import read_flank_csv
+    from gearmath.specs.toml import find
+
+    file = read_flank_csv(measured)
+    spec = load_bevel_set(find(gear_set)).member(member)
+    with about(measured):
+        check_belongs(spec, member, file)
+        figures = figures_of(file, spec.teeth)
+    covariance, source = _covariance(file, spec, sigma_um, model, machine, calibration)
+    with bar(draws, "draw") as progress, _executor(cluster) as executor:
+        found = uncertain_figures(
+            figures, file.deviation, covariance, draws, seed, executor, workers, resume, progress
+        )  # fmt: skip
+    if picture:
+        from gearmath.plot import save, uncertainty_figure
+
+        save(uncertainty_figure(f"{member}, {measured.name}", found), picture)
+    if as_json:
+        echo_json({"member": member, "source": source, "draws": draws, "seed": seed, "figures": _values(found)})
+        return
+    click.echo(f"standard uncertainties from {source}; {draws} draws")
+    click.echo(table(
+        ["flank", "figure", "value", "u", "from", "to", "unit", "method"],
+        [
+            [row["flank"], row["figure"], *(f"{row[name]:.4f}" for name in ("value", "u", "from", "to")), row["unit"],
+             row["method"]]
+            for row in _values(found)
+        ],
+    ))  # fmt: skip
+
+
+def _covariance(
+    file: FlankFile, member: Member, sigma_um: float | None, model: str | None, machine: str, calibration: str
+) -> tuple[Covariance, str]:
+    """The covariance of the deviations, and in words where it comes from."""
+    from gearmath.specs.calibration import load_calibration
+    from gearmath.specs.measurement import load_measurement
+    from gearmath.specs.milling_machine import load_milling_machine
+    from gearmath.specs.toml import find
+
+    if sigma_um is not None and model is not None:
+        raise InputError("--sigma-um and --model: only one can say how well the points were measured")
+    known = point_covariance(file, sigma_um)
+    if known is not None and model is None:
+        return known, "u_um of the file" if sigma_um is None else f"{sigma_um:g} um at every point"
+    from gearmath.quality.touch_model import touch_covariance
+
+    how = load_measurement(find(model or _BUNDLED))
+    spindle, probe = load_milling_machine(find(machine)), load_calibration(find(calibration))
+    return touch_covariance(file, member, file.member, how, spindle, probe), f"{model or _BUNDLED}: {how.title}"
+
+
+def point_covariance(file: FlankFile, sigma_um: float | None) -> Covariance | None:
+    """Covariance of independent points from --sigma-um, or from u_um of the file; None where neither says it."""
+    import numpy as np
+
+    from gearmath.quality.covariance import independent, stated
+
+    if sigma_um is not None and not 0 < sigma_um <= 1000:
+        raise InputError(f"--sigma-um = {sigma_um:g}: must be greater than 0 and at most 1000 um")
+    return stated(file) if sigma_um is None else independent(np.full(len(file), sigma_um / 1000))
+
+
+@contextmanager
+def _executor(address: str | None) -> Iterator[Executor | None]:
+    """The executor of a dask cluster, if one is named."""
+    if address is None:
+        yield None
+        return
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise InputError("--cluster: needs dask: pip install 'gearmath[cluster]'") from error
+    try:
+        client = Client(address, timeout="10s")
+    except (OSError, ValueError, TypeError) as error:
+        raise ComputationError(f"--cluster = {address}: no scheduler answers: {error}") from error
+    with client, client.get_executor() as executor:
+        yield executor
+
+
+def _values(found: list[Uncertain]) -> list[dict[str, Any]]:
+    return [
+        {
+            "flank": one.figure.flank,
+            "figure": one.figure.name,
+            "value": one.value * 1000,
+            "u": one.uncertainty * 1000,
+            "from": one.interval[0] * 1000,
+            "to": one.interval[1] * 1000,
+            "u_monte_carlo": one.drawn * 1000,
+            "unit": one.figure.unit,
+            "method": one.method,
+        }
+        for one in found
+    ]

@@ -1,0 +1,94 @@
+"""How sure the figures of a measured member are: the law of propagation where they are smooth, draws where not.
+
+A smooth figure y has the standard uncertainty √(J V J') and the interval y ± k u, and draws confirm it. A maximum or a
+range is the largest of linear forms l·δ. Noise makes it too large, and the more so the more forms compete, so that
+quantiles of draws about the measured deviations miss the truth Y. What holds for every gear, with errors e,
+
+    y - Y <= max l·e     over the forms l that can be the largest
+    Y - y <= -l·e        at the one form l that is the largest in truth
+
+gives the lower end of the interval by draws of the first, and the upper end by the law of propagation for the second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+
+from gearmath.quality.covariance import Covariance, coverage_factor
+from gearmath.quality.figures import Figure, Figures
+from gearmath.quality.study import monte_carlo, run
+
+#: Coverage probability of the intervals.
+PROBABILITY = 0.95
+#: Two forms are certain to be in the order in which they were measured when they differ by so many of the standard
+#: uncertainties of their difference: once for what the truth may be, and once for what the next measurement may say.
+_CERTAIN = 9.0
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """A figure with its value, standard uncertainty and interval of 95 % [mm ...]; ``drawn`` is u by Monte Carlo."""
+
+    figure: Figure
+    value: float
+    uncertainty: float
+    interval: tuple[float, float]
+    drawn: float
+
+    @property
+    def method(self) -> str:
+        return "GUM" if self.figure.smooth else "Monte Carlo"
+
+
+def contenders(forms: np.ndarray, deviation: np.ndarray, covariance: Covariance) -> np.ndarray:
+    """Those of the forms (p,n) that can be the largest in truth, or could have been in the measurement."""
+    values = forms @ deviation
+    best = int(np.argmax(values))
+    apart = covariance.standard_uncertainty(forms - forms[best])
+    return forms[values[best] - values <= _CERTAIN * apart]
+
+
+def uncertain_figures(
+    figures: Figures,
+    deviation: np.ndarray,
+    covariance: Covariance,
+    draws: int = 20_000,
+    seed: int = 0,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    results: Path | None = None,
+    progress: Callable[[int], object] = lambda _: None,
+) -> list[Uncertain]:
+    """Every figure of measured deviations (n,) with its uncertainty. The draws are a study, see :func:`study.run`."""
+    open_ = {j: contenders(forms, deviation, covariance) for j, forms in figures.forms.items()}
+    study = monte_carlo(covariance.drawn(_with_excess(figures, deviation, open_), deviation), draws, seed)
+    drawn = run(study, executor, workers, results, progress)
+    m, k = len(figures.items), coverage_factor(PROBABILITY)
+    excess = dict(zip(open_, np.quantile(drawn[:, m:], (1 + PROBABILITY) / 2, axis=0), strict=True))
+    values = np.array(figures.function(deviation)).ravel()
+    gum = covariance.standard_uncertainty(figures.jacobian(deviation))
+    spread = drawn[:, :m].std(axis=0, ddof=1)
+    found = []
+    for j, figure in enumerate(figures.items):
+        value, u = float(values[j]), float(gum[j])
+        interval = (value - k * u, value + k * u)
+        if not figure.smooth:
+            u = float(spread[j])
+            above = k * float(covariance.standard_uncertainty(open_[j]).max())
+            interval = (max(0.0, value - float(excess[j])), value + above)
+        found.append(Uncertain(figure, value, u, interval, float(spread[j])))
+    return found
+
+
+def _with_excess(figures: Figures, deviation: np.ndarray, open_: dict[int, np.ndarray]) -> ca.Function:
+    """The figures of deviations, and for each maximum the largest of the contenders' changes since ``deviation``."""
+    moved = ca.MX.sym("deviation", len(deviation))
+    error = moved - ca.DM(deviation)
+    excess = [ca.mmax(ca.DM(forms) @ error) for forms in open_.values()]
+    return ca.Function("figures_and_excess", [moved], [ca.vertcat(figures.function(moved), *excess)])

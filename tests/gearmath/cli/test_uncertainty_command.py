@@ -1,0 +1,142 @@
+"""``gearmath uncertainty``: its table and JSON, where it takes the uncertainties of points from, and refusals."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearmath.bevel.flank import blank_grid
+from gearmath.machine.mill import nominal_flank
+from gearmath.specs.bevel_set import FLANKS
+from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
+
+SET = "nasa_tp3096_12x36.toml"
+
+
+def reference_only(file: FlankFile) -> FlankFile:
+    middle = (file.row == 2) & (file.col == 4)
+    names = ("flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")
+    return replace(file, **{name: getattr(file, name)[middle] for name in names})
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory, gear_set):
+    """A pinion with random deviations of some micrometres: the grid of tooth 0, the reference point of the others."""
+    grid = blank_grid(gear_set.pinion)
+    files = [nominal_flank(gear_set.pinion, "pinion", flank, grid, tooth=k) for flank in FLANKS for k in range(12)]
+    whole = join([file if file.tooth[0] == 0 else reference_only(file) for file in files])
+    deviation = 4e-3 * np.random.default_rng(1).standard_normal(len(whole))
+    path = tmp_path_factory.mktemp("measured") / "m.csv"
+    write_flank_csv(
+        path, replace(whole, point=whole.point + deviation[:, None] * whole.normal, deviation=deviation)
+    )  # fmt: skip
+    return path
+
+
+def arguments(path, *more):
+    return ("uncertainty", path, "--set", SET, "--member", "pinion", "--draws", 1000, *more)
+
+
+def values(command, path, *more):
+    status, out, err = command(*arguments(path, "--json", *more))
+    assert (status, err) == (0, "")
+    return json.loads(out)
+
+
+def test_table_and_json_have_the_same_figures(command, measured):
+    status, out, err = command(*arguments(measured))
+    assert (status, err) == (0, "")
+    first, head, *rows = out.splitlines()
+    assert first == "standard uncertainties from measurement.toml: Probing on a vertical machining centre; 1000 draws"
+    assert head.split() == ["flank", "figure", "value", "u", "from", "to", "unit", "method"]
+    figures = values(command, measured)["figures"]
+    assert len(rows) == len(figures) == 52
+    for row, figure in zip(rows, figures, strict=True):
+        cells = row.split(maxsplit=7)
+        assert cells[:2] == [figure["flank"], figure["figure"]]
+        assert [float(cell) for cell in cells[2:6]] == pytest.approx(
+            [figure[name] for name in ("value", "u", "from", "to")], abs=6e-5
+        )
+        assert cells[7] == figure["method"]
+        assert figure["from"] <= figure["value"] <= figure["to"]
+
+
+def test_uncertainty_of_points_comes_from_option_then_file_then_model(command, measured, tmp_path):
+    """Mean of 45 points: u / sqrt(45) where they have nothing in common, and more with the model."""
+    file = read_flank_csv(measured)
+    stated = tmp_path / "stated.csv"
+    write_flank_csv(stated, replace(file, uncertainty=np.full(len(file), 0.9e-3)))
+
+    def mean(path, *more):
+        found = values(command, path, *more)
+        return found["source"], found["figures"][0]["u"]
+
+    assert mean(stated) == ("u_um of the file", pytest.approx(0.9 / 45**0.5, rel=1e-9))
+    assert mean(stated, "--sigma-um", 0.3) == ("0.3 um at every point", pytest.approx(0.3 / 45**0.5, rel=1e-9))
+    source, u = mean(stated, "--model", "measurement.toml")
+    assert source.startswith("measurement.toml")
+    assert u > 0.3  # what the touches of a flank have in common, 0.3 um and more, no number of points takes away
+
+
+def test_draws_do_not_depend_on_the_workers_and_go_on_from_their_file(command, measured, tmp_path):
+    results = tmp_path / "r.npz"
+    one, two = (values(command, measured, "--workers", n, "--sigma-um", 0.5) for n in (1, 2))
+    assert one == two == values(command, measured, "--sigma-um", 0.5, "--resume", results)
+    more = values(command, measured, "--sigma-um", 0.5, "--draws", 3000, "--resume", results)
+    assert more == values(command, measured, "--sigma-um", 0.5, "--draws", 3000)
+    assert more != one
+
+
+def test_draws_of_a_cluster_are_the_same(command, measured):
+    distributed = pytest.importorskip("distributed", reason="needs the extra 'cluster'")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        there = values(command, measured, "--cluster", cluster.scheduler_address, "--workers", 2)
+    assert there == values(command, measured)
+
+
+def test_picture_is_a_png(command, measured, tmp_path):
+    assert command(*arguments(measured, "-o", tmp_path / "u.png"))[0] == 0
+    assert (tmp_path / "u.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("more", "sentence"),
+    [
+        (("--sigma-um", 0), r"sigma-um"),
+        (("--sigma-um", "nan"), r"sigma-um"),
+        (("--sigma-um", 1, "--model", "measurement.toml"), r"only one can say how well"),
+        (("--model", "absent.toml"), r"absent\.toml: cannot be read"),
+        (("--model", "probe.toml"), r"probe\.toml: .*(missing|known)"),
+        (("--draws", 10), r"draws"),
+        (("--workers", 0), r"workers"),
+    ],
+)
+def test_bad_options_are_refused_in_one_line(refused, measured, more, sentence):
+    refused(sentence, *arguments(measured, *more))
+
+
+def test_results_of_another_study_are_refused_by_their_name(command, refused, measured, tmp_path):
+    results = tmp_path / "r.npz"
+    values(command, measured, "--resume", results)
+    refused(r"^gearmath: \S*r\.npz: study = .* another study", *arguments(measured, "--resume", results, "--seed", 1))
+    results.write_text("1,2,3\n")
+    refused(r"^gearmath: \S*r\.npz: is no results file of a study", *arguments(measured, "--resume", results))
+    refused(r"cannot be written", *arguments(measured, "--resume", tmp_path / "absent" / "r.npz"))
+
+
+def test_measurement_of_the_other_member_is_refused(refused, measured):
+    refused(
+        r"m\.csv: member = 'pinion' in the measured file: must be 'gear'",
+        "uncertainty", measured, "--set", SET, "--member", "gear",
+    )  # fmt: skip
+
+
+def test_cluster_that_is_no_address_is_one_line(command, measured):
+    pytest.importorskip("distributed", reason="needs the extra 'cluster'")
+    status, out, err = command(*arguments(measured, "--cluster", "nowhere"))
+    assert (status, out) == (1, "")
+    assert err.startswith("gearmath: --cluster = nowhere: no scheduler answers: ")
+    assert err.count("\n") == 1
