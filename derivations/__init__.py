@@ -10,7 +10,7 @@ from derivations.expression import Expression, Quantity
 CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
-    "sweep", "probing", "registration", "spacing", "compensation", "touch_errors",
+    "sweep", "probing", "registration", "spacing", "compensation", "touch_errors", "single_blades",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -33,6 +33,7 @@ def expressions() -> Iterator[Expression]:
         meshing,
         probing,
         registration,
+        single_blades,
         spacing,
         sweep,
         touch_errors,
@@ -54,6 +55,8 @@ def expressions() -> Iterator[Expression]:
     yield from (registration.unseated(), registration.motion_sensitivity())
     yield from (spacing.ball_shift(), spacing.flank_allowance(), spacing.tooth_at_points())
     yield from (spacing.mean_module(), spacing.tolerance_diameter(), spacing.spacing_tolerances())
+    yield from (single_blades.tool_frame(), single_blades.cradle_tool_frame(), single_blades.straight_edge_point())
+    yield from (single_blades.arc_edge_point(), single_blades.roll_per_turn())
     yield from (probing.probe_target(), probing.space_azimuth(), probing.probe_axes(), probing.probe_tip())
     yield from (probing.touched_point(), probing.ring_calibration(), probing.sphere_residual())
     yield from (probing.effective_radius(), probing.lobing_of(), probing.shape_of_lobes(), probing.ring_residual())

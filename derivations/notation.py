@@ -113,6 +113,10 @@ point_m = _vector(
     "point_m", r"\mathbf{r}", "mm", 500.0, 1000.0, "point of the work from the cutter centre, axes of the machine"
 )
 psi = Quantity("psi", "position of the cutter's axis C at cutter angle zero", "rad", r"\psi")
+C = Quantity("C", "position of the cutter's axis C, right-handed about the tool axis", "rad", "C", (-10.0, 10.0))
+cutter_reference_w = _vector(
+    "cutter_reference_w", r"\mathbf{i}_c", "1", 1.0, 1.0, "axis i of the turned cutter frame, work frame w"
+)
 cutter_center_w = _vector(
     "cutter_center_w", r"\mathbf{c}", "mm", 300.0, 500.0, "cutter centre in the tip plane, work frame w"
 )
@@ -441,6 +445,23 @@ main_arc = Quantity(
         _length("main_radius", "r", 200.0, 800.0, "radius of the arc, positive where the blade is convex"),
     ),
 )  # fmt: skip
+straight_edge = Quantity(
+    "straight_edge", "straight part of a blade's edge: radius and height at u = 0, and what u adds to them", "mixed",
+    r"\mathbf{l}", shape=(4,),
+    components=(
+        _length("edge_start_radius", r"\rho_0", 20.0, 250.0, "radius of the edge about the cutter axis at u = 0"),
+        _length("edge_start_height", "h_0", 0.0, 15.0, "height of the edge above the tip plane at u = 0"),
+        Quantity("edge_radial_slope", "growth of the radius with u", "1", r"\rho'", (-1.0, 1.0)),
+        Quantity("edge_height_slope", "growth of the height with u", "1", "h'", (0.0, 1.0)),
+    ),
+)  # fmt: skip
+edge_point_w = _vector("edge_point_w", r"\mathbf{R}_e", "mm", 300.0, 1000.0, "point of a blade's edge, work frame w")
+approach_curvature = Quantity(
+    "approach_curvature", "second derivative of the distance of a blade from a flank point by the roll at its contact",
+    "mm/rad2", "c", (0.1, 1e5),
+)  # fmt: skip
+scallop = _length("scallop", r"\delta", 1e-6, 0.1, "height of what is left between two passes of a blade")
+roll_per_turn = Quantity("roll_per_turn", "cradle rotation per turn of the work", "rad", r"\Delta\theta")
 toprem_angle = _angle("toprem_angle", r"\alpha_T", 0.01, 0.6, "angle between the Toprem section and the cutter axis")
 toprem_height = _length("toprem_height", "h_T", 0.0, 5.0, "height above the tip plane at which Toprem ends")
 toprem_point_radius = _length(

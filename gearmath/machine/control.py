@@ -9,7 +9,7 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
-from gearmath.machine.nc_expression import AXES, Node, refuse
+from gearmath.machine.nc_expression import AXES, CUTTER_AXIS, Node, refuse
 from gearmath.machine.nc_tree import Block, Word
 from gearmath.machine.reader import GROUP_OF_CODE
 
@@ -30,6 +30,9 @@ _NEEDED_FOR_MOTION = {
 _NOT_WITH_MOTION = (
     "spindle", "SPOS", "tool change", "coolant", "program stop", "program end", "T", "D", "S", "compressor", "dwell",
 )  # fmt: skip
+_ALL = AXES + CUTTER_AXIS
+#: What may turn without end.
+_TURNING = "A" + CUTTER_AXIS
 _HALF_RESOLUTION_DEG = 5e-7
 _LARGEST_COORDINATE = 1e6
 #: Radius [mm] at which one degree is one millimetre: what F means for a rotary axis of FGROUP.
@@ -37,7 +40,7 @@ _DEGREE_IS_MM = 180.0 / math.pi
 
 
 class Row(NamedTuple):
-    """One motion block that ends at a known position of all axes; degrees, A counted on."""
+    """One motion block that ends at a known position of five axes, and of C or NaN; degrees, A and C counted on."""
 
     position: tuple[float, ...]
     rapid: bool
@@ -46,6 +49,7 @@ class Row(NamedTuple):
     seconds: float
     spindle_on: bool
     measuring: bool
+    cutter: float
 
 
 @dataclass
@@ -70,7 +74,7 @@ class Control:
     feed: float | None = None
     feed_axes: str = ""
     feed_radius: dict[str, float] = field(default_factory=lambda: {"A": _DEGREE_IS_MM, "B": _DEGREE_IS_MM})
-    counting: bool | None = None
+    counting: dict[str, bool] = field(default_factory=dict)
     speed_known: bool = False
     selected: str | None = None
     tool: str | None = None
@@ -104,7 +108,7 @@ class Control:
                 "COMPCAD and G93 at once: a block made of several would take the time of the last one",
             )
         self.ended = "program end" in words
-        if any(axis in words for axis in AXES):
+        if any(axis in words for axis in _ALL):
             return self._move(block, number)
         if "MEAS" in words or "frame suppression" in words:
             key = "MEAS" if "MEAS" in words else "frame suppression"
@@ -129,6 +133,7 @@ class Control:
             self.edge = True
         elif key == "SPOS":
             self.modal["spindle"] = "SPOS"
+            self.position.pop(CUTTER_AXIS, None)
         elif key == "MEAS" and value != 1.0:
             self._refuse(block, key, f"{word.text}: only MEAS=1, the rising edge of probe 1, is understood")
         elif key == "dwell" and "F" not in block.words:
@@ -139,6 +144,8 @@ class Control:
             self._refuse(block, key, f"{word.text} after {self.modal[key]}: one work offset is understood")
         elif key in _GROUPS:
             self.modal[key] = word.text
+            if key == "spindle":
+                self.position.pop(CUTTER_AXIS, None)
 
     def _change_tool(self, block: Block) -> None:
         """M6 fetches the selected tool and leaves the axes wherever the change takes place."""
@@ -153,7 +160,7 @@ class Control:
     def _move(self, block: Block, number: Number) -> Row | None:
         """The motion of one block; None while the position of an axis is still unknown."""
         name, line, words = self.name, block.line, block.words
-        column = min(words[axis].column for axis in AXES if axis in words)
+        column = min(words[axis].column for axis in _ALL if axis in words)
         for key in _NOT_WITH_MOTION:
             if key in words:
                 self._refuse(block, key, f"{words[key].text} and axis words in one block")
@@ -164,17 +171,19 @@ class Control:
             refuse(name, line, column, 'motion without a tool: T="..." D1 and M6 must come first')
         if "motion" not in self.modal:
             refuse(name, line, column, "axis words without G0 or G1")
+        if CUTTER_AXIS in words and self.modal.get("spindle") != "SPOS":
+            self._refuse(block, CUTTER_AXIS, f"{words[CUTTER_AXIS].text}: C is an axis only after SPOS")
         before, rapid = dict(self.position), self.modal["motion"] == "G0"
-        for axis in AXES:
+        for axis in _ALL:
             if axis in words:
                 self.position[axis] = self._target(axis, block, number(words[axis].value, words[axis].column), rapid)
         seconds = 0.0 if rapid else self._cutting_seconds(block, before, column, number)
         if "MEAS" in words:
             self._measure(block, before)
-        if len(self.position) < len(AXES):
+        if any(axis not in self.position for axis in AXES):
             return None
-        position = tuple(self.position[axis] for axis in AXES)
-        return Row(position, rapid, self.tool, line, seconds, self.spindle_on, "MEAS" in words)
+        position, cutter = tuple(self.position[axis] for axis in AXES), self.position.get(CUTTER_AXIS, math.nan)
+        return Row(position, rapid, self.tool, line, seconds, self.spindle_on, "MEAS" in words, cutter)
 
     def _target(self, axis: str, block: Block, value: float, rapid: bool) -> float:
         """Where an axis word takes its axis, in machine coordinates, A counted on."""
@@ -184,11 +193,11 @@ class Control:
                 self._refuse(block, axis, f"{word.text} from an unknown position")
             target = now + value
         elif word.way in ("", "AC"):
-            if axis == "A":
-                self._count(block, True)
+            if axis in _TURNING:
+                self._count(block, axis, True)
             target = value + (0.0 if "frame suppression" in block.words else self.shift.get(axis, 0.0))
         else:
-            target = self._turned(axis, block, value, now, rapid)
+            return self._turned(axis, block, value, now, rapid)
         if not abs(target) <= _LARGEST_COORDINATE:
             self._refuse(block, axis, f"{word.text} leads to {target:g}: no axis is that long")
         return target
@@ -196,9 +205,9 @@ class Control:
     def _turned(self, axis: str, block: Block, value: float, now: float | None, rapid: bool) -> float:
         """The position to which DC, ACP or ACN turn a modulo axis."""
         word = block.words[axis]
-        if axis != "A":
-            self._refuse(block, axis, f"{word.text}: only A turns without end")
-        self._count(block, False)
+        if axis not in _TURNING:
+            self._refuse(block, axis, f"{word.text}: only A and C turn without end")
+        self._count(block, axis, False)
         if not 0.0 <= value < 360.0:
             self._refuse(block, axis, f"{word.text} is out of range: {word.way} takes 0 to less than 360 degrees")
         if now is None:
@@ -206,24 +215,24 @@ class Control:
         turns = (now - value) / 360.0
         if word.way == "DC":
             if abs(abs(turns - math.floor(turns)) - 0.5) < _HALF_RESOLUTION_DEG / 360.0 and not rapid:
-                self._refuse(block, axis, "A turns by exactly 180 degrees: DC leaves the direction open")
+                self._refuse(block, axis, f"{axis} turns by exactly 180 degrees: DC leaves the direction open")
             return value + 360.0 * round(turns)
         near = _HALF_RESOLUTION_DEG / 360.0
         return value + 360.0 * (math.ceil(turns - near) if word.way == "ACP" else math.floor(turns + near))
 
-    def _count(self, block: Block, counting: bool) -> None:
-        """A is either counted on or taken modulo 360 degrees; a program that does both means different axes."""
-        if self.counting is None:
-            self.counting = counting
-        if self.counting is not counting:
-            self._refuse(block, "A", f"{block.words['A'].text}: A is counted on in one block and modulo in another")
+    def _count(self, block: Block, axis: str, counting: bool) -> None:
+        """A is either counted on or taken modulo 360 degrees, and so is C; a program that does both means two axes."""
+        if self.counting.setdefault(axis, counting) is not counting:
+            text = block.words[axis].text
+            self._refuse(block, axis, f"{text}: {axis} is counted on in one block and modulo in another")
 
     def _cutting_seconds(self, block: Block, before: dict[str, float], column: int, number: Number) -> float:
         """Duration of a G1 block [s]: 60/F with G93, length of the path / F with G94."""
         name, line = self.name, block.line
         if self.modal.get("spindle", "M5") == "M5":
             refuse(name, line, column, "cutting move with the spindle off")
-        unknown = [axis for axis in AXES if axis not in before]
+        needed = _ALL if CUTTER_AXIS in block.words else AXES
+        unknown = [axis for axis in needed if axis not in before]
         if unknown:
             refuse(name, line, column, f"cutting move from an unknown position of {' '.join(unknown)}")
         mode = self.modal.get("feed mode")
@@ -236,6 +245,8 @@ class Control:
         if self.feed is None:
             refuse(name, line, column, "cutting move without a feed F")
         steps = {axis: self.position[axis] - before[axis] for axis in AXES}
+        if self.position.get(CUTTER_AXIS) != before.get(CUTTER_AXIS):
+            refuse(name, line, column, "G94 with C turning: write such a block with G93")
         for axis in "AB":
             # what F means then depends on FGROUP
             if steps[axis] and axis not in self.feed_axes:
@@ -246,7 +257,7 @@ class Control:
 
     def _measure(self, block: Block, before: dict[str, float]) -> None:
         """Move the probe; where it triggers, the axes stop, and those of the block are latched."""
-        if self.modal["motion"] != "G1" or len(before) < len(AXES):
+        if self.modal["motion"] != "G1" or any(axis not in before for axis in AXES):
             self._refuse(block, "MEAS", "MEAS=1 needs G1, and a known position to start from")
         if self.modal["spindle"] != "SPOS":
             self._refuse(block, "MEAS", "MEAS=1 needs a spindle that is held by SPOS")
@@ -257,9 +268,9 @@ class Control:
         touched = self.probe(start, end)
         if touched is not None:
             stopped = [*touched[:3].tolist(), *np.degrees(touched[3:]).tolist()]
-            self.position = dict(zip(AXES, stopped, strict=True))
+            self.position |= dict(zip(AXES, stopped, strict=True))
         machine = {axis: self.position[axis] for axis in AXES if axis in block.words}
-        if "A" in machine and not self.counting:
+        if "A" in machine and not self.counting.get("A"):
             machine["A"] %= 360.0
         work = {axis: value - self.shift.get(axis, 0.0) for axis, value in machine.items()}
         self.latch = Latch(machine, work, touched is not None)

@@ -18,6 +18,7 @@ from gearmath.bevel.flank import blank_grid
 from gearmath.errors import InputError
 from gearmath.machine.blocks import TOLERANCES, roll_nodes
 from gearmath.machine.feeds import block_seconds
+from gearmath.machine.hobbing import hobbing_pass
 from gearmath.machine.passes import Pass
 from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
 from gearmath.machine.program import write_program
@@ -27,6 +28,8 @@ from gearmath.specs.milling_machine import MillingMachine
 #: Speed of the cutter past the tooth while it generates. [mm/min]
 DEFAULT_FEED = 300.0
 DEFAULT_SPINDLE_RPM = 120.0
+#: Speed of Z on the way to the work, and into it. [mm/min]
+PLUNGE_FEED = 200.0
 #: Retract above the highest pass. [mm]
 CLEARANCE = 40.0
 #: A dry run keeps the cutter this far above its cut. [mm]
@@ -89,7 +92,8 @@ def cutting_program(
 ) -> str:
     """The text of the program of a job on one member.
 
-    Raises InputError for singular poses, travel and speed limits, a tolerance out of range, and a face hobbed member.
+    Raises InputError for singular poses, travel and speed limits, a tolerance out of range, and a face hobbed member
+    whose spaces are not all cut, or whose machine has no axis C.
     """
     member = bevel_set.member(name)
     passes = list(_passes(member, name, machine, job))
@@ -106,17 +110,15 @@ def cutting_program(
         f"cutting time: {sum(one.seconds.sum() + one.dwell for one in passes):.1f} s",
     )
     return write_program(
-        program_name, header, passes, machine, job.spindle_rpm, CLEARANCE, coolant=not job.dry_run
+        program_name, header, passes, machine, job.spindle_rpm, CLEARANCE, PLUNGE_FEED, coolant=not job.dry_run
     )  # fmt: skip
 
 
 def _passes(member: Member, name: str, machine: MillingMachine, job: Job) -> Iterator[Pass]:
     """All passes in their order: tool by tool, roughing before finishing, space by space."""
     if member.process == "face_hobbing":
-        raise InputError(
-            f"{name}: is face hobbed: the cutter's rotation would have to be the sixth axis C of the program, which is "
-            "not written yet"
-        )
+        yield from _hobbing_passes(member, name, machine, job)
+        return
     angles = tooth_angles(member.teeth, member.index_correction)
     if not all(0 <= space < member.teeth for space in job.spaces):
         raise InputError(f"{name}: spaces = {list(job.spaces)}: must be numbers from 0 to {member.teeth - 1}")
@@ -132,6 +134,28 @@ def _passes(member: Member, name: str, machine: MillingMachine, job: Job) -> Ite
                 yield replace(first, label=label, tooth=int(space), axes=axes)
 
 
+def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job) -> Iterator[Pass]:
+    """One pass a stage, through all spaces at once."""
+    if sorted(set(job.spaces)) != list(range(member.teeth)):
+        raise InputError(
+            f"{name}: spaces = {_short(job.spaces)}: face hobbing cuts all spaces in one roll: it must be all "
+            f"{member.teeth}"
+        )
+    if any(member.index_correction):
+        raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
+    (cut,) = Cut.of(member, name)
+    _check_motions(member, name, cut)
+    tooth, lift = _middle_of_tooth(member, cut), _PLUNGE_DEPTHS * _depth(member) + _PLUNGE_MARGIN
+    for stage, stock, tolerance in job.stages:
+        one = hobbing_pass(
+            member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth
+        )  # fmt: skip
+        one.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
+        label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
+        axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
+        yield Pass(cut.tool, label, 0, axes, one.seconds)
+
+
 def _first_pass(member: Member, cut: Cut, machine: MillingMachine, job: Job) -> tuple[np.ndarray, Pass]:
     """Cradle rotations and the pass through space 0: rolled, or for Formate plunged at cradle rotation zero."""
     flank = member.flank(cut.flanks[0])
@@ -139,8 +163,7 @@ def _first_pass(member: Member, cut: Cut, machine: MillingMachine, job: Job) -> 
     if member.generation == "formate":
         theta = np.zeros(2)
         axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
-        depth = member.blank.mean_addendum + member.blank.mean_dedendum
-        axes[0, 2] += _PLUNGE_DEPTHS * depth + _PLUNGE_MARGIN
+        axes[0, 2] += _PLUNGE_DEPTHS * _depth(member) + _PLUNGE_MARGIN
         dwell = _SPARK_OUT_TURNS * 60.0 / job.spindle_rpm if job.spindle_rpm > 0 else 0.0
     else:
         theta = roll_nodes(member, cut, job.tolerance, machine.pivot_height, machine.pivot)
@@ -152,6 +175,16 @@ def _first_pass(member: Member, cut: Cut, machine: MillingMachine, job: Job) -> 
 def _middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
     """The middle of the first flank of a pass (3,)."""
     return flank_points(member, cut.flanks[0], blank_grid(member, 1, 1)).point[0]
+
+
+def _depth(member: Member) -> float:
+    """The whole depth of the tooth [mm] in the middle."""
+    return member.blank.mean_addendum + member.blank.mean_dedendum
+
+
+def _short(spaces: Sequence[int]) -> str:
+    listed = ", ".join(map(str, spaces[:5]))
+    return f"[{listed}]" if len(spaces) <= 5 else f"[{listed}, ...]"
 
 
 def _flattest(member: Member, cut: Cut) -> float:

@@ -42,6 +42,8 @@ class MachinePath:
     """Whether the spindle turns, (n,)."""
     measuring: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
     """Whether the block is a MEAS block, which ends where the probe triggers, (n,)."""
+    cutter: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Position of the cutter's axis C at the ends, (n,) rad, counted on; NaN while the spindle is no axis."""
 
 
 @dataclass(frozen=True)
@@ -281,4 +283,5 @@ def _path(rows: list[Row]) -> MachinePath:
         seconds=np.array([row.seconds for row in rows]),
         spindle_on=np.array([row.spindle_on for row in rows], dtype=bool),
         measuring=np.array([row.measuring for row in rows], dtype=bool),
+        cutter=np.radians(np.array([row.cutter for row in rows])),
     )

@@ -31,14 +31,21 @@ def block_seconds(axes: np.ndarray, machine: MillingMachine, feed_mm_min: float,
     (seen,) = kernel("seen_from_tool")(axes, tooth, machine.pivot_height, machine.pivot)
     steps = np.diff(axes, axis=0)
     at_feed = np.linalg.norm(np.diff(seen, axis=0), axis=1) * 60.0 / feed_mm_min
-    clock = np.maximum(np.maximum(at_feed, (np.abs(steps) / machine.max_speed).max(axis=1)), SHORTEST)
-    seconds = clock * _slower(steps / clock[:, None], clock, machine.max_acceleration)
-    excess = (np.abs(accelerations(steps, seconds)) / machine.max_acceleration).max()
+    return paced_seconds(steps, at_feed, machine.max_speed, machine.max_acceleration)
+
+
+def paced_seconds(
+    steps: np.ndarray, at_least: np.ndarray, max_speed: np.ndarray, max_acceleration: np.ndarray
+) -> np.ndarray:
+    """Duration (n,) [s] of blocks of these steps (n,k): not less than ``at_least`` (n,), and within the limits (k,)."""
+    clock = np.maximum(np.maximum(at_least, (np.abs(steps) / max_speed).max(axis=1)), SHORTEST)
+    seconds = clock * _slower(steps / clock[:, None], clock, max_acceleration)
+    excess = (np.abs(accelerations(steps, seconds)) / max_acceleration).max()
     return seconds * math.sqrt(max(1.0, excess))
 
 
 def accelerations(steps: np.ndarray, seconds: np.ndarray) -> np.ndarray:
-    """Change of speed over time (n,5) between blocks of these steps (n-1,5), a standstill before and after."""
+    """Change of speed over time (n,k) between blocks of these steps (n-1,k), a standstill before and after."""
     still = np.zeros((1, steps.shape[1]))
     speeds = np.vstack([still, steps / seconds[:, None], still])
     times = np.concatenate([[0.0], seconds, [0.0]])
@@ -46,7 +53,7 @@ def accelerations(steps: np.ndarray, seconds: np.ndarray) -> np.ndarray:
 
 
 def _slower(speeds: np.ndarray, clock: np.ndarray, limit: np.ndarray) -> np.ndarray:
-    """By what each block takes longer than its clock time (n-1,), for its speeds (n-1,5) by the clock."""
+    """By what each block takes longer than its clock time (n-1,), for its speeds (n-1,k) by the clock."""
     n = len(clock)
     bends = np.abs(np.diff(speeds, axis=0)) / ((clock[1:] + clock[:-1]) / 2)[:, None]
     with np.errstate(divide="ignore"):

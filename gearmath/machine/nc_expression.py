@@ -40,6 +40,8 @@ FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
 #: System variables, and what stands in their brackets.
 SYSTEM = {"$AA_MM": "axis", "$AA_MW": "axis", "$AC_MEA": "1", "$A_PROBE": "1"}
 AXES = "XYZAB"
+#: The cutter's spindle, once SPOS has made an axis of it.
+CUTTER_AXIS = "C"
 
 
 def refuse(name: str, line: int, column: int, what: str) -> NoReturn:

@@ -9,13 +9,13 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Pass:
-    """One tool roll through one tooth space: plunge, cut along ``axes``, dwell, retract."""
+    """One tool roll through one tooth space, or in face hobbing through all: plunge, cut along ``axes``, retract."""
 
     tool: str
     label: str
     tooth: int
     axes: np.ndarray
-    """Positions X Y Z A B at the block ends, (n, 5) mm and rad; A counts on, not modulo."""
+    """Positions X Y Z A B at the block ends, (n, 5) mm and rad, or with C (n, 6); A and C count on, not modulo."""
     seconds: np.ndarray
     """Duration of each block, (n-1,) s."""
     dwell: float = 0.0

@@ -15,7 +15,7 @@ from gearmath.bevel.method import blade_sections, cut_generation_of, motion_of
 from gearmath.bevel.newton import TOLERANCE, FlankPoints
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
-from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
+from gearmath.specs.milling_machine import MillingMachine
 
 #: How far the flank may deviate from nominal because of straight blocks. [mm]
 DEFAULT_TOLERANCE = 1e-4
@@ -97,21 +97,23 @@ def axis_positions(
 
 
 def within_travel(axes: np.ndarray, theta: np.ndarray, machine: MillingMachine, what: str) -> np.ndarray:
-    """The positions (n,5), A by whole turns where a counting axis needs it to stay within its travel.
+    """The positions (n,5) or (n,6), A and C by whole turns where a counting axis needs it to stay within its travel.
 
     Raises InputError naming ``what``, the cradle angle, axis, value and limit of the first position out of travel.
     """
-    low, high = machine.travel.T
-    if math.isfinite(low[3]):
-        turns = math.ceil((low[3] - axes[:, 3].min()) / (2 * math.pi) - 1e-12)
-        axes = axes + 2 * math.pi * turns * np.array([0, 0, 0, 1, 0])
+    limits = machine.limits(axes.shape[1])
+    low, high = limits.travel.T
+    for turning in (3, 5):
+        if axes.shape[1] > turning and math.isfinite(low[turning]):
+            turns = math.ceil((low[turning] - axes[:, turning].min()) / (2 * math.pi) - 1e-12)
+            axes = axes + 2 * math.pi * turns * np.eye(axes.shape[1])[turning]
     outside = np.argwhere((axes < low) | (axes > high))
     if outside.size:
         point, axis = outside[0]
-        scale = UNITS_PER_INTERNAL[axis]
+        scale, unit = limits.scale[axis], limits.units[axis]
         raise InputError(
-            f"{what}: axis {AXES[axis]} = {axes[point, axis] * scale:.5f} {UNITS[axis]} at cradle angle "
+            f"{what}: axis {limits.names[axis]} = {axes[point, axis] * scale:.5f} {unit} at cradle angle "
             f"{math.degrees(theta[point]):.3f} deg: {machine.name} travels {low[axis] * scale:g} to "
-            f"{high[axis] * scale:g} {UNITS[axis]}"
+            f"{high[axis] * scale:g} {unit}"
         )
     return axes

@@ -1,8 +1,11 @@
 """Writes NC programs for SINUMERIK 840D sl: every pass of the cutter as G1 blocks in inverse-time feed (G93).
 
 Millimetres with five decimals, degrees with six; a modulo axis A goes the short way (DC), a counting one is written
-as it counts. The reader of these
-programs is ``gearmath.machine.reader``; it shares no code with this module, so that each checks the other.
+as it counts. Where a pass has a sixth column, the cutter's spindle stands still at SPOS=0 first, and then runs as axis
+C. That C may follow SPOS without M70, and that its sense is that of M3, depends on the machine [unconfirmed].
+
+The reader of these programs is ``gearmath.machine.reader``; it shares no code with this module, so that each checks
+the other.
 """
 
 from __future__ import annotations
@@ -14,7 +17,17 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.machine.limits import check_pass, check_process
 from gearmath.machine.passes import Pass
-from gearmath.machine.words import axis_words, check_name, comment, feed_number, fixed, numbered, printed
+from gearmath.machine.words import (
+    axis_words,
+    check_name,
+    comment,
+    cutter_positions,
+    cutter_word,
+    feed_number,
+    fixed,
+    numbered,
+    printed,
+)
 from gearmath.specs.milling_machine import MillingMachine
 
 __all__ = ["Pass", "write_program"]
@@ -61,21 +74,31 @@ def _body(
             tool = one.tool
             yield f'T="{tool}" D1'
             yield "M6"
-            yield f"S{rpm:.3f} {machine.cutter_direction}"
+            yield "SPOS=0" if one.axes.shape[1] == 6 else f"S{rpm:.3f} {machine.cutter_direction}"
             if coolant:
                 yield "M8"
         yield comment(name, f"{one.label}, tooth {one.tooth}")
-        yield from _pass_blocks(one, machine.axes.A.modulo, retract, plunge)
+        yield from _pass_blocks(one, machine, retract, plunge)
     yield "M5 M9"
     yield "M30"
 
 
-def _pass_blocks(one: Pass, modulo: bool, retract: str, plunge: float) -> Iterator[str]:
+def _words(one: Pass, machine: MillingMachine) -> list[tuple[str, ...]]:
+    modulo = machine.axes.A.modulo
+    points: list[tuple[str, ...]] = [axis_words(point, modulo) for point in printed(one.axes[:, :5], modulo)]
+    if machine.axes.C is None or one.axes.shape[1] == 5:
+        return points
+    turning = machine.axes.C.modulo
+    cutter = [cutter_word(value, turning) for value in cutter_positions(one.axes[:, 5], turning).tolist()]
+    return [(*words, word) for words, word in zip(points, cutter, strict=True)]
+
+
+def _pass_blocks(one: Pass, machine: MillingMachine, retract: str, plunge: float) -> Iterator[str]:
     """Approach above the first point, plunge, the cut, retract. The last block leaves G93 and renews F for G94."""
-    points = [axis_words(point, modulo) for point in printed(one.axes, modulo)]
-    x, y, z, a, b = points[0]
+    points = _words(one, machine)
+    x, y, z, *turned = points[0]
     yield f"G0 Z{retract}"
-    yield f"G0 {x} {y} {a} {b}"
+    yield f"G0 {x} {y} {' '.join(turned)}"
     yield f"G94 G1 {z} F{plunge:.3f}"
     for words, seconds in zip(points[1:], one.seconds.tolist(), strict=True):
         yield f"G93 G1 {' '.join(words)} F{feed_number(60.0 / seconds)}"

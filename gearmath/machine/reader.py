@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from gearmath.machine.nc_expression import AXES, NUMBER, Constant, Node, Scanner, refuse, shown
+from gearmath.machine.nc_expression import AXES, CUTTER_AXIS, NUMBER, Constant, Node, Scanner, refuse, shown
 from gearmath.machine.nc_tree import Assignment, Block, Branch, Command, Definition, Loop, Program, Statement, Word
 
 #: The codes that are understood, by group. One code of a group at a time, in a block and in force.
@@ -46,7 +46,7 @@ _NUMBERED = re.compile(rf"N([0-9]{{1,9}}){_BLANK}")
 _CODE = re.compile(rf"(?:[GM]0?[0-9]{{1,3}}|[A-Z]{{4,8}}){_BLANK}")
 _CONSTANT = re.compile(rf"([A-Z])(-?{NUMBER})")
 _TOOL = re.compile(rf'T="([A-Za-z0-9_]{{1,31}})"{_BLANK}')
-_ADDRESS = re.compile(rf"([{AXES}FS]|SPOS|MEAS|ADIS|ADISPOS)=")
+_ADDRESS = re.compile(rf"([{AXES}{CUTTER_AXIS}FS]|SPOS|MEAS|ADIS|ADISPOS)=")
 _WAY = re.compile(r"(DC|IC|AC|ACP|ACN)\(")
 _GROUP_RADIUS = re.compile(rf"FGREF\[([{AXES}])\]=")
 _WORD = re.compile(r"[A-Z]+(?![A-Za-z0-9_.])")
@@ -276,7 +276,7 @@ class _AtLine(Scanner):
         at, column = self.at, self.at + 1
         if (constant := self.match(_CONSTANT)) is not None and self._ends():
             letter, text = constant[1], constant[0]
-            if letter in f"{AXES}FSD":
+            if letter in f"{AXES}{CUTTER_AXIS}FSD":
                 return letter, Word(text, Constant(float(constant[2])), column)
             if letter == "N" and text[1:].isdecimal():
                 return "N", Word(text, Constant(float(text[1:])), column)
@@ -298,7 +298,7 @@ class _AtLine(Scanner):
         return self.at == len(self.text) or self.text[self.at] in " \t"
 
     def _addressed(self, address: str, at: int) -> Word:
-        way = self.match(_WAY) if address in AXES else None
+        way = self.match(_WAY) if address in AXES + CUTTER_AXIS else None
         if way is None:
             value = self._value()
             return Word(self.text[at : self.at], value, at + 1)

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.specs.milling_machine import UNITS_PER_INTERNAL
+from gearmath.specs.milling_machine import CUTTER_AXIS, UNITS_PER_INTERNAL
 
 #: A block may be no longer than this, comment and line end included.
 MAX_BLOCK_CHARACTERS = 250
@@ -42,6 +42,19 @@ def printed(axes: np.ndarray, modulo: bool) -> np.ndarray:
         values[:, 3] %= 360.0
     values[:, 4] = np.round(values[:, 4], _DEG_DECIMALS)
     return values + 0.0
+
+
+def cutter_positions(angle: np.ndarray, modulo: bool) -> np.ndarray:
+    """Positions of C as they stand in the text: (n,) degrees, rounded, a modulo C in 0 <= C < 360, no -0."""
+    values = angle * UNITS_PER_INTERNAL[-1]
+    values = np.round(values % 360.0 if modulo else values, _DEG_DECIMALS)
+    return (values % 360.0 if modulo else values) + 0.0
+
+
+def cutter_word(value: float, modulo: bool) -> str:
+    """A position of C in degrees as a word."""
+    text = f"{value:.{_DEG_DECIMALS}f}"
+    return f"{CUTTER_AXIS}=DC({text})" if modulo else f"{CUTTER_AXIS}{text}"
 
 
 def axis_words(point: np.ndarray, modulo: bool) -> tuple[str, str, str, str, str]:

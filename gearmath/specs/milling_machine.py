@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -15,6 +16,8 @@ AXES = "XYZAB"
 #: What a TOML file states an axis in, in the same order, and how many of these make a mm or a rad.
 UNITS = ("mm", "mm", "mm", "degrees", "degrees")
 UNITS_PER_INTERNAL = np.array([1.0, 1.0, 1.0, 180.0 / np.pi, 180.0 / np.pi])
+#: The cutter spindle as an axis: where positions have a sixth column, it is this one, in degrees.
+CUTTER_AXIS = "C"
 
 
 def _increasing(limits: tuple[float, float]) -> tuple[float, float]:
@@ -36,8 +39,11 @@ class TravelAxis(Spec):
     max_acceleration: float = Field(gt=0)
 
 
-class WorkAxis(Spec):
-    """The work spindle: a modulo axis turns without end and counts 0 to 360 degrees, a counting one has a travel."""
+class TurningAxis(Spec):
+    """Work or cutter spindle: a modulo axis turns without end and counts 0 to 360 degrees, a counting one has a travel.
+
+    In degrees, degrees/min and degrees/s².
+    """
 
     modulo: bool
     travel: _Range | None = None
@@ -45,20 +51,21 @@ class WorkAxis(Spec):
     max_acceleration: float = Field(gt=0)
 
     @model_validator(mode="after")
-    def _one_way_to_count(self) -> WorkAxis:
+    def _one_way_to_count(self) -> TurningAxis:
         if self.modulo != (self.travel is None):
             raise ValueError("travel belongs to an axis with modulo = false, and such an axis needs it")
         return self
 
 
 class Axes(Spec):
-    """The five axes, named as in the program."""
+    """The five axes, named as in the program, and the cutter spindle where the control can run it as the sixth."""
 
     X: TravelAxis
     Y: TravelAxis
     Z: TravelAxis
-    A: WorkAxis
+    A: TurningAxis
     B: TravelAxis
+    C: TurningAxis | None = None
 
 
 class Control(Spec):
@@ -73,6 +80,18 @@ class Control(Spec):
         """The words of the head."""
         forward = {None: None, True: "FFWON", False: "FFWOF"}[self.feed_forward]
         return tuple(word for word in (self.path_mode, self.jerk, forward) if word is not None)
+
+
+@dataclass(frozen=True)
+class AxisLimits:
+    """Names and limits of k axes: ``scale`` (k,) makes the unit of the file of mm or rad; the rest is in mm, rad, s."""
+
+    names: str
+    units: tuple[str, ...]
+    scale: np.ndarray
+    travel: np.ndarray
+    max_speed: np.ndarray
+    max_acceleration: np.ndarray
 
 
 class MillingMachine(Spec):
@@ -117,8 +136,21 @@ class MillingMachine(Spec):
         """Highest acceleration of X Y Z A B, (5,) mm/s² and rad/s²."""
         return np.array([axis.max_acceleration for axis in self._all]) / UNITS_PER_INTERNAL
 
+    def limits(self, count: int) -> AxisLimits:
+        """Limits of positions with ``count`` columns: five, or six with the cutter's axis, which must be there."""
+        cutter = self.axes.C
+        if count == len(AXES) or cutter is None:
+            return AxisLimits(AXES, UNITS, UNITS_PER_INTERNAL, self.travel, self.max_speed, self.max_acceleration)
+        degree = UNITS_PER_INTERNAL[-1]
+        return AxisLimits(
+            AXES + CUTTER_AXIS, (*UNITS, UNITS[-1]), np.append(UNITS_PER_INTERNAL, degree),
+            np.vstack([self.travel, np.array(cutter.travel or (-np.inf, np.inf)) / degree]),
+            np.append(self.max_speed, cutter.max_speed_per_min / degree / 60.0),
+            np.append(self.max_acceleration, cutter.max_acceleration / degree),
+        )  # fmt: skip
+
     @property
-    def _all(self) -> tuple[TravelAxis, TravelAxis, TravelAxis, WorkAxis, TravelAxis]:
+    def _all(self) -> tuple[TravelAxis, TravelAxis, TravelAxis, TurningAxis, TravelAxis]:
         return self.axes.X, self.axes.Y, self.axes.Z, self.axes.A, self.axes.B
 
 

@@ -292,7 +292,7 @@ def test_files_are_written_line_by_line():
         (["G93 COMPCAD"], "line 6, column 5",
          "COMPCAD and G93 at once: a block made of several would take the time of the last one"),
         (["A12.5"], "line 6, column 1", "A12.5: A is counted on in one block and modulo in another"),
-        (["B=DC(5)"], "line 6, column 1", "B=DC(5): only A turns without end"),
+        (["B=DC(5)"], "line 6, column 1", "B=DC(5): only A and C turn without end"),
         (["X=1000*1001"], "line 6, column 1", "X=1000*1001 leads to 1.001e+06: no axis is that long"),
         (["TRANS A5"], "line 6, column 1", "TRANS of a rotary axis is not understood"),
         (["SETAL(1)"], "line 6, column 1", "SETAL(1.0): alarms of users go from 65000 to 69999"),

@@ -76,7 +76,7 @@ def test_comments_are_kept_by_line():
     "word",
     ["X+1", "X.5", "X1.", "X1E5", "X1e5", "X1.5EX-3", "Xnan", "Xinf", "X1e999", "X", "G2", "G91", "G95", "G54.1",
      "M17", "M30.0", "POLY", "x1", "g1", "T1", 'T=""', "(comment)", "O1234", "#1", "%", "/", "N1.5", "X1Y2", "X١",
-     "G９", "X--1", "X0x10", "X" + "9" * 400, 'T="A', "X1\x0b", "\x00", "GOTOF", "C1"],
+     "G９", "X--1", "X0x10", "X" + "9" * 400, 'T="A', "X1\x0b", "\x00", "GOTOF", "U1"],
 )  # fmt: skip
 def test_unknown_words_are_refused_with_line_and_column(word):
     message = refused(f"G17\nG1 {word} F1")

@@ -1,0 +1,165 @@
+"""The blades of a face hobbing cutter one by one: the parts of their cutting edges, and where a line meets one.
+
+A blade group has an outer and an inner blade in the same direction. The edge of each has its main part, where there is
+one its Toprem, its rounding, and the tip, from there to a bit beyond the middle of the group's point width, so that
+both tips together leave no ridge.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+
+import casadi as ca
+import numpy as np
+
+from derivations import Quantity, notation, single_blades
+from gearmath.bevel.generation import Section
+from gearmath.bevel.method import blade_sections
+from gearmath.bevel.newton import newton_step
+from gearmath.lowering import Kernel, lower
+from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
+
+NEWTON_STEPS = 6
+#: Largest change of u [mm or rad], of the fraction of a block, and of the distance [mm] in one step.
+_STEP_LIMITS = {False: (6.0, 0.15, 6.0), True: (0.5, 0.15, 6.0)}
+#: A tip reaches beyond the middle of the point width by this part of it.
+_TIP_OVERLAP = 0.05
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A part of the cutting edge of one blade, u from ``lower`` to ``upper``: ``shape`` is a straight_edge or an arc.
+
+    ``part`` is that of :func:`blade_sections`, or ``tip``.
+
+    ``tip_radius`` and ``offset`` [rad] are r_p and η of (17.2), ``side`` that of the blade.
+    """
+
+    flank: str
+    part: str
+    lower: float
+    upper: float
+    shape: tuple[float, ...]
+    tip_radius: float
+    offset: float
+    side: int
+
+    @property
+    def is_arc(self) -> bool:
+        return len(self.shape) == 3
+
+    @property
+    def middle(self) -> tuple[float, float, float]:
+        """u, radius and height in the middle of the edge."""
+        u = (self.lower + self.upper) / 2
+        if self.is_arc:
+            radius, height, r = self.shape
+            return u, radius + self.side * r * math.cos(u), height - r * math.sin(u)
+        radius, height, outwards, upwards = self.shape
+        return u, radius + u * outwards, height + u * upwards
+
+    @property
+    def arguments(self) -> tuple[object, ...]:
+        """What the kernels take after the pivot offset: offset, r_p, and the shape (of an arc with its side)."""
+        shape = np.array(self.shape)
+        return (self.offset, self.tip_radius, shape, self.side) if self.is_arc else (self.offset, self.tip_radius, shape)
+
+
+@dataclass(frozen=True)
+class Blades:
+    """All blades of a cutter: ``groups`` of them at equal angles, with these edges each."""
+
+    groups: int
+    teeth: int
+    edges: tuple[Edge, ...]
+
+
+def blades_of(member: Member, edge_radius: float = 0.0) -> Blades:
+    """The blades of a face hobbed member as they are; ``edge_radius`` [mm] is given to blades that state none."""
+    own = {flank: _as_cut(member.flank(flank), edge_radius) for flank in FLANKS}
+    sections = {flank: blade_sections(own[flank], SIDES[flank]) for flank in FLANKS}
+    width = own["concave"].blade_point_radius - own["convex"].blade_point_radius
+    edges: list[Edge] = []
+    for flank in FLANKS:
+        edges += [_edge(own[flank], flank, part, section) for part, section in sections[flank].items()]
+        edges.append(_tip(own[flank], flank, next(iter(sections[flank].values())), width))
+    return Blades(member.blade_groups or 1, member.teeth, tuple(edges))
+
+
+def _as_cut(spec: Flank, edge_radius: float) -> Flank:
+    rounded = spec.blade_edge_radius or edge_radius
+    return spec.model_copy(update={"design": None, "blade_edge_radius": rounded})
+
+
+def _edge(spec: Flank, flank: str, part: str, section: Section) -> Edge:
+    side, offset = SIDES[flank], math.radians(spec.blade_offset_angle)
+    line = (section.point_radius, 0.0, side * math.tan(section.pressure_angle), 1.0)
+    shape = section.arc or line
+    return Edge(flank, part, section.lower, section.upper, shape, spec.blade_point_radius, offset, side)
+
+
+def _tip(spec: Flank, flank: str, lowest: Section, width: float) -> Edge:
+    """From where the rounding or the blade ends, at height zero, towards the other blade of the group."""
+    side = SIDES[flank]
+    first = lowest.point_radius if lowest.arc is None else lowest.arc[0]
+    last = spec.blade_point_radius - side * (0.5 + _TIP_OVERLAP) * width
+    length = max(side * (first - last), 0.0)
+    offset = math.radians(spec.blade_offset_angle)
+    return Edge(flank, "tip", 0.0, length, (first, 0.0, -float(side), 0.0), spec.blade_point_radius, offset, side)
+
+
+def _quantities(is_arc: bool) -> tuple[Quantity, ...]:
+    first, last = (
+        Quantity(name, text, "mixed", name, shape=(5,), components=notation.axes.components)
+        for name, text in (("axes_first", "axis positions at the start of the block"), ("axes_last", "at its end"))
+    )
+    turned = tuple(
+        Quantity(name, text, "rad", name)
+        for name, text in (
+            ("C_first", "position of C at the start of the block, with the angle of the blade group"),
+            ("C_last", "the same at its end"),
+        )
+    )
+    guess = Quantity("crossing_guess", "start values of u, fraction of the block and distance", "mixed", "w_0", shape=(3,))
+    given = _point(is_arc).inputs[3:]
+    return (guess, first, last, *turned, *given, notation.line_point, notation.line_direction)
+
+
+@cache
+def _point(is_arc: bool) -> Kernel:
+    return lower((single_blades.arc_edge_point if is_arc else single_blades.straight_edge_point)())
+
+
+@cache
+def crossing(is_arc: bool) -> Kernel:
+    """Kernel: start values, a block, a blade and a line in; u, fraction and distance of their crossing out, and the
+    size of the residual [mm].
+
+    R_e(u, s) = p + t d at the fraction s of a straight block, whose ends are positions of all six axes.
+    """
+    quantities = _quantities(is_arc)
+    guess, *given = (ca.SX.sym(q.name, max(q.size, 1)) for q in quantities)
+    a, b, first, last, *machine, p, d = given
+    w = ca.SX.sym("w", 3)
+    u, s, t = w[0], w[1], w[2]
+    edge = _point(is_arc).function(u, a + s * (b - a), first + s * (last - first), *machine)
+    residual = edge - (p + t * d)
+    step = ca.Function("crossing_step", [w, *given], [newton_step(residual, w, _STEP_LIMITS[is_arc])])
+    rest = ca.Function("crossing_rest", [w, *given], [ca.norm_2(residual)])
+    start, *arguments = (ca.MX.sym(q.name, max(q.size, 1)) for q in quantities)
+    solution = start
+    for _ in range(NEWTON_STEPS):
+        solution = step(solution, *arguments)
+    found = Quantity("crossing", "u, fraction of the block and distance of the crossing", "mixed", "w", shape=(3,))
+    left = Quantity("crossing_rest", "distance that is left between edge and line", "mm", "r")
+    name = "arc_crossing" if is_arc else "straight_crossing"
+    function = ca.Function(
+        name, [start, *arguments], [solution, rest(solution, *arguments)],
+        [q.name for q in quantities], ["crossing", "crossing_rest"],
+    )  # fmt: skip
+    return Kernel(
+        function, f"Where the edge of one blade crosses a line within a block, {NEWTON_STEPS} damped Newton steps.",
+        quantities, (found, left), "(17.2) of a straight block, against a line",
+    )  # fmt: skip
