@@ -56,7 +56,7 @@ def expressions() -> Iterator[Expression]:
     yield from (spacing.ball_shift(), spacing.flank_allowance(), spacing.tooth_at_points())
     yield from (spacing.mean_module(), spacing.tolerance_diameter(), spacing.spacing_tolerances())
     yield from (single_blades.tool_frame(), single_blades.cradle_tool_frame(), single_blades.straight_edge_point())
-    yield from (single_blades.arc_edge_point(), single_blades.roll_per_turn())
+    yield from (single_blades.arc_edge_point(), single_blades.seen_from_blades(), single_blades.roll_per_turn())
     yield from (probing.probe_target(), probing.space_azimuth(), probing.probe_axes(), probing.probe_tip())
     yield from (probing.touched_point(), probing.ring_calibration(), probing.sphere_residual())
     yield from (probing.effective_radius(), probing.lobing_of(), probing.shape_of_lobes(), probing.ring_residual())

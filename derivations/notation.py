@@ -114,6 +114,9 @@ point_m = _vector(
 )
 psi = Quantity("psi", "position of the cutter's axis C at cutter angle zero", "rad", r"\psi")
 C = Quantity("C", "position of the cutter's axis C, right-handed about the tool axis", "rad", "C", (-10.0, 10.0))
+cutter_azimuth = Quantity(
+    "cutter_azimuth", "position of C at which the cutter frame's axis i points to a place", "rad", r"\chi"
+)
 cutter_reference_w = _vector(
     "cutter_reference_w", r"\mathbf{i}_c", "1", 1.0, 1.0, "axis i of the turned cutter frame, work frame w"
 )

@@ -19,6 +19,11 @@ of the cutter. In between the cradle rolls by Δθ. Near its contact at θ_c, th
 t = c (θ - θ_c)²/2; of the passes, Δθ apart, the nearest is off by Δθ/2 at most. What is left is at most
 
     δ = c Δθ²/8,   so that   Δθ = √(8 δ/c)                                                      (17.4)
+
+To find which blades come near a point of the work, it is seen from the tool (5.6) in cylindrical coordinates about the
+tool axis. A blade in the plane through that axis reaches it when C stands at its azimuth:
+
+    h = r_z,   ρ² = r_x² + r_y²,   χ = atan2(r_y, -r_x)                                         (17.5)
 """
 
 from __future__ import annotations
@@ -122,6 +127,20 @@ def arc_edge_point() -> Expression:
 
 
 @cache
+def seen_from_blades() -> Expression:
+    """(17.5) as an Expression."""
+    x, y, z = axes.seen_from_tool()["point_m"]
+    return Expression(
+        "seen_from_blades",
+        "Height above the tip plane, distance from the cutter axis and azimuth of a point of the work (17.5).",
+        (q.axes, q.point_w, q.pivot_height, q.pivot_offset),
+        ((q.tip_height, z), (q.axis_distance, sp.sqrt(x**2 + y**2)), (q.cutter_azimuth, sp.atan2(y, -x))),
+        requires=(x**2 + y**2 - 1,),
+        source="(5.6) about the tool axis, with the sense of C",
+    )
+
+
+@cache
 def roll_per_turn() -> Expression:
     """(17.4) as an Expression."""
     return Expression(
@@ -184,6 +203,12 @@ def prove_next_group_cuts_the_next_space() -> None:
         of_family = Rz(-(roll + ratio * (beta + 2 * sp.pi * g / groups))) * p
         assert sp.simplify(cut - Rz(sign * 2 * sp.pi * g / teeth) * of_family) == sp.zeros(3, 1)
         assert sp.simplify(ratio * 2 * sp.pi * teeth / groups - sign * 2 * sp.pi) == 0
+
+
+def prove_azimuth_is_that_of_the_blade_that_reaches_the_point() -> None:
+    """(17.5) Q(χ) [ρ, 0, -h] is the place (x, y, z) with x = -ρ cos χ and y = ρ sin χ: C = χ leads the blade there."""
+    rho, chi, h = sp.symbols("rho chi_ h_", real=True)
+    assert is_zero(turned(chi) * sp.Matrix([rho, 0, -h]) - sp.Matrix([-rho * sp.cos(chi), rho * sp.sin(chi), h]))
 
 
 def prove_scallop_is_that_of_a_circle() -> None:

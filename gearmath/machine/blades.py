@@ -61,10 +61,27 @@ class Edge:
         return u, radius + u * outwards, height + u * upwards
 
     @property
-    def arguments(self) -> tuple[object, ...]:
+    def half_length(self) -> float:
+        """Half the length of the edge [mm]: no point of it is farther from its middle."""
+        across = 1.0 if not self.is_arc else abs(self.shape[2])
+        slope = 1.0 if self.is_arc else math.hypot(*self.shape[2:])
+        return (self.upper - self.lower) / 2 * across * slope
+
+    def parameter(self, radius: np.ndarray, height: np.ndarray) -> np.ndarray:
+        """Parameter (n,) of the edge's point nearest to places (n,) beside the cutter axis, within the edge."""
+        if self.is_arc:
+            center_radius, center_height, r = self.shape
+            u = np.arctan2((center_height - height) / r, self.side * (radius - center_radius) / r)
+        else:
+            first, base, outwards, upwards = self.shape
+            u = ((radius - first) * outwards + (height - base) * upwards) / (outwards**2 + upwards**2)
+        return np.clip(u, self.lower, self.upper)
+
+    @property
+    def arguments(self) -> tuple[float | np.ndarray, ...]:
         """What the kernels take after the pivot offset: offset, r_p, and the shape (of an arc with its side)."""
-        shape = np.array(self.shape)
-        return (self.offset, self.tip_radius, shape, self.side) if self.is_arc else (self.offset, self.tip_radius, shape)
+        given = (self.offset, self.tip_radius, np.array(self.shape))
+        return (*given, self.side) if self.is_arc else given
 
 
 @dataclass(frozen=True)
@@ -122,7 +139,9 @@ def _quantities(is_arc: bool) -> tuple[Quantity, ...]:
             ("C_last", "the same at its end"),
         )
     )
-    guess = Quantity("crossing_guess", "start values of u, fraction of the block and distance", "mixed", "w_0", shape=(3,))
+    guess = Quantity(
+        "crossing_guess", "start values of u, fraction of the block and distance", "mixed", "w_0", shape=(3,)
+    )
     given = _point(is_arc).inputs[3:]
     return (guess, first, last, *turned, *given, notation.line_point, notation.line_direction)
 
@@ -140,7 +159,7 @@ def crossing(is_arc: bool) -> Kernel:
     R_e(u, s) = p + t d at the fraction s of a straight block, whose ends are positions of all six axes.
     """
     quantities = _quantities(is_arc)
-    guess, *given = (ca.SX.sym(q.name, max(q.size, 1)) for q in quantities)
+    _, *given = (ca.SX.sym(q.name, max(q.size, 1)) for q in quantities)
     a, b, first, last, *machine, p, d = given
     w = ca.SX.sym("w", 3)
     u, s, t = w[0], w[1], w[2]

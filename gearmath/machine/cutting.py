@@ -39,6 +39,8 @@ _MOST_STOCK = 5.0
 _ROUGH_SHARE = 0.05
 #: A plunge starts this many tooth depths above the bottom, and a bit [mm]; at the bottom the cutter turns this often.
 _PLUNGE_DEPTHS, _PLUNGE_MARGIN, _SPARK_OUT_TURNS = 2.0, 5.0, 1.5
+#: Turning, in face hobbing, it starts nearer: it goes down slowly.
+_HOBBING_DEPTHS = 1.5
 
 
 @dataclass(frozen=True)
@@ -145,7 +147,7 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job
         raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
     (cut,) = Cut.of(member, name)
     _check_motions(member, name, cut)
-    tooth, lift = _middle_of_tooth(member, cut), _PLUNGE_DEPTHS * _depth(member) + _PLUNGE_MARGIN
+    tooth, lift = _middle_of_tooth(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
         one = hobbing_pass(
             member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth

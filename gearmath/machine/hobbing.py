@@ -33,6 +33,8 @@ _CHORD_SHARE = 0.1
 _C_ROUNDING = math.radians(0.5e-6) * 250.0
 #: The approach of a blade to its contact is measured this far before and behind it. [rad]
 _BESIDE = 2e-3
+#: Most that the cutter goes down, and past the tooth, in a turn of the work: a blade cuts each space once. [mm]
+_PLUNGE_PER_TURN, _ROLL_PER_TURN = 0.2, 3.0
 #: The parabola of (17.4) may be too low by this part; turns of the work at the bottom, where nothing rolls.
 _PARABOLA_MARGIN, _FORMATE_TURNS = 1.05, 1.25
 
@@ -148,8 +150,9 @@ def hobbing_pass(
     start, end, turns = _roll(member, cut, drive, budget)
     pivot = (machine.pivot_height, machine.pivot)
     if end > start:
-        turns = max(turns, _feed_turns(spec, np.linspace(start, end, 200), tooth, feed, per_turn, pivot))
-    down = lift * 60.0 / plunge_feed / per_turn
+        way = _way_past(spec, np.linspace(start, end, 200), tooth, pivot)
+        turns = max(turns, way / min(feed * per_turn / 60.0, _ROLL_PER_TURN))
+    down = lift / min(plunge_feed * per_turn / 60.0, _PLUNGE_PER_TURN)
     parts = _parts(drive, machine)
     n_down = max(2, math.ceil(down * parts))
     n_roll = max(2, math.ceil(turns * parts))
@@ -186,13 +189,10 @@ def _roll(member: Member, cut: Cut, drive: _Drive, scallop: float) -> tuple[floa
     return low, high, (high - low) / float(step)
 
 
-def _feed_turns(
-    spec: Flank, theta: np.ndarray, tooth: np.ndarray, feed: float, per_turn: float, pivot: tuple[float, np.ndarray]
-) -> float:
-    """Turns of the work that the roll takes at the feed past the tooth, the indexing left out."""
+def _way_past(spec: Flank, theta: np.ndarray, tooth: np.ndarray, pivot: tuple[float, np.ndarray]) -> float:
+    """How far [mm] the roll moves the cutter past the tooth, the indexing left out."""
     (seen,) = kernel("seen_from_tool")(axis_positions(spec, theta, *pivot), tooth, *pivot)
-    length = float(np.linalg.norm(np.diff(seen, axis=0), axis=1).sum())
-    return length * 60.0 / feed / per_turn
+    return float(np.linalg.norm(np.diff(seen, axis=0), axis=1).sum())
 
 
 def _parts(drive: _Drive, machine: MillingMachine) -> float:

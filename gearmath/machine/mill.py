@@ -11,6 +11,7 @@ import numpy as np
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.tooth import ToothSpace, tooth_space
 from gearmath.errors import InputError
+from gearmath.machine.blade_milling import removal_by_blades
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.milling import Evaluator, Removal, removal
 from gearmath.machine.run import Run, runs_of
@@ -130,7 +131,11 @@ def expose(
     left, offset = Removal(np.full(len(point), np.nan), np.full(len(point), -1)), 0
     for run in runs:
         pose = (machine.pivot_height, machine.pivot)
-        found = removal(run.axes, run.cutting, run.cutter, pose, where, along, start, progress, evaluator)
+        lines = (pose, where, along, start, progress, evaluator)
+        if run.blades is None:
+            found = removal(run.axes, run.cutting, run.cutter, *lines)
+        else:
+            found = removal_by_blades(run.axes, run.turned, run.cutting, run.blades, *lines)
         left, offset = left.joined(found, offset), offset + len(run.axes)
     return left
 

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from gearmath.bevel.method import require_plain
 from gearmath.bevel.tooth import ToothSpace
 from gearmath.errors import InputError
+from gearmath.machine.blades import Blades, blades_of
 from gearmath.machine.cutter import Cutter, cutter_of
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.path import Cut, axis_positions, roll_range
 from gearmath.machine.simulation import divisions, index_errors, with_axis_errors, with_setting_errors
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
-from gearmath.specs.simulated_machine import SimulatedMachine
+from gearmath.specs.simulated_machine import SimulatedMachine, WorkAxis
 
 #: Positions of the nominal path that a pass is compared with, to see which space it is indexed to.
 _NOMINAL_POSITIONS = 201
@@ -26,7 +27,8 @@ _NOMINAL_POSITIONS = 201
 class Run:
     """The blocks of one tool: real axis positions (n,5), which of them cut (n,), and the space (n,) of each, or -1.
 
-    ``line`` (n,) is the number of the line in the program text.
+    ``line`` (n,) is the number of the line in the program text. In face hobbing, ``blades`` cut one by one at the
+    positions ``turned`` (n,) of C, and every block cuts in all spaces.
     """
 
     cut: Cut
@@ -35,10 +37,14 @@ class Run:
     cutting: np.ndarray
     space: np.ndarray
     line: np.ndarray
+    blades: Blades | None = None
+    turned: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     @property
     def spaces(self) -> list[int]:
         """The tooth spaces in the order in which they are cut."""
+        if self.blades is not None:
+            return list(range(self.blades.teeth))
         return list(dict.fromkeys(self.space[self.space >= 0].tolist()))
 
 
@@ -51,6 +57,10 @@ def runs_of(
     for tool in path.tools:
         if tool not in cuts:
             raise InputError(f'the program cuts with T="{tool}"; the {name} is cut with {" and ".join(cuts)}')
+    if member.process == "face_hobbing":
+        return [_hobbing_run(path, member, name, cuts[path.tools[0]], machine, errors, edge_radius)]
+    if np.isfinite(path.cutter).any():
+        raise InputError(f"the program turns the cutter as axis C; the {name} is face milled")
     runs = []
     for index, tool in enumerate(path.tools):
         here = path.tool == index
@@ -77,6 +87,33 @@ def _divided(axes: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarra
     share = (np.arange(1, len(own) + 1) - (last - parts)[own - 1]) / parts[own - 1]
     between = axes[own] - (1.0 - share)[:, None] * (axes[own] - axes[own - 1])
     return np.concatenate([axes[:1], between]), np.concatenate([[0], own])
+
+
+def _hobbing_run(
+    path: MachinePath, member: Member, name: str, cut: Cut, machine: MillingMachine, errors: SimulatedMachine | None,
+    edge_radius: float,
+) -> Run:  # fmt: skip
+    """The run of a face hobbing program. Raises InputError where it cuts without C, or where an error has no sense."""
+    cutting = ~path.rapid
+    still = cutting & ~np.isfinite(path.cutter)
+    if still.any():
+        line = int(path.line[np.argmax(still)])
+        raise InputError(f"line {line} cuts while the spindle is no axis C; the {name} is face hobbed")
+    axes, turned, line = path.axes, path.cutter, path.line
+    if errors is not None:
+        if errors.setting_errors(name).any():
+            require_plain(member, name, "a setting error of the simulated machine")
+        if errors.work_axis != WorkAxis():
+            raise InputError(
+                f"{name}: work_axis: an index error belongs to indexing space by space, and face hobbing indexes "
+                "without end: give axes.A_harmonics"
+            )
+        six = np.column_stack([axes, turned])
+        six, own = _divided(six, np.where(cutting[1:], divisions(axes, errors), 1))
+        axes, turned, cutting, line = with_axis_errors(six[:, :5], errors), six[:, 5], cutting[own], line[own]
+    cutter = cutter_of(member, cut.flanks, None, edge_radius)
+    spaces = np.full(len(cutting), -1)
+    return Run(cut, cutter, axes, cutting, spaces, line, blades_of(member, edge_radius), turned)
 
 
 def _spaces(axes: np.ndarray, cutting: np.ndarray, member: Member, cut: Cut, machine: MillingMachine) -> np.ndarray:

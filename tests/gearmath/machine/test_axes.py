@@ -7,6 +7,7 @@ import pytest
 
 from derivations import notation
 from derivations.axes import cradle_tool_pose
+from derivations.single_blades import cradle_tool_frame, tool_frame
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
 from gearmath.lowering import lower
@@ -106,6 +107,21 @@ def test_sixth_axis_gives_the_whole_pose_of_the_cutter(poses, witness):
     point, _ = witness.vertical_pose(moved, height)
     expected = witness.surface(u, beta, theta, settings, 1)
     assert np.linalg.norm(point - expected, axis=1).max() <= 1e-10
+
+
+def test_six_axes_give_the_whole_pose_of_the_cradle_machine_with_indexing(poses):
+    """Centre, axis and turned reference of the cutter in the work: 1e-11 mm, 1e-12 rad, pivot offsets included."""
+    settings, theta, height, offset, _ = poses
+    generator = np.random.default_rng(17)
+    beta, ratio = generator.uniform(-np.pi, np.pi, N), generator.uniform(-0.8, 0.8, N)
+    (axes,) = kernel("axis_transform")(settings, theta, height, offset)
+    axes[:, 3] -= ratio * beta
+    (psi,) = kernel("cutter_phase")(settings, theta)
+    pose = lower(tool_frame())(axes, beta + psi, height, offset)
+    expected = lower(cradle_tool_frame())(settings, theta, beta, ratio)
+    assert np.linalg.norm(pose[0] - expected[0], axis=1).max() <= 1e-11  # mm
+    for direction, wanted in zip(pose[1:], expected[1:], strict=True):
+        assert angle_between(direction, wanted).max() <= 1e-12  # rad
 
 
 def test_cutter_axis_parallel_to_the_work_axis_is_refused_by_its_cradle_angle(gear_set):

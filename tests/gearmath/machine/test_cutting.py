@@ -197,12 +197,6 @@ def test_formate_plunges_and_dwells_for_more_than_a_turn(gear_set, vertical):
     assert "G4 F1.5" in text
 
 
-def test_face_hobbing_is_refused_by_name(gear_set, vertical):
-    gear = gear_set.gear.model_copy(update={"process": "face_hobbing", "blade_groups": 13})
-    with pytest.raises(InputError, match=r"^gear: is face hobbed: .* sixth axis C"):
-        cutting_program(gear_set.model_copy(update={"gear": gear}), "gear", vertical, "GEAR")
-
-
 def test_one_cutter_with_two_motions_is_refused(gear_set, vertical):
     moving = gear_set.gear.convex.model_copy(update={"motion": Motion(sliding_base=(1.0,))})
     with pytest.raises(InputError, match=r"^gear: motion: one cutter cuts both flanks at once"):
