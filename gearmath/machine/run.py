@@ -99,7 +99,7 @@ def _hobbing_run(
     if still.any():
         line = int(path.line[np.argmax(still)])
         raise InputError(f"line {line} cuts while the spindle is no axis C; the {name} is face hobbed")
-    axes, turned, line = path.axes, path.cutter, path.line
+    axes, turned, lines = path.axes, path.cutter, path.line
     if errors is not None:
         if errors.setting_errors(name).any():
             require_plain(member, name, "a setting error of the simulated machine")
@@ -110,10 +110,10 @@ def _hobbing_run(
             )
         six = np.column_stack([axes, turned])
         six, own = _divided(six, np.where(cutting[1:], divisions(axes, errors), 1))
-        axes, turned, cutting, line = with_axis_errors(six[:, :5], errors), six[:, 5], cutting[own], line[own]
+        axes, turned, cutting, lines = with_axis_errors(six[:, :5], errors), six[:, 5], cutting[own], lines[own]
     cutter = cutter_of(member, cut.flanks, None, edge_radius)
     spaces = np.full(len(cutting), -1)
-    return Run(cut, cutter, axes, cutting, spaces, line, blades_of(member, edge_radius), turned)
+    return Run(cut, cutter, axes, cutting, spaces, lines, blades_of(member, edge_radius), turned)
 
 
 def _spaces(axes: np.ndarray, cutting: np.ndarray, member: Member, cut: Cut, machine: MillingMachine) -> np.ndarray:
