@@ -11,6 +11,7 @@ CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
     "sweep", "probing", "registration", "spacing", "compensation", "touch_errors", "single_blades",
+    "axis_calibration",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -20,6 +21,7 @@ def expressions() -> Iterator[Expression]:
     """Every Expression of every chapter, derived on demand."""
     from derivations import (
         axes,
+        axis_calibration,
         blank,
         check_dimensions,
         compensation,
@@ -60,7 +62,7 @@ def expressions() -> Iterator[Expression]:
     yield from (probing.probe_target(), probing.space_azimuth(), probing.probe_axes(), probing.probe_tip())
     yield from (probing.touched_point(), probing.ring_calibration(), probing.sphere_residual())
     yield from (probing.effective_radius(), probing.lobing_of(), probing.shape_of_lobes(), probing.ring_residual())
-    yield probing.face_calibration()
+    yield from (probing.face_calibration(), axis_calibration.carried_sphere())
     yield from (compensation.straight_sensitivity(), compensation.arc_sensitivity())
     yield from (compensation.coefficient_sensitivity(), compensation.arc_height(), compensation.root_place())
     yield compensation.conjugate_place()

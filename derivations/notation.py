@@ -250,6 +250,14 @@ lobing = Quantity(
 lobing_amplitude = _length("lobing_amplitude", "a", 0.0, 0.02, "amplitude of the lobes of the effective radius")
 lobing_phase = _angle("lobing_phase", r"\varphi_0", -pi / 3, pi / 3, "azimuth of a lobe of the effective radius")
 effective_radius = _length("effective_radius", "r", 0.0, 5.0, "radius of the tip that a touch in its direction has")
+sphere_w = _vector(
+    "sphere_w", r"\mathbf{s}", "mm", 100.0, 200.0, "centre of a sphere that the work carries, work frame w"
+)
+axis_place = Quantity(
+    "axis_place", "X and Z of the axis B beside where the zero of X and the height of the gauge line have it", "mm",
+    r"\mathbf{b}", (-5.0, 5.0), shape=(2,),
+)  # fmt: skip
+swivel_zero = _angle("swivel_zero", r"\beta_B", -0.02, 0.02, "how far B stands beyond what the control reads")
 sphere_rest = _length("sphere_rest", r"\rho", -1e3, 1e3, "distance that a touch on the sphere leaves unexplained")
 
 # --- spacing of the teeth ---------------------------------------------------------------------------------------

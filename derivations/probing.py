@@ -156,7 +156,7 @@ def ring_calibration() -> Expression:
     )
 
 
-def _radius_towards(m: sp.Matrix) -> sp.Expr:
+def radius_towards(m: sp.Matrix) -> sp.Expr:
     """r(m) (15.8); the least of numbers under the fraction keeps it defined along the stylus, where it is r."""
     a_1, a_2 = q.lobing.symbols
     x, y = m[0], m[1]
@@ -175,7 +175,7 @@ def effective_radius() -> Expression:
         "effective_radius",
         "Radius of the tip that a touch in its direction has, with the three lobes of its pre-travel (15.8).",
         (q.touch_normal, q.tip_radius, q.lobing),
-        ((q.effective_radius, _radius_towards(q.touch_normal.symbol)),),
+        ((q.effective_radius, radius_towards(q.touch_normal.symbol)),),
         source="Estler et al., Precision Engineering 1996/97: pre-travel of three-point probes",
     )
 
@@ -217,7 +217,7 @@ def sphere_residual() -> Expression:
         "sphere_residual",
         "What a touch on the calibration sphere leaves of its equation; zero for the right tip (15.7).",
         (q.trigger, q.tip_offset, q.tip_radius, q.sphere_center, q.sphere_radius, q.lobing),
-        ((q.sphere_rest, distance - q.sphere_radius.symbol - _radius_towards(off / distance)),),
+        ((q.sphere_rest, distance - q.sphere_radius.symbol - radius_towards(off / distance)),),
         requires=(distance - 1,),
         source="two spheres touch where their centres are the sum of their radii apart",
     )
@@ -233,7 +233,7 @@ def ring_residual() -> Expression:
         "ring_residual",
         "What a touch in the calibration ring leaves of its equation; zero for the right tip (15.10).",
         (q.trigger, q.tip_offset, q.tip_radius, q.ring_axis, q.ring_diameter, q.lobing),
-        ((q.ring_rest, distance + _radius_towards(-off / distance) - q.ring_diameter.symbol / 2),),
+        ((q.ring_rest, distance + radius_towards(-off / distance) - q.ring_diameter.symbol / 2),),
         requires=(distance - 1,),
         source="a circle within a circle touches it where their centres are the difference of their radii apart",
     )

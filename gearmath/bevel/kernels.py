@@ -6,6 +6,7 @@ from functools import cache
 
 from derivations import (
     axes,
+    axis_calibration,
     blank,
     compensation,
     cutter,
@@ -47,6 +48,7 @@ _EXPRESSIONS = {
     "ring_calibration": probing.ring_calibration,
     "sphere_residual": probing.sphere_residual,
     "ring_residual": probing.ring_residual,
+    "carried_sphere": axis_calibration.carried_sphere,
     "face_calibration": probing.face_calibration,
     "effective_radius": probing.effective_radius,
     "lobing_of": probing.lobing_of,

@@ -13,7 +13,10 @@ from gearmath.cli.common import MACHINE, MEMBER, SET, about, output
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from gearmath.quality.calibration import Tip
+    from gearmath.quality.axis_calibration import AxisCalibration
+    from gearmath.quality.calibration import Fit, Tip
+    from gearmath.specs.calibration import Calibration
+    from gearmath.specs.touch_csv import CalibrationTouches
 
 _PROGRAM = ".MPF; its name becomes the program name"
 CALIBRATION = click.option(
@@ -58,20 +61,26 @@ def probe(
 @click.command("calibrate")
 @MACHINE
 @CALIBRATION
+@click.option(
+    "--cycle", type=click.Choice(["tip", "axes"]), default="tip", show_default=True,
+    help="Ring and sphere on the table for the tip, or the sphere on the work side for the rotary axes.",
+)  # fmt: skip
 @output(_PROGRAM)
-def nc_calibrate(machine: str, calibration: str, target: Path) -> None:
-    """The program that calibrates the probe on ring and sphere."""
+def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> None:
+    """The program that calibrates the probe on ring and sphere, or the rotary axes on a sphere on the work side."""
     from gearmath.files import write_text
+    from gearmath.machine.axis_cycle import axis_program
     from gearmath.machine.calibrating import calibration_program
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     source = find(calibration)
+    make = axis_program if cycle == "axes" else calibration_program
     with about(source):
-        text = calibration_program(load_milling_machine(find(machine)), load_calibration(source), target.stem)
+        text = make(load_milling_machine(find(machine)), load_calibration(source), target.stem)
     write_text(target, text)
-    click.echo(f"{target}: {text.count(chr(10))} blocks")
+    click.echo(f"{target}: {text.count('R205=$')} touches, {text.count(chr(10))} blocks")
 
 
 @click.command()
@@ -105,18 +114,39 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
 @click.command()
 @_RAW
 @CALIBRATION
+@MACHINE
 @click.option("--lobing", is_flag=True, help="Also find the lobes of the pre-travel, from the touches on the sphere.")
 @_RUN
-@output("calibration, TOML")
-def calibrate(raw: Path, calibration: str, lobing: bool, run: int | None, target: Path) -> None:
-    """The tip of the probe from its touches on the sphere or, where there are none, in the ring."""
+@output("calibration, TOML; a machine file for touches of --cycle axes")
+def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int | None, target: Path) -> None:
+    """The tip of the probe from its touches on the sphere or, where there are none, in the ring; or the rotary axes.
+
+    Touches of ``nc calibrate --cycle axes`` make a new machine file of that of --machine.
+    """
+    from gearmath.specs.touch_csv import WORK_SPHERE, read_calibration_csv
+
+    found = read_calibration_csv(raw, run)
+    if (found.target == WORK_SPHERE).any():
+        if lobing:
+            raise InputError("--lobing needs touches on the sphere of the table; these are on that of the work")
+        lines = _calibrate_axes(raw, found, calibration, machine, target)
+    else:
+        lines = _calibrate_tip(raw, found, calibration, lobing, target)
+    for line in lines:
+        click.echo(line)
+    click.echo(f"{target}: written")
+
+
+def _calibrate_tip(
+    raw: Path, found: CalibrationTouches, calibration: str, lobing: bool, target: Path
+) -> Iterator[str]:  # fmt: skip
     from gearmath.quality.calibration import calibrate_on_ring, calibrate_on_sphere
     from gearmath.specs.calibration import load_calibration, save_calibration
     from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import SPHERE, read_calibration_csv
+    from gearmath.specs.touch_csv import SPHERE
 
     source = find(calibration)
-    before, found = load_calibration(source), read_calibration_csv(raw, run)
+    before = load_calibration(source)
     with about(raw):
         if before.sphere is not None and (found.target == SPHERE).any():
             tip = calibrate_on_sphere(found, before.sphere, before, lobing)
@@ -127,9 +157,41 @@ def calibrate(raw: Path, calibration: str, lobing: bool, run: int | None, target
         else:
             raise InputError(f"{source} has neither the ring nor the sphere that was touched")
     save_calibration(source, target, tip.radius, tip.offset, tip.lobes)
-    for line in _tip_lines(tip):
-        click.echo(line)
-    click.echo(f"{target}: written")
+    return _tip_lines(tip)
+
+
+def _calibrate_axes(
+    raw: Path, found: CalibrationTouches, calibration: str, machine: str, target: Path
+) -> Iterator[str]:  # fmt: skip
+    from gearmath.quality.axis_calibration import calibrate_axes
+    from gearmath.specs.calibration import load_calibration
+    from gearmath.specs.milling_machine import load_milling_machine, save_axes
+    from gearmath.specs.toml import find
+
+    source, probe = find(machine), load_calibration(find(calibration))
+    with about(raw):
+        axes = calibrate_axes(found, load_milling_machine(source), probe)
+    save_axes(source, target, axes.pivot_offset, axes.gauge_line_height)
+    return _axis_lines(axes, probe)
+
+
+def _axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
+    """What the machine file gets, what the zero offsets of the control should get, and what the touches do not fit."""
+    u = axes.fit.uncertainty
+    for name, value, unsure in zip("xyz", axes.pivot_offset, u[:3], strict=True):
+        yield f"pivot offset {name} {value:.5f} mm, u {_um(unsure)}"
+    yield f"gauge line height {axes.gauge_line_height:.5f} mm, u {_um(u[4])}"
+    yield f"axis B lies at X {axes.x_zero:.5f} mm, u {_um(u[3])}: the zero offset of X should have it"
+    yield f"B stands {math.degrees(axes.b_zero):.6f} degrees beyond its reading, u {math.degrees(u[5]):.6f}"
+    if probe.work_sphere is not None:
+        ahead = math.remainder(math.radians(probe.work_sphere.azimuth) - axes.azimuth, 2 * math.pi)
+        sure = math.degrees(axes.azimuth_uncertainty)
+        yield f"A stands {math.degrees(ahead):.6f} degrees beyond its reading if azimuth is exact, u {sure:.6f}"
+    yield f"{len(axes.fit.residuals)} touches: {_residual_words(axes.fit)}"
+
+
+def _residual_words(fit: Fit) -> str:
+    return f"noise {_um(fit.noise)}, largest residual {float(abs(fit.residuals).max()) * 1000:.3f} um"
 
 
 def _tip_lines(tip: Tip) -> Iterator[str]:
@@ -139,9 +201,7 @@ def _tip_lines(tip: Tip) -> Iterator[str]:
         yield f"offset {axis} {value:.5f} mm, " + ("kept" if math.isnan(u) and axis == "Z" else f"u {_um(u)}")
     if tip.lobes[0] > 0.0:
         yield f"lobes {tip.lobes[0] * 1000:.3f} um, at {math.degrees(tip.lobes[1]):.2f} degrees"
-    yield (
-        f"{len(tip.fit.residuals)} touches: noise {_um(tip.fit.noise)}, largest residual {tip.residual * 1000:.3f} um"
-    )
+    yield f"{len(tip.fit.residuals)} touches: {_residual_words(tip.fit)}"
 
 
 def _um(value: float) -> str:

@@ -11,7 +11,7 @@ from gearmath import __version__
 from gearmath.errors import InputError
 from gearmath.machine.probe_words import Blocks
 from gearmath.machine.probing import APPROACH, APPROACH_FEED, CLEARANCE, MEASURING_FEED
-from gearmath.specs.calibration import Calibration, Face, Ring, Sphere
+from gearmath.specs.calibration import Calibration, Face, Ring
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING, RING_FACE, SPHERE
 
@@ -55,7 +55,10 @@ def calibration_program(machine: MillingMachine, calibration: Calibration, progr
                 yield from _face(blocks, calibration, calibration.ring, calibration.ring.face, level)
                 yield f"G0 {top}"
         if calibration.sphere is not None:
-            yield from _sphere(blocks, calibration, calibration.sphere, level)
+            yield "; sphere"
+            center = np.array(calibration.sphere.center) - calibration.tip_offset
+            diameter = calibration.sphere.diameter
+            yield from touch_sphere(blocks, calibration, center, diameter, sphere_directions(), level, SPHERE)
             yield f"G0 {top}"
         yield "M30"
 
@@ -129,20 +132,25 @@ def _face(blocks: Blocks, calibration: Calibration, ring: Ring, face: Face, leve
         yield from blocks.hand_over(RING_FACE)
 
 
-def _sphere(blocks: Blocks, calibration: Calibration, sphere: Sphere, level: float) -> Iterator[str]:
-    """Touches along the normals of the sphere; down to each of them from above, outside of the sphere."""
-    center, reach = np.array(sphere.center) - calibration.tip_offset, sphere.diameter / 2 + calibration.tip_radius
-    yield "; sphere"
+def touch_sphere(
+    blocks: Blocks, calibration: Calibration, center: np.ndarray, diameter: float, directions: np.ndarray, level: float,
+    target: str,
+) -> Iterator[str]:  # fmt: skip
+    """Touches along the normals of a sphere; down to each of them from above, outside of the sphere.
+
+    ``center`` (3,) is X Y Z with the tip's centre in that of the sphere; ``level`` is the Z of sideways motion.
+    """
+    reach = diameter / 2 + calibration.tip_radius
     yield f"G0 {' '.join(blocks.axes(np.array([*center, 0.0, 0.0]))[:2])}"
     yield f"G0 {blocks.length('Z', level)}"
-    for direction in sphere_directions():
+    for direction in directions:
         start, end = (center + (reach + off) * direction for off in (APPROACH, -calibration.overtravel))
         x, y, z, *_ = blocks.axes(np.array([*start, 0.0, 0.0]))
         yield f"G0 {x} {y}"
         yield from blocks.guarded(z, APPROACH_FEED, level)
-        target = " ".join(blocks.axes(np.array([*end, 0.0, 0.0]))[:3])
-        yield from blocks.touch(target, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level)
-        yield from blocks.hand_over(SPHERE)
+        way = " ".join(blocks.axes(np.array([*end, 0.0, 0.0]))[:3])
+        yield from blocks.touch(way, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level)
+        yield from blocks.hand_over(target)
 
 
 def _number(value: float) -> str:

@@ -43,6 +43,32 @@ class Sphere(Spec):
     diameter: float = Field(ge=4, le=100)
 
 
+class WorkSphere(Spec):
+    """Sphere on an arbor that sits where the work does, off the work axis, on a stem that leads away from the apex.
+
+    ``axial`` is the z_w of its centre, from the pitch apex: it has to be known. ``radius`` and ``azimuth`` say roughly
+    where it is about the work axis, in mm and degrees at A = 0.
+    """
+
+    diameter: float = Field(ge=4, le=100)
+    axial: float = Field(ge=-1000, le=1000)
+    radius: float = Field(ge=10, le=500)
+    azimuth: float = Field(default=0.0, ge=-360, le=360)
+    stem_diameter: float = Field(ge=1, le=100)
+
+    @model_validator(mode="after")
+    def _sizes(self) -> WorkSphere:
+        if self.stem_diameter > 0.6 * self.diameter:
+            raise ValueError(f"stem_diameter {self.stem_diameter} must be at most 0.6 of diameter {self.diameter}")
+        return self
+
+    @property
+    def place(self) -> np.ndarray:
+        """Centre (3,) in the work, mm."""
+        at = math.radians(self.azimuth)
+        return np.array([self.radius * math.cos(at), self.radius * math.sin(at), self.axial])
+
+
 class Calibration(Spec):
     """A touch probe in the tool spindle, mm; ``offset`` and ``tip_radius`` are what calibration finds."""
 
@@ -61,6 +87,7 @@ class Calibration(Spec):
     """How far a touch may be searched for beyond its nominal place."""
     ring: Ring | None = None
     sphere: Sphere | None = None
+    work_sphere: WorkSphere | None = None
 
     @model_validator(mode="after")
     def _sizes(self) -> Calibration:

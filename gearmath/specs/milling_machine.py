@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
+import tomlkit
 from pydantic import AfterValidator, Field, model_validator
 
-from gearmath.specs.toml import Spec, load
+from gearmath.files import read_text, write_text
+from gearmath.specs.toml import Spec, load, parse
 
 #: Order of the axes in every array of positions.
 AXES = "XYZAB"
@@ -157,3 +159,13 @@ class MillingMachine(Spec):
 def load_milling_machine(path: Path) -> MillingMachine:
     """Read a machine file. Raises InputError with file, key, value and limit."""
     return load(path, MillingMachine)
+
+
+def save_axes(source: Path, target: Path, pivot_offset: np.ndarray, gauge_line_height: float) -> None:
+    """Write the machine of ``source``, comments kept, with other places of its rotary axes, whole or not at all."""
+    document = tomlkit.parse(read_text(source))
+    document["gauge_line_height"] = round(float(gauge_line_height), 7)
+    document["pivot_offset"] = [round(float(value), 7) for value in pivot_offset]
+    text = tomlkit.dumps(document)
+    parse(text, MillingMachine, str(target))
+    write_text(target, text)

@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.tooth import tooth_space
 from gearmath.errors import InputError
+from gearmath.machine.axis_cycle import axis_program
 from gearmath.machine.calibrating import calibration_program
 from gearmath.machine.executor import run_program
 from gearmath.machine.probe_machine import ProbeMachine
@@ -231,6 +232,7 @@ PROGRAMS = {
     "repeated": lambda s: probing_program(s, "pinion", MACHINE, PROBE, "PROBE_PINION", repeat=4),
     "counting": lambda s: probing_program(s, "gear", COUNTING, PROBE, "_P", topography=()),
     "calibration": lambda s: calibration_program(MACHINE, PROBE, "CALIBRATE"),
+    "axes": lambda s: axis_program(MACHINE, PROBE, "CALIBRATE_AXES"),
 }
 
 

@@ -1,0 +1,117 @@
+"""The program that finds the rotary axes: a sphere on the work side, touched at several positions of A and B.
+
+B goes from the horizontal work spindle to the vertical one, and at each of its positions A turns the sphere to the top
+and to both sides of it. Between positions the tip is above all that the sphere can reach.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from gearmath import __version__
+from gearmath.bevel.kernels import kernel
+from gearmath.errors import InputError
+from gearmath.machine.calibrating import touch_sphere
+from gearmath.machine.probe_words import Blocks
+from gearmath.machine.probing import APPROACH, CLEARANCE, probe_height, tip_positions
+from gearmath.specs.calibration import Calibration, WorkSphere
+from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
+from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, WORK_SPHERE
+
+#: Positions of B, as far as the travel allows, and of A from that which has the sphere on top.
+_SWIVELS = np.radians([0.0, 45.0, 90.0])
+_TURNS = np.radians([-60.0, 0.0, 60.0])
+#: Touches on the sphere: the pole, and so many around at this angle from it.
+_POLAR, _AROUND = math.radians(50.0), 8
+#: Room that a tip must have from the stem. [mm]
+_FROM_STEM = 1.0
+
+
+def axis_program(machine: MillingMachine, calibration: Calibration, program_name: str) -> str:
+    """The program that touches the sphere on the work side, where the machine file expects it.
+
+    Raises InputError if the calibration file has none, and for positions out of travel.
+    """
+    sphere = calibration.work_sphere
+    if sphere is None:
+        raise InputError("the calibration file has no work_sphere: there is nothing to touch")
+    centers = sphere_positions(machine, calibration, sphere)
+    anywhere = _above_all(machine, calibration, sphere)
+    _check_travel(centers, anywhere, sphere, calibration, machine)
+    blocks = Blocks(program_name, machine.axes.A.modulo)
+    header = (
+        f"gearmath {__version__} calibration program of the rotary axes",
+        f"machine: {machine.name}",
+        f"probe: {calibration.name}, tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm",
+        f"work: sphere of {sphere.diameter:g} mm, {sphere.axial:g} mm from the pitch apex along the work axis and "
+        f"{sphere.radius:g} mm off it, at {sphere.azimuth:g} degrees",
+    )
+
+    def body() -> Iterator[str]:
+        yield from blocks.start(machine.work_offset, CALIBRATION_COLUMNS)
+        above = f"G0 {blocks.length('Z', anywhere)}"
+        yield above
+        for center in centers:
+            x, y, _, a, b = blocks.axes(center)
+            yield f"; sphere on the work, {a} {b}"
+            yield f"G0 {x} {y} {a} {b}"
+            level = center[2] + sphere.diameter / 2 + calibration.tip_radius + CLEARANCE
+            directions = _directions(center, sphere, calibration)
+            yield from touch_sphere(
+                blocks, calibration, center[:3], sphere.diameter, directions, level, WORK_SPHERE
+            )  # fmt: skip
+            yield above
+        yield "M30"
+
+    return blocks.text(header, body())
+
+
+def sphere_positions(machine: MillingMachine, calibration: Calibration, sphere: WorkSphere) -> np.ndarray:
+    """Positions X Y Z A B (n,5) that put the tip's centre into that of the sphere."""
+    low, high = machine.travel.T
+    B = np.repeat(np.clip(_SWIVELS, low[4], high[4]), len(_TURNS))
+    A = math.radians(sphere.azimuth) + np.tile(_TURNS, len(_SWIVELS))
+    if math.isfinite(low[3]):
+        A = A + 2 * math.pi * np.ceil((low[3] - A) / (2 * math.pi) - 1e-12)
+    rows = [tip_positions(sphere.place[None], A[k : k + 1], float(B[k]), machine, calibration) for k in range(len(A))]
+    return np.concatenate(rows)
+
+
+def _directions(center: np.ndarray, sphere: WorkSphere, calibration: Calibration) -> np.ndarray:
+    """Unit vectors (n,3) from the centre of the sphere to its touches: those that keep clear of the stem."""
+    around = 2 * math.pi * np.arange(_AROUND) / _AROUND
+    ring = [(math.sin(_POLAR) * math.cos(at), math.sin(_POLAR) * math.sin(at), math.cos(_POLAR)) for at in around]
+    directions = np.array([(0.0, 0.0, 1.0), *ring])
+    # at the origin of the work, without offsets: a direction in the axes of the machine
+    (stem,) = kernel("probe_axes")(np.array([0.0, 0.0, 1.0]), *center[3:], 0.0, np.zeros(3), np.zeros(3))
+    along = directions @ stem[:3]
+    aside = (sphere.diameter / 2 + calibration.tip_radius) * np.sqrt(np.maximum(1.0 - along**2, 0.0))
+    room = aside - calibration.tip_radius - sphere.stem_diameter / 2
+    return directions[(along <= 0.0) | (room > _FROM_STEM)]
+
+
+def _above_all(machine: MillingMachine, calibration: Calibration, sphere: WorkSphere) -> float:
+    """Z [mm] at which the tip is above the sphere wherever A and B turn it."""
+    farthest = float(np.linalg.norm(sphere.place) + np.linalg.norm(machine.pivot)) + sphere.diameter / 2
+    height = probe_height(machine, calibration) - calibration.offset[2]
+    return height + farthest + calibration.tip_radius + CLEARANCE
+
+
+def _check_travel(
+    centers: np.ndarray, anywhere: float, sphere: WorkSphere, calibration: Calibration, machine: MillingMachine
+) -> None:
+    """Raise InputError naming position, axis and limit where the sphere, or the height above it, is out of travel."""
+    low, high = machine.travel.T
+    reach = (sphere.diameter / 2 + calibration.tip_radius + APPROACH) * np.array([1.0, 1.0, 1.0, 0.0, 0.0])
+    least, most = (centers - reach).min(axis=0), (centers + reach).max(axis=0)
+    most[2] = max(most[2], anywhere)
+    for axis, name in enumerate(AXES):
+        if least[axis] < low[axis] or most[axis] > high[axis]:
+            scale = UNITS_PER_INTERNAL[axis]
+            raise InputError(
+                f"work_sphere: axis {name} = {least[axis] * scale:.3f} to {most[axis] * scale:.3f} {UNITS[axis]}: "
+                f"{machine.name} travels {low[axis] * scale:g} to {high[axis] * scale:g} {UNITS[axis]}"
+            )
