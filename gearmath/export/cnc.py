@@ -12,6 +12,9 @@ from gearmath.export.c import double_kernel
 from gearmath.export.folder import write_folder
 from gearmath.export.header import comment, plain, versions
 from gearmath.lowering import Kernel, lower
+from gearmath.quality.least_squares import compensation_step
+from gearmath.quality.on_line import flank_on_line
+from gearmath.specs.bevel_set import SETTINGS
 
 _MAKEFILE = """\
 # generated, do not edit
@@ -64,7 +67,7 @@ def cnc_kernels() -> tuple[Kernel, ...]:
             deviation.point_deviation, deviation.setting_sensitivity, deviation.deviation_surface, deviation.line_entry,
         )
     )  # fmt: skip
-    return (*lowered, flank_point())
+    return (*lowered, flank_point(), flank_on_line(), compensation_step(len(SETTINGS)))
 
 
 def cnc_files() -> dict[str, str]:

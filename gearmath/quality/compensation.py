@@ -75,6 +75,11 @@ class FlankTarget:
         """The target with deviations (grid,) [mm] added to what was measured."""
         return replace(self, deviation=self.deviation + (deviation if self.used is None else deviation[self.used]))
 
+    def repeated(self, times: int) -> FlankTarget:
+        """The target with its points so many times, one whole after the other; nothing is measured there."""
+        nominal = FlankPoints(*(np.tile(a, (times, 1)) for a in vars(self.nominal).values()))
+        return replace(self, nominal=nominal, deviation=np.zeros(times * len(self.deviation)), used=None, absent=None)
+
     @property
     def kind(self) -> Kind:
         if self.arc_blade is not None:
@@ -121,6 +126,7 @@ class Identification:
     residual: np.ndarray
     weighting: np.ndarray | None = None
     active: tuple[str, ...] = ()
+    noise: float = 0.0
     singular_values: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:
@@ -159,12 +165,25 @@ class Identification:
         loose = np.array([variable.label not in self.active for variable in self.variables])
         weighting = np.eye(len(self.jacobian)) if self.weighting is None else self.weighting
         inverse = np.zeros((len(self.variables), len(weighting)))
-        inverse[loose] = np.linalg.pinv(weighting @ self.jacobian[:, loose], rcond=RANK)
+        inverse[loose] = damped_inverse(weighting @ self.jacobian[:, loose], self.noise)
         return self.scale[:, None] * (inverse @ weighting)
+
+    @property
+    def corrected_parameters(self) -> float:
+        """How many directions of the settings are really corrected: the sum of squares of what is let through."""
+        passed = self.jacobian @ (self.gain / self.scale[:, None])
+        return float(np.sum(passed**2))
 
 
 #: Singular values below this part of the largest do not count: their directions are left alone.
 RANK = 1e-6
+
+
+def damped_inverse(jacobian: np.ndarray, noise: float = 0.0) -> np.ndarray:
+    """(JᵀJ + noise² I)⁻¹ Jᵀ (p,m) of a Jacobian (m,p), without the directions that it does not show."""
+    U, S, V = np.linalg.svd(jacobian, full_matrices=False)
+    shown = RANK * S.max(initial=0) < S
+    return V[shown].T @ ((S[shown] / (S[shown] ** 2 + noise**2))[:, None] * U[:, shown].T)
 
 
 def spread(variables: Sequence[Variable], values: np.ndarray, target: int) -> np.ndarray:
@@ -220,6 +239,7 @@ class Problem:
     weighting: np.ndarray | None
     root_limit: float | None
     run: Run = as_it_stands
+    noise: float = 0.0
 
     @cached_property
     def measured(self) -> np.ndarray:
@@ -273,6 +293,9 @@ class Problem:
         residual, jacobian = found
         if self.weighting is not None:
             residual, jacobian = self.weighting @ residual, self.weighting @ jacobian
+        if self.noise:
+            residual = np.concatenate([residual, self.noise * v])
+            jacobian = np.concatenate([jacobian, self.noise * np.eye(len(v))])
         if self.root_limit is not None:
             try:
                 roots = self.root(v)
@@ -287,18 +310,22 @@ class Problem:
 
 def identify(
     targets: Sequence[FlankTarget], free: Sequence[str] = FREE, *, objective: str = "points",
-    weights: np.ndarray | None = None, root_limit: float | None = None, run: Run = as_it_stands,
+    weights: np.ndarray | None = None, root_limit: float | None = None, noise: float = 0.0, run: Run = as_it_stands,
 ) -> Identification:  # fmt: skip
     """The errors, common to all targets, whose exact flanks fit the measured deviations best.
 
     ``objective`` is "points", or "surface" for the coefficients of the cubic deviation surfaces (6.3) with ``weights``
-    (10,). Where targets have a root line, it sinks or rises by at most ``root_limit`` [mm]. Bounded Levenberg-Marquardt
-    in variables scaled by their bounds; a step is taken only if it makes the fit better on the re-solved surface, and
-    directions that the flanks do not show (singular value below 1e-6 of the largest) are left alone.
+    (10,). Where targets have a root line, it sinks or rises by at most ``root_limit`` [mm]. ``noise`` [mm] is the
+    standard deviation of a measured deviation: with it, a change by a whole bound counts as one deviation of that size,
+    so that directions which the flanks show less than the noise are hardly moved. Without noise, only those are left
+    alone that the flanks do not show at all (singular value below 1e-6 of the largest).
+
+    Bounded Levenberg-Marquardt in variables scaled by their bounds; a step is taken only if it makes the fit better on
+    the re-solved surface.
     """
     variables = variables_of(free, len(targets))
     weighting = surface_map(targets, weights) if objective == "surface" else None
-    problem = Problem(targets, variables, weighting, root_limit, run)
+    problem = Problem(targets, variables, weighting, root_limit, run, noise)
     bound = np.ones(len(variables))
     found = minimize(problem, -bound, bound, run(compensation_step(len(variables))))
     residual, jacobian = problem.deviations(found.variables)  # type: ignore[misc]
@@ -308,7 +335,7 @@ def identify(
         held.append("root line")
     return Identification(
         variables, found.variables * problem.scale, rms_before, rms_after, found.iterations, found.converged, jacobian,
-        residual, weighting, tuple(held),
+        residual, weighting, tuple(held), noise,
     )  # fmt: skip
 
 

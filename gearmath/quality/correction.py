@@ -49,14 +49,16 @@ class Correction:
 def correct(
     member: Member, name: str, measured: FlankFile, free: Sequence[str] | None = None, *, objective: str = "points",
     higher_order: bool = False, few: bool = False, root_limit: float | None = ROOT_LIMIT,
-    added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None, run: Run = as_it_stands,
+    noise: float | None = None, added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None,
+    run: Run = as_it_stands,
 ) -> Correction:  # fmt: skip
     """The settings that make up for what was measured on a member.
 
     Flanks of a completing cut share their correction. ``free`` names what may change, by default the settings that suit
     the cutting method and, with ``higher_order``, motions; ``few`` takes of them the fewest that lose little.
-    ``excluded`` (points of the file,) marks points that are not to be used; ``added`` gives for each flank deviations
-    [mm] on the grid that are corrected besides, such as those of the mate.
+    ``noise`` [mm] is the standard deviation of a measured deviation, by default what all of the settings leave: weak
+    directions are not moved for its sake. ``excluded`` (points of the file,) marks points that are not to be used;
+    ``added`` gives for each flank deviations [mm] on the grid that are corrected besides, such as those of the mate.
 
     Raises InputError if the file is not of this member or does not determine the settings, and ComputationError if the
     correction would make a flank worse.
@@ -75,14 +77,25 @@ def correct(
         if few:
             analysis = analyse(targets, analysis.choose().names, run=run)
         found.analysis[group] = analysis
-        result = identify(
-            targets, analysis.names, objective=objective, root_limit=root_limit, run=run
-        )  # fmt: skip
+        result = _identify(targets, analysis.names, objective, root_limit, noise, run)
         _refuse_worse(name, group, targets, result)
         found.identified[group] = result
         for k, (flank, target) in enumerate(zip(group, targets, strict=True)):
             _settle(found, member, flank, target, result, k)
     return found
+
+
+def _identify(
+    targets: Sequence[FlankTarget], names: Sequence[str], objective: str, root_limit: float | None,
+    noise: float | None, run: Run,
+) -> Identification:  # fmt: skip
+    """The identification at the given noise, or at what a first one without noise leaves."""
+    given = {"objective": objective, "root_limit": root_limit, "run": run}
+    found = identify(targets, names, noise=noise or 0.0, **given)  # type: ignore[arg-type]
+    left = found.residual @ found.residual / max(len(found.residual) - len(found.values), 1)
+    if noise is not None or np.sqrt(left) <= _ROUNDING:
+        return found
+    return identify(targets, names, noise=float(np.sqrt(left)), **given)  # type: ignore[arg-type]
 
 
 def _check_determined(name: str, group: Sequence[str], targets: Sequence[FlankTarget], names: Sequence[str]) -> None:

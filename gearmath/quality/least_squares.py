@@ -26,18 +26,21 @@ from gearmath.lowering import Kernel
 FLOOR = 1e-13
 #: Passes of one step, each fixing what has run against its bound in the pass before.
 _PASSES = 4
-#: The first step trusts the model this far; a step that is refused makes λ at least so large.
-_FIRST, _REFUSED = 1e-9, 1e-6
+#: The first step trusts the model this far; a step that is refused makes λ at least so large, and until then λ falls
+#: fast; afterwards, in a curved valley, slowly.
+_FIRST, _REFUSED, _FAST, _SLOW = 1e-9, 1e-7, 100, 4
 _LARGEST = 1e8
 _MOST_ITERATIONS = 60
 #: Converged: an undamped step would change the residual by less than this in the RMS, and less than this part. [mm]
 _STILL, _STILL_PART = 1e-10, 1e-7
+#: To this the residuals are known, rounding of coordinates: what falls of their squares must be more. [mm]
+_ROUNDING = 1e-13
 
 Fit = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray] | None]
 
 
-def _quantity(name: str, description: str, latex: str, *shape: int) -> Quantity:
-    return Quantity(name, description, "mixed", latex, shape=shape)
+def _quantity(name: str, description: str, latex: str, domain: tuple[float, float], *shape: int) -> Quantity:
+    return Quantity(name, description, "mixed", latex, domain, shape=shape)
 
 
 @cache
@@ -54,11 +57,19 @@ def compensation_step(p: int) -> Kernel:
     solved = _solve(masked, keep * (right - matrix @ (fixed * place)) + fixed * place)
     solve = ca.Function("solve", [matrix, fixed, right, place], [solved])
     quantities = (
-        _quantity("normal_matrix", "transposed Jacobian times Jacobian of the residuals, scaled", "J^TJ", p, p),
-        _quantity("gradient", "transposed Jacobian times residuals, scaled", "J^Tr", p),
-        _quantity("variables", "scaled variables now", r"\mathbf{v}", p),
-        _quantity("lower", "least scaled variables; as the greatest where a variable is not free", r"\mathbf{v}_-", p),
-        _quantity("upper", "greatest scaled variables", r"\mathbf{v}_+", p),
+        _quantity(
+            "normal_matrix", "transposed Jacobian times Jacobian of the residuals, scaled", "J^TJ", (-1e4, 1e4), p, p
+        ),
+        _quantity("gradient", "transposed Jacobian times residuals, scaled", "J^Tr", (-1e4, 1e4), p),
+        _quantity("variables", "scaled variables now", r"\mathbf{v}", (-1.0, 1.0), p),
+        _quantity(
+            "lower",
+            "least scaled variables; as the greatest where a variable is not free",
+            r"\mathbf{v}_-",
+            (-1.0, 1.0),
+            p,
+        ),
+        _quantity("upper", "greatest scaled variables", r"\mathbf{v}_+", (-1.0, 1.0), p),
         Quantity("damping", "damping against the mean of the diagonal", "1", r"\lambda", (0.0, 1e9)),
     )
     A, g, v, lower, upper, damping = (ca.MX.sym(q.name, *(q.shape or (1,))) for q in quantities)
@@ -81,7 +92,7 @@ def compensation_step(p: int) -> Kernel:
         f"One bounded Levenberg-Marquardt step of {p} scaled settings, and the fall of the sum of squares it promises.",
         quantities,
         (
-            _quantity("step", "change of the scaled variables", r"\mathbf{s}", p),
+            _quantity("step", "change of the scaled variables", r"\mathbf{s}", (-2.0, 2.0), p),
             Quantity("promised", "fall of the sum of squares by the linear model", "mm2", "p"),
         ),
         "Levenberg-Marquardt in scaled variables, active set of bounds",
@@ -89,16 +100,39 @@ def compensation_step(p: int) -> Kernel:
 
 
 def _solve(matrix: ca.SX, right: ca.SX) -> ca.SX:
-    """The solution (p,) of a positive definite system by Cholesky's factors, without pivoting code in C."""
+    """The solution (p,) of a symmetric definite system by factors L D Lᵀ, without pivots and roots."""
     p = right.shape[0]
-    R = ca.chol(matrix)  # upper: Rᵀ R
-    y: list[ca.SX] = []
+    L, D = ca.SX.eye(p), ca.SX.zeros(p)
     for k in range(p):
-        y.append((right[k] - sum((R[j, k] * y[j] for j in range(k)), ca.SX(0))) / R[k, k])
-    x: list[ca.SX] = [ca.SX(0)] * p
+        scaled = [L[k, j] * D[j] for j in range(k)]
+        D[k] = matrix[k, k] - sum((scaled[j] * L[k, j] for j in range(k)), ca.SX(0))
+        for i in range(k + 1, p):
+            L[i, k] = (matrix[i, k] - sum((scaled[j] * L[i, j] for j in range(k)), ca.SX(0))) / D[k]
+    x = [right[k] for k in range(p)]
+    for k in range(p):
+        x[k] = x[k] - sum((L[k, j] * x[j] for j in range(k)), ca.SX(0))
+    x = [x[k] / D[k] for k in range(p)]
     for k in reversed(range(p)):
-        x[k] = (y[k] - sum((R[k, j] * x[j] for j in range(k + 1, p)), ca.SX(0))) / R[k, k]
+        x[k] = x[k] - sum((L[j, k] * x[j] for j in range(k + 1, p)), ca.SX(0))
     return ca.vertcat(*x)
+
+
+def enough(possible: np.ndarray, cost: np.ndarray, residuals: int) -> np.ndarray:
+    """Whether the gradient is as good as zero: what an undamped step could still gain of the sum of squares is noise.
+
+    In the metric of the Jacobian, so that weak directions count by what they do to the residuals.
+    """
+    return possible <= residuals * _STILL**2 + _STILL_PART**2 * cost + _ROUNDING * np.sqrt(cost)
+
+
+def next_damping(damping: float, gained: float, promised: np.typing.ArrayLike) -> float:
+    """The trust region after a step: wider where the promise was kept, narrower where it was not, or nothing gained."""
+    if gained <= 0:
+        return max(8 * damping, _REFUSED)
+    kept = gained / float(np.asarray(promised))
+    if kept > 0.75:
+        return max(damping / (_FAST if damping <= _FIRST else _SLOW), FLOOR)
+    return 4 * damping if kept < 0.25 else damping
 
 
 @dataclass(frozen=True)
@@ -128,20 +162,15 @@ def minimize(fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | No
     while iterations < _MOST_ITERATIONS:
         cost, matrix, gradient = residual @ residual, jacobian.T @ jacobian, jacobian.T @ residual
         _, possible = step(matrix, gradient, v, lower, upper, FLOOR)
-        if possible <= len(residual) * _STILL**2 + _STILL_PART**2 * cost:
+        if enough(possible, cost, len(residual)):
             return Minimum(v, residual, jacobian, iterations, True)
         iterations += 1
         change, promised = step(matrix, gradient, v, lower, upper, damping)
         tried = fit(np.clip(v + change, lower, upper)) if np.isfinite(change).all() else None
         gained = -np.inf if tried is None else cost - tried[0] @ tried[0]
-        if tried is None or gained <= 0:
-            damping = max(16 * damping, _REFUSED)
-            if damping > _LARGEST:
-                break
-            continue
-        v, (residual, jacobian) = np.clip(v + change, lower, upper), tried
-        if gained > 0.75 * promised:
-            damping = max(damping / 100, FLOOR)
-        elif gained < 0.25 * promised:
-            damping *= 4
+        damping = next_damping(damping, gained, promised)
+        if tried is not None and gained > 0:
+            v, (residual, jacobian) = np.clip(v + change, lower, upper), tried
+        elif damping > _LARGEST:
+            break
     return Minimum(v, residual, jacobian, iterations, False)

@@ -17,5 +17,7 @@
 #include "gm_deviation_surface.h"
 #include "gm_line_entry.h"
 #include "gm_flank_point.h"
+#include "gm_flank_on_line.h"
+#include "gm_compensation_step.h"
 
 #endif
