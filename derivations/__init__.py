@@ -52,6 +52,7 @@ def expressions() -> Iterator[Expression]:
     yield from (axes.seen_from_tool(), axes.moved_settings(), axes.cutter_phase())
     yield from (deviation.point_deviation(), deviation.setting_sensitivity())
     yield from (deviation.deviation_surface(), deviation.line_entry(), deviation.flank_turning())
+    yield deviation.surface_orders()
     yield from (sweep.line_in_cone(), sweep.first_removed(), sweep.place_in_cutter())
     yield from (sweep.cutter_excess(), sweep.seated())
     yield from (registration.unseated(), registration.motion_sensitivity())

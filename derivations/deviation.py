@@ -11,6 +11,13 @@ and where a line p + t d enters the material swept by a blade: in the cutter fra
 which is followed to the tip plane, where the cutter ends. A flank turned by ε about z_w has, to first order,
 
     δ = ε (z_w × R)·n,   s = ε √(R_x² + R_y²)                                                  (6.5)
+
+Of a surface (6.3) about the middle of an evaluated area of length a and height b, the first and second order are
+
+    f_β = c_2 a,   f_α = c_3 b,   C_β = -c_4 a²/4,   S = c_5 a b,   C_α = -c_6 b²/4            (6.6)
+
+rise toe to heel (spiral angle) and root to tip (pressure angle), crowning along tooth and profile (middle over ends,
+positive = barrelled), and twist: how much more f_α is at the heel than at the toe.
 """
 
 from __future__ import annotations
@@ -143,6 +150,46 @@ def flank_turning() -> Expression:
         requires=(sp.Abs(lever) - 1,),
         source="first-order motion of a rotated surface along its normal",
     )
+
+
+@cache
+def surface_orders() -> Expression:
+    """(6.6) as an Expression."""
+    c = q.surface_coefficients.symbols
+    a, b = q.evaluated_length.symbol, q.evaluated_height.symbol
+    return Expression(
+        "surface_orders",
+        "First and second order of a deviation surface about the middle of the evaluated area (6.6).",
+        (q.surface_coefficients, q.evaluated_length, q.evaluated_height),
+        (
+            (q.spiral_angle_deviation, c[1] * a),
+            (q.pressure_angle_deviation, c[2] * b),
+            (q.length_crowning, -c[3] * a**2 / 4),
+            (q.twist, c[4] * a * b),
+            (q.profile_crowning, -c[5] * b**2 / 4),
+        ),
+        source="slopes and curvatures of (6.3), over the evaluated area",
+    )
+
+
+def prove_orders_are_differences_of_the_quadratic_surface() -> None:
+    """(6.6) What a ruler would find on the surface of second degree: rises between ends, heights of the middle."""
+    X, Y = q.lengthwise.symbol, q.profilewise.symbol
+    a, b = q.evaluated_length.symbol, q.evaluated_height.symbol
+    cubic = dict.fromkeys(q.surface_coefficients.symbols[6:], sp.S.Zero)
+    surface = q.surface_coefficients.symbol.dot(monomials()).subs(cubic)
+
+    def at(x: sp.Expr, y: sp.Expr) -> sp.Expr:
+        return surface.subs({X: x, Y: y}, simultaneous=True)
+
+    heel, toe, tip, root = a / 2, -a / 2, b / 2, -b / 2
+    orders = surface_orders()
+    assert sp.expand(at(heel, 0) - at(toe, 0) - orders["spiral_angle_deviation"]) == 0
+    assert sp.expand(at(0, tip) - at(0, root) - orders["pressure_angle_deviation"]) == 0
+    assert sp.expand(at(0, 0) - (at(heel, 0) + at(toe, 0)) / 2 - orders["length_crowning"]) == 0
+    assert sp.expand(at(0, 0) - (at(0, tip) + at(0, root)) / 2 - orders["profile_crowning"]) == 0
+    twist = at(heel, tip) - at(heel, root) - at(toe, tip) + at(toe, root)
+    assert sp.expand(twist - orders["twist"]) == 0
 
 
 def prove_turning_explains_its_own_deviation() -> None:

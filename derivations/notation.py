@@ -196,6 +196,14 @@ surface_deviation = Quantity(
     "surface_deviation", "deviation that the cubic surface gives at one point", "mm", r"\delta", scale=1e5
 )  # fmt: skip
 
+evaluated_length = _length("evaluated_length", "a", 1.0, 100.0, "length of the evaluated area, toe to heel")
+evaluated_height = _length("evaluated_height", "b", 1.0, 40.0, "height of the evaluated area, root to tip")
+spiral_angle_deviation = Quantity("spiral_angle_deviation", "rise, toe to heel", "mm", r"f_\beta", scale=1e3)
+pressure_angle_deviation = Quantity("pressure_angle_deviation", "rise, root to tip", "mm", r"f_\alpha", scale=1e3)
+length_crowning = Quantity("length_crowning", "middle over the ends, along the tooth", "mm", r"C_\beta", scale=1e4)
+profile_crowning = Quantity("profile_crowning", "middle over the ends, up the profile", "mm", r"C_\alpha", scale=1e4)
+twist = Quantity("twist", "rise root to tip at the heel less that at the toe", "mm", "S", scale=1e4)
+
 # --- probing ----------------------------------------------------------------------------------------------------
 standoff = _length("standoff", "s", -5.0, 20.0, "distance of the tip from the flank along the outward normal")
 opposite_w = _vector(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearmath.files import write_bytes
+from gearmath.quality.evaluation import Evaluation, FlankFigures
 from gearmath.quality.pitch import Pitch
+from gearmath.quality.registration import Registration
+from gearmath.quality.spaces import Runout
 from gearmath.quality.topography import Topography
 from gearmath.quality.uncertainty import Uncertain
 
@@ -103,6 +107,55 @@ def uncertainty_figure(title: str, found: Sequence[Uncertain]) -> Figure:
         axes.axhline(0, color="#bbbbbb", linewidth=0.6)
         axes.legend(fontsize=8, frameon=False)
     return figure
+
+
+def draw_runout(axes: Axes, before: Runout, after: Runout | None = None) -> None:
+    """Radial shift of a ball in every space over the teeth, in µm, and the first harmonic through it, dashed."""
+    for runout, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
+        if runout is None:
+            continue
+        size, direction = runout.eccentricity
+        wave = float(np.nanmean(runout.radial)) + size * np.cos(runout.azimuth - direction)
+        text = f"{label}: F_r {runout.total * 1000:.1f} µm"
+        axes.plot(runout.radial * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
+        text = f"first harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
+        axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
+    axes.set_xlabel("space")
+    axes.set_ylabel("radial shift of a ball / µm")
+    axes.legend(fontsize=7, frameon=False)
+
+
+def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
+    """A measured member: flanks as measured and as registered, pitch polygons, runout; what the clamping was."""
+    figure = Figure(figsize=(12, 8 if evaluation.runout_as_measured else 4), layout="constrained")
+    figure.suptitle(title + _seat_words(evaluation.registration))
+    registered = evaluation.registration is not None
+    before, after = evaluation.as_measured, evaluation.flanks if registered else {}
+    pitches = [[f.pitch for f in each.values() if f.pitch is not None] for each in (before, after)]
+    drawn: list[Callable[[Axes], None]] = [
+        partial(_draw_flank, before=before[flank], after=after.get(flank)) for flank in before
+    ]
+    if pitches[0]:
+        drawn.append(partial(draw_pitch, before=pitches[0], after=pitches[1]))
+    if evaluation.runout_as_measured:
+        after_runout = evaluation.runout if registered else None
+        drawn.append(partial(draw_runout, before=evaluation.runout_as_measured, after=after_runout))
+    rows = 2 if len(drawn) > 3 else 1
+    places = figure.subplots(rows, -(-len(drawn) // rows), squeeze=False).ravel()
+    for place, draw in zip(places, drawn, strict=False):
+        draw(place)
+    return figure
+
+
+def _draw_flank(axes: Axes, before: FlankFigures, after: FlankFigures | None) -> None:
+    draw_topography(axes, before.mean, after.mean if after else None)
+
+
+def _seat_words(seat: Registration | None) -> str:
+    if seat is None:
+        return ""
+    tilt = f", tilt {seat.tilt * 1e5:.1f} µm/100 mm" if seat.tilt_found else ""
+    return f"\nbefore and after registration: eccentricity {seat.eccentricity * 1000:.1f} µm{tilt} taken out"
 
 
 def draw_gearbox_error(axes: Axes, seconds: np.ndarray, exact: np.ndarray, floating: np.ndarray) -> None:

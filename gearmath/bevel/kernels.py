@@ -38,6 +38,7 @@ _EXPRESSIONS = {
     "point_deviation": deviation.point_deviation,
     "setting_sensitivity": deviation.setting_sensitivity,
     "deviation_surface": deviation.deviation_surface,
+    "surface_orders": deviation.surface_orders,
     "line_entry": deviation.line_entry,
     "flank_turning": deviation.flank_turning,
     "probe_target": probing.probe_target,

@@ -13,53 +13,41 @@ from gearmath.cli.common import JSON, MEMBER, SET, about, echo_json, output, tab
 if TYPE_CHECKING:
     from gearmath.quality.correction import Correction
     from gearmath.specs.bevel_set import Member
-    from gearmath.specs.flank_csv import FlankFile
 
 
 @click.command()
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
+@click.option(
+    "--register/--no-register", "registered", default=True, show_default=True,
+    help="Take out how the work sat (eccentricity, tilt), where the points tell it.",
+)  # fmt: skip
 @click.option("--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), help="Topography and pitch as PNG.")
 @JSON
-def evaluate(measured: Path, gear_set: str, picture: Path | None, as_json: bool) -> None:
-    """Pitch, profile and topography of a measured member."""
-    from gearmath.quality.correction import check_belongs
-    from gearmath.quality.pitch import evaluate_pitch
-    from gearmath.quality.topography import evaluate_topography
-    from gearmath.specs.bevel_set import FLANKS, load_bevel_set
+def evaluate(measured: Path, gear_set: str, registered: bool, picture: Path | None, as_json: bool) -> None:
+    """Pitch, profile and topography of a measured member; how it sat, runout, tooth thickness, drift and grade.
+
+    Grades are by formulas that are not confirmed against ISO 17485: no conformity is claimed.
+    """
+    from gearmath.quality.evaluation import evaluate_member
+    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
     file = read_flank_csv(measured)
     member = load_bevel_set(find(gear_set)).member(file.member)
-    flanks = [flank for flank in FLANKS if len(file.select(flank))]
     with about(measured):
-        check_belongs(member, file.member, file)
-        topographies = {flank: evaluate_topography(file, flank, _first_tooth(file, flank)) for flank in flanks}
-        pitches = {flank: pitch for flank in flanks if (pitch := evaluate_pitch(file, member.teeth, flank))}
+        found = evaluate_member(file, member, file.member, registered)
     if picture:
-        from gearmath.plot import member_figure, save
+        from gearmath.plot import evaluation_figure, save
 
-        save(member_figure(f"{file.member}, {measured.name}", topographies, {}, list(pitches.values())), picture)
-    values = {
-        flank: {
-            "tooth": topography.tooth,
-            "max_deviation_um": topography.extreme * 1000,
-            "rms_um": topography.rms * 1000,
-            "cubic_surface_residual_um": float(abs(topography.residual).max()) * 1000,
-            "surface_coefficients": topography.coefficients.tolist(),
-        }
-        | (_pitch_values(pitches[flank]) if flank in pitches else {})
-        for flank, topography in topographies.items()
-    }
+        save(evaluation_figure(f"{file.member}, {measured.name}", found), picture)
     if as_json:
-        echo_json({"member": file.member, "flanks": values})
+        echo_json(found.as_dict())
         return
-    names = ("max_deviation_um", "rms_um", "cubic_surface_residual_um", "F_p_um", "max_f_pt_um")
-    click.echo(table(
-        ["flank", *names],
-        [[flank, *(f"{row[name]:.3f}" if name in row else "" for name in names)] for flank, row in values.items()],
-    ))  # fmt: skip
+    from gearmath.cli.quality_text import evaluation_text
+
+    click.echo(evaluation_text(found))
 
 
 @click.command()
@@ -95,14 +83,6 @@ def compensate(gear_set: str, member: str, measured: Path, as_json: bool, target
             f"{found.rms_after * 1000:.3f} um ({found.iterations} iterations)"
         )
     click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
-
-
-def _first_tooth(file: FlankFile, flank: str) -> int:
-    return int(file.select(flank).tooth[0])
-
-
-def _pitch_values(pitch: Any) -> dict[str, float]:
-    return {"F_p_um": pitch.total * 1000, "max_f_pt_um": float(abs(pitch.single).max()) * 1000}
 
 
 def _correction_values(member: Member, correction: Correction) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,10 +12,12 @@ from gearmath.bevel.newton import TOLERANCE
 from gearmath.errors import ComputationError, InputError
 from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, Member
-from gearmath.specs.flank_csv import FlankFile
+from gearmath.specs.flank_csv import FlankFile, flank_file, join
 
 #: A measured point may lie this far beside its nominal normal. [mm]
 SAME_POINT = 0.01
+#: Part of a grid that may be missing.
+MOST_MISSING = 0.2
 _MM_PER_INCH = 25.4
 
 
@@ -76,6 +78,32 @@ def distance_from_flank(
         k = int(np.argmax(~(residual <= TOLERANCE)))
         raise ComputationError(f"{flank} flank: the nominal surface does not reach the point at {point[k].round(3)} mm")
     return np.sum((at - surface.point) * surface.normal, axis=1)
+
+
+def completed(file: FlankFile, member: Member, name: str) -> tuple[FlankFile, tuple[str, ...]]:
+    """The file with the points that are missing in grids measured nearly in full, nominal and silent; and who they are.
+
+    A tooth is taken as measured in full where no more than a fifth of its points are missing.
+    """
+    missing, remarks = [], []
+    for flank in FLANKS:
+        points = file.select(flank)
+        for tooth in np.unique(points.tooth):
+            one = points.pick(points.tooth == tooth)
+            there = set(zip(one.row.tolist(), one.col.tolist(), strict=True))
+            absent = [place for place in np.ndindex(*grid_shape(file)) if place not in there]
+            if absent and len(absent) <= MOST_MISSING * (len(absent) + len(there)):
+                row, col = np.array(absent).T
+                nowhere = np.zeros((len(absent), 3))
+                missing.append(flank_file(file.header, name, flank, int(tooth), row, col, nowhere, nowhere))
+                remarks += [
+                    f"{flank} flank, tooth {tooth}, row {r}, col {c}: not measured; left out" for r, c in absent
+                ]
+    if not missing:
+        return file, ()
+    added = join(missing)
+    nominal = nominal_rows(added, member, name)
+    return join([file, replace(added, point=nominal.point, normal=nominal.normal)]), tuple(remarks)
 
 
 def check_points(file: FlankFile, rows: NominalRows) -> None:

@@ -124,7 +124,6 @@ class _Model:
 
 
 _EACH_FLANK, _BOTH_FLANKS = "every flank of every tooth", "every tooth, both flanks alike"
-_AXIAL = "axial position is not taken out: it does what the setting machine_center_to_crossing_point does"
 _TOGETHER = "both flanks of a space are taken as indexed together: the points do not tell more"
 
 
@@ -173,13 +172,13 @@ def _check_teeth(file: FlankFile, rows: NominalRows, member: Member) -> None:
 def _choose(file: FlankFile, rows: NominalRows, columns: np.ndarray, used: np.ndarray, member: Member) -> _Model:
     """The most general model of the pitch in which the seat is still told from the points."""
     seat = columns[used][:, [0, 1, 3, 4]]
-    remarks: tuple[str, ...] = (_AXIAL,)
+    remarks: tuple[str, ...] = ()
     for each_flank in (True, False):
         free = _free_columns(file, rows, columns[:, 5], used, each_flank)
         left = seat - free @ (free.T @ seat)
         if _smallest(left * _sizes(member)) * _MOST_AMPLIFIED >= 1.0:
             return _Model(left, free, (0, 1, 2, 3), _EACH_FLANK if each_flank else _BOTH_FLANKS, remarks)
-        remarks = (_AXIAL, _TOGETHER)
+        remarks = (_TOGETHER,)
     if _smallest(left[:, :2]) * _MOST_AMPLIFIED < 1.0:
         raise InputError(
             f"{file.member}: the points do not tell eccentricity from uneven pitch; measure three or more places, toe "

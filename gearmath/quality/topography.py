@@ -1,7 +1,10 @@
-"""Topography of one flank: the figures and the cubic surface that sum up its deviations."""
+"""Topography of one flank: the figures and the cubic surface that sum up its deviations, and their first two orders."""
 
 from __future__ import annotations
 
+import math
+import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,8 +14,14 @@ from gearmath.errors import InputError
 from gearmath.quality.pitch import reference_point
 from gearmath.specs.flank_csv import FlankFile
 
-#: The cubic surface has ten coefficients.
-_COEFFICIENTS = 10
+#: The cubic surface has ten coefficients, its part of second degree six, its plane three.
+_COEFFICIENTS, _QUADRATIC, _PLANE = 10, 6, 3
+#: Part of a grid that may be without deviation: points that were left out.
+_MOST_SILENT = 0.2
+#: The figures of ``orders``, in the order of the rows of ``orders_matrix``.
+ORDERS = (
+    "mean", "spiral_angle_deviation", "pressure_angle_deviation", "length_crowning", "twist", "profile_crowning",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -20,7 +29,8 @@ class Topography:
     """Deviations (rows, columns) [mm] of one flank of one tooth, and the cubic surface (6.3) through them.
 
     ``coefficients`` c_1 ... c_10 [mm per mm^k] are in the local system at the reference point: X along the tooth
-    (toe to heel), Y up the profile (root to tip). ``residual`` is what the cubic surface leaves [mm].
+    (toe to heel), Y up the profile (root to tip), ``along`` and ``upward`` [mm]. ``residual`` is what the cubic surface
+    leaves [mm]. Deviation and residual are NaN at points that were left out.
     """
 
     flank: str
@@ -28,15 +38,58 @@ class Topography:
     deviation: np.ndarray
     coefficients: np.ndarray
     residual: np.ndarray
+    along: np.ndarray
+    upward: np.ndarray
 
     @property
     def extreme(self) -> float:
         """The deviation that is largest in size, with its sign [mm]."""
-        return float(self.deviation.flat[np.argmax(np.abs(self.deviation))])
+        return float(self.deviation.flat[np.nanargmax(np.abs(self.deviation))])
 
     @property
     def rms(self) -> float:
-        return float(np.sqrt(np.mean(self.deviation**2)))
+        return float(np.sqrt(np.nanmean(self.deviation**2)))
+
+    @property
+    def left_out(self) -> int:
+        """How many points of the grid have no deviation."""
+        return int(np.isnan(self.deviation).sum())
+
+
+@dataclass(frozen=True)
+class Orders:
+    """Mean, first and second order of a flank's deviations (6.6), over the whole evaluated area [mm].
+
+    Positive: metal left on; more of it towards heel and tip; barrelled; rising more to the tip at the heel than at the
+    toe. ``residual`` is the RMS that the surface of second degree leaves. ``length`` and ``height`` are those of the
+    area [mm].
+    """
+
+    flank: str
+    mean: float
+    spiral_angle_deviation: float
+    pressure_angle_deviation: float
+    length_crowning: float
+    twist: float
+    profile_crowning: float
+    residual: float
+    length: float
+    height: float
+
+    @property
+    def spiral_angle(self) -> float:
+        """Spiral angle deviation [rad]."""
+        return self.spiral_angle_deviation / self.length
+
+    @property
+    def pressure_angle(self) -> float:
+        """Pressure angle deviation [rad]."""
+        return self.pressure_angle_deviation / self.height
+
+    def as_dict(self) -> dict[str, float]:
+        values = {f"{name}_um": getattr(self, name) * 1000 for name in (*ORDERS, "residual")}
+        angles = {f"{name}_deg": math.degrees(getattr(self, name)) for name in ("spiral_angle", "pressure_angle")}
+        return values | angles
 
 
 def evaluate_topography(file: FlankFile, flank: str, tooth: int = 0) -> Topography:
@@ -49,18 +102,69 @@ def evaluate_topography(file: FlankFile, flank: str, tooth: int = 0) -> Topograp
         )
     order = np.lexsort((points.col, points.row))
     deviation = points.deviation[order]
-    if np.isnan(deviation).any():
+    known = np.isfinite(deviation)
+    if known.mean() < 1 - _MOST_SILENT:
         raise InputError(
-            f"{flank} flank, tooth {tooth}: the file has no deviation at every point; is it a nominal file?"
+            f"{flank} flank, tooth {tooth}: {int(known.sum())} of {len(known)} points have a deviation; "
+            "is it a nominal file?"
         )
     along, upward = local_coordinates(points.point[order].reshape(rows, columns, 3), reference_point(file))
-    _, monomials = kernel("deviation_surface")(along.ravel(), upward.ravel(), np.zeros(_COEFFICIENTS))
-    used = monomials[:, : _COEFFICIENTS if min(rows, columns) >= 4 else 3]
-    fitted, *_ = np.linalg.lstsq(used, deviation, rcond=None)
+    used = _monomials(along, upward)[:, : _COEFFICIENTS if min(rows, columns) >= 4 else _PLANE]
+    fitted, *_ = np.linalg.lstsq(used[known], deviation[known], rcond=None)
     coefficients = np.zeros(_COEFFICIENTS)
     coefficients[: len(fitted)] = fitted
     residual = deviation - used @ fitted
-    return Topography(flank, tooth, deviation.reshape(rows, columns), coefficients, residual.reshape(rows, columns))
+    shape = (rows, columns)
+    return Topography(flank, tooth, deviation.reshape(shape), coefficients, residual.reshape(shape), along, upward)
+
+
+def orders(topography: Topography) -> Orders:
+    """Mean, first and second order of the deviations of a flank, and what they leave.
+
+    A grid of two rows or columns has no second order. Means of several teeth: average their topographies first.
+    """
+    known = np.isfinite(topography.deviation)
+    along, upward, values = topography.along[known], topography.upward[known], topography.deviation[known]
+    figures = orders_matrix(along, upward) @ values
+    surface = _about_middle(along, upward)
+    rest = values - surface @ np.linalg.lstsq(surface, values, rcond=None)[0]
+    values_of = dict(zip(ORDERS, map(float, figures), strict=True))
+    area = {"length": float(np.ptp(along)), "height": float(np.ptp(upward))}
+    return Orders(topography.flank, residual=float(np.sqrt(np.mean(rest**2))), **values_of, **area)
+
+
+def orders_matrix(along: np.ndarray, upward: np.ndarray) -> np.ndarray:
+    """The linear map (6,n) from the deviations at n places [mm] of the local system to the figures ``ORDERS``."""
+    surface = _about_middle(along, upward)
+    fit = np.zeros((_COEFFICIENTS, len(along)))
+    fit[: surface.shape[1]] = np.linalg.pinv(surface)
+    figures = kernel("surface_orders")(fit.T, float(np.ptp(along)), float(np.ptp(upward)))
+    return np.stack([np.full(len(along), 1 / len(along)), *figures])
+
+
+def mean_topography(topographies: Sequence[Topography]) -> Topography:
+    """The mean of several teeth of one flank, point by point over those that have a deviation; ``tooth`` is -1."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a point without a deviation on every tooth stays without one
+        deviation = np.nanmean([each.deviation for each in topographies], axis=0)
+        residual = np.nanmean([each.residual for each in topographies], axis=0)
+    coefficients = np.mean([each.coefficients for each in topographies], axis=0)
+    first = topographies[0]
+    return Topography(first.flank, -1, deviation, coefficients, residual, first.along, first.upward)
+
+
+def _about_middle(along: np.ndarray, upward: np.ndarray) -> np.ndarray:
+    """Monomials (n,6) about the middle of the evaluated area; those of a plane where there are two rows or columns."""
+    middle = [(values.max() + values.min()) / 2 for values in (along, upward)]
+    monomials = _monomials(along - middle[0], upward - middle[1])
+    quadratic = monomials[:, :_QUADRATIC]
+    enough = np.linalg.matrix_rank(quadratic / np.abs(quadratic).max(axis=0)) == _QUADRATIC
+    return quadratic if enough else monomials[:, :_PLANE]
+
+
+def _monomials(along: np.ndarray, upward: np.ndarray) -> np.ndarray:
+    _, monomials = kernel("deviation_surface")(along.ravel(), upward.ravel(), np.zeros(_COEFFICIENTS))
+    return monomials
 
 
 def local_coordinates(grid: np.ndarray, reference: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,15 @@ from hypothesis import strategies as st
 
 from gearmath.errors import InputError
 from gearmath.machine.mill import flank_header
-from gearmath.quality.topography import evaluate_topography, grid_shape, local_coordinates
+from gearmath.quality.topography import (
+    ORDERS,
+    evaluate_topography,
+    grid_shape,
+    local_coordinates,
+    mean_topography,
+    orders,
+    orders_matrix,
+)
 from gearmath.specs.flank_csv import flank_file
 
 coefficient = st.floats(-1e-3, 1e-3)
@@ -116,3 +124,68 @@ def test_header_of_a_member_names_its_grid(gear_set):
 
     header = flank_header(gear_set.pinion, "pinion", blank_grid(gear_set.pinion, 7, 11, 0.05), 0.05)
     assert (header["grid"], header["reference_point"], header["margins"]) == ("7x11", "3,5", "0.05,0.05")
+
+
+def test_orders_of_a_quadratic_surface_by_hand(plane):
+    """20 mm long and 5 mm high: slopes of 0.5 and -2 µm/mm, curvatures and twist are rises and heights.
+
+    Spiral 0.5·20 = 10 and pressure -2·5 = -10 µm; crownings 0.04·10² = 4 and 0.8·2.5² = 5 µm; twist 0.1·20·5 = 10 µm.
+    The mean of X² over nine columns 2.5 mm apart is 41.667, that of Y² over five rows 3.125: 7 - 1.667 - 2.5 µm.
+    """
+    um = 1e-3
+    surface = plane(lambda X, Y: um * (7 + 0.5 * X - 2 * Y - 0.04 * X**2 + 0.1 * X * Y - 0.8 * Y**2))
+    found = orders(evaluate_topography(surface, "concave"))
+    assert (found.length, found.height) == (pytest.approx(20), pytest.approx(5))
+    wanted = {
+        "spiral_angle_deviation": 10, "pressure_angle_deviation": -10, "length_crowning": 4, "profile_crowning": 5,
+        "twist": 10, "mean": 7 - 0.04 * 2.5**2 * 60 / 9 - 0.8 * 1.25**2 * 10 / 5,
+    }  # fmt: skip
+    for name, value in wanted.items():
+        assert getattr(found, name) == pytest.approx(value * um, abs=1e-12), name
+    assert found.residual == pytest.approx(0, abs=1e-12)
+    assert found.spiral_angle == pytest.approx(0.5 * um)
+    assert found.pressure_angle == pytest.approx(-2 * um)
+    assert found.as_dict()["twist_um"] == pytest.approx(10)
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(5, 9), (11, 21), (4, 6)])
+def test_slopes_are_those_over_the_area_whatever_the_reference_point_and_the_grid(plane, rows, columns):
+    """A parabola has its mean slope in the middle of the area, also where the reference point lies beside it."""
+    topography = evaluate_topography(plane(lambda X, Y: 1e-5 * X**2 + 0 * Y, rows, columns), "concave")
+    length = 2.5 * (columns - 1)
+    middle = 2.5 * ((columns - 1) / 2 - columns // 2)
+    assert orders(topography).spiral_angle_deviation == pytest.approx(2e-5 * middle * length, abs=1e-12)
+    assert orders(topography).length_crowning == pytest.approx(-1e-5 * length**2 / 4, abs=1e-12)
+
+
+def test_orders_are_a_linear_map_of_the_deviations(plane):
+    """The matrix times any deviations gives the figures, and two rows give no second order."""
+    rng = np.random.default_rng(3)
+    values = rng.normal(0, 0.01, 45)
+    topography = evaluate_topography(plane(lambda X, Y: values), "concave")
+    figures = orders_matrix(topography.along.ravel(), topography.upward.ravel()) @ values
+    np.testing.assert_allclose(figures, [getattr(orders(topography), name) for name in ORDERS], rtol=0, atol=1e-15)
+    flat = orders(evaluate_topography(plane(lambda X, Y: 1e-3 * X + 2e-3 * Y, 2, 9), "concave"))
+    assert flat.pressure_angle == pytest.approx(2e-3)
+    assert (flat.length_crowning, flat.twist, flat.profile_crowning) == (0, 0, 0)
+
+
+def test_points_without_deviation_are_left_out_of_every_figure(plane):
+    def surface(X, Y):
+        return np.where((X == 10) & (Y == 2.5), np.nan, 1e-3 * X + 2e-3 * Y)
+
+    topography = evaluate_topography(plane(surface), "concave")
+    assert topography.left_out == 1
+    assert topography.extreme == pytest.approx(-15e-3)  # toe and root: heel and tip is left out
+    np.testing.assert_allclose(topography.coefficients[:3], [0, 1e-3, 2e-3], atol=1e-12)
+    assert orders(topography).pressure_angle == pytest.approx(2e-3)
+    half = plane(lambda X, Y: np.where(X < 0, np.nan, 0.01))
+    with pytest.raises(InputError, match=r"25 of 45 points have a deviation; is it a nominal file\?$"):
+        evaluate_topography(half, "concave")
+
+
+def test_mean_of_teeth_is_the_mean_of_every_point_that_is_there(plane):
+    first = evaluate_topography(plane(lambda X, Y: 0.004 + 0 * X), "concave")
+    second = evaluate_topography(plane(lambda X, Y: np.where(X == 10, np.nan, 0.008)), "concave")
+    mean = mean_topography([first, second])
+    np.testing.assert_allclose(mean.deviation, np.tile([0.006] * 8 + [0.004], (5, 1)))

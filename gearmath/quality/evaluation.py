@@ -1,0 +1,141 @@
+"""A measured member judged as a whole: what was left out, how it sat, and the figures of flanks, pitch and spaces."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearmath.errors import InputError
+from gearmath.quality.correction import check_belongs
+from gearmath.quality.drift import Drift, without_drift
+from gearmath.quality.nominal import check_points, completed, nominal_rows
+from gearmath.quality.outliers import find_outliers
+from gearmath.quality.pitch import Pitch, evaluate_pitch
+from gearmath.quality.registration import Registration, register
+from gearmath.quality.spaces import Runout, Thickness, evaluate_runout, evaluate_thickness
+from gearmath.quality.tolerance import Verdict, judge
+from gearmath.quality.topography import Orders, Topography, evaluate_topography, grid_shape, mean_topography, orders
+from gearmath.specs.bevel_set import FLANKS, Member
+from gearmath.specs.flank_csv import FlankFile
+
+
+@dataclass(frozen=True)
+class FlankFigures:
+    """One flank: the topography of every tooth measured in full, their mean, its first orders, and its pitch."""
+
+    topographies: tuple[Topography, ...]
+    mean: Topography
+    orders: Orders
+    pitch: Pitch | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Figures for people and programs, those of topography of the first tooth in full: µm and degrees."""
+        first = self.topographies[0]
+        values: dict[str, Any] = {
+            "tooth": first.tooth,
+            "max_deviation_um": first.extreme * 1000,
+            "rms_um": first.rms * 1000,
+            "cubic_surface_residual_um": float(np.nanmax(np.abs(first.residual))) * 1000,
+            "surface_coefficients": first.coefficients.tolist(),
+            "left_out": first.left_out,
+            "teeth_in_full": [each.tooth for each in self.topographies],
+            "orders": self.orders.as_dict(),
+        }
+        if self.pitch is not None:
+            values["F_p_um"] = self.pitch.total * 1000
+            values["max_f_pt_um"] = self.pitch.largest_single * 1000
+        return values
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """A measured member: its points as judged, the figures of both flanks and of the spaces, and what was done to them.
+
+    ``flanks`` and ``runout`` are those of ``file``; ``as_measured`` those before registration, the same without one.
+    ``remarks`` are sentences: points left out, what was not found and why.
+    """
+
+    member: str
+    file: FlankFile
+    flanks: dict[str, FlankFigures]
+    as_measured: dict[str, FlankFigures]
+    runout: Runout | None
+    runout_as_measured: Runout | None
+    thickness: Thickness | None
+    drifts: dict[str, Drift]
+    registration: Registration | None
+    verdict: Verdict | None
+    remarks: tuple[str, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """All figures for people and programs: µm, mm and degrees."""
+        return {
+            "member": self.member,
+            "flanks": {flank: figures.as_dict() for flank, figures in self.flanks.items()},
+            "runout": self.runout.as_dict() if self.runout else None,
+            "thickness": self.thickness.as_dict() if self.thickness else None,
+            "drift_um": {flank: drift.closure * 1000 for flank, drift in self.drifts.items()},
+            "registration": self.registration.as_dict() if self.registration else None,
+            "tolerance": self.verdict.as_dict() if self.verdict else None,
+            "remarks": list(self.remarks),
+        }
+
+
+def evaluate_member(file: FlankFile, member: Member, name: str, registered: bool = True) -> Evaluation:
+    """Judge a measured file of a member, of this machine or of another measuring centre.
+
+    Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
+    the clamping where the points tell it. Raises InputError if the file is not of this member, or not in mm on its
+    flanks, or if no tooth was measured in full.
+    """
+    check_belongs(member, name, file)
+    check_points(file, nominal_rows(file, member, name))
+    outliers = find_outliers(file, member.teeth)
+    whole, absent = completed(outliers.without(file), member, name)
+    measured, drifts = without_drift(whole, member.teeth)
+    as_measured = _flanks(measured, member)
+    seat, remarks = None, (*outliers.reasons, *absent)
+    if registered:
+        try:
+            seat = register(measured, member, name)
+            remarks += seat.remarks
+        except InputError as error:
+            remarks += (f"not registered: {error}",)
+    judged = measured if seat is None else seat.file
+    flanks = as_measured if seat is None else _flanks(judged, member)
+    runout = evaluate_runout(judged, member.teeth)
+    verdict = _verdict(member, name, flanks, runout)
+    if verdict is not None:
+        remarks += (verdict.remark,)
+    thickness = evaluate_thickness(judged, member.teeth)
+    before = evaluate_runout(measured, member.teeth)
+    return Evaluation(name, judged, flanks, as_measured, runout, before, thickness, drifts, seat, verdict, remarks)
+
+
+def _flanks(file: FlankFile, member: Member) -> dict[str, FlankFigures]:
+    return {flank: _figures(file, member, flank) for flank in FLANKS if (file.flank == flank).any()}
+
+
+def _figures(file: FlankFile, member: Member, flank: str) -> FlankFigures:
+    points = file.select(flank)
+    teeth, counts = np.unique(points.tooth, return_counts=True)
+    full = teeth[counts == np.prod(grid_shape(file))]
+    if not len(full):
+        full = teeth[[np.argmax(counts)]]  # refused, with the number of its points
+    topographies = tuple(evaluate_topography(file, flank, int(tooth)) for tooth in full)
+    mean = mean_topography(topographies)
+    return FlankFigures(topographies, mean, orders(mean), evaluate_pitch(file, member.teeth, flank))
+
+
+def _verdict(member: Member, name: str, flanks: dict[str, FlankFigures], runout: Runout | None) -> Verdict | None:
+    """The grade of pitch and runout; None where pitch was not measured."""
+    pitches = [figures.pitch for figures in flanks.values() if figures.pitch is not None]
+    if not pitches:
+        return None
+    measured = {"f_pt": max(p.largest_single for p in pitches), "F_p": max(p.total for p in pitches)}
+    if runout is not None:
+        measured["F_r"] = runout.total
+    return judge(member, name, {key: value for key, value in measured.items() if math.isfinite(value)})

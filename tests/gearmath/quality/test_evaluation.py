@@ -1,0 +1,128 @@
+"""A measured member as a whole: what comes in wrong is left out in words, the rest is judged as if it were right."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearmath.errors import InputError
+from gearmath.plot import evaluation_figure
+from gearmath.quality.evaluation import evaluate_member
+from gearmath.specs.flank_csv import FlankFile
+
+UM = 1e-3
+SEAT = np.array([12 * UM, -9 * UM, 6e-5, 8e-5])
+TEETH = range(12)
+
+
+def form(flank, z, r):
+    return 0.01 + (2e-4 if flank == "concave" else -3e-4) * (z - 77)
+
+
+@pytest.fixture(scope="module")
+def pinion(gear_set):
+    return gear_set.pinion
+
+
+@pytest.fixture(scope="module")
+def pair(clamped, pinion) -> tuple[FlankFile, FlankFile]:
+    """The pinion in a bad seat and in a good one: two teeth in full, corners and reference point of all others."""
+    index = {flank: 1e-5 * np.sin(3 * np.arange(12)) for flank in ("concave", "convex")}
+    given = {"teeth": TEETH, "places": [0, 8, 22, 36, 44], "whole": (0, 6), "index": index, "form": form}
+    return clamped(pinion, "pinion", SEAT, **given), clamped(pinion, "pinion", **given)
+
+
+def test_registered_figures_are_those_of_the_gear_in_a_good_seat(pair, pinion):
+    bad, good = pair
+    found, wanted = evaluate_member(bad, pinion, "pinion"), evaluate_member(good, pinion, "pinion", False)
+    for flank in ("concave", "convex"):
+        one, other = found.flanks[flank], wanted.flanks[flank]
+        assert [each.tooth for each in one.topographies] == [0, 6]
+        np.testing.assert_allclose(one.mean.deviation, other.mean.deviation, rtol=0, atol=0.1 * UM)
+        np.testing.assert_allclose(one.pitch.cumulative, other.pitch.cumulative, rtol=0, atol=0.1 * UM)
+        assert one.orders.twist == pytest.approx(other.orders.twist, abs=0.1 * UM)
+        assert found.as_measured[flank].pitch.total > 2 * one.pitch.total
+    assert found.runout.total == pytest.approx(wanted.runout.total, abs=0.1 * UM)
+    assert found.runout_as_measured.total > 20 * UM
+    assert found.thickness.mean == pytest.approx(wanted.thickness.mean, abs=0.1 * UM)
+    assert (wanted.registration, found.drifts) == (None, {})
+    assert set(found.verdict.grades) == {"f_pt", "F_p", "F_r"}
+
+
+def test_misses_and_missing_points_are_left_out_in_words_and_change_nothing_else(pair, pinion):
+    """A probe that missed by 0.4 mm on the grid of tooth 0, one on tooth 3, and a point that is not there."""
+    bad, _ = pair
+    clean = evaluate_member(bad, pinion, "pinion")
+    at = {"grid": (0, 1, 2), "single": (3, 2, 4), "absent": (6, 3, 3)}
+    rows = {
+        key: int(np.flatnonzero((bad.flank == "convex") & (bad.tooth == t) & (bad.row == r) & (bad.col == c))[0])
+        for key, (t, r, c) in at.items()
+    }
+    off = np.zeros(len(bad))
+    off[rows["grid"]], off[rows["single"]] = 0.4, -0.4
+    dirty = replace(bad, deviation=bad.deviation + off, point=bad.point + off[:, None] * bad.normal)
+    dirty = dirty.pick(np.arange(len(bad)) != rows["absent"])
+    found = evaluate_member(dirty, pinion, "pinion")
+    for place, words in (
+        ("convex flank, tooth 0, row 1, col 2", "off the smooth surface through the others; left out"),
+        ("convex flank, tooth 3, row 2, col 4", "off the same place of the other teeth; left out"),
+        ("convex flank, tooth 6, row 3, col 3", "not measured; left out"),
+    ):
+        assert len([remark for remark in found.remarks if remark.startswith(place) and words in remark]) == 1
+    assert np.abs(found.registration.seat - SEAT)[:2].max() < 0.1 * UM
+    assert np.abs(found.registration.seat - SEAT)[2:].max() * 25.4 < 0.1 * UM
+    one, other = found.flanks["convex"], clean.flanks["convex"]
+    assert one.as_dict()["left_out"] == 1
+    np.testing.assert_allclose(one.mean.deviation, other.mean.deviation, rtol=0, atol=0.2 * UM)
+    assert np.flatnonzero(np.isnan(one.pitch.cumulative)).tolist() == [3]
+    keep = np.arange(12) != 3
+    np.testing.assert_allclose(one.pitch.cumulative[keep], other.pitch.cumulative[keep], rtol=0, atol=0.1 * UM)
+
+
+def test_what_the_points_do_not_tell_is_said_and_the_rest_is_judged(pair, pinion):
+    few = pair[0].pick(pair[0].tooth == 0)
+    found = evaluate_member(few, pinion, "pinion")
+    assert found.registration is None
+    assert found.remarks == (
+        "not registered: concave flank: 1 teeth were measured: registration needs 8 of both flanks",
+    )
+    assert (found.runout, found.verdict, found.flanks["concave"].pitch) == (None, None, None)
+    assert found.thickness.deviation.shape == (1,)
+
+
+def test_wrong_member_hand_and_unit_are_one_sentence(pair, pinion, gear_set):
+    bad, _ = pair
+    with pytest.raises(InputError, match="member = 'pinion' in the measured file: must be 'gear'"):
+        evaluate_member(bad, gear_set.gear, "gear")
+    with pytest.raises(InputError, match=r"the file is of the other hand$"):
+        evaluate_member(replace(bad, point=bad.point * [1, -1, 1]), pinion, "pinion")
+    with pytest.raises(InputError, match=r"the numbers are inches: convert the file to mm$"):
+        evaluate_member(replace(bad, point=bad.point / 25.4), pinion, "pinion")
+
+
+def test_drift_is_reported_and_taken_out_before_the_seat_is_sought(pair, pinion):
+    """6 µm along the normals from first to last touch, tooth 0 again at the end."""
+    bad, _ = pair
+    again = bad.pick((bad.tooth == 0) & (bad.row == 2) & (bad.col == 4))
+    arrays = {key: np.concatenate([getattr(bad, key), getattr(again, key)])
+              for key in ("flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")}  # fmt: skip
+    arrays["tooth"][len(bad) :] = 12
+    file = FlankFile(bad.header, "pinion", **arrays)
+    drift = 6 * UM * np.linspace(0, 1, len(file))
+    file = replace(file, deviation=file.deviation + drift, point=file.point + drift[:, None] * file.normal)
+    found = evaluate_member(file, pinion, "pinion")
+    for flank, first in (("concave", 22), ("convex", 45 + 22)):
+        last = len(bad) + (flank == "convex")
+        assert found.drifts[flank].closure == pytest.approx(6 * UM * (last - first) / (len(file) - 1), abs=1e-9)
+    np.testing.assert_allclose(found.registration.seat[:2], SEAT[:2], rtol=0, atol=0.1 * UM)
+    np.testing.assert_allclose(found.registration.seat[2:] * 25.4, SEAT[2:] * 25.4, rtol=0, atol=0.1 * UM)
+
+
+def test_picture_shows_both_flanks_pitch_and_runout(pair, pinion):
+    figure = evaluation_figure("pinion", evaluate_member(pair[0], pinion, "pinion"))
+    labels = [place.get_ylabel() for place in figure.axes]
+    assert labels.count("cumulative pitch deviation / µm") == 1
+    assert labels.count("radial shift of a ball / µm") == 1
+    assert "eccentricity 15.0 µm, tilt 10.0 µm/100 mm taken out" in figure.get_suptitle()
