@@ -30,7 +30,7 @@ from gearmath.specs.bevel_set import SETTINGS
 
 _LINE_TOLERANCE = 1e-9
 #: A root line that goes beyond its limit counts so many times its length against the deviations.
-_ROOT_WEIGHT = 100.0
+ROOT_WEIGHT = 100.0
 
 #: How a Kernel is run: as it stands, or compiled first (``gearmath.export.host.compile_kernel``).
 Run = Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]
@@ -303,8 +303,8 @@ class Problem:
                 return None
             for sunk, gradient in roots:
                 beyond = np.sign(sunk) * np.maximum(np.abs(sunk) - self.root_limit, 0)
-                residual = np.concatenate([residual, _ROOT_WEIGHT * beyond])
-                jacobian = np.concatenate([jacobian, _ROOT_WEIGHT * gradient * (beyond != 0)[:, None]])
+                residual = np.concatenate([residual, ROOT_WEIGHT * beyond])
+                jacobian = np.concatenate([jacobian, ROOT_WEIGHT * gradient * (beyond != 0)[:, None]])
         return residual, jacobian
 
 

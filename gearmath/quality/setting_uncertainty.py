@@ -10,7 +10,8 @@ With W = w'w the weighting, t(v) - d = r the residual, and ν the noise that dam
 
 ∇²t_i, the curvature of the re-solved flank, is the derivative by CasADi of the gradient through the last Newton step.
 It counts where much is left that no setting explains, half a percent of u for 4 um on the NASA pinion, and decides
-whether the solution is a minimum at all. A variable that a bound holds stays there: dv = 0, until it comes off.
+whether the solution is a minimum at all. A variable that a bound holds stays there: dv = 0, until it comes off. A root
+line at its limit pulls with the weight of its gradient; its own curvature is left out, as it hardly bends within that.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ import numpy as np
 
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
-from gearmath.quality.compensation import FlankTarget, Identification
+from gearmath.quality.compensation import ROOT_WEIGHT, FlankTarget, Identification, Problem
 from gearmath.quality.covariance import Covariance
 from gearmath.quality.on_line import flank_on_line
 from gearmath.quality.topography import grid_shape
@@ -54,13 +55,14 @@ class SettingUncertainty:
 
 
 def setting_uncertainty(
-    targets: Sequence[FlankTarget], found: Identification, measured: Covariance
+    targets: Sequence[FlankTarget], found: Identification, measured: Covariance, root_limit: float | None = None
 ) -> SettingUncertainty:
     """Uncertainty of what was identified from the points (m,) of some targets, whose covariance is ``measured``.
 
-    Raises ComputationError where the flanks do not determine the settings: the solution is no strict minimum.
+    ``root_limit`` [mm] is that of the identification. Raises ComputationError where the flanks do not determine the
+    settings: the solution is no strict minimum.
     """
-    gain = exact_gain(targets, found)
+    gain = exact_gain(targets, found, root_limit)
     passed = found.jacobian @ (gain / found.scale[:, None])
     return SettingUncertainty(
         measured.through(gain),
@@ -71,7 +73,7 @@ def setting_uncertainty(
     )
 
 
-def exact_gain(targets: Sequence[FlankTarget], found: Identification) -> np.ndarray:
+def exact_gain(targets: Sequence[FlankTarget], found: Identification, root_limit: float | None = None) -> np.ndarray:
     """Derivative (p,m) [mm or rad per mm] of identified values by the measured deviations, by (A).
 
     Raises ComputationError where the matrix of (A) is not positive definite.
@@ -82,6 +84,8 @@ def exact_gain(targets: Sequence[FlankTarget], found: Identification) -> np.ndar
     ends = np.cumsum([len(target.deviation) for target in targets])[:-1]
     for k, (target, part) in enumerate(zip(targets, np.split(pull, ends), strict=True)):
         matrix = matrix + curvature(target, found, k, part)
+    if root_limit is not None:
+        matrix = matrix + _root_pull(targets, found, root_limit)
     held = _held(found)
     loose = np.array([variable.label not in held for variable in found.variables])
     free = matrix[np.ix_(loose, loose)]
@@ -92,6 +96,16 @@ def exact_gain(targets: Sequence[FlankTarget], found: Identification) -> np.ndar
     gain = np.zeros_like(found.jacobian.T)
     gain[loose] = np.linalg.solve(free, (found.jacobian.T @ weighting)[loose])
     return found.scale[:, None] * gain
+
+
+def _root_pull(targets: Sequence[FlankTarget], found: Identification, limit: float) -> np.ndarray:
+    """What root lines beyond their limit add to the matrix (p,p) of the fit."""
+    problem = Problem(targets, found.variables, None, limit)
+    matrix = np.zeros((len(found.values), len(found.values)))
+    for sunk, gradient in problem.root(found.values / found.scale):
+        beyond = ROOT_WEIGHT * gradient[np.abs(sunk) > limit]
+        matrix += beyond.T @ beyond
+    return matrix
 
 
 def _held(found: Identification) -> tuple[str, ...]:

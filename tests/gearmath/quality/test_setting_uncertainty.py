@@ -15,7 +15,7 @@ from gearmath.quality.batch import compensation_kernel
 from gearmath.quality.compensation import FlankTarget, identify, located, with_deviations
 from gearmath.quality.covariance import Covariance, coverage_factor, independent
 from gearmath.quality.setting_uncertainty import exact_gain, rows_of, setting_uncertainty
-from gearmath.quality.study import monte_carlo, run
+from gearmath.quality.study import monte_carlo, parameter_study, run
 from gearmath.quality.target import flank_target, target_of
 from gearmath.quality.topography import local_coordinates
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, load_bevel_set
@@ -124,6 +124,19 @@ def test_what_a_bound_holds_does_not_move_and_the_others_know_it(gear_set):
     assert known.standard[FREE.index("machine_root_angle")] == 0
 
 
+def test_root_line_at_its_limit_holds_the_settings_too(gear_set):
+    """Sunk by more than it may: the fit without the root line is another, and the gain is that of the one with it."""
+    one = measured(target(gear_set.pinion, "pinion", "concave"), {"sliding_base": 0.2})
+    free, limit = ("radial_distance", "cradle_angle", "sliding_base"), 0.05
+    found = identify([one], free, root_limit=limit)
+    assert found.active == ("root line",)
+    directions = np.random.default_rng(3).standard_normal((2, 45))
+    expected = differences([one], free, directions, root_limit=limit) / found.scale
+    size = np.abs(expected).max()
+    assert np.abs(directions @ exact_gain([one], found, limit).T / found.scale - expected).max() <= 2e-3 * size
+    assert np.abs(directions @ exact_gain([one], found).T / found.scale - expected).max() > 0.1 * size
+
+
 def test_settings_that_the_flank_does_not_tell_apart_are_refused(gear_set):
     """On a nominal flank turned about its axis alone, cradle angle and work rotation do nearly the same."""
     one = target(gear_set.pinion, "pinion", "concave", 2, 2)
@@ -183,3 +196,31 @@ def test_few_steps_from_the_solution_are_the_whole_identification(drawn):
         assert (
             np.abs((whole.values - draws[k, :4]) / found.scale).max() <= 1e-3 * np.abs(found.values / found.scale).max()
         )
+
+
+@pytest.mark.slow
+def test_95_percent_intervals_of_settings_hold_the_truth(gear_set):
+    """Exact binomial tests over 2000 seeds, Bonferroni over the table; the truth is what the flank was cut with."""
+    one = target(gear_set.pinion, "pinion", "concave", 3, 5)
+    errors = {"radial_distance": 0.03, "machine_root_angle": 2e-4}
+    true = np.array([errors.get(name, 0.0) for name in FREE])
+    exact = measured(one, errors, noise=0.0)
+    covariance = independent(np.full(15, NOISE))
+    known = setting_uncertainty([exact], identify([exact], FREE), covariance)
+    noise = np.stack([np.random.default_rng(seed).standard_normal(15) for seed in range(SEEDS)])
+    function = _from(compensation_kernel([one], FREE, steps=3), true)
+    values = run(parameter_study(function, exact.deviation + NOISE * noise))[:, : len(FREE)]
+    held = (np.abs(values - true) <= coverage_factor(0.95) * known.standard).sum(axis=0)
+    assert min(binomtest(int(count), SEEDS, 0.95).pvalue for count in held) >= ALPHA / len(held)
+
+
+def test_rows_of_a_target_are_its_points_in_a_file_of_any_order(gear_set, mill):
+    file = mill(gear_set, "pinion", (0, 1))
+    mixed = file.pick(np.random.default_rng(4).permutation(len(file)))
+    excluded = (mixed.row == 1) & (mixed.col == 3)
+    for flank in FLANKS:
+        one = flank_target(gear_set.pinion, "pinion", flank, mixed, excluded=excluded)
+        rows = rows_of(mixed, flank, one)
+        assert len(rows) == 44
+        np.testing.assert_array_equal(mixed.deviation[rows], one.deviation)
+        assert set(mixed.flank[rows]) == {flank}
