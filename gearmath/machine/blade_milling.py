@@ -31,6 +31,8 @@ _BLOCKS_ON = 2
 #: Lines whose nodes are looked at together; points of one call of a kernel.
 _LINES, _CHUNK = 16, 20_000
 
+_Computed = Callable[..., tuple[np.ndarray, ...]]
+
 
 @dataclass(frozen=True)
 class _Path:
@@ -92,17 +94,18 @@ def removal_by_blades(
     path = _Path.of(axes, cutter, cutting, _NODE_STEP * 2 * math.pi / blades.groups)
     best, block = np.full(len(point), np.inf), np.full(len(point), -1)
     starts = np.broadcast_to(np.asarray(start, dtype=float), (len(point),))
-    nodes = path.nodes
+    nodes, seen = path.nodes, evaluator(_seen())
+    crosses = {is_arc: evaluator(crossing(is_arc)) for is_arc in {edge.is_arc for edge in blades.edges}}
     for begin in range(0, len(point), _LINES):
         rows = np.arange(begin, min(begin + _LINES, len(point)))
         reach = _WINDOW - float(starts[rows].min())
-        passes = _passes(path, nodes, point[rows], blades, machine, reach, evaluator)
+        passes = _passes(path, nodes, point[rows], blades, machine, reach, seen)
         for edge in blades.edges:
             _, radius, height = edge.middle
             near = np.hypot(passes.radius - radius, passes.height - height) < reach + edge.half_length
             here = passes.at(near)
             given = (point[rows][here.line], normal[rows][here.line])
-            distance, at = _crossings(path, here, edge, machine, given, evaluator)
+            distance, at = _crossings(path, here, edge, machine, given, crosses[edge.is_arc])
             distance = np.where(distance >= starts[rows][here.line], distance, np.inf)
             order = np.argsort(-distance, kind="stable")  # the smallest of a line is written last
             deeper = order[distance[order] < best[rows][here.line[order]]]
@@ -113,15 +116,12 @@ def removal_by_blades(
 
 
 def _passes(
-    path: _Path, nodes: np.ndarray, point: np.ndarray, blades: Blades, machine: tuple, reach: float,
-    evaluator: Evaluator,
+    path: _Path, nodes: np.ndarray, point: np.ndarray, blades: Blades, machine: tuple, reach: float, seen: _Computed,
 ) -> _Passes:  # fmt: skip
     """All passes of blade groups within ``reach`` [mm] of any edge, wherever on the path."""
     many, n = len(point), len(nodes)
-    seen = evaluator(_seen())(
-        np.tile(nodes[:, :5], (many, 1)), np.repeat(point, n, axis=0), *machine
-    )  # fmt: skip
-    height, radius, azimuth = (values.reshape(many, n) for values in seen)
+    places = seen(np.tile(nodes[:, :5], (many, 1)), np.repeat(point, n, axis=0), *machine)
+    height, radius, azimuth = (values.reshape(many, n) for values in places)
     pitch = 2 * math.pi / blades.groups
     off = nodes[:, 5] - azimuth
     change = np.diff(nodes[:, 5]) - np.remainder(np.diff(azimuth, axis=1) + math.pi, 2 * math.pi) + math.pi
@@ -149,10 +149,10 @@ def _passes(
 
 
 def _crossings(
-    path: _Path, passes: _Passes, edge: Edge, machine: tuple, line: tuple[np.ndarray, np.ndarray], evaluator: Evaluator
+    path: _Path, passes: _Passes, edge: Edge, machine: tuple, line: tuple[np.ndarray, np.ndarray], kernel: _Computed
 ) -> tuple[np.ndarray, np.ndarray]:
     """Distance (p,) [mm] at which an edge crosses the line of each pass, infinite where it does not, and the row."""
-    kernel, block = evaluator(crossing(edge.is_arc)), passes.block.copy()
+    block = passes.block.copy()
     guess = np.column_stack([edge.parameter(passes.radius, passes.height), passes.fraction, np.zeros(len(block))])
     distance = np.full(len(block), np.inf)
     open_ = np.arange(len(block))
@@ -180,7 +180,7 @@ def _crossings(
     return distance, path.row[block]
 
 
-def _in_chunks(kernel: Callable[..., tuple[np.ndarray, ...]], count: int, *arguments: object) -> tuple:
+def _in_chunks(kernel: _Computed, count: int, *arguments: object) -> tuple:
     """The kernel for many points, so many at a time."""
     parts = []
     for begin in range(0, count, _CHUNK):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.machine.executor import MachinePath
-from gearmath.specs.milling_machine import AXES, UNITS_PER_INTERNAL, MillingMachine
+from gearmath.specs.milling_machine import MillingMachine
 
 
 @dataclass(frozen=True)
@@ -30,18 +30,26 @@ class Timing:
 
 
 def timing(path: MachinePath, machine: MillingMachine) -> Timing:
-    """Times and speeds of a program on a machine; a tool change interrupts the path and is not counted."""
-    steps = np.abs(np.diff(path.axes, axis=0, prepend=path.axes[:1]))
+    """Times and speeds of a program on a machine, with C where the program turns it.
+
+    A tool change interrupts the path and is not counted.
+    """
+    positions = path.axes
+    if np.isfinite(path.cutter).any() and machine.axes.C is not None:
+        positions = np.column_stack([path.axes, path.cutter])
+    steps = np.abs(np.nan_to_num(np.diff(positions, axis=0, prepend=positions[:1])))
+    limits = machine.limits(positions.shape[1])
     steps[1:][path.tool[1:] != path.tool[:-1]] = 0.0
-    steps[:, 3] = np.where(path.rapid, np.abs(np.remainder(steps[:, 3] + np.pi, 2 * np.pi) - np.pi), steps[:, 3])
-    rapid = float((steps[path.rapid] / machine.max_speed).max(axis=1, initial=0.0).sum())
+    short = np.abs(np.remainder(steps[:, 3::2] + np.pi, 2 * np.pi) - np.pi)
+    steps[:, 3::2] = np.where(path.rapid[:, None], short, steps[:, 3::2])
+    rapid = float((steps[path.rapid] / limits.max_speed).max(axis=1, initial=0.0).sum())
     moving = ~path.rapid & (path.seconds > 0.0)
     speeds = steps[moving] / path.seconds[moving][:, None]
     axes = []
-    for k, axis in enumerate(AXES):
+    for k, axis in enumerate(limits.names):
         fastest = int(speeds[:, k].argmax()) if len(speeds) else 0
         speed = float(speeds[fastest, k]) if len(speeds) else 0.0
         line = int(path.line[moving][fastest]) if len(speeds) else 0
-        scale = 60.0 * float(UNITS_PER_INTERNAL[k])
-        axes.append(AxisSpeed(axis, speed * scale, float(machine.max_speed[k]) * scale, line))
+        scale = 60.0 * float(limits.scale[k])
+        axes.append(AxisSpeed(axis, speed * scale, float(limits.max_speed[k]) * scale, line))
     return Timing(float(path.seconds.sum()), rapid, tuple(axes))
