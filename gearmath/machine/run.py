@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gearmath.bevel.method import require_plain
+from gearmath.bevel.method import motion_of
 from gearmath.bevel.tooth import ToothSpace
 from gearmath.errors import InputError
 from gearmath.machine.blades import Blades, blades_of
@@ -68,11 +68,10 @@ def runs_of(
         indexed = _spaces(axes, cutting, member, cut, machine)
         if errors is not None:
             settings, setting_errors = member.flank(cut.flanks[0]).nominal.vector, errors.setting_errors(name)
-            if setting_errors.any():
-                require_plain(member, name, "a setting error of the simulated machine")
             axes, own = _divided(axes, np.where(cutting[1:], divisions(axes, errors), 1))
             cutting, indexed, line = cutting[own], indexed[own], line[own]
-            axes = with_setting_errors(axes, settings, setting_errors, machine.pivot)
+            motion = motion_of(member.flank(cut.flanks[0]))
+            axes = with_setting_errors(axes, settings, setting_errors, machine.pivot, motion)
             turned = np.where(indexed >= 0, index_errors(errors.work_axis, member.teeth, errors.seed)[indexed], 0.0)
             axes = with_axis_errors(axes + turned[:, None] * np.array([0, 0, 0, 1, 0]), errors)
         cutter = cutter_of(member, cut.flanks, space, edge_radius)
@@ -101,8 +100,6 @@ def _hobbing_run(
         raise InputError(f"line {line} cuts while the spindle is no axis C; the {name} is face hobbed")
     axes, turned, lines = path.axes, path.cutter, path.line
     if errors is not None:
-        if errors.setting_errors(name).any():
-            require_plain(member, name, "a setting error of the simulated machine")
         if errors.work_axis != WorkAxis():
             raise InputError(
                 f"{name}: work_axis: an index error belongs to indexing space by space, and face hobbing indexes "
@@ -110,6 +107,10 @@ def _hobbing_run(
             )
         six = np.column_stack([axes, turned])
         six, own = _divided(six, np.where(cutting[1:], divisions(axes, errors), 1))
+        spec = member.flank(cut.flanks[0])
+        six = with_setting_errors(
+            six, spec.nominal.vector, errors.setting_errors(name), machine.pivot, motion_of(spec)
+        )  # fmt: skip
         axes, turned, cutting, lines = with_axis_errors(six[:, :5], errors), six[:, 5], cutting[own], lines[own]
     cutter = cutter_of(member, cut.flanks, None, edge_radius)
     spaces = np.full(len(cutting), -1)

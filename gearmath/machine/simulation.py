@@ -7,6 +7,7 @@ the roll position is recovered from X and Y, and the axes are shifted by what th
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import casadi as ca
@@ -24,56 +25,71 @@ _GAUSS_NEWTON_STEPS = 40
 _ON_PATH = 2.0
 #: A periodic error is followed in this many straight parts of its period, to a hundredth of its amplitude.
 _PARTS_OF_A_PERIOD = 24
+_AT_REST = np.zeros(notation.motion.shape)
 
 
 @cache
 def roll_position() -> Kernel:
-    """Kernel: cradle rotation of the settings whose X, Y are nearest to a position, and the distance left there."""
+    """Kernel: cradle rotation of the settings whose X, Y are nearest to a position, and the distance left there.
+
+    The settings may move with the cradle; without ``motion`` they do not.
+    """
     x, theta, X, Y = ca.SX.sym("settings", 12), ca.SX.sym("theta"), ca.SX.sym("X"), ca.SX.sym("Y")
-    pivot = ca.SX.sym("pivot_offset", 3)
-    axes = kernel("axis_transform").function(x, theta, 0, pivot)
+    pivot, motion = ca.SX.sym("pivot_offset", 3), ca.SX.sym("motion", 10, 7)
+    axes = kernel("axis_transform").function(kernel("moved_settings").function(x, motion, theta), theta, 0, pivot)
     off = axes[:2] - ca.vertcat(X, Y)
     J = ca.jacobian(off, theta)
     change = ca.dot(J, off) / ca.dot(J, J)
     limited = change / ca.fmax(1, ca.fabs(change) / 0.3)
-    step = ca.Function("roll_step", [theta, x, X, Y, pivot], [theta - limited])
-    rest = ca.Function("roll_rest", [theta, x, X, Y, pivot], [ca.norm_2(off)])
-    arguments = [ca.MX.sym("settings", 12), ca.MX.sym("X"), ca.MX.sym("Y"), ca.MX.sym("pivot_offset", 3)]
+    step = ca.Function("roll_step", [theta, x, X, Y, pivot, motion], [theta - limited])
+    rest = ca.Function("roll_rest", [theta, x, X, Y, pivot, motion], [ca.norm_2(off)])
+    quantities = (
+        notation.settings, notation.X, notation.Y, notation.pivot_offset, replace(notation.motion, default=0.0),
+    )  # fmt: skip
+    arguments = [ca.MX.sym(q.name, *(q.shape or (1,))) for q in quantities]
     solution = ca.MX(0)
     for _ in range(_GAUSS_NEWTON_STEPS):
         solution = step(solution, *arguments)
     off_path = Quantity("off_path", "distance of the position from the path in X and Y", "mm", "d")
     function = ca.Function(
         "roll_position", arguments, [solution, rest(solution, *arguments)],
-        ["settings", "X", "Y", "pivot_offset"], ["theta", "off_path"],
+        [q.name for q in quantities], ["theta", "off_path"],
     )  # fmt: skip
     return Kernel(
-        function, "Cradle rotation of an executed position, from its X and Y.",
-        (notation.settings, notation.X, notation.Y, notation.pivot_offset), (notation.theta, off_path),
-        "(5.1) inverted by Gauss-Newton",
+        function, "Cradle rotation of an executed position, from its X and Y.", quantities,
+        (notation.theta, off_path), "(5.1) inverted by Gauss-Newton",
     )  # fmt: skip
 
 
 def with_setting_errors(
-    axes: np.ndarray, settings: np.ndarray, errors: np.ndarray, pivot_offset: np.ndarray
-) -> np.ndarray:
-    """The axis positions (n,5) that settings off by ``errors`` (12,) make of executed positions (n,5).
+    axes: np.ndarray, settings: np.ndarray, errors: np.ndarray, pivot_offset: np.ndarray,
+    motion: np.ndarray = _AT_REST,
+) -> np.ndarray:  # fmt: skip
+    """The axis positions (n,5) that settings off by ``errors`` (12,) make of executed positions (n,5), or (n,6) with C.
 
-    Raises ComputationError if a position does not belong to the settings at all.
+    ``motion`` (10,7) moves right and wrong settings alike. Raises ComputationError if a position does not belong to the
+    settings at all.
     """
     if not errors.any():
         return axes
-    theta, off_path = roll_position()(settings, axes[:, 0], axes[:, 1], pivot_offset)
+    theta, off_path = roll_position()(settings, axes[:, 0], axes[:, 1], pivot_offset, motion)
     if not (off_path < _ON_PATH).all():
         k = int(np.argmax(~(off_path < _ON_PATH)))
         raise ComputationError(
             f"position X {axes[k, 0]:.4f} Y {axes[k, 1]:.4f} is {off_path[k]:.4f} mm off the path of the settings; "
             "was the program made from another set?"
         )
-    (really,), (meant,) = (kernel("axis_transform")(x, theta, 0.0, pivot_offset) for x in (settings + errors, settings))
+    really, meant = (_positions(x, motion, theta, pivot_offset) for x in (settings + errors, settings))
     shift = really - meant
-    shift[:, 3] = (shift[:, 3] + math.pi) % (2 * math.pi) - math.pi
-    return axes + shift
+    shift[:, 3::2] = (shift[:, 3::2] + math.pi) % (2 * math.pi) - math.pi
+    return axes + shift[:, : axes.shape[1]]
+
+
+def _positions(settings: np.ndarray, motion: np.ndarray, theta: np.ndarray, pivot_offset: np.ndarray) -> np.ndarray:
+    """X Y Z A B and C at cutter angle zero (n,6), at cradle rotations (n,)."""
+    (moved,) = kernel("moved_settings")(settings, motion, theta)
+    (axes,) = kernel("axis_transform")(moved, theta, 0.0, pivot_offset)
+    return np.column_stack([axes, *kernel("cutter_phase")(moved, theta)])
 
 
 def index_errors(work_axis: WorkAxis, teeth: int, seed: int) -> np.ndarray:

@@ -13,18 +13,25 @@ from scipy.optimize import fsolve
 from gearmath.bevel.generation_kernels import generation_point
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import generation_of
+from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
+from gearmath.export.host import compile_kernel
 from gearmath.lowering import lower
+from gearmath.machine.collision import collisions
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
-from gearmath.machine.mill import mill_member
+from gearmath.machine.mill import expose, mill_member
+from gearmath.machine.passes import Pass
 from gearmath.machine.program import write_program
 from gearmath.machine.run import runs_of
-from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES, Motion, load_bevel_set
+from gearmath.machine.stock import nominal_surfaces, surface_states
+from gearmath.machine.timing import timing
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES, Motion, Settings, load_bevel_set
 from gearmath.specs.simulated_machine import AxisErrors, Harmonic, Mounting, SimulatedMachine, WorkAxis
 from gearmath.specs.toml import bundled
 
 COARSE = 5e-4  # mm
+MOTION = Motion(sliding_base=(0.9, -0.5), modified_roll=(0.04, -0.2), radial_distance=(0.3,))
 
 
 @pytest.fixture(scope="module")
@@ -82,13 +89,18 @@ def into_work(position, place):
     return np.stack([c * turned[0] - s * turned[1], s * turned[0] + c * turned[1], turned[2]], axis=1)
 
 
-def edge_ends(position, group_angle, spec, side, pivot_height):
-    """The ends (n,3) of the straight edge of a blade in the work, for positions (n,6)."""
-    eta, alpha, r = (math.radians(spec.blade_offset_angle), math.radians(spec.blade_pressure_angle),
-                     spec.blade_point_radius)  # fmt: skip
+def main_edge(spec, side):
+    """Height and radius of both ends of the straight edge of a blade."""
+    top, r = spec.blade_profile_height, spec.blade_point_radius
+    return ((0.0, r), (top, r + side * top * math.tan(math.radians(spec.blade_pressure_angle))))
+
+
+def edge_ends(position, group_angle, spec, edge, pivot_height):
+    """The ends (n,3) of a straight edge of a blade in the work, for positions (n,6)."""
+    eta, r = math.radians(spec.blade_offset_angle), spec.blade_point_radius
     ends = []
-    for h in (0.0, spec.blade_profile_height):
-        along = side * h * math.tan(alpha)
+    for h, rho in edge:
+        along = rho - r
         x, y = r + along * math.cos(eta), along * math.sin(eta)
         angle, radius = position[:, 5] + group_angle + math.atan2(y, x), math.hypot(x, y)
         where = position[:, :3] + np.column_stack([-radius * np.cos(angle), radius * np.sin(angle), 0 * angle + h])
@@ -96,7 +108,7 @@ def edge_ends(position, group_angle, spec, side, pivot_height):
     return ends
 
 
-def brute_force(path, spec, side, groups, pivot_height, point, normal, start):
+def brute_force(path, spec, edge, groups, pivot_height, point, normal, start):
     """The smallest distance, from ``start`` on, at which any edge crosses a line: every sign change on fine steps.
 
     The triple product of edge, line, and what is between them changes its sign there; bisection does the rest.
@@ -111,7 +123,7 @@ def brute_force(path, spec, side, groups, pivot_height, point, normal, start):
         angle = 2 * np.pi * group / groups
 
         def volume(at, first, last, angle=angle):
-            low, high = edge_ends(first + at[:, None] * (last - first), angle, spec, side, pivot_height)
+            low, high = edge_ends(first + at[:, None] * (last - first), angle, spec, edge, pivot_height)
             return np.sum((high - low) * np.cross(normal, point - low), axis=1)
 
         values = volume(s, first, last)
@@ -121,7 +133,7 @@ def brute_force(path, spec, side, groups, pivot_height, point, normal, start):
             middle = (a + b) / 2
             same = volume(middle, *block) * values[k] > 0
             a, b = np.where(same, middle, a), np.where(same, b, middle)
-        low, high = edge_ends(block[0] + a[:, None] * (block[1] - block[0]), angle, spec, side, pivot_height)
+        low, high = edge_ends(block[0] + a[:, None] * (block[1] - block[0]), angle, spec, edge, pivot_height)
         for one, other in zip(low, high, strict=True):
             fraction, t = np.linalg.lstsq(np.column_stack([other - one, -normal]), point - one, rcond=None)[0]
             if 0 <= fraction <= 1 and t >= start:
@@ -137,11 +149,12 @@ def test_deviation_is_that_of_a_brute_force_sweep_of_every_blade(hobbed, written
     file = cut(member)
     for flank in FLANKS:
         chosen = [file.select(flank, 0), file.select(flank, spec.teeth // 3)]
+        edge = main_edge(spec.flank(flank), SIDES[flank])
         picks = [(chosen[0], 2), (chosen[0], 40), (chosen[1], 0)]
         for part, k in picks:
             point = part.point[k] - part.deviation[k] * part.normal[k]
             found = brute_force(
-                path, spec.flank(flank), SIDES[flank], spec.blade_groups, vertical.pivot_height, point,
+                path, spec.flank(flank), edge, spec.blade_groups, vertical.pivot_height, point,
                 part.normal[k], -1.0,
             )  # fmt: skip
             assert found == pytest.approx(part.deviation[k], abs=1e-7)
@@ -275,8 +288,6 @@ def test_lint(written):
 
 def test_writer_reader_writer_gives_the_same_text(hobbed, vertical, written):
     """Positions and times that the reader finds, written again, are the same blocks."""
-    from gearmath.machine.passes import Pass
-
     text = written("gear")
     path = execute(text, "HOB.MPF")
     rows = np.flatnonzero(~path.rapid)
@@ -431,7 +442,6 @@ def test_uneven_division_of_a_is_seen(cut):
     ("errors", "sentence"),
     [
         ({"work_axis": WorkAxis(random_arcsec=5.0)}, r"^gear: work_axis: an index error .* give axes\.A_harmonics"),
-        ({"gear": {"sliding_base": 0.01}}, r"^gear: a setting error .* face hobbed"),
     ],
 )
 def test_errors_without_a_sense_in_face_hobbing_are_refused(hobbed, vertical, written, errors, sentence):
@@ -447,11 +457,150 @@ def test_other_kinds_of_face_hobbing_are_cut_to_tolerance(hobbed, cut, kind):
     member = hobbed.gear if kind == "formate" else hobbed.pinion
     update = {
         "formate": {"generation": "formate"},
-        "motion": both(
-            member, motion=Motion(sliding_base=(0.9, -0.5), modified_roll=(0.04, -0.2), radial_distance=(0.3,))
-        ),
+        "motion": both(member, motion=MOTION),
         "tilt": both(member, cutter_tilt=2.0, cutter_swivel=60.0),
     }[kind]
     name = "gear" if kind == "formate" else "pinion"
     file = cut(name, gear_set=changed(hobbed, name, **update), tolerance=1e-4)
     assert np.abs(file.deviation).max() <= 1e-4
+
+
+SETTING_ERRORS = {"radial_distance": 0.02, "sliding_base": -0.01, "machine_root_angle": 0.01, "cutter_tilt": 0.05}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["hobbed", "hobbed, moving", "moving", "formate"])
+def test_setting_errors_act_like_cutting_with_those_settings(hobbed, gear_set, vertical, kind):
+    """Both from program texts: a right program on a wrong machine, and a program of wrong settings on a right one.
+
+    Ratio of roll and work rotation offset have to show in A, swivel and tilt in C.
+    """
+    given = hobbed if kind.startswith("hobbed") else gear_set
+    wrong = {**SETTING_ERRORS, "cutter_swivel": 0.1, "ratio_of_roll": 1e-4, "work_rotation_offset": 0.02}
+    update = both(given.gear, motion=MOTION) if "moving" in kind else {}
+    if kind == "formate":
+        update, wrong = {"generation": "formate"}, {**wrong, "ratio_of_roll": 0.0}
+    right = changed(given, "gear", **update)
+    gear = right.gear
+    off = {
+        flank: gear.flank(flank).model_copy(update={
+            **{key: getattr(gear.flank(flank), key) + value for key, value in wrong.items()},
+            "design": Settings(**{key: getattr(gear.flank(flank), key) for key in SETTINGS}),
+        })
+        for flank in FLANKS
+    }  # fmt: skip
+    spaces = range(39) if kind.startswith("hobbed") else (0,)
+    errors = shop(gear=wrong)
+    sets, job = (right, changed(right, "gear", **off)), Job(spaces, 1e-4)
+    paths = [execute(cutting_program(one, "gear", vertical, "CUT", job), "CUT.MPF") for one in sets]
+    injected = mill_member(paths[0], gear, "gear", vertical, errors)
+    meant = mill_member(paths[1], gear, "gear", vertical)
+    assert np.abs(meant.deviation).max() > 5e-3
+    np.testing.assert_allclose(injected.deviation, meant.deviation, rtol=0, atol=2e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("member", MEMBERS)
+def test_report_finds_no_fault_in_a_right_program_and_times_c(hobbed, written, vertical, host_compiler, member):
+    """Flanks down to their fillets within 1 µm, no gouge anywhere; a fillet of 0.02 mm keeps scallops of some µm."""
+    path = execute(written(member, tolerance=1e-4), "HOB.MPF")
+    spec = hobbed.member(member)
+    space = tooth_space(spec, member, 5)
+    states = surface_states(
+        path, spec, member, vertical, spaces=(0, spec.teeth - 1), columns=5, evaluator=compile_kernel, space=space
+    )
+    assert len(states) == 10
+    for state in states:
+        assert state.lowest > -1e-5, state
+        assert state.highest < (5e-3 if "fillet" in state.surface else 1e-3), state
+        assert state.line > 0
+    runs = runs_of(path, spec, member, vertical, None, space, SHARP_EDGE)
+    assert collisions(path, runs, spec, vertical) == []
+    C = timing(path, vertical).axes[-1]
+    assert C.axis == "C"
+    assert C.speed_per_min == pytest.approx(7200.0 * spec.teeth / 13, rel=0.01)  # A is at its limit
+
+
+def test_tip_that_is_too_deep_is_seen_in_fillet_and_root(hobbed, written, vertical, host_compiler):
+    """A blade 0.05 mm longer than the member's: its Z lies that much lower, and so does the root."""
+    path = execute(written("gear"), "HOB.MPF")
+    deeper = replace(path, axes=path.axes - np.array([0, 0, 0.05, 0, 0]))
+    states = surface_states(deeper, hobbed.gear, "gear", vertical, spaces=(3,), columns=5, evaluator=compile_kernel)
+    found = {state.surface: state for state in states}
+    assert found["root"].lowest == pytest.approx(-0.05, abs=2e-3)
+    assert found["concave flank"].lowest == pytest.approx(-0.05 * math.sin(math.radians(20)), abs=1e-3)
+    assert found["convex fillet"].lowest < -0.02
+
+
+def test_rounded_edges_are_cut_without_gouge(hobbed, written, vertical, host_compiler):
+    """With an edge radius of 0.4 mm the fillets keep lower scallops than sharp ones."""
+    other = changed(hobbed, "gear", **both(hobbed.gear, blade_edge_radius=0.4))
+    highest = []
+    for gear_set in (hobbed, other):
+        path = execute(written("gear", gear_set=gear_set), "HOB.MPF")
+        states = surface_states(path, gear_set.gear, "gear", vertical, spaces=(1,), columns=5, evaluator=compile_kernel)
+        assert min(state.lowest for state in states) > -2e-5
+        highest.append(max(state.highest for state in states if "fillet" in state.surface))
+    assert highest[1] < highest[0] / 2
+
+
+def test_toprem_takes_away_what_its_own_edge_sweeps(hobbed, written, vertical, host_compiler):
+    """A protuberance undercuts the flank above it; at the deepest place as the brute-force sweep of its edge says."""
+    other = changed(hobbed, "gear", **both(hobbed.gear, toprem_angle=14.0, toprem_height=1.0))
+    spec, path = other.gear.concave, execute(written("gear", gear_set=other), "HOB.MPF")
+    space = tooth_space(other.gear, "gear", 5)
+    flank = nominal_surfaces(other.gear, space)[0]
+    (run,) = runs_of(path, other.gear, "gear", vertical, None, space, SHARP_EDGE)
+    left = expose([run], vertical, None, flank.point, flank.normal, flank.start, compile_kernel).distance
+    deepest = int(np.argmin(left))
+    assert left[deepest] < -0.01
+    radius = spec.blade_point_radius + math.tan(math.radians(20)) - math.tan(math.radians(14))
+    edge = ((0.0, radius), (1.0, radius + math.tan(math.radians(14))))
+    found = brute_force(
+        path, spec, edge, 13, vertical.pivot_height, flank.point[deepest], flank.normal[deepest], -1.0
+    )  # fmt: skip
+    assert left[deepest] == pytest.approx(found, abs=1e-7)
+
+
+def test_arc_blades_are_cut_to_tolerance(hobbed, cut):
+    update = both(hobbed.gear, blade_spheric_radius=800.0, blade_reference_height=4.0)
+    file = cut("gear", gear_set=changed(hobbed, "gear", **update), tolerance=2e-4)
+    assert np.abs(file.deviation).max() <= 2e-4
+
+
+def test_program_of_the_mate_is_refused(hobbed, written, vertical):
+    path = execute(written("gear"), "HOB.MPF")
+    with pytest.raises(InputError, match=r'the program cuts with T="GEAR"; the pinion is cut with PINION'):
+        mill_member(path, hobbed.pinion, "pinion", vertical)
+
+
+def test_slow_cutter_spindle_makes_the_program_slower_and_a_faster_pass_is_refused(hobbed, vertical, written):
+    slow = with_axes(vertical, C=vertical.axes.C.model_copy(update={"max_speed_per_min": 3600.0}))
+    path = execute(written("gear", slow), "HOB.MPF")
+    speeds = np.abs(np.diff(path.cutter))[~path.rapid[1:]] / path.seconds[1:][~path.rapid[1:]]
+    assert np.nanmax(speeds) <= math.radians(60.0) * (1 + 1e-5)  # 10 rpm
+    quick = np.zeros((2, 6))
+    quick[1, 5] = 2.0
+    one = Pass("GEAR", "quick", 0, quick, np.array([1.0]))
+    with pytest.raises(InputError, match=r"axis C = 6875\.5 degrees/min in block 0: .* allows 3600 degrees/min"):
+        write_program("HOB", [], [one], slow, 120.0, 40.0)
+    quick[1, 5] = 4.0
+    with pytest.raises(InputError, match=r"axis C turns 229\.183118 degrees in block 0: must be less than 180"):
+        write_program("HOB", [], [replace(one, seconds=np.array([100.0]))], slow, 120.0, 40.0)
+    with pytest.raises(InputError, match=r"axis C: .* has none"):
+        write_program("HOB", [], [one], with_axes(vertical, C=None), 120.0, 40.0)
+
+
+def test_command_line_writes_and_mills(tmp_path, command):
+    program, flanks = tmp_path / "HOB.MPF", tmp_path / "hob.csv"
+    given = ("crown_gear_hobbed_14x39.toml", "--member", "gear")
+    status, out, err = command("nc", "cut", *given, "--tolerance-um", "2", "-o", program)
+    assert (status, err) == (0, "")
+    assert "39 of 39 spaces" in out
+    status, out, err = command("mill", *given, "--program", program, "-o", flanks)
+    assert (status, err) == (0, ""), err
+    assert float(re.search(r"largest deviation ([\d.]+) um", out)[1]) <= 2.0
+    status, _, err = command("nc", "cut", *given, "--spaces", "0,1", "-o", tmp_path / "NO.MPF")
+    assert status == 2
+    assert "face hobbing cuts all spaces in one roll" in err
+    assert not (tmp_path / "NO.MPF").exists()
