@@ -67,7 +67,7 @@ def mill_member(
     they are perfect. Raises InputError if the program cuts with a tool that is not of this member, or leaves a flank
     uncut.
     """
-    runs = runs_of(path, member, name, machine, errors, _root_of(member, name))
+    runs = runs_of(path, member, name, machine, errors, root_of(member, name))
     grid = blank_grid(member, margin=MARGIN)
     nominals = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
     files = []
@@ -76,7 +76,7 @@ def mill_member(
             for space in run.spaces:
                 wanted = nominals[flank] if space == run.spaces[0] else _reference_only(nominals[flank])
                 start = -0.5 * thickness(wanted.point, nominals[_other(flank)].point, member.teeth)
-                files.append(_measure(runs, member, machine, errors, wanted, flank, space, start))
+                files.append(measured_lines(runs, member, machine, errors, wanted, flank, space, start))
                 progress(1)
     missing = [flank for flank in FLANKS if not any(file.flank[0] == flank for file in files)]
     if missing:
@@ -96,14 +96,14 @@ def thickness(point: np.ndarray, opposite: np.ndarray, teeth: int) -> np.ndarray
     return np.linalg.norm(point[:, None] - turned[None], axis=2).min(axis=1)
 
 
-def _root_of(member: Member, name: str) -> ToothSpace | None:
+def root_of(member: Member, name: str) -> ToothSpace | None:
     """The space whose root a fixed-setting cutter has to fit in; a completing one is what its blades are."""
     if member.cutting == "completing":
         return None
     return tooth_space(member, name, 7)
 
 
-def _measure(
+def measured_lines(
     runs: list[Run], member: Member, machine: MillingMachine, errors: SimulatedMachine | None, nominal: FlankFile,
     flank: str, space: int, start: np.ndarray,
 ) -> FlankFile:  # fmt: skip
