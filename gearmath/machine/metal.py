@@ -1,4 +1,4 @@
-"""The metal that a program leaves where a measurement of the whole member looks for it: what a probe is then sent to."""
+"""The metal that a program leaves at the places where a measurement of the whole member looks for it."""
 
 from __future__ import annotations
 

@@ -30,6 +30,8 @@ _PASSES = 4
 #: fast; afterwards, in a curved valley, slowly.
 _FIRST, _REFUSED, _FAST, _SLOW = 1e-9, 1e-7, 100, 4
 _LARGEST = 1e8
+#: What a step could gain is asked at these dampings too where the undamped one, turned by its bounds, promises nothing.
+_ASKED = (1e-11, 1e-9, 1e-7, 1e-5, 1e-3, 1e-1)
 _MOST_ITERATIONS = 60
 #: Converged: an undamped step would change the residual by less than this in the RMS, and less than this part. [mm]
 _STILL, _STILL_PART = 1e-10, 1e-7
@@ -125,6 +127,22 @@ def enough(possible: np.ndarray, cost: np.ndarray, residuals: int) -> np.ndarray
     return possible <= residuals * _STILL**2 + _STILL_PART**2 * cost + _ROUNDING * np.sqrt(cost)
 
 
+def could_gain(
+    step: Callable[..., tuple[np.ndarray, ...]], matrix: np.ndarray, gradient: np.ndarray, v: np.ndarray,
+    lower: np.ndarray, upper: np.ndarray,
+) -> np.ndarray:  # fmt: skip
+    """What the sum of squares could fall by, undamped; a damped step counts where the bounds make that one rise.
+
+    Arguments as those of the step, for one problem or many.
+    """
+    _, promised = step(matrix, gradient, v, lower, upper, FLOOR)
+    for damping in _ASKED:
+        if (promised > 0).all():
+            break
+        promised = np.maximum(promised, step(matrix, gradient, v, lower, upper, damping)[1])
+    return promised
+
+
 def next_damping(damping: float, gained: float, promised: np.typing.ArrayLike) -> float:
     """The trust region after a step: wider where the promise was kept, narrower where it was not, or nothing gained."""
     if gained <= 0:
@@ -161,8 +179,7 @@ def minimize(fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | No
     residual, jacobian = start
     while iterations < _MOST_ITERATIONS:
         cost, matrix, gradient = residual @ residual, jacobian.T @ jacobian, jacobian.T @ residual
-        _, possible = step(matrix, gradient, v, lower, upper, FLOOR)
-        if enough(possible, cost, len(residual)):
+        if enough(could_gain(step, matrix, gradient, v, lower, upper), cost, len(residual)):
             return Minimum(v, residual, jacobian, iterations, True)
         iterations += 1
         change, promised = step(matrix, gradient, v, lower, upper, damping)
