@@ -10,7 +10,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.quality.correction import check_belongs
-from gearmath.quality.drift import Drift, without_drift
+from gearmath.quality.drift import Drift, untold_drift, without_drift
 from gearmath.quality.nominal import check_points, completed, nominal_rows
 from gearmath.quality.outliers import find_outliers
 from gearmath.quality.pitch import Pitch, evaluate_pitch
@@ -100,7 +100,7 @@ def evaluate_member(file: FlankFile, member: Member, name: str, registered: bool
     seat, remarks = None, (*outliers.reasons, *absent)
     if registered:
         try:
-            seat = register(measured, member, name)
+            seat = register(measured, member, name, untold_drift(whole, member.teeth))
             remarks += seat.remarks
         except InputError as error:
             remarks += (f"not registered: {error}",)
@@ -110,7 +110,10 @@ def evaluate_member(file: FlankFile, member: Member, name: str, registered: bool
     verdict = _verdict(member, name, flanks, runout)
     if verdict is not None:
         remarks += (verdict.remark,)
-    thickness = evaluate_thickness(judged, member.teeth)
+    zeroed = file.header["phase_zeroed"].lower() == "true"
+    if zeroed:
+        remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
+    thickness = None if zeroed else evaluate_thickness(judged, member.teeth)
     before = evaluate_runout(measured, member.teeth)
     return Evaluation(name, judged, flanks, as_measured, runout, before, thickness, drifts, seat, verdict, remarks)
 

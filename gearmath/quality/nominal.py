@@ -37,10 +37,13 @@ class NominalRows:
 def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
     """The nominal point and normal of every row, in the work frame.
 
-    Raises ComputationError if the grid does not lie on the flank.
+    Raises InputError for unlike margins, ComputationError if the grid does not lie on the flank.
     """
     rows, columns = grid_shape(file)
-    grid = blank_grid(member, rows, columns, float(file.header["margins"].split(",")[0]))
+    margins = [float(part) for part in file.header["margins"].split(",")]
+    if margins[0] != margins[1]:
+        raise InputError(f"margins = {file.header['margins']}: must be alike along the tooth and up the profile")
+    grid = blank_grid(member, rows, columns, margins[0])
     point, normal = np.empty((len(file), 3)), np.empty((len(file), 3))
     tooth = file.tooth % member.teeth
     turn = 2 * math.pi * tooth / member.teeth

@@ -16,21 +16,14 @@ from typing import Any
 import numpy as np
 
 from gearmath.bevel.kernels import kernel
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import ComputationError
 from gearmath.quality.axial import Axial, axial_shift
 from gearmath.quality.nominal import NominalRows, check_points, distance_from_flank, nominal_rows
+from gearmath.quality.seat_model import SEAT, SeatModel, check_teeth, seat_model, sizes
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
 
-#: Teeth that a registration needs, or all where there are fewer.
-LEAST_TEETH = 8
-#: A seat is told from the points where its standard uncertainty is at most this many times that of one touch.
-_MOST_AMPLIFIED = 5.0
 _ITERATIONS, _CONVERGED = 12, 1e-9
-#: Where tilt is not told: a tilt of 10 µm per 100 mm may pass for this much eccentricity. [mm, rad]
-_MOST_FEIGNED, _SMALL_TILT = 0.005, 1e-4
-#: The teeth must not leave out more of a turn than this. [rad]
-_WIDEST_GAP = math.radians(120)
 #: Fewer spare observations than this say nothing about the noise.
 _LEAST_SPARE = 3
 
@@ -42,7 +35,10 @@ class Registration:
     ``seat`` (4,): eccentricity along x_w and y_w [mm], tilt about x_w and y_w [rad], at the pitch apex; ``covariance``
     (4,4) of it, NaN where ``tilt_found`` is False. ``noise`` [mm] is the standard deviation of one point that the fit
     leaves, with ``spare`` observations more than unknowns. ``removed`` (n,) [mm] is what was taken off each deviation.
-    ``index_model`` says what was left free of the pitch; ``remarks`` what the points could not tell.
+    To first order the seat is ``gain`` (4,n) times the deviations, and what is taken off is ``columns`` (n,4) times the
+    seat. ``singular_values`` say how well the seat is told: the effect of 1 mm on all points beyond what is left free,
+    tilt counted as its motion at the mean cone distance. ``index_model`` says what was left free of the pitch;
+    ``remarks`` what the points could not tell.
     """
 
     file: FlankFile
@@ -54,6 +50,8 @@ class Registration:
     spare: int
     singular_values: np.ndarray
     removed: np.ndarray
+    gain: np.ndarray
+    columns: np.ndarray
     axial_position: Axial
     remarks: tuple[str, ...]
 
@@ -107,127 +105,43 @@ class Registration:
             "noise_um": _or_none(self.noise * 1000),
             "largest_removed_um": float(np.abs(self.removed).max() * 1000),
             "index_model": self.index_model,
+            "singular_values": self.singular_values.tolist(),
             "axial": self.axial_position.as_dict(),
             "remarks": list(self.remarks),
         }
 
 
-@dataclass(frozen=True)
-class _Model:
-    """Columns (n,p) of the seat, freed of all that is left free, and how much of the data (n,) is spent on that."""
-
-    columns: np.ndarray
-    free: np.ndarray
-    found: tuple[int, ...]
-    name: str
-    remarks: tuple[str, ...]
-
-
-_EACH_FLANK, _BOTH_FLANKS = "every flank of every tooth", "every tooth, both flanks alike"
-_TOGETHER = "both flanks of a space are taken as indexed together: the points do not tell more"
-
-
-def register(file: FlankFile, member: Member, name: str) -> Registration:
+def register(file: FlankFile, member: Member, name: str, untold: np.ndarray | None = None) -> Registration:
     """The seat of a measured member, and its file without it.
 
-    Points without a deviation are carried along and take no part. Raises InputError for too few teeth, a single flank,
-    or points that do not tell the eccentricity; ComputationError if no seat explains them.
+    Points without a deviation are carried along and take no part. ``untold`` (n,q) are patterns that the deviations may
+    have besides, such as drift that is not known: they are left free, and stay in. Raises InputError for too few teeth,
+    a single flank, or points that do not tell the eccentricity; ComputationError if no seat explains them.
     """
     rows = nominal_rows(file, member, name)
     check_points(file, rows)
-    _check_teeth(file, rows, member)
+    check_teeth(file, rows, member)
     used = np.isfinite(file.deviation)
     columns = kernel("motion_sensitivity")(rows.point, rows.normal)[0]
-    model = _choose(file, rows, columns, used, member)
+    besides = np.empty((len(file), 0)) if untold is None else untold
+    model = seat_model(file, rows, columns, besides, used, member)
     seat, deviation, left = _fit(file, rows, columns, used, model, member)
     spare = int(used.sum()) - model.free.shape[1] - len(model.found)
     noise = math.sqrt(float(left @ left) / spare) if spare >= _LEAST_SPARE else _stated(file)
-    covariance = np.full((4, 4), np.nan)
-    scaled = np.linalg.inv(model.columns.T @ model.columns)
-    covariance[np.ix_(model.found, model.found)] = noise**2 * scaled
+    covariance, gain, found = np.full((4, 4), np.nan), np.zeros((4, len(file))), list(model.found)
+    covariance[np.ix_(found, found)] = noise**2 * np.linalg.inv(model.columns.T @ model.columns)
+    gain[np.ix_(found, used)] = np.linalg.pinv(model.columns)
     registered = replace(file, point=rows.point + np.nan_to_num(deviation)[:, None] * rows.normal, deviation=deviation)
+    singular_values = np.linalg.svd(model.columns * sizes(member)[found], compute_uv=False)
     return Registration(
-        registered, seat, covariance, len(model.found) == 4, model.name, noise, spare,
-        np.linalg.svd(model.columns * _sizes(member)[list(model.found)], compute_uv=False),
-        np.nan_to_num(file.deviation - deviation), axial_shift(registered, member, name, rows, columns), model.remarks,
+        registered, seat, covariance, len(found) == 4, model.name, noise, spare, singular_values,
+        np.nan_to_num(file.deviation - deviation), gain, columns[:, SEAT],
+        axial_shift(registered, member, name, rows, columns), model.remarks,
     )  # fmt: skip
 
 
-def _check_teeth(file: FlankFile, rows: NominalRows, member: Member) -> None:
-    least = min(LEAST_TEETH, member.teeth)
-    for flank in FLANKS:
-        teeth = np.unique(rows.tooth[(file.flank == flank) & np.isfinite(file.deviation)])
-        if len(teeth) < least:
-            raise InputError(
-                f"{flank} flank: {len(teeth)} teeth were measured: registration needs {least} of both flanks"
-            )
-        gap = np.diff([*teeth, teeth[0] + member.teeth]).max() * 2 * math.pi / member.teeth
-        if gap > _WIDEST_GAP:
-            raise InputError(
-                f"{flank} flank: the teeth that were measured leave out {math.degrees(gap):.0f} degrees of the turn: "
-                f"registration allows {math.degrees(_WIDEST_GAP):.0f}"
-            )
-
-
-def _choose(file: FlankFile, rows: NominalRows, columns: np.ndarray, used: np.ndarray, member: Member) -> _Model:
-    """The most general model of the pitch in which the seat is still told from the points."""
-    seat = columns[used][:, [0, 1, 3, 4]]
-    remarks: tuple[str, ...] = ()
-    for each_flank in (True, False):
-        free = _free_columns(file, rows, columns[:, 5], used, each_flank)
-        left = seat - free @ (free.T @ seat)
-        if _smallest(left * _sizes(member)) * _MOST_AMPLIFIED >= 1.0:
-            return _Model(left, free, (0, 1, 2, 3), _EACH_FLANK if each_flank else _BOTH_FLANKS, remarks)
-        remarks = (_TOGETHER,)
-    if _smallest(left[:, :2]) * _MOST_AMPLIFIED < 1.0:
-        raise InputError(
-            f"{file.member}: the points do not tell eccentricity from uneven pitch; measure three or more places, toe "
-            f"to heel and root to tip, on {LEAST_TEETH} teeth around"
-        )
-    feigned = _SMALL_TILT * _feigned(left, float(rows.point[used, 2].mean()))
-    what = f"a tilt of 10 um per 100 mm passes for {feigned * 1000:.1f} um of eccentricity"
-    if feigned > _MOST_FEIGNED:
-        raise InputError(
-            f"{file.member}: most teeth were measured at one place, and there {what}: measure three or more places, "
-            f"toe to heel and root to tip, on {LEAST_TEETH} teeth around"
-        )
-    untold = f"tilt is not told by teeth measured at one place; taken as none at the height of that place, where {what}"
-    return _Model(left[:, :2], free, (0, 1), _BOTH_FLANKS, (*remarks, untold))
-
-
-def _smallest(columns: np.ndarray) -> float:
-    return float(np.linalg.svd(columns, compute_uv=False)[-1])
-
-
-def _feigned(left: np.ndarray, height: float) -> float:
-    """Eccentricity [mm per rad] that a tilt about a height would be taken for, by the columns (n,4) that are left."""
-    about = left[:, 2:] + height * np.stack([left[:, 1], -left[:, 0]], axis=1)
-    return float(np.linalg.norm(np.linalg.lstsq(left[:, :2], about, rcond=None)[0], 2))
-
-
-def _sizes(member: Member) -> np.ndarray:
-    """What makes eccentricity and tilt alike: tilt counts as its motion at the mean cone distance."""
-    return np.array([1.0, 1.0, *[1 / member.blank.mean_cone_distance] * 2])
-
-
-def _free_columns(
-    file: FlankFile, rows: NominalRows, lever: np.ndarray, used: np.ndarray, each_flank: bool
-) -> np.ndarray:
-    """Orthonormal columns (n,q) of all that is no seat: form at every point of the grid, turning of every tooth."""
-    flank = (file.flank == FLANKS[1]).astype(int)[used]
-    width = int(file.col.max()) + 1
-    place = (flank * (int(file.row.max()) + 1) + file.row[used]) * width + file.col[used]
-    group = rows.tooth[used] * 2 + flank if each_flank else rows.tooth[used]
-    form = (place[:, None] == np.unique(place)).astype(float)
-    form /= np.linalg.norm(form, axis=0)
-    turning = (group[:, None] == np.unique(group)) * lever[used, None]
-    turning = turning - form @ (form.T @ turning)
-    u, sizes, _ = np.linalg.svd(turning, full_matrices=False)
-    return np.hstack([form, u[:, sizes > 1e-9 * np.abs(lever).max()]])
-
-
 def _fit(
-    file: FlankFile, rows: NominalRows, columns: np.ndarray, used: np.ndarray, model: _Model, member: Member
+    file: FlankFile, rows: NominalRows, columns: np.ndarray, used: np.ndarray, model: SeatModel, member: Member
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Seat (4,), deviations (n,) without it, and what the fit leaves of those used.
 
@@ -252,7 +166,7 @@ def _without(file: FlankFile, rows: NominalRows, columns: np.ndarray, seat: np.n
         touched, rows.normal, math.hypot(x, y), math.atan2(y, x), math.hypot(about_x, about_y),
         math.atan2(about_y, about_x),
     )  # fmt: skip
-    expected = np.nan_to_num(file.deviation) - columns[:, [0, 1, 3, 4]] @ seat
+    expected = np.nan_to_num(file.deviation) - columns[:, SEAT] @ seat
     deviation = np.full(len(file), np.nan)
     for flank in FLANKS:
         here = (file.flank == flank) & np.isfinite(file.deviation)

@@ -92,6 +92,13 @@ def test_what_the_points_do_not_tell_is_said_and_the_rest_is_judged(pair, pinion
     assert found.thickness.deviation.shape == (1,)
 
 
+def test_zeroed_phase_says_nothing_of_the_thickness(pair, pinion):
+    zeroed = replace(pair[0], header=pair[0].header | {"phase_zeroed": "true"})
+    found = evaluate_member(zeroed, pinion, "pinion")
+    assert found.thickness is None
+    assert "no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)" in found.remarks
+
+
 def test_wrong_member_hand_and_unit_are_one_sentence(pair, pinion, gear_set):
     bad, _ = pair
     with pytest.raises(InputError, match="member = 'pinion' in the measured file: must be 'gear'"):
@@ -102,22 +109,39 @@ def test_wrong_member_hand_and_unit_are_one_sentence(pair, pinion, gear_set):
         evaluate_member(replace(bad, point=bad.point / 25.4), pinion, "pinion")
 
 
-def test_drift_is_reported_and_taken_out_before_the_seat_is_sought(pair, pinion):
-    """6 µm along the normals from first to last touch, tooth 0 again at the end."""
-    bad, _ = pair
-    again = bad.pick((bad.tooth == 0) & (bad.row == 2) & (bad.col == 4))
-    arrays = {key: np.concatenate([getattr(bad, key), getattr(again, key)])
+def drifted(file, vector):
+    """Tooth 0's reference points once more at the end, and a machine that drifts by a vector from first to last touch.
+
+    The vector is radial, around and along the axis of the space as it stands at the touch, its middle by (15.2).
+    """
+    again = file.pick((file.tooth == 0) & (file.row == 2) & (file.col == 4))
+    arrays = {key: np.concatenate([getattr(file, key), getattr(again, key)])
               for key in ("flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")}  # fmt: skip
-    arrays["tooth"][len(bad) :] = 12
-    file = FlankFile(bad.header, "pinion", **arrays)
-    drift = 6 * UM * np.linspace(0, 1, len(file))
-    file = replace(file, deviation=file.deviation + drift, point=file.point + drift[:, None] * file.normal)
-    found = evaluate_member(file, pinion, "pinion")
-    for flank, first in (("concave", 22), ("convex", 45 + 22)):
-        last = len(bad) + (flank == "convex")
-        assert found.drifts[flank].closure == pytest.approx(6 * UM * (last - first) / (len(file) - 1), abs=1e-9)
-    np.testing.assert_allclose(found.registration.seat[:2], SEAT[:2], rtol=0, atol=0.1 * UM)
-    np.testing.assert_allclose(found.registration.seat[2:] * 25.4, SEAT[2:] * 25.4, rtol=0, atol=0.1 * UM)
+    both = FlankFile(file.header, "pinion", **arrays)
+    drift = np.empty(len(both))
+    for k in range(len(both)):
+        pair = both.point[(both.tooth == both.tooth[k]) & (both.row == both.row[k]) & (both.col == both.col[k])]
+        x, y, _ = pair[:2].sum(axis=0) / np.linalg.norm(pair[:2].sum(axis=0)[:2])
+        axes = np.array([[x, y, 0], [-y, x, 0], [0, 0, 1]])
+        drift[k] = k / (len(both) - 1) * (axes @ both.normal[k]) @ vector
+    both.tooth[len(file) :] = 12
+    return replace(both, deviation=both.deviation + drift, point=both.point + drift[:, None] * both.normal)
+
+
+@pytest.mark.parametrize("vector", [(0, 5, 0), (3, -2, 4)])
+def test_drift_of_the_machine_is_taken_out_and_leaves_seat_and_pitch_alone(pair, pinion, vector):
+    """5 µm in any direction, along the tooth too, which the points touched again do not feel."""
+    file, (clean, _) = drifted(pair[0], np.array(vector) * UM), pair
+    found, wanted = (evaluate_member(each, pinion, "pinion") for each in (file, clean))
+    assert set(found.drifts) == {"concave", "convex"}
+    for flank, drift in found.drifts.items():
+        (first,) = np.flatnonzero((clean.flank == flank) & (clean.tooth == 0) & (clean.row == 2) & (clean.col == 4))
+        (last,) = np.flatnonzero((file.flank == flank) & (file.tooth == 12))
+        assert drift.closure == pytest.approx(file.deviation[last] - file.deviation[first], abs=1e-12)
+        difference = found.flanks[flank].pitch.cumulative - wanted.flanks[flank].pitch.cumulative
+        assert np.abs(difference).max() < 0.1 * UM
+    assert np.abs(found.registration.seat - SEAT)[:2].max() < 0.1 * UM
+    assert np.abs(found.registration.seat - SEAT)[2:].max() * 25.4 < 0.1 * UM
 
 
 def test_picture_shows_both_flanks_pitch_and_runout(pair, pinion):

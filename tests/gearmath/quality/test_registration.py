@@ -84,10 +84,10 @@ def test_a_seat_beyond_first_order_is_found_by_the_exact_transform(clamped, gear
     assert np.abs(found.file.deviation).max() < TENTH
 
 
-@pytest.mark.parametrize("name", ["pinion", "gear"])
-def test_first_harmonic_of_the_index_stays_in_the_pitch(clamped, gear_set, name):
+@pytest.mark.parametrize("title", ["nasa_tp3096_12x36", "crown_gear_7x43"])
+def test_first_harmonic_of_the_index_stays_in_the_pitch(clamped, title):
     """10 arcsec of the A axis on every tooth: eccentricity does the same to one flank, but not at every place."""
-    member = gear_set.member(name)
+    name, member = "pinion", load_bevel_set(bundled(f"{title}.toml")).pinion
     index = uneven(member, 0.0, math.radians(10 / 3600))
     file = clamped(member, name, SEAT, range(member.teeth), FIVE, index)
     found = register(file, member, name)
@@ -137,6 +137,21 @@ def test_with_noise_the_seat_is_within_its_standard_uncertainties(clamped, gear_
     assert np.mean(ratios**2) == pytest.approx(1, abs=0.33)
     assert np.sqrt(np.mean(np.square(noises))) == pytest.approx(0.5 * UM, rel=0.05)
     assert found.eccentricity_uncertainty < 1 * UM
+
+
+def test_seat_and_what_is_taken_off_are_linear_in_the_deviations(clamped, gear_set):
+    """The gain and the columns against registering again with other deviations: what covariances are carried by."""
+    member = gear_set.gear
+    file = clamped(member, "gear", SEAT, around(member), FIVE, uneven(member), form)
+    change = 0.5 * UM * np.random.default_rng(1).standard_normal(len(file))
+    other = replace(file, deviation=file.deviation + change, point=file.point + change[:, None] * file.normal)
+    first, second = register(file, member, "gear"), register(other, member, "gear")
+    size = np.abs(second.seat - first.seat)
+    np.testing.assert_allclose(first.gain @ change, second.seat - first.seat, rtol=0, atol=2e-3 * size.max())
+    expected = change - first.columns @ first.gain @ change
+    np.testing.assert_allclose(second.file.deviation - first.file.deviation, expected, rtol=0, atol=2e-3 * UM)
+    unit = np.outer(first.uncertainty, first.uncertainty)
+    np.testing.assert_allclose(first.gain @ first.gain.T * first.noise**2 / unit, first.covariance / unit, atol=1e-9)
 
 
 def nominal(member, name, deviation, teeth):
@@ -189,16 +204,16 @@ def test_points_without_deviation_are_carried_along(clamped, gear_set):
     assert np.flatnonzero(np.isnan(found.file.deviation)).tolist() == [3, 17]
 
 
-def test_too_few_teeth_and_teeth_on_one_side_are_refused(clamped, gear_set):
+def test_too_few_teeth_and_teeth_on_one_side_are_refused(gear_set):
     member = gear_set.gear
-    few = clamped(member, "gear", SEAT, range(7), [22])
+    one = nominal(member, "gear", lambda R, n: 0 * R[:, 0], range(8))
+    few, aside = one.pick(one.tooth < 7), one
     with pytest.raises(InputError, match="concave flank: 7 teeth were measured: registration needs 8 of both flanks"):
         register(few, member, "gear")
-    aside = clamped(member, "gear", SEAT, range(8), [22])
     with pytest.raises(InputError, match="leave out 290 degrees of the turn: registration allows 120"):
         register(aside, member, "gear")
     with pytest.raises(InputError, match="convex flank: 0 teeth were measured"):
-        register(clamped(member, "gear", SEAT, around(member), [22]).select("concave"), member, "gear")
+        register(nominal(member, "gear", lambda R, n: 0 * R[:, 0], around(member)).select("concave"), member, "gear")
 
 
 @pytest.mark.parametrize(
@@ -215,6 +230,12 @@ def test_points_off_the_flank_are_refused_with_the_likeliest_cause(gear_set, cha
     file = nominal(member, "pinion", lambda R, n: 0 * R[:, 0], around(member))
     with pytest.raises(InputError, match=r"concave flank, tooth 0, row 0, col 0: .* beside the nominal.*" + cause):
         register(replace(file, point=change(file.point)), member, "pinion")
+
+
+def test_unlike_margins_are_refused(gear_set):
+    file = nominal(gear_set.pinion, "pinion", lambda R, n: 0 * R[:, 0], around(gear_set.pinion))
+    with pytest.raises(InputError, match=r"^margins = 0\.1,0\.05: must be alike along the tooth and up the profile$"):
+        register(replace(file, header=file.header | {"margins": "0.1,0.05"}), gear_set.pinion, "pinion")
 
 
 def test_single_points_off_the_flank_are_counted(gear_set):
