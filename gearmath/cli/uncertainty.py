@@ -31,6 +31,7 @@ _BUNDLED = "measurement.toml"
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
 @MEMBER
+@click.option("--register/--no-register", "registered", default=True, show_default=True, help="As in 'evaluate'.")
 @SIGMA
 @click.option(
     "--model",
@@ -46,12 +47,12 @@ _BUNDLED = "measurement.toml"
 @click.option("-o", "--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), help="Figures as PNG.")
 @JSON
 def uncertainty(
-    measured: Path, gear_set: str, member: str, sigma_um: float | None, model: str | None, machine: str,
-    calibration: str, draws: int, seed: int, workers: int | None, cluster: str | None, resume: Path | None,
-    picture: Path | None, as_json: bool,
+    measured: Path, gear_set: str, member: str, registered: bool, sigma_um: float | None, model: str | None,
+    machine: str, calibration: str, draws: int, seed: int, workers: int | None, cluster: str | None,
+    resume: Path | None, picture: Path | None, as_json: bool,
 ) -> None:  # fmt: skip
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
-    from gearmath.quality.correction import check_belongs
+    from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.figures import figures_of
     from gearmath.quality.uncertainty import uncertain_figures
     from gearmath.specs.bevel_set import load_bevel_set
@@ -61,29 +62,54 @@ def uncertainty(
     file = read_flank_csv(measured)
     spec = load_bevel_set(find(gear_set)).member(member)
     with about(measured):
-        check_belongs(spec, member, file)
-        figures = figures_of(file, spec.teeth)
-    covariance, source = _covariance(file, spec, sigma_um, model, machine, calibration)
+        figures = figures_of(file, spec, evaluate_member(file, spec, member, registered))
+        covariance, source = _covariance(file, spec, sigma_um, model, machine, calibration)
     with bar(draws, "draw") as progress, _executor(cluster) as executor:
-        found = uncertain_figures(
-            figures, file.deviation, covariance, draws, seed, executor, workers, resume, progress
-        )  # fmt: skip
+        found = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, progress)
+    settings, caused, remarks = _settings(spec, member, file, covariance)
+    found += settings
     if picture:
         from gearmath.plot import save, uncertainty_figure
 
         save(uncertainty_figure(f"{member}, {measured.name}", found), picture)
     if as_json:
-        echo_json({"member": member, "source": source, "draws": draws, "seed": seed, "figures": _values(found)})
+        echo_json({
+            "member": member, "source": source, "draws": draws, "seed": seed, "figures": _values(found),
+            "caused_rms_um": {flank: value * 1000 for flank, value in caused.items()}, "remarks": remarks,
+        })  # fmt: skip
         return
     click.echo(f"standard uncertainties from {source}; {draws} draws")
     click.echo(table(
         ["flank", "figure", "value", "u", "from", "to", "unit", "method"],
         [
-            [row["flank"], row["figure"], *(f"{row[name]:.4f}" for name in ("value", "u", "from", "to")), row["unit"],
-             row["method"]]
+            [row["flank"], row["figure"], *(_number(row[name], row["unit"]) for name in ("value", "u", "from", "to")),
+             row["unit"], row["method"]]
             for row in _values(found)
         ],
     ))  # fmt: skip
+    for flank, value in caused.items():
+        click.echo(f"{flank} flank: errors of measurement will leave {value * 1000:.3f} um (RMS) after the correction")
+    for remark in remarks:
+        click.echo(remark)
+
+
+def _number(value: float, unit: str) -> str:
+    """Four decimals for micrometres, six for what the machine is set to."""
+    return f"{value:.4f}" if unit.startswith("um") else f"{value:.6f}"
+
+
+def _settings(
+    member: Member, name: str, file: FlankFile, covariance: Covariance
+) -> tuple[list[Uncertain], dict[str, float], list[str]]:
+    """The settings as ``gearmath compensate`` corrects them at this noise, or why there are none."""
+    from gearmath.quality.correction import correct
+    from gearmath.quality.setting_uncertainty import uncertain_settings
+
+    try:
+        correction = correct(member, name, file, noise=covariance.noise)
+        return (*uncertain_settings(member, name, file, correction, covariance), [])
+    except (InputError, ComputationError) as error:
+        return [], {}, [f"no corrected settings: {error}"]
 
 
 def _covariance(
@@ -141,11 +167,11 @@ def _values(found: list[Uncertain]) -> list[dict[str, Any]]:
         {
             "flank": one.figure.flank,
             "figure": one.figure.name,
-            "value": one.value * 1000,
-            "u": one.uncertainty * 1000,
-            "from": one.interval[0] * 1000,
-            "to": one.interval[1] * 1000,
-            "u_monte_carlo": one.drawn * 1000,
+            "value": one.value * one.figure.factor,
+            "u": one.uncertainty * one.figure.factor,
+            "from": one.interval[0] * one.figure.factor,
+            "to": one.interval[1] * one.figure.factor,
+            "u_monte_carlo": None if one.drawn is None else one.drawn * one.figure.factor,
             "unit": one.figure.unit,
             "method": one.method,
         }

@@ -36,6 +36,11 @@ class Covariance:
         """V (n,n)."""
         return np.diag(self.variance) + self.factors @ self.factors.T
 
+    @property
+    def noise(self) -> float:
+        """Standard deviation of one deviation from what is new at every point alone, in the RMS over them [mm]."""
+        return float(np.sqrt(np.mean(self.variance)))
+
     def pick(self, index: np.ndarray) -> Covariance:
         """The covariance of some of the points, in the order of ``index``."""
         return Covariance(self.variance[index], self.factors[index], self.names)

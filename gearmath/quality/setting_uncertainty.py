@@ -16,20 +16,26 @@ line at its limit pulls with the weight of its gradient; its own curvature is le
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
+from derivations import notation
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
 from gearmath.quality.compensation import ROOT_WEIGHT, FlankTarget, Identification, Problem
-from gearmath.quality.covariance import Covariance
+from gearmath.quality.correction import ROOT_LIMIT, Correction
+from gearmath.quality.covariance import Covariance, coverage_factor
+from gearmath.quality.figures import Figure
 from gearmath.quality.on_line import flank_on_line
+from gearmath.quality.target import flank_target
 from gearmath.quality.topography import grid_shape
-from gearmath.quality.variables import SIZE
-from gearmath.specs.bevel_set import SETTINGS
+from gearmath.quality.uncertainty import PROBABILITY, Uncertain
+from gearmath.quality.variables import SIZE, Variable, whole
+from gearmath.specs.bevel_set import SETTINGS, Member
 from gearmath.specs.flank_csv import FlankFile
 
 
@@ -139,6 +145,44 @@ def curvature(target: FlankTarget, found: Identification, k: int, pull: np.ndarr
     by_change = ca.mtimes(ca.DM(spread[: gradient.shape[0]]).T, gradient)
     slope = ca.Function("curvature", [change], [ca.jacobian(by_change, change)])
     return np.array(slope(np.zeros(len(mine))))
+
+
+def uncertain_settings(
+    member: Member, name: str, file: FlankFile, correction: Correction, measured: Covariance,
+    root_limit: float | None = ROOT_LIMIT,
+) -> tuple[list[Uncertain], dict[str, float]]:  # fmt: skip
+    """Every corrected setting, and per flank the RMS [mm] that errors of measurement will leave on the next one.
+
+    ``measured`` is the covariance of the file that was corrected. Raises ComputationError where the flanks do not
+    determine the settings.
+    """
+    settings: list[Uncertain] = []
+    caused: dict[str, float] = {}
+    for group, found in correction.identified.items():
+        targets = [flank_target(member, name, flank, file) for flank in group]
+        rows = [rows_of(file, flank, target) for flank, target in zip(group, targets, strict=True)]
+        known = setting_uncertainty(targets, found, measured.pick(np.concatenate(rows)), root_limit)
+        ends = np.cumsum([len(part) for part in rows])[:-1]
+        for k, (flank, part) in enumerate(zip(group, np.split(known.caused, ends), strict=True)):
+            caused[flank] = float(np.sqrt(np.mean(part**2)))
+            corrected = whole(
+                correction.settings[flank], correction.motions.get(flank, member.flank(flank).motion.matrix)
+            )
+            settings += [
+                _setting(flank, variable, float(corrected[variable.index]), float(u))
+                for variable, u in zip(found.variables, known.standard, strict=True)
+                if variable.target in (None, k)
+            ]
+    return settings, caused
+
+
+def _setting(flank: str, variable: Variable, value: float, u: float) -> Uncertain:
+    component = notation.settings.components[SETTINGS.index(variable.name.partition(".")[0])]
+    unit, factor = {"rad": ("deg", 180 / math.pi), "1": ("1", 1.0)}.get(component.unit, ("mm", 1.0))
+    k = coverage_factor(PROBABILITY)
+    power = variable.name.partition(".")[2]
+    figure = Figure(flank, variable.name, f"{unit}/rad^{power}" if power else unit, True, factor)
+    return Uncertain(figure, value, u, (value - k * u, value + k * u), None)
 
 
 def rows_of(file: FlankFile, flank: str, target: FlankTarget) -> np.ndarray:

@@ -33,22 +33,24 @@ _CERTAIN = 9.0
 
 @dataclass(frozen=True)
 class Uncertain:
-    """A figure with its value, standard uncertainty and interval of 95 % [mm ...]; ``drawn`` is u by Monte Carlo."""
+    """A figure with its value, standard uncertainty and interval of 95 % [mm, rad ...]; ``drawn`` is u by Monte Carlo.
+
+    ``drawn`` is None where nothing was drawn.
+    """
 
     figure: Figure
     value: float
     uncertainty: float
     interval: tuple[float, float]
-    drawn: float
+    drawn: float | None
 
     @property
     def method(self) -> str:
         return "GUM" if self.figure.smooth else "Monte Carlo"
 
 
-def contenders(forms: np.ndarray, deviation: np.ndarray, covariance: Covariance) -> np.ndarray:
-    """Those of the forms (p,n) that can be the largest in truth, or could have been in the measurement."""
-    values = forms @ deviation
+def contenders(forms: np.ndarray, values: np.ndarray, covariance: Covariance) -> np.ndarray:
+    """Those of the forms (p,n) with values (p,) that can be the largest in truth, or could have been when measured."""
     best = int(np.argmax(values))
     apart = covariance.standard_uncertainty(forms - forms[best])
     return forms[values[best] - values <= _CERTAIN * apart]
@@ -56,7 +58,6 @@ def contenders(forms: np.ndarray, deviation: np.ndarray, covariance: Covariance)
 
 def uncertain_figures(
     figures: Figures,
-    deviation: np.ndarray,
     covariance: Covariance,
     draws: int = 20_000,
     seed: int = 0,
@@ -65,14 +66,17 @@ def uncertain_figures(
     results: Path | None = None,
     progress: Callable[[int], object] = lambda _: None,
 ) -> list[Uncertain]:
-    """Every figure of measured deviations (n,) with its uncertainty. The draws are a study, see :func:`study.run`."""
-    open_ = {j: contenders(forms, deviation, covariance) for j, forms in figures.forms.items()}
-    study = monte_carlo(covariance.drawn(_with_excess(figures, deviation, open_), deviation), draws, seed)
+    """Every figure with its uncertainty, from the covariance of the deviations that were measured.
+
+    The draws are a study, see :func:`study.run`.
+    """
+    open_ = {j: contenders(forms, figures.values[j], covariance) for j, forms in figures.forms.items()}
+    study = monte_carlo(covariance.drawn(_with_excess(figures, open_), figures.deviation), draws, seed)
     drawn = run(study, executor, workers, results, progress)
     m, k = len(figures.items), coverage_factor(PROBABILITY)
     excess = dict(zip(open_, np.quantile(drawn[:, m:], (1 + PROBABILITY) / 2, axis=0), strict=True))
-    values = np.array(figures.function(deviation)).ravel()
-    gum = covariance.standard_uncertainty(figures.jacobian(deviation))
+    values = np.array(figures.function(figures.deviation)).ravel()
+    gum = covariance.standard_uncertainty(figures.jacobian())
     spread = drawn[:, :m].std(axis=0, ddof=1)
     found = []
     for j, figure in enumerate(figures.items):
@@ -86,9 +90,9 @@ def uncertain_figures(
     return found
 
 
-def _with_excess(figures: Figures, deviation: np.ndarray, open_: dict[int, np.ndarray]) -> ca.Function:
-    """The figures of deviations, and for each maximum the largest of the contenders' changes since ``deviation``."""
-    moved = ca.MX.sym("deviation", len(deviation))
-    error = moved - ca.DM(deviation)
+def _with_excess(figures: Figures, open_: dict[int, np.ndarray]) -> ca.Function:
+    """The figures of deviations, and for each maximum the largest change of its contenders."""
+    moved = ca.MX.sym("deviation", len(figures.deviation))
+    error = moved - ca.DM(figures.deviation)
     excess = [ca.mmax(ca.DM(forms) @ error) for forms in open_.values()]
     return ca.Function("figures_and_excess", [moved], [ca.vertcat(figures.function(moved), *excess)])

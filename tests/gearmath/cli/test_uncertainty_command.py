@@ -8,31 +8,33 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.machine.mill import nominal_flank
-from gearmath.specs.bevel_set import FLANKS
-from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
+from gearmath.quality.compensation import predicted
+from gearmath.quality.correction import correct
+from gearmath.quality.target import target_of
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, load_bevel_set
+from gearmath.specs.flank_csv import join, read_flank_csv, write_flank_csv
+from gearmath.specs.toml import bundled
 
 SET = "nasa_tp3096_12x36.toml"
 
 
-def reference_only(file: FlankFile) -> FlankFile:
-    middle = (file.row == 2) & (file.col == 4)
-    names = ("flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")
-    return replace(file, **{name: getattr(file, name)[middle] for name in names})
-
-
 @pytest.fixture(scope="module")
-def measured(tmp_path_factory, gear_set):
-    """A pinion with random deviations of some micrometres: the grid of tooth 0, the reference point of the others."""
-    grid = blank_grid(gear_set.pinion)
-    files = [nominal_flank(gear_set.pinion, "pinion", flank, grid, tooth=k) for flank in FLANKS for k in range(12)]
-    whole = join([file if file.tooth[0] == 0 else reference_only(file) for file in files])
-    deviation = 4e-3 * np.random.default_rng(1).standard_normal(len(whole))
+def measured(tmp_path_factory, gear_set, shop):
+    """A pinion cut with wrong settings, with uneven pitch: the grid of tooth 0, the reference point of the others."""
+    spec, rng = gear_set.pinion, np.random.default_rng(1)
+    grid, files = blank_grid(spec), []
+    for flank in FLANKS:
+        target = target_of(spec, flank, solve_flank(spec, "pinion", flank, grid))
+        form, _ = predicted(target, target.settings + shop.setting_errors("pinion"))
+        for tooth in range(12):
+            file = nominal_flank(spec, "pinion", flank, grid, tooth=tooth)
+            deviation = form + 2e-3 * rng.standard_normal() + 0.3e-3 * rng.standard_normal(45)
+            file = replace(file, point=file.point + deviation[:, None] * file.normal, deviation=deviation)
+            files.append(file if tooth == 0 else file.pick((file.row == 2) & (file.col == 4)))
     path = tmp_path_factory.mktemp("measured") / "m.csv"
-    write_flank_csv(
-        path, replace(whole, point=whole.point + deviation[:, None] * whole.normal, deviation=deviation)
-    )  # fmt: skip
+    write_flank_csv(path, join(files))
     return path
 
 
@@ -49,19 +51,53 @@ def values(command, path, *more):
 def test_table_and_json_have_the_same_figures(command, measured):
     status, out, err = command(*arguments(measured))
     assert (status, err) == (0, "")
-    first, head, *rows = out.splitlines()
+    first, head, *rows, concave, convex = out.splitlines()
     assert first == "standard uncertainties from measurement.toml: Probing on a vertical machining centre; 1000 draws"
     assert head.split() == ["flank", "figure", "value", "u", "from", "to", "unit", "method"]
-    figures = values(command, measured)["figures"]
-    assert len(rows) == len(figures) == 52
+    found = values(command, measured)
+    figures = found["figures"]
+    assert len(rows) == len(figures) == 2 + 2 * (6 + 10 + 1 + 12 + 2) + 2 + 2 * 7
+    assert found["remarks"] == []
+    for line, flank in ((concave, "concave"), (convex, "convex")):
+        assert line.startswith(f"{flank} flank: errors of measurement will leave ")
+        assert float(line.split()[7]) == pytest.approx(found["caused_rms_um"][flank], abs=6e-4)
     for row, figure in zip(rows, figures, strict=True):
         cells = row.split(maxsplit=7)
         assert cells[:2] == [figure["flank"], figure["figure"]]
         assert [float(cell) for cell in cells[2:6]] == pytest.approx(
             [figure[name] for name in ("value", "u", "from", "to")], abs=6e-5
         )
+        assert cells[6] == figure["unit"]
         assert cells[7] == figure["method"]
         assert figure["from"] <= figure["value"] <= figure["to"]
+
+
+def test_corrected_settings_are_those_that_compensate_writes(command, measured, tmp_path):
+    """At the same noise, which also damps what is hardly seen; figures are twice as unsure with twice the noise."""
+    sharp, blunt = (
+        {(one["flank"], one["figure"]): one for one in values(command, measured, "--sigma-um", sigma)["figures"]}
+        for sigma in (0.3, 0.6)
+    )
+    names = [key for key, one in sharp.items() if one["unit"] in ("mm", "deg", "1")]
+    assert len(names) == 14
+    spec = load_bevel_set(bundled(SET)).pinion
+    correction = correct(spec, "pinion", read_flank_csv(measured), noise=0.3e-3)
+    for flank, name in names:
+        vector = correction.settings[flank][SETTINGS.index(name)]
+        value = np.degrees(vector) if sharp[flank, name]["unit"] == "deg" else vector
+        assert sharp[flank, name]["value"] == pytest.approx(value, rel=1e-9)
+        assert sharp[flank, name]["u"] > 0
+    assert blunt["concave", "mean"]["u"] == pytest.approx(2 * sharp["concave", "mean"]["u"], rel=1e-9)
+
+
+def test_half_a_measurement_says_why_there_are_no_settings(command, measured, tmp_path):
+    file = read_flank_csv(measured)
+    few = tmp_path / "few.csv"
+    write_flank_csv(few, file.pick(file.flank == "concave"))
+    found = values(command, few)
+    assert {one["flank"] for one in found["figures"]} == {"concave"}
+    assert found["caused_rms_um"] == {}
+    assert found["remarks"] == ["no corrected settings: convex flank: 0 points were measured, the grid 5x9 needs them"]
 
 
 def test_uncertainty_of_points_comes_from_option_then_file_then_model(command, measured, tmp_path):
@@ -71,8 +107,8 @@ def test_uncertainty_of_points_comes_from_option_then_file_then_model(command, m
     write_flank_csv(stated, replace(file, uncertainty=np.full(len(file), 0.9e-3)))
 
     def mean(path, *more):
-        found = values(command, path, *more)
-        return found["source"], found["figures"][0]["u"]
+        found = values(command, path, "--no-register", *more)
+        return found["source"], next(one["u"] for one in found["figures"] if one["figure"] == "mean")
 
     assert mean(stated) == ("u_um of the file", pytest.approx(0.9 / 45**0.5, rel=1e-9))
     assert mean(stated, "--sigma-um", 0.3) == ("0.3 um at every point", pytest.approx(0.3 / 45**0.5, rel=1e-9))

@@ -186,20 +186,3 @@ def _roots(first: np.ndarray, way: np.ndarray, radius: float, leaving: bool) -> 
 def artefacts() -> type[_Artefacts]:
     """``artefacts(calibration)``: ring, its face and sphere, for a probe with the tip of the calibration."""
     return _Artefacts
-
-
-@pytest.fixture(scope="session")
-def small_gear() -> FlankFile:
-    """Perfect concave flanks of 8 teeth: a grid of 3 x 3 on tooth 0, the reference point on the others."""
-    header = HEADER | {"member_teeth": "8", "grid": "3x3", "reference_point": "1,1"}
-    files = []
-    for tooth in range(8):
-        c, s = math.cos(math.pi * tooth / 4), math.sin(math.pi * tooth / 4)
-        about = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-        row, col = np.indices((3, 3)).reshape(2, -1) if tooth == 0 else np.array([[1], [1]])
-        point = np.stack([50 + 2.0 * (row - 1), np.zeros(len(row)), 20 + 5.0 * (col - 1)], axis=1)
-        normal = np.tile([0, 0.8, 0.6], (len(row), 1))
-        files.append(flank_file(
-            header, "pinion", "concave", tooth, row, col, point @ about.T, normal @ about.T, np.zeros(len(row))
-        ))  # fmt: skip
-    return join(files)

@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest, norm
 
+from gearmath.bevel.flank import blank_grid
+from gearmath.machine.mill import nominal_flank
 from gearmath.quality.covariance import Covariance, coverage_factor, independent, stated
+from gearmath.quality.evaluation import evaluate_member
 from gearmath.quality.figures import figures_of
-from gearmath.quality.pitch import evaluate_pitch
-from gearmath.quality.topography import evaluate_topography
+from gearmath.quality.topography import ORDERS
 from gearmath.quality.touch_model import touch_covariance
 from gearmath.quality.uncertainty import uncertain_figures
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.calibration import load_calibration
-from gearmath.specs.flank_csv import FlankFile
+from gearmath.specs.flank_csv import FlankFile, join
 from gearmath.specs.measurement import load_measurement
 from gearmath.specs.toml import bundled
 
@@ -40,60 +42,124 @@ def model(gear_set, measured, vertical) -> Covariance:
 
 
 @pytest.fixture(scope="module")
-def found(measured, model):
+def evaluation(gear_set, measured):
+    return evaluate_member(measured, gear_set.pinion, "pinion")
+
+
+@pytest.fixture(scope="module")
+def figures(gear_set, measured, evaluation):
+    return figures_of(measured, gear_set.pinion, evaluation)
+
+
+@pytest.fixture(scope="module")
+def found(figures, model):
     """Every figure of that pinion, with 20 000 draws."""
-    return uncertain_figures(figures_of(measured, 12), measured.deviation, model, draws=20_000, seed=0)
+    return uncertain_figures(figures, model, draws=20_000, seed=0)
 
 
-def with_deviation(file: FlankFile, deviation: np.ndarray) -> FlankFile:
-    return replace(file, deviation=deviation)
+@pytest.fixture(scope="module")
+def small(gear_set):
+    """A perfect concave flank of the pinion: a grid of 3 x 3 on tooth 0, the reference point on the others."""
+    grid = blank_grid(gear_set.pinion, 3, 3)
+    files = [nominal_flank(gear_set.pinion, "pinion", "concave", grid, tooth=k) for k in range(12)]
+    file = join([one if k == 0 else one.pick(one.row * 3 + one.col == 4) for k, one in enumerate(files)])
+    return replace(file, deviation=np.zeros(len(file)))
+
+
+def unregistered(gear_set, file, deviation):
+    """The figures of the small pinion with these deviations."""
+    file = replace(file, point=file.point + deviation[:, None] * file.normal, deviation=deviation)
+    return figures_of(file, gear_set.pinion, evaluate_member(file, gear_set.pinion, "pinion", registered=False))
 
 
 def by_name(found, flank="concave"):
     return {one.figure.name: one for one in found if one.figure.flank == flank}
 
 
-def test_figures_are_those_of_topography_and_pitch(measured):
-    figures = figures_of(measured, 12)
+def test_figures_are_those_of_the_evaluation(evaluation, figures):
     values = dict(zip(
-        [(item.flank, item.name) for item in figures.items], np.array(figures.function(measured.deviation)).ravel(),
+        [(item.flank, item.name) for item in figures.items], np.array(figures.function(figures.deviation)).ravel(),
         strict=True,
     ))  # fmt: skip
     for flank in FLANKS:
-        topography, pitch = evaluate_topography(measured, flank), evaluate_pitch(measured, 12, flank)
-        assert values[flank, "mean"] == pytest.approx(topography.deviation.mean(), abs=1e-15)
-        assert values[flank, "max_deviation"] == abs(topography.extreme)
+        judged = evaluation.flanks[flank]
+        assert values[flank, "max_deviation"] == pytest.approx(abs(judged.topographies[0].extreme), abs=1e-15)
         np.testing.assert_allclose(
-            [values[flank, f"c_{k}"] for k in range(1, 11)], topography.coefficients, rtol=1e-9, atol=1e-15
+            [values[flank, f"c_{k}"] for k in range(1, 11)], judged.topographies[0].coefficients, rtol=1e-9, atol=1e-15
         )
-        np.testing.assert_allclose([values[flank, f"f_pt_{k}"] for k in range(12)], pitch.single, rtol=0, atol=1e-15)
-        assert values[flank, "F_p"] == pytest.approx(pitch.total, abs=1e-15)
-        assert values[flank, "max_f_pt"] == pytest.approx(np.abs(pitch.single).max(), abs=1e-15)
+        for name in ORDERS:
+            assert values[flank, name] == pytest.approx(getattr(judged.orders, name), abs=1e-14)
+        np.testing.assert_allclose(
+            [values[flank, f"f_pt_{k}"] for k in range(12)], judged.pitch.single, rtol=0, atol=1e-14
+        )
+        assert values[flank, "F_p"] == pytest.approx(judged.pitch.total, abs=1e-14)
+        assert values[flank, "max_f_pt"] == pytest.approx(judged.pitch.largest_single, abs=1e-14)
+    seat = evaluation.registration.seat
+    assert [values["both", f"eccentricity_{axis}"] for axis in "xy"] == pytest.approx(seat[:2], abs=1e-15)
+    assert values["both", "F_r"] == pytest.approx(evaluation.runout.total, abs=1e-14)
+    assert values["both", "mean_thickness"] == pytest.approx(evaluation.thickness.mean, abs=1e-14)
+    assert not evaluation.registration.tilt_found
+    assert ("both", "tilt_x") not in values
 
 
-def test_figures_are_the_largest_of_their_forms(measured):
-    figures = figures_of(measured, 12)
-    values = np.array(figures.function(measured.deviation)).ravel()
-    assert len(figures.forms) == 6
+def test_figures_are_the_largest_of_their_forms(figures):
+    values = np.array(figures.function(figures.deviation)).ravel()
+    assert len(figures.forms) == 7
+    step = 1e-3 * np.random.default_rng(5).standard_normal(len(figures.deviation))
+    moved = np.array(figures.function(figures.deviation + step)).ravel()
     for k, forms in figures.forms.items():
-        assert (forms @ measured.deviation).max() == pytest.approx(values[k], abs=1e-15)
+        assert figures.values[k].max() == pytest.approx(values[k], abs=1e-15)
+        assert (figures.values[k] + forms @ step).max() == pytest.approx(moved[k], abs=1e-14)
 
 
-def test_independent_points_by_hand(small_gear):
-    """Nine points of 0.6 um: mean 0.2; f_pt from two points with arc = delta 50 / 40; a plane by its moments."""
+def test_jacobian_is_the_derivative_of_the_whole_evaluation(gear_set, measured, figures):
+    """Drift, registration and all: a measurement that is shifted at every point, evaluated anew."""
+    smooth = np.array([item.smooth for item in figures.items])
+    step = 2e-4 * np.random.default_rng(6).standard_normal(len(measured))
+
+    def evaluated(sign):
+        shifted = replace(
+            measured, point=measured.point + sign * step[:, None] * measured.normal,
+            deviation=measured.deviation + sign * step,
+        )  # fmt: skip
+        anew = figures_of(shifted, gear_set.pinion, evaluate_member(shifted, gear_set.pinion, "pinion"))
+        return np.array(anew.function(anew.deviation)).ravel()[smooth]
+
+    change, expected = (evaluated(1) - evaluated(-1)) / 2, (figures.jacobian() @ step)[smooth]
+    scale = np.sqrt(np.sum(figures.jacobian()[smooth] ** 2, axis=1)) * 2e-4
+    assert np.abs((change - expected) / scale).max() <= 2e-3
+
+
+def test_drift_is_propagated_with_the_points_that_tell_it(gear_set, small):
+    """Tooth 0 measured again: by hand, tooth k of 12 loses k/12 of the difference if the rows are even in time."""
+    reference = small.pick((small.row == 1) & (small.col == 1))
+    again = reference.pick(reference.tooth == 0)
+    file = join([reference, replace(again, tooth=again.tooth + 12)])
+    grid = small.pick((small.tooth == 0) & ~((small.row == 1) & (small.col == 1)))
+    file = join([file, grid])  # the grid comes last, and has its own share of the drift
+    figures = figures_of(file, gear_set.pinion, evaluate_member(file, gear_set.pinion, "pinion", registered=False))
+    f_pt_1 = figures.jacobian()[[item.name for item in figures.items].index("f_pt_1")]
+    point, normal = reference.point[0], reference.normal[0]
+    arc = math.hypot(*point[:2]) / (point[0] * normal[1] - point[1] * normal[0])
+    expected = np.zeros(len(file))
+    expected[[0, 1, 12]] = np.array([-1 + 1 / 12, 1, -1 / 12]) * arc
+    np.testing.assert_allclose(f_pt_1, expected, rtol=0, atol=1e-9)
+
+
+def test_independent_points_by_hand(gear_set, small):
+    """Nine points of 0.6 um: mean 0.2; f_pt of two points, each an arc by the lever of its normal."""
     u = 0.6e-3
-    one = by_name(uncertain_figures(figures_of(small_gear, 8), small_gear.deviation, independent(np.full(16, u)), 2000))
+    one = by_name(uncertain_figures(unregistered(gear_set, small, np.zeros(20)), independent(np.full(20, u)), 1000))
     assert one["mean"].uncertainty == pytest.approx(u / 3, rel=1e-12)
-    for tooth in range(8):
-        # (z_w x R)·n = 50 * 0.8: the arc is 1 / 0.8 of the deviation
-        assert one[f"f_pt_{tooth}"].uncertainty == pytest.approx(math.sqrt(2) * u / 0.8, rel=1e-12)
-    assert one["c_2"].uncertainty == pytest.approx(u / math.sqrt(3 * 2 * 5.0**2), rel=1e-12)
-    assert one["c_3"].uncertainty == pytest.approx(u / math.sqrt(3 * 2 * 2.0**2), rel=1e-12)
+    point, normal = small.point[small.tooth == 5][0], small.normal[small.tooth == 5][0]
+    arc = math.hypot(*point[:2]) / abs(point[0] * normal[1] - point[1] * normal[0])
+    for tooth in range(12):
+        assert one[f"f_pt_{tooth}"].uncertainty == pytest.approx(math.sqrt(2) * u * arc, rel=1e-9)
 
 
-def test_what_is_common_to_a_flank_moves_its_mean_and_leaves_its_pitch_alone(small_gear):
-    common = Covariance(np.zeros(16), np.full((16, 1), 0.4e-3), ("probe calibration",))
-    one = by_name(uncertain_figures(figures_of(small_gear, 8), small_gear.deviation, common, 2000))
+def test_what_is_common_to_a_flank_moves_its_mean_and_leaves_its_pitch_alone(gear_set, small):
+    common = Covariance(np.zeros(20), np.full((20, 1), 0.4e-3), ("probe calibration",))
+    one = by_name(uncertain_figures(unregistered(gear_set, small, np.zeros(20)), common, 1000))
     assert one["mean"].uncertainty == pytest.approx(0.4e-3, rel=1e-12)
     assert one["f_pt_3"].uncertainty < 1e-12
     assert one["F_p"].interval[1] < 1e-12
@@ -122,69 +188,63 @@ def test_coverage_factor_is_that_of_the_normal_distribution(probability):
     )
 
 
-def test_file_states_its_uncertainty_only_where_it_has_it_at_every_point(small_gear):
-    u = np.linspace(1e-4, 1e-3, 16)
-    np.testing.assert_allclose(np.sqrt(stated(replace(small_gear, uncertainty=u)).variance), u, rtol=1e-14)
+def test_file_states_its_uncertainty_only_where_it_has_it_at_every_point(small):
+    u = np.linspace(1e-4, 1e-3, 20)
+    np.testing.assert_allclose(np.sqrt(stated(replace(small, uncertainty=u)).variance), u, rtol=1e-14)
     u[3] = np.nan
-    assert stated(replace(small_gear, uncertainty=u)) is None
+    assert stated(replace(small, uncertainty=u)) is None
 
 
 def test_smooth_figures_have_the_spread_of_20000_draws_within_3_percent(found):
     smooth = [one for one in found if one.figure.smooth]
-    assert len(smooth) == 2 * (11 + 12)
+    assert len(smooth) == 2 * (6 + 10 + 12) + 2 + 1
     worst = max(abs(one.drawn / one.uncertainty - 1) for one in smooth)
     assert worst <= 0.03
 
 
 def test_maxima_have_their_value_inside_and_the_spread_of_the_draws(found):
     largest = [one for one in found if not one.figure.smooth]
-    assert [one.figure.name for one in largest] == ["max_deviation", "max_f_pt", "F_p"] * 2
+    assert [one.figure.name for one in largest] == [*["max_deviation", "max_f_pt", "F_p"] * 2, "F_r"]
     for one in largest:
         assert one.method == "Monte Carlo"
         assert one.uncertainty == one.drawn
         assert one.interval[0] < one.value < one.interval[1]
 
 
-def coverage(file, teeth, truth, covariance, draws):
-    """How many of the intervals of SEEDS simulated measurements hold the true figures (m,)."""
-    figures = figures_of(file, teeth)
-    true = np.array(figures.function(truth)).ravel()
-    root = np.concatenate([np.diag(np.sqrt(covariance.variance)), covariance.factors], axis=1)
-    held = np.zeros(len(true), dtype=int)
-    for seed in range(SEEDS):
-        noise = root @ np.random.default_rng(seed).standard_normal(root.shape[1])
-        found = uncertain_figures(figures, truth + noise, covariance, draws, seed, workers=1)
-        held += [low <= value <= high for (low, high), value in zip((u.interval for u in found), true, strict=True)]
-    return figures.items, held
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("size_um", [0.0, 3.0], ids=["perfect gear", "gear with errors"])
-def test_95_percent_intervals_hold_the_truth(small_gear, size_um):
+@pytest.mark.parametrize(("size_um", "seeds"), [(3.0, SEEDS), (0.0, 500)], ids=["gear with errors", "perfect gear"])
+def test_95_percent_intervals_hold_the_truth(gear_set, small, size_um, seeds):
     """Exact binomial tests, Bonferroni over the table: exactly 95 % for smooth figures, no less for maxima.
 
-    A perfect gear is the hardest case for a maximum: every point competes for it.
+    A perfect gear, here with fewer seeds, is the hardest case for a maximum: every point competes for it.
     """
-    truth = size_um / 1000 * np.random.default_rng(0).standard_normal(16)
-    covariance = Covariance(np.full(16, 0.5e-3**2), np.full((16, 1), 0.3e-3), ("probe calibration",))
-    items, held = coverage(small_gear, 8, truth, covariance, draws=250)
+    truth = size_um / 1000 * np.random.default_rng(0).standard_normal(20)
+    covariance = Covariance(np.full(20, 0.5e-3**2), np.full((20, 1), 0.3e-3), ("probe calibration",))
+    figures = unregistered(gear_set, small, truth)
+    true = np.array(figures.function(truth)).ravel()
+    held = np.zeros(len(true), dtype=int)
+    for seed in range(seeds):
+        rng = np.random.default_rng(seed)
+        deviation = truth + 0.5e-3 * rng.standard_normal(20) + 0.3e-3 * rng.standard_normal()
+        values = {k: figures.values[k] + forms @ (deviation - truth) for k, forms in figures.forms.items()}
+        here = replace(figures, deviation=deviation, values=values)  # without registration all of it is linear
+        found = uncertain_figures(here, covariance, 250, seed, workers=1)
+        held += [low <= value <= high for (low, high), value in zip((u.interval for u in found), true, strict=True)]
     table = {
-        item.name: (count / SEEDS, binomtest(int(count), SEEDS, 0.95, "two-sided" if item.smooth else "less").pvalue)
-        for item, count in zip(items, held, strict=True)
+        item.name: (count / seeds, binomtest(int(count), seeds, 0.95, "two-sided" if item.smooth else "less").pvalue)
+        for item, count in zip(figures.items, held, strict=True)
     }
-    assert len(table) == 15
-    assert min(p for _, p in table.values()) >= ALPHA / (2 * len(table)), table
+    assert len(table) == 6 + 3 + 12 + 3
+    assert min(p for _, p in table.values()) >= ALPHA / len(table), table
 
 
-def test_bundled_model_is_covered_too(measured, model):
+def test_bundled_model_is_covered_too(figures, model):
     """All correlated parts of the bundled model at once: the smooth figures, whose intervals need no draws."""
-    figures = figures_of(measured, 12)
     smooth = np.array([item.smooth for item in figures.items])
-    J = figures.jacobian(measured.deviation)[smooth]
-    half = coverage_factor(0.95) * model.standard_uncertainty(J)
+    half = coverage_factor(0.95) * model.standard_uncertainty(figures.jacobian()[smooth])
     root = np.concatenate([np.diag(np.sqrt(model.variance)), model.factors], axis=1)
     noise = np.stack([np.random.default_rng(seed).standard_normal(root.shape[1]) for seed in range(SEEDS)], axis=1)
-    off = np.array(figures.function.map(SEEDS)(measured.deviation[:, None] + root @ noise))
-    true = np.array(figures.function(measured.deviation))
+    off = np.array(figures.function.map(SEEDS)(figures.deviation[:, None] + root @ noise))
+    true = np.array(figures.function(figures.deviation))
     held = (np.abs(off - true)[smooth] <= half[:, None]).sum(axis=1)
     assert min(binomtest(int(count), SEEDS, 0.95).pvalue for count in held) >= ALPHA / len(held)
