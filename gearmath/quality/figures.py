@@ -107,16 +107,18 @@ def _together(parts: list[tuple[Figure, ca.MX]], deviation: ca.MX, at: np.ndarra
 def _without_drift(file: FlankFile, member: Member, name: str) -> np.ndarray:
     """How the deviations without outliers and drift (m,) depend on those measured (m,n).
 
-    Taking out the drift is linear and homogeneous, so that unit deviations give the columns.
+    Taking out the drift is linear and homogeneous, so that unit deviations of the nominal points give the columns.
     """
     whole, _ = completed(find_outliers(file, member.teeth).without(file), member, name)
     known = np.isfinite(whole.deviation)
     kept = whole.tooth < member.teeth
     matrix = (np.eye(len(whole)) * known)[kept][:, : len(file)]
+    nominal = _nominal(whole)
     twice = np.isin(whole.tooth, (0, member.teeth)) & known & bool((~kept).any())
     for k in np.flatnonzero(twice[: len(file)]):
         unit = np.where(known, np.eye(len(whole))[k], np.nan)
-        matrix[:, k] = np.nan_to_num(without_drift(replace(whole, deviation=unit), member.teeth)[0].deviation)
+        moved = replace(whole, deviation=unit, point=nominal + np.nan_to_num(unit)[:, None] * whole.normal)
+        matrix[:, k] = np.nan_to_num(without_drift(moved, member.teeth)[0].deviation)
     return matrix
 
 
