@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import JSON, MEMBER, SET, about, echo_json, output, table
+from gearmath.cli.common import JSON, MEMBER, SET, about, bar, echo_json, output, table
 
 if TYPE_CHECKING:
     from gearmath.quality.correction import Correction
@@ -29,15 +29,15 @@ def evaluate(measured: Path, gear_set: str, registered: bool, picture: Path | No
 
     Grades are by formulas that are not confirmed against ISO 17485: no conformity is claimed.
     """
-    from gearmath.quality.evaluation import evaluate_member
+    from gearmath.quality.evaluation import STAGES, evaluate_member
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
     file = read_flank_csv(measured)
     member = load_bevel_set(find(gear_set)).member(file.member)
-    with about(measured):
-        found = evaluate_member(file, member, file.member, registered)
+    with about(measured), bar(STAGES, "stage") as progress:
+        found = evaluate_member(file, member, file.member, registered, progress)
     if picture:
         from gearmath.plot import evaluation_figure, save
 

@@ -11,8 +11,9 @@ import numpy as np
 from gearmath.bevel.flank import solve_places
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import require_plain
+from gearmath.bevel.newton import TOLERANCE
 from gearmath.errors import InputError
-from gearmath.quality.nominal import NominalRows, turned
+from gearmath.quality.nominal import NominalRows
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member
 from gearmath.specs.flank_csv import FlankFile
 
@@ -80,14 +81,16 @@ def _by_settings(
     blocks = []
     for flank in FLANKS:
         here = file.flank[used] == flank
-        point = turned(rows.point[used][here], -rows.turn[used][here])
+        places = np.stack([file.row[used][here], file.col[used][here]], axis=1)
+        _, first, of = np.unique(places, axis=0, return_index=True, return_inverse=True)
+        point = rows.point[used][here][first]  # the places of the grid, on whatever tooth
         settings = member.flank(flank).nominal.vector
         found, residual = solve_places(settings, SIDES[flank], point[:, 2], np.hypot(point[:, 0], point[:, 1]))
-        if not (residual <= 1e-8).all():
+        if not (residual <= TOLERANCE).all():
             return None
         (rates,) = kernel("setting_sensitivity")(*found.contact.T, settings, SIDES[flank])
         block = np.zeros((len(here), len(_OTHERS)))
-        block[here] = rates[:, [SETTINGS.index(name) for name in _OTHERS]]
+        block[here] = rates[of.ravel()][:, [SETTINGS.index(name) for name in _OTHERS]]
         blocks.append(block)
     shared = member.cutting == "completing"
     return _share(blocks[0] + blocks[1] if shared else np.hstack(blocks), axial)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +14,7 @@ from gearmath.quality.correction import check_belongs
 from gearmath.quality.drift import Drift, untold_drift, without_drift
 from gearmath.quality.nominal import check_points, completed, nominal_rows
 from gearmath.quality.outliers import find_outliers
-from gearmath.quality.pitch import Pitch, evaluate_pitch
+from gearmath.quality.pitch import Pitch, evaluate_pitch, reference_rows
 from gearmath.quality.registration import Registration, register
 from gearmath.quality.spaces import Runout, Thickness, evaluate_runout, evaluate_thickness
 from gearmath.quality.tolerance import Verdict, judge
@@ -84,7 +85,14 @@ class Evaluation:
         }
 
 
-def evaluate_member(file: FlankFile, member: Member, name: str, registered: bool = True) -> Evaluation:
+#: How often ``evaluate_member`` tells its progress.
+STAGES = 3
+
+
+def evaluate_member(
+    file: FlankFile, member: Member, name: str, registered: bool = True,
+    progress: Callable[[int], object] = lambda _: None,
+) -> Evaluation:  # fmt: skip
     """Judge a measured file of a member, of this machine or of another measuring centre.
 
     Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
@@ -94,19 +102,22 @@ def evaluate_member(file: FlankFile, member: Member, name: str, registered: bool
     check_belongs(member, name, file)
     check_points(file, nominal_rows(file, member, name))
     outliers = find_outliers(file, member.teeth)
+    progress(1)
     whole, absent = completed(outliers.without(file), member, name)
     measured, drifts = without_drift(whole, member.teeth)
-    as_measured = _flanks(measured, member)
-    seat, remarks = None, (*outliers.reasons, *absent)
+    partly = _partly(measured, member)
+    as_measured = _flanks(measured, member, not partly)
+    seat, remarks = None, (*outliers.reasons, *absent, *partly)
     if registered:
         try:
             seat = register(measured, member, name, untold_drift(whole, member.teeth))
             remarks += seat.remarks
         except InputError as error:
             remarks += (f"not registered: {error}",)
+    progress(1)
     judged = measured if seat is None else seat.file
-    flanks = as_measured if seat is None else _flanks(judged, member)
-    runout = evaluate_runout(judged, member.teeth)
+    flanks = as_measured if seat is None else _flanks(judged, member, not partly)
+    before, runout = (None if partly else evaluate_runout(each, member.teeth) for each in (measured, judged))
     verdict = _verdict(member, name, flanks, runout)
     if verdict is not None:
         remarks += (verdict.remark,)
@@ -114,15 +125,25 @@ def evaluate_member(file: FlankFile, member: Member, name: str, registered: bool
     if zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
     thickness = None if zeroed else evaluate_thickness(judged, member.teeth)
-    before = evaluate_runout(measured, member.teeth)
+    progress(1)
     return Evaluation(name, judged, flanks, as_measured, runout, before, thickness, drifts, seat, verdict, remarks)
 
 
-def _flanks(file: FlankFile, member: Member) -> dict[str, FlankFigures]:
-    return {flank: _figures(file, member, flank) for flank in FLANKS if (file.flank == flank).any()}
+def _partly(file: FlankFile, member: Member) -> tuple[str, ...]:
+    """Why there is no pitch and no runout, where some but not all of the teeth were measured."""
+    try:
+        for flank in FLANKS:
+            reference_rows(file, member.teeth, flank)
+    except InputError as error:
+        return (f"no pitch and no runout: {error}",)
+    return ()
 
 
-def _figures(file: FlankFile, member: Member, flank: str) -> FlankFigures:
+def _flanks(file: FlankFile, member: Member, pitch: bool) -> dict[str, FlankFigures]:
+    return {flank: _figures(file, member, flank, pitch) for flank in FLANKS if (file.flank == flank).any()}
+
+
+def _figures(file: FlankFile, member: Member, flank: str, pitch: bool) -> FlankFigures:
     points = file.select(flank)
     teeth, counts = np.unique(points.tooth, return_counts=True)
     full = teeth[counts == np.prod(grid_shape(file))]
@@ -130,7 +151,8 @@ def _figures(file: FlankFile, member: Member, flank: str) -> FlankFigures:
         full = teeth[[np.argmax(counts)]]  # refused, with the number of its points
     topographies = tuple(evaluate_topography(file, flank, int(tooth)) for tooth in full)
     mean = mean_topography(topographies)
-    return FlankFigures(topographies, mean, orders(mean), evaluate_pitch(file, member.teeth, flank))
+    spacing = evaluate_pitch(file, member.teeth, flank) if pitch else None
+    return FlankFigures(topographies, mean, orders(mean), spacing)
 
 
 def _verdict(member: Member, name: str, flanks: dict[str, FlankFigures], runout: Runout | None) -> Verdict | None:

@@ -142,9 +142,11 @@ def _off(columns: np.ndarray, values: np.ndarray, least: float) -> np.ndarray:
 
 def _off_weighted(columns: np.ndarray, values: np.ndarray, weight: np.ndarray) -> np.ndarray:
     """Distances (s,n) of values (n,) from the weighted fits of s weights (s,n)."""
-    normal = np.einsum("sn,np,nq->spq", weight, columns, columns)
-    ridge = 1e-12 * np.trace(normal, axis1=1, axis2=2)[:, None, None] * np.eye(columns.shape[1])
-    right = np.einsum("sn,np,n->sp", weight, columns, values)
+    p = columns.shape[1]
+    products = (columns[:, :, None] * columns[:, None, :]).reshape(len(columns), p * p)
+    normal = (weight @ products).reshape(len(weight), p, p)
+    ridge = 1e-12 * np.trace(normal, axis1=1, axis2=2)[:, None, None] * np.eye(p)
+    right = (weight * values) @ columns
     return values - np.linalg.solve(normal + ridge, right[..., None])[..., 0] @ columns.T
 
 

@@ -53,8 +53,8 @@ class Runout:
 class Thickness:
     """Nominal arc and chord [mm] of a tooth at the reference points, and the deviations (m,) [mm] of its arc.
 
-    ``deviation`` has one value for each tooth, the one that follows the space of its number, or a single one, for the
-    tooth that the two flanks of one space stand for. ``chord_factor`` turns a deviation of the arc into the chord's.
+    ``deviation`` has one value for each tooth, the one that follows the space of its number; where not all teeth were
+    measured, one for each space, the sum of its two flanks. ``chord_factor`` turns an arc's deviation into the chord's.
     """
 
     arc: float
@@ -94,33 +94,31 @@ def evaluate_runout(file: FlankFile, teeth: int) -> Runout | None:
 
 
 def evaluate_thickness(file: FlankFile, teeth: int) -> Thickness | None:
-    """Thickness of every tooth, or of one where one space was measured; None without both flanks of tooth 0.
+    """Thickness of every tooth, or for each space measured that of the tooth it stands for, where not all were.
 
-    Raises InputError if some, but not all, of the teeth were measured.
+    None where no space has the reference points of both flanks.
     """
     file, _ = without_drift(file, teeth)
-    one, other = (reference_rows(file, teeth, flank) for flank in FLANKS)
-    pair = _first_space(file)
-    if pair is None:
+    one, other = _pairs(file)
+    if not len(one):
         return None
-    arc, chord, factor = kernel("tooth_at_points")(_nominal(pair[0])[0], _nominal(pair[1])[0], teeth, 1.0)
-    if one is None or other is None:
-        deviation = _allowance(pair[0]) + _allowance(pair[1])
-    else:
-        low, high = (one, other) if _comes_first(*pair) else (other, one)
+    arc, chord, factor = kernel("tooth_at_points")(_nominal(one)[0], _nominal(other)[0], teeth, 1.0)
+    if len(one) == teeth:
+        low, high = (one, other) if _comes_first(one, other) else (other, one)
         deviation = _allowance(high) + np.roll(_allowance(low), -1)  # the tooth after a space ends at the next one
+    else:
+        deviation = _allowance(one) + _allowance(other)
     return Thickness(float(arc), float(chord), deviation, float(factor))
 
 
-def _first_space(file: FlankFile) -> tuple[FlankFile, FlankFile] | None:
-    """The reference points of both flanks of the first tooth that has them."""
+def _pairs(file: FlankFile) -> tuple[FlankFile, FlankFile]:
+    """The reference points of both flanks of every space that has both, by tooth, with a deviation or without."""
     row, col = reference_point(file)
-    here = (file.row == row) & (file.col == col) & np.isfinite(file.deviation)
-    both = set(file.tooth[here & (file.flank == FLANKS[0])]) & set(file.tooth[here & (file.flank == FLANKS[1])])
-    if not both:
-        return None
-    one, other = (file.pick(here & (file.flank == flank) & (file.tooth == min(both))) for flank in FLANKS)
-    return one, other
+    here = (file.row == row) & (file.col == col)
+    of = [here & (file.flank == flank) for flank in FLANKS]
+    both = np.intersect1d(file.tooth[of[0]], file.tooth[of[1]])
+    one, other = (file.pick(each & np.isin(file.tooth, both)) for each in of)
+    return one.pick(np.argsort(one.tooth)), other.pick(np.argsort(other.tooth))
 
 
 def _comes_first(one: FlankFile, other: FlankFile) -> bool:

@@ -79,6 +79,34 @@ def test_figures_are_those_of_the_points_in_the_file(command, measured):
         assert values[flank]["rms_um"] == pytest.approx(np.sqrt(np.mean(here**2)), abs=1e-6)
 
 
+def test_miss_and_tooth_0_measured_again_come_through_the_file(command, measured, tmp_path):
+    """The text of the CSV: a point of the grid 0.3 mm off along its normal, and tooth 0 once more, 2 um higher."""
+    lines, changed_rows = measured.read_text("utf-8").splitlines(), []
+    for line in lines:
+        cells = line.split(",")
+        if line.startswith(("pinion,concave,0,1,3,", "pinion,concave,0,2,4,", "pinion,convex,0,2,4,")):
+            off = 0.3 if cells[3] == "1" else 0.002
+            moved = [f"{float(cells[5 + k]) + off * float(cells[8 + k]):.9f}" for k in range(3)]
+            other = [*cells[:5], *moved, *cells[8:11], f"{float(cells[11]) + 1000 * off:.6f}", cells[12]]
+            if cells[3] == "1":
+                lines[lines.index(line)] = ",".join(other)
+            else:
+                changed_rows.append(",".join([*other[:2], "12", *other[3:]]))
+    path = tmp_path / "again.csv"
+    path.write_text("\n".join([*lines, *changed_rows]) + "\n", "utf-8")
+    values = json.loads(command("evaluate", path, "--set", SET, "--json")[1])
+    clean = json.loads(command("evaluate", measured, "--set", SET, "--json")[1])
+    assert values["drift_um"] == {flank: pytest.approx(2, abs=1e-5) for flank in ("concave", "convex")}
+    (miss,) = (remark for remark in values["remarks"] if "left out" in remark)
+    assert miss.startswith("concave flank, tooth 0, row 1, col 3: +")
+    for flank in ("concave", "convex"):
+        assert values["flanks"][flank]["max_f_pt_um"] == pytest.approx(clean["flanks"][flank]["max_f_pt_um"], abs=0.5)
+    assert values["flanks"]["concave"]["left_out"] == 1
+    out = command("evaluate", path, "--set", SET, "--no-register")[1]
+    assert "concave flank: tooth 0 measured again at the end: +2.00 um, taken out evenly" in out
+    assert "clamping" not in out
+
+
 def test_picture_is_a_png(command, measured, tmp_path):
     assert command("evaluate", measured, "--set", SET, "--plot", tmp_path / "t.png")[0] == 0
     assert (tmp_path / "t.png").read_bytes().startswith(b"\x89PNG")

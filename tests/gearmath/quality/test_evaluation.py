@@ -92,6 +92,16 @@ def test_what_the_points_do_not_tell_is_said_and_the_rest_is_judged(pair, pinion
     assert found.thickness.deviation.shape == (1,)
 
 
+def test_teeth_measured_in_part_give_no_pitch_but_all_the_rest(pair, pinion):
+    """Nine of twelve teeth all around."""
+    some = pair[0].pick(~np.isin(pair[0].tooth, [1, 4, 8]))
+    found = evaluate_member(some, pinion, "pinion")
+    assert np.abs(found.registration.seat - SEAT)[:2].max() < 0.1 * UM
+    assert found.thickness.deviation.shape == (9,)
+    assert (found.runout, found.verdict, found.flanks["concave"].pitch) == (None, None, None)
+    assert found.remarks[0].startswith("no pitch and no runout: concave flank: tooth 1 was not measured; pitch needs")
+
+
 def test_zeroed_phase_says_nothing_of_the_thickness(pair, pinion):
     zeroed = replace(pair[0], header=pair[0].header | {"phase_zeroed": "true"})
     found = evaluate_member(zeroed, pinion, "pinion")
