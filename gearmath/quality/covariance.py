@@ -38,8 +38,11 @@ class Covariance:
 
     @property
     def noise(self) -> float:
-        """Standard deviation of one deviation from what is new at every point alone, in the RMS over them [mm]."""
-        return float(np.sqrt(np.mean(self.variance)))
+        """Standard deviation [mm] of the deviations in the middle one of the directions of V.
+
+        What many points share takes few directions, and so it is what differs from point to point that counts here.
+        """
+        return float(np.sqrt(max(np.median(np.linalg.eigvalsh(self.matrix)), 0.0)))
 
     def pick(self, index: np.ndarray) -> Covariance:
         """The covariance of some of the points, in the order of ``index``."""

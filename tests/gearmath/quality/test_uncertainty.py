@@ -181,6 +181,16 @@ def test_covariance_is_that_of_a_dense_matrix():
     np.testing.assert_allclose(parts["b"], np.abs(J @ F[:, 1]), rtol=1e-12)
 
 
+def test_noise_is_what_differs_from_point_to_point():
+    """Neither what all points share, nor what half of them share; but what each has alone, whatever its name."""
+    alone = Covariance(np.full(20, 0.3**2), 0.4 * np.eye(20), ("linear axes",) * 20)
+    shared = np.stack([np.ones(20), np.arange(20) < 10], axis=1) * 7.0
+    both = Covariance(alone.variance, np.hstack([alone.factors, shared]), (*alone.names, "a", "b"))
+    assert independent(np.full(20, 0.3)).noise == pytest.approx(0.3, rel=1e-12)
+    assert alone.noise == pytest.approx(0.5, rel=1e-12)
+    assert both.noise == pytest.approx(0.5, rel=1e-9)
+
+
 @pytest.mark.parametrize("probability", [0.5, 0.9, 0.95, 0.997])
 def test_coverage_factor_is_that_of_the_normal_distribution(probability):
     assert norm.cdf(coverage_factor(probability)) - norm.cdf(-coverage_factor(probability)) == pytest.approx(
