@@ -25,7 +25,8 @@ VERBS = {
     "touches": ("probe", "Raw touches of a probe to measured points."),
     "calibrate": ("probe", "The tip of the probe from its touches on ring and sphere."),
     "evaluate": ("quality", "Pitch, profile and topography of a measured member."),
-    "compensate": ("quality", "Corrected machine settings from a measurement."),
+    "compensate": ("compensate", "Corrected machine settings from a measurement."),
+    "stock": ("compensate", "How a precut blank must stand so that both flanks share its stock."),
     "uncertainty": ("uncertainty", "How sure the figures of a measured member are."),
     "export": ("export", "C for the microcontroller and for the CNC post-processor."),
 }

@@ -75,6 +75,11 @@ class Analysis:
         """RMS of the projection residual [mm]: what any correction by these settings leaves."""
         return self._left(self.jacobian)
 
+    @property
+    def noise(self) -> float:
+        """Standard deviation [mm] of one deviation, from what no setting shows."""
+        return self.best_rms * float(np.sqrt(len(self.deviation) / max(len(self.deviation) - self.rank, 1)))
+
     def _left(self, jacobian: np.ndarray) -> float:
         return float(np.sqrt(np.mean(projection_residual(jacobian, self.deviation) ** 2)))
 

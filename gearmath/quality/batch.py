@@ -17,7 +17,7 @@ from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel
 from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands, located
 from gearmath.quality.deviation_surface import surface_map
-from gearmath.quality.least_squares import FLOOR, compensation_step, could_gain, enough, next_damping
+from gearmath.quality.least_squares import FLOOR, compensation_step, enough, next_damping
 from gearmath.quality.on_line import flank_on_line
 from gearmath.quality.variables import FREE, variables_of
 from gearmath.specs.bevel_set import SETTINGS
@@ -71,7 +71,8 @@ def _solve_block(problem: Problem, weighting: np.ndarray | None, deviations: np.
     for _ in range(_MOST_ITERATIONS):
         r, J = _weighted(problem, weighting, v[open_], residual[open_], jacobian[open_])
         A, g, cost = np.einsum("dmp,dmq->dpq", J, J), np.einsum("dmp,dm->dp", J, r), np.sum(r**2, axis=1)
-        done = enough(could_gain(step, A, g, v[open_], low, high), cost, r.shape[1])
+        _, possible = step(A, g, v[open_], low, high, np.full(len(open_), FLOOR))
+        done = enough(possible, cost, r.shape[1])
         converged[open_[done]] = True
         going = ~done
         open_, A, g, cost = open_[going], A[going], g[going], cost[going]

@@ -29,8 +29,11 @@ from gearmath.quality.variables import FREE, SIZE, Variable, parts, variables_of
 from gearmath.specs.bevel_set import SETTINGS
 
 _LINE_TOLERANCE = 1e-9
-#: A root line that goes beyond its limit counts so many times its length against the deviations.
-ROOT_WEIGHT = 100.0
+#: What a root line and its place between its limits differ by counts so many times its length.
+ROOT_WEIGHT = 10.0
+
+#: With noise, what improves the sum of squares by less than this part of its square is no improvement.
+_MATTERS = 1e-6
 
 #: How a Kernel is run: as it stands, or compiled first (``gearmath.export.host.compile_kernel``).
 Run = Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]
@@ -286,26 +289,36 @@ class Problem:
                 moved.append((sunk, self.columns(gradient, k)))
         return moved
 
+    @property
+    def slacks(self) -> int:
+        """How many places of root lines are watched: each is a variable more, bounded by the limit."""
+        return 2 * sum(t.root is not None for t in self.targets) if self.root_limit is not None else 0
+
     def __call__(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        found = self.deviations(v)
+        """What is minimised, and its Jacobian by the variables and then the slacks of the root lines."""
+        p = len(self.variables)
+        found = self.deviations(v[:p])
         if found is None:
             return None
         residual, jacobian = found
         if self.weighting is not None:
             residual, jacobian = self.weighting @ residual, self.weighting @ jacobian
         if self.noise:
-            residual = np.concatenate([residual, self.noise * v])
-            jacobian = np.concatenate([jacobian, self.noise * np.eye(len(v))])
-        if self.root_limit is not None:
-            try:
-                roots = self.root(v)
-            except ComputationError:
-                return None
-            for sunk, gradient in roots:
-                beyond = np.sign(sunk) * np.maximum(np.abs(sunk) - self.root_limit, 0)
-                residual = np.concatenate([residual, ROOT_WEIGHT * beyond])
-                jacobian = np.concatenate([jacobian, ROOT_WEIGHT * gradient * (beyond != 0)[:, None]])
-        return residual, jacobian
+            residual = np.concatenate([residual, self.noise * v[:p]])
+            jacobian = np.concatenate([jacobian, self.noise * np.eye(p)])
+        if not self.slacks:
+            return residual, jacobian
+        try:
+            roots = self.root(v[:p])
+        except ComputationError:
+            return None
+        sunk, gradient = (np.concatenate(arrays) for arrays in zip(*roots, strict=True))
+        apart = ROOT_WEIGHT * (sunk - self.root_limit * v[p:])
+        by_slack = -ROOT_WEIGHT * self.root_limit * np.eye(self.slacks)  # type: ignore[operator]
+        below = np.concatenate([ROOT_WEIGHT * gradient, by_slack], axis=1)
+        return np.concatenate([residual, apart]), np.block(
+            [[jacobian, np.zeros((len(jacobian), self.slacks))], [below]]
+        )
 
 
 def identify(
@@ -326,15 +339,15 @@ def identify(
     variables = variables_of(free, len(targets))
     weighting = surface_map(targets, weights) if objective == "surface" else None
     problem = Problem(targets, variables, weighting, root_limit, run, noise)
-    bound = np.ones(len(variables))
-    found = minimize(problem, -bound, bound, run(compensation_step(len(variables))))
-    residual, jacobian = problem.deviations(found.variables)  # type: ignore[misc]
+    p, bound = len(variables), np.ones(len(variables) + problem.slacks)
+    found = minimize(problem, -bound, bound, run(compensation_step(len(bound))), _MATTERS * noise**2)
+    v, slack = found.variables[:p], found.variables[p:]
+    residual, jacobian = problem.deviations(v)  # type: ignore[misc]
     rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (problem.measured, residual))
-    held = [variable.label for variable, v in zip(variables, found.variables, strict=True) if abs(v) >= 1]
-    if root_limit is not None and any((np.abs(sunk) >= root_limit).any() for sunk, _ in problem.root(found.variables)):
-        held.append("root line")
+    held = [variable.label for variable, part in zip(variables, v, strict=True) if abs(part) >= 1]
+    held += ["root line"] * bool((np.abs(slack) >= 1).any())
     return Identification(
-        variables, found.variables * problem.scale, rms_before, rms_after, found.iterations, found.converged, jacobian,
+        variables, v * problem.scale, rms_before, rms_after, found.iterations, found.converged, jacobian,
         residual, weighting, tuple(held), noise,
     )  # fmt: skip
 

@@ -18,6 +18,8 @@ from gearmath.specs.flank_csv import FlankFile
 
 #: What a correction may add to the RMS of a flank that is as good as perfect: rounding. [mm]
 _ROUNDING = 1e-6
+#: Trials of the noise, each at most half of the one before.
+_NOISE_TRIALS = 6
 #: A point that was left out must be predicted this well: the variance of the prediction against that of one point.
 _LEVERAGE = 4.0
 #: How far a correction may move the root line at toe and heel [mm]. Peers hold 0.025 mm when they design; a machine
@@ -89,13 +91,19 @@ def _identify(
     targets: Sequence[FlankTarget], names: Sequence[str], objective: str, root_limit: float | None,
     noise: float | None, run: Run,
 ) -> Identification:  # fmt: skip
-    """The identification at the given noise, or at what a first one without noise leaves."""
+    """The identification at the given noise, or at the noise that it leaves itself: at first what no setting shows."""
     given = {"objective": objective, "root_limit": root_limit, "run": run}
-    found = identify(targets, names, noise=noise or 0.0, **given)  # type: ignore[arg-type]
-    left = found.residual @ found.residual / max(len(found.residual) - len(found.values), 1)
-    if noise is not None or np.sqrt(left) <= _ROUNDING:
-        return found
-    return identify(targets, names, noise=float(np.sqrt(left)), **given)  # type: ignore[arg-type]
+    if noise is not None:
+        return identify(targets, names, noise=noise, **given)  # type: ignore[arg-type]
+    level = analyse(targets, names, run=run).noise
+    for _ in range(_NOISE_TRIALS):
+        found = identify(targets, names, noise=level, **given)  # type: ignore[arg-type]
+        free = max(len(found.residual) - found.corrected_parameters, 1.0)
+        left = float(np.sqrt(found.residual @ found.residual / free))
+        if left > level / 2 or left <= _ROUNDING:
+            break
+        level = left
+    return found
 
 
 def _check_determined(name: str, group: Sequence[str], targets: Sequence[FlankTarget], names: Sequence[str]) -> None:

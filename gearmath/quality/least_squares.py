@@ -1,7 +1,7 @@
 """Bounded, scaled Levenberg-Marquardt with a trust region: one step as a Kernel, and the iteration that judges steps.
 
 The variables are scaled by their bounds, so that a change is as large as the part of its bound that it takes. A step
-solves, in a few passes that fix what has reached its bound,
+solves, by passes that fix what has reached its bound,
 
     (JᵀJ + λ μ I) s = -Jᵀr,   lower <= v + s <= upper,   μ the mean of the diagonal of JᵀJ
 
@@ -24,14 +24,12 @@ from gearmath.lowering import Kernel
 
 #: Least damping, against the mean of the diagonal of JᵀJ: the square of the singular value that still counts.
 FLOOR = 1e-13
-#: Passes of one step, each fixing what has run against its bound in the pass before.
-_PASSES = 4
+#: Stands for infinity in the way to a bound.
+_FAR = 1e30
 #: The first step trusts the model this far; a step that is refused makes λ at least so large, and until then λ falls
 #: fast; afterwards, in a curved valley, slowly.
 _FIRST, _REFUSED, _FAST, _SLOW = 1e-9, 1e-7, 100, 4
 _LARGEST = 1e8
-#: What a step could gain is asked at these dampings too where the undamped one, turned by its bounds, promises nothing.
-_ASKED = (1e-11, 1e-9, 1e-7, 1e-5, 1e-3, 1e-1)
 _MOST_ITERATIONS = 60
 #: Converged: an undamped step would change the residual by less than this in the RMS, and less than this part. [mm]
 _STILL, _STILL_PART = 1e-10, 1e-7
@@ -78,12 +76,15 @@ def compensation_step(p: int) -> Kernel:
     damped = A + damping * (ca.trace(A) / p + 1e-300) * ca.MX.eye(p)
     low, high = lower - v, upper - v
     fixed_now = ca.logic_or(ca.logic_and(low >= 0, g >= 0), ca.logic_and(high <= 0, g <= 0))
-    place_now = ca.fmin(ca.fmax(0, low), high)
-    for _ in range(_PASSES):
-        step = solve(damped, fixed_now, -g, place_now)
-        place_now = ca.if_else(fixed_now, place_now, ca.fmin(ca.fmax(step, low), high))
-        fixed_now = ca.logic_or(fixed_now, ca.logic_or(step < low, step > high))
-    step = place_now
+    step = ca.fmin(ca.fmax(0, low), high)
+    for _ in range(p):
+        # towards the solution as far as the first bound, which then holds; nothing on the way is worse
+        way = solve(damped, fixed_now, -g, step) - step
+        room = ca.if_else(way > 0, high - step, ca.if_else(way < 0, low - step, _FAR))
+        ratio = ca.fmax(0, room / ca.if_else(way == 0, 1, way))
+        part = ca.fmin(1, ca.mmin(ratio))
+        step = ca.fmin(ca.fmax(step + part * way, low), high)
+        fixed_now = ca.logic_or(fixed_now, ca.logic_and(ratio <= part, part < 1))
     function = ca.Function(
         "compensation_step", [A, g, v, lower, upper, damping],
         [step, -(2 * ca.dot(g, step) + ca.bilin(A, step, step))],
@@ -97,7 +98,7 @@ def compensation_step(p: int) -> Kernel:
             _quantity("step", "change of the scaled variables", r"\mathbf{s}", (-2.0, 2.0), p),
             Quantity("promised", "fall of the sum of squares by the linear model", "mm2", "p"),
         ),
-        "Levenberg-Marquardt in scaled variables, active set of bounds",
+        "Levenberg-Marquardt in scaled variables, primal active set of bounds",
     )
 
 
@@ -119,28 +120,13 @@ def _solve(matrix: ca.SX, right: ca.SX) -> ca.SX:
     return ca.vertcat(*x)
 
 
-def enough(possible: np.ndarray, cost: np.ndarray, residuals: int) -> np.ndarray:
+def enough(possible: np.ndarray, cost: np.ndarray, residuals: int, matters: float = 0.0) -> np.ndarray:
     """Whether the gradient is as good as zero: what an undamped step could still gain of the sum of squares is noise.
 
     In the metric of the Jacobian, so that weak directions count by what they do to the residuals.
     """
-    return possible <= residuals * _STILL**2 + _STILL_PART**2 * cost + _ROUNDING * np.sqrt(cost)
-
-
-def could_gain(
-    step: Callable[..., tuple[np.ndarray, ...]], matrix: np.ndarray, gradient: np.ndarray, v: np.ndarray,
-    lower: np.ndarray, upper: np.ndarray,
-) -> np.ndarray:  # fmt: skip
-    """What the sum of squares could fall by, undamped; a damped step counts where the bounds make that one rise.
-
-    Arguments as those of the step, for one problem or many.
-    """
-    _, promised = step(matrix, gradient, v, lower, upper, FLOOR)
-    for damping in _ASKED:
-        if (promised > 0).all():
-            break
-        promised = np.maximum(promised, step(matrix, gradient, v, lower, upper, damping)[1])
-    return promised
+    least = residuals * _STILL**2 + _STILL_PART**2 * cost + _ROUNDING * np.sqrt(cost)
+    return np.abs(possible) <= np.maximum(least, matters)
 
 
 def next_damping(damping: float, gained: float, promised: np.typing.ArrayLike) -> float:
@@ -164,11 +150,14 @@ class Minimum:
     converged: bool
 
 
-def minimize(fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | None = None) -> Minimum:
+def minimize(
+    fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | None = None, matters: float = 0.0
+) -> Minimum:
     """The variables within their bounds at which the residuals of ``fit`` are least, from zero on.
 
     ``fit`` returns residuals (m,) and their Jacobian (m,p), or None where the surface cannot be found; it must succeed
-    at zero. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls.
+    at zero. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls, and
+    none is sought that makes the sum of squares fall by no more than ``matters``.
     """
     p = len(lower)
     step = step or compensation_step(p)
@@ -179,7 +168,8 @@ def minimize(fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | No
     residual, jacobian = start
     while iterations < _MOST_ITERATIONS:
         cost, matrix, gradient = residual @ residual, jacobian.T @ jacobian, jacobian.T @ residual
-        if enough(could_gain(step, matrix, gradient, v, lower, upper), cost, len(residual)):
+        _, possible = step(matrix, gradient, v, lower, upper, FLOOR)
+        if enough(possible, cost, len(residual), matters):
             return Minimum(v, residual, jacobian, iterations, True)
         iterations += 1
         change, promised = step(matrix, gradient, v, lower, upper, damping)

@@ -26,11 +26,8 @@ FREE = (
     "radial_distance", "cradle_angle", "blank_offset", "sliding_base", "machine_center_to_crossing_point",
     "machine_root_angle", "ratio_of_roll",
 )  # fmt: skip
-#: The motions that are corrected besides, when asked: modified roll, helical motion, and those of the cutter's centre.
-HIGHER_ORDER = (
-    "work_rotation_offset.2", "work_rotation_offset.3", "sliding_base.1", "sliding_base.2", "radial_distance.1",
-    "blank_offset.1",
-)  # fmt: skip
+#: The motions that are corrected besides, when asked: modified roll of second and third order, and helical motion.
+HIGHER_ORDER = ("work_rotation_offset.2", "work_rotation_offset.3", "sliding_base.1")
 #: A coefficient of θ^j may move the machine as far as the setting may be off, where the cradle has turned by this.
 _ROLL = 0.5
 

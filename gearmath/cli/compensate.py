@@ -1,0 +1,228 @@
+"""``gearmath compensate`` and ``gearmath stock``: corrected settings of a measured member, and how its blank stands."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import click
+
+from gearmath.cli.common import JSON, MEMBER, SET, about, echo_json, output, table
+
+if TYPE_CHECKING:
+    from gearmath.quality.analysis import Analysis
+    from gearmath.quality.correction import Correction
+    from gearmath.quality.thickness import By
+    from gearmath.specs.bevel_set import BevelSet, Member
+
+
+@click.command()
+@SET
+@MEMBER
+@click.option("--measured", required=True, type=click.Path(path_type=Path), help="Measured flank CSV of the member.")
+@click.option(
+    "--settings",
+    "names",
+    default="standard",
+    show_default=True,
+    help="standard, few (the fewest that lose little), all, or names with commas between them.",
+)
+@click.option("--higher-order", is_flag=True, help="Correct motions as well: modified roll, helical motion, ...")
+@click.option(
+    "--objective",
+    type=click.Choice(["points", "surface"]),
+    default="points",
+    show_default=True,
+    help="Fit the points, or the coefficients of their cubic surfaces.",
+)
+@click.option(
+    "--from-mate",
+    type=click.Path(path_type=Path),
+    metavar="CSV",
+    help="Correct here what the mate shows there: its measured flank CSV, moved through the ease-off.",
+)
+@click.option("--root-limit", type=click.FloatRange(0.001, 2), metavar="MM", help="Most that the root line may move.")
+@click.option("--noise", type=click.FloatRange(0, 100), metavar="UM", help="Noise of one deviation; else what is left.")
+@click.option("--thickness", type=float, default=0.0, metavar="UM", help="Leave the teeth thicker by so much.")
+@click.option(
+    "--thickness-by",
+    type=click.Choice(["work_rotation_offset", "sliding_base"]),
+    default="work_rotation_offset",
+    show_default=True,
+    help="What makes them thicker.",
+)
+@JSON
+@output("corrected set, TOML")
+def compensate(
+    gear_set: str, member: str, measured: Path, names: str, higher_order: bool, objective: str, from_mate: Path | None,
+    root_limit: float | None, noise: float | None, thickness: float, thickness_by: str, as_json: bool, target: Path,
+) -> None:  # fmt: skip
+    """Corrected machine settings from a measurement; the nominal settings stay in the file under 'design'."""
+    from gearmath.quality.correction import ROOT_LIMIT, correct
+    from gearmath.quality.thickness import with_thickness
+    from gearmath.specs.bevel_set import load_bevel_set, save_corrected
+    from gearmath.specs.flank_csv import read_flank_csv
+    from gearmath.specs.toml import find
+
+    source = find(gear_set)
+    pair = load_bevel_set(source)
+    spec, file = pair.member(member), read_flank_csv(measured)
+    moved = _from_mate(pair, member, from_mate, measured) if from_mate else None
+    with about(measured):
+        correction = correct(
+            spec, member, file, _free(names), objective=objective, higher_order=higher_order, few=names == "few",
+            root_limit=root_limit or ROOT_LIMIT, noise=None if noise is None else noise / 1000, added=moved,
+        )  # fmt: skip
+    if thickness:
+        by = cast("By", thickness_by)
+        correction.settings.update(with_thickness(spec, member, correction.settings, thickness / 1000, by))
+    save_corrected(source, target, member, correction.settings, correction.index, correction.motions)
+    values = _values(spec, correction)
+    if as_json:
+        echo_json(values)
+        return
+    for group, analysis in correction.analysis.items():
+        _say_analysis(" and ".join(group), analysis)
+    rows = [
+        [change["flank"], change["setting"], f"{change['old']:.6f}", f"{change['new']:.6f}", change["unit"]]
+        for change in values["changes"]
+    ]
+    click.echo(table(["flank", "setting", "old", "new", "unit"], rows) if rows else "nothing to correct")
+    _say_result(correction)
+    click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
+
+
+def _free(names: str) -> tuple[str, ...] | None:
+    from gearmath.specs.bevel_set import MACHINE_SETTINGS
+
+    if names in ("standard", "few"):
+        return None
+    return MACHINE_SETTINGS if names == "all" else tuple(name.strip() for name in names.split(","))
+
+
+def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path) -> dict[str, Any]:
+    from gearmath.quality.ease_off import moved_to_mate
+    from gearmath.specs.bevel_set import MEMBERS
+    from gearmath.specs.flank_csv import read_flank_csv
+
+    mate = MEMBERS[1 - MEMBERS.index(member)]
+    with about(path):
+        return moved_to_mate(pair, mate, read_flank_csv(path), read_flank_csv(measured))
+
+
+def _say_analysis(flanks: str, analysis: Analysis) -> None:
+    kind = "simple" if analysis.is_simple else "complex"
+    click.echo(
+        f"{flanks}: {kind} target, RMS {analysis.rms * 1000:.3f} um; no correction by these {len(analysis.names)} "
+        f"settings gets below {analysis.best_rms * 1000:.3f} um"
+    )
+    click.echo("  singular values [um]: " + ", ".join(f"{value * 1000:.3g}" for value in analysis.singular_values))
+    for first, second, cosine in analysis.alike:
+        how = "alike" if cosine > 0 else "opposite ways"
+        click.echo(f"  {first} and {second} move the flank {how} (cosine {cosine:.5f}): hardly told apart")
+    for k in analysis.weak:
+        named = " ".join(f"{part:+.2f} {name}" for name, part in analysis.direction(k).items())
+        click.echo(f"  weak direction, {analysis.singular_values[k] * 1000:.3g} um: {named} (parts of their bounds)")
+    if analysis.unseen:
+        click.echo(f"  without effect: {', '.join(analysis.unseen)}")
+    choice = analysis.choose()
+    if len(choice.names) < len(analysis.names):
+        click.echo(f"  enough: {', '.join(choice.names)}, with a loss of {choice.loss * 1000:.3f} um")
+
+
+def _say_result(correction: Correction) -> None:
+    for group, found in correction.identified.items():
+        click.echo(
+            f"{' and '.join(group)}: RMS {found.rms_before * 1000:.3f} um, expected to remain "
+            f"{found.rms_after * 1000:.3f} um ({found.iterations} iterations)"
+        )
+        if found.active:
+            click.echo(f"  held back by the limit of {', '.join(found.active)}")
+    for flank, moved in correction.root.items():
+        click.echo(f"{flank}: root line {moved[0] * 1000:+.1f} um at the toe, {moved[1] * 1000:+.1f} um at the heel")
+    for flank, count in correction.left_out.items():
+        if count:
+            click.echo(f"{flank}: {count} points of the grid were left out")
+
+
+def _values(member: Member, correction: Correction) -> dict[str, Any]:
+    from gearmath.quality.correction import setting_changes
+
+    changes = []
+    for flank, name, old, new in setting_changes(member, correction):
+        factor, unit = _unit(name)
+        changes.append({"flank": flank, "setting": name, "old": old * factor, "new": new * factor, "unit": unit})
+    return {
+        "changes": changes,
+        "expected_max_um": {flank: value * 1000 for flank, value in correction.expected.items()},
+        "index_correction_deg": [] if correction.index is None else [math.degrees(v) for v in correction.index],
+        "root_line_um": {flank: [value * 1000 for value in moved] for flank, moved in correction.root.items()},
+        "left_out": correction.left_out,
+        "fits": [_fit_values(correction, group) for group in correction.identified],
+    }
+
+
+def _unit(name: str) -> tuple[float, str]:
+    """The factor to what people read, and its unit."""
+    from derivations import notation
+
+    setting, _, power = name.partition(".")
+    (unit,) = (component.unit for component in notation.settings.components if component.name == setting)
+    per = "" if not power else "/rad" if power == "1" else f"/rad^{power}"
+    return (math.degrees(1), f"deg{per}") if unit == "rad" else (1.0, f"{unit}{per}")
+
+
+def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any]:
+    analysis, found = correction.analysis[group], correction.identified[group]
+    choice = analysis.choose()
+    return {
+        "flanks": list(group),
+        "settings": list(analysis.names),
+        "simple": analysis.is_simple,
+        "singular_values_um": [value * 1000 for value in analysis.singular_values],
+        "alike": [list(pair) for pair in analysis.alike],
+        "weak_directions": [analysis.direction(k) for k in analysis.weak],
+        "without_effect": list(analysis.unseen),
+        "rms_um": found.rms_before * 1000,
+        "best_rms_um": analysis.best_rms * 1000,
+        "remaining_rms_um": found.rms_after * 1000,
+        "enough": {"settings": list(choice.names), "loss_um": choice.loss * 1000},
+        "held_back_by": list(found.active),
+        "iterations": found.iterations,
+    }
+
+
+@click.command()
+@click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
+@click.option("--set", "gear_set", required=True, help="The gear set the blank is to be finished to.")
+@MEMBER
+@click.option("--advance", is_flag=True, help="Find an axial shift too, not only the rotation.")
+@click.option("--least", type=click.FloatRange(0, 2000), default=0.0, show_default=True, metavar="UM",
+              help="Stock that must remain everywhere.")  # fmt: skip
+@JSON
+def stock(measured: Path, gear_set: str, member: str, advance: bool, least: float, as_json: bool) -> None:
+    """How a precut blank must stand so that both flanks share its stock: probe it, then turn it by this."""
+    from gearmath.quality.stock import share_stock
+    from gearmath.specs.bevel_set import load_bevel_set
+    from gearmath.specs.flank_csv import read_flank_csv
+    from gearmath.specs.toml import find
+
+    spec, file = load_bevel_set(find(gear_set)).member(member), read_flank_csv(measured)
+    with about(measured):
+        found = share_stock(spec, member, file, advance, least / 1000)
+    if as_json:
+        echo_json({
+            "turn_deg": math.degrees(found.turn), "advance_mm": found.advance,
+            **{f"{name}_um": {flank: value * 1000 for flank, value in getattr(found, name).items()}
+               for name in ("least", "mean", "most", "least_before")},
+        })  # fmt: skip
+        return
+    click.echo(f"turn the work by {math.degrees(found.turn):+.5f} deg about its axis (A, or work_rotation_offset)")
+    if advance:
+        click.echo(f"advance it by {found.advance:+.4f} mm along its axis, from toe to heel")
+    click.echo(table(
+        ["flank", "least_um", "mean_um", "most_um", "least_as_clamped_um"],
+        [[flank, *(f"{values[flank] * 1000:.1f}" for values in (found.least, found.mean, found.most,
+                                                                found.least_before))] for flank in found.least],
+    ))  # fmt: skip
