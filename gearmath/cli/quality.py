@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import click
 
 from gearmath.cli.common import JSON, about, bar, echo_json
+
 
 @click.command()
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
