@@ -23,7 +23,7 @@ from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections
 from gearmath.errors import InputError
 from gearmath.lowering import Kernel
-from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, roll_range
+from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, below_the_flank, flank_points, roll_range
 from gearmath.specs.bevel_set import MACHINE_SETTINGS, SIDES, Flank, Member
 
 #: What five printed decimals of X Y Z [mm] and six of A B [deg], at 100 mm from either axis, may do to the flank.
@@ -34,13 +34,15 @@ _COLUMNS = 801
 #: The points go beyond the flank by this part of it: a machine that is off its settings cuts the flank's edges at
 #: other cradle rotations, and must not find a long block of the overrun there.
 _BEYOND = 0.02
-_UP, _ACROSS = (-_BEYOND, 0.0, 0.25, 0.5, 0.75, 1.0, 1 + _BEYOND), (-_BEYOND, 0.0, 1.0, 1 + _BEYOND)
+_UP, _ACROSS = (0.25, 0.5, 0.75, 1.0, 1 + _BEYOND), (-_BEYOND, 0.0, 1.0, 1 + _BEYOND)
+#: At toe and heel they go this part of the working depth below it, as far as the blade reaches.
+_DEEP = 0.3
 #: Where along a block each row of flank points is looked at: its middle, where most is left, among them.
 _FRACTIONS = np.array([-0.3, -0.07, *np.linspace(0.0, 1.0, 9), 1.07, 1.3])
-#: Newton steps towards the smallest distance within a block.
-_STEPS = 1
+#: So many of the lowest and of the highest points of a block are looked at twice.
+_REFINED = 40
 #: A block is long enough when it uses this part of the tolerance; no block rolls further than this [rad].
-_USED, _LONGEST = 0.985, math.radians(3.0)
+_USED, _LONGEST = 0.96, math.radians(3.0)
 #: Nearer to the end of the blade than this [mm] a point belongs to the fillet.
 _TIP = 0.05
 
@@ -87,14 +89,9 @@ class Pass:
 
     @staticmethod
     def of(member: Member, cut: Cut, pivot_height: float, pivot_offset: np.ndarray) -> Pass:
-        """Points over the whole flanks of a pass, the fillet left out."""
-        theta: list[np.ndarray] = []
-        lines: list[np.ndarray] = []
-        for flank in cut.flanks:
-            for grid in _curves(member):
-                at, row = _row(member, flank, grid)
-                theta.append(at)
-                lines.append(row)
+        """Points over the whole flanks of a pass, down to the root."""
+        found = [row for flank in cut.flanks for row in (*_rows(member, flank), *_deep_rows(member, flank))]
+        theta, lines = [at for at, _ in found], [row for _, row in found]
         begin = np.cumsum([0, *(len(at) for at in theta)]).tolist()
         rows = tuple((k, (at[1:] + at[:-1]) / 2) for k, at in zip(begin, theta, strict=False) if len(at))
         spec = member.flank(cut.flanks[0])
@@ -111,31 +108,53 @@ class Pass:
     def _smallest(self, start: float, end: float, chosen: np.ndarray) -> np.ndarray:
         """Smallest distance of entry (n,) within a block: Newton from the contact on the exact path.
 
-        What is left of the slope after the last step is taken off as if the curvature held: t - t'²/(2 t'').
+        What is left of the slope after a step is taken off as if the curvature held: t - t'²/(2 t''). The second step
+        is made only where the first one shows the extremes, until these are among what was looked at twice.
         """
         ends = axis_positions(self.flank, np.array([start, end]), self.pivot_height, self.pivot_offset)
-        points, normals, radius, angle, side = np.split(self.lines[chosen], [3, 6, 7, 8], axis=1)
         s = np.clip((self.theta[chosen] - start) / (end - start), 0.0, 1.0)
-        smallest = np.full(len(s), np.inf)
-        for step in range(_STEPS + 1):
-            distance, slope, curvature = entry_within_block()(
-                ends[0], ends[1], s, self.pivot_height, points, normals, radius[:, 0], angle[:, 0], side[:, 0],
-                self.pivot_offset,
-            )  # fmt: skip
-            curved = np.where(curvature > 0, curvature, math.inf)
-            change = np.clip(s - slope / curved, 0.0, 1.0) - s
-            if step == _STEPS:
-                distance = distance + (slope + curvature * change / 2) * change
-            smallest = np.minimum(smallest, distance)
-            s = s + change
+        at_contact, smallest, change = self._step(ends, s, chosen)
+        once = np.ones(len(chosen), dtype=bool)
+        while once[(order := np.argsort(smallest))[[0, -1]]].any():
+            again = np.union1d(order[:_REFINED], order[-_REFINED:])
+            again = again[once[again]]
+            _, found, _ = self._step(ends, (s + change)[again], chosen[again])
+            smallest[again] = np.minimum(at_contact[again], found)
+            once[again] = False
         return smallest
+
+    def _step(self, ends: np.ndarray, s: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Distance (n,) at fractions ``s`` (n,) of the block, the smallest one as seen from there, and the way there."""
+        points, normals, radius, angle, side = np.split(self.lines[chosen], [3, 6, 7, 8], axis=1)
+        distance, slope, curvature = entry_within_block()(
+            ends[0], ends[1], s, self.pivot_height, points, normals, radius[:, 0], angle[:, 0], side[:, 0],
+            self.pivot_offset,
+        )  # fmt: skip
+        curved = np.where(curvature > 0, curvature, math.inf)
+        change = np.clip(s - slope / curved, 0.0, 1.0) - s
+        return distance, np.minimum(distance, distance + (slope + curvature * change / 2) * change), change
+
+
+def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    for grid in _curves(member):
+        yield _row(member, flank, grid)
+
+
+def _deep_rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """The same for what the lower end of the blade cuts, along the tooth."""
+    for points, blade in below_the_flank(member, flank, np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS // 2)):
+        kept = np.flatnonzero(points.converged)
+        order = kept[np.argsort(points.contact[kept, 2], kind="stable")]
+        side = np.full((len(order), 1), float(SIDES[flank]))
+        yield points.contact[order, 2], np.hstack([points.point[order], points.normal[order], blade[order], side])
 
 
 def _curves(member: Member) -> Iterator[Grid]:
     """Lines on the flank that every line of contact crosses at its ends and between: along the tooth, toe, heel."""
     everywhere = np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS)
+    depth = np.linspace(-_DEEP, 1 + _BEYOND, _COLUMNS)
     along = [(everywhere, np.full(_COLUMNS, up)) for up in _UP]
-    ends = [(np.full(_COLUMNS, across), everywhere) for across in _ACROSS]
+    ends = [(np.full(_COLUMNS, across), depth) for across in _ACROSS]
     for across, up in (*along, *ends):
         axial, radial = kernel("flank_place")(member.blank.vector, across, up)
         yield Grid(axial[None], radial[None])

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from derivations.axes import SINGULAR_SINE
 from gearmath.bevel.flank import Grid, blank_grid, solve_places
-from gearmath.bevel.generation import solve_section
+from gearmath.bevel.generation import Generation, Section, SurfacePoints, solve_curve, solve_section
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, cut_generation_of, motion_of
 from gearmath.bevel.newton import TOLERANCE, FlankPoints
+from gearmath.bevel.tooth import SHARP_EDGE
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 from gearmath.specs.milling_machine import MillingMachine
@@ -22,6 +24,13 @@ DEFAULT_TOLERANCE = 1e-4
 #: The roll begins and ends this far outside the contact of the whole flank. [rad]
 OVERRUN = math.radians(2.0)
 _APEX_ON_B_AXIS = np.zeros(3)
+#: Of a long row, places so far apart are solved first.
+_EVERY = 20
+#: In so many steps a row goes from half of the working depth to the lower end of the blade.
+_STEPS_DOWN = 4
+#: Normals between flank and root at which the rounded edge of a blade is looked at, as parts of its arc; the last is
+#: nearly that of the tip plane.
+_ON_EDGE = (0.5, 0.99)
 
 
 @dataclass(frozen=True)
@@ -47,11 +56,11 @@ def flank_points(member: Member, flank: str, grid: Grid) -> FlankPoints:
     spec = member.flank(flank)
     how = cut_generation_of(member, flank)
     section = blade_sections(spec, SIDES[flank])["main"]
-    place = (grid.axial.ravel(), grid.radial.ravel())
+    axial, radial = grid.axial.ravel(), grid.radial.ravel()
     if how.still and how.rolling and section.arc is None:
-        points, residual = solve_places(how.settings, how.side, *place)
+        points, residual = solve_places(how.settings, how.side, axial, radial)
     else:
-        points = solve_section(how, section, *place)
+        points = _row_points(how, section, axial, radial)
         residual = points.residual
     found = residual <= TOLERANCE
     if not found.any():
@@ -59,15 +68,85 @@ def flank_points(member: Member, flank: str, grid: Grid) -> FlankPoints:
     return FlankPoints(points.contact[found], points.point[found], points.normal[found])
 
 
+def _row_points(how: Generation, section: Section, axial: np.ndarray, radial: np.ndarray) -> SurfacePoints:
+    """Points at places that follow each other on a flank: many of them start from every twentieth.
+
+    Beside one of these without a solution, which takes long to find out, none is sought.
+    """
+    some = np.arange(0, len(axial), _EVERY)
+    if len(some) < _EVERY:
+        return solve_section(how, section, axial, radial)
+    coarse = solve_section(how, section, axial[some], radial[some])
+    good = coarse.converged
+    if not good.any():
+        return coarse
+    index = np.arange(len(axial))
+    near = np.interp(index, some, good.astype(float)) == 1.0
+    start = np.column_stack([np.interp(index[near], some[good], values) for values in coarse.contact[good].T])
+    return solve_section(how, section, axial[near], radial[near], start)
+
+
 def whole_flank(member: Member, flank: str) -> FlankPoints:
     """Points over the whole face and working depth."""
     return flank_points(member, flank, blank_grid(member, 7, 13, 0.0))
 
 
+def below_the_flank(member: Member, flank: str, across: np.ndarray) -> Iterator[tuple[SurfacePoints, np.ndarray]]:
+    """What the lower end of the blade cuts, row by row downwards: points at parts ``across`` (n,) of the face width.
+
+    The rows are the lower ends of the main section and of a Toprem, and the rounded edge down to the root; a sharp
+    blade is taken to have the smallest radius there is. With each row come point radius and pressure angle (n,2) of the
+    straight blade that touches there. Points without a solution are left out.
+    """
+    spec = member.flank(flank).model_copy(update={"design": None})
+    if spec.blade_edge_radius == 0.0:
+        spec = spec.model_copy(update={"blade_edge_radius": SHARP_EDGE})
+    how = cut_generation_of(member, flank)
+    delta = math.radians(member.blank.pitch_angle)
+    direction = (math.cos(delta), math.sin(delta))
+    axial, radial = kernel("flank_place")(member.blank.vector, across, np.full(len(across), 0.5))
+    distance = axial * direction[0] + radial * direction[1]
+    sections = blade_sections(spec, SIDES[flank])
+    start = solve_section(how, sections["main"], axial, radial).contact
+    for part in reversed(sections):
+        section = sections[part]
+        for u, wanted in _downwards(part, section, start[:, 0]):
+            if part == "edge":
+                start = np.column_stack([u, start[:, 1:]])
+            row = solve_curve(how, section, u, direction, distance, start)
+            start = row.contact
+            if wanted:
+                yield row, _touching(section, u, how.side)
+
+
+def _downwards(part: str, section: Section, now: np.ndarray) -> Iterator[tuple[np.ndarray, bool]]:
+    """Blade parameters (n,) on the way to the lower end of a section, or along the edge; whether they are a row."""
+    if part == "edge":
+        for share in _ON_EDGE:
+            yield np.full(len(now), section.lower + share * (section.upper - section.lower)), True
+        return
+    last = section.upper if section.tip_is_upper else section.lower
+    steps = _STEPS_DOWN if part == "main" else 1
+    for step in range(1, steps + 1):
+        yield now + step / steps * (last - now), step == steps
+
+
+def _touching(section: Section, u: np.ndarray, side: int) -> np.ndarray:
+    """Point radius and pressure angle (n,2) of the straight blade that touches a section."""
+    if section.arc is None:
+        return np.broadcast_to([section.point_radius, section.pressure_angle], (len(u), 2))
+    return np.column_stack(kernel("touching_blade")(u, np.array(section.arc), side))
+
+
 def roll_range(member: Member, cut: Cut) -> tuple[float, float]:
-    """Cradle rotations [rad] between which the cutter generates all of the flanks of a pass."""
-    theta = np.concatenate([whole_flank(member, flank).contact[:, 2] for flank in cut.flanks])
-    return float(theta.min()) - OVERRUN, float(theta.max()) + OVERRUN
+    """Cradle rotations [rad] between which the cutter generates the flanks of a pass, their fillets and the root."""
+    theta = [whole_flank(member, flank).contact[:, 2] for flank in cut.flanks]
+    if member.generation == "generated" and member.process != "face_hobbing":
+        ends = np.linspace(0.0, 1.0, 5)
+        rows = (row for flank in cut.flanks for row, _ in below_the_flank(member, flank, ends))
+        theta += [row.contact[row.converged, 2] for row in rows]
+    together = np.concatenate(theta)
+    return float(together.min()) - OVERRUN, float(together.max()) + OVERRUN
 
 
 def axis_positions(

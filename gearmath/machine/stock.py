@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearmath.bevel.tooth import SHARP_EDGE, FlankSurface, ToothSpace, tooth_space
+from gearmath.machine.cutter import cutter_of
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.mill import about_axis, expose, thickness
-from gearmath.machine.milling import Evaluator
+from gearmath.machine.milling import Evaluator, removal
+from gearmath.machine.path import Cut, axis_positions, roll_range
 from gearmath.machine.run import Run, runs_of
-from gearmath.specs.bevel_set import FLANKS, Member
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
 
@@ -24,6 +26,10 @@ DEFAULT_COLUMNS = 7
 _ROOT = (0.25, 0.5, 0.75)
 #: A gouge of the root is followed this deep. [mm]
 _ROOT_DEPTH = 1.0
+#: Blocks in which the exact way of a tool is followed: a tenth of those of the finest program, at the very most.
+_EXACT_BLOCKS = 1500
+#: Height from which a Formate cutter comes down. [mm]
+_PLUNGE = 20.0
 
 
 @dataclass(frozen=True)
@@ -62,9 +68,9 @@ class SurfaceState:
 
 
 def nominal_surfaces(member: Member, space: ToothSpace) -> list[Surface]:
-    """Flanks (rows tip to root), fillets and root of space 0.
+    """Flanks (rows tip to root), fillets and root of space 0, each with where lines through its points begin.
 
-    The root is ruled between the fillets, in cylindrical coordinates: it shows faults, and not the last micrometre.
+    The root is ruled between the fillets, in cylindrical coordinates; :func:`generated_root` moves it to where it is.
     """
     surfaces = []
     for flank, opposite in zip(FLANKS, reversed(FLANKS), strict=True):
@@ -91,7 +97,8 @@ def surface_states(
     surfaces done. Raises InputError if a tool is not of this member.
     """
     space = space or tooth_space(member, name, columns)
-    surfaces = nominal_surfaces(member, space)
+    *surfaces, root = nominal_surfaces(member, space)
+    surfaces.append(generated_root(root, member, name, space, evaluator))
     if runs is None:
         runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
     if spaces is None:
@@ -106,6 +113,52 @@ def surface_states(
             states.append(_state(surface, number, left.distance, left.block, lines, tolerance))
             progress(1)
     return states
+
+
+def generated_root(
+    root: Surface, member: Member, name: str, space: ToothSpace, evaluator: Evaluator = lambda k: k
+) -> Surface:
+    """A root moved along its normals to the envelope of all tips that generate it at the nominal settings.
+
+    Points that no tool comes near stay; so does the ruled root of a face hobbed member.
+    """
+    if member.process == "face_hobbing":
+        return root
+    where = left_by_exact_motion(member, name, space, root, evaluator)
+    moved = root.point + np.where(np.isfinite(where), where, 0.0)[:, None] * root.normal
+    return replace(root, point=moved)
+
+
+def left_by_exact_motion(
+    member: Member, name: str, space: ToothSpace, surface: Surface, evaluator: Evaluator = lambda k: k
+) -> np.ndarray:
+    """What all tools of a member leave on a surface of space 0 (n,) [mm] at the nominal settings; NaN for all of it.
+
+    The way of every tool is divided so finely that it counts as curved.
+    """
+    left = np.full(len(surface.point), np.nan)
+    exact = _as_designed(member)
+    for cut in Cut.of(exact, name):
+        cutter = cutter_of(exact, cut.flanks, space, SHARP_EDGE)
+        spec = exact.flank(cut.flanks[0])
+        if exact.generation == "generated":
+            axes = axis_positions(spec, np.linspace(*roll_range(exact, cut), _EXACT_BLOCKS + 1), 0.0)
+        else:
+            axes = axis_positions(spec, np.zeros(2), 0.0)
+            axes[0, 2] += _PLUNGE
+        lines, pose = (surface.point, surface.normal, surface.start), (0.0, np.zeros(3))
+        found = removal(axes, np.arange(len(axes)) > 0, cutter, pose, *lines, evaluator=evaluator)
+        left = np.fmin(left, found.distance)
+    return left
+
+
+def _as_designed(member: Member) -> Member:
+    """The member with its nominal settings in the place of corrected ones."""
+    flanks = {
+        flank: spec.model_copy(update={"design": None} | {key: getattr(spec.nominal, key) for key in SETTINGS})
+        for flank in FLANKS for spec in [member.flank(flank)]
+    }  # fmt: skip
+    return member.model_copy(update=flanks)
 
 
 def _state(
