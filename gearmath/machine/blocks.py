@@ -41,6 +41,8 @@ _DEEP = 0.3
 _FRACTIONS = np.array([-0.3, -0.07, *np.linspace(0.0, 1.0, 9), 1.07, 1.3])
 #: So many of the lowest and of the highest points of a block are looked at twice.
 _REFINED = 40
+#: What is looked at may be less than what lies between by this factor.
+_BETWEEN = 0.975
 #: A block is long enough when it uses this part of the tolerance; no block rolls further than this [rad].
 _USED, _LONGEST = 0.96, math.radians(3.0)
 #: Nearer to the end of the blade than this [mm] a point belongs to the fillet.
@@ -118,13 +120,14 @@ class Pass:
         while once[(order := np.argsort(smallest))[[0, -1]]].any():
             again = np.union1d(order[:_REFINED], order[-_REFINED:])
             again = again[once[again]]
-            _, found, _ = self._step(ends, (s + change)[again], chosen[again])
-            smallest[again] = np.minimum(at_contact[again], found)
+            there, found, _ = self._step(ends, (s + change)[again], chosen[again])
+            # a line at the foot of the flank that has left the blade by its tip tells nothing of the flank any more
+            smallest[again] = np.where(there <= at_contact[again], found, at_contact[again])
             once[again] = False
         return smallest
 
     def _step(self, ends: np.ndarray, s: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Distance (n,) at fractions ``s`` (n,) of the block, the smallest one as seen from there, and the way there."""
+        """Distance (n,) at fractions ``s`` (n,) of the block, the smallest as seen from there, the way there."""
         points, normals, radius, angle, side = np.split(self.lines[chosen], [3, 6, 7, 8], axis=1)
         distance, slope, curvature = entry_within_block()(
             ends[0], ends[1], s, self.pivot_height, points, normals, radius[:, 0], angle[:, 0], side[:, 0],
@@ -141,8 +144,10 @@ def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]
 
 
 def _deep_rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """The same for what the lower end of the blade cuts, along the tooth."""
-    for points, blade in below_the_flank(member, flank, np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS // 2)):
+    """The same for the lower ends of the flank, along the tooth. What the edge cuts lies between flank and root."""
+    for part, points, blade in below_the_flank(member, flank, np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS // 2)):
+        if part == "edge":
+            return
         kept = np.flatnonzero(points.converged)
         order = kept[np.argsort(points.contact[kept, 2], kind="stable")]
         side = np.full((len(order), 1), float(SIDES[flank]))
@@ -194,7 +199,7 @@ def roll_nodes(
     member = _on_one_machine(member, cut)
     start, end = roll_range(member, cut)
     exact = Pass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)
-    budget = tolerance - ROUNDING
+    budget = _BETWEEN * (tolerance - ROUNDING)
     nodes, width = [start], _LONGEST / 10
     while nodes[-1] < end:
         width = _longest(exact, nodes[-1], width, budget)

@@ -91,12 +91,12 @@ def whole_flank(member: Member, flank: str) -> FlankPoints:
     return flank_points(member, flank, blank_grid(member, 7, 13, 0.0))
 
 
-def below_the_flank(member: Member, flank: str, across: np.ndarray) -> Iterator[tuple[SurfacePoints, np.ndarray]]:
+def below_the_flank(member: Member, flank: str, across: np.ndarray) -> Iterator[tuple[str, SurfacePoints, np.ndarray]]:
     """What the lower end of the blade cuts, row by row downwards: points at parts ``across`` (n,) of the face width.
 
     The rows are the lower ends of the main section and of a Toprem, and the rounded edge down to the root; a sharp
-    blade is taken to have the smallest radius there is. With each row come point radius and pressure angle (n,2) of the
-    straight blade that touches there. Points without a solution are left out.
+    blade is taken to have the smallest radius there is. With each row come the name of its section, and point radius
+    and pressure angle (n,2) of the straight blade that touches there. Points without a solution say so.
     """
     spec = member.flank(flank).model_copy(update={"design": None})
     if spec.blade_edge_radius == 0.0:
@@ -116,7 +116,7 @@ def below_the_flank(member: Member, flank: str, across: np.ndarray) -> Iterator[
             row = solve_curve(how, section, u, direction, distance, start)
             start = row.contact
             if wanted:
-                yield row, _touching(section, u, how.side)
+                yield part, row, _touching(section, u, how.side)
 
 
 def _downwards(part: str, section: Section, now: np.ndarray) -> Iterator[tuple[np.ndarray, bool]]:
@@ -143,7 +143,7 @@ def roll_range(member: Member, cut: Cut) -> tuple[float, float]:
     theta = [whole_flank(member, flank).contact[:, 2] for flank in cut.flanks]
     if member.generation == "generated" and member.process != "face_hobbing":
         ends = np.linspace(0.0, 1.0, 5)
-        rows = (row for flank in cut.flanks for row, _ in below_the_flank(member, flank, ends))
+        rows = (row for flank in cut.flanks for _, row, _ in below_the_flank(member, flank, ends))
         theta += [row.contact[row.converged, 2] for row in rows]
     together = np.concatenate(theta)
     return float(together.min()) - OVERRUN, float(together.max()) + OVERRUN

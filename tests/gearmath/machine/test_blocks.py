@@ -8,7 +8,7 @@ import pytest
 from gearmath.bevel.flank import blank_grid, solve_places
 from gearmath.errors import InputError
 from gearmath.machine.blocks import ROUNDING, roll_nodes
-from gearmath.machine.path import Cut, roll_range
+from gearmath.machine.path import Cut, below_the_flank, roll_range
 from gearmath.specs.bevel_set import SIDES
 
 HEIGHT = 500.0
@@ -23,7 +23,8 @@ _FARTHEST = np.radians(4.0)
 def deviations(gear_set, witness):
     """``deviations(member, number)``: a function of starts and ends (n,) [rad] that gives what each block leaves (n,).
 
-    The smallest distance of entry within a block is that at the vertex of the parabola through three poses.
+    The smallest distance of entry within a block is that at the vertex of the parabola through three poses. The flank
+    reaches down to its foot, where the edge of the blade begins.
     """
 
     def of_cut(member, number, margin=0.0):
@@ -35,8 +36,15 @@ def deviations(gear_set, witness):
             axial, radial = (np.concatenate([getattr(g, name).ravel() for g in grids]) for name in ("axial", "radial"))
             points, _ = solve_places(settings, side, axial, radial)
             on_blade = points.contact[:, 0] > 0.1
-            order = np.argsort(points.contact[on_blade, 2])
-            kept = (points.contact[on_blade, 2], points.point[on_blade], points.normal[on_blade])
+            across = np.linspace(margin, 1 - margin, 401)
+            (foot,) = (row for part, row, _ in below_the_flank(spec, flank, across) if part == "main")
+            kept = [
+                np.concatenate([values[on_blade], more])
+                for values, more in (
+                    (points.contact[:, 2], foot.contact[:, 2]), (points.point, foot.point), (points.normal, foot.normal)
+                )
+            ]  # fmt: skip
+            order = np.argsort(kept[0])
             flanks.append((settings, side, *(array[order] for array in kept)))
 
         def left(start, end):

@@ -102,7 +102,7 @@ def test_flank_file_of_one_space_keeps_it(gear_set: str, name: str, vertical: Mi
 def test_program_for_toprem_blades_leaves_what_their_exact_motion_leaves(
     vertical: MillingMachine, host_compiler
 ) -> None:
-    """Where Toprem and main blade join, each cuts some micrometres off the surface of the other: so does the program."""
+    """Where Toprem and main blade join, each cuts some micrometres off the other's surface: so does the program."""
     bevel_set = with_toprem(load_bevel_set(bundled("nasa_tp3096_12x36.toml")))
     spec, space = bevel_set.gear, tooth_space(bevel_set.gear, "gear", 9)
     path = execute(cutting_program(bevel_set, "gear", vertical, "TOPREM", Job(range(3))), "TOPREM.MPF")

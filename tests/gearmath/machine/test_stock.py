@@ -55,7 +55,7 @@ def test_whole_program_leaves_fillets_roots_and_neighbours_of_every_space_withou
 
 
 def test_root_lies_on_the_root_cone_where_the_cutter_is_not_tilted(gear_set, host_compiler):
-    """By hand: turning with the work, the tip plane k·(p - V_ls) = 0 touches the cone cos Γ r - sin Γ z_w = X_b - X_p sin Γ.
+    """By hand: turned with the work, the tip plane touches the cone cos Γ r - sin Γ z_w = X_b - X_p sin Γ.
 
     The search begins 50 µm beside it.
     """
