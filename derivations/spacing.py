@@ -59,13 +59,13 @@ def ball_shift() -> Expression:
     n, m = sp.Matrix(q.normal_w.symbol), sp.Matrix(q.opposite_normal.symbol)
     n_r, n_t, m_r, m_t = n.dot(outward), n.dot(around), m.dot(outward), m.dot(around)
     d, e = q.deviation_in.symbol, q.opposite_deviation.symbol
-    wedge = n_r * m_t - m_r * n_t
+    wedge = n[0] * m[1] - m[0] * n[1]  # n_r n'_t - n'_r n_t, which no turning of the axes changes
     return Expression(
         "ball_shift",
         "Radial and tangential shift of a ball that touches both flanks of a space (19.1).",
         (q.deviation_in, q.point_w, q.normal_w, q.opposite_deviation, q.opposite_w, q.opposite_normal),
         ((q.radial_shift, (d * m_t - e * n_t) / wedge), (q.tangential_shift, (n_r * e - m_r * d) / wedge)),
-        requires=(sp.Abs(n_r * m_t - m_r * n_t) - sp.Rational(1, 10), x**2 + y**2 - 1),
+        requires=(sp.Abs(wedge) - sp.Rational(1, 10), x**2 + y**2 - 1),
         source="a ball between two planes; definition of this house, close to a ball probe in the space",
     )
 
