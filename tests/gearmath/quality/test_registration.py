@@ -10,14 +10,20 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.errors import InputError
+from gearmath.machine.measuring import measure_member
 from gearmath.machine.mill import flank_header
 from gearmath.quality.axial import TWIN
 from gearmath.quality.pitch import evaluate_pitch
 from gearmath.quality.registration import register
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.flank_csv import flank_file, join
+from gearmath.specs.simulated_machine import Measuring, Mounting, SimulatedMachine
 from gearmath.specs.toml import bundled
 
+SETS = (
+    "nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_hobbed_14x39", "crown_gear_formate_14x39",
+    "crown_gear_universal_14x39",
+)  # fmt: skip
 UM = 1e-3
 #: Eccentricity 15 µm and tilt 10 µm per 100 mm, as in the experiment of the source text.
 SEAT = np.array([12 * UM, -9 * UM, 6e-5, 8e-5])
@@ -184,13 +190,27 @@ def test_axial_shift_is_reported_as_its_setting_and_never_taken_out(gear_set):
     assert found.as_dict()["axial"]["confounded_with"] == TWIN
 
 
-def test_every_cutting_method_is_registered(gear_set):
-    """A face hobbed member: 1 µm and 1e-6 rad, small enough for the columns written out by hand."""
+@pytest.mark.parametrize("name", ["pinion", "gear"])
+@pytest.mark.parametrize("title", SETS)
+def test_members_of_every_set_and_cutting_method_are_registered(title, name):
+    """A perfect member in the clamping of the experiment, touched by the simulated measuring machine: to 0.1 µm."""
+    member = load_bevel_set(bundled(f"{title}.toml")).member(name)
+    perfect = nominal(member, name, lambda R, n: 0 * R[:, 0], around(member))
+    perfect = perfect.pick(np.isin(perfect.row * 9 + perfect.col, FIVE))
+    clamp = Mounting(eccentricity=0.015, eccentricity_direction=-37.0, tilt=0.00573, tilt_direction=60.0)
+    shop = SimulatedMachine(title="clamped", seed=0, measuring=Measuring(pinion=clamp, gear=clamp))
+    found = register(measure_member(perfect, member, name, shop), member, name)
+    assert found.eccentricity == pytest.approx(15 * UM, abs=TENTH)
+    assert found.eccentricity * abs(found.eccentricity_direction - math.radians(-37)) < TENTH
+    assert found.tilt * member.blank.face_width == pytest.approx(math.radians(0.00573) * 25.4, abs=TENTH)
+    assert found.tilt * member.blank.face_width * abs(found.tilt_direction - math.radians(60)) < TENTH
+    assert np.abs(found.file.deviation).max() < 0.01 * 15 * UM
+
+
+def test_share_of_settings_is_none_where_their_sensitivities_are_not_known():
     member = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml")).gear
-    t, w = np.array([0.8, -0.6, 0]) * UM, np.array([6, 8, 0]) * 1e-7
-    file = nominal(member, "gear", lambda R, n: np.sum((t + np.cross(w, R)) * n, axis=1), around(member))
-    found = register(file, member, "gear")
-    np.testing.assert_allclose(found.seat, [*t[:2], *w[:2]], rtol=0, atol=1e-9)
+    found = register(nominal(member, "gear", lambda R, n: 1e-3 * n[:, 2], around(member)), member, "gear")
+    assert found.axial == pytest.approx(1 * UM, rel=1e-6)
     assert found.axial_position.share["other settings"] is None
 
 
