@@ -26,7 +26,7 @@ import numpy as np
 from derivations import notation
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
-from gearmath.quality.compensation import ROOT_WEIGHT, FlankTarget, Identification, Problem
+from gearmath.quality.compensation import RANK, ROOT_WEIGHT, FlankTarget, Identification, Problem
 from gearmath.quality.correction import ROOT_LIMIT, Correction
 from gearmath.quality.covariance import Covariance, coverage_factor
 from gearmath.quality.figures import Figure
@@ -82,7 +82,7 @@ def setting_uncertainty(
 def exact_gain(targets: Sequence[FlankTarget], found: Identification, root_limit: float | None = None) -> np.ndarray:
     """Derivative (p,m) [mm or rad per mm] of identified values by the measured deviations, by (A).
 
-    Raises ComputationError where the matrix of (A) is not positive definite.
+    Raises ComputationError where the matrix of (A) is not positive definite beyond rounding.
     """
     weighting = np.eye(len(found.residual)) if found.weighting is None else found.weighting.T @ found.weighting
     pull = weighting @ found.residual
@@ -95,7 +95,8 @@ def exact_gain(targets: Sequence[FlankTarget], found: Identification, root_limit
     held = _held(found)
     loose = np.array([variable.label not in held for variable in found.variables])
     free = matrix[np.ix_(loose, loose)]
-    if loose.any() and np.linalg.eigvalsh(free)[0] <= 0:
+    sizes = np.linalg.eigvalsh(free) if loose.any() else np.ones(1)
+    if sizes[0] <= RANK**2 * sizes[-1]:
         raise ComputationError(
             "the flanks do not determine the settings: free fewer of them, or say how well the points were measured"
         )
