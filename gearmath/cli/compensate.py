@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 
 from gearmath.cli.common import JSON, MEMBER, SET, about, echo_json, output, table
+from gearmath.errors import ComputationError
 
 if TYPE_CHECKING:
     from gearmath.quality.analysis import Analysis
     from gearmath.quality.correction import Correction
     from gearmath.quality.thickness import By
     from gearmath.specs.bevel_set import BevelSet, Member
+    from gearmath.specs.flank_csv import FlankFile
 
 
 @click.command()
@@ -43,7 +45,10 @@ if TYPE_CHECKING:
     help="Correct here what the mate shows there: its measured flank CSV, moved through the ease-off.",
 )
 @click.option("--root-limit", type=click.FloatRange(0.001, 2), metavar="MM", help="Most that the root line may move.")
-@click.option("--noise", type=click.FloatRange(0, 100), metavar="UM", help="Noise of one deviation; else what is left.")
+@click.option(
+    "--noise", "--sigma-um", "noise", type=click.FloatRange(0, 100), metavar="UM",
+    help="Noise of one deviation; else what is left. With it, or with u_um in the file, settings have uncertainties.",
+)  # fmt: skip
 @click.option("--thickness", type=float, default=0.0, metavar="UM", help="Leave the teeth thicker by so much.")
 @click.option(
     "--thickness-by",
@@ -78,19 +83,53 @@ def compensate(
         by = cast("By", thickness_by)
         correction.settings.update(with_thickness(spec, member, correction.settings, thickness / 1000, by))
     save_corrected(source, target, member, correction.settings, correction.index, correction.motions)
-    values = _values(spec, correction)
+    values = _values(spec, correction) | _uncertainty(spec, member, file, correction, noise, root_limit or ROOT_LIMIT)
     if as_json:
         echo_json(values)
         return
     for group, analysis in correction.analysis.items():
         _say_analysis(" and ".join(group), analysis)
+    _say_changes(values)
+    _say_result(correction)
+    click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
+
+
+def _uncertainty(
+    member: Member, name: str, file: FlankFile, correction: Correction, noise_um: float | None, root_limit: float
+) -> dict[str, Any]:
+    """Standard uncertainties of the corrected settings, and the RMS [µm] that errors of measurement leave."""
+    from gearmath.cli.uncertainty import point_covariance
+    from gearmath.quality.setting_uncertainty import uncertain_settings
+
+    covariance = point_covariance(file, noise_um or None)
+    if covariance is None:
+        return {}
+    try:
+        settings, caused = uncertain_settings(member, name, file, correction, covariance, root_limit)
+    except ComputationError as error:
+        return {"no_uncertainties": str(error)}
+    known: dict[str, dict[str, float]] = {}
+    for one in settings:
+        known.setdefault(one.figure.flank, {})[one.figure.name] = one.uncertainty * one.figure.factor
+    return {"u": known, "caused_rms_um": {flank: value * 1000 for flank, value in caused.items()}}
+
+
+def _say_changes(values: dict[str, Any]) -> None:
+    head = ["flank", "setting", "old", "new", "unit"]
     rows = [
         [change["flank"], change["setting"], f"{change['old']:.6f}", f"{change['new']:.6f}", change["unit"]]
         for change in values["changes"]
     ]
-    click.echo(table(["flank", "setting", "old", "new", "unit"], rows) if rows else "nothing to correct")
-    _say_result(correction)
-    click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
+    if "u" in values:
+        head.insert(4, "u")
+        for row in rows:
+            u = values["u"][row[0]].get(row[1])
+            row.insert(4, "" if u is None else f"{u:.6f}")
+    click.echo(table(head, rows) if rows else "nothing to correct")
+    if "no_uncertainties" in values:
+        click.echo(f"no uncertainties of settings: {values['no_uncertainties']}")
+    for flank, value in values.get("caused_rms_um", {}).items():
+        click.echo(f"{flank}: errors of measurement will leave {value:.3f} um (RMS) after the correction")
 
 
 def _free(names: str) -> tuple[str, ...] | None:

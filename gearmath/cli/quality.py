@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from gearmath.cli.common import JSON, about, bar, echo_json
+from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
 
 
 @click.command()
@@ -16,11 +17,15 @@ from gearmath.cli.common import JSON, about, bar, echo_json
     "--register/--no-register", "registered", default=True, show_default=True,
     help="Take out how the work sat (eccentricity, tilt), where the points tell it.",
 )  # fmt: skip
+@SIGMA
 @click.option("--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), help="Topography and pitch as PNG.")
 @JSON
-def evaluate(measured: Path, gear_set: str, registered: bool, picture: Path | None, as_json: bool) -> None:
+def evaluate(
+    measured: Path, gear_set: str, registered: bool, sigma_um: float | None, picture: Path | None, as_json: bool
+) -> None:  # fmt: skip
     """Pitch, profile and topography of a measured member; how it sat, runout, tooth thickness, drift and grade.
 
+    With --sigma-um, or u_um in the file, figures have standard uncertainties; 'gearmath uncertainty' says more of them.
     Grades are by formulas that are not confirmed against ISO 17485: no conformity is claimed.
     """
     from gearmath.quality.evaluation import STAGES, evaluate_member
@@ -36,9 +41,10 @@ def evaluate(measured: Path, gear_set: str, registered: bool, picture: Path | No
         from gearmath.plot import evaluation_figure, save
 
         save(evaluation_figure(f"{file.member}, {measured.name}", found), picture)
+    sure = quick_figures(file, member, found, sigma_um)
     if as_json:
-        echo_json(found.as_dict())
+        echo_json(found.as_dict() | ({"uncertainty": shown(sure)} if sure else {}))
         return
     from gearmath.cli.quality_text import evaluation_text
 
-    click.echo(evaluation_text(found))
+    click.echo(evaluation_text(found, sure))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from gearmath.cli.common import table
 from gearmath.quality.evaluation import Evaluation
+from gearmath.quality.uncertainty import Uncertain
 
 _FIGURES = ("max_deviation_um", "rms_um", "cubic_surface_residual_um", "F_p_um", "max_f_pt_um")
 _ORDERS = (
@@ -15,8 +16,8 @@ _ORDERS = (
 )  # fmt: skip
 
 
-def evaluation_text(found: Evaluation) -> str:
-    """The figures of an evaluation as text."""
+def evaluation_text(found: Evaluation, sure: Sequence[Uncertain] = ()) -> str:
+    """The figures of an evaluation as text, with their uncertainties where they are known."""
     values = found.as_dict()
     flanks: dict[str, Any] = values["flanks"]
     first = table(
@@ -27,7 +28,25 @@ def evaluation_text(found: Evaluation) -> str:
         ["flank", *(name.removesuffix("_um") for name in _ORDERS)],
         [[flank, *(f"{row['orders'][name]:+.3f}" for name in _ORDERS)] for flank, row in flanks.items()],
     )
-    return "\n".join([first, "", "first and second order / um:", orders, "", *_lines(values)]).rstrip()
+    return "\n".join([first, "", "first and second order / um:", orders, "", *_sure(sure), *_lines(values)]).rstrip()
+
+
+def _sure(found: Sequence[Uncertain]) -> Iterator[str]:
+    """Standard and expanded uncertainties of the figures in µm, without those of single teeth and coefficients."""
+    rows = [
+        [
+            one.figure.flank,
+            one.figure.name,
+            f"{one.uncertainty * 1000:.3f}",
+            *(f"{end * 1000:.3f}" for end in one.interval),
+        ]
+        for one in found
+        if one.figure.unit == "um" and not one.figure.name.startswith(("c_", "f_pt_"))
+    ]
+    if rows:
+        yield "standard uncertainties u and intervals of 95 % / um:"
+        yield table(["flank", "figure", "u", "from", "to"], rows)
+        yield ""
 
 
 def _lines(values: dict[str, Any]) -> Iterator[str]:

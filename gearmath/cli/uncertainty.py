@@ -16,6 +16,7 @@ from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from gearmath.quality.covariance import Covariance
+    from gearmath.quality.evaluation import Evaluation
     from gearmath.quality.uncertainty import Uncertain
     from gearmath.specs.bevel_set import Member
     from gearmath.specs.flank_csv import FlankFile
@@ -25,6 +26,8 @@ SIGMA = click.option(
     help="Standard uncertainty of every point, nothing in common, in place of u_um of the file.",
 )  # fmt: skip
 _BUNDLED = "measurement.toml"
+#: Enough for the spread of a maximum to 2 %.
+_FEW_DRAWS = 2000
 
 
 @click.command()
@@ -74,7 +77,7 @@ def uncertainty(
         save(uncertainty_figure(f"{member}, {measured.name}", found), picture)
     if as_json:
         echo_json({
-            "member": member, "source": source, "draws": draws, "seed": seed, "figures": _values(found),
+            "member": member, "source": source, "draws": draws, "seed": seed, "figures": shown(found),
             "caused_rms_um": {flank: value * 1000 for flank, value in caused.items()}, "remarks": remarks,
         })  # fmt: skip
         return
@@ -84,7 +87,7 @@ def uncertainty(
         [
             [row["flank"], row["figure"], *(_number(row[name], row["unit"]) for name in ("value", "u", "from", "to")),
              row["unit"], row["method"]]
-            for row in _values(found)
+            for row in shown(found)
         ],
     ))  # fmt: skip
     for flank, value in caused.items():
@@ -144,6 +147,17 @@ def point_covariance(file: FlankFile, sigma_um: float | None) -> Covariance | No
     return stated(file) if sigma_um is None else independent(np.full(len(file), sigma_um / 1000))
 
 
+def quick_figures(file: FlankFile, member: Member, found: Evaluation, sigma_um: float | None) -> list[Uncertain]:
+    """The figures of an evaluation with their uncertainties, from few draws; none where the points have none."""
+    covariance = point_covariance(file, sigma_um)
+    if covariance is None:
+        return []
+    from gearmath.quality.figures import figures_of
+    from gearmath.quality.uncertainty import uncertain_figures
+
+    return uncertain_figures(figures_of(file, member, found), covariance, _FEW_DRAWS)
+
+
 @contextmanager
 def _executor(address: str | None) -> Iterator[Executor | None]:
     """The executor of a dask cluster, if one is named."""
@@ -162,7 +176,8 @@ def _executor(address: str | None) -> Iterator[Executor | None]:
         yield executor
 
 
-def _values(found: list[Uncertain]) -> list[dict[str, Any]]:
+def shown(found: list[Uncertain]) -> list[dict[str, Any]]:
+    """Figures with their uncertainties as people and programs read them."""
     return [
         {
             "flank": one.figure.flank,

@@ -117,6 +117,56 @@ def test_uncertainty_of_points_comes_from_option_then_file_then_model(command, m
     assert u > 0.3  # what the touches of a flank have in common, 0.3 um and more, no number of points takes away
 
 
+def test_evaluation_shows_uncertainties_where_the_points_have_them(command, measured, tmp_path):
+    arguments = ("evaluate", measured, "--set", SET, "--no-register")
+    silent = json.loads(command(*arguments, "--json")[1])
+    assert "uncertainty" not in silent
+    assert "uncertainties" not in command(*arguments)[1]
+    known = json.loads(command(*arguments, "--json", "--sigma-um", 0.45)[1])
+    assert {key: value for key, value in known.items() if key != "uncertainty"} == silent
+    mean = next(one for one in known["uncertainty"] if one["figure"] == "mean")
+    assert mean["u"] == pytest.approx(0.45 / 45**0.5, rel=1e-9)
+    assert mean["to"] - mean["value"] == pytest.approx(1.959964 * mean["u"], rel=1e-6)
+    file = tmp_path / "stated.csv"
+    points = read_flank_csv(measured)
+    write_flank_csv(file, replace(points, uncertainty=np.full(len(points), 0.45e-3)))
+    status, out, err = command("evaluate", file, "--set", SET)
+    assert (status, err) == (0, "")
+    lines = [line.split() for line in out.splitlines()]
+    table = [line for line in lines if line[:2] == ["concave", "mean"]]
+    assert [len(line) for line in table] == [5]
+    assert any(line[:2] == ["both", "F_r"] for line in lines)
+
+
+def test_compensation_shows_uncertainties_where_the_points_have_them(command, measured, tmp_path):
+    arguments = ("compensate", SET, "--member", "pinion", "--measured", measured, "-o", tmp_path / "new.toml")
+    assert "u" not in json.loads(command(*arguments, "--json")[1])
+    known = json.loads(command(*arguments, "--json", "--sigma-um", 0.5)[1])
+    whole = {(one["flank"], one["figure"]): one["u"] for one in values(command, measured, "--sigma-um", 0.5)["figures"]}
+    for flank, settings in known["u"].items():
+        assert len(settings) == 7
+        for name, u in settings.items():
+            assert u == pytest.approx(whole[flank, name], rel=1e-9)
+    assert set(known["caused_rms_um"]) == {"concave", "convex"}
+    status, out, _ = command(*arguments, "--noise", 0.5)
+    assert status == 0
+    head = next(line.split() for line in out.splitlines() if line.startswith("flank "))
+    assert head == ["flank", "setting", "old", "new", "u", "unit"]
+    assert "errors of measurement will leave" in out
+
+
+def test_settings_that_are_not_determined_are_corrected_without_uncertainty(command, tmp_path, measured):
+    """Cradle and work rotation do the same; almost no noise lets both move."""
+    out = command(
+        "compensate", SET, "--member", "pinion", "--measured", measured, "-o", tmp_path / "new.toml", "--json",
+        "--settings", "cradle_angle,work_rotation_offset", "--sigma-um", 1e-6,
+    )[1]  # fmt: skip
+    found = json.loads(out)
+    assert "u" not in found
+    assert "do not determine the settings" in found["no_uncertainties"]
+    assert (tmp_path / "new.toml").exists()
+
+
 def test_draws_do_not_depend_on_the_workers_and_go_on_from_their_file(command, measured, tmp_path):
     results = tmp_path / "r.npz"
     one, two = (values(command, measured, "--workers", n, "--sigma-um", 0.5) for n in (1, 2))
