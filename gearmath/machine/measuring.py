@@ -1,8 +1,8 @@
 """A simulated measurement: the member in a clamping of its own, touched in the order of the probing program.
 
 The member is as a virtual milling left it. It sits eccentric and tilted on the axis that turns it, it drifts evenly
-from the first touch to the last, and every touch has noise and lobes. The reference point of tooth 0 is touched again
-at the end, as tooth z, which shows the drift.
+from the first touch to the last, and every touch has noise and lobes. Reference point and corners of tooth 0 are
+touched again at the end, as tooth z, which shows the drift.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
-from gearmath.machine.probing import lobing
+from gearmath.machine.probing import landmarks, lobing
 from gearmath.machine.simulation import mounted
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
@@ -48,12 +48,11 @@ def measure_member(true: FlankFile, member: Member, name: str, shop: SimulatedMa
 
 
 def _in_order(file: FlankFile, member: Member) -> FlankFile:
-    """The points tooth by tooth, flank by flank, and the reference points of tooth 0 once more as tooth z."""
+    """The points tooth by tooth, flank by flank, and the landmarks of tooth 0 once more as tooth z."""
     flank = np.array([FLANKS.index(one) for one in file.flank])
     order = np.lexsort((file.col, file.row, flank, file.tooth))
-    row, col = (int(part) for part in file.header["reference_point"].split(","))
-    again = [k for k in order if (file.tooth[k], file.row[k], file.col[k]) == (0, row, col)]
-    index = np.concatenate([order, np.array(again, dtype=int)])
+    marked = (file.tooth == 0) & landmarks(file.row, file.col, _grid(file, member).shape, corners=True)
+    index = np.concatenate([order, order[marked[order]]])
     tooth = file.tooth[index]
     tooth[len(order) :] = member.teeth
     return FlankFile(

@@ -10,6 +10,7 @@ import numpy as np
 from gearmath.bevel.flank import blank_grid
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.mill import MARGIN, measured_lines, nominal_flank, root_of, thickness
+from gearmath.machine.probing import landmarks
 from gearmath.machine.run import Run, runs_of
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile, join
@@ -30,14 +31,12 @@ def metal(
     runs = runs_of(path, member, name, machine, errors, root_of(member, name))
     grid = blank_grid(member, margin=MARGIN)
     nominal = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
-    rows, columns = grid.shape
     row, col = (index.ravel() for index in np.indices(grid.shape))
-    reference = (row == rows // 2) & (col == columns // 2)
-    corners = reference | (np.isin(row, (0, rows - 1)) & np.isin(col, (0, columns - 1)))
+    reference, corners = (landmarks(row, col, grid.shape, corners=more) for more in (False, True))
     files = []
     for tooth in range(member.teeth):
         near = [_near(run, tooth, member.teeth) for run in runs]
-        keep = np.full(rows * columns, True) if tooth in whole else corners if tooth in around else reference
+        keep = corners | True if tooth in whole else corners if tooth in around else reference
         for flank, other in (FLANKS, FLANKS[::-1]):
             wanted = nominal[flank].pick(keep)
             start = -0.5 * thickness(wanted.point, nominal[other].point, member.teeth)

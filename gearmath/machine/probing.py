@@ -1,6 +1,6 @@
 """Probing programs: every tooth at the reference point for pitch, a grid of both flanks for topography.
 
-After the last tooth the reference points of tooth 0 are touched again, as tooth z: what differs is drift.
+After the last tooth some points of tooth 0 are touched again, as tooth z: what differs is drift.
 The stylus enters a space from above, square to the root cone, and touches along the outward normal; outside of the
 space it moves at a height that clears the whole member at every position of A.
 """
@@ -84,25 +84,33 @@ def probe_targets(
 ) -> Targets:
     """The touches of a member: the whole grid on the teeth of ``topography``, the reference point on all others.
 
-    With ``pitch``, the reference points of tooth 0 come once more at the end, as tooth z, A standing as for tooth 0.
+    With ``pitch``, tooth 0 comes once more at the end, as tooth z, A standing as for tooth 0: the reference points, and
+    the corners of the grid where it was probed in full, whose normals tell a drift in any direction.
     Raises InputError naming flank, row and column where the tip has no room between the flanks.
     """
     if not all(0 <= tooth < member.teeth for tooth in topography):
         raise InputError(f"{name}: teeth = {list(topography)}: must be numbers from 0 to {member.teeth - 1}")
     grid = blank_grid(member) if grid is None else grid
     flanks = [_of_one_flank(member, name, flank, grid, machine, calibration) for flank in FLANKS]
-    rows, columns = grid.shape
     parts = []
     for tooth in range(member.teeth + 1):
         for one in flanks:
             whole = tooth in topography
             if whole or pitch:
-                keep = np.full(len(one), whole) | ((one.row == rows // 2) & (one.col == columns // 2))
-                parts.append(_turned(one.pick(keep), tooth, member.teeth))
+                again = tooth == member.teeth and 0 in topography
+                keep = landmarks(one.row, one.col, grid.shape, corners=again)
+                parts.append(_turned(one.pick(keep | whole), tooth, member.teeth))
     if not parts:
         raise InputError(f"{name}: there is nothing to probe: neither a tooth for topography, nor pitch")
     joined = (np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Targets))
     return Targets(*joined)
+
+
+def landmarks(row: np.ndarray, col: np.ndarray, shape: tuple[int, int], corners: bool) -> np.ndarray:
+    """Which points (n,) of a grid are its reference point, in the middle, or one of its ``corners``."""
+    rows, columns = shape
+    middle = (row == rows // 2) & (col == columns // 2)
+    return middle | (corners & np.isin(row, (0, rows - 1)) & np.isin(col, (0, columns - 1)))
 
 
 def _of_one_flank(

@@ -36,8 +36,8 @@ class Drift:
 def without_drift(file: FlankFile, teeth: int) -> tuple[FlankFile, dict[str, Drift]]:
     """The file without tooth 0 measured again and without what that shows, and the drift of each flank.
 
-    Drift is taken as even over the rows, which stand in the order of measuring, and as none at the points of tooth 0
-    that were touched again. A flank without such points stays as it is.
+    Drift is taken as even over the rows, which stand in the order of measuring, and as none at the first of them: one
+    clock for both flanks, or it would change the thickness of the teeth. A flank without such points stays as it is.
     """
     pairs = {flank: _twice(file, teeth, flank) for flank in FLANKS}
     seen = [flank for flank in FLANKS if len(pairs[flank][0])]
@@ -50,7 +50,7 @@ def without_drift(file: FlankFile, teeth: int) -> tuple[FlankFile, dict[str, Dri
     deviation, drifts = file.deviation.copy(), {}
     for flank in seen:
         here, (start, end) = file.flank == flank, pairs[flank]
-        deviation[here] -= (rows[here] - rows[start].mean()) * (normal[here] @ rate)
+        deviation[here] -= rows[here] * (normal[here] @ rate)
         closure = float(np.mean(file.deviation[end] - file.deviation[start]))
         drifts[flank] = Drift(flank, closure, rate, len(start))
     moved = np.nan_to_num(deviation - file.deviation)[:, None] * file.normal

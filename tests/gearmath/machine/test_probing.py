@@ -65,7 +65,7 @@ def test_every_touch_is_within_a_micrometre_of_where_it_should_be(gear_set, memb
     done, _ = probed(gear_set, member, machine, probe)
     touched = done.path.axes[done.path.measuring][1::2]
     rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[1:]]
-    assert len(touched) == len(rows) == 2 * (45 + spec.teeth)
+    assert len(touched) == len(rows) == 2 * (45 + spec.teeth - 1 + 5)
     tips, _ = tip_in_work(touched, machine, probe)
     nominal = {flank: solve_flank(spec, member, flank, blank_grid(spec)) for flank in FLANKS}
     for tip, (_, _, _, flank, tooth, row, col, *_) in zip(tips, rows, strict=True):
@@ -80,13 +80,18 @@ def test_tooth_0_is_touched_again_at_the_end_where_it_was_touched_first(gear_set
     """Both flanks, at the same positions, A of a counting axis too; without pitch there is no second time."""
     for machine in (MACHINE, COUNTING):
         targets = probe_targets(gear_set.gear, "gear", machine, PROBE)
-        assert targets.tooth[-2:].tolist() == [36, 36]
-        assert targets.flank[-2:].tolist() == list(FLANKS)
-        for k in (-2, -1):
-            first = (targets.tooth == 0) & (targets.flank == targets.flank[k]) & (targets.row == 2) & (targets.col == 4)
+        assert (targets.tooth == 36).sum() == 10
+        assert (targets.tooth[-10:] == 36).all()
+        assert targets.flank[-10:].tolist() == ["concave"] * 5 + ["convex"] * 5
+        assert list(zip(targets.row[-5:], targets.col[-5:], strict=True)) == [(0, 0), (0, 8), (2, 4), (4, 0), (4, 8)]
+        for k in range(-10, 0):
+            first = (targets.tooth == 0) & (targets.flank == targets.flank[k])
+            first &= (targets.row == targets.row[k]) & (targets.col == targets.col[k])
             for positions in (targets.start, targets.touch, targets.end):
                 np.testing.assert_array_equal(positions[k], positions[first][0])
     assert probe_targets(gear_set.gear, "gear", MACHINE, PROBE, pitch=False).tooth.max() == 0
+    alone = probe_targets(gear_set.gear, "gear", MACHINE, PROBE, topography=())
+    assert (alone.tooth == 36).sum() == 2
 
 
 def test_repeated_touches_follow_each_other_without_leaving_the_space(gear_set):

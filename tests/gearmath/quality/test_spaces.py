@@ -70,10 +70,9 @@ def test_pitch_of_both_flanks_and_both_hands_by_hand(flank, side, hand):
 
 
 def drifting(low, high, rates):
-    """The same, tooth 0 once more at the end as tooth 4, and a drift [mm] per row since the flank's first touch."""
+    """The same, tooth 0 once more at the end as tooth 4, and a drift [mm] of each flank per row since the first."""
     file = spaces(low, high, order=range(5))
-    first = file.flank == "concave"
-    drift = np.where(first, *rates) * (np.arange(len(file)) - np.where(first, 0, 1))
+    drift = np.where(file.flank == "concave", *rates) * np.arange(len(file))
     return replace(file, deviation=file.deviation + drift, point=file.point + drift[:, None] * file.normal)
 
 
