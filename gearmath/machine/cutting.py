@@ -107,6 +107,7 @@ def cutting_program(
         f"flank tolerance: {job.tolerance * 1000:g} um along the tooth normal",
         *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
         f"feed: {job.feed:g} mm/min at the tooth",
+        *_hobbing_notes(member),
         *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
         f"machine: {_plain(machine.name)}",
         f"cutting time: {sum(one.seconds.sum() + one.dwell for one in passes):.1f} s",
@@ -156,6 +157,16 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job
         label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
         axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
         yield Pass(cut.tool, label, 0, axes, one.seconds)
+
+
+def _hobbing_notes(member: Member) -> tuple[str, ...]:
+    """What the header says of face hobbing."""
+    if member.process != "face_hobbing":
+        return ()
+    return (
+        f"face hobbing: {member.blade_groups} blade groups, all spaces in one roll",
+        "C: cutter spindle as an axis after SPOS=0 [unconfirmed: whether M70 is needed, and the sense of C]",
+    )
 
 
 def _first_pass(member: Member, cut: Cut, machine: MillingMachine, job: Job) -> tuple[np.ndarray, Pass]:

@@ -23,7 +23,7 @@ from gearmath.machine.blocks import ROUNDING, TOLERANCES
 from gearmath.machine.feeds import paced_seconds
 from gearmath.machine.path import Cut, axis_positions, roll_range, whole_flank
 from gearmath.specs.bevel_set import FLANKS, Flank, Member
-from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.milling_machine import AxisLimits, MillingMachine
 
 #: No block turns A or C further than this: DC goes the short way.
 _MOST_TURN = math.radians(170.0)
@@ -35,6 +35,8 @@ _C_ROUNDING = math.radians(0.5e-6) * 250.0
 _BESIDE = 2e-3
 #: Most that the cutter goes down, and past the tooth, in a turn of the work: a blade cuts each space once. [mm]
 _PLUNGE_PER_TURN, _ROLL_PER_TURN = 0.2, 3.0
+#: No roll takes more turns of the work than this.
+_MOST_TURNS = 20_000
 #: The parabola of (17.4) may be too low by this part; turns of the work at the bottom, where nothing rolls.
 _PARABOLA_MARGIN, _FORMATE_TURNS = 1.05, 1.25
 
@@ -54,7 +56,7 @@ class HobbingPass:
 
 @dataclass(frozen=True)
 class _Drive:
-    """How cutter and work turn: the sense of C, and the turn of A for that of C."""
+    """How cutter and work turn: the sense of C, and the turn of the work for one of the cutter."""
 
     sense: int
     index_ratio: float
@@ -64,6 +66,11 @@ class _Drive:
         """M3 turns clockwise as seen along the spindle towards the work: right-handed about the tool axis, as C."""
         ratio = member.indexing_sign * (member.blade_groups or 1) / member.teeth
         return _Drive(1 if machine.cutter_direction == "M3" else -1, ratio)
+
+    def seconds_per_turn(self, limits: AxisLimits, rpm: float) -> float:
+        """Shortest time [s] of a turn of the work, at a speed of the cutter that A and C can follow."""
+        speed = min(2 * math.pi * rpm / 60, limits.max_speed[5], limits.max_speed[3] / abs(self.index_ratio))
+        return 2 * math.pi / abs(self.index_ratio) / speed
 
     def beta(self, turns: np.ndarray) -> np.ndarray:
         """Cutter angle after turns of the work (17.3)."""
@@ -134,42 +141,50 @@ def hobbing_pass(
     """The whole cut: from ``lift`` [mm] above the start of the roll down, through the roll, to a standstill.
 
     ``feed`` [mm/min] is the highest speed of the roll past ``tooth`` (3,), ``rpm`` the speed of the cutter; both give
-    way to the axes. Raises InputError for a tolerance out of range and for a machine without C.
+    way to the axes. Raises InputError for a machine without C, and for tolerance, feed or speed out of range.
     """
+    _check(name, machine, tolerance, feed, rpm)
+    drive, spec, limits = _Drive.of(member, machine), member.flank(cut.flanks[0]), machine.limits(6)
+    pivot, per_turn = (machine.pivot_height, machine.pivot), drive.seconds_per_turn(limits, rpm)
+    start, end, turns = _roll(member, cut, drive, (1 - _CHORD_SHARE) * tolerance - ROUNDING - _C_ROUNDING)
+    if end > start:
+        way = _way_past(spec, np.linspace(start, end, 200), tooth, pivot)
+        turns = max(turns, way / min(feed * per_turn / 60.0, _ROLL_PER_TURN))
+    if turns > _MOST_TURNS:
+        raise InputError(
+            f"{name}: feed = {feed} mm/min: asks for {turns:.0f} turns of the work in the roll, {_MOST_TURNS} at most"
+        )
+    down = lift / min(plunge_feed * per_turn / 60.0, _PLUNGE_PER_TURN)
+    parts = _parts(drive, machine)
+    plunge = np.linspace(0.0, 1.0, max(2, math.ceil(down * parts)) + 1)
+    roll = _roll_parts(spec, start, end, max(2, math.ceil(turns * parts)), _CHORD_SHARE * tolerance, pivot)
+    turned = np.concatenate([down * plunge, down + turns * roll[1:]])
+    theta = np.concatenate([np.full(len(plunge), start), start + (end - start) * roll[1:]])
+    axes = six_axes(spec, theta, drive.beta(turned), drive.index_ratio, *pivot)
+    axes[: len(plunge), 2] += lift * (1.0 - plunge)
+    seconds = paced_seconds(
+        np.diff(axes, axis=0), np.diff(turned) * per_turn, limits.max_speed, limits.max_acceleration
+    )  # fmt: skip
+    return HobbingPass(axes, theta, seconds, turns)
+
+
+def _roll_parts(
+    spec: Flank, start: float, end: float, count: int, chord: float, pivot: tuple[float, np.ndarray]
+) -> np.ndarray:
+    """Parts of the roll (n+1,), from 0 to 1, at which blocks end: ``count`` or more, for chords [mm] as small as that."""
+    while end > start and _chord(spec, np.linspace(start, end, count + 1), pivot) > chord:
+        count *= 2
+    return np.linspace(0.0, 1.0, count + 1)
+
+
+def _check(name: str, machine: MillingMachine, tolerance: float, feed: float, rpm: float) -> None:
     if machine.axes.C is None:
         raise InputError(
             f"{name}: is face hobbed, which turns the cutter as the sixth axis C: {machine.name} has no [axes.C]"
         )
-    _check_tolerance(tolerance)
-    drive, spec = _Drive.of(member, machine), member.flank(cut.flanks[0])
-    limits = machine.limits(6)
-    turning = np.array([0, 0, 0, drive.index_ratio, 0, 1.0])  # A and C for a unit of the cutter's angle
-    speed = min(2 * math.pi * rpm / 60, *(limits.max_speed[[3, 5]] / np.abs(turning[[3, 5]])))
-    per_turn = 2 * math.pi / abs(drive.index_ratio) / speed
-    budget = (1 - _CHORD_SHARE) * tolerance - ROUNDING - _C_ROUNDING
-    start, end, turns = _roll(member, cut, drive, budget)
-    pivot = (machine.pivot_height, machine.pivot)
-    if end > start:
-        way = _way_past(spec, np.linspace(start, end, 200), tooth, pivot)
-        turns = max(turns, way / min(feed * per_turn / 60.0, _ROLL_PER_TURN))
-    down = lift / min(plunge_feed * per_turn / 60.0, _PLUNGE_PER_TURN)
-    parts = _parts(drive, machine)
-    n_down = max(2, math.ceil(down * parts))
-    n_roll = max(2, math.ceil(turns * parts))
-    while True:
-        turned = np.concatenate([np.linspace(0, down, n_down + 1), down + np.linspace(0, turns, n_roll + 1)[1:]])
-        theta = np.concatenate([np.full(n_down + 1, start), np.linspace(start, end, n_roll + 1)[1:]])
-        if end == start or _chord(spec, np.linspace(start, end, n_roll + 1), pivot) <= _CHORD_SHARE * tolerance:
-            break
-        n_roll *= 2
-    axes = six_axes(spec, theta, drive.beta(turned), drive.index_ratio, *pivot)
-    axes[: n_down + 1, 2] += np.linspace(lift, 0.0, n_down + 1)
-    steps = np.diff(axes, axis=0)
-    seconds = paced_seconds(steps, np.diff(turned) * per_turn, limits.max_speed, limits.max_acceleration)
-    return HobbingPass(axes, theta, seconds, turns)
-
-
-def _check_tolerance(tolerance: float) -> None:
+    for what, value, unit in (("feed", feed, "mm/min"), ("spindle speed", rpm, "rpm")):
+        if not (math.isfinite(value) and value > 0):
+            raise InputError(f"{name}: {what} = {value} {unit}: must be greater than 0")
     low, high = TOLERANCES
     if not low <= tolerance <= high:
         raise InputError(

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
+from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation_kernels import generation_point
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import generation_of
@@ -17,10 +18,12 @@ from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
 from gearmath.export.host import compile_kernel
 from gearmath.lowering import lower
+from gearmath.machine.blade_milling import removal_by_blades
+from gearmath.machine.blades import blades_of
 from gearmath.machine.collision import collisions
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
-from gearmath.machine.mill import expose, mill_member
+from gearmath.machine.mill import about_axis, expose, mill_member
 from gearmath.machine.passes import Pass
 from gearmath.machine.program import write_program
 from gearmath.machine.run import runs_of
@@ -309,6 +312,10 @@ def test_writer_reader_writer_gives_the_same_text(hobbed, vertical, written):
         (Job(), r"^gear: spaces = \[0\]: face hobbing cuts all spaces in one roll: it must be all 39$"),
         (Job(range(39), tolerance=0.0), r"^tolerance = 0 um: must lie between 0\.02 and 100 um"),
         (Job(range(39), spindle_rpm=1.0), r"^HOB: spindle speed = 1\.0 rpm"),
+        (Job(range(39), spindle_rpm=0.0), r"^gear: spindle speed = 0\.0 rpm: must be greater than 0$"),
+        (Job(range(39), spindle_rpm=math.nan), r"^gear: spindle speed = nan rpm: must be greater than 0$"),
+        (Job(range(39), feed=0.0), r"^gear: feed = 0\.0 mm/min: must be greater than 0$"),
+        (Job(range(39), feed=1e-4), r"^gear: feed = 0\.0001 mm/min: .* turns of the work in the roll, 20000 at most$"),
     ],
 )
 def test_faulty_jobs_are_refused(hobbed, vertical, job, sentence):
@@ -604,3 +611,77 @@ def test_command_line_writes_and_mills(tmp_path, command):
     assert status == 2
     assert "face hobbing cuts all spaces in one roll" in err
     assert not (tmp_path / "NO.MPF").exists()
+
+
+def middle_of_roll(text, blocks):
+    """Some blocks from the middle of a program, with head and end: text, and the index of the line in their middle."""
+    lines = text.split("\n")
+    head = [line for line in lines if line.startswith(("N10 ", "N20 ", "N30 ", "N40 ", "N50 "))]
+    cut_lines = [line for line in lines if " G93 " in line]
+    chosen = cut_lines[len(cut_lines) * 2 // 3 :][: blocks + 1]
+    start = re.sub(r"^N\d+ G93 G1 (.*) F\S+$", r"G0 \1", chosen[0])
+    return [*head, start, *chosen[1:], "M5 M9", "M30"], len(head) + 1 + blocks // 2
+
+
+def mutations(line):
+    """The line with one digit of one axis word changed, for every digit and every other value."""
+    for word in re.finditer(r"(?:[XYZB]|[AC]=DC\()(-?[0-9.]+)", line):
+        for at in range(word.start(1), word.end(1)):
+            for digit in "0123456789" if line[at].isdecimal() else "":
+                if digit != line[at]:
+                    yield line[:at] + digit + line[at + 1 :]
+
+
+@pytest.mark.slow
+def test_a_wrong_digit_is_refused_or_seen_on_the_flanks_of_all_spaces(hobbed, written, vertical, host_compiler):
+    """Every digit of the six axis words of one block, with every other value.
+
+    What counts is a digit by which an edge, where it finishes a flank in the two blocks that end and begin there, moves
+    by more than 1 µm along the normal, or does not come there at all. Seen is what leaves the tolerance of 0.1 µm.
+    """
+    member = hobbed.gear
+    text, changed_line = middle_of_roll(written("gear", tolerance=1e-4), 30)
+    path = execute("\n".join(text), "P")
+    parts = [solve_flank(member, "gear", flank, blank_grid(member, 9, 21, 0.05)) for flank in FLANKS]
+    turns_ = [about_axis(2 * math.pi * space / 39).T for space in range(39)]
+    point, normal = (
+        np.concatenate([getattr(part, key) @ turn for part in parts for turn in turns_]) for key in ("point", "normal")
+    )
+    blades, pose = blades_of(member), (vertical.pivot_height, vertical.pivot)
+    kernels = {}
+
+    def compiled(kernel):
+        return kernels.setdefault(kernel.name, compile_kernel(kernel))
+
+    def left(which, axes, cutter, cutting):
+        start = np.full(len(point[which]), -1.0)
+        return removal_by_blades(
+            axes, cutter, cutting, blades, pose, point[which], normal[which], start, evaluator=compiled
+        )  # fmt: skip
+
+    cutting = ~path.rapid
+    whole = left(slice(None), path.axes, path.cutter, cutting)
+    end = changed_line - 5  # row of the path that the changed line ends at
+    assert path.line[end] == changed_line + 1
+    touching = np.flatnonzero(np.isin(whole.block, (end, end + 1)) & (whole.distance < 1e-4))
+    assert len(touching) > 30
+    others = cutting.copy()
+    others[[end, end + 1]] = False
+    rest = np.nan_to_num(left(touching, path.axes, path.cutter, others).distance, nan=np.inf)
+    assert np.isfinite(rest).all()  # other passes come near, so that what is left is no more than their scallops
+    three = slice(end - 1, end + 2)
+    refusals = demanded = 0
+    for line in mutations(text[changed_line]):
+        try:
+            wrong = execute("\n".join([*text[:changed_line], line, *text[changed_line + 1 :]]), "P")
+        except InputError:
+            refusals += 1
+            continue
+        again = left(touching, wrong.axes[three], wrong.cutter[three], np.array([False, True, True])).distance
+        moved = again - whole.distance[touching]
+        if not (np.isnan(moved) | (np.abs(moved) > 1e-3)).any():
+            continue
+        demanded += 1
+        assert np.abs(np.fmin(rest, again)).max() > 1e-4, line
+    assert demanded > 200
+    assert refusals > 0
