@@ -15,6 +15,7 @@ from functools import cache
 import numpy as np
 
 from derivations import single_blades
+from gearmath.bevel.kernels import kernel
 from gearmath.lowering import Kernel, lower
 from gearmath.machine.blades import Blades, Edge, crossing
 from gearmath.machine.milling import Evaluator, Removal
@@ -95,11 +96,12 @@ def removal_by_blades(
     best, block = np.full(len(point), np.inf), np.full(len(point), -1)
     starts = np.broadcast_to(np.asarray(start, dtype=float), (len(point),))
     nodes, seen = path.nodes, evaluator(_seen())
+    poses = kernel("tool_pose")(nodes[:, :5], *machine)
     crosses = {is_arc: evaluator(crossing(is_arc)) for is_arc in {edge.is_arc for edge in blades.edges}}
     for begin in range(0, len(point), _LINES):
         rows = np.arange(begin, min(begin + _LINES, len(point)))
         reach = _WINDOW - float(starts[rows].min())
-        passes = _passes(path, nodes, point[rows], blades, machine, reach, seen)
+        passes = _passes(path, nodes, poses, point[rows], blades, machine, reach, seen)
         for edge in blades.edges:
             _, radius, height = edge.middle
             near = np.hypot(passes.radius - radius, passes.height - height) < reach + edge.half_length
@@ -116,40 +118,51 @@ def removal_by_blades(
 
 
 def _passes(
-    path: _Path, nodes: np.ndarray, point: np.ndarray, blades: Blades, machine: tuple, reach: float, seen: _Computed,
+    path: _Path, nodes: np.ndarray, poses: tuple[np.ndarray, ...], point: np.ndarray, blades: Blades, machine: tuple,
+    reach: float, seen: _Computed,
 ) -> _Passes:  # fmt: skip
     """All passes of blade groups within ``reach`` [mm] of any edge, wherever on the path."""
-    many, n = len(point), len(nodes)
-    places = seen(np.tile(nodes[:, :5], (many, 1)), np.repeat(point, n, axis=0), *machine)
-    height, radius, azimuth = (values.reshape(many, n) for values in places)
+    line, node = np.nonzero(_near(poses, point, blades, reach) & (np.diff(path.block) == 0))
+    before, after = (_in_chunks(seen, len(node), nodes[node + k, :5], point[line], *machine) for k in (0, 1))
     pitch = 2 * math.pi / blades.groups
-    off = nodes[:, 5] - azimuth
-    change = np.diff(nodes[:, 5]) - np.remainder(np.diff(azimuth, axis=1) + math.pi, 2 * math.pi) + math.pi
-    low, count = np.minimum(off[:, :-1], off[:, :-1] + change) / pitch, np.abs(change) / pitch
-    reached = (np.floor(low + count) > np.floor(low)) & (np.diff(path.block) == 0)
-    way = np.hypot(np.diff(radius, axis=1), np.diff(height, axis=1))
-    near = np.zeros((many, n - 1), dtype=bool)
-    for edge in blades.edges:
-        _, middle_radius, middle_height = edge.middle
-        away = np.hypot(radius - middle_radius, height - middle_height)
-        near |= np.minimum(away[:, :-1], away[:, 1:]) - way / 2 < reach + edge.half_length
-    line, node = np.nonzero(reached & near)
+    off = nodes[node, 5] - before[2]
+    turned = np.remainder(after[2] - before[2] + math.pi, 2 * math.pi) - math.pi
+    change = nodes[node + 1, 5] - nodes[node, 5] - turned
+    low, count = np.minimum(off, off + change) / pitch, np.abs(change) / pitch
     found = []
-    for k in range(int(np.ceil(count[line, node].max(initial=0.0))) + 1):
-        number = np.floor(low[line, node]) + 1 + k
-        chosen = number <= low[line, node] + count[line, node]
-        i, j, g = line[chosen], node[chosen], number[chosen]
-        part = (g * pitch - off[i, j]) / change[i, j]
+    for k in range(int(np.ceil(count.max(initial=0.0))) + 1):
+        number = np.floor(low) + 1 + k
+        chosen = np.flatnonzero(number <= low + count)
+        j, part = node[chosen], (number[chosen] * pitch - off[chosen]) / change[chosen]
+
+        def between(a: np.ndarray, b: np.ndarray, part: np.ndarray = part) -> np.ndarray:
+            return a + part * (b - a)
+
         found.append(_Passes(
-            i, path.block[j], path.fraction[j] + part * (path.fraction[j + 1] - path.fraction[j]),
-            radius[i, j] + part * (radius[i, j + 1] - radius[i, j]),
-            height[i, j] + part * (height[i, j + 1] - height[i, j]), -g * pitch,
+            line[chosen], path.block[j], between(path.fraction[j], path.fraction[j + 1]),
+            between(before[1][chosen], after[1][chosen]), between(before[0][chosen], after[0][chosen]),
+            -number[chosen] * pitch,
         ))  # fmt: skip
     return _Passes(*(np.concatenate([getattr(one, f) for one in found]) for f in _Passes.__dataclass_fields__))
 
 
+def _near(poses: tuple[np.ndarray, ...], point: np.ndarray, blades: Blades, reach: float) -> np.ndarray:
+    """Whether points (m,3) come near an edge, whatever its direction, between two nodes: (m,n-1)."""
+    center, axis = poses
+    from_center = point[:, None] - center[None]
+    height = -np.einsum("mnk,nk->mn", from_center, axis)
+    radius = np.sqrt(np.maximum(np.einsum("mnk,mnk->mn", from_center, from_center) - height**2, 0.0))
+    way = np.hypot(np.diff(radius, axis=1), np.diff(height, axis=1))
+    near = np.zeros(way.shape, dtype=bool)
+    for edge in blades.edges:
+        _, middle_radius, middle_height = edge.middle
+        away = np.hypot(radius - middle_radius, height - middle_height)
+        near |= np.minimum(away[:, :-1], away[:, 1:]) - way / 2 < reach + edge.half_length
+    return near
+
+
 def _crossings(
-    path: _Path, passes: _Passes, edge: Edge, machine: tuple, line: tuple[np.ndarray, np.ndarray], kernel: _Computed
+    path: _Path, passes: _Passes, edge: Edge, machine: tuple, line: tuple[np.ndarray, np.ndarray], crosses: _Computed
 ) -> tuple[np.ndarray, np.ndarray]:
     """Distance (p,) [mm] at which an edge crosses the line of each pass, infinite where it does not, and the row."""
     block = passes.block.copy()
@@ -163,7 +176,7 @@ def _crossings(
         first, last = path.first[k], path.last[k]
         angle = passes.group_angle[open_]
         found, rest = _in_chunks(
-            kernel, len(open_), guess[open_], first[:, :5], last[:, :5], first[:, 5] + angle, last[:, 5] + angle,
+            crosses, len(open_), guess[open_], first[:, :5], last[:, :5], first[:, 5] + angle, last[:, 5] + angle,
             *machine, *edge.arguments, line[0][open_], line[1][open_],
         )  # fmt: skip
         u, s, t = found.T
@@ -180,10 +193,10 @@ def _crossings(
     return distance, path.row[block]
 
 
-def _in_chunks(kernel: _Computed, count: int, *arguments: object) -> tuple:
-    """The kernel for many points, so many at a time."""
+def _in_chunks(run: _Computed, count: int, *arguments: object) -> tuple:
+    """A kernel for many points, so many at a time."""
     parts = []
-    for begin in range(0, count, _CHUNK):
+    for begin in range(0, max(count, 1), _CHUNK):
         piece = slice(begin, begin + _CHUNK)
-        parts.append(kernel(*(a[piece] if isinstance(a, np.ndarray) and len(a) == count else a for a in arguments)))
+        parts.append(run(*(a[piece] if isinstance(a, np.ndarray) and len(a) == count else a for a in arguments)))
     return tuple(np.concatenate(columns) for columns in zip(*parts, strict=True))

@@ -171,7 +171,7 @@ def hobbing_pass(
 def _roll_parts(
     spec: Flank, start: float, end: float, count: int, chord: float, pivot: tuple[float, np.ndarray]
 ) -> np.ndarray:
-    """Parts of the roll (n+1,), from 0 to 1, at which blocks end: ``count`` or more, for chords [mm] as small as that."""
+    """Parts of the roll (n+1,), from 0 to 1, where blocks end: ``count`` or more, for chords [mm] as small as that."""
     while end > start and _chord(spec, np.linspace(start, end, count + 1), pivot) > chord:
         count *= 2
     return np.linspace(0.0, 1.0, count + 1)

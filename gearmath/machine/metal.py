@@ -40,7 +40,7 @@ def metal(
         for flank, other in (FLANKS, FLANKS[::-1]):
             wanted = nominal[flank].pick(keep)
             start = -0.5 * thickness(wanted.point, nominal[other].point, member.teeth)
-            files.append(measured_lines(near, member, machine, errors, wanted, flank, tooth, start))
+            files += measured_lines(near, member, machine, errors, wanted, flank, [tooth], start)
             progress(1)
     return join(files)
 

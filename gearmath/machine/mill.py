@@ -22,6 +22,8 @@ from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 MARGIN = 0.1
+#: Spaces whose reference points are exposed together.
+_SPACES = 12
 
 
 def flank_header(member: Member, name: str, grid: Grid, margin: float = MARGIN) -> dict[str, str]:
@@ -73,11 +75,11 @@ def mill_member(
     files = []
     for run in runs:
         for flank in run.cut.flanks:
-            for space in run.spaces:
-                wanted = nominals[flank] if space == run.spaces[0] else _reference_only(nominals[flank])
+            for spaces in _together(run.spaces):
+                wanted = nominals[flank] if spaces[0] == run.spaces[0] else _reference_only(nominals[flank])
                 start = -0.5 * thickness(wanted.point, nominals[_other(flank)].point, member.teeth)
-                files.append(measured_lines(runs, member, machine, errors, wanted, flank, space, start))
-                progress(1)
+                files += measured_lines(runs, member, machine, errors, wanted, flank, spaces, start)
+                progress(len(spaces))
     missing = [flank for flank in FLANKS if not any(file.flank[0] == flank for file in files)]
     if missing:
         raise InputError(f"the program does not cut the {missing[0]} flank of the {name}")
@@ -103,23 +105,31 @@ def root_of(member: Member, name: str) -> ToothSpace | None:
     return tooth_space(member, name, 7)
 
 
+def _together(spaces: list[int]) -> list[list[int]]:
+    """The first space by itself, and the others in groups whose lines are exposed in one call."""
+    return [spaces[:1], *(spaces[k : k + _SPACES] for k in range(1, len(spaces), _SPACES))]
+
+
 def measured_lines(
     runs: list[Run], member: Member, machine: MillingMachine, errors: SimulatedMachine | None, nominal: FlankFile,
-    flank: str, space: int, start: np.ndarray,
-) -> FlankFile:  # fmt: skip
-    """The deviations that all passes leave at nominal points, which are given for tooth 0."""
-    turn = about_axis(2 * math.pi * space / member.teeth)
-    point, normal = nominal.point @ turn.T, nominal.normal @ turn.T
-    left = expose(runs, machine, errors, point, normal, start)
-    deviation = left.distance
-    if np.isnan(deviation).any():
-        k = int(np.argmax(np.isnan(deviation)))
-        place = f"row {nominal.row[k]}, col {nominal.col[k]}"
-        raise InputError(f"the program leaves the {flank} flank of space {space} uncut at {place}")
-    return flank_file(
-        nominal.header, nominal.member, flank, space, nominal.row, nominal.col,
-        point + deviation[:, None] * normal, normal, deviation,
-    )  # fmt: skip
+    flank: str, spaces: list[int], start: np.ndarray,
+) -> list[FlankFile]:  # fmt: skip
+    """The deviations that all passes leave at nominal points of some spaces, which are given for tooth 0."""
+    turns = [about_axis(2 * math.pi * space / member.teeth).T for space in spaces]
+    points, normals = ([part @ turn for turn in turns] for part in (nominal.point, nominal.normal))
+    lines = (np.concatenate(points), np.concatenate(normals), np.tile(start, len(spaces)))
+    left = np.split(expose(runs, machine, errors, *lines).distance, len(spaces))
+    files = []
+    for space, point, normal, deviation in zip(spaces, points, normals, left, strict=True):
+        if np.isnan(deviation).any():
+            k = int(np.argmax(np.isnan(deviation)))
+            place = f"row {nominal.row[k]}, col {nominal.col[k]}"
+            raise InputError(f"the program leaves the {flank} flank of space {space} uncut at {place}")
+        files.append(flank_file(
+            nominal.header, nominal.member, flank, space, nominal.row, nominal.col,
+            point + deviation[:, None] * normal, normal, deviation,
+        ))  # fmt: skip
+    return files
 
 
 def expose(

