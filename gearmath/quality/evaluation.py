@@ -46,8 +46,7 @@ class FlankFigures:
             "orders": self.orders.as_dict(),
         }
         if self.pitch is not None:
-            values["F_p_um"] = self.pitch.total * 1000
-            values["max_f_pt_um"] = self.pitch.largest_single * 1000
+            values |= {key: self.pitch.as_dict()[key] for key in ("F_p_um", "max_f_pt_um", "cumulative_um")}
         return values
 
 

@@ -9,6 +9,7 @@ are already in the nominal points. Tooth 0 measured again at the end shows the d
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -46,6 +47,16 @@ class Pitch:
         """The f_pt that is largest in size, without its sign [mm]; NaN where no two neighbours were measured."""
         sizes = np.abs(self.single)
         return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else float("nan")
+
+    def as_dict(self) -> dict[str, Any]:
+        """Figures for people and programs, in µm; None for what was not measured."""
+        values = [None if np.isnan(value) else float(value) * 1000 for value in self.cumulative]
+        return {
+            "F_p_um": self.total * 1000,
+            "max_f_pt_um": self.largest_single * 1000,
+            "cumulative_um": values,
+            "drift_um": None if self.drift is None else self.drift * 1000,
+        }
 
 
 def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:

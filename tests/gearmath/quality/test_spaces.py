@@ -160,6 +160,8 @@ def test_tooth_without_a_deviation_is_left_out_of_pitch_and_runout():
     assert pitch.total == pytest.approx(5 * UM / lever, rel=1e-4)
     assert pitch.largest_single == pytest.approx(5 * UM / lever, rel=1e-4)
     assert np.isnan(evaluate_runout(silent, 4).radial[2])
+    assert pitch.as_dict()["cumulative_um"][2] is None
+    assert pitch.as_dict()["F_p_um"] == pytest.approx(5 / lever, rel=1e-4)
 
 
 def test_thickness_of_a_published_pair_is_what_the_spaces_leave(gear_set, mill):
