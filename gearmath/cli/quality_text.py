@@ -77,6 +77,8 @@ def _seat(seat: dict[str, Any] | None) -> Iterator[str]:
     if seat["tilt_um_per_100mm"] is not None:
         size, direction = _with(seat, "tilt_um_per_100mm"), seat["tilt_direction_deg"]
         yield f"clamping taken out: tilt {size} um per 100 mm about {direction:.1f} deg"
+    if seat["axial"]["axial_um"] is None:
+        return
     size, twin = _with(seat["axial"], "axial_um"), seat["axial"]["confounded_with"]
     yield f"axial position, left in: {size} um if the mean form were nothing else; {twin} does the same"
 

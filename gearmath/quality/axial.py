@@ -40,8 +40,8 @@ class Axial:
 
     def as_dict(self) -> dict[str, Any]:
         return {
-            "axial_um": self.shift * 1000,
-            "u_axial_um": self.uncertainty * 1000 if math.isfinite(self.uncertainty) else None,
+            "axial_um": _or_none(self.shift * 1000),
+            "u_axial_um": _or_none(self.uncertainty * 1000),
             "confounded_with": TWIN,
             "share_imitated_by": self.share,
         }
@@ -108,3 +108,7 @@ def _projected(columns: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     u, singular, _ = np.linalg.svd(columns[:, sizes > 0] / sizes[sizes > 0], full_matrices=False)
     u = u[:, singular > 1e-10]
     return u @ (u.T @ wanted)
+
+
+def _or_none(value: float) -> float | None:
+    return value if math.isfinite(value) else None

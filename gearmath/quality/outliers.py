@@ -41,8 +41,9 @@ class Outliers:
     reasons: tuple[str, ...]
 
     def without(self, file: FlankFile) -> FlankFile:
-        """The file with these points silent."""
-        return replace(file, deviation=np.where(self.mask, np.nan, file.deviation))
+        """The file with these points silent, and back at their nominal places."""
+        back = np.where(self.mask, file.deviation, 0.0)[:, None] * file.normal
+        return replace(file, deviation=np.where(self.mask, np.nan, file.deviation), point=file.point - back)
 
 
 def flag_outliers(along: np.ndarray, upward: np.ndarray, deviation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

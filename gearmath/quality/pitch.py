@@ -53,7 +53,7 @@ class Pitch:
         values = [None if np.isnan(value) else float(value) * 1000 for value in self.cumulative]
         return {
             "F_p_um": self.total * 1000,
-            "max_f_pt_um": self.largest_single * 1000,
+            "max_f_pt_um": None if np.isnan(self.largest_single) else self.largest_single * 1000,
             "cumulative_um": values,
             "drift_um": None if self.drift is None else self.drift * 1000,
         }
@@ -110,5 +110,17 @@ def reference_point(file: FlankFile) -> tuple[int, int]:
 
 
 def index_correction(pitches: list[Pitch]) -> np.ndarray:
-    """Angle (z,) [rad] by which each space must be turned, the mean of both flanks; tooth 0 stays where it is."""
-    return -np.mean([pitch.turning for pitch in pitches], axis=0)
+    """Angle (z,) [rad] by which each space must be turned, the mean of both flanks; tooth 0 stays where it is.
+
+    A tooth that was measured on one flank only is told by that; one that was not at all lies between its neighbours.
+    Raises InputError where no tooth was measured on all flanks.
+    """
+    turning = np.stack([pitch.turning for pitch in pitches])
+    known = np.isfinite(turning)
+    if not known.all(axis=0).any():
+        raise InputError("pitch: no tooth was measured on both flanks, so that they cannot be compared")
+    turning -= turning[:, known.all(axis=0)].mean(axis=1, keepdims=True)
+    teeth, count = np.arange(turning.shape[1]), known.sum(axis=0)
+    mean = np.where(known, turning, 0.0).sum(axis=0) / np.maximum(count, 1)
+    mean = np.interp(teeth, teeth[count > 0], mean[count > 0], period=len(teeth))
+    return mean[0] - mean

@@ -77,6 +77,8 @@ def test_misses_and_missing_points_are_left_out_in_words_and_change_nothing_else
     assert one.as_dict()["left_out"] == 1
     np.testing.assert_allclose(one.mean.deviation, other.mean.deviation, rtol=0, atol=0.2 * UM)
     assert np.flatnonzero(np.isnan(one.pitch.cumulative)).tolist() == [3]
+    assert found.thickness.arc == pytest.approx(clean.thickness.arc, abs=0.1 * UM)
+    assert np.flatnonzero(np.isnan(found.thickness.deviation)).size == 1
     keep = np.arange(12) != 3
     np.testing.assert_allclose(one.pitch.cumulative[keep], other.pitch.cumulative[keep], rtol=0, atol=0.1 * UM)
 

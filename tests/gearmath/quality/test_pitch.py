@@ -59,6 +59,29 @@ def test_index_correction_turns_back_the_mean_of_both_flanks_and_leaves_tooth_0(
     np.testing.assert_allclose(index_correction([first, second]), by_hand, atol=1e-16)
 
 
+def test_tooth_missing_on_one_flank_or_on_both_is_told_by_what_there_is(teeth):
+    """s = 0, 3, -, 5 and 0, 3, -2, 5 µm give 0, 3, -2, 5; with both silent at tooth 2, the middle of 3 and 5."""
+    one = evaluate_pitch(teeth([1 * UM, 4 * UM, np.nan, 6 * UM]), 4, "concave")
+    other = evaluate_pitch(teeth(DEVIATIONS), 4, "concave")
+    np.testing.assert_allclose(index_correction([one, other]), -np.array([0, 3, -2, 5]) * UM / 50, atol=1e-16)
+    np.testing.assert_allclose(index_correction([one, one]), -np.array([0, 3, 4, 5]) * UM / 50, atol=1e-16)
+
+
+def test_tooth_0_missing_on_one_flank_leaves_the_zero_to_the_other(teeth):
+    one = evaluate_pitch(teeth([np.nan, 4 * UM, -1 * UM, 6 * UM]), 4, "concave")
+    other = evaluate_pitch(teeth(DEVIATIONS), 4, "concave")
+    assert np.isnan(one.cumulative[0])
+    np.testing.assert_allclose(index_correction([one, other]), -np.array([0, 3, -2, 5]) * UM / 50, atol=1e-16)
+
+
+def test_flanks_without_a_common_tooth_are_refused(teeth):
+    one = evaluate_pitch(teeth([np.nan, 4 * UM, np.nan, 6 * UM]), 4, "concave")
+    other = evaluate_pitch(teeth([1 * UM, np.nan, -1 * UM, np.nan]), 4, "concave")
+    with pytest.raises(InputError, match=r"^pitch: no tooth was measured on both flanks"):
+        index_correction([one, other])
+    assert one.as_dict()["max_f_pt_um"] is None
+
+
 def test_one_tooth_has_no_pitch(teeth):
     assert evaluate_pitch(teeth(DEVIATIONS, order=[2]), 4, "concave") is None
     assert evaluate_pitch(teeth(DEVIATIONS), 4, "convex") is None
