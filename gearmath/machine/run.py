@@ -14,10 +14,17 @@ from gearmath.machine.blades import Blades, blades_of
 from gearmath.machine.cutter import Cutter, cutter_of
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.path import Cut, axis_positions, roll_range
-from gearmath.machine.simulation import divisions, index_errors, with_axis_errors, with_setting_errors
+from gearmath.machine.simulation import (
+    divisions,
+    index_errors,
+    pitch_divisions,
+    with_axis_errors,
+    with_running_index_errors,
+    with_setting_errors,
+)
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
-from gearmath.specs.simulated_machine import SimulatedMachine, WorkAxis
+from gearmath.specs.simulated_machine import SimulatedMachine
 
 #: Positions of the nominal path that a pass is compared with, to see which space it is indexed to.
 _NOMINAL_POSITIONS = 201
@@ -92,7 +99,7 @@ def _hobbing_run(
     path: MachinePath, member: Member, name: str, cut: Cut, machine: MillingMachine, errors: SimulatedMachine | None,
     edge_radius: float,
 ) -> Run:  # fmt: skip
-    """The run of a face hobbing program. Raises InputError where it cuts without C, or where an error has no sense."""
+    """The run of a face hobbing program. Raises InputError where it cuts without C."""
     cutting = ~path.rapid
     still = cutting & ~np.isfinite(path.cutter)
     if still.any():
@@ -100,17 +107,12 @@ def _hobbing_run(
         raise InputError(f"line {line} cuts while the spindle is no axis C; the {name} is face hobbed")
     axes, turned, lines = path.axes, path.cutter, path.line
     if errors is not None:
-        if errors.work_axis != WorkAxis():
-            raise InputError(
-                f"{name}: work_axis: an index error belongs to indexing space by space, and face hobbing indexes "
-                "without end: give axes.A_harmonics"
-            )
-        six = np.column_stack([axes, turned])
-        six, own = _divided(six, np.where(cutting[1:], divisions(axes, errors), 1))
-        spec = member.flank(cut.flanks[0])
-        six = with_setting_errors(
-            six, spec.nominal.vector, errors.setting_errors(name), machine.pivot, motion_of(spec)
-        )  # fmt: skip
+        spec, index = member.flank(cut.flanks[0]), index_errors(errors.work_axis, member.teeth, errors.seed)
+        settings, given = spec.nominal.vector, (machine.pivot, motion_of(spec))
+        parts = np.maximum(divisions(axes, errors), pitch_divisions(axes, index))
+        six, own = _divided(np.column_stack([axes, turned]), np.where(cutting[1:], parts, 1))
+        six = with_running_index_errors(six, settings, index, *given)
+        six = with_setting_errors(six, settings, errors.setting_errors(name), *given)
         axes, turned, cutting, lines = with_axis_errors(six[:, :5], errors), six[:, 5], cutting[own], lines[own]
     cutter = cutter_of(member, cut.flanks, None, edge_radius)
     spaces = np.full(len(cutting), -1)

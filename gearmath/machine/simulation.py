@@ -25,6 +25,8 @@ _GAUSS_NEWTON_STEPS = 40
 _ON_PATH = 2.0
 #: A periodic error is followed in this many straight parts of its period, to a hundredth of its amplitude.
 _PARTS_OF_A_PERIOD = 24
+#: Index errors of a work that turns without end are followed in this many parts of a pitch.
+_PARTS_OF_A_PITCH = 4
 _AT_REST = np.zeros(notation.motion.shape)
 
 
@@ -72,6 +74,15 @@ def with_setting_errors(
     """
     if not errors.any():
         return axes
+    theta = _theta(axes, settings, pivot_offset, motion)
+    really, meant = (_positions(x, motion, theta, pivot_offset) for x in (settings + errors, settings))
+    shift = really - meant
+    shift[:, 3::2] = (shift[:, 3::2] + math.pi) % (2 * math.pi) - math.pi
+    return axes + shift[:, : axes.shape[1]]
+
+
+def _theta(axes: np.ndarray, settings: np.ndarray, pivot_offset: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    """Cradle rotations (n,) of executed positions."""
     theta, off_path = roll_position()(settings, axes[:, 0], axes[:, 1], pivot_offset, motion)
     if not (off_path < _ON_PATH).all():
         k = int(np.argmax(~(off_path < _ON_PATH)))
@@ -79,10 +90,7 @@ def with_setting_errors(
             f"position X {axes[k, 0]:.4f} Y {axes[k, 1]:.4f} is {off_path[k]:.4f} mm off the path of the settings; "
             "was the program made from another set?"
         )
-    really, meant = (_positions(x, motion, theta, pivot_offset) for x in (settings + errors, settings))
-    shift = really - meant
-    shift[:, 3::2] = (shift[:, 3::2] + math.pi) % (2 * math.pi) - math.pi
-    return axes + shift[:, : axes.shape[1]]
+    return theta
 
 
 def _positions(settings: np.ndarray, motion: np.ndarray, theta: np.ndarray, pivot_offset: np.ndarray) -> np.ndarray:
@@ -98,6 +106,28 @@ def index_errors(work_axis: WorkAxis, teeth: int, seed: int) -> np.ndarray:
     harmonic = work_axis.first_harmonic_arcsec * np.sin(turn + math.radians(work_axis.first_harmonic_phase))
     random = work_axis.random_arcsec * np.random.default_rng(seed).standard_normal(teeth)
     return np.radians((harmonic + random) / 3600)
+
+
+def with_running_index_errors(
+    axes: np.ndarray, settings: np.ndarray, errors: np.ndarray, pivot_offset: np.ndarray, motion: np.ndarray
+) -> np.ndarray:
+    """Positions (n,6) of a work axis that turns on through its index errors (z,) while face hobbing.
+
+    The error is that of a space where A, beyond the roll, stands at its pitch, and linear in between.
+    """
+    if not errors.any():
+        return axes
+    theta, teeth = _theta(axes, settings, pivot_offset, motion), len(errors)
+    pitches = (axes[:, 3] - _positions(settings, motion, theta, pivot_offset)[:, 3]) * teeth / (2 * math.pi)
+    wrong = axes.copy()
+    wrong[:, 3] += np.interp(pitches % teeth, np.arange(teeth + 1), np.append(errors, errors[0]))
+    return wrong
+
+
+def pitch_divisions(axes: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    """Parts (n-1,) into which blocks between positions (n,5) must fall for index errors (z,) to be followed."""
+    pitches = np.abs(np.diff(axes[:, 3])) * len(errors) / (2 * math.pi)
+    return np.maximum(np.ceil(_PARTS_OF_A_PITCH * pitches * bool(errors.any())), 1).astype(int)
 
 
 def with_axis_errors(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:

@@ -27,6 +27,7 @@ from gearmath.machine.mill import about_axis, expose, mill_member
 from gearmath.machine.passes import Pass
 from gearmath.machine.program import write_program
 from gearmath.machine.run import runs_of
+from gearmath.machine.simulation import index_errors
 from gearmath.machine.stock import nominal_surfaces, surface_states
 from gearmath.machine.timing import timing
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES, Motion, Settings, load_bevel_set
@@ -445,16 +446,20 @@ def test_uneven_division_of_a_is_seen(cut):
     assert 0.5 < np.ptp(off) / (2 * 60 / 3600 * math.pi / 180 * 76.5 * math.cos(math.radians(20))) < 1.1
 
 
-@pytest.mark.parametrize(
-    ("errors", "sentence"),
-    [
-        ({"work_axis": WorkAxis(random_arcsec=5.0)}, r"^gear: work_axis: an index error .* give axes\.A_harmonics"),
-    ],
-)
-def test_errors_without_a_sense_in_face_hobbing_are_refused(hobbed, vertical, written, errors, sentence):
-    path = execute(written("gear"), "HOB.MPF")
-    with pytest.raises(InputError, match=sentence):
-        runs_of(path, hobbed.gear, "gear", vertical, shop(**errors))
+def test_index_errors_of_the_work_axis_become_pitch(cut, hobbed):
+    """Space k is cut where the work stands k pitches on, less those that the cutter turns it by up to the contact."""
+    axis = WorkAxis(first_harmonic_arcsec=45.0, first_harmonic_phase=30.0, random_arcsec=6.0)
+    low, high = cut("gear"), cut("gear", shop(work_axis=axis))
+    table = index_errors(axis, 39, 1)
+    for flank in FLANKS:
+        middle = (low.row == 2) & (low.col == 4) & (low.flank == flank)
+        beta = solve_flank(hobbed.gear, "gear", flank, blank_grid(hobbed.gear)).contact[2 * 9 + 4, 1]
+        pitches = (low.tooth[middle] - hobbed.gear.indexing_sign * 13 * beta / (2 * math.pi)) % 39
+        error = np.interp(pitches, np.arange(40), np.append(table, table[0]))
+        nominal = low.point[middle] - low.deviation[middle, None] * low.normal[middle]
+        lever = np.sum(np.cross([0, 0, 1], nominal) * low.normal[middle], axis=1)
+        assert np.ptp(error * lever) > 0.02  # mm
+        np.testing.assert_allclose((high.deviation - low.deviation)[middle], error * lever, atol=1e-3)
 
 
 @pytest.mark.slow
@@ -607,6 +612,11 @@ def test_command_line_writes_and_mills(tmp_path, command):
     status, out, err = command("mill", *given, "--program", program, "-o", flanks)
     assert (status, err) == (0, ""), err
     assert float(re.search(r"largest deviation ([\d.]+) um", out)[1]) <= 2.0
+    status, out, err = command(
+        "mill", *given, "--program", program, "--errors", "simulated_shop.toml", "-o", tmp_path / "shop.csv"
+    )  # fmt: skip
+    assert (status, err) == (0, ""), err
+    assert float(re.search(r"largest deviation ([\d.]+) um", out)[1]) > 20.0
     status, _, err = command("nc", "cut", *given, "--spaces", "0,1", "-o", tmp_path / "NO.MPF")
     assert status == 2
     assert "face hobbing cuts all spaces in one roll" in err
