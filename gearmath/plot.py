@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearmath.files import write_bytes
-from gearmath.quality.evaluation import Evaluation, FlankFigures
+from gearmath.quality.evaluation import Evaluation
 from gearmath.quality.pitch import Pitch
 from gearmath.quality.registration import Registration
 from gearmath.quality.spaces import Runout
@@ -133,7 +133,9 @@ def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
     before, after = evaluation.as_measured, evaluation.flanks if registered else {}
     pitches = [[f.pitch for f in each.values() if f.pitch is not None] for each in (before, after)]
     drawn: list[Callable[[Axes], None]] = [
-        partial(_draw_flank, before=before[flank], after=after.get(flank)) for flank in before
+        partial(draw_topography, before=figures.mean, after=after[flank].mean if registered else None)
+        for flank, figures in before.items()
+        if figures.mean is not None
     ]
     if pitches[0]:
         drawn.append(partial(draw_pitch, before=pitches[0], after=pitches[1]))
@@ -145,10 +147,6 @@ def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
     for place, draw in zip(places, drawn, strict=False):
         draw(place)
     return figure
-
-
-def _draw_flank(axes: Axes, before: FlankFigures, after: FlankFigures | None) -> None:
-    draw_topography(axes, before.mean, after.mean if after else None)
 
 
 def _seat_words(seat: Registration | None) -> str:

@@ -24,11 +24,19 @@ def evaluation_text(found: Evaluation, sure: Sequence[Uncertain] = ()) -> str:
         ["flank", *_FIGURES],
         [[flank, *(f"{row[name]:.3f}" if name in row else "" for name in _FIGURES)] for flank, row in flanks.items()],
     )
-    orders = table(
-        ["flank", *(name.removesuffix("_um") for name in _ORDERS)],
-        [[flank, *(f"{row['orders'][name]:+.3f}" for name in _ORDERS)] for flank, row in flanks.items()],
-    )
-    return "\n".join([first, "", "first and second order / um:", orders, "", *_sure(sure), *_lines(values)]).rstrip()
+    return "\n".join([first, "", *_orders(flanks), *_sure(sure), *_lines(values)]).rstrip()
+
+
+def _orders(flanks: dict[str, Any]) -> Iterator[str]:
+    rows = [
+        [flank, *(f"{row['orders'][name]:+.3f}" for name in _ORDERS)]
+        for flank, row in flanks.items()
+        if "orders" in row
+    ]
+    if rows:
+        yield "first and second order / um:"
+        yield table(["flank", *(name.removesuffix("_um") for name in _ORDERS)], rows)
+        yield ""
 
 
 def _sure(found: Sequence[Uncertain]) -> Iterator[str]:

@@ -25,26 +25,30 @@ from gearmath.specs.flank_csv import FlankFile
 
 @dataclass(frozen=True)
 class FlankFigures:
-    """One flank: the topography of every tooth measured in full, their mean, its first orders, and its pitch."""
+    """One flank: the topography of every tooth measured in full, their mean, its first orders, and its pitch.
+
+    Where no tooth was measured in full, there are no topographies, and ``mean`` and ``orders`` are None.
+    """
 
     topographies: tuple[Topography, ...]
-    mean: Topography
-    orders: Orders
+    mean: Topography | None
+    orders: Orders | None
     pitch: Pitch | None
 
     def as_dict(self) -> dict[str, Any]:
         """Figures for people and programs, those of topography of the first tooth in full: µm and degrees."""
-        first = self.topographies[0]
-        values: dict[str, Any] = {
-            "tooth": first.tooth,
-            "max_deviation_um": first.extreme * 1000,
-            "rms_um": first.rms * 1000,
-            "cubic_surface_residual_um": float(np.nanmax(np.abs(first.residual))) * 1000,
-            "surface_coefficients": first.coefficients.tolist(),
-            "left_out": first.left_out,
-            "teeth_in_full": [each.tooth for each in self.topographies],
-            "orders": self.orders.as_dict(),
-        }
+        values: dict[str, Any] = {"teeth_in_full": [each.tooth for each in self.topographies]}
+        if self.orders is not None:
+            first = self.topographies[0]
+            values |= {
+                "tooth": first.tooth,
+                "max_deviation_um": first.extreme * 1000,
+                "rms_um": first.rms * 1000,
+                "cubic_surface_residual_um": float(np.nanmax(np.abs(first.residual))) * 1000,
+                "surface_coefficients": first.coefficients.tolist(),
+                "left_out": first.left_out,
+                "orders": self.orders.as_dict(),
+            }
         if self.pitch is not None:
             values |= {key: self.pitch.as_dict()[key] for key in ("F_p_um", "max_f_pt_um", "cumulative_um")}
         return values
@@ -96,7 +100,7 @@ def evaluate_member(
 
     Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
     the clamping where the points tell it. Raises InputError if the file is not of this member, or not in mm on its
-    flanks, or if no tooth was measured in full.
+    flanks, or if neither a tooth in full nor pitch was measured.
     """
     check_belongs(member, name, file)
     check_points(file, nominal_rows(file, member, name))
@@ -143,14 +147,16 @@ def _flanks(file: FlankFile, member: Member, pitch: bool) -> dict[str, FlankFigu
 
 
 def _figures(file: FlankFile, member: Member, flank: str, pitch: bool) -> FlankFigures:
+    spacing = evaluate_pitch(file, member.teeth, flank) if pitch else None
     points = file.select(flank)
     teeth, counts = np.unique(points.tooth, return_counts=True)
     full = teeth[counts == np.prod(grid_shape(file))]
+    if not len(full) and spacing is not None:
+        return FlankFigures((), None, None, spacing)
     if not len(full):
         full = teeth[[np.argmax(counts)]]  # refused, with the number of its points
     topographies = tuple(evaluate_topography(file, flank, int(tooth)) for tooth in full)
     mean = mean_topography(topographies)
-    spacing = evaluate_pitch(file, member.teeth, flank) if pitch else None
     return FlankFigures(topographies, mean, orders(mean), spacing)
 
 

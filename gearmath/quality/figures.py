@@ -135,6 +135,8 @@ def _topography(
     file: FlankFile, flank: str, figures: FlankFigures, deviation: ca.MX
 ) -> list[tuple[Figure, ca.MX]]:  # fmt: skip
     """Orders of the mean of the teeth measured in full; cubic surface and largest deviation of the first of them."""
+    if figures.mean is None:
+        return []
     mean, first = figures.mean, figures.topographies[0]
     known = np.isfinite(mean.deviation).ravel()
     averaged = np.zeros((len(known), len(file)))

@@ -107,6 +107,19 @@ def test_miss_and_tooth_0_measured_again_come_through_the_file(command, measured
     assert "clamping" not in out
 
 
+def test_pitch_alone_is_evaluated(command, measured, tmp_path):
+    """What ``nc probe --topography none`` leads to: the reference point of every tooth, in figures and as text."""
+    lines = measured.read_text("utf-8").splitlines()
+    path = tmp_path / "pitch.csv"
+    path.write_text("\n".join(x for x in lines if not x.startswith("pinion") or ",2,4," in x) + "\n", "utf-8")
+    values = json.loads(command("evaluate", path, "--set", SET, "--json")[1])["flanks"]["concave"]
+    assert "rms_um" not in values
+    status, out, err = command("evaluate", path, "--set", SET)
+    assert (status, err) == (0, "")
+    assert "first and second order" not in out
+    assert f"{values['F_p_um']:.3f}" in out
+
+
 def test_picture_is_a_png(command, measured, tmp_path):
     assert command("evaluate", measured, "--set", SET, "--plot", tmp_path / "t.png")[0] == 0
     assert (tmp_path / "t.png").read_bytes().startswith(b"\x89PNG")

@@ -94,6 +94,21 @@ def test_what_the_points_do_not_tell_is_said_and_the_rest_is_judged(pair, pinion
     assert found.thickness.deviation.shape == (1,)
 
 
+def test_pitch_alone_is_judged_without_a_topography(pair, pinion):
+    """Reference points only: pitch, runout and thickness are those of the whole file; nothing is said of the form."""
+    bad, _ = pair
+    only = bad.pick((bad.row == 2) & (bad.col == 4))
+    found, wanted = (evaluate_member(each, pinion, "pinion", False) for each in (only, bad))
+    for flank in ("concave", "convex"):
+        assert (found.flanks[flank].mean, found.flanks[flank].orders) == (None, None)
+        assert set(found.flanks[flank].as_dict()) == {"teeth_in_full", "F_p_um", "max_f_pt_um", "cumulative_um"}
+        np.testing.assert_allclose(
+            found.flanks[flank].pitch.cumulative, wanted.flanks[flank].pitch.cumulative, rtol=0, atol=1e-15
+        )
+    assert found.runout.total == wanted.runout.total
+    assert len(evaluation_figure("pinion", found).axes) == 2
+
+
 def test_teeth_measured_in_part_give_no_pitch_but_all_the_rest(pair, pinion):
     """Nine of twelve teeth all around."""
     some = pair[0].pick(~np.isin(pair[0].tooth, [1, 4, 8]))
