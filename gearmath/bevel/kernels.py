@@ -46,7 +46,6 @@ _EXPRESSIONS = {
     "probe_axes": probing.probe_axes,
     "probe_tip": probing.probe_tip,
     "touched_point": probing.touched_point,
-    "ring_calibration": probing.ring_calibration,
     "sphere_residual": probing.sphere_residual,
     "ring_residual": probing.ring_residual,
     "carried_sphere": axis_calibration.carried_sphere,

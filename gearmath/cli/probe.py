@@ -200,7 +200,8 @@ def _tip_lines(tip: Tip) -> Iterator[str]:
     for axis, value, u in zip("XYZ", tip.offset, tip.offset_uncertainty, strict=True):
         yield f"offset {axis} {value:.5f} mm, " + ("kept" if math.isnan(u) and axis == "Z" else f"u {_um(u)}")
     if tip.lobes[0] > 0.0:
-        yield f"lobes {tip.lobes[0] * 1000:.3f} um, at {math.degrees(tip.lobes[1]):.2f} degrees"
+        known = "kept" if math.isnan(tip.amplitude_uncertainty) else f"u {_um(tip.amplitude_uncertainty)}"
+        yield f"lobes {tip.lobes[0] * 1000:.3f} um at {math.degrees(tip.lobes[1]):.2f} degrees, {known}"
     yield f"{len(tip.fit.residuals)} touches: {_residual_words(tip.fit)}"
 
 

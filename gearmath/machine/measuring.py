@@ -38,12 +38,11 @@ def measure_member(true: FlankFile, member: Member, name: str, shop: SimulatedMa
     (normal,) = kernel("probe_axes")(file.normal, *place)  # about the origin: the normal in the axes of the machine
     (late,) = kernel("effective_radius")(normal[:, :3], 0.0, lobing(shop.probe))
     _, deviation = kernel("touched_point")(seen, 0.0, nominal, file.normal)
-    sigma = shop.probe.sigma_um / 1000 / math.sqrt(shop.probe.touches)
     noise = np.random.default_rng([shop.seed, zlib.crc32(name.encode()), run]).standard_normal(len(file))
-    deviation = deviation + late + sigma * noise
+    deviation = deviation + late + shop.probe.sigma * noise
     return FlankFile(
         file.header, file.member, file.flank, file.tooth, file.row, file.col,
-        nominal + deviation[:, None] * file.normal, file.normal, deviation, np.full(len(file), sigma),
+        nominal + deviation[:, None] * file.normal, file.normal, deviation, np.full(len(file), shop.probe.sigma),
     )  # fmt: skip
 
 

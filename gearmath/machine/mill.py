@@ -164,7 +164,7 @@ def _reference_only(file: FlankFile) -> FlankFile:
 
 def _probed(file: FlankFile, name: str, errors: SimulatedMachine | None) -> FlankFile:
     """The file with seeded probe noise on every deviation, and its standard uncertainty."""
-    sigma = errors.probe.sigma_um / 1000 if errors is not None else 0.0
+    sigma = errors.probe.sigma if errors is not None else 0.0
     if sigma == 0.0 or errors is None:
         return file
     noise = sigma * np.random.default_rng([errors.seed, zlib.crc32(name.encode())]).standard_normal(len(file))

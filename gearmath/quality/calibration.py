@@ -72,6 +72,14 @@ class Tip:
     fit: Fit
 
     @property
+    def amplitude_uncertainty(self) -> float:
+        """Standard uncertainty of the amplitude of the lobes [mm]; NaN where they were not asked for."""
+        if len(self.fit.values) < 6:
+            return math.nan
+        along = self.fit.values[4:] / self.lobes[0]
+        return math.sqrt(float(along @ self.fit.covariance[4:, 4:] @ along))
+
+    @property
     def residual(self) -> float:
         """The largest in size [mm]."""
         return float(np.abs(self.fit.residuals).max())

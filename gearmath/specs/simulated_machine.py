@@ -143,6 +143,11 @@ class Probe(Spec):
     lobing_um: float = Field(default=0.0, ge=0, le=20)
     lobing_phase: float = Field(default=0.0, ge=-360, le=360)
 
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the average of the touches of one point [mm]."""
+        return self.sigma_um / 1000 / math.sqrt(self.touches)
+
 
 class SimulatedMachine(Spec):
     """Errors of machine, work axis and probe; ``seed`` makes the random ones the same in every run."""

@@ -39,6 +39,13 @@ def test_what_a_file_does_not_mention_is_perfect():
     assert (perfect.work_axis.random_arcsec, perfect.probe.sigma_um) == (0, 0)
 
 
+def test_clamping_drift_and_averaging_in_mm():
+    shop = load_simulated_machine(bundled("source_experiment.toml"))
+    assert shop.measuring_clamp("gear") == shop.measuring.gear
+    np.testing.assert_array_equal(shop.measuring.drift.vector, [0.0, 0.005, 0.0])
+    assert shop.probe.sigma == pytest.approx(0.00025, rel=1e-15)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
@@ -63,6 +70,16 @@ def test_what_a_file_does_not_mention_is_perfect():
             "work_axis.random_arcsec = 601.0: should be less than or equal",
         ),
         ("[probe]", "[prober]", "prober: no such key is known here"),
+        ("sigma_um = 0.5", "touches = 0", "probe.touches = 0: should be greater than or equal to 1"),
+        ("sigma_um = 0.5", "lobing_um = 25.0", "probe.lobing_um = 25.0: should be less than or equal to 20"),
+        ("[probe]", "[measuring.wheel]\ntilt = 0.1\n[probe]", "measuring.wheel: no such key is known here"),
+        ("[probe]", "[measuring.gear]\ntilt = 2.0\n[probe]", "measuring.gear.tilt = 2.0: should be less than"),
+        ("[probe]", "[measuring.drift]\nA_um = 2.0\n[probe]", "measuring.drift.A_um = 2.0: no such key"),
+        (
+            "[probe]",
+            '[[axes.screws]]\naxis = "A"\nlead = 5.0\namplitude_um = 1.0\n[probe]',
+            "axes.screws.0.axis = 'A': should be 'X', 'Y' or 'Z'",
+        ),
     ],
 )
 def test_fault_is_refused_by_file_key_value_and_limit(old, new, sentence):
