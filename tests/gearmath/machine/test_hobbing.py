@@ -230,6 +230,12 @@ def test_wrong_sign_of_indexing_is_seen(hobbed, vertical, written):
     assert np.abs(mill_member(path, hobbed.gear, "gear", vertical).deviation).max() > 1.0
 
 
+def test_apex_off_the_b_axis_changes_the_axes_and_not_the_flanks(vertical, hobbed, written):
+    shifted = vertical.model_copy(update={"pivot_offset": (12.0, -7.0, 30.0)})
+    path = execute(written("gear", shifted), "HOB.MPF")
+    assert np.abs(mill_member(path, hobbed.gear, "gear", shifted).deviation).max() <= COARSE
+
+
 def test_cutter_that_turns_the_other_way_cuts_the_same_flanks(vertical, hobbed, written):
     other = vertical.model_copy(update={"cutter_direction": "M4"})
     text = written("gear", other)
