@@ -44,6 +44,10 @@ if TYPE_CHECKING:
     metavar="CSV",
     help="Correct here what the mate shows there: its measured flank CSV, moved through the ease-off.",
 )
+@click.option(
+    "--register/--no-register", "registered", default=True, show_default=True,
+    help="Take out how the work sat, where the points tell it, as 'evaluate' does; drift and misses in any case.",
+)  # fmt: skip
 @click.option("--root-limit", type=click.FloatRange(0.001, 2), metavar="MM", help="Most that the root line may move.")
 @click.option(
     "--noise", "--sigma-um", "noise", type=click.FloatRange(0, 100), metavar="UM",
@@ -61,10 +65,12 @@ if TYPE_CHECKING:
 @output("corrected set, TOML")
 def compensate(
     gear_set: str, member: str, measured: Path, names: str, higher_order: bool, objective: str, from_mate: Path | None,
-    root_limit: float | None, noise: float | None, thickness: float, thickness_by: str, as_json: bool, target: Path,
+    registered: bool, root_limit: float | None, noise: float | None, thickness: float, thickness_by: str, as_json: bool,
+    target: Path,
 ) -> None:  # fmt: skip
     """Corrected machine settings from a measurement; the nominal settings stay in the file under 'design'."""
     from gearmath.quality.correction import ROOT_LIMIT, correct
+    from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.thickness import with_thickness
     from gearmath.specs.bevel_set import load_bevel_set, save_corrected
     from gearmath.specs.flank_csv import read_flank_csv
@@ -73,8 +79,10 @@ def compensate(
     source = find(gear_set)
     pair = load_bevel_set(source)
     spec, file = pair.member(member), read_flank_csv(measured)
-    moved = _from_mate(pair, member, from_mate, measured) if from_mate else None
+    moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured):
+        judged = evaluate_member(file, spec, member, registered)
+        file = judged.file
         correction = correct(
             spec, member, file, _free(names), objective=objective, higher_order=higher_order, few=names == "few",
             root_limit=root_limit or ROOT_LIMIT, noise=None if noise is None else noise / 1000, added=moved,
@@ -85,8 +93,10 @@ def compensate(
     save_corrected(source, target, member, correction.settings, correction.index, correction.motions)
     values = _values(spec, correction) | _uncertainty(spec, member, file, correction, noise, root_limit or ROOT_LIMIT)
     if as_json:
-        echo_json(values)
+        echo_json(values | {"remarks": list(judged.remarks)})
         return
+    for remark in judged.remarks:
+        click.echo(remark)
     for group, analysis in correction.analysis.items():
         _say_analysis(" and ".join(group), analysis)
     _say_changes(values)
@@ -140,14 +150,16 @@ def _free(names: str) -> tuple[str, ...] | None:
     return MACHINE_SETTINGS if names == "all" else tuple(name.strip() for name in names.split(","))
 
 
-def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path) -> dict[str, Any]:
+def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, registered: bool) -> dict[str, Any]:
     from gearmath.quality.ease_off import moved_to_mate
+    from gearmath.quality.evaluation import evaluate_member
     from gearmath.specs.bevel_set import MEMBERS
     from gearmath.specs.flank_csv import read_flank_csv
 
     mate = MEMBERS[1 - MEMBERS.index(member)]
     with about(path):
-        return moved_to_mate(pair, mate, read_flank_csv(path), read_flank_csv(measured))
+        judged = evaluate_member(read_flank_csv(path), pair.member(mate), mate, registered)
+        return moved_to_mate(pair, mate, judged.file, read_flank_csv(measured))
 
 
 def _say_analysis(flanks: str, analysis: Analysis) -> None:

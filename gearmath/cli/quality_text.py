@@ -74,6 +74,8 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
         grades = [f"{name} {grade or 'beyond 11'}" for name, grade in tolerance["grades"].items()]
         module, diameter = tolerance["mean_normal_module"], tolerance["tolerance_diameter"]
         yield f"grades: {', '.join(grades)} (m_mn {module:.3f} mm, d_T {diameter:.2f} mm)"
+    if tolerance is not None:
+        yield tolerance["remark"]
     yield from values["remarks"]
 
 

@@ -55,6 +55,8 @@ def uncertainty(
     resume: Path | None, picture: Path | None, as_json: bool,
 ) -> None:  # fmt: skip
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
+    import numpy as np
+
     from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.figures import figures_of
     from gearmath.quality.uncertainty import uncertain_figures
@@ -65,11 +67,13 @@ def uncertainty(
     file = read_flank_csv(measured)
     spec = load_bevel_set(find(gear_set)).member(member)
     with about(measured):
-        figures = figures_of(file, spec, evaluate_member(file, spec, member, registered))
+        judged = evaluate_member(file, spec, member, registered)
+        figures = figures_of(file, spec, judged)
         covariance, source = _covariance(file, spec, sigma_um, model, machine, calibration)
     with bar(draws, "draw") as progress, _executor(cluster) as executor:
         found = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, progress)
-    settings, caused, remarks = _settings(spec, member, file, covariance)
+    kept = np.flatnonzero(file.tooth < spec.teeth)  # the rows of the judged file; what registration shares is left out
+    settings, caused, remarks = _settings(spec, member, judged.file, covariance.pick(kept))
     found += settings
     if picture:
         from gearmath.plot import save, uncertainty_figure

@@ -122,8 +122,6 @@ def evaluate_member(
     flanks = as_measured if seat is None else _flanks(judged, member, not partly)
     before, runout = (None if partly else evaluate_runout(each, member.teeth) for each in (measured, judged))
     verdict = _verdict(member, name, flanks, runout)
-    if verdict is not None:
-        remarks += (verdict.remark,)
     zeroed = file.header["phase_zeroed"].lower() == "true"
     if zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)

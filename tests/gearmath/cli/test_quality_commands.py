@@ -147,10 +147,26 @@ def test_compensation_says_what_it_changed_and_writes_it(command, measured, tmp_
 def test_index_correction_takes_back_the_pitch_that_was_measured(command, measured, tmp_path):
     """By hand from the file: the mean turning of both flanks against tooth 0, with the other sign."""
     target = tmp_path / "new.toml"
-    command("compensate", SET, "--member", "pinion", "--measured", measured, "-o", target)
+    command("compensate", SET, "--member", "pinion", "--measured", measured, "--no-register", "-o", target)
     file = read_flank_csv(measured)
     turning = np.mean([evaluate_pitch(file, 12, flank).turning for flank in ("concave", "convex")], axis=0)
     np.testing.assert_allclose(load_bevel_set(target).pinion.index_correction, -np.degrees(turning), rtol=0, atol=1e-7)
+
+
+def test_a_point_that_missed_is_left_out_of_the_correction_in_words(command, measured, tmp_path):
+    """0.3 mm at one point of the grid changes the corrected settings by far less than what it would pull them by."""
+    text = measured.read_text("utf-8")
+    line = next(x for x in text.splitlines() if x.startswith("pinion,concave,0,1,3,"))
+    cells = line.split(",")
+    moved = [f"{float(cells[5 + k]) + 0.3 * float(cells[8 + k]):.9f}" for k in range(3)]
+    other = ",".join([*cells[:5], *moved, *cells[8:11], f"{float(cells[11]) + 300:.6f}", cells[12]])
+    path, clean, dirty = (tmp_path / name for name in ("miss.csv", "clean.toml", "dirty.toml"))
+    path.write_text(text.replace(line, other), "utf-8")
+    assert command("compensate", SET, "--member", "pinion", "--measured", measured, "-o", clean)[0] == 0
+    out = command("compensate", SET, "--member", "pinion", "--measured", path, "-o", dirty)[1]
+    assert "concave flank, tooth 0, row 1, col 3: +" in out
+    one, two = (load_bevel_set(target).pinion.concave.radial_distance for target in (clean, dirty))
+    assert one == pytest.approx(two, abs=0.05)
 
 
 def changed(measured, tmp_path, old: str, new: str, count: int = 1):

@@ -12,6 +12,7 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.machine.mill import nominal_flank
 from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
+from gearmath.quality.evaluation import evaluate_member
 from gearmath.quality.target import target_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, load_bevel_set
 from gearmath.specs.flank_csv import join, read_flank_csv, write_flank_csv
@@ -81,7 +82,8 @@ def test_corrected_settings_are_those_that_compensate_writes(command, measured, 
     names = [key for key, one in sharp.items() if one["unit"] in ("mm", "deg", "1")]
     assert len(names) == 14
     spec = load_bevel_set(bundled(SET)).pinion
-    correction = correct(spec, "pinion", read_flank_csv(measured), noise=0.3e-3)
+    judged = evaluate_member(read_flank_csv(measured), spec, "pinion").file
+    correction = correct(spec, "pinion", judged, noise=0.3e-3)
     for flank, name in names:
         vector = correction.settings[flank][SETTINGS.index(name)]
         value = np.degrees(vector) if sharp[flank, name]["unit"] == "deg" else vector
