@@ -110,10 +110,10 @@ def _settings(
 ) -> tuple[list[Uncertain], dict[str, float], list[str]]:
     """The settings as ``gearmath compensate`` corrects them at this noise, or why there are none."""
     from gearmath.quality.correction import correct
-    from gearmath.quality.setting_uncertainty import uncertain_settings
+    from gearmath.quality.setting_uncertainty import noise_of, uncertain_settings
 
     try:
-        correction = correct(member, name, file, noise=covariance.noise)
+        correction = correct(member, name, file, noise=noise_of(member, name, file, covariance))
         return (*uncertain_settings(member, name, file, correction, covariance), [])
     except (InputError, ComputationError) as error:
         return [], {}, [f"no corrected settings: {error}"]

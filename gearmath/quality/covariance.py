@@ -73,7 +73,7 @@ class Covariance:
         z = ca.MX.sym("z", n + k)
         error = ca.DM(np.sqrt(self.variance)) * z[:n]
         if k:
-            error += ca.DM(self.factors) @ z[n:]
+            error += ca.mtimes(ca.sparsify(ca.DM(self.factors)), z[n:])
         return ca.Function("drawn_" + function.name(), [z], [function(ca.DM(at) + error)])
 
 

@@ -2,13 +2,12 @@
 
 The same figures as in ``evaluation``, of the same kernels and maps; here as a graph, to be differentiated and drawn. On
 the way from what was measured to what is judged, drift and clamping are taken out: linear maps, to first order. What is
-smooth has a Jacobian that carries covariances. Maxima and ranges are the largest of many linear forms; they are drawn.
+smooth has a Jacobian that carries covariances. Maxima and ranges are the largest of many differences; they are drawn.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -19,6 +18,7 @@ from gearmath.quality.evaluation import Evaluation, FlankFigures
 from gearmath.quality.nominal import completed
 from gearmath.quality.outliers import find_outliers
 from gearmath.quality.pitch import reference_point
+from gearmath.quality.registration import Registration
 from gearmath.quality.topography import ORDERS, Topography, orders_matrix
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
@@ -32,76 +32,144 @@ _UNITS = ("um", "um/mm", "um/mm^2", "um/mm^3")
 class Figure:
     """One figure of a flank, or of both: its unit where people read it, and whether it is smooth in the deviations.
 
-    ``factor`` makes its number in that unit of the one in mm and rad.
+    ``ranges`` tells a range from a largest size. ``factor`` makes its number in that unit of the one in mm and rad.
     """
 
     flank: str
     name: str
     unit: str
     smooth: bool = True
+    ranges: bool = False
     factor: float = 1000.0
 
 
 @dataclass(frozen=True)
-class Figures:
-    """Figures (m,) of a member [mm and mm per mm^k], and their function of the deviations (n,) of its file [mm].
+class Extreme:
+    """A maximum or a range: the largest of base[first] - base[second], where a last element, 0, is added to the base.
 
-    ``deviation`` (n,) are those measured, zero where a point was left out. ``forms`` has, for the index of every figure
-    that is not smooth, the linear forms (p,n) of which it is the largest, apart from a constant.
+    ``function`` gives the base (b,) [mm] of what is judged (q,), and ``jacobian`` (b,n) its derivative by the measured
+    deviations; the index arrays (p,) count up to b.
+    """
+
+    function: ca.Function
+    jacobian: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+
+    def differences(self, judged: np.ndarray) -> np.ndarray:
+        """All of the differences (p,)."""
+        base = np.append(np.array(self.function(judged)).ravel(), 0.0)
+        return base[self.first] - base[self.second]
+
+    def graph(self, judged: ca.MX, chosen: np.ndarray) -> ca.MX:
+        """The chosen differences as a graph of what is judged."""
+        base = ca.vertcat(self.function(judged), 0)
+        return base[self.first[chosen].tolist()] - base[self.second[chosen].tolist()]
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Figures (m,) of a member [mm and mm per mm^k] as a function of the deviations (n,) of its file [mm].
+
+    ``deviation`` (n,) are those measured, zero where a point was left out. ``judging`` makes of deviations what is
+    judged (q,): deviations without drift and clamping, and the seat; ``of_judged`` makes figures of it. ``jacobian``
+    (m,n) is the derivative of the figures by the deviations. ``extremes`` has, for the index of every figure that is
+    not smooth, what it is the largest of.
     """
 
     items: tuple[Figure, ...]
     deviation: np.ndarray
-    function: ca.Function
-    forms: dict[int, np.ndarray]
-    values: dict[int, np.ndarray]
+    judging: ca.Function
+    of_judged: ca.Function
+    jacobian: np.ndarray
+    extremes: dict[int, Extreme]
 
-    def jacobian(self) -> np.ndarray:
-        """∂figures/∂deviations (m,n) at the deviations measured."""
-        return jacobian(self.function, self.deviation)
+    @property
+    def judged(self) -> np.ndarray:
+        """What is judged (q,), of the deviations as measured."""
+        return np.array(self.judging(self.deviation)).ravel()
 
-
-def jacobian(function: ca.Function, at: np.ndarray) -> np.ndarray:
-    """Jacobian of a function of one column at a column."""
-    return np.array(ca.DM(_slope(function)(at)))
-
-
-@lru_cache(maxsize=16)
-def _slope(function: ca.Function) -> ca.Function:
-    given, name = function.name_in(0), function.name_out(0)
-    return function.factory(f"{function.name()}_jacobian", [given], [f"jac:{name}:{given}"])
+    @property
+    def values(self) -> np.ndarray:
+        """The figures (m,) of the deviations as measured."""
+        return np.array(self.of_judged(self.judged)).ravel()
 
 
 def figures_of(file: FlankFile, member: Member, found: Evaluation) -> Figures:
     """All figures of the evaluation of a measured file, flank by flank, then those of both."""
-    at = np.nan_to_num(file.deviation)
-    prepared = _without_drift(file, member, found.member)
-    judged = found.file
-    deviation = ca.MX.sym("deviation", len(file))
-    change = deviation - ca.DM(at)
-    parts: list[tuple[Figure, ca.MX]] = []
+    judging, slope = _judging(file, member, found)
+    judged = ca.MX.sym("judged", judging.size1_out(0))
+    parts: list[_Part] = []
     if found.registration is not None:
-        gain = found.registration.gain @ prepared
-        parts += _seat(found, ca.DM(gain) @ change)
-        prepared = prepared - found.registration.columns @ gain
-    prepared[~np.isfinite(judged.deviation)] = 0.0
-    now = ca.DM(np.nan_to_num(judged.deviation)) + ca.DM(prepared) @ change
+        parts += _seat(found.registration, judged[len(found.file) :])
+    now = judged[: len(found.file)]
     for flank, figures in found.flanks.items():
-        parts += _topography(judged, flank, figures, now)
-        parts += _pitch(judged, flank, figures, now)
-    parts += _spaces(judged, found, now)
-    return _together(parts, deviation, at)
+        parts += _topography(found.file, flank, figures, now)
+        parts += _pitch(found.file, flank, figures, now)
+    parts += _spaces(found.file, found, now)
+    at = np.nan_to_num(file.deviation)
+    return _together(parts, judged, at, judging, slope)
 
 
-def _together(parts: list[tuple[Figure, ca.MX]], deviation: ca.MX, at: np.ndarray) -> Figures:
-    one = [value if figure.smooth else ca.mmax(value) for figure, value in parts]
-    function = ca.Function("figures", [deviation], [ca.vertcat(*one)], ["deviation"], ["figures"])
-    forms, values = {}, {}
+def _judging(file: FlankFile, member: Member, found: Evaluation) -> tuple[ca.Function, np.ndarray]:
+    """What is judged, as a function of the deviations measured, and its constant Jacobian (q,n).
+
+    Judged are the deviations of the evaluated file, zero where there are none, then the four components of the seat.
+    """
+    at, n = np.nan_to_num(file.deviation), len(found.file)
+    slope = np.zeros((n + 4, len(file)))
+    slope[:n] = _without_drift(file, member, found.member)
+    deviation = ca.MX.sym("deviation", len(file))
+    change = ca.mtimes(ca.sparsify(ca.DM(slope[:n])), deviation - ca.DM(at))
+    seat = ca.MX.zeros(4)
+    if found.registration is not None:
+        gain, columns = found.registration.gain, found.registration.columns
+        moved = ca.mtimes(ca.DM(gain), change)
+        seat = ca.DM(found.registration.seat) + moved
+        change -= ca.mtimes(ca.DM(columns), moved)
+        slope[n:] = gain @ slope[:n]
+        slope[:n] -= columns @ slope[n:]
+    now = ca.DM(np.nan_to_num(found.file.deviation)) + change
+    return ca.Function("judging", [deviation], [ca.vertcat(now, seat)], ["deviation"], ["judged"]), slope
+
+
+def _jacobian(function: ca.Function, at: np.ndarray) -> np.ndarray:
+    given, name = function.name_in(0), function.name_out(0)
+    slope = function.factory(f"{function.name()}_jacobian", [given], [f"jac:{name}:{given}"])
+    return np.array(ca.DM(slope(at)))
+
+
+#: A figure with its value, or with the base of the differences of which it is the largest.
+_Part = tuple[Figure, ca.MX]
+
+
+def _together(
+    parts: list[_Part], judged: ca.MX, deviation: np.ndarray, judging: ca.Function, slope: np.ndarray
+) -> Figures:  # fmt: skip
+    values, extremes, at = [], {}, np.array(judging(deviation)).ravel()
     for k, (figure, value) in enumerate(parts):
-        if not figure.smooth:
-            many = ca.Function("forms", [deviation], [value], ["deviation"], ["forms"])
-            forms[k], values[k] = jacobian(many, at), np.array(many(at)).ravel()
-    return Figures(tuple(figure for figure, _ in parts), at, function, forms, values)
+        if figure.smooth:
+            values.append(value)
+            continue
+        base = ca.Function("base", [judged], [value], ["judged"], ["base"])
+        pairs = _pairs(value.shape[0]) if figure.ranges else _sizes(value.shape[0])
+        extremes[k] = Extreme(base, _jacobian(base, at) @ slope, *pairs)
+        values.append(ca.mmax(value) - ca.mmin(value) if figure.ranges else ca.mmax(ca.fabs(value)))
+    function = ca.Function("figures", [judged], [ca.vertcat(*values)], ["judged"], ["figures"])
+    items = tuple(figure for figure, _ in parts)
+    return Figures(items, deviation, judging, function, _jacobian(function, at) @ slope, extremes)
+
+
+def _sizes(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Indices of x_i - 0 and 0 - x_i: the largest of them is the largest size."""
+    index, zero = np.arange(n), np.full(n, n)
+    return np.concatenate([index, zero]), np.concatenate([zero, index])
+
+
+def _pairs(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Indices of x_i - x_j: the largest of them is the range."""
+    first, second = np.nonzero(~np.eye(n, dtype=bool))
+    return first, second
 
 
 def _without_drift(file: FlankFile, member: Member, name: str) -> np.ndarray:
@@ -122,18 +190,17 @@ def _without_drift(file: FlankFile, member: Member, name: str) -> np.ndarray:
     return matrix
 
 
-def _seat(found: Evaluation, change: ca.MX) -> list[tuple[Figure, ca.MX]]:
+def _seat(found: Registration, seat: ca.MX) -> list[_Part]:
     """How the work sat: eccentricity along x_w and y_w, tilt about them as a rise over 100 mm."""
-    seat = ca.DM(found.registration.seat) + change  # type: ignore[union-attr]
     names = [("eccentricity_x", "um", 1), ("eccentricity_y", "um", 1)]
-    if found.registration.tilt_found:  # type: ignore[union-attr]
+    if found.tilt_found:
         names += [("tilt_x", "um/100mm", 100), ("tilt_y", "um/100mm", 100)]
     return [(Figure("both", name, unit), seat[k] * scale) for k, (name, unit, scale) in enumerate(names)]
 
 
 def _topography(
     file: FlankFile, flank: str, figures: FlankFigures, deviation: ca.MX
-) -> list[tuple[Figure, ca.MX]]:  # fmt: skip
+) -> list[_Part]:  # fmt: skip
     """Orders of the mean of the teeth measured in full; cubic surface and largest deviation of the first of them."""
     if figures.mean is None:
         return []
@@ -144,17 +211,17 @@ def _topography(
         rows, places = _points(file, flank, topography)
         averaged[places, rows] = 1.0
     averaged = averaged[known] / averaged[known].sum(axis=1, keepdims=True)
-    orders = orders_matrix(mean.along.ravel()[known], mean.upward.ravel()[known]) @ averaged
+    orders = orders_matrix(mean.along.ravel()[known], mean.upward.ravel()[known])
     rows, places = _points(file, flank, first)
     here = deviation[rows.tolist()]
     _, monomials = kernel("deviation_surface")(first.along.ravel(), first.upward.ravel(), np.zeros(len(_DEGREES)))
     used = len(_DEGREES) if min(first.deviation.shape) >= 4 else 3
     fitted = ca.DM(np.linalg.pinv(monomials[places, :used])) @ here
-    by_order = ca.DM(orders) @ deviation
+    by_order = ca.mtimes(ca.DM(orders), ca.mtimes(ca.sparsify(ca.DM(averaged)), deviation))
     return [
         *((Figure(flank, name, "um"), by_order[k]) for k, name in enumerate(ORDERS) if orders[k].any()),
         *((Figure(flank, f"c_{k + 1}", _UNITS[_DEGREES[k]]), fitted[k]) for k in range(used)),
-        (Figure(flank, "max_deviation", "um", smooth=False), ca.vertcat(here, -here)),
+        (Figure(flank, "max_deviation", "um", smooth=False), here),
     ]
 
 
@@ -186,8 +253,8 @@ def _nominal(file: FlankFile) -> np.ndarray:
 
 def _pitch(
     file: FlankFile, flank: str, figures: FlankFigures, deviation: ca.MX
-) -> list[tuple[Figure, ca.MX]]:  # fmt: skip
-    """Single pitch of every tooth, the largest of them, and the cumulative pitch, whose forms are pairs of teeth."""
+) -> list[_Part]:  # fmt: skip
+    """Single pitch of every tooth, the largest of them, and the total: the largest difference of two teeth."""
     if figures.pitch is None or not np.isfinite(figures.pitch.cumulative).all():
         return []
     _, arc = _by_tooth("flank_turning", file, flank, deviation, file.point)
@@ -196,12 +263,12 @@ def _pitch(
     single = cumulative - ca.vertcat(cumulative[-1], cumulative[:-1])
     return [
         *((Figure(flank, f"f_pt_{k}", "um"), single[k]) for k in range(n)),
-        (Figure(flank, "max_f_pt", "um", smooth=False), ca.vertcat(single, -single)),
-        (Figure(flank, "F_p", "um", smooth=False), _range(cumulative)),
+        (Figure(flank, "max_f_pt", "um", smooth=False), single),
+        (Figure(flank, "F_p", "um", smooth=False, ranges=True), cumulative),
     ]
 
 
-def _spaces(file: FlankFile, found: Evaluation, deviation: ca.MX) -> list[tuple[Figure, ca.MX]]:
+def _spaces(file: FlankFile, found: Evaluation, deviation: ca.MX) -> list[_Part]:
     """Runout, and the mean thickness of the teeth: each flank of a tooth adds its allowance to it."""
     if found.runout is None or not np.isfinite(found.runout.radial).all():
         return []
@@ -216,11 +283,5 @@ def _spaces(file: FlankFile, found: Evaluation, deviation: ca.MX) -> list[tuple[
     thicker = ca.sum1(ca.vertcat(*allowances)) / len(one)
     return [
         (Figure("both", "mean_thickness", "um"), thicker),
-        (Figure("both", "F_r", "um", smooth=False), _range(radial.T)),
+        (Figure("both", "F_r", "um", smooth=False, ranges=True), radial.T),
     ]
-
-
-def _range(values: ca.MX) -> ca.MX:
-    """The differences of all pairs of values, the largest of which is their range."""
-    first, second = np.nonzero(~np.eye(values.shape[0], dtype=bool))
-    return values[first.tolist()] - values[second.tolist()]

@@ -35,7 +35,7 @@ from gearmath.quality.target import flank_target
 from gearmath.quality.topography import grid_shape
 from gearmath.quality.uncertainty import PROBABILITY, Uncertain
 from gearmath.quality.variables import SIZE, Variable, whole
-from gearmath.specs.bevel_set import SETTINGS, Member
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member
 from gearmath.specs.flank_csv import FlankFile
 
 
@@ -177,12 +177,18 @@ def uncertain_settings(
     return settings, caused
 
 
+def noise_of(member: Member, name: str, file: FlankFile, measured: Covariance) -> float:
+    """Noise [mm] of the points of a file from which settings are corrected: what differs from point to point."""
+    rows = [rows_of(file, flank, flank_target(member, name, flank, file)) for flank in FLANKS]
+    return measured.pick(np.concatenate(rows)).noise
+
+
 def _setting(flank: str, variable: Variable, value: float, u: float) -> Uncertain:
     component = notation.settings.components[SETTINGS.index(variable.name.partition(".")[0])]
     unit, factor = {"rad": ("deg", 180 / math.pi), "1": ("1", 1.0)}.get(component.unit, ("mm", 1.0))
     k = coverage_factor(PROBABILITY)
     power = variable.name.partition(".")[2]
-    figure = Figure(flank, variable.name, f"{unit}/rad^{power}" if power else unit, True, factor)
+    figure = Figure(flank, variable.name, f"{unit}/rad^{power}" if power else unit, factor=factor)
     return Uncertain(figure, value, u, (value - k * u, value + k * u), None)
 
 

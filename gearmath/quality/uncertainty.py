@@ -1,8 +1,8 @@
 """How sure the figures of a measured member are: the law of propagation where they are smooth, draws where not.
 
 A smooth figure y has the standard uncertainty √(J V J') and the interval y ± k u, and draws confirm it. A maximum or a
-range is the largest of linear forms l·δ. Noise makes it too large, and the more so the more forms compete, so that
-quantiles of draws about the measured deviations miss the truth Y. What holds for every gear, with errors e,
+range is the largest of differences, linear forms l·δ. Noise makes it too large, and the more so the more forms compete,
+so that quantiles of draws about the measured deviations miss the truth Y. What holds for every gear, with errors e,
 
     y - Y <= max l·e     over the forms l that can be the largest
     Y - y <= -l·e        at the one form l that is the largest in truth
@@ -21,7 +21,7 @@ import casadi as ca
 import numpy as np
 
 from gearmath.quality.covariance import Covariance, coverage_factor
-from gearmath.quality.figures import Figure, Figures
+from gearmath.quality.figures import Extreme, Figure, Figures
 from gearmath.quality.study import monte_carlo, run
 
 #: Coverage probability of the intervals.
@@ -49,11 +49,19 @@ class Uncertain:
         return "GUM" if self.figure.smooth else "Monte Carlo"
 
 
-def contenders(forms: np.ndarray, values: np.ndarray, covariance: Covariance) -> np.ndarray:
-    """Those of the forms (p,n) with values (p,) that can be the largest in truth, or could have been when measured."""
+def contenders(extreme: Extreme, judged: np.ndarray, covariance: Covariance) -> tuple[np.ndarray, float]:
+    """Which of the differences (p,) can be the largest in truth, or could have been when measured; their largest u."""
+    base = np.vstack([extreme.jacobian, np.zeros(len(covariance))])  # the last one is the 0 that is added
+    shared = covariance.through(base)
+    first, second, values = extreme.first, extreme.second, extreme.differences(judged)
     best = int(np.argmax(values))
-    apart = covariance.standard_uncertainty(forms - forms[best])
-    return forms[values[best] - values <= _CERTAIN * apart]
+    with_base = shared[first] - shared[second]
+    each = np.arange(len(first))
+    variance = with_base[each, first] - with_base[each, second]
+    with_best = with_base[:, first[best]] - with_base[:, second[best]]
+    apart = np.sqrt(np.maximum(variance - 2 * with_best + variance[best], 0.0))
+    chosen = np.flatnonzero(values[best] - values <= _CERTAIN * apart)
+    return chosen, float(np.sqrt(max(variance[chosen].max(), 0.0)))
 
 
 def uncertain_figures(
@@ -70,13 +78,13 @@ def uncertain_figures(
 
     The draws are a study, see :func:`study.run`.
     """
-    open_ = {j: contenders(forms, figures.values[j], covariance) for j, forms in figures.forms.items()}
-    study = monte_carlo(covariance.drawn(_with_excess(figures, open_), figures.deviation), draws, seed)
+    open_ = {j: contenders(extreme, figures.judged, covariance) for j, extreme in figures.extremes.items()}
+    chosen = {j: index for j, (index, _) in open_.items()}
+    study = monte_carlo(covariance.drawn(_with_excess(figures, chosen), figures.deviation), draws, seed)
     drawn = run(study, executor, workers, results, progress)
     m, k = len(figures.items), coverage_factor(PROBABILITY)
     excess = dict(zip(open_, np.quantile(drawn[:, m:], (1 + PROBABILITY) / 2, axis=0), strict=True))
-    values = np.array(figures.function(figures.deviation)).ravel()
-    gum = covariance.standard_uncertainty(figures.jacobian())
+    values, gum = figures.values, covariance.standard_uncertainty(figures.jacobian)
     spread = drawn[:, :m].std(axis=0, ddof=1)
     found = []
     for j, figure in enumerate(figures.items):
@@ -84,15 +92,17 @@ def uncertain_figures(
         interval = (value - k * u, value + k * u)
         if not figure.smooth:
             u = float(spread[j])
-            above = k * float(covariance.standard_uncertainty(open_[j]).max())
-            interval = (max(0.0, value - float(excess[j])), value + above)
+            interval = (max(0.0, value - float(excess[j])), value + k * open_[j][1])
         found.append(Uncertain(figure, value, u, interval, float(spread[j])))
     return found
 
 
-def _with_excess(figures: Figures, open_: dict[int, np.ndarray]) -> ca.Function:
+def _with_excess(figures: Figures, chosen: dict[int, np.ndarray]) -> ca.Function:
     """The figures of deviations, and for each maximum the largest change of its contenders."""
-    moved = ca.MX.sym("deviation", len(figures.deviation))
-    error = moved - ca.DM(figures.deviation)
-    excess = [ca.mmax(ca.DM(forms) @ error) for forms in open_.values()]
-    return ca.Function("figures_and_excess", [moved], [ca.vertcat(figures.function(moved), *excess)])
+    moved, at = ca.MX.sym("deviation", len(figures.deviation)), figures.judged
+    judged = figures.judging(moved)
+    excess = [
+        ca.mmax(figures.extremes[j].graph(judged, index) - ca.DM(figures.extremes[j].differences(at)[index]))
+        for j, index in chosen.items()
+    ]
+    return ca.Function("figures_and_excess", [moved], [ca.vertcat(figures.of_judged(judged), *excess)])

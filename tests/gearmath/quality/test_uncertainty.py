@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import casadi as ca
 import numpy as np
 import pytest
 from scipy.stats import binomtest, norm
@@ -13,10 +14,10 @@ from gearmath.bevel.flank import blank_grid
 from gearmath.machine.mill import nominal_flank
 from gearmath.quality.covariance import Covariance, coverage_factor, independent, stated
 from gearmath.quality.evaluation import evaluate_member
-from gearmath.quality.figures import figures_of
+from gearmath.quality.figures import Extreme, figures_of
 from gearmath.quality.topography import ORDERS
 from gearmath.quality.touch_model import touch_covariance
-from gearmath.quality.uncertainty import uncertain_figures
+from gearmath.quality.uncertainty import contenders, uncertain_figures
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.flank_csv import FlankFile, join
@@ -78,8 +79,7 @@ def by_name(found, flank="concave"):
 
 def test_figures_are_those_of_the_evaluation(evaluation, figures):
     values = dict(zip(
-        [(item.flank, item.name) for item in figures.items], np.array(figures.function(figures.deviation)).ravel(),
-        strict=True,
+        [(item.flank, item.name) for item in figures.items], figures.values, strict=True,
     ))  # fmt: skip
     for flank in FLANKS:
         judged = evaluation.flanks[flank]
@@ -102,32 +102,54 @@ def test_figures_are_those_of_the_evaluation(evaluation, figures):
     assert ("both", "tilt_x") not in values
 
 
-def test_figures_are_the_largest_of_their_forms(figures):
-    values = np.array(figures.function(figures.deviation)).ravel()
-    assert len(figures.forms) == 7
+def test_extremes_are_the_largest_of_their_differences(figures):
     step = 1e-3 * np.random.default_rng(5).standard_normal(len(figures.deviation))
-    moved = np.array(figures.function(figures.deviation + step)).ravel()
-    for k, forms in figures.forms.items():
-        assert figures.values[k].max() == pytest.approx(values[k], abs=1e-15)
-        assert (figures.values[k] + forms @ step).max() == pytest.approx(moved[k], abs=1e-14)
+    assert len(figures.extremes) == 7
+    for here in (figures, replace(figures, deviation=figures.deviation + step)):
+        for k, extreme in here.extremes.items():
+            assert extreme.differences(here.judged).max() == pytest.approx(here.values[k], abs=1e-15)
 
 
-def test_jacobian_is_the_derivative_of_the_whole_evaluation(gear_set, measured, figures):
-    """Drift, registration and all: a measurement that is shifted at every point, evaluated anew."""
-    smooth = np.array([item.smooth for item in figures.items])
-    step = 2e-4 * np.random.default_rng(6).standard_normal(len(measured))
+def test_contenders_are_all_that_can_be_the_largest():
+    """By hand: four points of u = 1, one of them far below, and a part in common that tells none from another."""
+    base = ca.MX.sym("base", 4)
+    extreme = Extreme(ca.Function("base", [base], [base]), np.eye(4), np.arange(4), np.full(4, 4))
+    covariance = Covariance(np.ones(4), np.full((4, 1), 100.0), ("common",))
+    reach = 9 * math.sqrt(2)
+    chosen, u = contenders(extreme, np.array([50.0, 50 - reach + 0.01, 50 - reach - 0.01, 49.0]), covariance)
+    assert chosen.tolist() == [0, 1, 3]
+    assert u == pytest.approx(math.hypot(1, 100), rel=1e-12)
 
-    def evaluated(sign):
-        shifted = replace(
-            measured, point=measured.point + sign * step[:, None] * measured.normal,
-            deviation=measured.deviation + sign * step,
-        )  # fmt: skip
-        anew = figures_of(shifted, gear_set.pinion, evaluate_member(shifted, gear_set.pinion, "pinion"))
-        return np.array(anew.function(anew.deviation)).ravel()[smooth]
 
-    change, expected = (evaluated(1) - evaluated(-1)) / 2, (figures.jacobian() @ step)[smooth]
-    scale = np.sqrt(np.sum(figures.jacobian()[smooth] ** 2, axis=1)) * 2e-4
-    assert np.abs((change - expected) / scale).max() <= 2e-3
+@pytest.fixture(scope="module")
+def dense(gear_set):
+    """3 x 5 points on all perfect flanks of the pinion, tooth 0 once more at the end: tilt and drift are told too."""
+    grid = blank_grid(gear_set.pinion, 3, 5)
+    files = [nominal_flank(gear_set.pinion, "pinion", flank, grid, tooth=k) for k in range(12) for flank in FLANKS]
+    file = join(files + [replace(one, tooth=one.tooth + 12) for one in files[:2]])
+    return replace(file, deviation=np.zeros(len(file)))
+
+
+@pytest.mark.parametrize(("which", "limit"), [("dense", 1e-5), ("measured", 2e-3)])
+def test_jacobian_is_the_derivative_of_the_whole_evaluation(gear_set, request, which, limit):
+    """Drift, registration and all: a measurement that is shifted at every point, evaluated anew.
+
+    The places of the points count as fixed, and they move with the deviations: of some um in some mm, a part in 1e3.
+    """
+    file = request.getfixturevalue(which)
+    step = 2e-4 * np.random.default_rng(6).standard_normal(len(file))
+
+    def evaluated(change):
+        shifted = replace(file, point=file.point + change[:, None] * file.normal, deviation=file.deviation + change)
+        return figures_of(shifted, gear_set.pinion, evaluate_member(shifted, gear_set.pinion, "pinion"))
+
+    here = evaluated(0 * step)
+    smooth = np.array([item.smooth for item in here.items])
+    assert ("tilt_x" in [item.name for item in here.items]) == (which == "dense")
+    change = (evaluated(step).values - evaluated(-step).values)[smooth] / 2
+    expected = (here.jacobian @ step)[smooth]
+    scale = np.sqrt(np.sum(here.jacobian[smooth] ** 2, axis=1)) * 2e-4
+    assert np.abs((change - expected) / scale).max() <= limit
 
 
 def test_drift_is_propagated_with_the_points_that_tell_it(gear_set, small):
@@ -138,7 +160,7 @@ def test_drift_is_propagated_with_the_points_that_tell_it(gear_set, small):
     grid = small.pick((small.tooth == 0) & ~((small.row == 1) & (small.col == 1)))
     file = join([file, grid])  # the grid comes last, and has its own share of the drift
     figures = figures_of(file, gear_set.pinion, evaluate_member(file, gear_set.pinion, "pinion", registered=False))
-    f_pt_1 = figures.jacobian()[[item.name for item in figures.items].index("f_pt_1")]
+    f_pt_1 = figures.jacobian[[item.name for item in figures.items].index("f_pt_1")]
     point, normal = reference.point[0], reference.normal[0]
     arc = math.hypot(*point[:2]) / (point[0] * normal[1] - point[1] * normal[0])
     expected = np.zeros(len(file))
@@ -231,13 +253,12 @@ def test_95_percent_intervals_hold_the_truth(gear_set, small, size_um, seeds):
     truth = size_um / 1000 * np.random.default_rng(0).standard_normal(20)
     covariance = Covariance(np.full(20, 0.5e-3**2), np.full((20, 1), 0.3e-3), ("probe calibration",))
     figures = unregistered(gear_set, small, truth)
-    true = np.array(figures.function(truth)).ravel()
+    true = figures.values
     held = np.zeros(len(true), dtype=int)
     for seed in range(seeds):
         rng = np.random.default_rng(seed)
         deviation = truth + 0.5e-3 * rng.standard_normal(20) + 0.3e-3 * rng.standard_normal()
-        values = {k: figures.values[k] + forms @ (deviation - truth) for k, forms in figures.forms.items()}
-        here = replace(figures, deviation=deviation, values=values)  # without registration all of it is linear
+        here = replace(figures, deviation=deviation)  # without registration all of it is linear
         found = uncertain_figures(here, covariance, 250, seed, workers=1)
         held += [low <= value <= high for (low, high), value in zip((u.interval for u in found), true, strict=True)]
     table = {
@@ -251,10 +272,10 @@ def test_95_percent_intervals_hold_the_truth(gear_set, small, size_um, seeds):
 def test_bundled_model_is_covered_too(figures, model):
     """All correlated parts of the bundled model at once: the smooth figures, whose intervals need no draws."""
     smooth = np.array([item.smooth for item in figures.items])
-    half = coverage_factor(0.95) * model.standard_uncertainty(figures.jacobian()[smooth])
+    half = coverage_factor(0.95) * model.standard_uncertainty(figures.jacobian[smooth])
     root = np.concatenate([np.diag(np.sqrt(model.variance)), model.factors], axis=1)
     noise = np.stack([np.random.default_rng(seed).standard_normal(root.shape[1]) for seed in range(SEEDS)], axis=1)
-    off = np.array(figures.function.map(SEEDS)(figures.deviation[:, None] + root @ noise))
-    true = np.array(figures.function(figures.deviation))
-    held = (np.abs(off - true)[smooth] <= half[:, None]).sum(axis=1)
+    judged = figures.judging.map(SEEDS)(figures.deviation[:, None] + root @ noise)
+    off = np.array(figures.of_judged.map(SEEDS)(judged))
+    held = (np.abs(off - figures.values[:, None])[smooth] <= half[:, None]).sum(axis=1)
     assert min(binomtest(int(count), SEEDS, 0.95).pvalue for count in held) >= ALPHA / len(held)
