@@ -166,7 +166,8 @@ def _say_analysis(flanks: str, analysis: Analysis) -> None:
     kind = "simple" if analysis.is_simple else "complex"
     click.echo(
         f"{flanks}: {kind} target, RMS {analysis.rms * 1000:.3f} um; no correction by these {len(analysis.names)} "
-        f"settings gets below {analysis.best_rms * 1000:.3f} um"
+        f"settings gets below {analysis.best_rms * 1000:.3f} um, none within their bounds below "
+        f"{analysis.reachable_rms * 1000:.3f} um"
     )
     click.echo("  singular values [um]: " + ", ".join(f"{value * 1000:.3g}" for value in analysis.singular_values))
     for first, second, cosine in analysis.alike:
@@ -237,6 +238,7 @@ def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any
         "without_effect": list(analysis.unseen),
         "rms_um": found.rms_before * 1000,
         "best_rms_um": analysis.best_rms * 1000,
+        "reachable_rms_um": analysis.reachable_rms * 1000,
         "remaining_rms_um": found.rms_after * 1000,
         "enough": {"settings": list(choice.names), "loss_um": choice.loss * 1000},
         "held_back_by": list(found.active),

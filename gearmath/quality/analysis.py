@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from gearmath.quality.compensation import RANK, FlankTarget, Problem, Run, as_it_stands, located
+from gearmath.quality.least_squares import minimize
 from gearmath.quality.variables import FREE, Variable, variables_of
 
 #: Columns whose directions agree this well move the flank alike. [cosine]
@@ -74,6 +75,13 @@ class Analysis:
     def best_rms(self) -> float:
         """RMS of the projection residual [mm]: what any correction by these settings leaves."""
         return self._left(self.jacobian)
+
+    @cached_property
+    def reachable_rms(self) -> float:
+        """RMS [mm] of what a correction within the bounds leaves, to first order: at least ``best_rms``."""
+        bound = np.ones(len(self.variables))
+        found = minimize(lambda v: (self.jacobian @ v - self.deviation, self.jacobian), -bound, bound)
+        return float(np.sqrt(np.mean(found.residual**2)))
 
     @property
     def noise(self) -> float:

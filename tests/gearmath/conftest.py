@@ -1,13 +1,15 @@
 """What the tests of the bevel chain share: the bundled files, a witness in plain NumPy, and the machine end to end.
 
 The witness is typed from the conventions on purpose, with Rodrigues' rotation in machine axes and the cone given by its
-apex, so that it shares no formula with the derivations.
+apex, so that it shares no formula with the derivations. A second one knows every cutting method: one blade edge, moved
+by cutter, cradle and work.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,7 +20,7 @@ from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import MachinePath, execute
 from gearmath.machine.mill import mill_member
 from gearmath.machine.path import DEFAULT_TOLERANCE
-from gearmath.specs.bevel_set import SETTINGS, BevelSet, Design, Settings, load_bevel_set
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, BevelSet, Design, Member, Settings, load_bevel_set
 from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.simulated_machine import SimulatedMachine, load_simulated_machine
@@ -99,6 +101,12 @@ def altered() -> Callable[..., BevelSet]:
 def nominal_settings() -> Callable[..., Settings]:
     """The settings of a flank as they stand, to be kept as its design."""
     return lambda flank: Design(**{name: getattr(flank, name) for name in SETTINGS})
+
+
+@pytest.fixture(scope="session")
+def moved_edge() -> SimpleNamespace:
+    """The blade of a member, what it leaves on lines, and the mirror image of a member."""
+    return SimpleNamespace(blade_of=blade_of, left_on_lines=left_on_lines, on_lines=on_lines, mirrored=mirrored)
 
 
 @pytest.fixture
@@ -253,3 +261,154 @@ def _left_by_cradle(
         theta, best = np.take_along_axis(poses, k[:, None], 1)[:, 0], np.minimum(best, t.min(axis=1))
         width /= 15
     return best, theta
+
+
+ANGULAR = ("cradle_angle", "cutter_tilt", "cutter_swivel", "machine_root_angle", "work_rotation_offset")
+MACHINE = (
+    "radial_distance", "cradle_angle", "cutter_tilt", "cutter_swivel", "blank_offset", "sliding_base",
+    "machine_center_to_crossing_point", "machine_root_angle", "ratio_of_roll", "work_rotation_offset",
+)  # fmt: skip
+#: What changes its sign in the mirror, cradle rotation and cutter angle besides.
+ODD = ("cradle_angle", "cutter_swivel", "blank_offset", "work_rotation_offset")
+
+
+@dataclass(frozen=True)
+class Blade:
+    """One blade edge and the machine that moves it; ``moving`` holds x, x_1, ... x_7 of x(θ) of every setting."""
+
+    moving: dict[str, np.ndarray]
+    roll: tuple[float, ...]
+    point_radius: float
+    alpha: float
+    offset: float
+    side: int
+    index: float
+    arc: tuple[float, float, float] | None = None
+
+    def edge(self, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Cutting radius and height."""
+        if self.arc is None:
+            return self.point_radius + self.side * u * np.tan(self.alpha), u
+        center, height, radius = self.arc
+        return center + self.side * radius * np.cos(u), height - radius * np.sin(u)
+
+    def at(self, u: np.ndarray, beta: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """The points (...,3) of the edge in the work, at cutter angles β and cradle angles θ."""
+        u, beta, theta = np.broadcast_arrays(u, beta, theta)
+        x = {name: sum(c * theta**k for k, c in enumerate(row)) for name, row in self.moving.items()}
+        rho, height = self.edge(u)
+        off = rho - self.point_radius
+        blade = np.stack([self.point_radius + off * np.cos(self.offset), off * np.sin(self.offset), -height], axis=-1)
+        swing = x["cradle_angle"] + theta
+        r = _about("z", swing, _about("z", x["cutter_swivel"], _about("x", x["cutter_tilt"], _about("z", beta, blade))))
+        gamma = x["machine_root_angle"]
+        axis = np.stack([np.cos(gamma), 0 * gamma, np.sin(gamma)], axis=-1)
+        r = r + axis * x["machine_center_to_crossing_point"][..., None]
+        r = r + np.stack(
+            [
+                x["radial_distance"] * np.cos(swing),
+                x["blank_offset"] + x["radial_distance"] * np.sin(swing),
+                -x["sliding_base"],
+            ],
+            axis=-1,
+        )
+        # work axes, then the work's own rotation
+        w = np.stack([np.sin(gamma) * r[..., 0] - np.cos(gamma) * r[..., 2], r[..., 1], np.sum(axis * r, axis=-1)], -1)
+        c, d, e, f = (*self.roll, 0, 0, 0, 0)[:4]  # 2C, 6D, 24E, 120F
+        lag = c / 2 * theta**2 + d / 6 * theta**3 + e / 24 * theta**4 + f / 120 * theta**5
+        turned = x["work_rotation_offset"] + x["ratio_of_roll"] * theta - self.moving["ratio_of_roll"][0] * lag
+        return _about("z", -(turned + self.index * beta), w)
+
+    @property
+    def mirrored(self) -> Blade:
+        """The machine of the other hand: x'(θ) = ±x(-θ), and 180° - x(-θ) for the swivel."""
+        moving = {}
+        for name, row in self.moving.items():
+            reversed_ = row * (-1.0) ** np.arange(len(row)) * (-1 if name in ODD else 1)
+            moving[name] = reversed_ + (np.pi * (np.arange(len(row)) == 0) if name == "cutter_swivel" else 0)
+        roll = tuple(value * (-1) ** (k + 1) for k, value in enumerate(self.roll))
+        return Blade(
+            moving, roll, self.point_radius, self.alpha, -self.offset, self.side, self.index, self.arc
+        )  # fmt: skip
+
+
+def _about(axis: str, angle: np.ndarray, v: np.ndarray) -> np.ndarray:
+    c, s = np.cos(angle), np.sin(angle)
+    x, y, z = np.moveaxis(v, -1, 0)
+    turned = (c * x - s * y, s * x + c * y, z) if axis == "z" else (x, c * y - s * z, s * y + c * z)
+    return np.stack(np.broadcast_arrays(*turned), axis=-1)
+
+
+def blade_of(member: Member, flank: str) -> Blade:
+    """The blade and machine of a flank of a file, straight from its keys."""
+    spec = member.flank(flank)
+    moving = {}
+    for name in MACHINE:
+        row = np.array([getattr(spec, name), *getattr(spec.motion, name)], dtype=float)
+        moving[name] = np.radians(row) if name in ANGULAR else row
+    index = member.indexing_sign * member.blade_groups / member.teeth if member.blade_groups else 0.0
+    return Blade(
+        moving, spec.motion.modified_roll, spec.blade_point_radius, np.radians(spec.blade_pressure_angle),
+        np.radians(spec.blade_offset_angle), SIDES[flank], index,
+    )  # fmt: skip
+
+
+def on_lines(
+    blade: Blade, p: np.ndarray, d: np.ndarray, theta: np.ndarray, start: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Where the surface that the turning edge sweeps at cradle angles θ crosses lines p + t d: t, and whether it does.
+
+    Newton from ``start`` (...,2) in u and β, with central differences: no derivative of the machine is known here.
+    """
+    t = np.zeros(np.broadcast_shapes(theta.shape, p.shape[:-1]))
+    u, beta = (np.broadcast_to(start[..., k], t.shape).copy() for k in (0, 1))
+    h = 1e-4
+    for _ in range(7):
+        along_u = (blade.at(u + h, beta, theta) - blade.at(u - h, beta, theta)) / (2 * h)
+        along_beta = (blade.at(u, beta + h, theta) - blade.at(u, beta - h, theta)) / (2 * h)
+        off = blade.at(u, beta, theta) - (p + t[..., None] * d)
+        J = np.stack(np.broadcast_arrays(along_u, along_beta, -d), axis=-1)
+        step = np.linalg.solve(J, off[..., None])[..., 0]
+        u, beta, t = u - step[..., 0], beta - step[..., 1], t - step[..., 2]
+    off = np.linalg.norm(blade.at(u, beta, theta) - (p + t[..., None] * d), axis=-1)
+    return t, off < 1e-9
+
+
+def left_on_lines(
+    blade: Blade, p: np.ndarray, d: np.ndarray, theta: np.ndarray, start: np.ndarray, width: float, levels: int = 4
+) -> tuple[np.ndarray, np.ndarray]:
+    """What is left on lines p + t d (n,3) by all cradle angles near theta (n,): the least t, and where it is found.
+
+    Brute force: 21 cradle angles, then again around the best of them.
+    """
+    best = np.full(len(p), np.inf)
+    for _ in range(levels):
+        poses = theta[:, None] + width * np.linspace(-1, 1, 21)
+        t, crosses = on_lines(blade, p[:, None], d[:, None], poses, start[:, None])
+        t = np.where(crosses, t, np.inf)
+        k = np.argmin(t, axis=1)
+        theta, best = np.take_along_axis(poses, k[:, None], 1)[:, 0], np.minimum(best, t.min(axis=1))
+        width /= 8
+    return best, theta
+
+
+def mirrored(member: Member) -> Member:
+    """The member of the other hand, key by key: 180° - x for the swivel, odd and even coefficients of the motion.
+
+    The swivel's 180° turn the blades of the cutter by half a turn, which in face hobbing indexes the work.
+    """
+    values = member.model_dump()
+    values["hand"] = "left" if member.hand == "right" else "right"
+    for flank in FLANKS:
+        spec = values[flank]
+        for name in MACHINE:
+            sign = -1 if name in ODD else 1
+            spec[name] = sign * spec[name] + (180.0 if name == "cutter_swivel" else 0.0)
+            coefficients = spec["motion"][name]
+            spec["motion"][name] = tuple(sign * (-1) ** (k + 1) * c for k, c in enumerate(coefficients))
+        spec["motion"]["modified_roll"] = tuple(
+            (-1) ** (k + 1) * c for k, c in enumerate(spec["motion"]["modified_roll"])
+        )
+        spec["blade_offset_angle"] *= -1
+        spec["work_rotation_offset"] += 180.0 * member.indexing_sign * (member.blade_groups or 0) / member.teeth
+    return Member.model_validate(values)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from types import SimpleNamespace
@@ -11,7 +12,8 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.machine.mill import flank_header
-from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.quality.compensation import FlankTarget
+from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SIDES, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
 
@@ -186,3 +188,44 @@ def _roots(first: np.ndarray, way: np.ndarray, radius: float, leaving: bool) -> 
 def artefacts() -> type[_Artefacts]:
     """``artefacts(calibration)``: ring, its face and sphere, for a probe with the tip of the calibration."""
     return _Artefacts
+
+
+@pytest.fixture(scope="session")
+def brute_force(moved_edge) -> SimpleNamespace:
+    """What a flank of changed settings really leaves, by the moving blade edge: no derivative, no equation of meshing.
+
+    ``left(member, flank, target, change)`` is the deviation (n,) at the points of a target for a change (82,) of its
+    settings and motion, searched for over all cradle angles around each point.
+    """
+
+    def changed(member: Member, flank: str, change: np.ndarray) -> object:
+        blade, spec = moved_edge.blade_of(member, flank), member.flank(flank)
+        settings, motion = change[:10], change[12:].reshape(10, 7)
+        moving = {}
+        for name, row, first, more in zip(MACHINE_SETTINGS, blade.moving.values(), settings, motion, strict=True):
+            assert name in blade.moving
+            moving[name] = np.pad(row, (0, 8 - len(row))) + np.array([first, *more])
+        # modified roll is in parts of the nominal ratio: the witness takes the roll that the machine is set to
+        roll = tuple(
+            c * blade.moving["ratio_of_roll"][0] / (blade.moving["ratio_of_roll"][0] + change[8]) for c in blade.roll
+        )
+        radius, alpha = blade.point_radius + change[10], blade.alpha + change[11]
+        arc = None
+        if spec.blade_spheric_radius is not None:
+            r, height, side = spec.blade_spheric_radius, spec.blade_reference_height, blade.side
+            at = radius + side * height * math.tan(alpha)  # where arc and straight blade touch
+            arc = (at - side * r * math.cos(alpha), height + r * math.sin(alpha), r)
+        return dataclasses.replace(
+            blade, moving=moving, roll=roll, point_radius=radius, alpha=alpha, arc=arc
+        )  # fmt: skip
+
+    def left(member: Member, flank: str, target: FlankTarget, change: np.ndarray, levels: int = 5) -> np.ndarray:
+        blade, at = changed(member, flank, change), target.nominal
+        start, theta = at.contact[:, :2], at.contact[:, 2]
+        if member.generation == "formate":
+            t, crosses = moved_edge.on_lines(blade, at.point, at.normal, np.zeros(len(theta)), start)
+            assert crosses.all()
+            return t
+        return moved_edge.left_on_lines(blade, at.point, at.normal, theta, start, 0.02, levels)[0]
+
+    return SimpleNamespace(left=left)
