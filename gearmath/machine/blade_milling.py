@@ -20,8 +20,8 @@ from gearmath.lowering import Kernel, lower
 from gearmath.machine.blades import Blades, Edge, crossing
 from gearmath.machine.milling import Evaluator, Removal
 
-#: Between two nodes C turns by this part of the angle between blade groups at most.
-_NODE_STEP = 1.0
+#: Between two nodes neither A nor C turns further than this. [rad]
+_NODE_STEP = 0.5
 #: Edges are followed where they pass the line's point within the length of the line behind it, and this. [mm]
 _WINDOW = 1.0
 #: A crossing may lie outside of its block by this part of it, off the end of its edge by this [mm or rad], and leaves
@@ -46,11 +46,11 @@ class _Path:
     fraction: np.ndarray
 
     @staticmethod
-    def of(axes: np.ndarray, cutter: np.ndarray, cutting: np.ndarray, step: float) -> _Path:
+    def of(axes: np.ndarray, cutter: np.ndarray, cutting: np.ndarray) -> _Path:
         row = np.flatnonzero(cutting[1:]) + 1
         every = np.column_stack([axes, cutter])
         first, last = every[row - 1], every[row]
-        parts = np.maximum(np.ceil(np.abs(last[:, 5] - first[:, 5]) / step).astype(int), 1)
+        parts = np.maximum(np.ceil(np.abs(last - first)[:, 3::2].max(axis=1) / _NODE_STEP).astype(int), 1)
         block = np.repeat(np.arange(len(row)), parts + 1)
         within = np.arange(len(block)) - np.repeat(np.cumsum(parts + 1) - (parts + 1), parts + 1)
         return _Path(first, last, row, block, within / np.repeat(parts, parts + 1))
@@ -92,7 +92,7 @@ def removal_by_blades(
     ``axes`` (n,5) and ``cutter`` (n,) are the ends of n blocks, ``cutting`` (n,) is False where block k does not cut;
     ``machine`` is pivot height and offset. What crosses a line before its ``start`` (m,) [mm] belongs to another space.
     """
-    path = _Path.of(axes, cutter, cutting, _NODE_STEP * 2 * math.pi / blades.groups)
+    path = _Path.of(axes, cutter, cutting)
     best, block = np.full(len(point), np.inf), np.full(len(point), -1)
     starts = np.broadcast_to(np.asarray(start, dtype=float), (len(point),))
     nodes, seen = path.nodes, evaluator(_seen())

@@ -1,0 +1,30 @@
+"""Face hobbing programs of cutters with few and with many blade groups, of both hands, milled from their text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from gearmath.machine.cutting import Job, cutting_program
+from gearmath.machine.executor import execute
+from gearmath.machine.mill import mill_member
+from gearmath.specs.bevel_set import MEMBERS, BevelSet
+from gearmath.specs.milling_machine import MillingMachine
+
+TOLERANCE = 5e-4  # mm
+
+
+@pytest.mark.parametrize("name", MEMBERS)
+@pytest.mark.parametrize(("groups", "radius", "hand"), [(5, 88.0, "right"), (17, 105.0, "left")])
+def test_flanks_of_all_spaces_keep_the_tolerance(
+    pair: Callable[..., BevelSet], vertical: MillingMachine, groups: int, radius: float, hand: str, name: str
+) -> None:
+    gear_set = pair(blade_groups=groups, cutter_radius=radius, hand=hand)
+    member = gear_set.member(name)
+    text = cutting_program(gear_set, name, vertical, "HOB", Job(range(member.teeth), TOLERANCE))
+    deviation = mill_member(execute(text, "HOB.MPF"), member, name, vertical).deviation
+    assert len(deviation) == 2 * (45 + member.teeth - 1)
+    assert np.abs(deviation).max() <= TOLERANCE
+    assert deviation.max() > 0.3 * TOLERANCE
