@@ -9,11 +9,14 @@ from gearmath.errors import InputError
 from gearmath.machine.metal import metal
 from gearmath.machine.mill import mill_member
 from gearmath.specs.bevel_set import FLANKS, load_bevel_set
-from gearmath.specs.simulated_machine import Probe, load_simulated_machine
+from gearmath.specs.simulated_machine import AxisErrors, Probe, load_simulated_machine
 from gearmath.specs.toml import bundled
 
 SET = load_bevel_set(bundled("crown_gear_7x43.toml"))
-SHOP = load_simulated_machine(bundled("source_experiment.toml")).model_copy(update={"probe": Probe()})
+#: Errors of settings and index; without the ball screw, which would divide the blocks into many.
+SHOP = load_simulated_machine(bundled("source_experiment.toml")).model_copy(
+    update={"probe": Probe(), "axes": AxisErrors()}
+)
 
 
 @pytest.mark.slow

@@ -156,6 +156,17 @@ def test_commands_go_from_calibration_to_measured_flank(gear_set, tmp_path, comm
     assert "F_p_um" in out
 
 
+def test_command_writes_repeated_touches(tmp_path, command, refused):
+    """The reference points of twelve teeth, tooth 0 again: 26 points, three touches each."""
+    nasa, target = "nasa_tp3096_12x36.toml", tmp_path / "PP.MPF"
+    status, out, _ = command(
+        "nc", "probe", nasa, "--member", "pinion", "--topography", "none", "--repeat", 3, "-o", target
+    )  # fmt: skip
+    assert (status, out.split(": ")[1].split(",")[0]) == (0, "78 touches")
+    assert "; 26 points, each touched 3 times" in target.read_text()
+    refused("--repeat", "nc", "probe", nasa, "--member", "pinion", "--repeat", 0, "-o", tmp_path / "P2.MPF")
+
+
 def test_bad_input_of_the_commands_is_one_sentence(tmp_path, refused):
     empty = tmp_path / "empty.csv"
     empty.write_text("")
