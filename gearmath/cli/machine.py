@@ -70,14 +70,21 @@ def cut(
 )  # fmt: skip
 @click.option("--report-tolerance-um", type=click.FloatRange(0.01, 1000), default=1.0, show_default=True,
               help="Deviation on flank, fillet or root that the report counts as a fault.")  # fmt: skip
+@click.option("--measured", is_flag=True, help="Clamp the member anew and measure it as the machine of --errors does.")
 @output("flank CSV")
 def mill(
     gear_set: str, member: str, machine: str, program: Path, errors: str | None, report: Path | None,
-    report_tolerance_um: float, target: Path,
+    report_tolerance_um: float, measured: bool, target: Path,
 ) -> None:  # fmt: skip
-    """Virtual milling from the program text: the deviations it leaves, as a measured flank CSV."""
+    """Virtual milling from the program text: the deviations it leaves, as a measured flank CSV.
+
+    With --measured they are those of a measuring machine, with the clamping, drift and probe of the file of --errors:
+    tooth 0 in full, the corners of the grid on eight teeth around, and tooth 0 again at the end.
+    """
     from gearmath.files import read_text
     from gearmath.machine.executor import execute
+    from gearmath.machine.measuring import measure_member
+    from gearmath.machine.metal import metal, teeth_around
     from gearmath.machine.mill import mill_member
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import write_flank_csv
@@ -89,11 +96,18 @@ def mill(
     milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
     path = execute(read_text(program), str(program))
+    if measured and simulated is None:
+        raise InputError("--measured needs --errors: the file that says how the member sits and what the probe does")
     with bar(2 * spec.teeth, "flank") as progress, about(program):
-        measured = mill_member(path, spec, member, milling_machine, simulated, progress)
-    write_flank_csv(target, measured)
-    worst = float(abs(measured.deviation).max()) * 1000
-    click.echo(f"{target}: {len(measured)} points, largest deviation {worst:.3f} um")
+        if measured and simulated is not None:
+            around = teeth_around(spec.teeth)
+            left = metal(path, spec, member, milling_machine, simulated, around=around, progress=progress)
+            file = measure_member(left, spec, member, simulated)
+        else:
+            file = mill_member(path, spec, member, milling_machine, simulated, progress)
+    write_flank_csv(target, file)
+    worst = float(abs(file.deviation).max()) * 1000
+    click.echo(f"{target}: {len(file)} points, largest deviation {worst:.3f} um")
     if report is not None:
         _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -119,6 +121,23 @@ def test_bad_milling_is_one_line_and_writes_nothing(refused, tmp_path, pinion_pr
     broken.write_bytes(b"\xff" + text.encode())
     refused(r"PINION\.MPF: is no text file: byte 0 is not UTF-8", *good, broken)
     assert list(target.parent.iterdir()) == []
+
+
+@pytest.mark.slow
+def test_measured_member_is_evaluated_as_its_clamping_says(command, refused, tmp_path):
+    """nc cut, mill --measured, evaluate: 15 um and 10 um per 100 mm come back."""
+    gear_set, program, target = "crown_gear_7x43.toml", tmp_path / "PINION.MPF", tmp_path / "M.csv"
+    assert command("nc", "cut", gear_set, "--member", "pinion", "-o", program)[0] == 0
+    milling = ["mill", gear_set, "--member", "pinion", "--program", program, "--measured", "-o", target]
+    refused("--measured needs --errors", *milling)
+    status, out, err = command(*milling, "--errors", "source_experiment.toml")
+    assert status == 0, err
+    assert "160 points" in out  # 90, five on each flank of six teeth, five again on each flank of tooth 0
+    status, out, err = command("evaluate", target, "--set", gear_set, "--json")
+    assert status == 0, err
+    seat = json.loads(out)["registration"]
+    assert seat["eccentricity_um"] == pytest.approx(15.0, abs=4 * seat["u_eccentricity_um"])
+    assert seat["tilt_um_per_100mm"] == pytest.approx(10.0, abs=4 * seat["u_tilt_um_per_100mm"])
 
 
 def test_program_of_other_settings_is_a_failure_of_status_1(command, tmp_path, pinion_program):

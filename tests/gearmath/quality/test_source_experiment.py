@@ -8,7 +8,7 @@ import pytest
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
 from gearmath.machine.measuring import measure_member
-from gearmath.machine.metal import metal
+from gearmath.machine.metal import metal, teeth_around
 from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
 from gearmath.quality.evaluation import evaluate_member
@@ -57,7 +57,7 @@ def cut(gear_set, name, vertical):
     """The metal that the program's text leaves on the machine of the experiment, without noise: both flanks."""
     member = gear_set.member(name)
     text = cutting_program(gear_set, name, vertical, "EXPERIMENT", Job(range(member.teeth)))
-    around = sorted({round(k * member.teeth / 8) % member.teeth for k in range(8)})
+    around = teeth_around(member.teeth)
     return metal(execute(text, "EXPERIMENT.MPF"), member, name, vertical, QUIET, around=around)
 
 
