@@ -1,8 +1,8 @@
 """Stock division: how a precut blank must stand so that both flanks have enough left to be finished.
 
 What a flank has more than its nominal surface is stock. Turned by ε and advanced by a, it changes by the rigid motion
-(18.2). The least stock of all points is a concave function of both, so that its greatest value is found by halving:
-there both flanks share.
+(18.2). The least stock of all points is a concave function of ε, so that its greatest value is found by halving: there
+both flanks share. An advance gives stock to both flanks and takes depth; it is chosen where the stock is most even.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Stock:
 
 
 def share_stock(member: Member, name: str, measured: FlankFile, advance: bool = False, least: float = 0.0) -> Stock:
-    """The rotation, and with ``advance`` the axial shift, that leaves the most stock where there is least.
+    """The rotation that leaves the most stock where there is least; with ``advance`` after a shift that makes it even.
 
     ``measured`` is the probed blank, judged against the flanks to be finished. Raises InputError if the file is not of
     this member, has no deviations or lacks a flank, ComputationError if less than ``least`` [mm] remains somewhere.
@@ -56,16 +56,16 @@ def share_stock(member: Member, name: str, measured: FlankFile, advance: bool = 
     (rates,) = kernel("motion_sensitivity")(kept.point, kept.normal)
     by_turn, by_advance = rates[:, _TURN], rates[:, _ADVANCE]
 
-    def best_turn(moved: float) -> float:
+    def spread(moved: float) -> float:
+        """How far the most stock lies above the least, at the turn that brings them closest."""
         stock = kept.deviation + moved * by_advance
-        return _highest(lambda turn: _slope(stock, by_turn, turn), MOST_TURN)
+        turn = _lowest(lambda angle: float(np.ptp(stock + angle * by_turn)), MOST_TURN)
+        return float(np.ptp(stock + turn * by_turn))
 
-    def reached(moved: float) -> float:
-        return float((kept.deviation + moved * by_advance + best_turn(moved) * by_turn).min())
-
-    shift = _golden(reached, MOST_ADVANCE) if advance else 0.0
-    turn = best_turn(shift)
-    stock = kept.deviation + shift * by_advance + turn * by_turn
+    shift = _lowest(spread, MOST_ADVANCE) if advance else 0.0
+    advanced = kept.deviation + shift * by_advance
+    turn = _highest(lambda angle: float(by_turn[np.argmin(advanced + angle * by_turn)]), MOST_TURN)
+    stock = advanced + turn * by_turn
     before = _by_flank(kept, kept.deviation, np.min)
     least_there, mean, most = (_by_flank(kept, stock, how) for how in (np.min, np.mean, np.max))
     found = Stock(turn, shift, least_there, mean, most, before)
@@ -82,11 +82,6 @@ def _by_flank(file: FlankFile, stock: np.ndarray, how: Callable) -> dict[str, fl
     return {flank: float(how(stock[file.flank == flank])) for flank in FLANKS}
 
 
-def _slope(stock: np.ndarray, rate: np.ndarray, turn: float) -> float:
-    """The slope of the least stock by the turn: that of the point which has it."""
-    return float(rate[np.argmin(stock + turn * rate)])
-
-
 def _highest(slope: Callable[[float], float], limit: float) -> float:
     """Where a concave piecewise linear function is highest, by the sign of its slope."""
     low, high = -limit, limit
@@ -96,14 +91,14 @@ def _highest(slope: Callable[[float], float], limit: float) -> float:
     return (low + high) / 2
 
 
-def _golden(value: Callable[[float], float], limit: float) -> float:
-    """Where a concave function is highest, by the golden section."""
+def _lowest(value: Callable[[float], float], limit: float) -> float:
+    """Where a convex function is lowest, by the golden section."""
     ratio = (np.sqrt(5) - 1) / 2
     low, high = -limit, limit
     a, b = high - ratio * (high - low), low + ratio * (high - low)
     at_a, at_b = value(a), value(b)
     for _ in range(_HALVINGS):
-        if at_a > at_b:
+        if at_a < at_b:
             high, b, at_b = b, a, at_a
             a = high - ratio * (high - low)
             at_a = value(a)
@@ -111,4 +106,4 @@ def _golden(value: Callable[[float], float], limit: float) -> float:
             low, a, at_a = a, b, at_b
             b = low + ratio * (high - low)
             at_b = value(b)
-    return (low + high) / 2
+    return float((low + high) / 2)
