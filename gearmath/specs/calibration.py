@@ -35,6 +35,13 @@ class Ring(Spec):
     diameter: float = Field(ge=5, le=200)
     face: Face | None = None
 
+    @model_validator(mode="after")
+    def _inside(self) -> Ring:
+        if self.face is not None and self.center[2] >= self.face.seat + self.face.height:
+            top = self.face.seat + self.face.height
+            raise ValueError(f"Z {self.center[2]} of center must be below the face, {top}")
+        return self
+
 
 class Sphere(Spec):
     """Calibration sphere: centre in X Y Z of the machine, and diameter."""

@@ -122,6 +122,7 @@ def test_calibration_touches_have_their_own_columns(tmp_path):
         ("diameter = 30.0", "diameter = 400.0", "ring.diameter = 400.0"),
         ("stem_diameter = 6.0", "stem_diameter = 15.0", "stem_diameter 15.0 must be at most 0.6 of diameter 20.0"),
         ("height = 25.0", "height = -1.0", "ring.face.height = -1.0"),
+        ("height = 25.0", "height = 10.0", "Z 400.0 of center must be below the face, 395.0"),
     ],
 )
 def test_calibration_that_cannot_be_is_refused_with_key_value_and_limit(tmp_path, old, new, sentence):
