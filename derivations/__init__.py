@@ -11,7 +11,7 @@ CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
     "sweep", "probing", "registration", "spacing", "compensation", "touch_errors", "single_blades",
-    "axis_calibration",
+    "axis_calibration", "tip_calibration",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -38,6 +38,7 @@ def expressions() -> Iterator[Expression]:
         single_blades,
         spacing,
         sweep,
+        tip_calibration,
         touch_errors,
     )
 
@@ -61,9 +62,14 @@ def expressions() -> Iterator[Expression]:
     yield from (single_blades.tool_frame(), single_blades.cradle_tool_frame(), single_blades.straight_edge_point())
     yield from (single_blades.arc_edge_point(), single_blades.seen_from_blades(), single_blades.roll_per_turn())
     yield from (probing.probe_target(), probing.space_azimuth(), probing.probe_axes(), probing.probe_tip())
-    yield from (probing.touched_point(), probing.ring_calibration(), probing.sphere_residual())
-    yield from (probing.effective_radius(), probing.lobing_of(), probing.shape_of_lobes(), probing.ring_residual())
-    yield from (probing.face_calibration(), axis_calibration.carried_sphere())
+    yield from (probing.touched_point(), tip_calibration.ring_calibration(), tip_calibration.sphere_residual())
+    yield from (
+        tip_calibration.effective_radius(),
+        tip_calibration.lobing_of(),
+        tip_calibration.shape_of_lobes(),
+        tip_calibration.ring_residual(),
+    )
+    yield from (tip_calibration.face_calibration(), axis_calibration.carried_sphere())
     yield from (compensation.straight_sensitivity(), compensation.arc_sensitivity())
     yield from (compensation.coefficient_sensitivity(), compensation.arc_height(), compensation.root_place())
     yield compensation.conjugate_place()

@@ -5,7 +5,7 @@ passes b_x and b_z beside where the zero of X and R_d have it. So, seen from the
 
     c = (b_x, 0, b_z) + M(B + β) (Rz(-A) s + e)                                                (21.1)
 
-and touches at X Y Z, with the tip of chapter 15, leave
+and touches at X Y Z, with the tip of chapter 23, leave
 
     |(X, Y, Z) - (0, 0, H) + o - c| - (R_s + r(m)) = 0,   m along what is in the bars          (21.2)
 
@@ -21,7 +21,7 @@ from functools import cache
 
 import sympy as sp
 
-from derivations import axes, probing
+from derivations import axes, probing, tip_calibration
 from derivations import notation as q
 from derivations.expression import Expression
 from derivations.frames import Rz
@@ -48,9 +48,9 @@ def carried_sphere() -> Expression:
             q.trigger, q.A, q.B, q.probe_height, q.tip_offset, q.tip_radius, q.sphere_radius, q.sphere_w, q.axis_place,
             q.swivel_zero, q.pivot_offset, q.lobing,
         ),
-        ((q.sphere_rest, distance - q.sphere_radius.symbol - probing.radius_towards(off / distance)),),
+        ((q.sphere_rest, distance - q.sphere_radius.symbol - tip_calibration.radius_towards(off / distance)),),
         requires=(distance - 1,),
-        source="(5.4) for the centre of the sphere, (15.7) for the touch",
+        source="(5.4) for the centre of the sphere, (23.2) for the touch",
     )  # fmt: skip
 
 

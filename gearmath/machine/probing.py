@@ -59,7 +59,7 @@ def probe_height(machine: MillingMachine, calibration: Calibration) -> float:
 
 
 def lobing(probe: Calibration | Probe) -> np.ndarray:
-    """Lobes (2,) [mm] of equation (15.8)."""
+    """Lobes (2,) [mm] of equation (23.3)."""
     (lobes,) = kernel("lobing_of")(probe.lobing_um / 1000, math.radians(probe.lobing_phase))
     return lobes
 

@@ -88,7 +88,7 @@ class Tip:
 def calibrate_on_sphere(
     touches: CalibrationTouches, sphere: Sphere, start: Calibration, lobes: bool = False
 ) -> Tip:  # fmt: skip
-    """Radius and offset of the tip that leave the touches on a sphere the least residual (15.7), with lobes if asked.
+    """Radius and offset of the tip that leave the touches on a sphere the least residual (23.2), with lobes if asked.
 
     Without, the lobes of ``start`` are kept. Raises InputError for too few touches, touches that do not tell the tip,
     or one that fits no tip; ComputationError if none explains them.
@@ -112,7 +112,7 @@ def calibrate_on_sphere(
 
 
 def calibrate_on_ring(touches: CalibrationTouches, ring: Ring, start: Calibration) -> Tip:
-    """Radius and X, Y offsets of the tip out of all touches in a ring (15.10), Z out of those on its face (15.11).
+    """Radius and X, Y offsets of the tip out of all touches in a ring (23.5), Z out of those on its face (23.6).
 
     The lobes of ``start`` are kept. Raises InputError where a touch is missing or fits no tip; ComputationError if no
     tip explains them.

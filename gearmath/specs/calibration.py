@@ -18,7 +18,7 @@ _Place = Annotated[tuple[_Number, _Number, _Number], Field(strict=False)]
 
 
 class Face(Spec):
-    """The ring's face around its bore: D and F of equation (15.11), and the width of the wall between bore and rim.
+    """The ring's face around its bore: D and F of equation (23.6), and the width of the wall between bore and rim.
 
     ``seat`` is the Z at which the tip's centre would stand in the plane that the ring sits on.
     """
@@ -88,7 +88,7 @@ class Calibration(Spec):
     stylus_radius: float = Field(gt=0, le=5)
     stylus_length: float = Field(gt=0, le=200)
     lobing_um: float = Field(default=0.0, ge=0, le=20)
-    """Amplitude of the lobes of the effective radius (15.8), and in degrees the azimuth of one of them."""
+    """Amplitude of the lobes of the effective radius (23.3), and in degrees the azimuth of one of them."""
     lobing_phase: float = Field(default=0.0, ge=-360, le=360)
     overtravel: float = Field(default=0.5, gt=0, le=5)
     """How far a touch may be searched for beyond its nominal place."""

@@ -135,7 +135,7 @@ class Fixture(Spec):
 class Probe(Spec):
     """Standard deviation of one touch, how many touches of a point are averaged, and the lobes of the pre-travel.
 
-    The effective radius varies by ``lobing_um`` cos 3(azimuth - ``lobing_phase``) sin(angle to the stylus), (15.8).
+    The effective radius varies by ``lobing_um`` cos 3(azimuth - ``lobing_phase``) sin(angle to the stylus), (23.3).
     """
 
     sigma_um: float = Field(default=0.0, ge=0, le=100)
