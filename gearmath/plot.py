@@ -170,8 +170,13 @@ def draw_gearbox_error(axes: Axes, seconds: np.ndarray, exact: np.ndarray, float
     axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncol=3, frameon=False)
 
 
-def save(figure: Figure, path: Path) -> None:
-    """Write a figure as PNG in one step, the same bytes for the same figure."""
+def png(figure: Figure) -> bytes:
+    """A figure as PNG, the same bytes for the same figure."""
     stream = io.BytesIO()
     figure.savefig(stream, format="png", dpi=130, metadata={"Software": None})
-    write_bytes(path, stream.getvalue())
+    return stream.getvalue()
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure as PNG in one step."""
+    write_bytes(path, png(figure))

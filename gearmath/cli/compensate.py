@@ -14,6 +14,7 @@ from gearmath.errors import ComputationError
 if TYPE_CHECKING:
     from gearmath.quality.analysis import Analysis
     from gearmath.quality.correction import Correction
+    from gearmath.quality.evaluation import Evaluation
     from gearmath.quality.thickness import By
     from gearmath.specs.bevel_set import BevelSet, Member
     from gearmath.specs.flank_csv import FlankFile
@@ -46,7 +47,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--register/--no-register", "registered", default=True, show_default=True,
-    help="Take out how the work sat, where the points tell it, as 'evaluate' does; drift and misses in any case.",
+    help="Take out how the work sat (eccentricity, tilt), where the points tell it.",
 )  # fmt: skip
 @click.option("--root-limit", type=click.FloatRange(0.001, 2), metavar="MM", help="Most that the root line may move.")
 @click.option(
@@ -65,10 +66,13 @@ if TYPE_CHECKING:
 @output("corrected set, TOML")
 def compensate(
     gear_set: str, member: str, measured: Path, names: str, higher_order: bool, objective: str, from_mate: Path | None,
-    registered: bool, root_limit: float | None, noise: float | None, thickness: float, thickness_by: str, as_json: bool,
-    target: Path,
+    registered: bool, root_limit: float | None, noise: float | None, thickness: float, thickness_by: str,
+    as_json: bool, target: Path,
 ) -> None:  # fmt: skip
-    """Corrected machine settings from a measurement; the nominal settings stay in the file under 'design'."""
+    """Corrected machine settings from a measurement; the nominal settings stay in the file under 'design'.
+
+    Points that missed, drift and clamping are taken out first, as 'evaluate' does.
+    """
     from gearmath.quality.correction import ROOT_LIMIT, correct
     from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.thickness import with_thickness
@@ -81,41 +85,45 @@ def compensate(
     spec, file = pair.member(member), read_flank_csv(measured)
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured):
-        judged = evaluate_member(file, spec, member, registered)
-        file = judged.file
+        evaluation = evaluate_member(file, spec, member, registered)
         correction = correct(
-            spec, member, file, _free(names), objective=objective, higher_order=higher_order, few=names == "few",
-            root_limit=root_limit or ROOT_LIMIT, noise=None if noise is None else noise / 1000, added=moved,
+            spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
+            few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=None if noise is None else noise / 1000,
+            added=moved,
         )  # fmt: skip
     if thickness:
         by = cast("By", thickness_by)
         correction.settings.update(with_thickness(spec, member, correction.settings, thickness / 1000, by))
     save_corrected(source, target, member, correction.settings, correction.index, correction.motions)
-    values = _values(spec, correction) | _uncertainty(spec, member, file, correction, noise, root_limit or ROOT_LIMIT)
+    values = _values(spec, correction) | {"remarks": list(evaluation.remarks)}
+    values |= _uncertainty(spec, file, evaluation, correction, noise, root_limit or ROOT_LIMIT)
     if as_json:
-        echo_json(values | {"remarks": list(judged.remarks)})
+        echo_json(values)
         return
-    for remark in judged.remarks:
-        click.echo(remark)
     for group, analysis in correction.analysis.items():
         _say_analysis(" and ".join(group), analysis)
     _say_changes(values)
     _say_result(correction)
+    for remark in evaluation.remarks:
+        click.echo(remark)
     click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
 
 
 def _uncertainty(
-    member: Member, name: str, file: FlankFile, correction: Correction, noise_um: float | None, root_limit: float
-) -> dict[str, Any]:
+    member: Member, file: FlankFile, found: Evaluation, correction: Correction, noise_um: float | None,
+    root_limit: float,
+) -> dict[str, Any]:  # fmt: skip
     """Standard uncertainties of the corrected settings, and the RMS [µm] that errors of measurement leave."""
     from gearmath.cli.uncertainty import point_covariance
+    from gearmath.quality.figures import judged_by_measured
     from gearmath.quality.setting_uncertainty import uncertain_settings
 
     covariance = point_covariance(file, noise_um or None)
     if covariance is None:
         return {}
+    judged = covariance.carried(judged_by_measured(file, member, found))
     try:
-        settings, caused = uncertain_settings(member, name, file, correction, covariance, root_limit)
+        settings, caused = uncertain_settings(member, found.member, found.file, correction, judged, root_limit)
     except ComputationError as error:
         return {"no_uncertainties": str(error)}
     known: dict[str, dict[str, float]] = {}
@@ -200,10 +208,11 @@ def _say_result(correction: Correction) -> None:
 
 def _values(member: Member, correction: Correction) -> dict[str, Any]:
     from gearmath.quality.correction import setting_changes
+    from gearmath.quality.variables import reading
 
     changes = []
     for flank, name, old, new in setting_changes(member, correction):
-        factor, unit = _unit(name)
+        factor, unit = reading(name)
         changes.append({"flank": flank, "setting": name, "old": old * factor, "new": new * factor, "unit": unit})
     return {
         "changes": changes,
@@ -213,16 +222,6 @@ def _values(member: Member, correction: Correction) -> dict[str, Any]:
         "left_out": correction.left_out,
         "fits": [_fit_values(correction, group) for group in correction.identified],
     }
-
-
-def _unit(name: str) -> tuple[float, str]:
-    """The factor to what people read, and its unit."""
-    from derivations import notation
-
-    setting, _, power = name.partition(".")
-    (unit,) = (component.unit for component in notation.settings.components if component.name == setting)
-    per = "" if not power else "/rad" if power == "1" else f"/rad^{power}"
-    return (math.degrees(1), f"deg{per}") if unit == "rad" else (1.0, f"{unit}{per}")
 
 
 def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any]:

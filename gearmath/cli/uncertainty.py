@@ -15,6 +15,7 @@ from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
+    from gearmath.quality.correction import Correction
     from gearmath.quality.covariance import Covariance
     from gearmath.quality.evaluation import Evaluation
     from gearmath.quality.uncertainty import Uncertain
@@ -26,6 +27,10 @@ SIGMA = click.option(
     help="Standard uncertainty of every point, nothing in common, in place of u_um of the file.",
 )  # fmt: skip
 _BUNDLED = "measurement.toml"
+MODEL = click.option(
+    "--model",
+    help=f"How well the machine measures: a file, or a bundled one.  [default: u_um of the file, or else {_BUNDLED}]",
+)
 #: Enough for the spread of a maximum to 2 %.
 _FEW_DRAWS = 2000
 
@@ -36,10 +41,7 @@ _FEW_DRAWS = 2000
 @MEMBER
 @click.option("--register/--no-register", "registered", default=True, show_default=True, help="As in 'evaluate'.")
 @SIGMA
-@click.option(
-    "--model",
-    help=f"How well the machine measures: a file, or a bundled one.  [default: u_um of the file, or else {_BUNDLED}]",
-)
+@MODEL
 @MACHINE
 @CALIBRATION
 @click.option("--draws", default=20_000, show_default=True, type=click.IntRange(1000, 10_000_000), help="Monte Carlo.")
@@ -55,7 +57,6 @@ def uncertainty(
     resume: Path | None, picture: Path | None, as_json: bool,
 ) -> None:  # fmt: skip
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
-    import numpy as np
 
     from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.figures import figures_of
@@ -67,13 +68,12 @@ def uncertainty(
     file = read_flank_csv(measured)
     spec = load_bevel_set(find(gear_set)).member(member)
     with about(measured):
-        judged = evaluate_member(file, spec, member, registered)
-        figures = figures_of(file, spec, judged)
-        covariance, source = _covariance(file, spec, sigma_um, model, machine, calibration)
+        evaluation = evaluate_member(file, spec, member, registered)
+        figures = figures_of(file, spec, evaluation)
+        covariance, source = covariance_of(file, spec, sigma_um, model, machine, calibration)
     with bar(draws, "draw") as progress, _executor(cluster) as executor:
         found = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, progress)
-    kept = np.flatnonzero(file.tooth < spec.teeth)  # the rows of the judged file; what registration shares is left out
-    settings, caused, remarks = _settings(spec, member, judged.file, covariance.pick(kept))
+    _, settings, caused, remarks = uncertain_correction(spec, file, evaluation, covariance)
     found += settings
     if picture:
         from gearmath.plot import save, uncertainty_figure
@@ -105,21 +105,26 @@ def _number(value: float, unit: str) -> str:
     return f"{value:.4f}" if unit.startswith("um") else f"{value:.6f}"
 
 
-def _settings(
-    member: Member, name: str, file: FlankFile, covariance: Covariance
-) -> tuple[list[Uncertain], dict[str, float], list[str]]:
-    """The settings as ``gearmath compensate`` corrects them at this noise, or why there are none."""
+def uncertain_correction(
+    member: Member, file: FlankFile, found: Evaluation, covariance: Covariance
+) -> tuple[Correction | None, list[Uncertain], dict[str, float], list[str]]:
+    """The correction of an evaluated member at its noise, its settings with uncertainties, what errors of measurement
+    will leave (RMS, mm) per flank, and, where there is no correction, why.
+    """
     from gearmath.quality.correction import correct
+    from gearmath.quality.figures import judged_by_measured
     from gearmath.quality.setting_uncertainty import noise_of, uncertain_settings
 
+    name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))
     try:
-        correction = correct(member, name, file, noise=noise_of(member, name, file, covariance))
-        return (*uncertain_settings(member, name, file, correction, covariance), [])
+        correction = correct(member, name, found.file, noise=noise_of(member, name, found.file, judged))
+        settings, caused = uncertain_settings(member, name, found.file, correction, judged)
     except (InputError, ComputationError) as error:
-        return [], {}, [f"no corrected settings: {error}"]
+        return None, [], {}, [f"no corrected settings: {error}"]
+    return correction, settings, caused, []
 
 
-def _covariance(
+def covariance_of(
     file: FlankFile, member: Member, sigma_um: float | None, model: str | None, machine: str, calibration: str
 ) -> tuple[Covariance, str]:
     """The covariance of the deviations, and in words where it comes from."""

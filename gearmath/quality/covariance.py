@@ -48,6 +48,12 @@ class Covariance:
         """The covariance of some of the points, in the order of ``index``."""
         return Covariance(self.variance[index], self.factors[index], self.names)
 
+    def carried(self, matrix: np.ndarray) -> Covariance:
+        """The covariance of what depends on the points by a matrix (m,n): nothing in it is one point's own any more."""
+        own = matrix * np.sqrt(self.variance)
+        names = ("repeatability",) * own.shape[1] + self.names
+        return Covariance(np.zeros(len(matrix)), np.hstack([own, matrix @ self.factors]), names)
+
     def through(self, jacobian: np.ndarray) -> np.ndarray:
         """J V J' (m,m) of figures with this Jacobian (m,n)."""
         common = jacobian @ self.factors

@@ -133,6 +133,12 @@ def _judging(file: FlankFile, member: Member, found: Evaluation) -> tuple[ca.Fun
     return ca.Function("judging", [deviation], [ca.vertcat(now, seat)], ["deviation"], ["judged"]), slope
 
 
+def judged_by_measured(file: FlankFile, member: Member, found: Evaluation) -> np.ndarray:
+    """How the deviations (m,) that were judged, without drift and clamping, depend on those measured (n,): (m,n)."""
+    _, slope = _judging(file, member, found)
+    return np.where(np.isfinite(found.file.deviation)[:, None], slope[: len(found.file)], 0.0)
+
+
 def _jacobian(function: ca.Function, at: np.ndarray) -> np.ndarray:
     given, name = function.name_in(0), function.name_out(0)
     slope = function.factory(f"{function.name()}_jacobian", [given], [f"jac:{name}:{given}"])

@@ -16,14 +16,12 @@ line at its limit pulls with the weight of its gradient; its own curvature is le
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
-from derivations import notation
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
 from gearmath.quality.compensation import RANK, ROOT_WEIGHT, FlankTarget, Identification, Problem
@@ -34,7 +32,7 @@ from gearmath.quality.on_line import flank_on_line
 from gearmath.quality.target import flank_target
 from gearmath.quality.topography import grid_shape
 from gearmath.quality.uncertainty import PROBABILITY, Uncertain
-from gearmath.quality.variables import SIZE, Variable, whole
+from gearmath.quality.variables import SIZE, Variable, reading, whole
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member
 from gearmath.specs.flank_csv import FlankFile
 
@@ -184,11 +182,9 @@ def noise_of(member: Member, name: str, file: FlankFile, measured: Covariance) -
 
 
 def _setting(flank: str, variable: Variable, value: float, u: float) -> Uncertain:
-    component = notation.settings.components[SETTINGS.index(variable.name.partition(".")[0])]
-    unit, factor = {"rad": ("deg", 180 / math.pi), "1": ("1", 1.0)}.get(component.unit, ("mm", 1.0))
+    factor, unit = reading(variable.name)
     k = coverage_factor(PROBABILITY)
-    power = variable.name.partition(".")[2]
-    figure = Figure(flank, variable.name, f"{unit}/rad^{power}" if power else unit, factor=factor)
+    figure = Figure(flank, variable.name, unit, factor=factor)
     return Uncertain(figure, value, u, (value - k * u, value + k * u), None)
 
 

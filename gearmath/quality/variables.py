@@ -6,6 +6,7 @@ the 12 settings, then the motion (10,7) row by row.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -80,6 +81,14 @@ def variables_of(names: Sequence[str], targets: int) -> tuple[Variable, ...]:
     if not found:
         raise InputError("settings: at least one must be free")
     return tuple(found)
+
+
+def reading(name: str) -> tuple[float, str]:
+    """The factor that makes of a setting, or of a coefficient of its motion, what people read, and the unit of that."""
+    setting, _, power = name.partition(".")
+    (unit,) = (component.unit for component in notation.settings.components if component.name == setting)
+    per = "" if not power else "/rad" if power == "1" else f"/rad^{power}"
+    return (math.degrees(1), f"deg{per}") if unit == "rad" else (1.0, f"{unit}{per}")
 
 
 def free_settings(member: Member, higher_order: bool = False) -> tuple[str, ...]:

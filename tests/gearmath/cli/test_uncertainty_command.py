@@ -12,7 +12,10 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.machine.mill import nominal_flank
 from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
+from gearmath.quality.covariance import independent
 from gearmath.quality.evaluation import evaluate_member
+from gearmath.quality.figures import judged_by_measured
+from gearmath.quality.setting_uncertainty import noise_of
 from gearmath.quality.target import target_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, load_bevel_set
 from gearmath.specs.flank_csv import join, read_flank_csv, write_flank_csv
@@ -82,8 +85,11 @@ def test_corrected_settings_are_those_that_compensate_writes(command, measured, 
     names = [key for key, one in sharp.items() if one["unit"] in ("mm", "deg", "1")]
     assert len(names) == 14
     spec = load_bevel_set(bundled(SET)).pinion
-    judged = evaluate_member(read_flank_csv(measured), spec, "pinion").file
-    correction = correct(spec, "pinion", judged, noise=0.3e-3)
+    file = read_flank_csv(measured)
+    found = evaluate_member(file, spec, "pinion")
+    judged = independent(np.full(len(file), 0.3e-3)).carried(judged_by_measured(file, spec, found))
+    noise = noise_of(spec, "pinion", found.file, judged)
+    correction = correct(spec, "pinion", found.file, noise=noise)
     for flank, name in names:
         vector = correction.settings[flank][SETTINGS.index(name)]
         value = np.degrees(vector) if sharp[flank, name]["unit"] == "deg" else vector
