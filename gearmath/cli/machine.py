@@ -31,8 +31,14 @@ nc.add_command(nc_calibrate)
 @SET
 @MEMBER
 @MACHINE
-@click.option("--spaces", default="all", show_default=True, help="Tooth spaces to cut: all, or numbers such as 0,1,2.")
-@click.option("--tolerance-um", type=float, default=0.1, show_default=True, help="Flank deviation by straight blocks.")
+@click.option(
+    "--spaces", default="all", show_default=True,
+    help="Tooth spaces to cut: all, or numbers such as 0,1,2; face hobbing cuts all.",
+)  # fmt: skip
+@click.option(
+    "--tolerance-um", type=float, default=0.1, show_default=True,
+    help="Flank deviation by straight blocks, and by the scallops of face hobbing.",
+)  # fmt: skip
 @click.option("--feed", type=float, default=300.0, show_default=True, help="Feed of the cutter past the tooth, mm/min.")
 @click.option("--rpm", type=float, default=120.0, show_default=True, help="Spindle speed.")
 @click.option("--roughing-stock", type=float, default=0.0, help="Rough first and leave this much, mm; 0 for none.")

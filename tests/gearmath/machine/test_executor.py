@@ -174,7 +174,7 @@ def test_no_text_crashes_the_reader(text):
 
 PIECES = st.sampled_from(
     [*" ".join(HEAD).split(), "G93", "G94", "G1", "G0", "X1.5", "Y-2", "A=DC(359)", "A=DC(179)", "B1", "F1", "F0",
-     "M5", "M6", "M30", "N1", ";", '"', "-", ".", "9" * 9, "\r", "G55", "D0", "S0"]
+     "C=DC(181)", "C9", "SPOS=0", "M5", "M6", "M30", "N1", ";", '"', "-", ".", "9" * 9, "\r", "G55", "D0", "S0"]
 )  # fmt: skip
 
 
