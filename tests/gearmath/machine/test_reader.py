@@ -187,8 +187,8 @@ def test_no_text_crashes_the_reader(text):
 
 WORDS = (
     "IF ELSE ENDIF WHILE ENDWHILE FOR ENDFOR TO DEF INT REAL UX R1 R[ ] ( ) , = == <> << < > + - * / DIV MOD AND OR "
-    "NOT SIN( ATAN2( $AA_MM[ $AC_MEA[1] $A_PROBE[1] X Y1 C2 A=DC( B=IC( 0.5 1 9999999999 STOPRE MSG( SETAL( WRITE( TRANS "
-    'C=DC( FGROUP( FGREF[A]= MEAS=1 SPOS=0 G1 G93 F1 M30 N10 "text" " ; . \t \r $ _A'
+    "NOT SIN( ATAN2( $AA_MM[ $AC_MEA[1] $A_PROBE[1] X Y1 A=DC( B=IC( 0.5 1 9999999999 STOPRE MSG( SETAL( WRITE( TRANS "
+    'C2 C=DC( FGROUP( FGREF[A]= MEAS=1 SPOS=0 G1 G93 F1 M30 N10 "text" " ; . \t \r $ _A'
 )
 PIECES = st.sampled_from(WORDS.split(" "))
 
