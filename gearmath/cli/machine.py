@@ -77,10 +77,12 @@ def cut(
 @click.option("--report-tolerance-um", type=click.FloatRange(0.01, 1000), default=1.0, show_default=True,
               help="Deviation on flank, fillet or root that the report counts as a fault.")  # fmt: skip
 @click.option("--measured", is_flag=True, help="Clamp the member anew and measure it as the machine of --errors does.")
+@click.option("--run", type=click.IntRange(min=1), default=1, show_default=True,
+              help="Number of the measurement of --measured: each has its own noise.")  # fmt: skip
 @output("flank CSV")
 def mill(
     gear_set: str, member: str, machine: str, program: Path, errors: str | None, report: Path | None,
-    report_tolerance_um: float, measured: bool, target: Path,
+    report_tolerance_um: float, measured: bool, run: int, target: Path,
 ) -> None:  # fmt: skip
     """Virtual milling from the program text: the deviations it leaves, as a measured flank CSV.
 
@@ -108,7 +110,7 @@ def mill(
         if measured and simulated is not None:
             around = teeth_around(spec.teeth)
             left = metal(path, spec, member, milling_machine, simulated, around=around, progress=progress)
-            file = measure_member(left, spec, member, simulated)
+            file = measure_member(left, spec, member, simulated, run)
         else:
             file = mill_member(path, spec, member, milling_machine, simulated, progress)
     write_flank_csv(target, file)
