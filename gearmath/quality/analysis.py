@@ -24,7 +24,7 @@ WEAK = 0.01
 #: Settings are chosen until no more is lost than this part of what all of them leave, or this much. [mm]
 _LOSS_PART, _LOSS = 0.05, 5e-5
 #: A setting that belongs to a direction has at least this part of its largest component.
-_NAMED = 0.3
+_NAMED = 0.2
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
     h(u) = 0,   L(R) = L_0,   f(u, β, θ; x) = 0    →    depth D below the pitch cone     (20.3, 20.4)
 
 Flanks hardly show the depth of a cut. So a fit that is free to do so buys topography with depth; here it is watched.
+That line lies above the deepest one of the space, and moves with it within some ten percent.
 """
 
 from __future__ import annotations

@@ -1,0 +1,192 @@
+"""``gearmath compensate`` with its options, and ``gearmath stock``, on measurements of every cutting method."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.method import cut_generation_of
+from gearmath.machine.mill import flank_header
+from gearmath.quality.compensation import predicted
+from gearmath.quality.target import target_of
+from gearmath.quality.variables import NAMES, whole
+from gearmath.specs.bevel_set import FLANKS, design_sha256, load_bevel_set, settings_sha256
+from gearmath.specs.flank_csv import flank_file, join, write_flank_csv
+from gearmath.specs.toml import bundled
+
+ERRORS = {"radial_distance": 0.03, "sliding_base": 0.01, "machine_root_angle": 2e-4}
+UNIVERSAL, HOBBED = "crown_gear_universal_14x39.toml", "crown_gear_hobbed_14x39.toml"
+
+
+def left_by(member, name, flank, **errors):
+    """Deviations of a flank whose machine is off by ``errors``, by names of settings and motions (dots as __)."""
+    target = target_of(member, flank, solve_flank(member, name, flank, blank_grid(member)))
+    change = np.zeros(82)
+    for key, value in errors.items():
+        change[NAMES.index(key.replace("__", "."))] = value
+    return target, predicted(target, target.vector + change)[0]
+
+
+@pytest.fixture
+def measured(tmp_path):
+    """``measured(set_name, name, **errors)``: the file of a member, one tooth, no noise."""
+
+    def make(source, name, extra=None, **errors):
+        member = load_bevel_set(source).member(name)
+        files = []
+        for flank in FLANKS:
+            target, deviation = left_by(member, name, flank, **errors)
+            row, col = (index.ravel() for index in np.indices((5, 9)))
+            if extra is not None:
+                deviation = deviation + extra(row, col)
+            point = target.nominal.point + deviation[:, None] * target.nominal.normal
+            header = flank_header(member, name, blank_grid(member))
+            files.append(flank_file(header, name, flank, 0, row, col, point, target.nominal.normal, deviation))
+        path = tmp_path / f"{name}.csv"
+        write_flank_csv(path, join(files))
+        return path
+
+    return make
+
+
+def worst_after(path, name, **errors):
+    """Largest deviation of the flanks that a corrected set cuts on the machine with those errors."""
+    member = load_bevel_set(path).member(name)
+    worst = 0.0
+    for flank in FLANKS:
+        _, deviation = left_by(member, name, flank, **errors)
+        worst = max(worst, np.abs(deviation).max())
+    return worst
+
+
+@pytest.mark.parametrize("name", ["pinion", "gear"])
+@pytest.mark.parametrize("source", ["crown_gear_7x43.toml", "crown_gear_formate_14x39.toml", UNIVERSAL, HOBBED])
+def test_corrected_set_cuts_the_nominal_flank_on_the_machine_that_errs(command, measured, tmp_path, source, name):
+    csv, new = measured(bundled(source), name, **ERRORS), tmp_path / "new.toml"
+    status, out, err = command("compensate", source, "--member", name, "--measured", csv, "-o", new)
+    assert (status, err) == (0, "")
+    assert "no correction by these 7 settings gets below" in out
+    assert "singular values [um]:" in out
+    assert worst_after(bundled(source), name, **ERRORS) > 5e-3
+    assert worst_after(new, name, **ERRORS) < 2e-5
+    pair, old = load_bevel_set(new), load_bevel_set(bundled(source))
+    assert design_sha256(pair.member(name)) == design_sha256(old.member(name))
+    assert settings_sha256(pair.member(name)) != settings_sha256(old.member(name))
+
+
+def test_motions_are_corrected_when_asked_and_kept_in_the_file(command, measured, tmp_path):
+    errors = {"work_rotation_offset__2": 2e-3, "sliding_base__1": 0.1}
+    csv = measured(bundled(UNIVERSAL), "pinion", **errors)
+    rest, moving = tmp_path / "rest.toml", tmp_path / "moving.toml"
+    base = ("compensate", UNIVERSAL, "--member", "pinion", "--measured", csv)
+    assert command(*base, "-o", rest)[0] == 0
+    values = json.loads(command(*base, "--higher-order", "-o", moving, "--json")[1])
+    assert worst_after(moving, "pinion", **errors) < 0.1 * worst_after(rest, "pinion", **errors)
+    changed = {change["setting"]: change for change in values["changes"] if change["flank"] == "concave"}
+    assert changed["work_rotation_offset.2"]["unit"] == "deg/rad^2"
+    assert changed["sliding_base.1"]["unit"] == "mm/rad"
+    old, new = (load_bevel_set(path).pinion for path in (bundled(UNIVERSAL), moving))
+    assert new.concave.nominal_motion == old.concave.motion
+    assert new.concave.motion.modified_roll == old.concave.motion.modified_roll
+    assert design_sha256(new) == design_sha256(old)
+    how = cut_generation_of(new, "concave")
+    np.testing.assert_allclose(
+        whole(how.settings, how.motion)[NAMES.index("sliding_base.1")],
+        cut_generation_of(old, "concave").motion[5, 0] + changed["sliding_base.1"]["new"] - 0.8, atol=1e-9,
+    )  # fmt: skip
+    # a second round starts from the corrected file and its own design
+    again = measured(moving, "pinion", **errors)
+    status, out, err = command(
+        "compensate", moving, "--member", "pinion", "--measured", again, "--higher-order", "-o", tmp_path / "2.toml"
+    )  # fmt: skip
+    assert (status, err) == (0, ""), out
+    assert worst_after(tmp_path / "2.toml", "pinion", **errors) < 1e-4
+
+
+def test_few_or_named_settings_are_changed_and_no_others(command, measured, tmp_path):
+    csv = measured(bundled(HOBBED), "gear", **ERRORS)
+    base = ("compensate", HOBBED, "--member", "gear", "--measured", csv, "-o", tmp_path / "new.toml", "--json")
+    few = json.loads(command(*base, "--settings", "few")[1])
+    assert len(few["fits"][0]["settings"]) < 7
+    assert {change["setting"] for change in few["changes"]} <= set(few["fits"][0]["settings"])
+    named = json.loads(command(*base, "--settings", "sliding_base, radial_distance")[1])
+    assert {change["setting"] for change in named["changes"]} == {"sliding_base", "radial_distance"}
+    every = json.loads(command(*base, "--settings", "all")[1])
+    assert len(every["fits"][0]["settings"]) == 10
+    # without tilt the swivel only turns the blades about the cutter's axis, which in face hobbing indexes the work
+    assert {"cutter_swivel", "work_rotation_offset"} in [set(pair[:2]) for pair in every["fits"][0]["alike"]]
+    surface = json.loads(command(*base, "--objective", "surface")[1])
+    assert surface["fits"][0]["remaining_rms_um"] < 0.05
+
+
+def test_errors_of_the_gear_are_corrected_on_the_pinion(command, measured, tmp_path):
+    source = "nasa_tp3096_12x36.toml"
+    gear, pinion = measured(bundled(source), "gear", **ERRORS), measured(bundled(source), "pinion")
+    base = ("compensate", source, "--member", "pinion", "--measured", pinion, "-o", tmp_path / "new.toml", "--json")
+    assert max(json.loads(command(*base)[1])["fits"][0]["rms_um"], 0) < 1e-3
+    values = json.loads(command(*base, "--from-mate", gear)[1])
+    for fit in values["fits"]:
+        assert fit["rms_um"] > 3
+        assert fit["remaining_rms_um"] < 0.1 * fit["rms_um"]
+
+
+def test_teeth_are_left_thicker_when_asked(command, measured, tmp_path):
+    source, csv = "nasa_tp3096_12x36.toml", measured(bundled("nasa_tp3096_12x36.toml"), "gear")
+    base = ("compensate", source, "--member", "gear", "--measured", csv, "-o", tmp_path / "new.toml", "--json")
+    values = json.loads(command(*base, "--thickness", "30", "--thickness-by", "sliding_base")[1])
+    moved = {change["setting"]: change["new"] - change["old"] for change in values["changes"]}
+    assert moved["sliding_base"] > 0.03
+    status, _, err = command(*base, "--thickness", "30")
+    assert status == 2
+    assert "thickness can only come from the sliding_base" in err
+
+
+def test_point_that_missed_is_left_out_and_said(command, measured, tmp_path):
+    def missed(row, col):
+        return np.where((row == 1) & (col == 6), 0.3, 0.0)
+
+    csv = measured(bundled(HOBBED), "pinion", missed, **ERRORS)
+    arguments = ("compensate", HOBBED, "--member", "pinion", "--measured", csv, "-o", tmp_path / "new.toml")
+    status, out, _ = command(*arguments)
+    assert status == 0
+    assert "concave flank, tooth 0, row 1, col 6" in out
+    assert "1 points of the grid were left out" in out
+    assert worst_after(tmp_path / "new.toml", "pinion", **ERRORS) < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--settings", "radius"), r"pinion\.csv: setting = 'radius': must be one of radial_distance"),
+        (("--settings", "sliding_base,sliding_base"), "is named twice"),
+        (("--root-limit", "0"), "root-limit"),
+        (("--objective", "lines"), "objective"),
+        (("--from-mate", "absent.csv"), r"absent\.csv: cannot be read"),
+    ],
+)
+def test_bad_options_are_one_line(refused, measured, tmp_path, options, sentence):
+    csv = measured(bundled(UNIVERSAL), "pinion")
+    target = tmp_path / "new.toml"
+    refused(sentence, "compensate", UNIVERSAL, "--member", "pinion", "--measured", csv, "-o", target, *options)
+    assert not target.exists()
+
+
+def test_stock_of_a_blank_is_shared_or_refused(command, refused, measured):
+    source = "nasa_tp3096_12x36.toml"
+    csv = measured(bundled(source), "gear", lambda row, col: np.full(len(row), 0.1), work_rotation_offset=5e-4)
+    values = json.loads(command("stock", csv, "--set", source, "--member", "gear", "--json")[1])
+    assert values["least_um"]["concave"] == pytest.approx(values["least_um"]["convex"], abs=1e-6)
+    assert min(values["least_um"].values()) > min(values["least_before_um"].values()) + 5
+    # φ_0 turns the work back: the blank that it has turned by -φ_0 is turned on by it
+    assert np.radians(values["turn_deg"]) == pytest.approx(5e-4, rel=0.02)
+    status, out, _ = command("stock", csv, "--set", source, "--member", "gear", "--advance")
+    assert status == 0
+    assert "turn the work by" in out
+    assert "advance it by" in out
+    status, _, err = command("stock", csv, "--set", source, "--member", "gear", "--least", "500")
+    assert status == 1
+    assert "does not clean up" in err
+    refused("member = 'gear'", "stock", csv, "--set", source, "--member", "pinion")
