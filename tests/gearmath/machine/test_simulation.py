@@ -79,15 +79,16 @@ def test_setting_errors_act_like_cutting_with_those_settings(
     gear_set, mill, setting_errors_only, altered, nominal_settings, member
 ):
     """The right program on the wrong machine leaves what the wrong program leaves on the right machine."""
-    on_wrong_machine = mill(gear_set, member, errors=setting_errors_only)
+    fine = 5e-5  # blocks of the two programs lie differently: each may deviate by this
+    on_wrong_machine = mill(gear_set, member, errors=setting_errors_only, tolerance=fine)
     injected = getattr(setting_errors_only, member)
     wrong = gear_set
     for flank in FLANKS:
         spec = gear_set.member(member).flank(flank)
         off = {name: getattr(spec, name) + getattr(injected, name) for name in type(injected).model_fields}
         wrong = altered(wrong, member, flank, design=nominal_settings(spec), **off)
-    on_right_machine = mill(wrong, member)
-    np.testing.assert_allclose(on_wrong_machine.deviation, on_right_machine.deviation, rtol=0, atol=5e-5)
+    on_right_machine = mill(wrong, member, tolerance=fine)
+    np.testing.assert_allclose(on_wrong_machine.deviation, on_right_machine.deviation, rtol=0, atol=fine)
     assert np.abs(on_wrong_machine.deviation).max() > 0.02
 
 
