@@ -113,8 +113,8 @@ def _uncertainty(
     member: Member, file: FlankFile, found: Evaluation, correction: Correction, noise_um: float | None,
     root_limit: float,
 ) -> dict[str, Any]:  # fmt: skip
-    """Standard uncertainties of the corrected settings, and the RMS [µm] that errors of measurement leave."""
-    from gearmath.cli.uncertainty import point_covariance
+    """Standard uncertainties of the corrected settings, and what errors of measurement do to the flanks."""
+    from gearmath.cli.uncertainty import effects_um, point_covariance
     from gearmath.quality.figures import judged_by_measured
     from gearmath.quality.setting_uncertainty import uncertain_settings
 
@@ -123,16 +123,18 @@ def _uncertainty(
         return {}
     judged = covariance.carried(judged_by_measured(file, member, found))
     try:
-        settings, caused = uncertain_settings(member, found.member, found.file, correction, judged, root_limit)
+        settings, effects = uncertain_settings(member, found.member, found.file, correction, judged, root_limit)
     except ComputationError as error:
         return {"no_uncertainties": str(error)}
     known: dict[str, dict[str, float]] = {}
     for one in settings:
         known.setdefault(one.figure.flank, {})[one.figure.name] = one.uncertainty * one.figure.factor
-    return {"u": known, "caused_rms_um": {flank: value * 1000 for flank, value in caused.items()}}
+    return {"u": known, **effects_um(effects)}
 
 
 def _say_changes(values: dict[str, Any]) -> None:
+    from gearmath.cli.uncertainty import effects_text
+
     head = ["flank", "setting", "old", "new", "unit"]
     rows = [
         [change["flank"], change["setting"], f"{change['old']:.6f}", f"{change['new']:.6f}", change["unit"]]
@@ -146,8 +148,8 @@ def _say_changes(values: dict[str, Any]) -> None:
     click.echo(table(head, rows) if rows else "nothing to correct")
     if "no_uncertainties" in values:
         click.echo(f"no uncertainties of settings: {values['no_uncertainties']}")
-    for flank, value in values.get("caused_rms_um", {}).items():
-        click.echo(f"{flank}: errors of measurement will leave {value:.3f} um (RMS) after the correction")
+    for line in effects_text(values):
+        click.echo(line)
 
 
 def _free(names: str) -> tuple[str, ...] | None:

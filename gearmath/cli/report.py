@@ -48,7 +48,8 @@ def report(
         covariance, source = covariance_of(file, member, sigma_um, model, machine, calibration)
     with bar(_DRAWS, "draw") as progress:
         sure = uncertain_figures(figures, covariance, _DRAWS, _SEED, progress=progress)
-    correction, settings, caused, remarks = uncertain_correction(member, file, found, covariance)
+    correction, settings, effects, remarks = uncertain_correction(member, file, found, covariance)
+    caused = {flank: effect.caused for flank, effect in effects.items()}
     second = None
     if again is not None:
         with about(again):

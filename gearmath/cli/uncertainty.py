@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from gearmath.quality.correction import Correction
     from gearmath.quality.covariance import Covariance
     from gearmath.quality.evaluation import Evaluation
+    from gearmath.quality.setting_uncertainty import Effect
     from gearmath.quality.uncertainty import Uncertain
     from gearmath.specs.bevel_set import Member
     from gearmath.specs.flank_csv import FlankFile
@@ -73,7 +74,7 @@ def uncertainty(
         covariance, source = covariance_of(file, spec, sigma_um, model, machine, calibration)
     with bar(draws, "draw") as progress, _executor(cluster) as executor:
         found = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, progress)
-    _, settings, caused, remarks = uncertain_correction(spec, file, evaluation, covariance)
+    _, settings, effects, remarks = uncertain_correction(spec, file, evaluation, covariance)
     found += settings
     if picture:
         from gearmath.plot import save, uncertainty_figure
@@ -82,7 +83,7 @@ def uncertainty(
     if as_json:
         echo_json({
             "member": member, "source": source, "draws": draws, "seed": seed, "figures": shown(found),
-            "caused_rms_um": {flank: value * 1000 for flank, value in caused.items()}, "remarks": remarks,
+            **effects_um(effects), "remarks": remarks,
         })  # fmt: skip
         return
     click.echo(f"standard uncertainties from {source}; {draws} draws")
@@ -94,8 +95,8 @@ def uncertainty(
             for row in shown(found)
         ],
     ))  # fmt: skip
-    for flank, value in caused.items():
-        click.echo(f"{flank} flank: errors of measurement will leave {value * 1000:.3f} um (RMS) after the correction")
+    for line in effects_text(effects_um(effects)):
+        click.echo(line)
     for remark in remarks:
         click.echo(remark)
 
@@ -107,9 +108,9 @@ def _number(value: float, unit: str) -> str:
 
 def uncertain_correction(
     member: Member, file: FlankFile, found: Evaluation, covariance: Covariance
-) -> tuple[Correction | None, list[Uncertain], dict[str, float], list[str]]:
+) -> tuple[Correction | None, list[Uncertain], dict[str, Effect], list[str]]:
     """The correction of an evaluated member at its noise, its settings with uncertainties, what errors of measurement
-    will leave (RMS, mm) per flank, and, where there is no correction, why.
+    do to each flank, and, where there is no correction, why.
     """
     from gearmath.quality.correction import correct
     from gearmath.quality.figures import judged_by_measured
@@ -118,10 +119,27 @@ def uncertain_correction(
     name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))
     try:
         correction = correct(member, name, found.file, noise=noise_of(member, name, found.file, judged))
-        settings, caused = uncertain_settings(member, name, found.file, correction, judged)
+        settings, effects = uncertain_settings(member, name, found.file, correction, judged)
     except (InputError, ComputationError) as error:
         return None, [], {}, [f"no corrected settings: {error}"]
-    return correction, settings, caused, []
+    return correction, settings, effects, []
+
+
+def effects_um(effects: dict[str, Effect]) -> dict[str, Any]:
+    """What errors of measurement do to each flank, for programs."""
+    return {
+        "caused_rms_um": {flank: effect.caused * 1000 for flank, effect in effects.items()},
+        "expected_u_um": {flank: effect.expected * 1000 for flank, effect in effects.items()},
+    }
+
+
+def effects_text(values: dict[str, Any]) -> Iterator[str]:
+    """The same for people, a line a flank."""
+    for flank, caused in values.get("caused_rms_um", {}).items():
+        yield (
+            f"{flank} flank: errors of measurement will leave {caused:.3f} um (RMS) after the correction; "
+            f"what is expected to remain of this one is known to {values['expected_u_um'][flank]:.3f} um"
+        )
 
 
 def covariance_of(

@@ -89,8 +89,9 @@ def independent(uncertainty: np.ndarray) -> Covariance:
 
 
 def stated(file: FlankFile) -> Covariance | None:
-    """What the column u_um of a file states, taken as independent; None where it is empty at a point."""
-    return None if np.isnan(file.uncertainty).any() else independent(file.uncertainty)
+    """What u_um of a file states, taken as independent; None where it is empty at a point that has a deviation."""
+    unknown = np.isnan(file.uncertainty)
+    return None if unknown[np.isfinite(file.deviation)].any() else independent(np.where(unknown, 0.0, file.uncertainty))
 
 
 def coverage_factor(probability: float) -> float:

@@ -58,6 +58,18 @@ class SettingUncertainty:
         return np.sqrt(np.diag(self.covariance))
 
 
+@dataclass(frozen=True)
+class Effect:
+    """What errors of measurement do to one flank, in the RMS over its points [mm].
+
+    ``caused`` is what they will leave on the next flank by the settings corrected from them; ``expected`` the standard
+    uncertainty of the deviations that are expected to remain, as far as they were measured.
+    """
+
+    caused: float
+    expected: float
+
+
 def setting_uncertainty(
     targets: Sequence[FlankTarget], found: Identification, measured: Covariance, root_limit: float | None = None
 ) -> SettingUncertainty:
@@ -149,21 +161,22 @@ def curvature(target: FlankTarget, found: Identification, k: int, pull: np.ndarr
 def uncertain_settings(
     member: Member, name: str, file: FlankFile, correction: Correction, measured: Covariance,
     root_limit: float | None = ROOT_LIMIT,
-) -> tuple[list[Uncertain], dict[str, float]]:  # fmt: skip
-    """Every corrected setting, and per flank the RMS [mm] that errors of measurement will leave on the next one.
+) -> tuple[list[Uncertain], dict[str, Effect]]:  # fmt: skip
+    """Every corrected setting, and per flank what the errors of measurement do to it.
 
     ``measured`` is the covariance of the file that was corrected. Raises ComputationError where the flanks do not
     determine the settings.
     """
     settings: list[Uncertain] = []
-    caused: dict[str, float] = {}
+    effects: dict[str, Effect] = {}
     for group, found in correction.identified.items():
         targets = [flank_target(member, name, flank, file) for flank in group]
         rows = [rows_of(file, flank, target) for flank, target in zip(group, targets, strict=True)]
         known = setting_uncertainty(targets, found, measured.pick(np.concatenate(rows)), root_limit)
         ends = np.cumsum([len(part) for part in rows])[:-1]
-        for k, (flank, part) in enumerate(zip(group, np.split(known.caused, ends), strict=True)):
-            caused[flank] = float(np.sqrt(np.mean(part**2)))
+        pieces = zip(np.split(known.caused, ends), np.split(known.remaining, ends), strict=True)
+        for k, (flank, piece) in enumerate(zip(group, pieces, strict=True)):
+            effects[flank] = Effect(*(float(np.sqrt(np.mean(u**2))) for u in piece))
             corrected = whole(
                 correction.settings[flank], correction.motions.get(flank, member.flank(flank).motion.matrix)
             )
@@ -172,7 +185,7 @@ def uncertain_settings(
                 for variable, u in zip(found.variables, known.standard, strict=True)
                 if variable.target in (None, k)
             ]
-    return settings, caused
+    return settings, effects
 
 
 def noise_of(member: Member, name: str, file: FlankFile, measured: Covariance) -> float:

@@ -225,6 +225,8 @@ def test_file_states_its_uncertainty_only_where_it_has_it_at_every_point(small):
     np.testing.assert_allclose(np.sqrt(stated(replace(small, uncertainty=u)).variance), u, rtol=1e-14)
     u[3] = np.nan
     assert stated(replace(small, uncertainty=u)) is None
+    left_out = np.where(np.arange(20) == 3, np.nan, 0.0)
+    assert stated(replace(small, uncertainty=u, deviation=left_out)).variance[3] == 0
 
 
 def test_smooth_figures_have_the_spread_of_20000_draws_within_3_percent(found):

@@ -1,0 +1,46 @@
+"""Studies: draws of a whole identification per second, and what threads make of them."""
+
+from __future__ import annotations
+
+import os
+import timeit
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.quality.batch import compensation_kernel
+from gearmath.quality.compensation import identify, predicted, with_deviations
+from gearmath.quality.covariance import independent
+from gearmath.quality.study import monte_carlo, run
+from gearmath.quality.target import target_of
+from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.simulated_machine import load_simulated_machine
+from gearmath.specs.toml import bundled
+
+FREE = ("radial_distance", "cradle_angle", "machine_center_to_crossing_point", "machine_root_angle")
+DRAWS = 1000
+
+
+@pytest.mark.benchmark(group="studies")
+def test_draws_of_an_identification(benchmark) -> None:
+    """Mapped on all processors, on one, and as a loop over the solver: 45 points, four settings, exact surface."""
+    spec = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
+    one = target_of(spec, "concave", solve_flank(spec, "pinion", "concave", blank_grid(spec)))
+    errors = load_simulated_machine(bundled("simulated_shop.toml")).setting_errors("pinion")
+    form, _ = predicted(one, one.settings + errors)
+    (target,) = with_deviations([one], form)
+    kernel, found = compensation_kernel([target], FREE, steps=2), identify([target], FREE)
+    d = ca.MX.sym("measured", 45)
+    function = ca.Function("identified", [d], [kernel.function(d, ca.DM(found.values))[0]])
+    noise = independent(np.full(45, 0.5e-3))
+    study = monte_carlo(noise.drawn(function, form), DRAWS)
+    values = benchmark.pedantic(run, (study,), rounds=2, iterations=1)
+    np.testing.assert_array_equal(values, run(study, workers=1))
+    threads, single = (min(timeit.repeat(lambda n=n: run(study, workers=n), number=1, repeat=2)) for n in (None, 1))
+    looped = DRAWS / 20 * timeit.timeit(lambda: [identify([target], FREE) for _ in range(20)], number=1)
+    print(
+        f"\n{DRAWS / threads:.0f} draws/s on {os.cpu_count()} processors: {single / threads:.2f} x one, "
+        f"{looped / threads:.1f} x a loop over the solver"
+    )
