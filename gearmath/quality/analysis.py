@@ -13,7 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from gearmath.quality.compensation import RANK, FlankTarget, Problem, Run, as_it_stands, located
+from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands, located
+from gearmath.quality.identification import RANK
 from gearmath.quality.least_squares import minimize
 from gearmath.quality.variables import FREE, Variable, variables_of
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from gearmath.errors import ComputationError, InputError
 from gearmath.quality.analysis import Analysis, analyse
-from gearmath.quality.compensation import RANK, FlankTarget, Identification, Run, as_it_stands, identify, located
+from gearmath.quality.compensation import FlankTarget, Run, as_it_stands, identify, located
+from gearmath.quality.identification import RANK, Identification
 from gearmath.quality.pitch import evaluate_pitch, index_correction
 from gearmath.quality.target import flank_target
 from gearmath.quality.variables import NAMES, free_settings, parts, whole
