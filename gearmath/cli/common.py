@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from gearmath.lowering import Kernel
 
 SET = click.argument("gear_set", metavar="SET.toml")
 MEMBER = click.option("--member", type=click.Choice(["pinion", "gear"]), required=True, help="Member of the pair.")
@@ -35,6 +40,18 @@ def about(file: Path) -> Iterator[None]:
         yield
     except InputError as error:
         raise InputError(f"{file}: {error}") from error
+
+
+def fast_kernels() -> Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]:
+    """What evaluates kernels: machine code, or CasADi's interpreter where there is no C compiler."""
+    from gearmath.errors import ComputationError
+    from gearmath.export.host import compile_kernel, find_compiler
+
+    try:
+        find_compiler()
+    except ComputationError:
+        return lambda kernel: kernel
+    return compile_kernel
 
 
 def echo_json(values: Any) -> None:

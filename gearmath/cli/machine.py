@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import MACHINE, MEMBER, SET, about, bar, output
+from gearmath.cli.common import MACHINE, MEMBER, SET, about, bar, fast_kernels, output
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import InputError
 
@@ -103,7 +103,8 @@ def mill(
     spec = load_bevel_set(find(gear_set)).member(member)
     milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
-    path = execute(read_text(program), str(program))
+    text = read_text(program)
+    path = execute(text, str(program))
     if measured and simulated is None:
         raise InputError("--measured needs --errors: the file that says how the member sits and what the probe does")
     with bar(2 * spec.teeth, "flank") as progress, about(program):
@@ -116,8 +117,39 @@ def mill(
     write_flank_csv(target, file)
     worst = float(abs(file.deviation).max()) * 1000
     click.echo(f"{target}: {len(file)} points, largest deviation {worst:.3f} um")
+    if spec.process != "face_hobbing":
+        _watch_blocks(text, path, spec, member, milling_machine, simulated)
     if report is not None:
         _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000)
+
+
+def _watch_blocks(
+    text: str, path: MachinePath, spec: Member, member: str, machine: MillingMachine, errors: SimulatedMachine | None
+) -> None:
+    """Say what the worst of all blocks leaves, and whether it is more than the program promises."""
+    from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+    from gearmath.machine.run import runs_of
+    from gearmath.machine.watch import off_the_way, stated_tolerance, watch
+
+    runs = runs_of(path, spec, member, machine, errors, tooth_space(spec, member, 7), SHARP_EDGE)
+    with bar(len({space for run in runs for space in run.spaces}), "space") as progress:
+        found = watch(runs, spec, machine, errors, fast_kernels(), progress)
+    deviation, (space, flank, line) = found.worst
+    click.echo(
+        f"every block watched: {found.lines} lines, {found.lowest * 1000:.3f} to {found.highest * 1000:.3f} um, "
+        f"the worst by line {line} (space {space}, {flank})"
+    )
+    if found.uncut:
+        click.echo(f"  {found.uncut} of them are not cut at all")
+    promised = stated_tolerance(text)
+    if errors is not None or promised is None:
+        return
+    if abs(deviation) > promised or found.uncut:
+        click.echo(f"  more than the {promised * 1000:g} um that the program states: it is not as it was written")
+    if spec.generation == "generated":
+        off, (space, flank, line) = off_the_way(runs, spec, machine, fast_kernels())
+        if off > promised:
+            click.echo(f"  line {line} (space {space}, {flank}) takes the tool {off * 1000:.3f} um off its way")
 
 
 def _write_report(
@@ -126,12 +158,11 @@ def _write_report(
 ) -> None:  # fmt: skip
     import json
 
-    from gearmath.export.host import compile_kernel
     from gearmath.files import write_text
     from gearmath.machine.report import milling_report
 
     with bar(5 * spec.teeth, "surface") as progress:
-        found = milling_report(path, spec, member, machine, errors, tolerance, evaluator=compile_kernel,
+        found = milling_report(path, spec, member, machine, errors, tolerance, evaluator=fast_kernels(),
                                progress=progress)  # fmt: skip
     write_text(target, json.dumps(found.as_dict(), indent=2) + "\n")
     seconds = found.timing.feed_seconds + found.timing.rapid_seconds

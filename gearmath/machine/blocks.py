@@ -39,6 +39,10 @@ _UP, _ACROSS = (0.25, 0.5, 0.75, 1.0, 1 + _BEYOND), (-_BEYOND, 0.0, 1.0, 1 + _BE
 _DEEP = 0.3
 #: Where along a block each row of flank points is looked at: its middle, where most is left, among them.
 _FRACTIONS = np.array([-0.3, -0.07, *np.linspace(0.0, 1.0, 9), 1.07, 1.3])
+#: Blocks from this roll on [rad] are held against one in so many points of the flanks, at these parts of the block.
+_LONG, _SOME, _INNER = math.radians(0.7), 15, np.linspace(0.1, 0.9, 9)
+#: A point that the exact path comes this near to, or nearer, is still one of the flank. [mm]
+_UNTOUCHED = 1e-5
 #: So many of the lowest and of the highest points of a block are looked at twice.
 _REFINED = 40
 #: What is looked at may be less than what lies between by this factor.
@@ -92,7 +96,7 @@ class Pass:
     @staticmethod
     def of(member: Member, cut: Cut, pivot_height: float, pivot_offset: np.ndarray) -> Pass:
         """Points over the whole flanks of a pass, down to the root."""
-        found = [row for flank in cut.flanks for row in (*_rows(member, flank), *_deep_rows(member, flank))]
+        found = [row for flank in cut.flanks for row in (*_rows(member, flank), *foot_curves(member, flank))]
         theta, lines = [at for at, _ in found], [row for _, row in found]
         begin = np.cumsum([0, *(len(at) for at in theta)]).tolist()
         rows = tuple((k, (at[1:] + at[:-1]) / 2) for k, at in zip(begin, theta, strict=False) if len(at))
@@ -105,7 +109,33 @@ class Pass:
         chosen = np.concatenate([first + np.searchsorted(halfway, wanted) for first, halfway in self.rows])
         left = self._smallest(start, end, chosen)
         inside = (self.theta[chosen] >= start) & (self.theta[chosen] <= end)
-        return max(float(-left.min()), float(left[inside].max(initial=0.0)))
+        lowest = float(left.min()) if end - start < _LONG else min(float(left.min()), self._elsewhere(start, end))
+        return max(-lowest, float(left[inside].max(initial=0.0)))
+
+    def _elsewhere(self, start: float, end: float) -> float:
+        """Smallest distance [mm] that a long block has from points all over the flanks, its ends left out.
+
+        The tool may come near to a point twice, and Newton's steps from its contact see one of these times. Points that
+        the exact path takes away there, beyond the ends of the flank, do not count.
+        """
+        last = [*(first for first, _ in self.rows[1:]), len(self.theta)]
+        some = np.union1d(np.arange(0, len(self.theta), _SOME), np.array(last) - 1)
+        theta = np.concatenate([[start], start + _INNER * (end - start), [end]])
+        exact = axis_positions(self.flank, theta, self.pivot_height, self.pivot_offset)
+        straight = exact[0] + _INNER[:, None] * (exact[-1] - exact[0])
+        block, path = (self._at(axes, some) for axes in (straight, exact[1:-1]))
+        kept = path.min(axis=1) > -_UNTOUCHED
+        return float(block[kept].min(initial=math.inf))
+
+    def _at(self, axes: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        """Distances (n, k) of entry of n points at k positions of the axes."""
+        lines = np.repeat(self.lines[chosen], len(axes), axis=0)
+        points, normals, radius, angle, side = np.split(lines, [3, 6, 7, 8], axis=1)
+        (distance,) = kernel("line_entry")(
+            np.tile(axes, (len(chosen), 1)), self.pivot_height, points, normals, radius[:, 0], angle[:, 0], side[:, 0],
+            self.pivot_offset,
+        )  # fmt: skip
+        return distance.reshape(len(chosen), -1)
 
     def _smallest(self, start: float, end: float, chosen: np.ndarray) -> np.ndarray:
         """Smallest distance of entry (n,) within a block: Newton from the contact on the exact path.
@@ -143,7 +173,17 @@ def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]
         yield _row(member, flank, grid)
 
 
-def _deep_rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+def flank_curve(
+    member: Member, flank: str, up: float | None = None, across: float | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``."""
+    share = np.linspace(0.0, 1.0, _COLUMNS)
+    place = (share if across is None else np.full(_COLUMNS, across), share if up is None else np.full(_COLUMNS, up))
+    axial, radial = kernel("flank_place")(member.blank.vector, *place)
+    return _row(member, flank, Grid(axial[None], radial[None]))
+
+
+def foot_curves(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """The same for the lower ends of the flank, along the tooth. What the edge cuts lies between flank and root."""
     for part, points, blade in below_the_flank(member, flank, np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS // 2)):
         if part == "edge":
@@ -196,7 +236,7 @@ def roll_nodes(
             f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "
             f"decimals alone may take {ROUNDING * 1000:.3f} um"
         )
-    member = _on_one_machine(member, cut)
+    member = on_one_machine(member, cut)
     start, end = roll_range(member, cut)
     exact = Pass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)
     budget = _BETWEEN * (tolerance - ROUNDING)
@@ -207,7 +247,7 @@ def roll_nodes(
     return np.array(nodes)
 
 
-def _on_one_machine(member: Member, cut: Cut) -> Member:
+def on_one_machine(member: Member, cut: Cut) -> Member:
     """The member with all flanks of a pass at the machine settings of its first, which are what the pass runs at."""
     first = member.flank(cut.flanks[0])
     shared = {name: getattr(first, name) for name in MACHINE_SETTINGS}

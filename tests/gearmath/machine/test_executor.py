@@ -1,19 +1,12 @@
 """The executor: what a program does, from text typed here by hand, and refusals with line and column."""
 
-import re
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
-from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute, run_program
-from gearmath.machine.milling import Blade, remaining
-from gearmath.specs.bevel_set import SIDES
 
 HEAD = ["G17 G40 G90 G710 G54", 'T="CUTTER" D1', "M6", "S80 M3", "G0 X0 Y0 Z0 A=DC(0) B0"]
 
@@ -315,101 +308,3 @@ def test_measured_positions_need_stopre_and_their_axis():
             probing(*lines, probe=lambda start, end: end)
     with pytest.raises(InputError, match="there is no probe that could touch anything"):
         probing(*touch)
-
-
-def short_program(gear_set, vertical, member, blocks=5):
-    """Some blocks from the middle of a real roll, with head and end: text, and the numbers of their lines."""
-    lines = cutting_program(gear_set, member, vertical, "CUT", Job((0,), 1e-4)).split("\n")
-    head = next(k for k, line in enumerate(lines) if line.startswith("N10 "))
-    tool_end = next(k for k, line in enumerate(lines) if " M5 M9" in line)
-    cut = [line for line in lines[:tool_end] if " G93 " in line]
-    middle = cut[len(cut) // 2 : len(cut) // 2 + blocks + 1]
-    start = re.sub(r"^N\d+ G93 G1 (.*) F\S+$", r"G0 \1", middle[0])
-    body = next(k for k, line in enumerate(lines) if " M8" in line)
-    text = [*lines[head : body + 1], start, *middle[1:], "M5 M9", "M30"]
-    return text, [k for k, line in enumerate(text) if " G93 " in line]
-
-
-def mutations(text, numbers):
-    """Line, and text with one digit of one axis word of a cutting block changed."""
-    for k in numbers:
-        for word in re.finditer(r"(?:[XYZB]|A=DC\()(-?[0-9.]+)", text[k]):
-            for at in range(word.start(1), word.end(1)):
-                for digit in "0123456789" if text[k][at].isdecimal() else "":
-                    if digit != text[k][at]:
-                        yield k, [*text[:k], text[k][:at] + digit + text[k][at + 1 :], *text[k + 1 :]]
-
-
-class Lines:
-    """Lines along the normals of the flanks that one tool finishes, and what its blades leave of them at some poses."""
-
-    def __init__(self, spec, member, flanks, pivot_height):
-        fine = [solve_flank(spec, member, flank, blank_grid(spec, 41, 161, 0.02)) for flank in flanks]
-        self.point = np.concatenate([part.point for part in fine])
-        self.normal = np.concatenate([part.normal for part in fine])
-        blades = [(spec.flank(f).blade_point_radius, spec.flank(f).blade_pressure_angle, SIDES[f]) for f in flanks]
-        self.blade = np.repeat(blades, [len(part.point) for part in fine], axis=0)
-        self.blade[:, 1] = np.radians(self.blade[:, 1])
-        self.pivot_height = pivot_height
-
-    def keep(self, which):
-        self.point, self.normal, self.blade = self.point[which], self.normal[which], self.blade[which]
-
-    def left(self, poses, which):
-        """Distances (lines, poses) at poses (poses, 5)."""
-        point, normal, blade = (np.repeat(a[which], len(poses), axis=0) for a in (self.point, self.normal, self.blade))
-        axes = np.tile(poses, (len(self.point[which]), 1))
-        (distance,) = kernel("line_entry")(axes, self.pivot_height, point, normal, *blade.T)
-        return distance.reshape(-1, len(poses))
-
-    def milled(self, first, last, which):
-        """What a block leaves (lines,), looked at in steps."""
-        return self.left(first + np.linspace(0, 1, 9)[:, None] * (last - first), which).min(axis=1)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("member", "flanks"), [("pinion", ("concave",)), ("gear", ("concave", "convex"))])
-def test_a_wrong_digit_is_refused_or_seen_by_the_virtual_milling(gear_set, vertical, member, flanks):
-    """Every digit of every axis word of every cutting block, with every other value: some thousand programs.
-
-    What counts is a digit by which the cutter, where it touches the finished flank at the end of the changed block,
-    moves by more than 1 um along the normal there. Seen is what leaves the flank outside of the tolerance of 0.1 um.
-    The two blocks that the digit changes are milled again, in steps; some programs are milled in full as well.
-    """
-    lines = Lines(gear_set.member(member), member, flanks, vertical.pivot_height)
-    text, numbers = short_program(gear_set, vertical, member)
-    nodes = execute("\n".join(text), "P").axes
-    everywhere = np.stack([lines.milled(*nodes[k : k + 2], slice(None)) for k in range(len(nodes) - 1)])
-    finished = np.flatnonzero(everywhere.min(axis=0) < 1e-4)  # by these blocks
-    everywhere = everywhere[:, finished]
-    lines.keep(finished)
-    at_node = lines.left(nodes, slice(None))
-    refusals = demanded = checked = 0
-    for k, changed in mutations(text, numbers):
-        try:
-            axes = execute("\n".join(changed), "P").axes
-        except InputError:
-            refusals += 1
-            continue
-        n = numbers.index(k) + 1
-        touching = np.flatnonzero(at_node[:, n] < 5e-5)
-        moved = lines.left(axes[n : n + 1], touching)[:, 0] - at_node[touching, n]
-        if not (np.abs(moved) > 1e-3).any():
-            continue
-        demanded += 1
-        blocks = [b for b in (n - 1, n) if b < len(nodes) - 1]
-        again = np.min([lines.milled(*axes[b : b + 2], touching) for b in blocks], axis=0)
-        deviation = np.minimum(np.delete(everywhere[:, touching], blocks, axis=0).min(axis=0, initial=np.inf), again)
-        assert np.abs(deviation).max() > 1e-4, changed[k]
-        if demanded % 300 == 1:
-            seen = touching[[np.argmax(np.abs(deviation))]]
-            radius, angle, side = lines.blade[seen[0]]
-            full = remaining(
-                axes, np.arange(len(axes)) > 0, Blade(radius, angle, int(side)), vertical.pivot_height,
-                lines.point[seen], lines.normal[seen],
-            )  # fmt: skip
-            assert not abs(full[0]) <= 1e-4, changed[k]
-            checked += 1
-    assert demanded > 500
-    assert checked >= 2
-    assert refusals > 0

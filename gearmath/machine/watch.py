@@ -1,0 +1,183 @@
+"""Every block of a program watched where it generates: lines on the flanks so close together that none cuts unseen.
+
+The lines lie along tip and foot of the flanks and along toe and heel, some for every block that the pass has.
+Every line of contact crosses these curves at both of its ends, and a tool that is moved anywhere on it is moved most at
+one of them, as a rigid body. :func:`watch` says what metal is left; :func:`off_the_way` where a tool stands beside its
+way although its neighbours cut the flank clean.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.kernels import kernel
+from gearmath.bevel.method import motion_of
+from gearmath.machine.blocks import flank_curve, foot_curves, on_one_machine
+from gearmath.machine.cutting import tooth_angles
+from gearmath.machine.mill import about_axis, expose, thickness
+from gearmath.machine.milling import REACH, Evaluator, annulus_entry
+from gearmath.machine.path import axis_positions, flank_points, roll_range
+from gearmath.machine.run import Run
+from gearmath.machine.simulation import roll_position
+from gearmath.specs.bevel_set import FLANKS, Member
+from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.simulated_machine import SimulatedMachine
+
+#: Lines on each curve for a block of mean length.
+_PER_BLOCK = 2.0
+#: Where curves lie along the tooth, as parts of the working depth, and up the tooth, as parts of the face width.
+_UP, _ACROSS = (1.0,), (0.0, 1.0)
+#: X and Y so far off the path are wrong wherever the flank is. [mm]
+_FAR_ASIDE = 0.05
+_TOLERANCE = re.compile(r"^; flank tolerance: ([0-9.]+) um", re.MULTILINE)
+_FINISHED = re.compile(r"^; finish: stock 0 mm", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class WatchedFlank:
+    """Lines on one flank of space 0: points and outward normals (n,3), where they begin (n,) [mm], cradle rotation."""
+
+    flank: str
+    point: np.ndarray
+    normal: np.ndarray
+    start: np.ndarray
+    theta: np.ndarray
+
+
+@dataclass(frozen=True)
+class Watch:
+    """What all blocks leave: number of lines, extremes [mm] with space, flank and line of the text; ``uncut`` lines."""
+
+    lines: int
+    lowest: float
+    lowest_at: tuple[int, str, int]
+    highest: float
+    highest_at: tuple[int, str, int]
+    uncut: int
+
+    @property
+    def worst(self) -> tuple[float, tuple[int, str, int]]:
+        """The larger extreme and where it is."""
+        return max((self.lowest, self.lowest_at), (self.highest, self.highest_at), key=lambda found: abs(found[0]))
+
+
+def watched_flanks(member: Member, runs: list[Run]) -> list[WatchedFlank]:
+    """Lines on all flanks that the tools of a program cut, as many as their blocks ask for."""
+    found = []
+    for run in runs:
+        blocks = int(np.bincount(np.cumsum(~run.cutting)[run.cutting]).max())
+        for flank in run.cut.flanks:
+            theta, point, normal = _lines(member, run, flank, blocks)
+            (other,) = (each for each in FLANKS if each != flank)
+            opposite = flank_points(member, other, blank_grid(member, 5, 9)).point
+            start = -0.5 * thickness(point, opposite, member.teeth)
+            found.append(WatchedFlank(flank, point, normal, start, theta))
+    return found
+
+
+def _lines(member: Member, run: Run, flank: str, blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    if member.generation == "formate":
+        points = flank_points(member, flank, blank_grid(member, 5, 17, 0.0))
+        return points.contact[:, 2], points.point, points.normal
+    shared = on_one_machine(member, run.cut)
+    first, last = roll_range(shared, run.cut)
+    wanted = np.arange(first, last, (last - first) / (_PER_BLOCK * blocks))
+    curves = [flank_curve(shared, flank, up=up) for up in _UP]
+    curves += [flank_curve(shared, flank, across=across) for across in _ACROSS]
+    chosen = []
+    for theta, lines in (*curves, *foot_curves(shared, flank)):
+        here = wanted[(wanted > theta.min()) & (wanted < theta.max())]
+        at = np.unique(np.r_[0, np.searchsorted(theta, here), len(theta) - 1])
+        chosen.append(np.column_stack([theta[at], lines[at, :6]]))
+    together = np.concatenate(chosen)
+    return together[:, 0], together[:, 1:4], together[:, 4:7]
+
+
+def watch(
+    runs: list[Run], member: Member, machine: MillingMachine, errors: SimulatedMachine | None = None,
+    evaluator: Evaluator = lambda k: k, progress: Callable[[int], object] = lambda _: None,
+) -> Watch:  # fmt: skip
+    """What the passes of every space leave on the flanks of that space, the ``runs`` with rounded blades.
+
+    ``progress`` is called for every space.
+    """
+    flanks = watched_flanks(member, runs)
+    numbers = np.concatenate([run.line for run in runs])
+    rows: list[tuple[float, float, int, int, int, str, int]] = []
+    for space in sorted({number for run in runs for number in run.spaces}):
+        own = [replace(run, cutting=run.cutting & (run.space == space)) for run in runs]
+        turn = about_axis(2 * np.pi * space / member.teeth)
+        for one in flanks:
+            left = expose(own, machine, errors, one.point @ turn.T, one.normal @ turn.T, one.start, evaluator)
+            met = np.isfinite(left.distance)
+            low = int(np.argmin(np.where(met, left.distance, np.inf)))
+            high = int(np.argmax(np.where(met, left.distance, -np.inf)))
+            rows.append((
+                float(left.distance[low]), float(left.distance[high]), int(numbers[left.block[low]]),
+                int(numbers[left.block[high]]), int((~met).sum()), one.flank, space,
+            ))  # fmt: skip
+        progress(1)
+    deep, full = min(rows, key=lambda row: row[0]), max(rows, key=lambda row: row[1])
+    return Watch(
+        lines=len(rows) // max(len(flanks), 1) * sum(len(one.point) for one in flanks),
+        lowest=deep[0], lowest_at=(deep[6], deep[5], deep[2]), highest=full[1], highest_at=(full[6], full[5], full[3]),
+        uncut=sum(row[4] for row in rows),
+    )  # fmt: skip
+
+
+def off_the_way(
+    runs: list[Run], member: Member, machine: MillingMachine, evaluator: Evaluator = lambda k: k,
+    flanks: list[WatchedFlank] | None = None,
+) -> tuple[float, tuple[int, str, int]]:  # fmt: skip
+    """The largest distance [mm] along a flank normal between the tool at the end of a block and where it belongs.
+
+    With it come space, flank and line of the text. The cradle rotation of an end is that whose X and Y are nearest;
+    the tool is compared there on the watched lines that it touches at that moment. That counts even where other blocks
+    take away what this one leaves. Only for generated flanks, and for programs that leave no stock. ``flanks`` are the
+    watched lines, if they are known.
+    """
+    flanks = watched_flanks(member, runs) if flanks is None else flanks
+    worst = 0.0, (0, "", 0)
+    for run in runs:
+        for flank in run.cut.flanks:
+            (lines,) = (one for one in flanks if one.flank == flank)
+            distance = distances_off_the_way(run, lines, member, machine, evaluator)
+            row = int(np.argmax(distance))
+            if distance[row] > worst[0]:
+                worst = float(distance[row]), (int(run.space[row]), flank, int(run.line[row]))
+    return worst
+
+
+def distances_off_the_way(
+    run: Run, lines: WatchedFlank, member: Member, machine: MillingMachine, evaluator: Evaluator = lambda k: k
+) -> np.ndarray:
+    """How far the tool stands off its way (n,) [mm] on one flank at every row of a run; 0 where it touches no line."""
+    spec, off = member.flank(run.cut.flanks[0]), np.zeros(len(run.axes))
+    rows = np.flatnonzero(run.cutting & (run.space >= 0))
+    axes = run.axes[rows].copy()
+    axes[:, 3] -= tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+    theta, aside = roll_position()(spec.vector, axes[:, 0], axes[:, 1], machine.pivot, motion_of(spec))
+    off[rows] = np.where(aside > _FAR_ASIDE, aside, 0.0)
+    steps = np.diff(theta)
+    node, line = np.nonzero(np.abs(theta[:, None] - lines.theta) <= np.median(steps[steps > 0]) / 2)
+    meant = axis_positions(spec, theta, machine.pivot_height, machine.pivot)
+    body = run.cutter.bodies[-1]
+    entry, found = evaluator(annulus_entry()), []
+    for where in (axes, meant):
+        center, axis = kernel("tool_pose")(where, machine.pivot_height, machine.pivot)
+        raised = center - body.base * axis
+        given = (lines.point[line], lines.normal[line], lines.start[line])
+        found.append(entry(raised[node], axis[node], *given, body.annulus)[0])
+    np.maximum.at(off, rows[node], np.minimum(np.abs(found[0] - found[1]), REACH))
+    return off
+
+
+def stated_tolerance(text: str) -> float | None:
+    """The tolerance [mm] that a cutting program promises in its head; None if it leaves stock, or says nothing."""
+    found = _TOLERANCE.search(text)
+    return float(found[1]) / 1000 if found and _FINISHED.search(text) else None
