@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.errors import InputError
 from gearmath.machine.probing import probe_targets
 from gearmath.quality.touch_model import sensitivities, touch_covariance
 from gearmath.quality.touches import measured_member
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.flank_csv import FlankFile
-from gearmath.specs.measurement import Measurement
+from gearmath.specs.measurement import Measurement, load_measurement
 from gearmath.specs.toml import bundled
 from gearmath.specs.touch_csv import Touches
 
@@ -126,3 +127,20 @@ def test_arc_second_at_100_mm_is_half_a_micrometre():
     how = PERFECT.model_copy(update={"work_axis_arcsec": 1.0, "temperature_K": 1.0})
     assert 100 * how.work_axis == pytest.approx(0.48e-3, abs=0.005e-3)
     assert 100 * how.growth == pytest.approx(1.15e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ("repeatability_um = -0.1", r"m\.toml: repeatability_um = -0\.1: .*greater than or equal to 0"),
+        ("repeatability_um = nan", r"m\.toml: repeatability_um = nan: must be a finite number"),
+        ("touches = 0", r"m\.toml: touches = 0: .*greater than or equal to 1"),
+        ("sigma = 1.0", r"m\.toml: sigma = 1\.0: no such key is known here"),
+    ],
+)
+def test_bad_model_is_refused_by_its_key(tmp_path, line, sentence):
+    path = tmp_path / "m.toml"
+    start = "" if line.startswith("repeatability") else "repeatability_um = 0.5\n"
+    path.write_text(f'title = "bad"\n{start}{line}\n')
+    with pytest.raises(InputError, match=sentence):
+        load_measurement(path)
