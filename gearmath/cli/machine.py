@@ -92,8 +92,9 @@ def mill(
     from gearmath.files import read_text
     from gearmath.machine.executor import execute
     from gearmath.machine.measuring import measure_member
-    from gearmath.machine.metal import metal, teeth_around
+    from gearmath.machine.metal import metal
     from gearmath.machine.mill import mill_member
+    from gearmath.machine.probing import teeth_around
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine

@@ -35,24 +35,30 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
     "--topography", default="0", show_default=True, help="Teeth whose whole flanks are probed: all, none, or numbers."
 )
 @click.option("--pitch/--no-pitch", default=True, show_default=True, help="Probe the reference point of every tooth.")
+@click.option(
+    "--registration/--no-registration", default=True, show_default=True,
+    help="With the pitch, probe the corners on eight teeth around: they tell how the work sits.",
+)  # fmt: skip
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Touches of every point.")
 @output(_PROGRAM)
 def probe(
-    gear_set: str, member: str, machine: str, calibration: str, topography: str, pitch: bool, repeat: int, target: Path
+    gear_set: str, member: str, machine: str, calibration: str, topography: str, pitch: bool, registration: bool,
+    repeat: int, target: Path,
 ) -> None:  # fmt: skip
     """The probing program of a member."""
     from gearmath.files import write_text
-    from gearmath.machine.probing import probing_program
+    from gearmath.machine.probing import probing_program, teeth_around
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     bevel_set = load_bevel_set(find(gear_set))
-    teeth = _teeth(topography, bevel_set.member(member).teeth)
+    count = bevel_set.member(member).teeth
+    teeth, around = _teeth(topography, count), teeth_around(count) if registration else ()
     text = probing_program(
         bevel_set, member, load_milling_machine(find(machine)), load_calibration(find(calibration)), target.stem,
-        teeth, pitch, repeat,
+        teeth, pitch, repeat, around,
     )  # fmt: skip
     write_text(target, text)
     click.echo(f"{target}: {repeat * text.count('R205=$')} touches, {text.count(chr(10))} blocks")

@@ -17,9 +17,6 @@ from gearmath.specs.flank_csv import FlankFile, join
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
 
-#: Teeth of which a registration wants more than the reference point.
-_AROUND = 8
-
 
 def metal(
     path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None = None,
@@ -46,11 +43,6 @@ def metal(
             files += measured_lines(near, member, machine, errors, wanted, flank, [tooth], start)
             progress(1)
     return join(files)
-
-
-def teeth_around(teeth: int) -> list[int]:
-    """Eight teeth evenly around, or all where there are fewer."""
-    return sorted({round(k * teeth / _AROUND) % teeth for k in range(_AROUND)})
 
 
 def _near(run: Run, tooth: int, teeth: int) -> Run:

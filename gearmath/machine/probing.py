@@ -27,6 +27,8 @@ from gearmath.specs.simulated_machine import Probe
 APPROACH = 1.5
 #: Least distance from which a touch may start. [mm]
 _LEAST_APPROACH = 0.1
+#: Teeth of which a registration wants more than the reference point.
+_AROUND = 8
 #: Height of all sideways motion above the highest point of the member. [mm]
 CLEARANCE = 5.0
 MEASURING_FEED, APPROACH_FEED = 100.0, 800.0
@@ -81,8 +83,11 @@ def probe_targets(
     topography: Sequence[int] = (0,),
     pitch: bool = True,
     grid: Grid | None = None,
+    around: Sequence[int] = (),
 ) -> Targets:
     """The touches of a member: the whole grid on the teeth of ``topography``, the reference point on all others.
+
+    On the teeth ``around`` also the corners of the grid: eight of them tell tilt and eccentricity of the work.
 
     With ``pitch``, tooth 0 comes once more at the end, as tooth z, A standing as for tooth 0: the reference points, and
     the corners of the grid where it was probed in full, whose normals tell a drift in any direction.
@@ -98,12 +103,17 @@ def probe_targets(
             whole = tooth in topography
             if whole or pitch:
                 again = tooth == member.teeth and 0 in topography
-                keep = landmarks(one.row, one.col, grid.shape, corners=again)
+                keep = landmarks(one.row, one.col, grid.shape, corners=again or tooth in around)
                 parts.append(_turned(one.pick(keep | whole), tooth, member.teeth))
     if not parts:
         raise InputError(f"{name}: there is nothing to probe: neither a tooth for topography, nor pitch")
     joined = (np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Targets))
     return Targets(*joined)
+
+
+def teeth_around(teeth: int) -> list[int]:
+    """Eight teeth evenly around, or all where there are fewer."""
+    return sorted({round(k * teeth / _AROUND) % teeth for k in range(_AROUND)})
 
 
 def landmarks(row: np.ndarray, col: np.ndarray, shape: tuple[int, int], corners: bool) -> np.ndarray:
@@ -166,13 +176,14 @@ def probing_program(
     topography: Sequence[int] = (0,),
     pitch: bool = True,
     repeat: int = 1,
+    around: Sequence[int] = (),
 ) -> str:
-    """The program that probes a member, every point ``repeat`` times one after the other.
+    """The program that probes a member, every point ``repeat`` times one after the other; see :func:`probe_targets`.
 
     Raises InputError for travel, room, and a name that the control refuses.
     """
     member = bevel_set.member(name)
-    targets = probe_targets(member, name, machine, calibration, topography, pitch)
+    targets = probe_targets(member, name, machine, calibration, topography, pitch, around=around)
     level, anywhere = clear_heights(member, machine, calibration)
     targets = _within_travel(targets, name, machine, (level, anywhere))
     header = (

@@ -8,7 +8,8 @@ import pytest
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
 from gearmath.machine.measuring import measure_member
-from gearmath.machine.metal import metal, teeth_around
+from gearmath.machine.metal import metal
+from gearmath.machine.probing import teeth_around
 from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
 from gearmath.quality.evaluation import evaluate_member

@@ -13,7 +13,8 @@ from gearmath.errors import InputError
 from gearmath.machine.executor import run_program
 from gearmath.machine.probe_errors import ErringProbe
 from gearmath.machine.probe_machine import ProbeMachine
-from gearmath.machine.probing import probing_program
+from gearmath.machine.probing import probing_program, teeth_around
+from gearmath.quality.evaluation import evaluate_member
 from gearmath.quality.pitch import evaluate_pitch
 from gearmath.quality.touches import measured_member
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
@@ -61,6 +62,21 @@ def test_probing_the_nominal_member_gives_back_exactly_its_flanks(gear_set, tmp_
             assert np.isnan(here.uncertainty).all()  # one touch says nothing of its scatter
             # beside the normal the printed program moves the point by its five decimals, which is no deviation
             np.testing.assert_allclose(here.point, expected, rtol=0, atol=2e-5)
+
+
+def test_corners_on_eight_teeth_around_tell_how_the_work_sits(gear_set, tmp_path):
+    """With them tilt and eccentricity are told, here as none; without them the tilt is not."""
+    spec, around = gear_set.pinion, teeth_around(12)
+    assert around == [0, 2, 3, 4, 6, 8, 9, 10]
+    file = measured(gear_set, tmp_path, "pinion", around=around)
+    assert len(file) == 2 * (45 + 11 + 7 * 4 + 5)
+    seat = evaluate_member(file, spec, "pinion").registration
+    assert seat.tilt_found
+    assert seat.eccentricity < 1e-5  # mm
+    assert seat.tilt * spec.blank.mean_cone_distance < 1e-5
+    middle = (file.row == 2) & (file.col == 4)
+    lacking = evaluate_member(file.pick((file.tooth % 12 == 0) | middle), spec, "pinion").registration
+    assert not lacking.tilt_found
 
 
 def test_metal_left_on_comes_back_as_pitch_and_deviation(gear_set, tmp_path):
@@ -143,14 +159,14 @@ def test_commands_go_from_calibration_to_measured_flank(gear_set, tmp_path, comm
     status, out, _ = command(
         "nc", "probe", bundled("nasa_tp3096_12x36.toml"), "--member", "pinion", *machine, "-o", tmp_path / "PP.MPF"
     )
-    assert (status, out.split(": ")[1].split(",")[0]) == (0, "122 touches")
+    assert (status, out.split(": ")[1].split(",")[0]) == (0, "178 touches")
     there = ProbeMachine(gear_set.member("pinion"), "pinion", MACHINE, BENT)
     raw.write_text(run_program((tmp_path / "PP.MPF").read_text(), "PP", there).files["PP_T"])
     status, out, _ = command(
         "touches", raw, "--set", "nasa_tp3096_12x36.toml", *machine, "-o", tmp_path / "M.csv"
     )  # fmt: skip
     assert status == 0
-    assert "122 points of run 1, largest deviation 0.000 um" in out
+    assert "178 points of run 1, largest deviation 0.000 um" in out
     status, out, _ = command("evaluate", tmp_path / "M.csv", "--set", "nasa_tp3096_12x36.toml")
     assert status == 0
     assert "F_p_um" in out
@@ -160,7 +176,8 @@ def test_command_writes_repeated_touches(tmp_path, command, refused):
     """The reference points of twelve teeth, tooth 0 again: 26 points, three touches each."""
     nasa, target = "nasa_tp3096_12x36.toml", tmp_path / "PP.MPF"
     status, out, _ = command(
-        "nc", "probe", nasa, "--member", "pinion", "--topography", "none", "--repeat", 3, "-o", target
+        "nc", "probe", nasa, "--member", "pinion", "--topography", "none", "--no-registration", "--repeat", 3,
+        "-o", target,
     )  # fmt: skip
     assert (status, out.split(": ")[1].split(",")[0]) == (0, "78 touches")
     assert "; 26 points, each touched 3 times" in target.read_text()
