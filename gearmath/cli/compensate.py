@@ -115,7 +115,7 @@ def _uncertainty(
 ) -> dict[str, Any]:  # fmt: skip
     """Standard uncertainties of the corrected settings, and what errors of measurement do to the flanks."""
     from gearmath.cli.uncertainty import effects_um, point_covariance
-    from gearmath.quality.figures import judged_by_measured
+    from gearmath.quality.judging import judged_by_measured
     from gearmath.quality.setting_uncertainty import uncertain_settings
 
     covariance = point_covariance(file, noise_um or None)

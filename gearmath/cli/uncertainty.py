@@ -113,7 +113,7 @@ def uncertain_correction(
     do to each flank, and, where there is no correction, why.
     """
     from gearmath.quality.correction import correct
-    from gearmath.quality.figures import judged_by_measured
+    from gearmath.quality.judging import judged_by_measured
     from gearmath.quality.setting_uncertainty import noise_of, uncertain_settings
 
     name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))

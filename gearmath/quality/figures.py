@@ -7,16 +7,14 @@ smooth has a Jacobian that carries covariances. Maxima and ranges are the larges
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
 from gearmath.bevel.kernels import kernel
-from gearmath.quality.drift import without_drift
 from gearmath.quality.evaluation import Evaluation, FlankFigures
-from gearmath.quality.nominal import completed
-from gearmath.quality.outliers import find_outliers
+from gearmath.quality.judging import judging_of, nominal_points_of
 from gearmath.quality.pitch import reference_point
 from gearmath.quality.registration import Registration
 from gearmath.quality.topography import ORDERS, Topography, orders_matrix
@@ -97,7 +95,7 @@ class Figures:
 
 def figures_of(file: FlankFile, member: Member, found: Evaluation) -> Figures:
     """All figures of the evaluation of a measured file, flank by flank, then those of both."""
-    judging, slope = _judging(file, member, found)
+    judging, slope = judging_of(file, member, found)
     judged = ca.MX.sym("judged", judging.size1_out(0))
     parts: list[_Part] = []
     if found.registration is not None:
@@ -109,34 +107,6 @@ def figures_of(file: FlankFile, member: Member, found: Evaluation) -> Figures:
     parts += _spaces(found.file, found, now)
     at = np.nan_to_num(file.deviation)
     return _together(parts, judged, at, judging, slope)
-
-
-def _judging(file: FlankFile, member: Member, found: Evaluation) -> tuple[ca.Function, np.ndarray]:
-    """What is judged, as a function of the deviations measured, and its constant Jacobian (q,n).
-
-    Judged are the deviations of the evaluated file, zero where there are none, then the four components of the seat.
-    """
-    at, n = np.nan_to_num(file.deviation), len(found.file)
-    slope = np.zeros((n + 4, len(file)))
-    slope[:n] = _without_drift(file, member, found.member)
-    deviation = ca.MX.sym("deviation", len(file))
-    change = ca.mtimes(ca.sparsify(ca.DM(slope[:n])), deviation - ca.DM(at))
-    seat = ca.MX.zeros(4)
-    if found.registration is not None:
-        gain, columns = found.registration.gain, found.registration.columns
-        moved = ca.mtimes(ca.DM(gain), change)
-        seat = ca.DM(found.registration.seat) + moved
-        change -= ca.mtimes(ca.DM(columns), moved)
-        slope[n:] = gain @ slope[:n]
-        slope[:n] -= columns @ slope[n:]
-    now = ca.DM(np.nan_to_num(found.file.deviation)) + change
-    return ca.Function("judging", [deviation], [ca.vertcat(now, seat)], ["deviation"], ["judged"]), slope
-
-
-def judged_by_measured(file: FlankFile, member: Member, found: Evaluation) -> np.ndarray:
-    """How the deviations (m,) that were judged, without drift and clamping, depend on those measured (n,): (m,n)."""
-    _, slope = _judging(file, member, found)
-    return np.where(np.isfinite(found.file.deviation)[:, None], slope[: len(found.file)], 0.0)
 
 
 def _jacobian(function: ca.Function, at: np.ndarray) -> np.ndarray:
@@ -176,24 +146,6 @@ def _pairs(n: int) -> tuple[np.ndarray, np.ndarray]:
     """Indices of x_i - x_j: the largest of them is the range."""
     first, second = np.nonzero(~np.eye(n, dtype=bool))
     return first, second
-
-
-def _without_drift(file: FlankFile, member: Member, name: str) -> np.ndarray:
-    """How the deviations without outliers and drift (m,) depend on those measured (m,n).
-
-    Taking out the drift is linear and homogeneous, so that unit deviations of the nominal points give the columns.
-    """
-    whole, _ = completed(find_outliers(file, member.teeth).without(file), member, name)
-    known = np.isfinite(whole.deviation)
-    kept = whole.tooth < member.teeth
-    matrix = (np.eye(len(whole)) * known)[kept][:, : len(file)]
-    nominal = _nominal(whole)
-    twice = np.isin(whole.tooth, (0, member.teeth)) & known & bool((~kept).any())
-    for k in np.flatnonzero(twice[: len(file)]):
-        unit = np.where(known, np.eye(len(whole))[k], np.nan)
-        moved = replace(whole, deviation=unit, point=nominal + np.nan_to_num(unit)[:, None] * whole.normal)
-        matrix[:, k] = np.nan_to_num(without_drift(moved, member.teeth)[0].deviation)
-    return matrix
 
 
 def _seat(found: Registration, seat: ca.MX) -> list[_Part]:
@@ -253,10 +205,6 @@ def _by_tooth(name: str, file: FlankFile, flank: str, deviation: ca.MX, point: n
     ]
 
 
-def _nominal(file: FlankFile) -> np.ndarray:
-    return file.point - np.nan_to_num(file.deviation)[:, None] * file.normal
-
-
 def _pitch(
     file: FlankFile, flank: str, figures: FlankFigures, deviation: ca.MX
 ) -> list[_Part]:  # fmt: skip
@@ -282,10 +230,10 @@ def _spaces(file: FlankFile, found: Evaluation, deviation: ca.MX) -> list[_Part]
     points = [
         argument
         for rows in (one, other)
-        for argument in (deviation[rows.tolist()].T, _nominal(file)[rows].T, file.normal[rows].T)
+        for argument in (deviation[rows.tolist()].T, nominal_points_of(file)[rows].T, file.normal[rows].T)
     ]
     radial, _ = kernel("ball_shift").function.map(len(one))(*points)
-    allowances = [_by_tooth("flank_allowance", file, flank, deviation, _nominal(file))[0] for flank in FLANKS]
+    allowances = [_by_tooth("flank_allowance", file, flank, deviation, nominal_points_of(file))[0] for flank in FLANKS]
     thicker = ca.sum1(ca.vertcat(*allowances)) / len(one)
     return [
         (Figure("both", "mean_thickness", "um"), thicker),

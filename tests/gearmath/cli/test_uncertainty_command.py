@@ -14,7 +14,7 @@ from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
 from gearmath.quality.covariance import independent
 from gearmath.quality.evaluation import evaluate_member
-from gearmath.quality.figures import judged_by_measured
+from gearmath.quality.judging import judged_by_measured
 from gearmath.quality.setting_uncertainty import noise_of
 from gearmath.quality.target import target_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, load_bevel_set
