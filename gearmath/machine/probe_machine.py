@@ -10,12 +10,14 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, nominal_points
 from gearmath.bevel.kernels import kernel
+from gearmath.machine.collision import work_profiles
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.probe_space import SpaceBody
 from gearmath.machine.probing import probe_height
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.simulated_machine import Fixture
 
 #: Steps in which the way of the tip is looked over before the touch is computed, and how near is near. [mm]
 _STEP, _NEAR = 0.1, 0.15
@@ -24,6 +26,8 @@ _BODY_ERROR = 0.02
 _ROUNDS, _CONVERGED = 60, 1e-10
 #: Distance of the points at which the stylus is watched. [mm]
 _STYLUS_STEP = 1.0
+#: Steps along a block in which hub, shank and fixture are looked for. [mm]
+_WORK_STEP = 2.0
 
 #: Metal left on a flank of a tooth [mm].
 Stock = Callable[[str, int], float]
@@ -114,6 +118,36 @@ class ProbeMachine:
             stem = (tip[::4, None] + heights[:, None] * stylus[::4, None]).reshape(-1, 3)
             stems.append(self.body.clearance(stem).min() - self.calibration.stylus_radius)
         return Clearances(float(min(tips)), float(min(touching)), float(min(stems)))
+
+    def work_clearance(self, path: MachinePath, fixture: Fixture, spindle_radius: float) -> float:
+        """How near [mm] tip, stylus and spindle nose come to hub, shank and fixture, which are round about the work.
+
+        The spindle is a cylinder of ``spindle_radius`` from the gauge line up, the stylus one down to the tip.
+        """
+        profiles = work_profiles(self.member, fixture)
+        corners = [profiles[name] for name in ("hub", "shank", "fixture")]
+        first, last = (np.concatenate([part[ends] for part in corners]) for ends in (slice(0, -1), slice(1, None)))
+        heights = np.arange(0.0, self.calibration.stylus_length, _STYLUS_STEP)
+        nearest = math.inf
+        for k in range(1, len(path.axes)):
+            count = 2 + int(np.linalg.norm(path.axes[k, :3] - path.axes[k - 1, :3]) / _WORK_STEP)
+            share = np.linspace(0.0, 1.0, count)[:, None]
+            tip, stylus = self._tip(path.axes[k - 1] + share * (path.axes[k] - path.axes[k - 1]))
+            nose = tip + self.calibration.length * stylus
+            stem = (tip[:, None] + heights[:, None] * stylus[:, None]).reshape(-1, 3)
+            for body, radius in ((tip, self.calibration.tip_radius), (stem, self.calibration.stylus_radius),
+                                 (nose, spindle_radius)):  # fmt: skip
+                place = np.column_stack([body[:, 2], np.hypot(body[:, 0], body[:, 1])])
+                nearest = min(nearest, float(_to_segments(place, first, last).min()) - radius)
+        return nearest
+
+
+def _to_segments(place: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """Distances (n,m) of points (n,2) from straight lines between ends (m,2)."""
+    way = last - first
+    length = np.maximum((way**2).sum(axis=1), 1e-12)
+    share = np.clip(((place[:, None] - first) * way).sum(axis=2) / length, 0.0, 1.0)
+    return np.linalg.norm(place[:, None] - first - share[..., None] * way, axis=2)
 
 
 def _turn(point: np.ndarray, angle: float) -> np.ndarray:
