@@ -90,6 +90,45 @@ def test_bad_cut_is_one_line_and_writes_nothing(refused, tmp_path, options, sent
     assert list(tmp_path.iterdir()) == []
 
 
+def test_travel_beyond_the_machine_is_one_line_with_axis_value_and_limit(refused, tmp_path):
+    text = bundled("vertical_5axis.toml").read_text("utf-8")
+    machine = tmp_path / "small.toml"
+    machine.write_text(text.replace("travel = [-400.0, 400.0]", "travel = [-40.0, 40.0]"), "utf-8")
+    target = tmp_path / "out" / "PART.MPF"
+    target.parent.mkdir()
+    sentence = r"axis [XY] = -?\d+\.\d{5} mm at cradle angle .* deg: .* travels -40 to 40 mm"
+    refused(sentence, *CUT, "--machine", machine, "-o", target)
+    assert list(target.parent.iterdir()) == []
+
+
+def test_wrong_digit_is_named_with_its_line(command, tmp_path, pinion_program):
+    """Z of one block 10 um too high: more than the 0.1 um that the program states, and off its way."""
+    lines = pinion_program.read_text("ascii").split("\n")
+    cuts = [k for k, line in enumerate(lines) if " G93 " in line]
+    k = cuts[len(cuts) // 4]
+    z = next(word for word in lines[k].split() if word[0] == "Z")
+    lines[k] = lines[k].replace(z, f"Z{float(z[1:]) + 0.01:.5f}")
+    wrong = tmp_path / "WRONG.MPF"
+    wrong.write_text("\n".join(lines), "ascii")
+    for program, changed in ((pinion_program, False), (wrong, True)):
+        status, out, err = command("mill", SET, "--member", "pinion", "--program", program, "-o", tmp_path / "m.csv")
+        assert (status, err) == (0, "")
+        assert "every block watched" in out
+        assert ("more than the 0.1 um that the program states" in out) is changed
+        assert (
+            f"line {k + 1} " in out.split("off its way")[0].split("written")[-1] and "off its way" in out
+        ) is changed
+
+
+@pytest.mark.parametrize("word", ["M17", "RET", "UPROG", "CALL"])
+def test_subprograms_are_refused_with_line_and_column(refused, tmp_path, pinion_program, word):
+    program = tmp_path / "SUB.MPF"
+    program.write_text(pinion_program.read_text("ascii").replace("M30", word), "ascii")
+    refused(rf"SUB\.MPF, line \d+, column \d+: the word '{word}' is not understood", "mill", SET, "--member", "pinion",
+            "--program", program, "-o", tmp_path / "m.csv")  # fmt: skip
+    assert not (tmp_path / "m.csv").exists()
+
+
 @pytest.mark.parametrize("name", ["1ST.MPF", "P-1.MPF", "A_PROGRAM_NAME_THAT_IS_TOO_LONG.MPF", "COM1.MPF"])
 def test_file_name_that_is_no_program_name_is_refused(refused, tmp_path, name):
     refused("program name ", *CUT, "-o", tmp_path / name)
