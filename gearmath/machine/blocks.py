@@ -108,6 +108,10 @@ class Pass:
         wanted = start + _FRACTIONS * (end - start)
         chosen = np.concatenate([first + np.searchsorted(halfway, wanted) for first, halfway in self.rows])
         left = self._smallest(start, end, chosen)
+        # what the exact path takes away at an end of the block, beyond the ends of the flank, is not the block's doing
+        low = np.flatnonzero(left < -_UNTOUCHED)
+        ends = axis_positions(self.flank, np.array([start, end]), self.pivot_height, self.pivot_offset)
+        left[low[self._at(ends, chosen[low]).min(axis=1) < -_UNTOUCHED]] = 0.0
         inside = (self.theta[chosen] >= start) & (self.theta[chosen] <= end)
         lowest = float(left.min()) if end - start < _LONG else min(float(left.min()), self._elsewhere(start, end))
         return max(-lowest, float(left[inside].max(initial=0.0)))
@@ -135,7 +139,7 @@ class Pass:
             np.tile(axes, (len(chosen), 1)), self.pivot_height, points, normals, radius[:, 0], angle[:, 0], side[:, 0],
             self.pivot_offset,
         )  # fmt: skip
-        return distance.reshape(len(chosen), -1)
+        return distance.reshape(len(chosen), len(axes))
 
     def _smallest(self, start: float, end: float, chosen: np.ndarray) -> np.ndarray:
         """Smallest distance of entry (n,) within a block: Newton from the contact on the exact path.

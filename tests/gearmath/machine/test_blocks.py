@@ -9,7 +9,8 @@ from gearmath.bevel.flank import blank_grid, solve_places
 from gearmath.errors import InputError
 from gearmath.machine.blocks import ROUNDING, roll_nodes
 from gearmath.machine.path import Cut, below_the_flank, roll_range
-from gearmath.specs.bevel_set import SIDES
+from gearmath.specs.bevel_set import SIDES, load_bevel_set
+from gearmath.specs.toml import bundled
 
 HEIGHT = 500.0
 CUTS = [("pinion", 0), ("pinion", 1), ("gear", 0)]
@@ -27,8 +28,8 @@ def deviations(gear_set, witness):
     reaches down to its foot, where the edge of the blade begins.
     """
 
-    def of_cut(member, number, margin=0.0):
-        spec = gear_set.member(member)
+    def of_cut(member, number, margin=0.0, bevel_set=gear_set):
+        spec = bevel_set.member(member)
         flanks = []
         for flank in Cut.of(spec, member)[number].flanks:
             settings, side = spec.flank(flank).vector, SIDES[flank]
@@ -120,6 +121,33 @@ def test_blocks_are_near_the_fewest_that_dynamic_programming_finds(gear_set, dev
         assert blocks <= max(1.1 * fewest, fewest + 1), rows
         assert fewest <= blocks + 1, rows
     print(f"\n{member} {' and '.join(cut.flanks)}: um, blocks, optimum:", rows)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "member", "number"), [
+    ("crown_gear_7x43", "pinion", 1), ("crown_gear_7x43", "gear", 0), ("crown_gear_formate_14x39", "pinion", 1),
+    ("crown_gear_universal_14x39", "gear", 0),
+])  # fmt: skip
+def test_blocks_of_other_sets_are_near_the_fewest(deviations, name, member, number):
+    """At 0.5 um, where settings stand still and no pose of the exact path cuts into a point of the flank's surroundings:
+
+    the machine of the witness knows no other, and would count what it cuts there against the blocks.
+    """
+    bevel_set = load_bevel_set(bundled(f"{name}.toml"))
+    spec = bevel_set.member(member)
+    cut, left = Cut.of(spec, member)[number], deviations(member, number, bevel_set=bevel_set)
+    nodes = roll_nodes(spec, cut, 5e-4, HEIGHT)
+    spacing = np.diff(nodes)[:-1].min() / _CANDIDATES
+    blocks, fewest = len(nodes) - 1, fewest_blocks(left, *roll_range(spec, cut), 5e-4, spacing)
+    print(f"\n{name} {member} {' and '.join(cut.flanks)}: 0.5 um, {blocks} blocks, optimum {fewest}")
+    assert fewest - 1 <= blocks <= max(1.1 * fewest, fewest + 1)
+
+
+@pytest.mark.parametrize("tolerance", [5e-4, 2.5e-3, 5e-2])
+def test_what_the_exact_path_cuts_beyond_the_flank_does_not_stop_the_blocks(tolerance):
+    """The pinion of 7 teeth: past the heel its tool comes back into points that lie beyond the flank."""
+    spec = load_bevel_set(bundled("crown_gear_7x43.toml")).pinion
+    assert 5 < len(roll_nodes(spec, Cut.of(spec, "pinion")[0], tolerance, HEIGHT)) < 80
 
 
 @each_cut
