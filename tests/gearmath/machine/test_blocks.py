@@ -129,7 +129,7 @@ def test_blocks_are_near_the_fewest_that_dynamic_programming_finds(gear_set, dev
     ("crown_gear_universal_14x39", "gear", 0),
 ])  # fmt: skip
 def test_blocks_of_other_sets_are_near_the_fewest(deviations, name, member, number):
-    """At 0.5 um, where settings stand still and no pose of the exact path cuts into a point of the flank's surroundings:
+    """At 0.5 um, where settings stand still and the exact path cuts nothing beyond the ends of the flank:
 
     the machine of the witness knows no other, and would count what it cuts there against the blocks.
     """
