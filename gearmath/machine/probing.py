@@ -197,8 +197,19 @@ def probing_program(
         "R102 counts the runs, R101 the points offered, R103 those that a host has acknowledged",
         "R104 = 1, set before the start: a host reads R200 to R205 of every point, and the program waits for it",
     )
+    return write_touches(program_name, header, targets, name, machine, (level, anywhere), repeat)
+
+
+def write_touches(
+    program_name: str, header: Sequence[str], targets: Targets, name: str, machine: MillingMachine,
+    heights: tuple[float, float], repeat: int = 1,
+) -> str:  # fmt: skip
+    """The text of a probing program: its touches as they stand, sideways at the ``heights`` of :func:`clear_heights`.
+
+    Raises InputError for a name that the control refuses.
+    """
     blocks = Blocks(program_name, machine.axes.A.modulo)
-    return blocks.text(header, _body(blocks, targets, name, machine, (level, anywhere), repeat))
+    return blocks.text(header, _body(blocks, targets, name, machine, heights, repeat))
 
 
 def _body(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,12 +13,13 @@ from hypothesis import strategies as st
 
 from gearmath.errors import InputError
 from gearmath.machine.cutting import Job, cutting_program
-from gearmath.machine.executor import execute
+from gearmath.machine.executor import execute, run_program
 from gearmath.machine.nc_expression import Constant, Operation, Variable
 from gearmath.machine.nc_tree import Block, Branch, Command, Definition, Loop, Word
-from gearmath.machine.probing import probing_program
+from gearmath.machine.probing import APPROACH_FEED, MEASURING_FEED, Targets, probing_program, write_touches
 from gearmath.machine.program import Pass, write_program
 from gearmath.machine.reader import read_program
+from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
@@ -125,6 +127,8 @@ def written_again(text):
     header = [comment for line, comment in program.comments.items() if line < min(blocks)]
     begins = np.flatnonzero(~path.rapid & np.roll(path.rapid, 1))
     passes = []
+    turning = np.isfinite(path.cutter).any()
+    axes = np.column_stack([path.axes, path.cutter]) if turning else path.axes
     for begin in begins:
         end = begin + int(np.argmax(path.rapid[begin:]))
         line = path.line[begin]
@@ -132,12 +136,14 @@ def written_again(text):
         dwell = blocks[line + end - begin].get("dwell") and blocks[line + end - begin]["F"].value.value
         passes.append(
             Pass(
-                path.tools[path.tool[begin]], label, int(tooth), path.axes[begin:end], path.seconds[begin + 1 : end],
+                path.tools[path.tool[begin]], label, int(tooth), axes[begin:end], path.seconds[begin + 1 : end],
                 dwell or 0.0,
             )
         )  # fmt: skip
     highest = max(one.axes[:, 2].max() for one in passes)
-    (rpm,) = {words["S"].value.value for words in blocks.values() if "S" in words}
+    speeds = {words["S"].value.value for words in blocks.values() if "S" in words}
+    assert len(speeds) == (0 if turning else 1)  # the cutter's axis has no S
+    rpm = max(speeds, default=100.0)
     return write_program(
         header[0], header[1:], passes, FASTER, rpm, path.axes[begins[0] - 1, 2] - highest,
         blocks[path.line[begins[0]]]["F"].value.value,
@@ -149,7 +155,7 @@ def written_again(text):
 FASTER = MACHINE.model_copy(
     update={"axes": MACHINE.axes.model_copy(update={
         axis: getattr(MACHINE.axes, axis).model_copy(update={"max_speed_per_min": 1e6, "max_acceleration": 1e9})
-        for axis in "XYZAB"
+        for axis in "XYZABC"
     })}
 )  # fmt: skip
 NO = Word("", Constant(0.0), 0)
@@ -161,6 +167,55 @@ def test_writer_reader_writer_gives_the_same_text(gear_set, member, options):
     text = cutting_program(gear_set, member, MACHINE, "CUT", Job((0, 7), 1e-3, **options))
     again = written_again(text)
     assert again == text
+
+
+@pytest.mark.parametrize("options", [{}, {"roughing_stock": 0.3, "finishing_stock": 0.1}, {"dry_run": True}])
+def test_writer_reader_writer_gives_the_same_text_on_six_axes(options):
+    hobbed = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
+    text = cutting_program(hobbed, "pinion", MACHINE, "CUT", Job(range(14), 5e-3, **options))
+    assert " C=DC(" in text
+    assert written_again(text) == text
+
+
+def probed_again(text, name, repeat=1):
+    """What the writer makes of what control and reader understood of a probing program: its end points and heights.
+
+    The probe of this machine triggers where the touches end, and nowhere on the way in.
+    """
+    calls = []
+
+    def probe(start, end):
+        calls.append(None)
+        return end if (len(calls) - 1) % (1 + repeat) else None
+
+    program, done = read_program(text, "P.MPF"), run_program(text, "P.MPF", probe)
+    path, head = done.path, min(statement.line for statement in program.body)
+    header = [comment for line, comment in program.comments.items() if line < head]
+    called = [line.split(",") for line in done.files[f"{header[0]}_T"].splitlines()[1:]]
+    flank, tooth, row, col = (np.array(column) for column in list(zip(*called, strict=True))[3:7])
+    measuring = np.flatnonzero(path.measuring)
+    ways = measuring.reshape(-1, 1 + repeat)
+    start, end = path.axes[ways[:, 0]], path.axes[ways[:, 1]]
+    for last in ways.T[1:]:
+        np.testing.assert_allclose(path.axes[last], end, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(path.axes[last + 1], start, rtol=0, atol=1e-12)
+    ways_mm = np.linalg.norm(np.diff(path.axes[:, :3], axis=0), axis=1)[measuring - 1]
+    feed = 60 * ways_mm / path.seconds[measuring]
+    np.testing.assert_allclose(feed.reshape(ways.shape)[:, 0], APPROACH_FEED, rtol=1e-9)
+    np.testing.assert_allclose(feed.reshape(ways.shape)[:, 1:], MEASURING_FEED, rtol=1e-9)
+    (level,), anywhere = set(path.axes[ways[:, 0] - 1, 2].tolist()), float(path.axes[-1, 2])
+    once = slice(None, None, repeat)
+    targets = Targets(flank[once], tooth[once].astype(int), row[once], col[once], start, end, end)
+    return write_touches(header[0], header[1:], targets, name, MACHINE, (level, anywhere), repeat)
+
+
+@pytest.mark.parametrize(
+    ("member", "options"),
+    [("pinion", {}), ("gear", {"topography": (3,), "around": (0, 9)}), ("pinion", {"topography": (), "repeat": 3})],
+)
+def test_writer_reader_writer_gives_the_same_text_for_probing(gear_set, member, options):
+    text = probing_program(gear_set, member, MACHINE, load_calibration(bundled("probe.toml")), "PROBE", **options)
+    assert probed_again(text, member, options.get("repeat", 1)) == text
 
 
 @settings(max_examples=50, deadline=None)
@@ -210,3 +265,72 @@ def test_no_mutation_of_a_program_crashes_the_reader(probing_text, data):
     place = data.draw(st.integers(0, len(probing_text) - 1))
     inserted = data.draw(st.text(st.characters(codec="utf-8"), max_size=3))
     read_or_refuse(probing_text[:place] + inserted + probing_text[place + data.draw(st.integers(0, 3)) :])
+
+
+NUMBER = re.compile(r"-?[0-9]+(?:\.[0-9]+)?")
+STEPS = 2_000
+
+
+@pytest.fixture(scope="module")
+def cutting_texts(gear_set):
+    """A face milled program, a face hobbed one on six axes, of a head and its last blocks, and a probing one."""
+    hobbed = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
+    long = cutting_program(hobbed, "pinion", MACHINE, "CUT", Job(range(14), 2e-2)).splitlines(keepends=True)
+    probe = load_calibration(bundled("probe.toml"))
+    return [
+        cutting_program(gear_set, "pinion", MACHINE, "CUT", Job((0,), 2e-2)),
+        "".join(long[:40] + long[-20:]),
+        probing_program(gear_set, "pinion", MACHINE, probe, "PROBE", topography=()),
+    ]
+
+
+def changed(text, kind, share, other, count, put):
+    """The text with one change at a ``share`` of its length: bytes, a number or lines of it, or all that follows."""
+    if kind == "bytes":
+        place = int(share * len(text))
+        return text[:place] + put + text[place + count :]
+    if kind == "number":
+        found = list(NUMBER.finditer(text)) or [re.match("", text)]
+        begin, end = found[int(share * len(found))].span()
+        return text[:begin] + put + text[end:]
+    if kind == "truncated":
+        return text[: int(share * len(text))]
+    lines = text.splitlines(keepends=True) or [""]
+    one, two = (int(part * len(lines)) for part in (share, other))
+    if kind == "joined":
+        lines[one] = lines[one].rstrip("\n") + " "
+    elif kind == "exchanged":
+        lines[one], lines[two] = lines[two], lines[one]
+    else:
+        lines[one : one + 1] = [lines[one], lines[two]][: max(count, 0)]
+    return "".join(lines)
+
+
+SHARES = st.floats(0.0, 1.0, exclude_max=True)
+PUT = st.sampled_from(["0", "-0.0", "-1", "1e9", "9" * 20, "0.000000001", "360", "R1", "1/0"]) | st.text(max_size=2)
+CHANGES = st.tuples(
+    st.sampled_from(["bytes", "number", "truncated", "joined", "exchanged", "lines"]), SHARES, SHARES,
+    st.integers(0, 2), PUT,
+)  # fmt: skip
+
+
+@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.integers(0, 2), st.lists(CHANGES, min_size=1, max_size=3))
+def test_no_mutation_of_a_real_program_crashes_the_control(cutting_texts, which, changes):
+    """Up to three changes of bytes, lines or numbers, then the whole of it executed: refused, or a finite path."""
+    text = cutting_texts[which]
+    for change in changes:
+        text = changed(text, *change)
+    with contextlib.suppress(InputError):
+        path = run_program(text, "P.MPF", lambda start, end: end, step_limit=STEPS).path
+        assert np.isfinite(path.axes).all()
+        assert np.isfinite(path.seconds).all()
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_real_program_cut_off_before_its_end_is_refused(cutting_texts, which):
+    text = cutting_texts[which]
+    run_program(text, "P.MPF", step_limit=STEPS)
+    for length in range(0, text.rindex("M30"), 37):
+        with pytest.raises(InputError, match=r"^P\.MPF, line \d+, column \d+: "):
+            run_program(text[:length], "P.MPF", step_limit=STEPS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -192,6 +193,73 @@ def test_eccentric_and_tilted_work_deviates_by_what_it_is_moved_against_the_cutt
         expected = -((e + np.cross(omega, here.point)) * here.normal).sum(axis=1)
         np.testing.assert_allclose(file.select(flank).deviation, expected, rtol=0, atol=2e-4)
         assert np.ptp(expected) > 1e-3
+
+
+def by_rigid_motion(witness, spec, member, flank, height, moved):
+    """What is left on the grid where the tool moves by ``moved`` (3,) in the machine at contact, against its teeth.
+
+    ``moved`` gets X Y Z A B (5,) of the contact and its place in the machine p_m = M(B) Rz(-A) p_w, and everything is
+    typed from the conventions.
+    """
+    here = solve_flank(spec, member, flank, blank_grid(spec))
+    axes = witness.vertical_axes(spec.flank(flank).vector, here.contact[:, 2], height)
+    left = []
+    for at, point, normal in zip(axes, here.point, here.normal, strict=True):
+        (c, s), (cb, sb) = ((math.cos(angle), math.sin(angle)) for angle in at[3:])
+        into = np.array([[-sb, 0, -cb], [0, 1, 0], [cb, 0, -sb]]) @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+        left.append(moved(at, into @ point) @ (into @ normal))
+    return np.array(left)
+
+
+def against_b(at, place):
+    """The work turns by dB: its place moves by M'(B) M(B)^-1 p_m, which the tool does the other way in the work."""
+    cb, sb = math.cos(at[4]), math.sin(at[4])
+    along = np.array([[-sb, 0, -cb], [0, 1, 0], [cb, 0, -sb]])
+    change = np.array([[-cb, 0, sb], [0, 0, 0], [-sb, 0, -cb]])
+    return -change @ along.T @ place
+
+
+#: Straight blocks may leave this much. [mm]
+TOLERANCE = 1e-4
+#: What is wrong, and how the tool stands off the work by it, in the machine.
+MOVES = {
+    "X": (AxisErrors(X=0.02), lambda at, place: np.array([0.02, 0, 0])),
+    "Y": (AxisErrors(Y=-0.02), lambda at, place: np.array([0, -0.02, 0])),
+    "Z": (AxisErrors(Z=0.005), lambda at, place: np.array([0, 0, 0.005])),
+    "B": (AxisErrors(B=0.01), lambda at, place: math.radians(0.01) * against_b(at, place)),
+    "square": (AxisErrors(squareness_x_z_um_per_m=50.0), lambda at, place: np.array([50e-6 * at[2], 0, 0])),
+}
+
+
+@pytest.fixture(scope="module")
+def one_space(gear_set, program, vertical):
+    """``one_space(member, errors)``: what one and the same program leaves on a machine with errors of its axes."""
+    paths = {member: program(gear_set, member, tolerance=TOLERANCE) for member in MEMBERS}
+
+    @cache
+    def left(member, errors=None):
+        shop = None if errors is None else wrong(axes=errors)
+        return mill_member(paths[member], gear_set.member(member), member, vertical, shop)
+
+    return left
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+@pytest.mark.parametrize("what", MOVES)
+def test_axis_that_errs_leaves_what_the_rigid_motion_says(gear_set, one_space, vertical, witness, member, what):
+    """To first order δ = u·n, u the tool's way against the work at the contact, all of it worked out in the machine.
+
+    Half the difference of both signs of an error has no second order, half the sum nothing else.
+    """
+    errors, moved = MOVES[what]
+    opposite = AxisErrors(**{key: -getattr(errors, key) for key in (*"XYZAB", "squareness_x_z_um_per_m")})
+    files = one_space(member, errors), one_space(member, opposite), one_space(member)
+    for flank in FLANKS:
+        one, other, nominal = (file.select(flank).deviation for file in files)
+        expected = by_rigid_motion(witness, gear_set.member(member), member, flank, vertical.pivot_height, moved)
+        assert np.abs(expected).max() > 10 * TOLERANCE
+        np.testing.assert_allclose((one - other) / 2, expected, rtol=0, atol=TOLERANCE / 3)
+        np.testing.assert_allclose((one + other) / 2, nominal, rtol=0, atol=TOLERANCE)
 
 
 def test_axes_out_of_square_and_unevenly_divided_by_hand():
