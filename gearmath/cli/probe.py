@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import MACHINE, MEMBER, SET, about, output
+from gearmath.cli.common import MACHINE, MEMBER, SET, about, bar, output
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
+    from gearmath.machine.probe_check import Approach
     from gearmath.quality.axis_calibration import AxisCalibration
     from gearmath.quality.calibration import Fit, Tip
     from gearmath.specs.calibration import Calibration
@@ -40,28 +41,55 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
     help="With the pitch, probe the corners on eight teeth around: they tell how the work sits.",
 )  # fmt: skip
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Touches of every point.")
+@click.option("--errors", help="Simulated machine whose [fixture] and spindle the probe must clear.")
 @output(_PROGRAM)
 def probe(
     gear_set: str, member: str, machine: str, calibration: str, topography: str, pitch: bool, registration: bool,
-    repeat: int, target: Path,
+    repeat: int, errors: str | None, target: Path,
 ) -> None:  # fmt: skip
-    """The probing program of a member."""
+    """The probing program of a member.
+
+    Before it is written it is run: tip, stylus and spindle must stay clear of teeth, hub, shank and fixture.
+    """
     from gearmath.files import write_text
+    from gearmath.machine.probe_check import approaches
     from gearmath.machine.probing import probing_program, teeth_around
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
+    from gearmath.specs.simulated_machine import CutterHead, Fixture, load_simulated_machine
     from gearmath.specs.toml import find
 
     bevel_set = load_bevel_set(find(gear_set))
     count = bevel_set.member(member).teeth
     teeth, around = _teeth(topography, count), teeth_around(count) if registration else ()
-    text = probing_program(
-        bevel_set, member, load_milling_machine(find(machine)), load_calibration(find(calibration)), target.stem,
-        teeth, pitch, repeat, around,
-    )  # fmt: skip
+    milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
+    simulated = load_simulated_machine(find(errors)) if errors else None
+    fixture, head = (simulated.fixture, simulated.cutter_head) if simulated else (Fixture(), CutterHead())
+    text = probing_program(bevel_set, member, milling_machine, known, target.stem, teeth, pitch, repeat, around)
+    with bar(text.count("\n"), "line") as progress:
+        found = approaches(
+            text, str(target), bevel_set.member(member), member, milling_machine, known, fixture, head.spindle_radius,
+            progress,
+        )  # fmt: skip
+    clear = _clearances(found, target)
     write_text(target, text)
-    click.echo(f"{target}: {repeat * text.count('R205=$')} touches, {text.count(chr(10))} blocks")
+    click.echo(f"{target}: {repeat * text.count('R205=$')} touches, {text.count(chr(10))} blocks; {clear}")
+
+
+def _clearances(found: list[Approach], target: Path) -> str:
+    """The least clearance of every part of the probe in words. Raises InputError for the deepest collision."""
+    worst = min(found, key=lambda one: one.distance)
+    if worst.distance <= 0.0:
+        raise InputError(
+            f"{target}, line {worst.line}: the {worst.probe} of the probe meets the {worst.work}, "
+            f"{-worst.distance:.3f} mm deep: the program is not written"
+        )
+    nearest: dict[str, Approach] = {}
+    for one in sorted(found, key=lambda one: -one.distance):
+        nearest[one.probe] = one
+    parts = (f"{part} {nearest[part].distance:.3f} mm ({nearest[part].work})" for part in ("tip", "stylus", "spindle"))
+    return f"least clearance: {', '.join(parts)}"
 
 
 @click.command("calibrate")

@@ -72,14 +72,14 @@ def collisions(
     fixture: Fixture | None = None,
 ) -> list[Collision]:  # fmt: skip
     """Every pair that meets on the way, rapid blocks included; poses are tried every 5 mm of a block."""
-    rings = {name: _rings(profile) for name, profile in work_profiles(member, fixture or Fixture()).items()}
+    around = {name: rings(profile) for name, profile in work_profiles(member, fixture or Fixture()).items()}
     found: dict[tuple[str, str], tuple[set[int], float]] = {}
     for run in runs:
         # A turns what is the same all around: blocks that differ in A only are one
         blocks = np.hstack([run.axes[:-1], run.axes[1:]])[:, [0, 1, 2, 4, 5, 6, 7, 9]]
         _, first, which = np.unique(np.round(blocks, 6), axis=0, return_index=True, return_inverse=True)
         for k, row in enumerate(first):
-            meets = _of_block(blocks[row], run.cutter, machine, head or CutterHead(), rings)
+            meets = _of_block(blocks[row], run.cutter, machine, head or CutterHead(), around)
             for pair, depth in meets.items():
                 lines, deepest = found.get(pair, (set(), 0.0))
                 lines |= set(run.line[1:][which.ravel() == k].tolist())
@@ -88,7 +88,7 @@ def collisions(
 
 
 def _of_block(
-    block: np.ndarray, cutter: Cutter, machine: MillingMachine, head: CutterHead, rings: dict[str, np.ndarray]
+    block: np.ndarray, cutter: Cutter, machine: MillingMachine, head: CutterHead, around: dict[str, np.ndarray]
 ) -> dict[tuple[str, str], float]:
     """What meets during one block (8,), X Y Z B at its start and end, with its depth [mm]."""
     first, last = (np.insert(half, 3, 0.0) for half in (block[:4], block[4:]))
@@ -96,7 +96,7 @@ def _of_block(
     poses = first + np.linspace(0.0, 1.0, 2 + int(reach / _STEP))[:, None] * (last - first)
     center, axis = kernel("tool_pose")(poses, machine.pivot_height, machine.pivot)
     meets = {}
-    for name, ring in rings.items():
+    for name, ring in around.items():
         from_center = ring[None] - center[:, None]
         height = -np.einsum("pqk,pk->pq", from_center, axis)
         radius = np.sqrt(np.maximum(np.einsum("pqk,pqk->pq", from_center, from_center) - height**2, 0.0))
@@ -127,7 +127,7 @@ def _polyline(*corners: np.ndarray) -> np.ndarray:
     return np.concatenate(parts)
 
 
-def _rings(profile: np.ndarray) -> np.ndarray:
+def rings(profile: np.ndarray) -> np.ndarray:
     """Points (n,3) all around z_w."""
     angle = np.linspace(0.0, 2 * math.pi, _AZIMUTHS, endpoint=False)
     z, r = (np.repeat(values, _AZIMUTHS) for values in profile.T)

@@ -22,7 +22,7 @@ from gearmath.specs.simulated_machine import Fixture
 #: Steps in which the way of the tip is looked over before the touch is computed, and how near is near. [mm]
 _STEP, _NEAR = 0.1, 0.15
 #: What a tip may dig in anywhere but on a flank before it counts as a touch: the body is no better than this. [mm]
-_BODY_ERROR = 0.02
+BODY_ERROR = 0.02
 _ROUNDS, _CONVERGED = 60, 1e-10
 #: Distance of the points at which the stylus is watched. [mm]
 _STYLUS_STEP = 1.0
@@ -68,7 +68,7 @@ class ProbeMachine:
         if not len(near):
             return None
         found = [self._share(flank, tooth, first, last, share[near[0]]) for flank in FLANKS]
-        dug = np.flatnonzero(away < -_BODY_ERROR)
+        dug = np.flatnonzero(away < -BODY_ERROR)
         touched = min((*(part for part in found if part is not None), *share[dug[:1]]), default=None)
         if touched is None:
             return None
@@ -138,11 +138,11 @@ class ProbeMachine:
             for body, radius in ((tip, self.calibration.tip_radius), (stem, self.calibration.stylus_radius),
                                  (nose, spindle_radius)):  # fmt: skip
                 place = np.column_stack([body[:, 2], np.hypot(body[:, 0], body[:, 1])])
-                nearest = min(nearest, float(_to_segments(place, first, last).min()) - radius)
+                nearest = min(nearest, float(to_segments(place, first, last).min()) - radius)
         return nearest
 
 
-def _to_segments(place: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+def to_segments(place: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
     """Distances (n,m) of points (n,2) from straight lines between ends (m,2)."""
     way = last - first
     length = np.maximum((way**2).sum(axis=1), 1e-12)

@@ -50,8 +50,13 @@ class SpaceBody:
 
     def tooth_of(self, point: np.ndarray) -> int:
         """The number of the space in which a point (3,) of the work lies."""
-        middle = float(np.interp(self._cone_distance(point), self._distance, self._middle))
-        return round((math.atan2(point[1], point[0]) - middle) / self.pitch) % self.teeth
+        return int(self.spaces_of(point[None])[0])
+
+    def spaces_of(self, point: np.ndarray) -> np.ndarray:
+        """The numbers (n,) of the spaces in which points (n,3) of the work lie."""
+        middle = np.interp(self._cone_distance(point), self._distance, self._middle)
+        azimuth = np.arctan2(point[:, 1], point[:, 0])
+        return np.round((azimuth - middle) / self.pitch).astype(int) % self.teeth
 
     def clearance(self, point: np.ndarray) -> np.ndarray:
         """Distance (m,) [mm] of points (m,3) near space 0 from its surface, negative in the metal."""
