@@ -51,7 +51,7 @@ def cut(
 ) -> None:  # fmt: skip
     """The cutting program of a member."""
     from gearmath.files import write_text
-    from gearmath.machine.cutting import Job, cutting_program
+    from gearmath.machine.cutting import Job, cutting_program, pass_count
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -59,7 +59,9 @@ def cut(
     bevel_set = load_bevel_set(find(gear_set))
     wanted = _spaces(spaces, bevel_set.member(member).teeth)
     job = Job(wanted, tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
-    text = cutting_program(bevel_set, member, load_milling_machine(find(machine)), target.stem, job)
+    milling_machine = load_milling_machine(find(machine))
+    with bar(pass_count(bevel_set.member(member), member, job), "pass") as progress:
+        text = cutting_program(bevel_set, member, milling_machine, target.stem, job, progress)
     write_text(target, text)
     click.echo(f"{target}: {len(wanted)} of {bevel_set.member(member).teeth} spaces, {text.count(chr(10))} blocks")
 

@@ -8,7 +8,7 @@ one cutter has two pressure angles, the smaller one sets d, and the other flank 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -90,15 +90,19 @@ def tooth_angles(teeth: int, correction: Sequence[float] = ()) -> np.ndarray:
 
 
 def cutting_program(
-    bevel_set: BevelSet, name: str, machine: MillingMachine, program_name: str, job: Job = _ONE_SPACE
-) -> str:
-    """The text of the program of a job on one member.
+    bevel_set: BevelSet, name: str, machine: MillingMachine, program_name: str, job: Job = _ONE_SPACE,
+    progress: Callable[[int], object] = lambda passes: None,
+) -> str:  # fmt: skip
+    """The text of the program of a job on one member; ``progress`` hears of the passes that are planned.
 
     Raises InputError for singular poses, travel and speed limits, a tolerance out of range, and a face hobbed member
     whose spaces are not all cut, or whose machine has no axis C.
     """
     member = bevel_set.member(name)
-    passes = list(_passes(member, name, machine, job))
+    passes = []
+    for one in _passes(member, name, machine, job):
+        passes.append(one)
+        progress(1)
     header = (
         f"gearmath {__version__} cutting program",
         f"set: {_plain(bevel_set.title)}",
@@ -115,6 +119,12 @@ def cutting_program(
     return write_program(
         program_name, header, passes, machine, job.spindle_rpm, CLEARANCE, PLUNGE_FEED, coolant=not job.dry_run
     )  # fmt: skip
+
+
+def pass_count(member: Member, name: str, job: Job) -> int:
+    """How many passes the program of a job has: in face hobbing one a stage, else one a tool, stage and space."""
+    hobbed = member.process == "face_hobbing"
+    return len(job.stages) * (1 if hobbed else len(Cut.of(member, name)) * len(job.spaces))
 
 
 def _passes(member: Member, name: str, machine: MillingMachine, job: Job) -> Iterator[Pass]:

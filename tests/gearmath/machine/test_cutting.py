@@ -9,10 +9,11 @@ import pytest
 
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
-from gearmath.machine.cutting import Job, cutting_program, tooth_angles
+from gearmath.machine.cutting import Job, cutting_program, pass_count, tooth_angles
 from gearmath.machine.executor import execute
 from gearmath.machine.mill import mill_member
-from gearmath.specs.bevel_set import FLANKS, MEMBERS, Motion, settings_sha256
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, Motion, load_bevel_set, settings_sha256
+from gearmath.specs.toml import bundled
 
 
 def passes(path):
@@ -213,3 +214,19 @@ def test_moving_settings_are_cut_to_tolerance(gear_set, left):
         update={f: gear_set.pinion.flank(f).model_copy(update={"motion": motion}) for f in FLANKS}
     )
     assert np.abs(left(gear_set.model_copy(update={"pinion": pinion}), "pinion")).max() <= 1e-4
+
+
+@pytest.mark.parametrize(
+    ("gear_set_name", "member", "job"),
+    [
+        ("nasa_tp3096_12x36", "pinion", Job((0, 3, 5), 1e-2, roughing_stock=0.3)),
+        ("nasa_tp3096_12x36", "gear", Job((0, 3), 1e-2)),
+        ("crown_gear_hobbed_14x39", "gear", Job(range(39), 1e-2)),
+    ],
+)
+def test_progress_hears_of_as_many_passes_as_are_announced(vertical, gear_set_name, member, job):
+    """Two cutters, two stages and three spaces are twelve; a hobbed member is cut in one."""
+    one, heard = load_bevel_set(bundled(f"{gear_set_name}.toml")), []
+    cutting_program(one, member, vertical, "PART", job, heard.append)
+    assert sum(heard) == pass_count(one.member(member), member, job)
+    assert sum(heard) == {"pinion": 12, "gear": 1 if "hobbed" in gear_set_name else 2}[member]

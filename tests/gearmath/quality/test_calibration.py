@@ -41,6 +41,51 @@ def touches(tmp_path_factory, artefacts):
     return run
 
 
+def from_ring(place, ring):
+    """Distances (n,) of points (n,3) from its body, a ring of rectangular section that stands on the table."""
+    away = np.hypot(*(place - ring.center)[:, :2].T) - (ring.diameter + ring.face.width) / 2
+    up = place[:, 2] - ring.face.seat - ring.face.height / 2
+    off = np.abs(np.stack([away, up])) - np.array([[ring.face.width], [ring.face.height]]) / 2
+    return np.hypot(*np.maximum(off, 0.0)) + np.minimum(off.max(axis=0), 0.0)
+
+
+def from_sphere(place, sphere, stem):
+    """Distances (n,) of points (n,3) from the sphere, and from a stem of this diameter that leads straight down."""
+    off = place - sphere.center
+    below = off - np.minimum(off[:, 2:], 0.0) * [0.0, 0.0, 1.0]
+    return np.minimum(np.linalg.norm(off, axis=1) - sphere.diameter / 2, np.linalg.norm(below, axis=1) - stem / 2)
+
+
+@pytest.mark.parametrize("true", [PROBE, BENT], ids=["as in the file", "bent"])
+def test_tip_and_stylus_meet_ring_and_sphere_at_the_touches_only(artefacts, true):
+    """Every block in steps of 0.1 mm, against ring, face, table, sphere and a stem of 0.6 of the sphere's diameter."""
+    done = run_program(calibration_program(MACHINE, PROBE, "CAL"), "CAL.MPF", artefacts(true))
+    assert done.alarm is None
+    path, ring, sphere = done.path, PROBE.ring, PROBE.sphere
+    assert path.axes[0, 2] == MACHINE.travel[2, 1]  # begins above everything
+    moving, touching, stylus = [], [], []
+    for k in range(1, len(path.axes)):
+        way = path.axes[k] - path.axes[k - 1]
+        assert (way[3:] == 0.0).all()
+        steps = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(way) / 0.1))[:, None]
+        tip = (path.axes[k - 1] + steps * way)[:, :3] + true.tip_offset
+        stem = np.concatenate([tip + np.array([0.0, 0.0, h]) for h in np.arange(1.0, PROBE.stylus_length, 0.5)])
+        away, beside = (
+            np.minimum.reduce([from_ring(at, ring), from_sphere(at, sphere, 0.6 * sphere.diameter),
+                               at[:, 2] - ring.face.seat]) for at in (tip, stem)
+        )  # fmt: skip
+        away -= true.tip_radius
+        at_touch = path.measuring[k] or path.measuring[k - 1]
+        (touching if at_touch else moving).append(away.min())
+        if at_touch:
+            moving.append(away[0 if path.measuring[k] else -1])  # where it starts, and where it goes back to
+        stylus.append(beside.min() - true.stylus_radius)
+    assert len(done.files["CAL_T"].splitlines()) - 1 == path.measuring.sum() - 30  # guarded ways down: 1, 4, 25
+    assert min(touching) > -1e-6
+    assert min(moving) > 0.5
+    assert min(stylus) > 0.1
+
+
 def without(touches, keep):
     return replace(touches, target=touches.target[keep], axes=touches.axes[keep])
 
