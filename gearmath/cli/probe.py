@@ -67,14 +67,15 @@ def probe(
     simulated = load_simulated_machine(find(errors)) if errors else None
     fixture, head = (simulated.fixture, simulated.cutter_head) if simulated else (Fixture(), CutterHead())
     text = probing_program(bevel_set, member, milling_machine, known, target.stem, teeth, pitch, repeat, around)
-    with bar(text.count("\n"), "line") as progress:
+    points = text.count("R205=$")
+    with bar(points * (1 + repeat) + text.count("\n"), "step") as progress:
         found = approaches(
             text, str(target), bevel_set.member(member), member, milling_machine, known, fixture, head.spindle_radius,
             progress,
         )  # fmt: skip
     clear = _clearances(found, target)
     write_text(target, text)
-    click.echo(f"{target}: {repeat * text.count('R205=$')} touches, {text.count(chr(10))} blocks; {clear}")
+    click.echo(f"{target}: {repeat * points} touches, {text.count(chr(10))} blocks; {clear}")
 
 
 def _clearances(found: list[Approach], target: Path) -> str:

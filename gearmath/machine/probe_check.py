@@ -66,18 +66,18 @@ class _Block:
 def approaches(
     text: str, program: str, member: Member, name: str, machine: MillingMachine, calibration: Calibration,
     fixture: Fixture | None = None, spindle_radius: float = CutterHead().spindle_radius,
-    progress: Callable[[int], object] = lambda lines: None,
+    progress: Callable[[int], object] = lambda steps: None,
 ) -> list[Approach]:  # fmt: skip
     """The nearest approach of every pair of tip, stylus, spindle and teeth, hub, shank, fixture.
 
-    A touch does not count, unless the tip goes deeper than the body of the space is exact. ``progress`` hears of the
-    lines of the text that are done.
+    A touch does not count, unless the tip goes deeper than the body of the space is exact. ``progress`` hears of
+    every MEAS block that is run, and then of the lines of the text whose blocks are looked at.
     Raises InputError with line and column for a text that cannot be run, or that ends in an alarm.
     """
     watch = _Watch(member, name, machine, calibration, fixture or Fixture(), spindle_radius)
     nearest: dict[tuple[str, str], Approach] = {}
     done = 0
-    for block in watch.blocks(text, program):
+    for block in watch.blocks(text, program, progress):
         for pair, distance in watch.distances(block):
             if pair not in nearest or distance < nearest[pair].distance:
                 nearest[pair] = Approach(*pair, distance, block.line)
@@ -102,9 +102,14 @@ class _Watch:
         slope = np.subtract(profiles["teeth"][-1], self._edge)
         self._up = np.array([-slope[1], slope[0]]) / np.linalg.norm(slope)  # square to the face cone, outward
 
-    def blocks(self, text: str, program: str) -> list[_Block]:
+    def blocks(self, text: str, program: str, progress: Callable[[int], object]) -> list[_Block]:
         """The blocks of a program, those that are the same in another space but once, at their first line."""
-        done = run_program(text, program, self.probe)
+
+        def probe(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+            progress(1)
+            return self.probe(start, end)
+
+        done = run_program(text, program, probe)
         if done.alarm is not None:
             refuse(program, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]} on the nominal member")
         path = done.path

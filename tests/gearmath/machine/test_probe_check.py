@@ -35,7 +35,9 @@ def of(found):
 def test_cheap_probe_sees_what_the_exact_contact_search_sees(gear_set):
     """Stylus within a step of it, tip not nearer than its watch, which also counts the beginning of a retract."""
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PROBE", topography=(), around=(0, 5))
-    found = of(approaches(text, "P", gear_set.pinion, "pinion", MACHINE, PROBE))
+    heard = []
+    found = of(approaches(text, "P", gear_set.pinion, "pinion", MACHINE, PROBE, progress=heard.append))
+    assert text.count("MEAS=1") < sum(heard) <= text.count("MEAS=1") + text.count("\n")
     there = ProbeMachine(gear_set.pinion, "pinion", MACHINE, PROBE)
     clear = there.clearances(run_program(text, "P", there).path)
     assert found["stylus", "teeth"].distance == pytest.approx(clear.stylus, abs=0.1)
