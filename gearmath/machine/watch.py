@@ -104,13 +104,15 @@ def watch(
 ) -> Watch:  # fmt: skip
     """What the passes of every space leave on the flanks of that space, the ``runs`` with rounded blades.
 
+    Rapid blocks that end as low as the tool cuts take metal away like the others, in every space.
+
     ``progress`` is called for every space.
     """
     flanks = watched_flanks(member, runs)
     numbers = np.concatenate([run.line for run in runs])
     rows: list[tuple[float, float, int, int, int, str, int]] = []
     for space in sorted({number for run in runs for number in run.spaces}):
-        own = [replace(run, cutting=run.cutting & (run.space == space)) for run in runs]
+        own = [replace(run, cutting=(run.cutting & (run.space == space)) | _rapid_in_metal(run)) for run in runs]
         turn = about_axis(2 * np.pi * space / member.teeth)
         for one in flanks:
             left = expose(own, machine, errors, one.point @ turn.T, one.normal @ turn.T, one.start, evaluator)
@@ -128,6 +130,11 @@ def watch(
         lowest=deep[0], lowest_at=(deep[6], deep[5], deep[2]), highest=full[1], highest_at=(full[6], full[5], full[3]),
         uncut=sum(row[4] for row in rows),
     )  # fmt: skip
+
+
+def _rapid_in_metal(run: Run) -> np.ndarray:
+    """Rapid blocks (n,) that end no higher than the tool cuts: a right program has none."""
+    return ~run.cutting & (run.axes[:, 2] <= run.axes[run.cutting, 2].max(initial=-np.inf))
 
 
 def off_the_way(
@@ -156,15 +163,19 @@ def off_the_way(
 def distances_off_the_way(
     run: Run, lines: WatchedFlank, member: Member, machine: MillingMachine, evaluator: Evaluator = lambda k: k
 ) -> np.ndarray:
-    """How far the tool stands off its way (n,) [mm] on one flank at every row of a run; 0 where it touches no line."""
+    """How far the tool stands off its way (n,) [mm] on one flank at every row of a run.
+
+    Where it touches no line, as where it plunges, that is how far its X and Y are off the path.
+    """
     spec, off = member.flank(run.cut.flanks[0]), np.zeros(len(run.axes))
     rows = np.flatnonzero(run.cutting & (run.space >= 0))
     axes = run.axes[rows].copy()
     axes[:, 3] -= tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
     theta, aside = roll_position()(spec.vector, axes[:, 0], axes[:, 1], machine.pivot, motion_of(spec))
-    off[rows] = np.where(aside > _FAR_ASIDE, aside, 0.0)
     steps = np.diff(theta)
     node, line = np.nonzero(np.abs(theta[:, None] - lines.theta) <= np.median(steps[steps > 0]) / 2)
+    touches = np.isin(np.arange(len(rows)), node)
+    off[rows] = np.where((aside > _FAR_ASIDE) | ~touches, aside, 0.0)
     meant = axis_positions(spec, theta, machine.pivot_height, machine.pivot)
     body = run.cutter.bodies[-1]
     entry, found = evaluator(annulus_entry()), []

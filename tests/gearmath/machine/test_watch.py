@@ -204,6 +204,31 @@ def test_block_that_stands_off_its_way_is_named_with_what_it_is_off_by(gear_set,
     assert (space, line) == (0, run.line[row])
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("G94 G0 Z540.00000", "G94 G0 Z440.00000"),  # the retract of space 0 goes down
+        ("G0 Z540.00000\n", "G0 Z500.00000\n"),  # the way to space 1 begins within the metal
+        ("G94 G1 Z500.00000", "G94 G1 Z400.00000"),  # the plunge into space 1 is too deep
+        ("G0 X-52.28643 Y50.42912", "G0 X-52.28643 Y50.40912"),  # and stands aside
+        ("G0 X-52.28643 Y50.42912", "G0 X-52.08643 Y50.42912"),
+        ("A=DC(26.059200)", "A=DC(26.159200)"),
+        ("B67.683300\n", "B67.083300\n"),
+    ],
+)
+def test_wrong_digit_of_approach_plunge_or_retract_is_seen(gear_set, vertical, host_compiler, right, wrong):
+    """On the way from space 0 to space 1; rapid blocks through the metal too. More than 1 um is left out or off."""
+    spec = gear_set.gear
+    text = cutting_program(gear_set, "gear", vertical, "CUT", Job((0, 1)))
+    begin = text.index("G94 G0 Z")
+    head, rest = text[:begin], text[begin:]
+    assert right in rest
+    path = execute(head + rest.replace(right, wrong, 1), "CUT")
+    runs = runs_of(path, spec, "gear", vertical, None, tooth_space(spec, "gear", 7), SHARP_EDGE)
+    gouge = watch(runs, spec, vertical, None, compile_kernel).lowest
+    assert gouge < -1e-3 or off_the_way(runs, spec, vertical)[0] > 1e-3
+
+
 def test_program_that_leaves_stock_promises_nothing(gear_set, vertical):
     assert stated_tolerance(cutting_program(gear_set, "gear", vertical, "CUT", Job(finishing_stock=0.1))) is None
     assert stated_tolerance("M30") is None
