@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from gearmath.bevel.tooth import ToothSpace
+from gearmath.bevel.turning import turned
 from gearmath.files import write_bytes
 from gearmath.specs.bevel_set import Member
 
@@ -67,10 +68,10 @@ def _space_profile(space: ToothSpace) -> np.ndarray:
 def _ring(space: ToothSpace, teeth: int) -> np.ndarray:
     """Closed polygons (columns, n, 3) around the member, in the order of their angle."""
     profile = _space_profile(space)
-    following = _turned(profile[:, 0], space.pitch)
+    following = turned(profile[:, 0], space.pitch)
     land = _between(profile[:, -1], following, np.linspace(0, 1, _TIP_POINTS + 2)[1:-1])
     tooth = np.concatenate([profile, land], axis=1)
-    return np.concatenate([_turned(tooth, k * space.pitch) for k in range(teeth)], axis=1)
+    return np.concatenate([turned(tooth, k * space.pitch) for k in range(teeth)], axis=1)
 
 
 def _between(first: np.ndarray, last: np.ndarray, fractions: np.ndarray) -> np.ndarray:
@@ -98,11 +99,6 @@ def _skin(rows: np.ndarray, closed: bool) -> np.ndarray:
         rows = np.concatenate([rows, rows[:, :1]], axis=1)
     a, b, c, d = rows[:-1, :-1], rows[:-1, 1:], rows[1:, 1:], rows[1:, :-1]
     return np.concatenate([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=1).reshape(-1, 3, 3)
-
-
-def _turned(points: np.ndarray, angle: float) -> np.ndarray:
-    c, s = math.cos(angle), math.sin(angle)
-    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
 
 
 def _cylindrical(points: np.ndarray) -> np.ndarray:

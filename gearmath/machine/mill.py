@@ -10,6 +10,7 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.tooth import ToothSpace, tooth_space
+from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.machine.blade_milling import removal_by_blades
 from gearmath.machine.executor import MachinePath
@@ -49,9 +50,9 @@ def nominal_flank(
     """The nominal points of one flank of one tooth as a flank file."""
     points = solve_flank(member, name, flank, grid)
     row, col = (index.ravel() for index in np.indices(grid.shape))
-    turn = about_axis(2 * math.pi * tooth / member.teeth)
+    angle = 2 * math.pi * tooth / member.teeth
     header = flank_header(member, name, grid, margin)
-    return flank_file(header, name, flank, tooth, row, col, points.point @ turn.T, points.normal @ turn.T)
+    return flank_file(header, name, flank, tooth, row, col, turned(points.point, angle), turned(points.normal, angle))
 
 
 def mill_member(
@@ -94,8 +95,8 @@ def thickness(point: np.ndarray, opposite: np.ndarray, teeth: int) -> np.ndarray
     """
     across = np.arctan2(*(opposite.mean(axis=0)[[1, 0]])) - np.arctan2(*(point.mean(axis=0)[[1, 0]]))
     away = -math.copysign(1.0, math.remainder(float(across), 2 * math.pi))
-    turned = opposite @ about_axis(away * 2 * math.pi / teeth).T
-    return np.linalg.norm(point[:, None] - turned[None], axis=2).min(axis=1)
+    beside = turned(opposite, away * 2 * math.pi / teeth)
+    return np.linalg.norm(point[:, None] - beside[None], axis=2).min(axis=1)
 
 
 def root_of(member: Member, name: str) -> ToothSpace | None:
@@ -115,8 +116,8 @@ def measured_lines(
     flank: str, spaces: list[int], start: np.ndarray,
 ) -> list[FlankFile]:  # fmt: skip
     """The deviations that all passes leave at nominal points of some spaces, which are given for tooth 0."""
-    turns = [about_axis(2 * math.pi * space / member.teeth).T for space in spaces]
-    points, normals = ([part @ turn for turn in turns] for part in (nominal.point, nominal.normal))
+    angles = [2 * math.pi * space / member.teeth for space in spaces]
+    points, normals = ([turned(part, angle) for angle in angles] for part in (nominal.point, nominal.normal))
     lines = (np.concatenate(points), np.concatenate(normals), np.tile(start, len(spaces)))
     left = np.split(expose(runs, machine, errors, *lines).distance, len(spaces))
     files = []
@@ -172,9 +173,3 @@ def _probed(file: FlankFile, name: str, errors: SimulatedMachine | None) -> Flan
         file.header, file.member, file.flank, file.tooth, file.row, file.col,
         file.point + noise[:, None] * file.normal, file.normal, file.deviation + noise, np.full(len(file), sigma),
     )  # fmt: skip
-
-
-def about_axis(angle: float) -> np.ndarray:
-    """The rotation (3,3) by an angle [rad] about z_w."""
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.turning import turned
 from gearmath.machine.collision import rings, work_profiles
 from gearmath.machine.executor import run_program
 from gearmath.machine.nc_expression import refuse
@@ -172,7 +173,7 @@ class _Watch:
         low = away < _ABOVE
         if low.any():
             near = points[low]
-            away[low] = self.body.clearance(_turned(near, -self.body.spaces_of(near) * self.body.pitch))
+            away[low] = self.body.clearance(turned(near, -self.body.spaces_of(near) * self.body.pitch))
         return away
 
     def _of_spindle(self, poses: np.ndarray, ring: np.ndarray) -> float:
@@ -209,9 +210,3 @@ def _corners(profile: np.ndarray) -> np.ndarray:
 def _place(points: np.ndarray) -> np.ndarray:
     """z_w and radius (n,2) of points (n,3)."""
     return np.column_stack([points[:, 2], np.hypot(points[:, 0], points[:, 1])])
-
-
-def _turned(points: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """Points (n,3), each turned about z_w by its angle."""
-    c, s, (x, y, z) = np.cos(angles), np.sin(angles), points.T
-    return np.column_stack([c * x - s * y, s * x + c * y, z])

@@ -10,6 +10,7 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, nominal_points
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.turning import turned
 from gearmath.machine.collision import work_profiles
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.probe_space import SpaceBody
@@ -61,7 +62,7 @@ class ProbeMachine:
         """Where the probe triggers between two positions X Y Z A B (5,), A and B standing still; None if nowhere."""
         (first, last), _ = self._tip(np.stack([start, end]))
         tooth = self.body.tooth_of(last)
-        first, last = (_turn(point, -tooth * self.body.pitch) for point in (first, last))
+        first, last = (turned(point, -tooth * self.body.pitch) for point in (first, last))
         share = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(last - first) / _STEP))
         away = self.body.clearance(first + share[:, None] * (last - first)) - self.calibration.tip_radius
         near = np.flatnonzero(away < _NEAR)
@@ -72,7 +73,7 @@ class ProbeMachine:
         touched = min((*(part for part in found if part is not None), *share[dug[:1]]), default=None)
         if touched is None:
             return None
-        self.touches.append(_turn(first + touched * (last - first), tooth * self.body.pitch))
+        self.touches.append(turned(first + touched * (last - first), tooth * self.body.pitch))
         return start + touched * (end - start)
 
     def _tip(self, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -109,7 +110,7 @@ class ProbeMachine:
             share = np.linspace(0.0, 1.0, count)[:, None]
             tip, stylus = self._tip(path.axes[k - 1] + share * (path.axes[k] - path.axes[k - 1]))
             turn = -self.body.tooth_of(tip[-1]) * self.body.pitch
-            tip, stylus = _turn(tip, turn), _turn(stylus, turn)
+            tip, stylus = turned(tip, turn), turned(stylus, turn)
             away = self.body.clearance(tip) - self.calibration.tip_radius
             touches = bool(path.measuring[k]) or bool(path.measuring[k - 1])
             touching.append(away[[0, -1]].min() if touches else math.inf)
@@ -148,9 +149,3 @@ def to_segments(place: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.nd
     length = np.maximum((way**2).sum(axis=1), 1e-12)
     share = np.clip(((place[:, None] - first) * way).sum(axis=2) / length, 0.0, 1.0)
     return np.linalg.norm(place[:, None] - first - share[..., None] * way, axis=2)
-
-
-def _turn(point: np.ndarray, angle: float) -> np.ndarray:
-    """Points (...,3) turned about z_w."""
-    c, s = math.cos(angle), math.sin(angle)
-    return point @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from gearmath.bevel.tooth import FlankSurface, ToothSpace, tooth_space
+from gearmath.bevel.turning import turned
 from gearmath.specs.bevel_set import Member
 
 _COLUMNS = 33
@@ -27,8 +28,8 @@ class SpaceBody:
         low, high = space.ordered
         gamma_f, gamma_a = (math.radians(angle) for angle in (member.blank.root_angle, member.blank.face_angle))
         parts = [_flank(low), _flank(high), _bridge(low.point[-1], high.point[-1], gamma_f)]
-        parts.append(_bridge(_turn(high.point[0], -space.pitch), low.point[0], gamma_a))
-        parts.append(_bridge(high.point[0], _turn(low.point[0], space.pitch), gamma_a))
+        parts.append(_bridge(turned(high.point[0], -space.pitch), low.point[0], gamma_a))
+        parts.append(_bridge(high.point[0], turned(low.point[0], space.pitch), gamma_a))
         self.point = np.concatenate([point for point, _ in parts])
         self.normal = np.concatenate([normal for _, normal in parts])
         self.pitch = space.pitch
@@ -85,8 +86,3 @@ def _bridge(first: np.ndarray, last: np.ndarray, cone: float) -> tuple[np.ndarra
     radial = np.hypot(point[:, 0], point[:, 1])[:, None]
     normal = np.concatenate([math.cos(cone) * point[:, :2] / radial, np.full((len(point), 1), -math.sin(cone))], axis=1)
     return point, normal
-
-
-def _turn(point: np.ndarray, angle: float) -> np.ndarray:
-    c, s = math.cos(angle), math.sin(angle)
-    return point @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])

@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearmath.bevel.tooth import SHARP_EDGE, FlankSurface, ToothSpace, tooth_space
+from gearmath.bevel.turning import turned
 from gearmath.machine.cutter import cutter_of
 from gearmath.machine.executor import MachinePath
-from gearmath.machine.mill import about_axis, expose, thickness
+from gearmath.machine.mill import expose, thickness
 from gearmath.machine.milling import Evaluator, removal
 from gearmath.machine.path import Cut, axis_positions, roll_range
 from gearmath.machine.run import Run, runs_of
@@ -106,9 +107,9 @@ def surface_states(
     lines = np.concatenate([run.line for run in runs])
     states = []
     for number in spaces:
-        turn = about_axis(2 * math.pi * number / member.teeth)
+        angle = 2 * math.pi * number / member.teeth
         for surface in surfaces:
-            point, normal = surface.point @ turn.T, surface.normal @ turn.T
+            point, normal = turned(surface.point, angle), turned(surface.normal, angle)
             left = expose(runs, machine, errors, point, normal, surface.start, evaluator)
             states.append(_state(surface, number, left.distance, left.block, lines, tolerance))
             progress(1)

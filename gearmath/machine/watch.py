@@ -17,9 +17,10 @@ import numpy as np
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import motion_of
+from gearmath.bevel.turning import turned
 from gearmath.machine.blocks import flank_curve, foot_curves, on_one_machine
 from gearmath.machine.cutting import tooth_angles
-from gearmath.machine.mill import about_axis, expose, thickness
+from gearmath.machine.mill import expose, thickness
 from gearmath.machine.milling import REACH, Evaluator, annulus_entry
 from gearmath.machine.path import axis_positions, flank_points, roll_range
 from gearmath.machine.run import Run
@@ -113,9 +114,10 @@ def watch(
     rows: list[tuple[float, float, int, int, int, str, int]] = []
     for space in sorted({number for run in runs for number in run.spaces}):
         own = [replace(run, cutting=(run.cutting & (run.space == space)) | _rapid_in_metal(run)) for run in runs]
-        turn = about_axis(2 * np.pi * space / member.teeth)
+        angle = 2 * np.pi * space / member.teeth
         for one in flanks:
-            left = expose(own, machine, errors, one.point @ turn.T, one.normal @ turn.T, one.start, evaluator)
+            lines = (turned(one.point, angle), turned(one.normal, angle), one.start)
+            left = expose(own, machine, errors, *lines, evaluator)
             met = np.isfinite(left.distance)
             low = int(np.argmin(np.where(met, left.distance, np.inf)))
             high = int(np.argmax(np.where(met, left.distance, -np.inf)))

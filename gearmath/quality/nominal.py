@@ -9,6 +9,7 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, nominal_points, solve_flank
 from gearmath.bevel.newton import TOLERANCE
+from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
 from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, Member
@@ -55,13 +56,6 @@ def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
             point[here] = turned(solved.point[place], turn[here])
             normal[here] = turned(solved.normal[place], turn[here])
     return NominalRows(point, normal, turn, tooth)
-
-
-def turned(vector: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Vectors (n,3) turned about z_w, each by its angle (n,) [rad]."""
-    c, s = np.cos(angle), np.sin(angle)
-    x, y, z = vector.T
-    return np.stack([c * x - s * y, s * x + c * y, z], axis=1)
 
 
 def distance_from_flank(

@@ -8,6 +8,7 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.method import blade_sections, cut_generation_of
 from gearmath.bevel.newton import FlankPoints
+from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.quality.compensation import FlankTarget
 from gearmath.quality.pitch import reference_point
@@ -116,9 +117,7 @@ def _check_places(
     columns: int,
 ) -> None:  # fmt: skip
     """Raise InputError unless measured points (n,3) lie on the nominal normals at ``at`` (n,), turned by ``turn``."""
-    c, s = np.cos(2 * np.pi * turn), np.sin(2 * np.pi * turn)
-    back = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
-    touched = points @ back.T - deviation[:, None] * nominal.normal[at]
+    touched = turned(points, -2 * np.pi * turn) - deviation[:, None] * nominal.normal[at]
     apart = np.linalg.norm(touched - nominal.point[at], axis=1)
     if apart.max() > _SAME_POINT:
         k = int(np.argmax(apart))

@@ -8,6 +8,7 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.machine.mill import flank_header
 from gearmath.machine.probing import lobing, probe_height
@@ -58,14 +59,12 @@ def _nominal(touches: Touches, member: Member, name: str, grid: Grid) -> tuple[n
     """Points and normals (n,3) that the touches were meant for."""
     point, normal = np.empty((2, len(touches), 3))
     turn = 2 * math.pi * touches.tooth / member.teeth
-    c, s, o = np.cos(turn), np.sin(turn), np.zeros(len(touches))
-    about_axis = np.array([[c, -s, o], [s, c, o], [o, o, o + 1]])
     place = touches.row * grid.shape[1] + touches.col
     for flank in (flank for flank in FLANKS if (touches.flank == flank).any()):
         here = touches.flank == flank
         nominal = solve_flank(member, name, flank, grid)
         point[here], normal[here] = nominal.point[place[here]], nominal.normal[place[here]]
-    return np.einsum("ijn,nj->ni", about_axis, point), np.einsum("ijn,nj->ni", about_axis, normal)
+    return turned(point, turn), turned(normal, turn)
 
 
 def _averaged(

@@ -15,6 +15,7 @@ from gearmath.bevel.generation_kernels import generation_point
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import generation_of
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.export.host import compile_kernel
 from gearmath.lowering import lower
@@ -23,7 +24,7 @@ from gearmath.machine.blades import blades_of
 from gearmath.machine.collision import collisions
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
-from gearmath.machine.mill import about_axis, expose, mill_member
+from gearmath.machine.mill import expose, mill_member
 from gearmath.machine.passes import Pass
 from gearmath.machine.program import write_program
 from gearmath.machine.run import runs_of
@@ -659,9 +660,10 @@ def test_a_wrong_digit_is_refused_or_seen_on_the_flanks_of_all_spaces(hobbed, wr
     text, changed_line = middle_of_roll(written("gear", tolerance=1e-4), 30)
     path = execute("\n".join(text), "P")
     parts = [solve_flank(member, "gear", flank, blank_grid(member, 9, 21, 0.05)) for flank in FLANKS]
-    turns_ = [about_axis(2 * math.pi * space / 39).T for space in range(39)]
+    angles = [2 * math.pi * space / 39 for space in range(39)]
     point, normal = (
-        np.concatenate([getattr(part, key) @ turn for part in parts for turn in turns_]) for key in ("point", "normal")
+        np.concatenate([turned(getattr(part, key), angle) for part in parts for angle in angles])
+        for key in ("point", "normal")
     )
     blades, pose = blades_of(member), (vertical.pivot_height, vertical.pivot)
     kernels = {}
