@@ -16,9 +16,10 @@ from matplotlib.figure import Figure
 from gearmath.page import Page
 from gearmath.plot import evaluation_figure, member_figure, png
 from gearmath.quality.analysis import Analysis
-from gearmath.quality.correction import Correction, flank_target, setting_changes
+from gearmath.quality.correction import Correction, setting_changes
 from gearmath.quality.evaluation import Evaluation
 from gearmath.quality.pitch import Pitch, index_correction, reference_rows
+from gearmath.quality.target import flank_target
 from gearmath.quality.topography import ORDERS, Topography, grid_shape
 from gearmath.quality.uncertainty import Uncertain
 from gearmath.quality.variables import reading

@@ -22,6 +22,7 @@ from gearmath.machine.hobbing import hobbing_pass
 from gearmath.machine.passes import Pass
 from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
 from gearmath.machine.program import write_program
+from gearmath.machine.words import plain
 from gearmath.specs.bevel_set import BevelSet, Member, settings_sha256
 from gearmath.specs.milling_machine import MillingMachine
 
@@ -105,7 +106,7 @@ def cutting_program(
         progress(1)
     header = (
         f"gearmath {__version__} cutting program",
-        f"set: {_plain(bevel_set.title)}",
+        f"set: {plain(bevel_set.title)}",
         f"member: {name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}",
         f"settings sha256: {settings_sha256(member)}",
         f"flank tolerance: {job.tolerance * 1000:g} um along the tooth normal",
@@ -113,7 +114,7 @@ def cutting_program(
         f"feed: {job.feed:g} mm/min at the tooth",
         *_hobbing_notes(member),
         *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
-        f"machine: {_plain(machine.name)}",
+        f"machine: {plain(machine.name)}",
         f"cutting time: {sum(one.seconds.sum() + one.dwell for one in passes):.1f} s",
     )
     return write_program(
@@ -218,8 +219,3 @@ def _flattest(member: Member, cut: Cut) -> float:
 def _check_motions(member: Member, name: str, cut: Cut) -> None:
     if len({repr(member.flank(flank).motion) for flank in cut.flanks}) > 1:
         raise InputError(f"{name}: motion: one cutter cuts both flanks at once, so that both must have the same motion")
-
-
-def _plain(text: str) -> str:
-    """Free text as it may stand in an NC comment: printable ASCII, other characters as '?'."""
-    return "".join(character if " " <= character <= "~" else "?" for character in text)

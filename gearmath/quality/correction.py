@@ -14,7 +14,7 @@ from gearmath.quality.identification import RANK, Identification
 from gearmath.quality.pitch import evaluate_pitch, index_correction
 from gearmath.quality.target import flank_target
 from gearmath.quality.variables import NAMES, free_settings, parts, whole
-from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member, design_sha256
+from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
 from gearmath.specs.flank_csv import FlankFile
 
 #: What a correction may add to the RMS of a flank that is as good as perfect: rounding. [mm]
@@ -183,6 +183,3 @@ def setting_changes(member: Member, correction: Correction) -> list[tuple[str, s
             (flank, name, float(old), float(new)) for name, old, new in zip(NAMES, *pairs, strict=True) if old != new
         ]
     return changes
-
-
-__all__ = ["ROOT_LIMIT", "SETTINGS", "Correction", "check_belongs", "correct", "flank_target", "setting_changes"]

@@ -10,8 +10,9 @@ import pytest
 from gearmath.bevel.flank import blank_grid
 from gearmath.errors import ComputationError, InputError
 from gearmath.machine.mill import nominal_flank
-from gearmath.quality.correction import correct, flank_target, setting_changes
+from gearmath.quality.correction import correct, setting_changes
 from gearmath.quality.pitch import evaluate_pitch
+from gearmath.quality.target import flank_target
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, load_bevel_set, save_corrected
 from gearmath.specs.flank_csv import FlankFile, join
 from gearmath.specs.simulated_machine import Probe
