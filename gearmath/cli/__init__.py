@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import click
 
 from gearmath import __version__
+from gearmath.cli.waiting import waiting
 from gearmath.errors import ComputationError, InputError
 
 #: verb -> (module, its one-line help; kept here so that the list of verbs needs no import)
@@ -57,7 +58,8 @@ def gearmath() -> None:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command and exit with its status."""
     try:
-        gearmath.main(args=arguments, prog_name="gearmath", standalone_mode=False)
+        with waiting("gearmath"):
+            gearmath.main(args=arguments, prog_name="gearmath", standalone_mode=False)
     except InputError as error:
         sys.exit(_say(str(error), 2))
     except ComputationError as error:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from gearmath.cli.waiting import hidden
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -87,5 +88,5 @@ def bar(total: int, unit: str, quiet: bool = False) -> Iterator[Any]:
     """A progress bar on standard error, only where somebody looks at it."""
     from tqdm import tqdm
 
-    with tqdm(total=total, unit=unit, disable=True if quiet else None, leave=False, delay=1.0) as progress:
+    with hidden(), tqdm(total=total, unit=unit, disable=True if quiet else None, leave=False) as progress:
         yield progress.update

@@ -9,7 +9,7 @@ import click
 
 from gearmath.cli.common import MACHINE, MEMBER, SET, about, bar, fast_kernels, output
 from gearmath.cli.probe import nc_calibrate, probe
-from gearmath.errors import InputError
+from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from gearmath.machine.executor import MachinePath
@@ -52,6 +52,7 @@ def cut(
     """The cutting program of a member."""
     from gearmath.files import write_text
     from gearmath.machine.cutting import Job, cutting_program, pass_count
+    from gearmath.machine.words import block_count
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -63,7 +64,7 @@ def cut(
     with bar(pass_count(bevel_set.member(member), member, job), "pass") as progress:
         text = cutting_program(bevel_set, member, milling_machine, target.stem, job, progress)
     write_text(target, text)
-    click.echo(f"{target}: {len(wanted)} of {bevel_set.member(member).teeth} spaces, {text.count(chr(10))} blocks")
+    click.echo(f"{target}: {len(wanted)} of {bevel_set.member(member).teeth} spaces, {block_count(text)} blocks")
 
 
 @click.command()
@@ -90,6 +91,9 @@ def mill(
 
     With --measured they are those of a measuring machine, with the clamping, drift and probe of the file of --errors:
     tooth 0 in full, the corners of the grid on eight teeth around, and tooth 0 again at the end.
+
+    Without --errors the status is 1 where the metal deviates by more than the tolerance that the program states and,
+    with --report, where a surface is off by more than --report-tolerance-um or something collides.
     """
     from gearmath.files import read_text
     from gearmath.machine.executor import execute
@@ -120,16 +124,34 @@ def mill(
     write_flank_csv(target, file)
     worst = float(abs(file.deviation).max()) * 1000
     click.echo(f"{target}: {len(file)} points, largest deviation {worst:.3f} um")
-    if spec.process != "face_hobbing":
-        _watch_blocks(text, path, spec, member, milling_machine, simulated)
+    faults: list[str] = []
+    if spec.process == "face_hobbing":
+        faults += _off_tolerance(text, spec, worst / 1000, simulated)
+    else:
+        faults += _watch_blocks(text, path, spec, member, milling_machine, simulated)
     if report is not None:
-        _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000)
+        faults += _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000)
+    if simulated is not None:
+        click.echo(f"not compared with a tolerance: the machine has the errors of {errors}")
+    elif faults:
+        raise ComputationError(f"{program}: {'; '.join(faults)}")
+
+
+def _off_tolerance(text: str, spec: Member, worst: float, errors: SimulatedMachine | None) -> list[str]:
+    """Whether the flanks of a hobbed member deviate by more than the program states; corrected ones are meant to."""
+    from gearmath.machine.watch import stated_tolerance
+
+    promised = stated_tolerance(text)
+    corrected = spec.concave.design is not None or spec.convex.design is not None
+    if errors is not None or promised is None or corrected or worst <= promised:
+        return []
+    return [f"the flanks deviate by up to {worst * 1000:.3f} um, the program states {promised * 1000:g} um"]
 
 
 def _watch_blocks(
     text: str, path: MachinePath, spec: Member, member: str, machine: MillingMachine, errors: SimulatedMachine | None
-) -> None:
-    """Say what the worst of all blocks leaves, and whether it is more than the program promises."""
+) -> list[str]:
+    """Print what the blocks leave; a sentence for each way in which that is more than the program states."""
     from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
     from gearmath.machine.run import runs_of
     from gearmath.machine.watch import off_the_way, stated_tolerance, watch
@@ -138,27 +160,34 @@ def _watch_blocks(
     with bar(len({space for run in runs for space in run.spaces}), "space") as progress:
         found = watch(runs, spec, machine, errors, fast_kernels(), progress)
     deviation, (space, flank, line) = found.worst
+    at = f"line {line} of the program (space {space}, {flank} flank)"
     click.echo(
-        f"every block watched: {found.lines} lines, {found.lowest * 1000:.3f} to {found.highest * 1000:.3f} um, "
-        f"the worst by line {line} (space {space}, {flank})"
+        f"every block checked on {found.lines} normals across the flanks: {found.lowest * 1000:.3f} to "
+        f"{found.highest * 1000:.3f} um, the largest by {at}"
     )
-    if found.uncut:
-        click.echo(f"  {found.uncut} of them are not cut at all")
     promised = stated_tolerance(text)
     if errors is not None or promised is None:
-        return
-    if abs(deviation) > promised or found.uncut:
-        click.echo(f"  more than the {promised * 1000:g} um that the program states: it is not as it was written")
+        if found.uncut:
+            click.echo(f"  {found.uncut} of these normals are not cut at all")
+        return []
+    faults = []
+    if abs(deviation) > promised:
+        faults.append(f"{at} leaves {deviation * 1000:+.3f} um, the program states {promised * 1000:g} um")
+    if found.uncut:
+        faults.append(f"{found.uncut} of {found.lines} normals on the flanks are not cut at all")
     if spec.generation == "generated":
         off, (space, flank, line) = off_the_way(runs, spec, machine, fast_kernels())
         if off > promised:
-            click.echo(f"  line {line} (space {space}, {flank}) takes the tool {off * 1000:.3f} um off its way")
+            at = f"line {line} of the program (space {space}, {flank} flank)"
+            faults.append(f"{at} takes the tool {off * 1000:.3f} um off its path")
+    return faults
 
 
 def _write_report(
     target: Path, path: MachinePath, spec: Member, member: str, machine: MillingMachine,
     errors: SimulatedMachine | None, tolerance: float,
-) -> None:  # fmt: skip
+) -> list[str]:  # fmt: skip
+    """Write and print the report; a sentence for each kind of fault in it."""
     import json
 
     from gearmath.files import write_text
@@ -173,8 +202,17 @@ def _write_report(
                f"{len(found.collisions)} collisions")  # fmt: skip
     for state in found.gouges[:5]:
         click.echo(f"  space {state.space}, {state.surface}: {state.lowest * 1000:.3f} um, line {state.line}")
+    for state in found.uncut[:5]:
+        click.echo(f"  space {state.space}, {state.surface}: stock at {state.uncut} of {state.points} points, "
+                   f"up to {state.highest * 1000:+.3f} um where a tool comes near")  # fmt: skip
     for one in found.collisions[:5]:
         click.echo(f"  {one.cutter} and {one.work}: {one.depth:.3f} mm deep, line {one.lines[0]}")
+    kinds = (
+        (found.gouges, f"surfaces are gouged by more than {tolerance * 1000:g} um"),
+        (found.uncut, f"surfaces keep more than {tolerance * 1000:g} um of stock"),
+        (found.collisions, "collisions"),
+    )
+    return [f"{len(those)} {what}" for those, what in kinds if those]
 
 
 def _spaces(text: str, teeth: int) -> list[int]:

@@ -54,6 +54,7 @@ def probe(
     from gearmath.files import write_text
     from gearmath.machine.probe_check import approaches
     from gearmath.machine.probing import probing_program, teeth_around
+    from gearmath.machine.words import block_count
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
@@ -75,7 +76,7 @@ def probe(
         )  # fmt: skip
     clear = _clearances(found, target)
     write_text(target, text)
-    click.echo(f"{target}: {repeat * points} touches, {text.count(chr(10))} blocks; {clear}")
+    click.echo(f"{target}: {repeat * points} touches, {block_count(text)} blocks; {clear}")
 
 
 def _clearances(found: list[Approach], target: Path) -> str:
@@ -106,6 +107,7 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
     from gearmath.files import write_text
     from gearmath.machine.axis_cycle import axis_program
     from gearmath.machine.calibrating import calibration_program
+    from gearmath.machine.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -115,7 +117,7 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
     with about(source):
         text = make(load_milling_machine(find(machine)), load_calibration(source), target.stem)
     write_text(target, text)
-    click.echo(f"{target}: {text.count('R205=$')} touches, {text.count(chr(10))} blocks")
+    click.echo(f"{target}: {text.count('R205=$')} touches, {block_count(text)} blocks")
 
 
 @click.command()

@@ -33,6 +33,11 @@ def numbered(head: Sequence[str], body: Iterable[str]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def block_count(text: str) -> int:
+    """How many blocks a program has: lines with a number, without comments."""
+    return sum(line.startswith("N") for line in text.splitlines())
+
+
 def printed(axes: np.ndarray, modulo: bool) -> np.ndarray:
     """Positions as they stand in the text: (n, 5) mm and degrees, rounded, a modulo A in 0 <= A < 360, no -0."""
     values = axes * UNITS_PER_INTERNAL

@@ -110,14 +110,34 @@ def test_wrong_digit_is_named_with_its_line(command, tmp_path, pinion_program):
     lines[k] = lines[k].replace(z, f"Z{float(z[1:]) + 0.01:.5f}")
     wrong = tmp_path / "WRONG.MPF"
     wrong.write_text("\n".join(lines), "ascii")
-    for program, changed in ((pinion_program, False), (wrong, True)):
-        status, out, err = command("mill", SET, "--member", "pinion", "--program", program, "-o", tmp_path / "m.csv")
-        assert (status, err) == (0, "")
-        assert "every block watched" in out
-        assert ("more than the 0.1 um that the program states" in out) is changed
-        assert (
-            f"line {k + 1} " in out.split("off its way")[0].split("written")[-1] and "off its way" in out
-        ) is changed
+    milling = ("mill", SET, "--member", "pinion", "-o", tmp_path / "m.csv", "--program")
+    status, out, err = command(*milling, pinion_program)
+    assert (status, err) == (0, "")
+    assert "every block checked on " in out
+    status, out, err = command(*milling, wrong)
+    assert status == 1
+    assert err.startswith(f"gearmath: {wrong}: line ")
+    assert "the program states 0.1 um" in err
+    assert f"line {k + 1} of the program (space " in err.split(";")[-1]
+    assert "off its path" in err.split(";")[-1]
+    assert (tmp_path / "m.csv").exists()  # what the metal looks like is written all the same
+
+
+def test_metal_of_a_wrong_machine_is_not_judged_by_the_tolerance_of_the_program(command, tmp_path, pinion_program):
+    status, out, err = command(
+        "mill", SET, "--member", "pinion", "--program", pinion_program, "--errors", "simulated_shop.toml",
+        "-o", tmp_path / "m.csv",
+    )  # fmt: skip
+    assert (status, err) == (0, "")
+    assert out.splitlines()[-1] == "not compared with a tolerance: the machine has the errors of simulated_shop.toml"
+
+
+def test_blocks_are_counted_without_comments(command, tmp_path):
+    target = tmp_path / "PINION_A.MPF"
+    _, out, _ = command(*CUT, "--spaces", "0", "-o", target)
+    numbers = [int(line[1:].split()[0]) for line in target.read_text("ascii").splitlines() if not line.startswith(";")]
+    assert out.endswith(f"1 of 12 spaces, {len(numbers)} blocks\n")
+    assert numbers[-1] == 10 * len(numbers)
 
 
 @pytest.mark.parametrize("word", ["M17", "RET", "UPROG", "CALL"])
