@@ -52,7 +52,7 @@ def test_grid_without_margins_reaches_the_four_corners(gear_set):
     blank = gear_set.gear.blank
     grid = blank_grid(gear_set.gear, 2, 2, 0.0)
     along, height = in_cone_coordinates(blank, grid.axial, grid.radial)
-    np.testing.assert_allclose(along[0], [81.05 - 12.7, 81.05 + 12.7], atol=1e-10)
+    np.testing.assert_allclose(along[0], [81.0514 - 12.7, 81.0514 + 12.7], atol=1e-10)
     low, high = lines_of_depth(blank, along[0])
     np.testing.assert_allclose(height, [low, high], atol=1e-10)
 

@@ -203,7 +203,7 @@ def test_program_of_other_settings_is_a_failure_of_status_1(command, tmp_path, p
     """Run with setting errors, whose roll position is sought on the path of the set: 5 mm of radial distance beside."""
     text = bundled(SET).read_text("utf-8")
     other = tmp_path / "other.toml"
-    other.write_text(text.replace("radial_distance = 74.8741708", "radial_distance = 79.8741708"), "utf-8")
+    other.write_text(text.replace("radial_distance = 74.874171554126", "radial_distance = 79.874171554126"), "utf-8")
     status, out, err = command(
         "mill", other, "--member", "pinion", "--program", pinion_program, "--errors", "simulated_shop.toml",
         "-o", tmp_path / "m.csv",

@@ -210,10 +210,10 @@ def test_block_that_stands_off_its_way_is_named_with_what_it_is_off_by(gear_set,
         ("G94 G0 Z540.00000", "G94 G0 Z440.00000"),  # the retract of space 0 goes down
         ("G0 Z540.00000\n", "G0 Z500.00000\n"),  # the way to space 1 begins within the metal
         ("G94 G1 Z500.00000", "G94 G1 Z400.00000"),  # the plunge into space 1 is too deep
-        ("G0 X-52.28643 Y50.42912", "G0 X-52.28643 Y50.40912"),  # and stands aside
-        ("G0 X-52.28643 Y50.42912", "G0 X-52.08643 Y50.42912"),
-        ("A=DC(26.059200)", "A=DC(26.159200)"),
-        ("B67.683300\n", "B67.083300\n"),
+        ("G0 X-52.28712 Y50.42840", "G0 X-52.28712 Y50.40840"),  # and stands aside
+        ("G0 X-52.28712 Y50.42840", "G0 X-52.08712 Y50.42840"),
+        ("A=DC(26.060021)", "A=DC(26.160021)"),
+        ("B67.683333\n", "B67.083333\n"),
     ],
 )
 def test_wrong_digit_of_approach_plunge_or_retract_is_seen(gear_set, vertical, host_compiler, right, wrong):

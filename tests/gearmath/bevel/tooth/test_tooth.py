@@ -132,12 +132,12 @@ def test_nasa_space_and_tooth_make_up_the_pitch_with_a_workable_backlash(nasa: B
     assert 0.05 < backlash * math.cos(math.radians(35)) < 0.25
 
 
-def test_mean_thickness_equals_the_published_mean_points(nasa: BevelSet) -> None:
-    """Angles of the recomputed mean points of NASA TP-3096: pinion -3.5993645803/25.3740301095 and so on."""
-    gear = math.atan2(3.6898787234, 76.8028878818) - math.atan2(-3.7387827695, 76.8005227546)
-    assert mean_tooth_thickness(nasa.gear) == pytest.approx(76.8914741176 * (2 * math.pi / 36 - gear), abs=1e-4)
-    pinion = math.atan2(-3.5993645803, 25.3740301095) - (math.atan2(3.6484194437, 25.3670231786) - math.pi / 6)
-    assert mean_tooth_thickness(nasa.pinion) == pytest.approx(25.6280477091 * (2 * math.pi / 12 - pinion), abs=1e-4)
+def test_mean_thickness_equals_the_mean_points_of_the_publication(nasa: BevelSet) -> None:
+    """Angles of the mean points by the closed form of the publication, as in test_nasa_cr191009.py."""
+    gear = math.atan2(3.6909486632, 76.8041959969) - math.atan2(-3.7379045021, 76.8019250715)
+    assert mean_tooth_thickness(nasa.gear) == pytest.approx(76.8928321 * (2 * math.pi / 36 - gear), abs=1e-4)
+    pinion = math.atan2(-3.6026122209, 25.3740614705) - (math.atan2(3.6476767625, 25.3676223671) - math.pi / 6)
+    assert mean_tooth_thickness(nasa.pinion) == pytest.approx(25.6285352 * (2 * math.pi / 12 - pinion), abs=1e-4)
 
 
 def test_sharp_edge_leaves_the_flank_as_it_is(nasa: BevelSet) -> None:
