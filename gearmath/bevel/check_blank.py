@@ -20,7 +20,9 @@ _PRINTED_LENGTH, _PRINTED_DEPTH = 0.001, 0.02
 #: Face widths of mates may differ by so much of the wider one.
 _WIDER_FACE = 0.1
 #: Root of one member and tip of the mate are parallel, so that the clearance is the same along the tooth. [degree]
-_PARALLEL = 1.0
+_PARALLEL = 0.5
+#: Least face width over outer cone distance; ISO 23509 advises up to 0.30.
+_NARROWEST_FACE = 0.1
 #: Clearance over working depth; ISO 23509 has 0.125.
 _CLEARANCE = (0.04, 0.35)
 #: Working depth over mean transverse module, for normal depth factors of 1.2 to 2.6 and spiral angles up to 50 degrees.
@@ -43,11 +45,12 @@ def working_depth(blank: Blank) -> float:
 def check_blank(member: Member, name: str) -> None:
     """Refuse a blank that contradicts itself. Raises InputError naming member, key, value and limit."""
     blank, table = member.blank, f"{name}.blank"
-    widest = WIDEST_FACE * blank.mean_cone_distance / (1 - WIDEST_FACE / 2)
-    if blank.face_width > widest:
+    narrowest, widest = (share * blank.mean_cone_distance / (1 - share / 2) for share in (_NARROWEST_FACE, WIDEST_FACE))
+    if not narrowest <= blank.face_width <= widest:
         raise InputError(
-            f"{table}.face_width = {blank.face_width:g}: must be at most {WIDEST_FACE:g} of the outer cone distance, "
-            f"{widest:.4g} mm at a mean_cone_distance of {blank.mean_cone_distance:g}"
+            f"{table}.face_width = {blank.face_width:g}: must lie between {narrowest:.4g} and {widest:.4g} mm, "
+            f"{_NARROWEST_FACE:g} and {WIDEST_FACE:g} of the outer cone distance, at a mean_cone_distance of "
+            f"{blank.mean_cone_distance:g}"
         )
     module, depth = transverse_module(member), working_depth(blank)
     if not _DEPTH[0] * module <= depth <= _DEPTH[1] * module:
@@ -76,6 +79,11 @@ def check_blank(member: Member, name: str) -> None:
 def check_blanks(pinion: Member, gear: Member, shaft_angle: float) -> None:
     """Refuse blanks that do not belong together. Raises InputError naming member, key, value and limit."""
     members = {"pinion": pinion, "gear": gear}
+    if pinion.teeth > gear.teeth:
+        raise InputError(
+            f"pinion.teeth = {pinion.teeth}: the pinion is the member with fewer teeth, it must be at most gear.teeth = "
+            f"{gear.teeth}"
+        )
     _check_cones(pinion, gear, shaft_angle)
     for key, share in (("mean_cone_distance", _PRINTED_LENGTH), ("face_width", _WIDER_FACE)):
         one, two = (getattr(member.blank, key) for member in members.values())

@@ -21,7 +21,9 @@ _PRESSURE, _STEEPEST = (5.0, 40.0), 55.0
 #: Spiral angles below this one tell no hand: that of a Zerol gear is told by its heel. [degree]
 _ZEROL = 2.0
 #: The root may lie off that of the blank by these parts of the clearance, at the mean point and at toe and heel.
-_ROOT_AT_MEAN, _ROOT_AT_ENDS = 0.5, 1.0
+_ROOT_AT_MEAN, _ROOT_AT_ENDS = 0.25, 0.75
+#: The mean point is cut near the middle of the roll: largest cradle rotation from where cradle_angle puts it. [degree]
+_OFF_CENTER = 15.0
 #: The tip plane of the cutter as a blade: nearly square to its axis, so that it shows where the root is deepest.
 _FLAT_BLADE = math.radians(89.9)
 _PLACES = ("toe", "mean point", "heel")
@@ -51,6 +53,13 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation) -> CutFlan
     found = (float(value[0]) for value in kernel("flank_angles")(delta, mean.point, mean.normal))
     pressure, spiral, across, azimuth = found
     _check_angles(name, flank, pressure, spiral)
+    swing = math.degrees(float(mean.contact[0, 2]))
+    if not abs(swing) <= _OFF_CENTER:
+        raise Misfit.of(
+            name, flank,
+            f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must be "
+            f"at most {_OFF_CENTER:g}",
+        )  # fmt: skip
     _check_root(member, name, flank, how, mean.contact)
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 0.5, 1.0]), np.ones(3))
     tips = solve_section(how, section, axial, radial)

@@ -211,7 +211,7 @@ class Member(Spec):
         if not abs(S - r) - slack <= R <= S + r + slack:
             raise ValueError(
                 f"{name}.blade_point_radius = {r:g}: no real contact, the cutter does not reach the mean point: "
-                f"it must lie between {abs(R - S) - slack:.4g} and {R + S + slack:.4g}"
+                f"at radial_distance = {S:g} it must lie between {abs(R - S) - slack:.4g} and {R + S + slack:.4g}"
             )
 
     def flank(self, flank: str) -> Flank:
