@@ -7,6 +7,13 @@ With the pitch apex in the crossing point, cone distance r = R_m + (ξ - 1/2) b 
     h = (1 - η) (c - h_f) + η h_a                                                              (8.3)
 
 so that η counts the working depth, from the lower limit (the clearance above the root cone) to the face cone.
+
+At a point R of a flank, with radius r_w and outward normal n, are g along the cone line, p out of the pitch cone and e
+around the axis, right-handed about z_w. The trace of the flank on the cone is cos β g + sin β e, so that
+
+    sin α = n · p,   tan β = -(n · g)/(n · e)                                                  (8.4)
+
+α > 0 where the flank can be seen from outside, β > 0 of a right-hand member, and n · e points across the tooth space.
 """
 
 from __future__ import annotations
@@ -57,6 +64,39 @@ def flank_place() -> Expression:
     )
 
 
+def _directions(point: sp.Matrix) -> tuple[sp.Matrix, sp.Matrix, sp.Matrix]:
+    """g, p, e at a point (8.4)."""
+    delta, radius = q.pitch_angle.symbol, sp.sqrt(point[0] ** 2 + point[1] ** 2)
+    c, s = point[0] / radius, point[1] / radius
+    g = sp.Matrix([sp.sin(delta) * c, sp.sin(delta) * s, sp.cos(delta)])
+    p = sp.Matrix([sp.cos(delta) * c, sp.cos(delta) * s, -sp.sin(delta)])
+    return g, p, sp.Matrix([-s, c, 0])
+
+
+@cache
+def flank_angles() -> Expression:
+    """(8.4) as an Expression."""
+    point, n = sp.Matrix(q.point_w.symbol), sp.Matrix(q.normal_w.symbol)
+    g, p, e = _directions(point)
+    return Expression(
+        "flank_angles",
+        "Signed pressure and spiral angle of a flank at a point, and which way its space lies (8.4).",
+        (q.pitch_angle, q.point_w, q.normal_w),
+        (
+            (q.flank_pressure_angle, sp.asin(n.dot(p))),
+            (q.spiral_angle, sp.atan(-n.dot(g) / n.dot(e))),
+            (q.across_space, n.dot(e)),
+            (q.flank_azimuth, sp.atan2(point[1], point[0])),
+        ),
+        requires=(
+            point[0] ** 2 + point[1] ** 2 - 1,
+            n.dot(e) ** 2 - sp.Rational(1, 100),
+            sp.Rational(99, 100) - n.dot(p) ** 2,
+        ),
+        source="trace of the flank on the pitch cone",
+    )
+
+
 def prove_face_and_root_lines_have_their_cone_angles() -> None:
     """(8.1, 8.2) Along the tip and the root, dr_w/dz_w is the tangent of face and root angle."""
     for height, angle in ((addendum(), q.face_angle.symbol), (-dedendum(), q.root_angle.symbol)):
@@ -70,3 +110,21 @@ def prove_pitch_points_lie_on_the_pitch_cone() -> None:
     axial, radial = place(sp.S.Zero)
     assert is_zero(axial**2 + radial**2 - cone_distance() ** 2)
     assert is_zero(radial * sp.cos(q.pitch_angle.symbol) - axial * sp.sin(q.pitch_angle.symbol))
+
+
+def prove_a_normal_square_to_the_trace_gives_back_its_angles() -> None:
+    """(8.4) n square to cos β g + sin β e that makes the angle α with the cone, on either side of the space."""
+    delta = q.pitch_angle.symbol
+    turn, r, z = (sp.Symbol(name, positive=True) for name in ("varphi", "r", "z"))
+    alpha, beta = (sp.Symbol(name, real=True) for name in ("alpha", "beta"))
+    point = sp.Matrix([r * sp.cos(turn), r * sp.sin(turn), z])
+    g, p, e = (part.applyfunc(sp.simplify) for part in _directions(point))
+    for side in (1, -1):
+        n = sp.sin(alpha) * p + side * sp.cos(alpha) * (sp.cos(beta) * e - sp.sin(beta) * g)
+        assert is_zero(n.dot(n) - 1)
+        assert is_zero(n.dot(sp.cos(beta) * g + sp.sin(beta) * e))
+        assert is_zero(n.dot(p) - sp.sin(alpha))
+        assert is_zero(n.dot(g) * sp.cos(beta) + n.dot(e) * sp.sin(beta))
+    along = sp.Matrix([sp.sin(delta) * sp.cos(turn), sp.sin(delta) * sp.sin(turn), sp.cos(delta)])
+    assert is_zero(g - along)
+    assert is_zero(g.cross(p) - e)

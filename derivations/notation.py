@@ -415,6 +415,8 @@ across = Quantity("across", "place along the tooth: 0 toe, 1 heel", "1", r"\xi",
 up = Quantity("up", "place up the working depth: 0 lower limit, 1 tip", "1", r"\eta", (0.0, 1.0))
 axial = Quantity("axial", "coordinate z_w of a flank point", "mm", "z_w", (5.0, 300.0), scale=300.0)
 radial = Quantity("radial", "distance of a flank point from the member's axis", "mm", "r_w", (5.0, 300.0), scale=300.0)
+across_space = Quantity("across_space", "outward normal of a flank, its part around the axis", "1", r"n_\varphi")
+flank_azimuth = _angle("flank_azimuth", r"\varphi", -3.2, 3.2, "direction of a flank point about z_w")
 contact = Quantity(
     "contact", "surface parameters u, beta, theta of a flank point", "mixed", r"(u, \beta, \theta)", shape=(3,),
     components=(u, beta, theta), scale=100.0,

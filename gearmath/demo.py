@@ -16,6 +16,7 @@ from derivations import flank as flank_chapter
 from derivations import gearbox as gearbox_chapter
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.export.cnc import export_cnc
 from gearmath.export.folder import new_folder
 from gearmath.export.host import compile_kernel, run_edges
@@ -31,7 +32,7 @@ from gearmath.plot import member_figure, save
 from gearmath.quality.correction import correct
 from gearmath.quality.pitch import Pitch, evaluate_pitch
 from gearmath.quality.topography import Topography, evaluate_topography
-from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES, load_bevel_set, save_corrected
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES, save_corrected
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
 from gearmath.specs.hobbing import load_hobbing_machine
 from gearmath.specs.milling_machine import load_milling_machine
@@ -122,7 +123,7 @@ def run_gearbox() -> tuple[list[tuple[int, float, int]], GearboxPlan, Simulation
 
 def compare_truths() -> tuple[float, int, int]:
     """Largest difference of CasADi to SymPy [mm], and of how many numbers the C is bit-equal to CasADi."""
-    member = load_bevel_set(bundled(GEAR_SET)).pinion
+    member = load_pair(bundled(GEAR_SET)).pinion
     points = solve_flank(member, "pinion", "concave", blank_grid(member))
     settings, side = member.concave.vector, SIDES["concave"]
     arguments = (*points.contact.T, settings, side)
@@ -141,9 +142,9 @@ def run_closed_loop(member: str, folder: Path) -> MemberResult:
     source, corrected = bundled(GEAR_SET), folder / f"{member}_corrected.toml"
     first, measured = _cut_and_measure(source, member, shop, folder / f"{member.upper()}_1.MPF")
     write_flank_csv(folder / f"{member}_measured.csv", measured)
-    spec = load_bevel_set(source).member(member)
+    spec = load_pair(source).member(member)
     correction = correct(spec, member, measured)
-    save_corrected(source, corrected, member, correction.settings, correction.index)
+    save_corrected(source, corrected, member, correction.settings, correction.index, check=check_pair)
     second, again = _cut_and_measure(corrected, member, shop, folder / f"{member.upper()}_2.MPF")
     write_flank_csv(folder / f"{member}_measured_again.csv", again)
     before, after = ({flank: evaluate_topography(file, flank) for flank in FLANKS} for file in (first, second))
@@ -155,7 +156,7 @@ def run_closed_loop(member: str, folder: Path) -> MemberResult:
 
 def _cut_and_measure(gear_set: Path, name: str, shop: SimulatedMachine, program: Path) -> tuple[FlankFile, FlankFile]:
     """The flanks as they are and as the probe sees them, from the program text as written to ``program``."""
-    bevel_set, machine = load_bevel_set(gear_set), load_milling_machine(bundled(MILLING_MACHINE))
+    bevel_set, machine = load_pair(gear_set), load_milling_machine(bundled(MILLING_MACHINE))
     member = bevel_set.member(name)
     write_text(program, cutting_program(bevel_set, name, machine, program.stem, Job(range(member.teeth))))
     path = execute(program.read_text("utf-8"), program.name)

@@ -113,7 +113,7 @@ def _kernel(make: Callable[[], Expression]) -> Kernel:
     return lower(make())
 
 
-def evaluate(make: Callable[[], Expression], values: Mapping[str, float], **renamed: float) -> Values:
+def evaluate(make: Callable[[], Expression], values: Mapping[str, Any], **renamed: float) -> Values:
     """The outputs by name of one expression, its inputs taken by name from ``renamed`` and ``values``."""
     kernel = _kernel(make)
     given = {**values, **renamed}

@@ -27,6 +27,7 @@ _EXPRESSIONS = {
     "meshing": meshing.meshing,
     "contact_start": meshing.contact_start,
     "flank_place": blank.flank_place,
+    "flank_angles": blank.flank_angles,
     "axis_transform": axes.axis_transform,
     "tool_pose": axes.tool_pose,
     "seen_from_tool": axes.seen_from_tool,

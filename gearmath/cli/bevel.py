@@ -25,12 +25,12 @@ _MOST_POINTS = 1_000_000
 def flank(gear_set: str, member: str, side: str, size: str, margin: float, target: Path) -> None:
     """Nominal points and outward normals of one flank, as a flank CSV."""
     from gearmath.bevel.flank import blank_grid
+    from gearmath.bevel.pair import load_pair
     from gearmath.machine.mill import nominal_flank
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.toml import find
 
-    spec = load_bevel_set(find(gear_set)).member(member)
+    spec = load_pair(find(gear_set)).member(member)
     rows, columns = _grid(size)
     if not 0 <= margin < 0.5:
         raise InputError(f"--margin {margin:g}: must be at least 0 and less than 0.5, or the grid leaves the blank")
@@ -48,12 +48,12 @@ def flank(gear_set: str, member: str, side: str, size: str, margin: float, targe
 @output("STL")
 def tooth(gear_set: str, member: str, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; and an STL."""
+    from gearmath.bevel.pair import load_pair
     from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
     from gearmath.bevel.tooth import space_figures, tooth_space
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.toml import find
 
-    bevel_set = load_bevel_set(find(gear_set))
+    bevel_set = load_pair(find(gear_set))
     spec = bevel_set.member(member)
     surface = tooth_space(spec, member, columns)
     triangles = space_triangles(surface) if space else member_triangles(spec, surface)

@@ -73,15 +73,16 @@ def compensate(
 
     Points that missed, drift and clamping are taken out first, as 'evaluate' does.
     """
+    from gearmath.bevel.pair import check_pair, load_pair
     from gearmath.quality.correction import ROOT_LIMIT, correct
     from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.thickness import with_thickness
-    from gearmath.specs.bevel_set import load_bevel_set, save_corrected
+    from gearmath.specs.bevel_set import save_corrected
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
     source = find(gear_set)
-    pair = load_bevel_set(source)
+    pair = load_pair(source)
     spec, file = pair.member(member), read_flank_csv(measured)
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured):
@@ -94,7 +95,9 @@ def compensate(
     if thickness:
         by = cast("By", thickness_by)
         correction.settings.update(with_thickness(spec, member, correction.settings, thickness / 1000, by))
-    save_corrected(source, target, member, correction.settings, correction.index, correction.motions)
+    save_corrected(
+        source, target, member, correction.settings, correction.index, correction.motions, check=check_pair
+    )  # fmt: skip
     values = _values(spec, correction) | {"remarks": list(evaluation.remarks)}
     values |= _uncertainty(spec, file, evaluation, correction, noise, root_limit or ROOT_LIMIT)
     if as_json:
@@ -257,12 +260,12 @@ def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any
 @JSON
 def stock(measured: Path, gear_set: str, member: str, advance: bool, least: float, as_json: bool) -> None:
     """How a precut blank must stand so that both flanks share its stock: probe it, then turn it by this."""
+    from gearmath.bevel.pair import load_pair
     from gearmath.quality.stock import share_stock
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
-    spec, file = load_bevel_set(find(gear_set)).member(member), read_flank_csv(measured)
+    spec, file = load_pair(find(gear_set)).member(member), read_flank_csv(measured)
     with about(measured):
         found = share_stock(spec, member, file, advance, least / 1000)
     if as_json:

@@ -50,14 +50,14 @@ def cut(
     roughing_stock: float, finishing_stock: float, dry_run: bool, target: Path,
 ) -> None:  # fmt: skip
     """The cutting program of a member."""
+    from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
     from gearmath.machine.cutting import Job, cutting_program, pass_count
     from gearmath.machine.words import block_count
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
-    bevel_set = load_bevel_set(find(gear_set))
+    bevel_set = load_pair(find(gear_set))
     wanted = _spaces(spaces, bevel_set.member(member).teeth)
     job = Job(wanted, tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
     milling_machine = load_milling_machine(find(machine))
@@ -95,19 +95,19 @@ def mill(
     Without --errors the status is 1 where the metal deviates by more than the tolerance that the program states and,
     with --report, where a surface is off by more than --report-tolerance-um or something collides.
     """
+    from gearmath.bevel.pair import load_pair
     from gearmath.files import read_text
     from gearmath.machine.executor import execute
     from gearmath.machine.measuring import measure_member
     from gearmath.machine.metal import metal
     from gearmath.machine.mill import mill_member
     from gearmath.machine.probing import teeth_around
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
 
-    spec = load_bevel_set(find(gear_set)).member(member)
+    spec = load_pair(find(gear_set)).member(member)
     milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
     text = read_text(program)

@@ -51,17 +51,17 @@ def probe(
 
     Before it is written it is run: tip, stylus and spindle must stay clear of teeth, hub, shank and fixture.
     """
+    from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
     from gearmath.machine.probe_check import approaches
     from gearmath.machine.probing import probing_program, teeth_around
     from gearmath.machine.words import block_count
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import CutterHead, Fixture, load_simulated_machine
     from gearmath.specs.toml import find
 
-    bevel_set = load_bevel_set(find(gear_set))
+    bevel_set = load_pair(find(gear_set))
     count = bevel_set.member(member).teeth
     teeth, around = _teeth(topography, count), teeth_around(count) if registration else ()
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
@@ -129,8 +129,8 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
 @output("measured flank CSV")
 def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int | None, target: Path) -> None:
     """Raw touches of a probe to measured points: corrected contact points and their deviations."""
+    from gearmath.bevel.pair import load_pair
     from gearmath.quality.touches import measured_member
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
@@ -138,7 +138,7 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
     from gearmath.specs.touch_csv import read_touch_csv
 
     found = read_touch_csv(raw, run)
-    member = load_bevel_set(find(gear_set)).member(found.member)
+    member = load_pair(find(gear_set)).member(found.member)
     with about(raw):
         measured = measured_member(
             found, member, found.member, load_milling_machine(find(machine)), load_calibration(find(calibration))

@@ -28,13 +28,13 @@ def evaluate(
     With --sigma-um, or u_um in the file, figures have standard uncertainties; 'gearmath uncertainty' says more of them.
     Grades are by formulas that are not confirmed against ISO 17485: no conformity is claimed.
     """
+    from gearmath.bevel.pair import load_pair
     from gearmath.quality.evaluation import STAGES, evaluate_member
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
     file = read_flank_csv(measured)
-    member = load_bevel_set(find(gear_set)).member(file.member)
+    member = load_pair(find(gear_set)).member(file.member)
     with about(measured), bar(STAGES, "stage") as progress:
         found = evaluate_member(file, member, file.member, registered, progress)
     if picture:

@@ -31,16 +31,16 @@ def report(
     calibration: str, target: Path,
 ) -> None:  # fmt: skip
     """The report of a measurement: flanks, pitch, figures with uncertainty, settings, and what they cannot mend."""
+    from gearmath.bevel.pair import load_pair
     from gearmath.files import write_bytes, write_text
     from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.figures import figures_of
     from gearmath.quality.uncertainty import uncertain_figures
     from gearmath.report import Measurement, measurement_report
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
-    pair, file = load_bevel_set(find(gear_set)), read_flank_csv(measured)
+    pair, file = load_pair(find(gear_set)), read_flank_csv(measured)
     member = pair.member(file.member)
     with about(measured):
         found = evaluate_member(file, member, file.member)

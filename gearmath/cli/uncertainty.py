@@ -59,15 +59,15 @@ def uncertainty(
 ) -> None:  # fmt: skip
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
 
+    from gearmath.bevel.pair import load_pair
     from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.figures import figures_of
     from gearmath.quality.uncertainty import uncertain_figures
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
     file = read_flank_csv(measured)
-    spec = load_bevel_set(find(gear_set)).member(member)
+    spec = load_pair(find(gear_set)).member(member)
     with about(measured):
         evaluation = evaluate_member(file, spec, member, registered)
         figures = figures_of(file, spec, evaluation)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -162,7 +163,7 @@ class Member(Spec):
     generation: Literal["generated", "formate"] = "generated"
     blade_groups: int | None = Field(default=None, ge=1, le=60)
     #: Sign of the indexing by the cutter's angle: -1 where cutter and crown gear roll on each other from outside, which
-    #: gives the epicycloid of ISO 23509; 1 from inside.
+    #: gives the epicycloid of ISO 23509; 1 from inside. A hobbed member has to state it.
     indexing_sign: Literal[1, -1] = 1
     blank: Blank
     concave: Flank
@@ -179,6 +180,11 @@ class Member(Spec):
             raise ValueError("blade_groups belongs to face_hobbing, and face_hobbing needs it")
         if self.indexing_sign != 1 and self.blade_groups is None:
             raise ValueError("indexing_sign belongs to face_hobbing")
+        if self.process == "face_hobbing" and "indexing_sign" not in self.model_fields_set:
+            raise ValueError(
+                "indexing_sign: the key is missing: face_hobbing needs it, -1 where cutter and crown gear roll on each "
+                "other from outside (the epicycloid of ISO 23509), 1 from inside"
+            )
         if self.process == "face_hobbing" and self.cutting != "completing":
             raise ValueError("face_hobbing cuts both flanks at once: cutting must be completing")
         for flank in FLANKS:
@@ -205,7 +211,7 @@ class Member(Spec):
         if not abs(S - r) - slack <= R <= S + r + slack:
             raise ValueError(
                 f"{name}.blade_point_radius = {r:g}: no real contact, the cutter does not reach the mean point: "
-                f"it must lie between {abs(R - S) - slack:.4g} and {R + S + slack:.4g}"
+                f"at radial_distance = {S:g} it must lie between {abs(R - S) - slack:.4g} and {R + S + slack:.4g}"
             )
 
     def flank(self, flank: str) -> Flank:
@@ -271,12 +277,13 @@ def save_corrected(
     settings: dict[str, np.ndarray],
     index_correction: np.ndarray | None = None,
     motions: dict[str, np.ndarray] | None = None,
+    check: Callable[[BevelSet], object] = lambda _: None,
 ) -> None:
     """Write the set of ``source``, comments kept, with new settings (12,) of each flank, to ``target``.
 
     The nominal settings are kept under ``design``. ``index_correction`` (z,) in rad replaces that of the member, and
-    ``motions`` (10,7) of each flank, without the modified roll, its motion. The text is checked as a set before
-    anything is written.
+    ``motions`` (10,7) of each flank, without the modified roll, its motion. The text is checked as a set, and by
+    ``check`` besides, before anything is written. Raises InputError naming the target.
     """
     document = tomlkit.parse(read_text(source))
     table: Any = document[member]
@@ -290,7 +297,11 @@ def save_corrected(
     if index_correction is not None:
         table["index_correction"] = [round(math.degrees(value), 7) for value in index_correction]
     text = tomlkit.dumps(document)
-    parse(text, BevelSet, str(target))
+    corrected = parse(text, BevelSet, str(target))
+    try:
+        check(corrected)
+    except InputError as error:
+        raise InputError(f"{target}: {error}") from error
     write_text(target, text)
 
 
@@ -315,6 +326,9 @@ def _vector(model: Spec, components: tuple[Quantity, ...]) -> np.ndarray:
 def set_text(gear_set: BevelSet) -> str:
     """A gear set as the text of its file, without what has its default value; numbers to nine decimals."""
     values = gear_set.model_dump(exclude_defaults=True)
+    for name in MEMBERS:
+        if gear_set.member(name).process == "face_hobbing":
+            values[name]["indexing_sign"] = gear_set.member(name).indexing_sign  # it has to be stated, whatever it is
     head = "# Lengths in mm, angles in degrees.\n"
     return head + tomlkit.dumps(_plain(values))
 

@@ -47,7 +47,7 @@ def test_bundled_data_are_those_of_the_sample() -> None:
         ("outer_normal = 0.127", "outer_normal = 0.127\nmean_normal = 0.1", ("backlash", "exactly one")),
         ("outer_normal = 0.127", "outer_normal = -0.1", ("backlash.outer_normal", "-0.1", "0")),
         ("mean_addendum_factor = 0.24737", "mean_addendum_factor = 1.2", ("mean_addendum_factor", "1.2", "1")),
-        ("[data_type_2]", "[data_type_3]", ("data_type_3", "known")),
+        ("[data_type_2]", "[data_type_3]", ("data_type_3: no such key; did you mean data_type_",)),
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(old: str, new: str, words: tuple[str, ...]) -> None:

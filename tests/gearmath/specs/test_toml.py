@@ -41,7 +41,7 @@ def test_good_file_becomes_the_model(tmp_path: Path) -> None:
     ("change", "parts"),
     [
         (("teeth = 12\n", ""), ["teeth", "missing"]),
-        (("teeth = 12\n", "teeth = 12\nteehts = 13\n"), ["teehts = 13", "no such key"]),
+        (("teeth = 12\n", "teeth = 12\nteehts = 13\n"), ["teehts: no such key; did you mean teeth?"]),
         (("angle_deg = 20.0", "angle_deg = 95.0"), ["blade.angle_deg = 95.0", "less than 45"]),
         (("angle_deg = 20.0", "angle_deg = nan"), ["blade.angle_deg = nan", "finite"]),
         (("angle_deg = 20.0", "angle_deg = inf"), ["blade.angle_deg = inf", "finite"]),
@@ -84,3 +84,30 @@ def test_unknown_bundled_file_is_refused_with_the_list_of_those_there_are() -> N
 def test_models_cannot_be_changed_afterwards() -> None:
     with pytest.raises(ValueError, match="frozen"):
         parse(GOOD, Job, "job.toml").teeth = 13  # type: ignore[misc]
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (("teeth = 12", "teth = 12"), r"teth: no such key; did you mean teeth\?$"),
+        (("angle_deg = 20.0", "angel_deg = 20.0"), r"blade\.angel_deg: no such key; did you mean angle_deg\?$"),
+        (("[blade]", "[balde]"), r"balde: no such key; did you mean blade\?$"),
+        (("angle_deg = 20.0", "angle_dag = 20.0\nside = 3"), r"blade\.angle_dag: .* angle_deg\? \(and 1 more\)$"),
+        (("angle_deg = 20.0", "width = 20.0"), r"blade\.width = 20\.0: no such key is known here \(and 1 more\)$"),
+    ],
+)
+def test_misspelt_key_is_named_before_the_key_that_is_missing_for_it(change: tuple[str, str], sentence: str) -> None:
+    with pytest.raises(InputError, match=r"^job\.toml: " + sentence):
+        parse(GOOD.replace(*change), Job, "job.toml")
+
+
+class Shop(Spec):
+    jobs: tuple[Job, ...] = Field(strict=False)
+    spare: Blade | None = None
+
+
+def test_misspelt_key_is_sought_among_the_keys_of_its_own_table() -> None:
+    with pytest.raises(InputError, match=r"^shop\.toml: jobs\.0\.teetj: no such key; did you mean teeth\?"):
+        parse("[[jobs]]\nteetj = 1\n", Shop, "shop.toml")
+    with pytest.raises(InputError, match=r"^shop\.toml: spare\.teetj = 1: no such key is known here"):
+        parse("jobs = []\n[spare]\nteetj = 1\n", Shop, "shop.toml")

@@ -118,7 +118,7 @@ def test_calibration_touches_have_their_own_columns(tmp_path):
         ("offset = [0.0, 0.0, 0.0]", "offset = [0.0, nan, 0.0]", "must be a finite number"),
         ("stylus_length = 30.0", "stylus_length = 200.0", "stylus_length 200.0 must be less than length 200.0"),
         ("length = 200.0", "", "length: the key is missing"),
-        ("overtravel = 0.5", "overtravels = 0.5", "overtravels = 0.5: no such key is known here"),
+        ("overtravel = 0.5", "overtravels = 0.5", "overtravels: no such key; did you mean overtravel?"),
         ("diameter = 30.0", "diameter = 400.0", "ring.diameter = 400.0"),
         ("stem_diameter = 6.0", "stem_diameter = 15.0", "stem_diameter 15.0 must be at most 0.6 of diameter 20.0"),
         ("height = 25.0", "height = -1.0", "ring.face.height = -1.0"),

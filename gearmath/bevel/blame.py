@@ -1,0 +1,121 @@
+"""Which setting of a flank is to blame when it cuts no sensible tooth: the one farthest from the crown gear's value.
+
+Distances are compared as lengths: an angle counts with the arm at which it moves the cutter against the work.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from statistics import median
+
+from derivations import crown_gear
+from gearmath.bevel.blank import evaluate
+from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+
+#: Spiral angle where none of the flanks of the set tells it. [rad]
+_SPIRAL = math.radians(35)
+#: Arm of the blade's angle and of the roll, in mean cone distances.
+_BLADE_ARM, _ROLL_ARM = 0.2, 0.3
+
+
+class Misfit(Exception):
+    """Settings that do not cut what the file says. ``where`` names the flanks (member, flank) that may be to blame."""
+
+    def __init__(self, what: str, *where: tuple[str, str]) -> None:
+        super().__init__(what)
+        self.where = where
+
+    @classmethod
+    def of(cls, member: str, flank: str, what: str) -> Misfit:
+        """The misfit of one flank."""
+        return cls(f"{member} {flank} flank: {what}", (member, flank))
+
+
+@dataclass(frozen=True)
+class Suspect:
+    """A setting, its value, what the crown gear has instead (mm, degrees, as in the file), and how far apart [mm]."""
+
+    key: str
+    value: float
+    expected: float
+    apart: float
+
+    def __str__(self) -> str:
+        return f"{self.key} = {self.value:.6g} (crown gear: {self.expected:.4g})"
+
+
+def farthest(members: dict[str, Member], where: Iterable[tuple[str, str]], spiral: float | None) -> Suspect:
+    """The setting of some flanks (member, flank) that is farthest from the crown gear's value.
+
+    The crown gear takes its cutter from all flanks of the set (the middle ones of point radius and blade angle), and
+    its ``spiral`` angle [rad] from those that can be solved.
+    """
+    suspects = [
+        suspect
+        for name, flank in where
+        for suspect in _suspects(members, name, flank, _SPIRAL if spiral is None else spiral)
+    ]
+    return max(suspects, key=lambda suspect: suspect.apart)
+
+
+def _suspects(members: dict[str, Member], name: str, flank: str, spiral: float) -> list[Suspect]:
+    member = members[name]
+    spec, expected = member.flank(flank).nominal, _crown_gear(members, member, flank, spiral)
+    R = member.blank.mean_cone_distance
+    degree = math.radians(1)
+    arms = {
+        "cradle_angle": R * degree, "cutter_tilt": R * degree, "machine_root_angle": R * degree,
+        "cutter_swivel": R * degree * abs(math.sin(spec.cutter_tilt * degree)),
+        "blade_pressure_angle": _BLADE_ARM * R * degree, "ratio_of_roll": _ROLL_ARM * R / spec.ratio_of_roll,
+    }  # fmt: skip
+    suspects = []
+    for key, wanted in expected.items():
+        off = getattr(spec, key) - wanted
+        if key in ("cradle_angle", "cutter_swivel"):
+            off = math.remainder(off, 360)
+        if math.isfinite(off):
+            suspects.append(Suspect(f"{name}.{flank}.{key}", getattr(spec, key), wanted, abs(off) * arms.get(key, 1.0)))
+    return suspects
+
+
+def _crown_gear(members: dict[str, Member], member: Member, flank: str, spiral: float) -> dict[str, float]:
+    """The settings of the crown gear by name, mm and degrees as in a file."""
+    spec, blank = member.flank(flank).nominal, member.blank
+    flanks = [each.flank(name).nominal for each in members.values() for name in FLANKS]
+    radius, alpha = (
+        median(getattr(one, key) for one in flanks) for key in ("blade_point_radius", "blade_pressure_angle")
+    )
+    hand = 1 if member.hand == "right" else -1
+    # of the mirrored right-hand member, whose swivel is 180 degrees less that of the left-hand one
+    swivel = spec.cutter_swivel if hand == 1 else 180 - spec.cutter_swivel
+    angles = {
+        "mean_spiral_angle": spiral, "pitch_angle": math.radians(blank.pitch_angle),
+        "machine_root_angle": math.radians(blank.root_angle), "flank_pressure_angle": math.radians(alpha),
+        "cutter_tilt": math.radians(spec.cutter_tilt),
+        "tilt_direction": math.radians(swivel + hand * spec.cradle_angle),
+    }  # fmt: skip
+    values = angles | {
+        "hand_sign": hand, "side": SIDES[flank], "cutter_radius": radius, "mean_dedendum": blank.mean_dedendum,
+        "mean_cone_distance": blank.mean_cone_distance,
+        "index_ratio": member.indexing_sign * (member.blade_groups or 0) / member.teeth,
+    }  # fmt: skip
+    make = crown_gear.crown_gear_space if member.cutting == "completing" else crown_gear.crown_gear_flank
+    found = evaluate(make, values)
+    wanted = {
+        "radial_distance": found["radial_distance"],
+        "cradle_angle": math.degrees(found["cradle_angle"]),
+        "cutter_tilt": 0.0,
+        "blank_offset": 0.0,
+        "sliding_base": found["sliding_base"],
+        "machine_center_to_crossing_point": 0.0,
+        "machine_root_angle": blank.root_angle,
+        "blade_point_radius": radius,
+        "blade_pressure_angle": alpha,
+    }
+    if spec.cutter_tilt and "cutter_swivel" in found:
+        wanted["cutter_swivel"] = math.degrees(found["cutter_swivel"])
+    if member.generation == "generated":
+        wanted["ratio_of_roll"] = found["ratio_of_roll"]
+    return wanted

@@ -1,0 +1,92 @@
+"""Whether the blades of a member can be, and whether what its file says of them belongs to its method."""
+
+from __future__ import annotations
+
+from gearmath.bevel.method import blade_sections
+from gearmath.errors import InputError
+from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
+
+
+def check_blades(member: Member, name: str) -> None:
+    """Refuse blades that do not fit together. Raises InputError naming member, flank, key, value and limit."""
+    for flank in FLANKS:
+        _check_method(member, f"{name}.{flank}", member.flank(flank))
+        _check_sections(f"{name}.{flank}", member.flank(flank), SIDES[flank])
+    if member.cutting == "completing":
+        _check_point_width(member, name)
+
+
+def _check_method(member: Member, table: str, spec: Flank) -> None:
+    if member.generation == "formate":
+        for key, motion in (("motion", spec.motion), ("design.motion", spec.nominal_motion)):
+            if motion.matrix.any() or motion.roll.any():
+                moving = next(k for k, values in motion.model_dump().items() if any(values))
+                raise InputError(
+                    f"{table}.{key}.{moving} = {list(getattr(motion, moving))}: the cradle stands still in a Formate "
+                    "cut, so nothing can move with it; it must be left out"
+                )
+    if member.process == "face_milling" and spec.blade_offset_angle != 0:
+        raise InputError(
+            f"{table}.blade_offset_angle = {spec.blade_offset_angle:g}: belongs to face_hobbing, in face milling it "
+            "must be 0 or left out"
+        )
+
+
+def _check_sections(table: str, spec: Flank, side: int) -> None:
+    """Rounded edge, Toprem and main section follow each other within the height of the blade."""
+    height = spec.blade_profile_height
+    for key in ("blade_edge_radius", "toprem_height", "blade_reference_height"):
+        if getattr(spec, key) >= height:
+            raise InputError(f"{table}.{key} = {getattr(spec, key):g}: must be below blade_profile_height = {height:g}")
+    if spec.toprem_angle is not None and spec.toprem_angle >= spec.nominal.blade_pressure_angle:
+        raise InputError(
+            f"{table}.toprem_angle = {spec.toprem_angle:g}: must be less than blade_pressure_angle = "
+            f"{spec.nominal.blade_pressure_angle:g}, or it relieves nothing"
+        )
+    arc = f"{table}.blade_spheric_radius = {spec.blade_spheric_radius}:"
+    try:
+        sections = blade_sections(spec, side)
+    except ValueError as error:
+        if spec.blade_edge_radius == 0:
+            raise InputError(f"{arc} such an arc does not reach up to blade_profile_height = {height:g}") from error
+        raise InputError(
+            f"{table}.blade_edge_radius = {spec.blade_edge_radius:g}: takes away all of the section above it, which "
+            f"ends at {spec.toprem_height or height:g} mm"
+        ) from error
+    if not sections["main"].upper > sections["main"].lower:
+        raise InputError(f"{arc} the rounded edge, blade_edge_radius = {spec.blade_edge_radius:g}, does not touch it")
+
+
+def _check_point_width(member: Member, name: str) -> None:
+    """Both blades of one cutter: between their tips there is some metal, and room for both edge radii."""
+    outer, inner = member.concave, member.convex
+    for key, which in (("", (outer, inner)), ("design.", (outer.nominal, inner.nominal))):
+        width = which[0].blade_point_radius - which[1].blade_point_radius
+        if not width > 0:
+            raise InputError(
+                f"{name}.concave.{key}blade_point_radius = {which[0].blade_point_radius:g}: one cutter cuts both "
+                f"flanks, and its outer blade must lie outside of the inner one of {which[1].blade_point_radius:g} mm, "
+                f"which cuts the convex flank; the point width would be {width:.4g} mm"
+            )
+        flat = sum(_tip_taken(spec, side) for spec, side in ((outer, 1), (inner, -1)))
+        if flat > width:
+            raise InputError(
+                f"{name}.concave.blade_edge_radius = {outer.blade_edge_radius:g}, convex {inner.blade_edge_radius:g}: "
+                f"the rounded edges take {flat:.3g} mm of the tip, the point width is {width:.4g} mm"
+            )
+    for flank in FLANKS:
+        stated = member.flank(flank).blade_point_width
+        width = outer.blade_point_radius - inner.blade_point_radius
+        if stated is not None and abs(stated - width) > 0.01 * width:
+            raise InputError(
+                f"{name}.{flank}.blade_point_width = {stated:g}: the blade point radii of the two flanks make it "
+                f"{width:.4g} mm; leave it out where one cutter cuts both flanks"
+            )
+
+
+def _tip_taken(spec: Flank, side: int) -> float:
+    """What the rounded edge takes of the tip of a blade, from its point radius to where the edge is lowest [mm]."""
+    edge = blade_sections(spec, side).get("edge")
+    if edge is None or edge.arc is None:
+        return 0.0
+    return abs(edge.point_radius - edge.arc[0])

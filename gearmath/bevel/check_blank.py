@@ -1,0 +1,127 @@
+"""Whether the blanks of a set file can be: of one member by itself, and of the pair.
+
+Lengths in the wrong unit, angles in radians, a swapped or a misprinted figure contradict the other figures of a blank
+or those of the mate. The limits leave room for what is printed rounded, and for any depth that is cut.
+"""
+
+from __future__ import annotations
+
+import math
+
+from derivations import iso23509, notation
+from gearmath.bevel.blank import WIDEST_FACE, evaluate
+from gearmath.errors import InputError
+from gearmath.specs.bevel_set import Blank, Member
+
+#: Pitch angles are printed in whole minutes of arc, and may be cut off instead of rounded. [degree]
+_PRINTED_ANGLE = 0.02
+#: What lengths common to both members, or that add up, may differ by: of themselves, and of the module.
+_PRINTED_LENGTH, _PRINTED_DEPTH = 0.001, 0.02
+#: Face widths of mates may differ by so much of the wider one.
+_WIDER_FACE = 0.1
+#: Root of one member and tip of the mate are parallel, so that the clearance is the same along the tooth. [degree]
+_PARALLEL = 0.5
+#: Least face width over outer cone distance; ISO 23509 advises up to 0.30.
+_NARROWEST_FACE = 0.1
+#: Clearance over working depth; ISO 23509 has 0.125.
+_CLEARANCE = (0.04, 0.35)
+#: Working depth over mean transverse module, for normal depth factors of 1.2 to 2.6 and spiral angles up to 50 degrees.
+_DEPTH = (0.75, 2.6)
+
+_MATES = (("pinion", "gear"), ("gear", "pinion"))
+
+
+def transverse_module(member: Member) -> float:
+    """Transverse module [mm] at the mean point."""
+    blank = member.blank
+    return 2 * blank.mean_cone_distance * math.sin(math.radians(blank.pitch_angle)) / member.teeth
+
+
+def working_depth(blank: Blank) -> float:
+    """What of the depth [mm] the mate reaches into, at the mean point."""
+    return blank.mean_addendum + blank.mean_dedendum - blank.clearance
+
+
+def check_blank(member: Member, name: str) -> None:
+    """Refuse a blank that contradicts itself. Raises InputError naming member, key, value and limit."""
+    blank, table = member.blank, f"{name}.blank"
+    narrowest, widest = (share * blank.mean_cone_distance / (1 - share / 2) for share in (_NARROWEST_FACE, WIDEST_FACE))
+    if not narrowest <= blank.face_width <= widest:
+        raise InputError(
+            f"{table}.face_width = {blank.face_width:g}: must lie between {narrowest:.4g} and {widest:.4g} mm, "
+            f"{_NARROWEST_FACE:g} and {WIDEST_FACE:g} of the outer cone distance, at a mean_cone_distance of "
+            f"{blank.mean_cone_distance:g}"
+        )
+    module, depth = transverse_module(member), working_depth(blank)
+    if not _DEPTH[0] * module <= depth <= _DEPTH[1] * module:
+        raise InputError(
+            f"{table}.mean_addendum = {blank.mean_addendum:g}, mean_dedendum = {blank.mean_dedendum:g}: less the "
+            f"clearance they make a working depth of {depth:.4g} mm, which must lie between {_DEPTH[0] * module:.4g} "
+            f"and {_DEPTH[1] * module:.4g} mm: teeth = {member.teeth} at mean_cone_distance = "
+            f"{blank.mean_cone_distance:g} have the module {module:.4g}"
+        )
+    if not _CLEARANCE[0] * depth <= blank.clearance <= _CLEARANCE[1] * depth:
+        raise InputError(
+            f"{table}.clearance = {blank.clearance:g}: must lie between {_CLEARANCE[0] * depth:.3g} and "
+            f"{_CLEARANCE[1] * depth:.3g} mm, {_CLEARANCE[0]:g} and {_CLEARANCE[1]:g} of the working depth"
+        )
+    ends = evaluate(iso23509.blank_ends, {"blank": blank.vector})
+    for place, word in (("inner", "toe"), ("outer", "heel")):
+        for angle, height, least in (("face_angle", "addendum", 0.0), ("root_angle", "dedendum", blank.clearance)):
+            if not ends[f"{place}_{height}"] > least:
+                raise InputError(
+                    f"{table}.{angle} = {getattr(blank, angle):g}: with mean_{height} = "
+                    f"{getattr(blank, f'mean_{height}'):g} it leaves a{'n' * (height == 'addendum')} {height} of "
+                    f"{ends[f'{place}_{height}']:.4g} mm at the {word}, which must be above {least:g} mm"
+                )
+
+
+def check_blanks(pinion: Member, gear: Member, shaft_angle: float) -> None:
+    """Refuse blanks that do not belong together. Raises InputError naming member, key, value and limit."""
+    members = {"pinion": pinion, "gear": gear}
+    if pinion.teeth > gear.teeth:
+        raise InputError(
+            f"pinion.teeth = {pinion.teeth}: the pinion is the member with fewer teeth, it must be at most gear.teeth = "
+            f"{gear.teeth}"
+        )
+    _check_cones(pinion, gear, shaft_angle)
+    for key, share in (("mean_cone_distance", _PRINTED_LENGTH), ("face_width", _WIDER_FACE)):
+        one, two = (getattr(member.blank, key) for member in members.values())
+        if abs(one - two) > share * max(one, two):
+            raise InputError(
+                f"pinion.blank.{key} = {one:g}: the gear has {two:g}; they must agree within "
+                f"{share * max(one, two):.3g} mm"
+            )
+    allowed = _PRINTED_DEPTH * transverse_module(gear)
+    for name, other in _MATES:
+        own, mate = members[name].blank, members[other].blank
+        needed = mate.mean_addendum + own.clearance
+        if abs(own.mean_dedendum - needed) > allowed:
+            raise InputError(
+                f"{name}.blank.mean_dedendum = {own.mean_dedendum:g}: must be the mean_addendum of the {other}, "
+                f"{mate.mean_addendum:g}, and the own clearance, {own.clearance:g}, within {allowed:.2g} mm"
+            )
+        parallel = shaft_angle - mate.face_angle
+        if abs(own.root_angle - parallel) > _PARALLEL:
+            raise InputError(
+                f"{name}.blank.root_angle = {own.root_angle:g}: with shaft_angle = {shaft_angle:g} and the face_angle "
+                f"of the {other}, {mate.face_angle:g}, it must be {parallel:.5g} within {_PARALLEL:g} degree, or the "
+                "clearance is not the same along the tooth"
+            )
+
+
+def _check_cones(pinion: Member, gear: Member, shaft_angle: float) -> None:
+    """Pitch cones that roll on each other (11.1)."""
+    values = {
+        "shaft_angle": math.radians(shaft_angle), "pinion_teeth": pinion.teeth, "wheel_teeth": gear.teeth,
+        # sizes are not asked for
+        "wheel_outer_pitch_diameter": 2.0, "face_width": 0.0, "mean_spiral_angle": 0.0,
+    }  # fmt: skip
+    cones = evaluate(iso23509.pitch_cones, values)
+    wanted = [math.degrees(cones[f"{name}_{notation.pitch_angle.name}"]) for name in ("pinion", "wheel")]
+    for name, member, angle in zip(("pinion", "gear"), (pinion, gear), wanted, strict=True):
+        if not abs(member.blank.pitch_angle - angle) <= _PRINTED_ANGLE:
+            raise InputError(
+                f"{name}.blank.pitch_angle = {member.blank.pitch_angle:g}: {pinion.teeth} and {gear.teeth} teeth at "
+                f"shaft_angle = {shaft_angle:g} need {angle:.5g} within {_PRINTED_ANGLE:g} degree"
+            )

@@ -1,0 +1,170 @@
+"""What the settings of a flank cut, in a few points: the mean point, the tips and roots at toe, mean and heel."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.blame import Misfit
+from gearmath.bevel.check_blank import working_depth
+from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
+from gearmath.bevel.kernels import kernel
+from gearmath.bevel.method import blade_sections
+from gearmath.errors import ComputationError, InputError
+from gearmath.specs.bevel_set import SIDES, Member
+
+#: Pressure angles of a flank at the mean point, and the steepest spiral angle. [degree]
+_PRESSURE, _STEEPEST = (5.0, 40.0), 55.0
+#: Spiral angles below this one tell no hand: that of a Zerol gear is told by its heel. [degree]
+_ZEROL = 2.0
+#: The root may lie off that of the blank by these parts of the clearance, at the mean point and at toe and heel.
+_ROOT_AT_MEAN, _ROOT_AT_ENDS = 0.25, 0.75
+#: The mean point is cut near the middle of the roll: largest cradle rotation from where cradle_angle puts it. [degree]
+_OFF_CENTER = 15.0
+#: The tip plane of the cutter as a blade: nearly square to its axis, so that it shows where the root is deepest.
+_FLAT_BLADE = math.radians(89.9)
+_PLACES = ("toe", "mean point", "heel")
+_BLADE_SLACK = 1e-7
+
+
+@dataclass(frozen=True)
+class CutFlank:
+    """A flank of space 0 (mm, rad): signed pressure and spiral angle at the mean point (8.4), the direction about z_w
+    of the mean point and of the tips (3,), and ``across``, +1 where the space lies towards larger angles."""
+
+    pressure_angle: float
+    spiral_angle: float
+    azimuth: float
+    across: int
+    tip_azimuth: np.ndarray
+
+
+def cut_flank(member: Member, name: str, flank: str, how: Generation) -> CutFlank:
+    """The flank that is generated like this. Raises Misfit where it cannot be the flank that the blank describes."""
+    spec = member.flank(flank)
+    section = blade_sections(spec, SIDES[flank])["main"]
+    mean = solve_section(how, section, *_mean_place(member))
+    if not mean.converged.all():
+        raise Misfit.of(name, flank, "the equation of meshing has no solution at the mean point")
+    delta = math.radians(member.blank.pitch_angle)
+    found = (float(value[0]) for value in kernel("flank_angles")(delta, mean.point, mean.normal))
+    pressure, spiral, across, azimuth = found
+    _check_angles(name, flank, pressure, spiral)
+    swing = math.degrees(float(mean.contact[0, 2]))
+    if not abs(swing) <= _OFF_CENTER:
+        raise Misfit.of(
+            name, flank,
+            f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must be "
+            f"at most {_OFF_CENTER:g}",
+        )  # fmt: skip
+    _check_root(member, name, flank, how, mean.contact)
+    axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 0.5, 1.0]), np.ones(3))
+    tips = solve_section(how, section, axial, radial)
+    _check_tips(name, flank, section, tips.contact[:, 0], tips.converged, spec.blade_profile_height)
+    tip_azimuth = np.arctan2(tips.point[:, 1], tips.point[:, 0])
+    _check_hand(member, name, flank, spiral, tip_azimuth)
+    return CutFlank(pressure, spiral, azimuth, 1 if across > 0 else -1, tip_azimuth)
+
+
+def check_grid(member: Member, name: str, flank: str) -> None:
+    """Refuse a flank that is not there on the whole of the standard grid. Raises Misfit."""
+    try:
+        solve_flank(member, name, flank, blank_grid(member))
+    except (ComputationError, InputError) as error:
+        raise Misfit.of(name, flank, str(error).removeprefix(f"{name} {flank} flank, ")) from error
+
+
+def _mean_place(member: Member) -> tuple[np.ndarray, np.ndarray]:
+    """Where the mean point of the pitch cone lies: (z_w,), (r_w,)."""
+    blank = member.blank
+    up = (blank.mean_dedendum - blank.clearance) / working_depth(blank)
+    axial, radial = kernel("flank_place")(blank.vector, np.array([0.5]), np.array([up]))
+    return axial, radial
+
+
+def _check_angles(name: str, flank: str, pressure: float, spiral: float) -> None:
+    low, high = _PRESSURE
+    if not low <= math.degrees(pressure) <= high:
+        raise Misfit.of(
+            name, flank,
+            f"its pressure angle at the mean point is {math.degrees(pressure):.4g} degrees, which must lie between "
+            f"{low:g} and {high:g}",
+        )  # fmt: skip
+    if not abs(math.degrees(spiral)) <= _STEEPEST:
+        raise Misfit.of(
+            name, flank,
+            f"its spiral angle at the mean point is {math.degrees(spiral):.4g} degrees, which must be at most "
+            f"{_STEEPEST:g}",
+        )  # fmt: skip
+
+
+def _check_hand(member: Member, name: str, flank: str, spiral: float, tip_azimuth: np.ndarray) -> None:
+    """The trace of a right-hand member turns towards larger angles from toe to heel, that of a Zerol at the heel."""
+    hand = 1 if member.hand == "right" else -1
+    told = spiral
+    if abs(spiral) < math.radians(_ZEROL):
+        told = math.remainder(float(tip_azimuth[2] - tip_azimuth[1]), 2 * math.pi)
+    if told * hand > 0:
+        return
+    other = "left" if hand == 1 else "right"
+    raise Misfit.of(
+        name, flank,
+        f"hand = {member.hand!r} is stated, but its spiral angle at the mean point is {math.degrees(spiral):+.4g} "
+        f"degrees, which is {other} hand",
+    )  # fmt: skip
+
+
+def _check_root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarray) -> None:
+    """The tip of the blade leaves the root of the blank, to a part of the clearance."""
+    blank = member.blank
+    across, delta = np.array([0.0, 0.5, 1.0]), math.radians(blank.pitch_angle)
+    place, out = (math.cos(delta), math.sin(delta)), (-math.sin(delta), math.cos(delta))
+    ends = [np.stack(kernel("flank_place")(blank.vector, across, np.full(3, up)), axis=1) for up in (0.0, 1.0)]
+    height = [end @ out for end in ends]
+    root = height[0] - blank.clearance
+    distance = ends[0] @ place
+    tip = Section(0.0, 1.0, member.flank(flank).nominal.blade_point_radius, _FLAT_BLADE)
+    start = np.column_stack([np.zeros(3), np.repeat(mean[:, 1:], 3, axis=0)])
+    found = solve_curve(how, tip, np.zeros(3), place, distance, start)
+    if not found.converged.all():
+        k = int(np.argmax(~found.converged))
+        raise Misfit.of(name, flank, f"the tip of the blade does not reach the root at the {_PLACES[k]}")
+    at = np.stack([found.point[:, 2], np.hypot(found.point[:, 0], found.point[:, 1])], axis=1)
+    off = at @ out - root
+    share = np.array([_ROOT_AT_ENDS, _ROOT_AT_MEAN, _ROOT_AT_ENDS])
+    beyond = ~(np.abs(off) <= share * blank.clearance)
+    if beyond.any():
+        k = int(np.argmax(np.abs(off) / share))
+        raise Misfit.of(
+            name, flank,
+            f"the tip of the blade leaves the root {abs(off[k]):.3g} mm {'above' if off[k] > 0 else 'below'} that of "
+            f"the blank at the {_PLACES[k]}, which must be at most {share[k] * blank.clearance:.3g} mm, "
+            f"{share[k]:g} of the clearance",
+        )  # fmt: skip
+
+
+def _check_tips(name: str, flank: str, section: Section, u: np.ndarray, converged: np.ndarray, height: float) -> None:
+    """The blade reaches up to the tip of the tooth, toe to heel."""
+    if not converged.all():
+        k = int(np.argmax(~converged))
+        raise Misfit.of(
+            name, flank, f"the equation of meshing has no solution at the tip of the tooth at the {_PLACES[k]}"
+        )
+    short, long = u < section.lower - _BLADE_SLACK, u > section.upper + _BLADE_SLACK
+    above = short if section.tip_is_upper else long
+    below = long if section.tip_is_upper else short
+    if above.any():
+        k = int(np.argmax(above))
+        needed = f": it must be at least {u.max():.4g} mm" if section.arc is None else ""
+        raise Misfit.of(
+            name, flank,
+            f"blade_profile_height = {height:g} does not reach the tip of the tooth at the {_PLACES[k]}{needed}",
+        )  # fmt: skip
+    if below.any():
+        k = int(np.argmax(below))
+        raise Misfit.of(
+            name, flank, f"the tip of the tooth at the {_PLACES[k]} lies below the main section of the blade"
+        )

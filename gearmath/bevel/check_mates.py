@@ -1,0 +1,125 @@
+"""Whether two flanks leave a tooth, and two members a pair."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gearmath.bevel.blame import Misfit
+from gearmath.bevel.check_blank import transverse_module, working_depth
+from gearmath.bevel.check_flank import CutFlank
+from gearmath.bevel.tooth import mean_pitch_radius
+from gearmath.errors import InputError
+from gearmath.specs.bevel_set import FLANKS, Member
+
+#: Normal thickness and space width at the mean point over the normal module: pi together, and some of it each.
+_LEAST_WIDTH = 0.5
+#: Working depth over normal module.
+_DEPTH = (1.2, 2.6)
+#: Differences at the mean point [degree]: of the spiral angles of both flanks of a member, which taper, ...
+_TAPER = 4.0
+#: ... and of mating flanks, which touch there: each by itself, and the means of both flanks of a member. One cut for
+#: both flanks takes from one what it gives to the other: blades of one angle on a tilted root line, a tapered space.
+_MATING = {"spiral_angle": (2.0, 0.5), "pressure_angle": (5.0, 1.5)}
+#: Transverse backlash at the mean point over the module.
+_BACKLASH = (-0.01, 0.2)
+
+Cut = dict[str, CutFlank]
+
+
+def check_space(member: Member, name: str, cut: Cut) -> float:
+    """The transverse width [mm] of space 0 at the mean point.
+
+    Raises InputError where concave and convex flank bound no space, or leave no tooth between two spaces.
+    """
+    concave, convex = (cut[flank] for flank in FLANKS)
+    if concave.across == convex.across:
+        raise InputError(f"{name}: the outward normals of both flanks point the same way around the axis: no space")
+    spirals = [math.degrees(flank.spiral_angle) for flank in (concave, convex)]
+    if abs(spirals[0] - spirals[1]) > _TAPER:
+        raise Misfit(
+            f"{name} concave flank: spiral angle {spirals[0]:+.4g} degrees at the mean point, the convex flank has "
+            f"{spirals[1]:+.4g}; they must agree within {_TAPER:g}",
+            *((name, flank) for flank in FLANKS),
+        )  # fmt: skip
+    radius, pitch = mean_pitch_radius(member), 2 * math.pi / member.teeth
+    # from the concave flank across the space: less than nothing is a tooth, more than a pitch a tooth and two spaces
+    turn = concave.across * math.remainder(convex.azimuth - concave.azimuth, 2 * math.pi)
+    cosine = math.cos((concave.spiral_angle + convex.spiral_angle) / 2)
+    module = transverse_module(member) * cosine
+    space, tooth = radius * turn * cosine, radius * (pitch - turn) * cosine
+    least = _LEAST_WIDTH * module
+    if not (space >= least and tooth >= least):
+        raise InputError(
+            f"{name}: {_phase(member)} leave a space of {space:.4g} mm and a tooth of {tooth:.4g} mm (normal, at the "
+            f"mean point), each must be at least {least:.3g} mm{_hint(member, turn, pitch, least / radius / cosine)}"
+        )
+    depth = working_depth(member.blank)
+    if not _DEPTH[0] * module <= depth <= _DEPTH[1] * module:
+        raise InputError(
+            f"{name}.blank.mean_addendum = {member.blank.mean_addendum:g}: the working depth of {depth:.4g} mm must "
+            f"lie between {_DEPTH[0] * module:.4g} and {_DEPTH[1] * module:.4g} mm: mean normal module {module:.4g}"
+        )
+    _check_top_land(member, name, concave, convex, pitch)
+    return radius * turn
+
+
+def _phase(member: Member) -> str:
+    """The settings that the width of a space hangs on, with their values."""
+    key = "blade_point_radius" if member.cutting == "completing" else "work_rotation_offset"
+    return ", ".join(f"{flank}.{key} = {getattr(member.flank(flank).nominal, key):g}" for flank in FLANKS)
+
+
+def _hint(member: Member, turn: float, pitch: float, least: float) -> str:
+    """What to do where the flanks are those of a space, but of two different ones."""
+    inside = turn % pitch
+    if member.cutting == "completing" or not least <= inside <= pitch - least:
+        return ""
+    return (
+        "; as it stands they do not bound one space: the convex flank must be turned by "
+        f"{abs(round((turn - inside) / pitch)) * math.degrees(pitch):g} degrees, whole pitches"
+    )
+
+
+def _check_top_land(member: Member, name: str, concave: CutFlank, convex: CutFlank, pitch: float) -> None:
+    turns = concave.across * (convex.tip_azimuth - concave.tip_azimuth)
+    place = ("toe", "mean point", "heel")
+    land = pitch - (np.mod(turns + math.pi, 2 * math.pi) - math.pi)
+    if not (land > 0).all():
+        k = int(np.argmin(land))
+        raise InputError(
+            f"{name}.blank.mean_addendum = {member.blank.mean_addendum:g}, face_angle = {member.blank.face_angle:g}: "
+            f"the teeth are pointed at the {place[k]}: a top land of {math.degrees(land[k]):.3g} degrees "
+            "about the axis is left, which must be above 0"
+        )
+
+
+def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[str, float]) -> None:
+    """Refuse flanks that do not touch as mates at the mean point, and a pair with too much or too little backlash."""
+    for flank, mating in zip(FLANKS, reversed(FLANKS), strict=True):
+        for key, (limit, _) in _MATING.items():
+            one, two = (math.degrees(abs(getattr(cut[n][f], key))) for n, f in (("pinion", flank), ("gear", mating)))
+            if not abs(one - two) <= limit:
+                raise Misfit(
+                    f"pinion {flank} flank: its {key.replace('_', ' ')} at the mean point is {one:.4g} degrees, that "
+                    f"of the mating {mating} flank of the gear {two:.4g}; they must agree within {limit:g}",
+                    ("pinion", flank), ("gear", mating),
+                )  # fmt: skip
+    for key, (_, limit) in _MATING.items():
+        one, two = (math.degrees(sum(abs(getattr(cut[n][f], key)) for f in FLANKS) / 2) for n in ("pinion", "gear"))
+        if not abs(one - two) <= limit:
+            raise Misfit(
+                f"the mean {key.replace('_', ' ')} of the two flanks of the pinion is {one:.4g} degrees, of the gear "
+                f"{two:.4g}; they must agree within {limit:g}",
+                *((name, flank) for name in members for flank in FLANKS),
+            )  # fmt: skip
+    gear = members["gear"]
+    pitch = 2 * math.pi * mean_pitch_radius(gear) / gear.teeth
+    backlash, module = spaces["pinion"] + spaces["gear"] - pitch, transverse_module(gear)
+    if not _BACKLASH[0] * module <= backlash <= _BACKLASH[1] * module:
+        settings = "; ".join(f"{name} {_phase(member)}" for name, member in members.items())
+        raise InputError(
+            f"pinion and gear: {settings}: the pair has a transverse backlash of {backlash:.4g} mm at the mean point, "
+            f"which must lie between {_BACKLASH[0] * module:.3g} and {_BACKLASH[1] * module:.3g} mm"
+        )

@@ -1,0 +1,101 @@
+"""A set file as one physical pair: the only way in for a command.
+
+Checked from what is cheap to what is dear: the blanks by their figures, the blades, then what the settings cut. The
+nominal flanks are checked strictly, those of corrected settings by how far they may be off the nominal ones.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import median
+
+from gearmath.bevel.blame import Misfit, farthest
+from gearmath.bevel.check_blade import check_blades
+from gearmath.bevel.check_blank import check_blank, check_blanks, transverse_module
+from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
+from gearmath.bevel.check_mates import Cut, check_mates, check_space
+from gearmath.bevel.method import cut_generation_of, generation_of
+from gearmath.bevel.tooth import mean_pitch_radius
+from gearmath.errors import InputError
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member, load_bevel_set
+
+#: What corrected settings may change of a flank at the mean point: either angle [degree], the arc over the module.
+_CORRECTED_ANGLE, _CORRECTED_ARC = 2.0, 0.15
+
+
+def load_pair(path: Path) -> BevelSet:
+    """Read a gear set that is one physical pair.
+
+    Raises InputError naming file, member, flank, key, value and limit of what cannot be.
+    """
+    pair = load_bevel_set(path)
+    try:
+        check_pair(pair)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    return pair
+
+
+def check_pair(pair: BevelSet) -> None:
+    """Refuse a set that is no physical pair. Raises InputError naming member, flank, key, value and limit."""
+    members = {name: pair.member(name) for name in MEMBERS if getattr(pair, name) is not None}
+    for name, member in members.items():
+        check_blank(member, name)
+    if len(members) == len(MEMBERS):
+        check_blanks(pair.pinion, pair.gear, pair.shaft_angle)
+    for name, member in members.items():
+        check_blades(member, name)
+    cut: dict[str, Cut] = {name: {} for name in members}
+    try:
+        _check_cut(members, cut)
+    except Misfit as misfit:
+        suspect = farthest(members, misfit.where, _spiral(cut, misfit.where))
+        raise InputError(f"{misfit}; the setting farthest from the crown gear's is {suspect}") from misfit
+
+
+def _check_cut(members: dict[str, Member], cut: dict[str, Cut]) -> None:
+    """Check what the settings cut; ``cut`` is filled with the flanks that are found."""
+    spaces: dict[str, float] = {}
+    for name, member in members.items():
+        for flank in FLANKS:
+            cut[name][flank] = cut_flank(member, name, flank, generation_of(member, flank))
+        spaces[name] = check_space(member, name, cut[name])
+    if len(members) == len(MEMBERS):
+        check_mates(members, cut, spaces)
+    for name, member in members.items():
+        for flank in FLANKS:
+            check_grid(member, name, flank)
+            if member.flank(flank).design is not None:
+                _check_corrected(member, name, flank, cut[name][flank])
+
+
+def _check_corrected(member: Member, name: str, flank: str, nominal: CutFlank) -> None:
+    """Corrected settings cut the nominal flank but for what a correction may need."""
+    spec = member.flank(flank).model_copy(update={"design": None})
+    corrected = member.model_copy(update={flank: spec})
+    found = cut_flank(corrected, name, flank, cut_generation_of(member, flank))
+    for what in ("pressure_angle", "spiral_angle"):
+        change = math.degrees(getattr(found, what) - getattr(nominal, what))
+        if not abs(change) <= _CORRECTED_ANGLE:
+            raise Misfit.of(
+                name, flank,
+                f"the corrected settings change its {what.replace('_', ' ')} by {change:.3g} degrees against those "
+                f"under design, which must be at most {_CORRECTED_ANGLE:g}",
+            )  # fmt: skip
+    arc = mean_pitch_radius(member) * math.remainder(found.azimuth - nominal.azimuth, 2 * math.pi)
+    limit = _CORRECTED_ARC * transverse_module(member)
+    if not abs(arc) <= limit:
+        raise Misfit.of(
+            name, flank,
+            f"the corrected settings move it by {arc:.3g} mm at the mean point against those under design, which must "
+            f"be at most {limit:.3g} mm",
+        )  # fmt: skip
+
+
+def _spiral(cut: dict[str, Cut], blamed: Sequence[tuple[str, str]]) -> float | None:
+    """The middle one of the spiral angles [rad] of all flanks that are found and not to blame, else of all found."""
+    found = {(name, flank): abs(one.spiral_angle) for name, flanks in cut.items() for flank, one in flanks.items()}
+    others = [angle for where, angle in found.items() if where not in blamed] or list(found.values())
+    return median(others) if others else None
