@@ -23,11 +23,13 @@ from gearmath.quality.uncertainty import Uncertain
 BEFORE, AFTER = "#c23b22", "#1f6f8b"
 
 
-def draw_topography(axes: Axes, before: Topography, after: Topography | None = None) -> None:
+def draw_topography(
+    axes: Axes, before: Topography, after: Topography | None = None, zeroed: bool = False
+) -> None:  # fmt: skip
     """One flank as the measuring room draws it: the nominal grid, and the deviations standing on it, in µm.
 
     Columns run from toe (left) to heel, rows from root (below) to tip; one row's distance is the size of the largest
-    deviation drawn.
+    deviation drawn. ``zeroed`` says that the flanks were turned to zero at their reference points.
     """
     rows, columns = before.deviation.shape
     scale = 1.0 / max(abs(before.extreme) * 1000, 1e-9)
@@ -50,7 +52,7 @@ def draw_topography(axes: Axes, before: Topography, after: Topography | None = N
             axes.plot(x[:, k], z[:, k], color=color, linewidth=0.5)
     axes.set_xticks([0, columns - 1], ["toe", "heel"])
     axes.set_yticks([0, rows - 1], ["root", "tip"])
-    axes.set_title(f"{before.flank} flank", fontsize=10)
+    axes.set_title(f"{before.flank} flank{', zero at the reference point' if zeroed else ''}", fontsize=10)
     axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.06), ncol=2, frameon=False)
     axes.spines[:].set_visible(False)
 
@@ -133,9 +135,9 @@ def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
     before, after = evaluation.as_measured, evaluation.flanks if registered else {}
     pitches = [[f.pitch for f in each.values() if f.pitch is not None] for each in (before, after)]
     drawn: list[Callable[[Axes], None]] = [
-        partial(draw_topography, before=figures.mean, after=after[flank].mean if registered else None)
+        partial(draw_topography, before=figures.chart, after=after[flank].chart if registered else None, zeroed=True)
         for flank, figures in before.items()
-        if figures.mean is not None
+        if figures.chart is not None
     ]
     if pitches[0]:
         drawn.append(partial(draw_pitch, before=pitches[0], after=pitches[1]))

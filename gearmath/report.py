@@ -179,10 +179,10 @@ def _figures_section(page: Page, measurement: Measurement) -> None:
 
 
 def _clamping_section(page: Page, found: Evaluation) -> None:
-    seat = found.registration
-    if seat is None and not found.drifts:
+    seat, turn = found.registration, found.rotation
+    if seat is None and turn is None and not found.drifts:
         return
-    page.heading("Clamping and drift, taken out before judging")
+    page.heading("Clamping, rotation and drift, taken out before judging")
     rows = []
     if seat is not None:
         at, about = np.degrees([seat.eccentricity_direction, seat.tilt_direction])
@@ -191,6 +191,9 @@ def _clamping_section(page: Page, found: Evaluation) -> None:
         if seat.tilt_found:
             tilt, u = seat.tilt * 100, seat.tilt_uncertainty * 100
             rows.append(["tilt", _micro(tilt), _micro(u), "um per 100 mm", f"about {about:.1f} degrees"])
+    if turn is not None:
+        size = f"common to both flanks: {math.degrees(turn.angle) * 3600:+.2f} arcsec, here its arc at the middle"
+        rows.append(["rotation", _micro(turn.arc), _micro(turn.uncertainty * turn.radius), "um", size])
     rows += [
         [f"drift, {flank}", _micro(drift.closure), "", "um", "tooth 0 at the end against the start"]
         for flank, drift in found.drifts.items()
