@@ -1,9 +1,9 @@
-"""Plain text of points from another measuring machine: ``x y z`` or ``x y z i j k`` a row, in any of the usual dresses.
+"""Plain text of points from another measuring machine: ``x y z`` or ``x y z i j k`` a row, in the usual layouts.
 
-Read are blanks, tabs, commas or semicolons between the columns; decimal points or decimal commas; exponents with E or D;
-header lines, comments and blank lines; units behind and axis letters before a number; point numbers and texts before the
-coordinates; a line of column names, which is believed; UTF-8, UTF-16 and Latin-1. Other columns are left aside, and
-that is said. A row that has not the numbers of the others is refused: it may have been cut in half.
+Read are blanks, tabs, commas or semicolons between the columns; decimal points or decimal commas; exponents with E or
+D; header lines, comments and blank lines; units behind and axis letters before a number; point numbers and texts before
+the coordinates; a line of column names, which then decides; UTF-8, UTF-16 and Latin-1. Other columns are left aside,
+and that is said. A row that has not the numbers of the others is refused: it may have been cut in half.
 """
 
 from __future__ import annotations
