@@ -16,7 +16,7 @@ from gearmath.quality.lattice import Lattice, find_lattice
 from gearmath.quality.nominal import SAME_POINT
 from gearmath.quality.outliers import flag_outliers
 from gearmath.quality.places import blank_fractions
-from gearmath.quality.points import LEAST_FIT, Frame, Laid, Part, Phase, check_normals, lay, turn_of
+from gearmath.quality.points import LEAST_FIT, Frame, Laid, Part, Phase, axial_hint, check_normals, lay, turn_of
 from gearmath.specs.bevel_set import BevelSet, Member, design_sha256
 from gearmath.specs.flank_csv import OWN, FlankFile, flank_file, join
 
@@ -69,13 +69,14 @@ def foreign_file(
     if phase != "kept":
         turns, laid = _zeroed(laid, lattices, turns, frame, member, phase == "common")
         lattices = _lattices(laid, member)
-    files, remarks = [], []
+    files, remarks = [], [axial_hint(parts[0], frame, member, turns[0])]
     for one, lattice, turn in zip(laid, lattices, turns, strict=True):
         file, found = _file(one, lattice, member, name)
         files.append(file)
         told = check_normals(one, frame, member, turn)
         remarks += [f"{one.part.name}: {each}" for each in (*_left_out(one), *found, told) if each]
         progress(1)
+    remarks = [each for each in remarks if each]
     header = _header(member, name, files, frame)
     zeroed = phase == "each" or (phase == "common" and len({part.flank for part in parts}) == 1)
     header |= {"phase_zeroed": "true" if zeroed else "false"}

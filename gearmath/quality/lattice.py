@@ -13,8 +13,8 @@ _SLANTS = sorted(np.linspace(-0.4, 0.4, 81), key=abs)
 _CLEAR = 2.5
 #: Gaps below this part of the whole are none.
 _NO_GAP = 1e-4
-#: Part of the grid that must be there.
-_LEAST_FULL = 0.8
+#: Part of the grid that must be there, and how far from even lines its points may lie, in steps of the grid.
+_LEAST_FULL, _EVEN = 0.8, 0.2
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,8 @@ def find_lattice(across: np.ndarray, up: np.ndarray) -> Lattice | None:
                 continue
             row, col = (lines, rank) if swapped else (rank, lines)
             rows, columns = int(row.max()) + 1, int(col.max()) + 1
-            if len(across) >= _LEAST_FULL * rows * columns:
+            full = len(across) >= _LEAST_FULL * rows * columns
+            if full and _even(across, col, row) and _even(up, row, col):
                 return Lattice(rows, columns, row, col)
     return None
 
@@ -83,3 +84,14 @@ def _ranks(lines: np.ndarray, second: np.ndarray) -> np.ndarray | None:
         if len(np.unique(rank[here])) < len(here):
             return None
     return rank
+
+
+def _even(place: np.ndarray, line: np.ndarray, along: np.ndarray) -> bool:
+    """Whether points (n,) of a line share one place, but for lines that lean and bow together."""
+    count = int(line.max()) + 1
+    middle = along - along.mean()
+    base = (line[:, None] == np.arange(count)).astype(float)
+    terms = np.column_stack([base, middle, middle * line, middle**2, middle**2 * line])
+    fitted = terms @ np.linalg.lstsq(terms, place, rcond=None)[0]
+    step = np.ptp(fitted) / max(count - 1, 1)
+    return bool(np.sqrt(np.mean((place - fitted) ** 2)) < _EVEN * step)

@@ -26,8 +26,9 @@ Phase = Literal["common", "each", "kept"]
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
 #: Part of the points that must lie on the flank.
 LEAST_FIT = 0.8
-#: A point is of the flank within this part of the depth of the tooth, and on the blank within these parts beyond it.
-_NEAR, _BESIDE, _ABOVE = 0.05, 0.15, 0.35
+#: A point is of the flank within this part of the depth of the tooth. On the blank it may lie these parts of face width
+#: and depth beyond toe or heel, the tip, and the lowest point of contact.
+_NEAR, _BESIDE, _ABOVE, _BELOW = 0.05, 0.05, 0.1, 0.35
 #: The foot of a point: steps, and how still it must stand. [mm]
 _STEPS, _STILL = 30, 1e-10
 #: Newton steps to the turning at which the median deviation is zero.
@@ -35,6 +36,12 @@ _TURNING_STEPS = 20
 #: Normals of a file agree with those of the flank within this. [rad]
 _NORMAL_WITHIN = math.radians(15)
 _MM_PER_INCH = 25.4
+#: Another apex offset is worth a word where it takes the median deviation from this [mm] to this part of it, and is
+#: demanded where that is larger than the form of a flank is [mm].
+_WORTH_A_HINT, _MUCH_LESS, _LARGEST_FORM = 0.02, 5.0, 0.1
+_AXIAL_STEPS = 6
+#: Apex offsets that are tried over two face widths.
+_TRIED = 81
 
 
 @dataclass(frozen=True)
@@ -152,11 +159,50 @@ def check_normals(laid: Laid, frame: Frame, member: Member, turn: float) -> str:
     )
 
 
+def axial_hint(part: Part, frame: Frame, member: Member, turn: float) -> str:
+    """What another apex offset would do, in words; empty where it would not lessen the deviations much.
+
+    Raises InputError where deviations are larger than those of a flank, and another apex offset explains them.
+    """
+    offset, before, after = _axial_fit(part, frame, member, turn)
+    moved = abs(offset - frame.apex_offset)
+    if not (before > _WORTH_A_HINT and after < before / _MUCH_LESS and moved < member.blank.face_width):
+        return ""
+    words = (
+        f"{part.name}: half of the points lie more than {before * 1000:.1f} um off the {part.flank} flank, with "
+        f"--apex-offset {_plain(offset)} more than {after * 1000:.1f} um"
+    )
+    if before > _LARGEST_FORM:
+        raise InputError(f"{words}: where does the origin of the file lie on the axis?")
+    return f"{words}; if the offset given is right, the member was cut or clamped so far off"
+
+
+def _axial_fit(part: Part, frame: Frame, member: Member, turn: float) -> tuple[float, float, float]:
+    """The apex offset at which the points fit best, and the median of their distances before and after [mm]."""
+    tried, angle, medians = frame, turn, []
+    for _ in range(_AXIAL_STEPS):
+        laid = lay(part, tried, member, angle)
+        arm, off = laid.lever, laid.deviation
+        columns, weight = np.stack([arm, laid.normal[:, 2]], axis=1), np.ones(len(off))
+        for _ in range(_AXIAL_STEPS):  # least absolute values: single bad points do not count
+            change = np.linalg.lstsq(columns * weight[:, None], off * weight, rcond=None)[0]
+            left = np.abs(off - columns @ change)
+            weight = 1 / np.sqrt(np.maximum(left, 1e-6))
+        medians += [float(np.median(np.abs(off - np.median(off / arm) * arm))), float(np.median(left))]
+        tried = replace(tried, apex_offset=tried.apex_offset - float(change[1]))
+        angle += float(change[0])
+    return tried.apex_offset, medians[0], medians[-1]
+
+
+def _plain(offset: float) -> str:
+    return f"{round(offset, 2) + 0.0:.2f}"
+
+
 def _nominal(member: Member, flank: str, point: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Nominal points and normals (n,3) at the places of points (n,3), and whether there is one on the blank (n,)."""
     axial, radial = point[:, 2], np.hypot(point[:, 0], point[:, 1])
     across, up = blank_fractions(member, axial, radial)
-    there = (np.abs(across - 0.5) < 0.5 + _BESIDE) & (up > -_ABOVE) & (up < 1 + _ABOVE) & (radial > 0)
+    there = (np.abs(across - 0.5) < 0.5 + _BESIDE) & (up > -_BELOW) & (up < 1 + _ABOVE) & (radial > 0)
     surface, normal = np.zeros_like(point), np.zeros_like(point)
     if there.any():
         found, residual = nominal_points(member, flank, Grid(axial[None, there], radial[None, there]))
@@ -217,26 +263,26 @@ def _likeliest_cause(part: Part, frame: Frame, gear_set: BevelSet, name: str) ->
             return f"most would fit with {' and '.join(words)}"
     offset = _likely_offset(part, frame, gear_set.member(name))
     if offset is not None:
-        return f"most would fit with --apex-offset {offset:.1f}"
+        return f"most would fit with --apex-offset {_plain(offset)}"
     return "is the file of this set, member and flank, and are --unit, --axis and --apex-offset those of the file?"
 
 
 def _likely_offset(part: Part, frame: Frame, member: Member) -> float | None:
     """The apex offset [mm] at which the points lie on the blank and fit the flank best, None where they fit nowhere."""
-    middle = member.blank.mean_cone_distance * math.cos(math.radians(member.blank.pitch_angle))
+    height = member.blank.mean_cone_distance * math.cos(math.radians(member.blank.pitch_angle))
     point = replace(frame, apex_offset=0.0).placed(part.point)
     reach = member.blank.face_width
-    start = middle - float(np.median(point[:, 2]))
+    start = height - float(np.median(point[:, 2]))
 
-    def spread(offset: float) -> float:
-        _, fits = _turn(member, part.flank, point + np.array([0.0, 0.0, offset]), frame.tip_radius)
-        return float(fits.mean())
-
-    tried = start + np.linspace(-reach, reach, 81)
-    found = np.array([spread(offset) for offset in tried])
-    if found.max() < LEAST_FIT:
+    tried = start + np.linspace(-reach, reach, _TRIED)
+    turns = [_turn(member, part.flank, point + np.array([0.0, 0.0, each]), frame.tip_radius) for each in tried]
+    share = np.array([fits.mean() for _, fits in turns])
+    if share.max() < LEAST_FIT:
         return None
-    return float(np.mean(tried[found == found.max()]))
+    best = np.flatnonzero(share == share.max())
+    middle = int(best[len(best) // 2])
+    turn = turns[middle][0] - 2 * math.pi * part.tooth / member.teeth
+    return _axial_fit(part, replace(frame, apex_offset=float(tried[middle])), member, turn)[0]
 
 
 def _half_turn(angle: float) -> float:
