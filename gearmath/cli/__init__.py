@@ -25,6 +25,7 @@ VERBS = {
     "mill": ("machine", "Virtual milling from the program text."),
     "touches": ("probe", "Raw touches of a probe to measured points."),
     "calibrate": ("probe", "The tip of the probe from its touches on ring and sphere."),
+    "points": ("points", "Points of another measuring machine, as text, to measured points."),
     "evaluate": ("quality", "Pitch, profile and topography of a measured member."),
     "compensate": ("compensate", "Corrected machine settings from a measurement."),
     "stock": ("compensate", "How a precut blank must stand so that both flanks share its stock."),

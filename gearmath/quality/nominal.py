@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmath.bevel.flank import Grid, blank_grid, nominal_points, solve_flank
+from gearmath.bevel.flank import Grid, nominal_points, solve_flank
 from gearmath.bevel.newton import TOLERANCE
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
+from gearmath.quality.places import feet, file_grid, has_own_places
 from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
@@ -40,19 +41,19 @@ def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
 
     Raises InputError for unlike margins, ComputationError if the grid does not lie on the flank.
     """
-    rows, columns = grid_shape(file)
-    margins = [float(part) for part in file.header["margins"].split(",")]
-    if margins[0] != margins[1]:
-        raise InputError(f"margins = {file.header['margins']}: must be alike along the tooth and up the profile")
-    grid = blank_grid(member, rows, columns, margins[0])
+    columns, own = grid_shape(file)[1], has_own_places(file)
     point, normal = np.empty((len(file), 3)), np.empty((len(file), 3))
     tooth = file.tooth % member.teeth
     turn = 2 * math.pi * tooth / member.teeth
     for flank in FLANKS:
         here = file.flank == flank
         if here.any():
+            if own:
+                grid, place = Grid(*feet(file.pick(here)).T[:, None]), np.arange(int(here.sum()))
+            else:
+                grid = file_grid(file, member, flank)
+                place = file.row[here] * columns + file.col[here]
             solved = solve_flank(member, name, flank, grid)
-            place = file.row[here] * columns + file.col[here]
             point[here] = turned(solved.point[place], turn[here])
             normal[here] = turned(solved.normal[place], turn[here])
     return NominalRows(point, normal, turn, tooth)
@@ -92,6 +93,9 @@ def completed(file: FlankFile, member: Member, name: str) -> tuple[FlankFile, tu
             if absent and len(absent) <= MOST_MISSING * (len(absent) + len(there)):
                 row, col = np.array(absent).T
                 nowhere = np.zeros((len(absent), 3))
+                if has_own_places(file):
+                    grid = file_grid(file, member, flank, int(tooth))
+                    nowhere[:, 0], nowhere[:, 2] = grid.radial[row, col], grid.axial[row, col]
                 missing.append(flank_file(file.header, name, flank, int(tooth), row, col, nowhere, nowhere))
                 remarks += [
                     f"{flank} flank, tooth {tooth}, row {r}, col {c}: not measured; left out" for r, c in absent

@@ -96,7 +96,7 @@ def evaluate_runout(file: FlankFile, teeth: int) -> Runout | None:
 def evaluate_thickness(file: FlankFile, teeth: int) -> Thickness | None:
     """Thickness of every tooth, or for each space measured that of the tooth it stands for, where not all were.
 
-    None where no space has the reference points of both flanks.
+    None where no space has the reference points of both flanks, with deviations.
     """
     file, _ = without_drift(file, teeth)
     one, other = _pairs(file)
@@ -108,6 +108,8 @@ def evaluate_thickness(file: FlankFile, teeth: int) -> Thickness | None:
         deviation = _allowance(high) + np.roll(_allowance(low), -1)  # the tooth after a space ends at the next one
     else:
         deviation = _allowance(one) + _allowance(other)
+    if not np.isfinite(deviation).any():  # the reference points were left out
+        return None
     return Thickness(float(arc), float(chord), deviation, float(factor))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.flank import solve_flank
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.method import blade_sections, cut_generation_of
 from gearmath.bevel.newton import FlankPoints
@@ -12,6 +12,7 @@ from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.quality.compensation import FlankTarget
 from gearmath.quality.pitch import reference_point
+from gearmath.quality.places import file_grid
 from gearmath.quality.root_line import RootLine
 from gearmath.quality.topography import grid_shape, local_coordinates
 from gearmath.specs.bevel_set import SIDES, Flank, Member
@@ -51,8 +52,7 @@ def flank_target(
     order = np.argsort(place)
     order = order[kept[order]]
     at = place[order]
-    margin = float(measured.header["margins"].split(",")[0])
-    nominal = solve_flank(member, name, flank, blank_grid(member, rows, columns, margin))
+    nominal = solve_flank(member, name, flank, file_grid(measured, member, flank, tooth))
     deviation = points.deviation[order]
     _check_places(flank, points.point[order], deviation, nominal, at, int(points.tooth[0]) / member.teeth, columns)
     used = np.zeros(rows * columns, dtype=bool)

@@ -12,10 +12,11 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.flank import Grid, blank_grid, solve_flank
+from gearmath.bevel.flank import Grid, solve_flank
 from gearmath.bevel.kernels import kernel
 from gearmath.machine.probing import probe_height, tip_positions
 from gearmath.quality.covariance import Covariance
+from gearmath.quality.places import file_grid
 from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration
@@ -64,14 +65,14 @@ def touch_covariance(
 
     Raises ComputationError where the nominal flank has no point at a place of the grid.
     """
-    rows, columns = grid_shape(file)
-    grid = blank_grid(member, rows, columns, float(file.header["margins"].split(",")[0]))
-    place = file.row * columns + file.col
+    place = file.row * grid_shape(file)[1] + file.col
     slope = np.empty((len(file), 6))
     for flank in FLANKS:
         here = file.flank == flank
         if here.any():
-            slope[here] = sensitivities(member, name, flank, grid, machine, calibration)[place[here]]
+            slope[here] = sensitivities(member, name, flank, file_grid(file, member, flank), machine, calibration)[
+                place[here]
+            ]
     linear = np.linalg.norm(slope[:, :3], axis=1) * how.position_um / 1000
     shared = [
         ("probe calibration", np.full(len(file), how.pretravel_um / 1000), file.flank == FLANKS[0]),

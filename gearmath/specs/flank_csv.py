@@ -27,6 +27,8 @@ HEADER = (
 #: true where the deviation at the reference point of each flank was set to zero by turning, so that thickness is lost.
 COMMON = "common"
 
+#: Margins of a file whose points have their own places, as other measuring machines take them.
+OWN = "own"
 _MARGIN = r"(0(\.[0-4]\d*)?|\d(\.\d+)?e-\d\d)"  # as Python prints it: 0.1, 0, 1e-05
 #: What these header values must look like: pattern, and the words that say it.
 _HEADER_VALUES = {
@@ -34,7 +36,7 @@ _HEADER_VALUES = {
     "unit": (r"mm", "must be mm"),
     "member_teeth": (r"[1-9]\d{0,2}", "must be a whole number from 1 to 999"),
     "grid": (r"([2-9]|[1-9]\d{1,5})x([2-9]|[1-9]\d{1,5})", "must read like 5x9, two or more each way"),
-    "margins": (rf"{_MARGIN},{_MARGIN}", "must read like 0.1,0.1, less than 0.5"),
+    "margins": (rf"{OWN}|{_MARGIN},{_MARGIN}", "must read like 0.1,0.1, less than 0.5, or own"),
     "reference_point": (r"\d{1,6},\d{1,6}", "must read like 2,4"),
     "phase_zeroed": (
         rf"(?i:false|true|{COMMON})",

@@ -1,0 +1,132 @@
+"""``gearmath points``: points of another measuring machine, as plain text, to a measured flank file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import click
+
+from gearmath.cli.common import JSON, MEMBER, about, bar, echo_json, output
+from gearmath.errors import InputError
+
+_T = TypeVar("_T")
+
+
+@click.command()
+@click.argument("texts", type=click.Path(path_type=Path), metavar="POINTS.txt ...", nargs=-1, required=True)
+@click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
+@MEMBER
+@click.option(
+    "--flank", "sides", type=click.Choice(["concave", "convex"]), multiple=True, required=True,
+    help="Flank of the points: once for all files, or once for each, in their order.",
+)  # fmt: skip
+@click.option(
+    "--tooth", "teeth", type=click.IntRange(min=0), multiple=True, default=(0,), show_default=True,
+    help="Tooth of the points, counted from 0: once for all files, or once for each.",
+)  # fmt: skip
+@click.option("--unit", type=click.Choice(["mm", "inch"]), default="mm", show_default=True, help="Unit of the files.")
+@click.option(
+    "--axis", type=click.Choice(["+x", "-x", "+y", "-y", "+z", "-z"]), default="+z", show_default=True,
+    help="Direction of the work axis in the files, from the pitch apex to the back.",
+)  # fmt: skip
+@click.option(
+    "--apex-offset", type=float, default=0.0, show_default=True,
+    help="Where the origin of the files lies on the axis, from the pitch apex towards the back, in mm.",
+)  # fmt: skip
+@click.option(
+    "--tip-radius", type=float, default=0.0, show_default=True,
+    help="Radius of the probe tip in mm, where the points are centers of the tip and not contact points.",
+)  # fmt: skip
+@click.option(
+    "--phase", type=click.Choice(["common", "each", "kept"]), default="common", show_default=True,
+    help="Rotation about the axis: found for all files at once, for each by itself, or kept as it is.",
+)  # fmt: skip
+@JSON
+@output("flank CSV")
+def points(
+    texts: Sequence[Path], gear_set: str, member: str, sides: Sequence[str], teeth: Sequence[int], unit: str, axis: str,
+    apex_offset: float, tip_radius: float, phase: str, as_json: bool, target: Path,
+) -> None:  # fmt: skip
+    """Points of another measuring machine, as plain text, to a measured flank file.
+
+    Each file holds one flank of one tooth: rows 'x y z' or 'x y z i j k' in any order, with any header lines; columns
+    parted by blanks, tabs, commas or semicolons (docs/files.md). The rotation about the axis is found, and said;
+    deviations are those along the normals of the nominal flank. The result is read by evaluate, compensate and report.
+    """
+    from gearmath.quality.foreign import foreign_file
+    from gearmath.quality.points import Frame, Part
+    from gearmath.specs.bevel_set import load_bevel_set
+    from gearmath.specs.flank_csv import write_flank_csv
+    from gearmath.specs.point_text import read_point_text
+    from gearmath.specs.toml import find
+
+    sides, teeth = _for_each(texts, sides, "--flank"), _for_each(texts, teeth, "--tooth")
+    _check_lengths(apex_offset, tip_radius)
+    loaded = load_bevel_set(find(gear_set))
+    _check_parts(texts, sides, teeth, loaded.member(member).teeth)
+    read = [read_point_text(path, unit) for path in texts]
+    parts = [
+        Part(str(path), side, tooth, text.point, text.normal)
+        for path, side, tooth, text in zip(texts, sides, teeth, read, strict=True)
+    ]
+    with bar(2 * len(parts), "file") as progress:
+        found = foreign_file(parts, Frame(axis, apex_offset, tip_radius), loaded, member, phase, progress)  # type: ignore[arg-type]
+    write_flank_csv(target, found.file)
+    header = found.file.header
+    remarks = [f"{text.path}: {remark}" for text in read for remark in text.remarks] + list(found.remarks)
+    if as_json:
+        turned = [
+            {
+                "file": str(path),
+                "flank": side,
+                "tooth": tooth,
+                "points": len(text.point),
+                "turned_deg": math.degrees(turn),
+            }
+            for path, side, tooth, text, turn in zip(texts, sides, teeth, read, found.turns, strict=True)
+        ]
+        kept = {key: header[key] for key in ("grid", "margins", "phase_zeroed")}
+        echo_json({"member": member, **kept, "files": turned, "remarks": remarks})
+        return
+    for path, side, tooth, turn in zip(texts, sides, teeth, found.turns, strict=True):
+        click.echo(f"{path}: {side} flank of tooth {tooth}, turned by {math.degrees(turn):.6f} degrees")
+    for remark in remarks:
+        click.echo(remark)
+    zeroed = "set to zero at the reference point" if header["phase_zeroed"] == "true" else "as found, thickness stays"
+    if phase == "kept":
+        zeroed = "kept as in the files"
+    click.echo(f"grid {header['grid']}, margins {header['margins']}; rotation {zeroed}")
+    click.echo(f"{target}: {len(found.file)} points of the {member}")
+
+
+def _for_each(texts: Sequence[Path], given: Sequence[_T], option: str) -> Sequence[_T]:
+    """One value for every file."""
+    if len(given) == 1:
+        return list(given) * len(texts)
+    if len(given) != len(texts):
+        raise InputError(f"{option}: given {len(given)} times for {len(texts)} files: once, or once for each")
+    return given
+
+
+def _check_lengths(apex_offset: float, tip_radius: float) -> None:
+    if not abs(apex_offset) <= 2000:
+        raise InputError(f"--apex-offset {apex_offset:g}: must lie between -2000 and 2000 mm")
+    if not 0 <= tip_radius <= 10:
+        raise InputError(f"--tip-radius {tip_radius:g}: must lie between 0 and 10 mm")
+
+
+def _check_parts(texts: Sequence[Path], sides: Sequence[str], teeth: Sequence[int], count: int) -> None:
+    seen: dict[tuple[str, int], Path] = {}
+    for path, side, tooth in zip(texts, sides, teeth, strict=True):
+        with about(path):
+            if tooth >= count:
+                raise InputError(f"--tooth {tooth}: the member has teeth 0 to {count - 1}")
+            if (side, tooth) in seen:
+                raise InputError(
+                    f"is taken for the {side} flank of tooth {tooth}, as is {seen[side, tooth]}: give --flank and "
+                    "--tooth once for each file"
+                )
+        seen[side, tooth] = path

@@ -1,0 +1,236 @@
+"""Plain text of points from another measuring machine: ``x y z`` or ``x y z i j k`` a row, in the usual layouts.
+
+Read are blanks, tabs, commas or semicolons between the columns; decimal points or decimal commas; exponents with E or
+D; header lines, comments and blank lines; units behind and axis letters before a number; point numbers and texts before
+the coordinates; a line of column names, which then decides; UTF-8, UTF-16 and Latin-1. Other columns are left aside,
+and that is said. A row that has not the numbers of the others is refused: it may have been cut in half.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from gearmath.errors import InputError
+
+#: Length of the units a file may be in. [mm]
+UNITS = {"mm": 1.0, "inch": 25.4}
+#: More points than any flank is measured at, and a larger coordinate than any machine has. [in the file's unit]
+MOST_POINTS, _LARGEST = 20_000, 1e5
+
+_NUMBER = re.compile(
+    r"(?:(?:[XYZIJKUVW]|N[XYZ])\s*[=:]?\s*)?([+-]?(?:\d+\.?\d*|\.\d+)(?:[DEde][Xx]?[+-]?\d{1,3})?|[+-]?(?:nan|inf)\w*)"
+    r'\s*(?:mm|inch|in|")?',
+    re.IGNORECASE | re.ASCII,
+)
+_COMMENT = re.compile(r"#|!|%|//|\$|'")
+_AXES = "xyz"
+_ACTUAL = r"(?:act|actual|ist|meas|measured|mess|m)"
+_COORDINATE = re.compile(rf"([xyz])[ _.-]*{_ACTUAL}?|{_ACTUAL}[ _.-]+([xyz])")
+_MEASURED = re.compile(rf"([xyz])[ _.-]*{_ACTUAL}|{_ACTUAL}[ _.-]+([xyz])")
+_NORMAL = re.compile(r"(?:n|norm|normal)[ _.-]*([xyz])|([ijk])|([uvw])")
+#: Rounding of normals, and how near to each other two sets of points of one file would be. [file's unit]
+_UNIT_LENGTH, _NEAR = 0.01, 5.0
+
+
+@dataclass(frozen=True)
+class PointText:
+    """Points (n,3) [mm] in the axes of the file, normals (n,3) or None, line numbers (n,), and what was left aside."""
+
+    path: Path
+    point: np.ndarray
+    normal: np.ndarray | None
+    line: np.ndarray
+    remarks: tuple[str, ...]
+
+
+def read_point_text(path: Path, unit: str = "mm") -> PointText:
+    """The points of a text. Raises InputError naming file, line, value and what is wrong with it."""
+    lines = [line.replace("\N{MINUS SIGN}", "-").replace("\xa0", " ").strip() for line in _text(path).splitlines()]
+    split, decimal_comma = _separator(lines)
+    cells = {number: _cells(line, split, decimal_comma) for number, line in enumerate(lines, 1) if line}
+    rows, names, remarks = _rows(path, lines, cells, split)
+    values = np.array([_finite(path, number, cells[number], columns) for number, columns in rows.items()])
+    texts = sum(cell is None for cell in cells[next(iter(rows))])
+    point, normal, left = _columns(path, values, names)
+    remarks += [f"{left + texts} more columns are not used"] if left + texts else []
+    same = _first_of_same(point)
+    if not same.all():
+        remarks.append(f"{int((~same).sum())} points are there twice and count once")
+        point, normal = point[same], None if normal is None else normal[same]
+    return PointText(path, point * UNITS[unit], normal, np.array(list(rows))[same], tuple(remarks))
+
+
+def _text(path: Path) -> str:
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    if content[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        encoding = "utf-16"
+    elif b"\0" in content:
+        raise InputError(f"{path}: is no text file: byte {content.index(0)} is zero")
+    else:
+        encoding = "utf-8-sig"
+    try:
+        return content.decode(encoding)
+    except UnicodeDecodeError:
+        return content.decode("latin-1")  # header lines of older programs; numbers are the same in all of them
+
+
+def _separator(lines: Sequence[str]) -> tuple[str, bool]:
+    """What stands between the columns, as a pattern, and whether commas are decimal."""
+    rows = [line for line in lines if len(re.findall(r"\d+", line)) >= 3 and not re.search(r"[A-Za-z]{4}", line)]
+    if any(";" in row for row in rows):
+        split = ";"
+    elif any("\t" in row for row in rows):
+        split = "\t"
+    else:
+        split = ""
+    points, commas = (sum(bool(re.search(rf"\d{mark}\d", row)) for row in rows) for mark in (r"\.", ","))
+    if split:
+        return rf"\s*{split}\s*", commas > points
+    if not any("," in row for row in rows):
+        return r"\s+", False
+    # blanks alone between the columns: 1,5 2,5 3,5
+    decimal = points < commas and sum(len(re.findall(r"\d,\d+\s+[-+\d]", row)) >= 2 for row in rows) > len(rows) / 2
+    return (r"\s+", True) if decimal else (r"\s*,\s*", False)
+
+
+def _cells(line: str, split: str, decimal_comma: bool) -> list[float | None]:
+    """The cells of a line: a number, or None for any other text."""
+    if _COMMENT.match(line):
+        return []
+    found: list[float | None] = []
+    for cell in re.split(split, line.strip('"')):
+        whole = _number(cell, decimal_comma)
+        parts = [
+            _number(part, decimal_comma) for part in re.split(r"[\s,;]+" if not decimal_comma else r"[\s;]+", cell)
+        ]
+        found += parts if whole is None and sum(part is not None for part in parts) > 1 else [whole]
+    return found
+
+
+def _number(cell: str, decimal_comma: bool) -> float | None:
+    text = cell.strip().strip('"')
+    match = _NUMBER.fullmatch(text.replace(",", ".") if decimal_comma else text)
+    if match is None:
+        return None
+    if re.match(r"[+-]?(nan|inf)", match[1], re.IGNORECASE):
+        return np.nan
+    return float(re.sub(r"[DEde][Xx]?", "e", match[1]))
+
+
+def _rows(
+    path: Path, lines: Sequence[str], cells: dict[int, list[float | None]], split: str
+) -> tuple[dict[int, tuple[int, ...]], dict[int, str], list[str]]:
+    """Line numbers of the rows with the columns of their numbers, the names above them by column, and remarks."""
+    shape = {number: tuple(k for k, cell in enumerate(row) if cell is not None) for number, row in cells.items()}
+    counts = Counter(columns for columns in shape.values() if len(columns) >= 3)
+    if not counts:
+        raise InputError(f"{path}: holds no row of three numbers, x y z")
+    columns = max(counts, key=lambda one: counts[one])
+    rows = {number: one for number, one in shape.items() if one == columns}
+    remarks = []
+    whole = {number: all(float(cells[number][k] or 0.0).is_integer() for k in columns) for number in rows}
+    for number in list(rows):  # counts of points, rows and columns may look like a row of coordinates
+        if not whole[number] or all(whole.values()):
+            break
+        del rows[number]
+        remarks.append(f"line {number} is taken for a header: it holds whole numbers only")
+    first = next(iter(rows))
+    for number, one in shape.items():
+        begins_with_text = not re.match(r"[-+.\d]", lines[number - 1])
+        if number > first and one != columns and not (begins_with_text and len(one) < 3):
+            raise InputError(
+                f"{path}, line {number}: has {len(one)} numbers, the rows above have {len(columns)}: "
+                f"{lines[number - 1][:40]!r}"
+            )
+    if len(rows) > MOST_POINTS:
+        raise InputError(f"{path}: holds {len(rows)} points, the limit is {MOST_POINTS}")
+    return rows, _names(lines[: first - 1], split, columns, len(cells[first])), remarks
+
+
+def _names(above: Sequence[str], split: str, columns: tuple[int, ...], width: int) -> dict[int, str]:
+    """Names of the columns of numbers (0 ...), out of the last line above the rows that has one for every cell."""
+    for line in reversed(above):
+        text = re.sub(r"\[.*?\]|\(.*?\)", "", line.lstrip("#!%$'/ ")).strip()
+        found = [re.sub(r"[ _](mm|inch|in)$", "", name.strip(' "').lower()) for name in re.split(split, text)]
+        if len(found) == width and set(_AXES) <= {_of(_COORDINATE, name) for name in found}:
+            return {k: found[column] for k, column in enumerate(columns)}
+    return {}
+
+
+def _of(pattern: re.Pattern[str], name: str) -> str | None:
+    match = pattern.fullmatch(name)
+    return next((group for group in match.groups() if group), None) if match else None
+
+
+def _finite(path: Path, number: int, row: list[float | None], columns: tuple[int, ...]) -> list[float]:
+    values = [float(row[k]) for k in columns]  # type: ignore[arg-type]
+    for value in values:
+        if not abs(value) <= _LARGEST:
+            raise InputError(f"{path}, line {number}: {value:g}: must be a number, at most {_LARGEST:g} in size")
+    return values
+
+
+def _columns(path: Path, values: np.ndarray, names: dict[int, str]) -> tuple[np.ndarray, np.ndarray | None, int]:
+    """Points, normals, and how many columns of numbers are neither."""
+    at, normal_at = _named(names) if names else _placed(path, values)
+    left = values.shape[1] - 3 - (0 if normal_at is None else 3)
+    if normal_at is None:
+        return values[:, at], None, left
+    normal = values[:, normal_at]
+    length = np.linalg.norm(normal, axis=1)
+    if not (np.abs(length - 1) < _UNIT_LENGTH).all():
+        worst = float(length[np.argmax(np.abs(length - 1))])
+        raise InputError(f"{path}: a normal has length {worst:.4f}: must be 1")
+    return values[:, at], normal / length[:, None], left
+
+
+def _named(names: dict[int, str]) -> tuple[list[int], list[int] | None]:
+    def find(pattern: re.Pattern[str]) -> dict[str, int]:
+        return {axis: k for k, name in reversed(names.items()) if (axis := _of(pattern, name))}
+
+    points = find(_COORDINATE) | find(_MEASURED)
+    normals = find(_NORMAL)
+    for axes in (_AXES, "ijk", "uvw"):
+        if set(axes) <= set(normals):
+            return [points[axis] for axis in _AXES], [normals[axis] for axis in axes]
+    return [points[axis] for axis in _AXES], None
+
+
+def _placed(path: Path, values: np.ndarray) -> tuple[list[int], list[int] | None]:
+    """Columns without names: numbers of points first, then x y z, then perhaps normals, or the other way round."""
+    count, first = values.shape[1], 0
+    while count - first > 3 and (values[:, first] == np.round(values[:, first])).all():
+        first += 1
+    at = list(range(first, first + 3))
+    if count - first < 6:
+        return at, None
+    following = list(range(first + 3, first + 6))
+    unit, unit_after = (
+        bool((np.abs(np.linalg.norm(values[:, each], axis=1) - 1) < _UNIT_LENGTH).all()) for each in (at, following)
+    )
+    if unit_after:
+        return at, following
+    if unit:
+        return following, at
+    if (np.abs(values[:, at] - values[:, following]) < _NEAR).all():
+        raise InputError(
+            f"{path}: columns {first + 4} to {first + 6} look like points too, nominal or measured: name the measured "
+            "ones x y z in a line above the rows"
+        )
+    return at, None
+
+
+def _first_of_same(point: np.ndarray) -> np.ndarray:
+    _, first = np.unique(point, axis=0, return_index=True)
+    keep = np.zeros(len(point), dtype=bool)
+    keep[first] = True
+    return keep
