@@ -117,21 +117,21 @@ class _Watch:
         found: dict[tuple[bytes, bool], _Block] = {}
         for k in range(1, len(path.axes)):
             first, last = path.axes[k - 1], path.axes[k]
-            touching = _touches(first, last, bool(path.measuring[k])) or (
-                k > 1 and _touches(path.axes[k - 2], first, bool(path.measuring[k - 1]))
+            touching = (path.measuring[k] and is_touch(first, last)) or (
+                k > 1 and path.measuring[k - 1] and is_touch(path.axes[k - 2], first)
             )
             start, way = first.copy(), last - first
             start[3] %= self.body.pitch
-            key = np.round(np.concatenate([start, way]) * _ALIKE).astype(int).tobytes(), touching
+            key = np.round(np.concatenate([start, way]) * _ALIKE).astype(int).tobytes(), bool(touching)
             if key not in found:
                 steps = 2 + int(max(np.linalg.norm(way[:3]) / _STEP, np.abs(way[3:]).max() / _TURN))
                 poses = first + np.linspace(0.0, 1.0, steps)[:, None] * way
-                found[key] = _Block(poses, touching, int(path.line[k]))
+                found[key] = _Block(poses, bool(touching), int(path.line[k]))
         return list(found.values())
 
     def probe(self, start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
         """Where the tip meets the body on its way; straight down into the space it must meet nothing, and goes on."""
-        if not _touches(start, end, measuring=True):
+        if not is_touch(start, end):
             return None
         share = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(end[:3] - start[:3]) / _TOUCH_STEP))
         away = self._from_teeth(self._tip(start + share[:, None] * (end - start))[0]) - self.calibration.tip_radius
@@ -188,9 +188,9 @@ class _Watch:
         return float((outside + np.minimum(np.maximum(below, beside), 0.0)).min())
 
 
-def _touches(start: np.ndarray, end: np.ndarray, measuring: bool) -> bool:
-    """Whether a block is a touch, and not the guarded way straight down into a space."""
-    return measuring and float(np.abs(end - start)[:2].max()) > _SAME
+def is_touch(start: np.ndarray, end: np.ndarray) -> bool:
+    """Whether a MEAS block between two positions (5,) is a touch, and not the way straight down into a space."""
+    return float(np.abs(end - start)[:2].max()) > _SAME
 
 
 def _every(count: int, step: int) -> np.ndarray:

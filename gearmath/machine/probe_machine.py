@@ -15,10 +15,11 @@ from gearmath.machine.collision import work_profiles
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.probe_space import SpaceBody
 from gearmath.machine.probing import probe_height
+from gearmath.machine.simulation import mounted
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
-from gearmath.specs.simulated_machine import Fixture
+from gearmath.specs.simulated_machine import Fixture, Mounting
 
 #: Steps in which the way of the tip is looked over before the touch is computed, and how near is near. [mm]
 _STEP, _NEAR = 0.1, 0.15
@@ -30,8 +31,8 @@ _STYLUS_STEP = 1.0
 #: Steps along a block in which hub, shank and fixture are looked for. [mm]
 _WORK_STEP = 2.0
 
-#: Metal left on a flank of a tooth [mm].
-Stock = Callable[[str, int], float]
+#: Metal left on a flank of a tooth at a place (z_w, r_w) [mm].
+Stock = Callable[[str, int, np.ndarray], float]
 
 
 @dataclass(frozen=True)
@@ -46,14 +47,19 @@ class Clearances:
 class ProbeMachine:
     """The machine with a member on its table and a probe in its spindle: what :func:`run_program` takes as a probe.
 
-    ``stock`` is the metal that flank and tooth have too much. ``touches`` keeps the centres of the tip in the work.
+    ``stock`` is the metal that flank and tooth have too much, at least ``lowest``; its slope turns the normal of a
+    flank, which is left out: at 2 um per mm it would move a touch by some nm. ``seat`` says how the member sits on the
+    work axis. ``touches`` keeps the centres of the tip in the member.
     """
 
     def __init__(
         self, member: Member, name: str, machine: MillingMachine, calibration: Calibration,
-        stock: Stock = lambda flank, tooth: 0.0,
+        stock: Stock = lambda flank, tooth, place: 0.0, lowest: float = 0.0, seat: Mounting | None = None,
     ) -> None:  # fmt: skip
         self.member, self.calibration, self.stock = member, calibration, stock
+        self._deepest = BODY_ERROR - min(lowest, 0.0)
+        here, axes = mounted(np.zeros((3, 3)), np.eye(3), seat or Mounting())
+        self._moved, self._tilted = here[0], axes
         self.body = SpaceBody(member, name)
         self.touches: list[np.ndarray] = []
         self._height, self._pivot = probe_height(machine, calibration), machine.pivot
@@ -61,6 +67,8 @@ class ProbeMachine:
     def __call__(self, start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
         """Where the probe triggers between two positions X Y Z A B (5,), A and B standing still; None if nowhere."""
         (first, last), _ = self._tip(np.stack([start, end]))
+        # the member's axes are the rows of _tilted, in the frame that turns with A
+        first, last = (self._tilted @ (point - self._moved) for point in (first, last))
         tooth = self.body.tooth_of(last)
         first, last = (turned(point, -tooth * self.body.pitch) for point in (first, last))
         share = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(last - first) / _STEP))
@@ -69,7 +77,7 @@ class ProbeMachine:
         if not len(near):
             return None
         found = [self._share(flank, tooth, first, last, share[near[0]]) for flank in FLANKS]
-        dug = np.flatnonzero(away < -BODY_ERROR)
+        dug = np.flatnonzero(away < -self._deepest)
         touched = min((*(part for part in found if part is not None), *share[dug[:1]]), default=None)
         if touched is None:
             return None
@@ -86,12 +94,12 @@ class ProbeMachine:
 
         The line meets the plane that lies one tip radius above the tangent plane; the place below gives the next one.
         """
-        radius = self.calibration.tip_radius + self.stock(flank, tooth)
         way = last - first
         foot = first + share * way
         for _ in range(_ROUNDS):
-            place = Grid(foot[None, 2:], np.hypot(foot[None, :1], foot[None, 1:2]))
-            points, residual = nominal_points(self.member, flank, place)
+            place = np.array([foot[2], np.hypot(foot[0], foot[1])])
+            radius = self.calibration.tip_radius + self.stock(flank, tooth, place)
+            points, residual = nominal_points(self.member, flank, Grid(place[None, :1], place[None, 1:]))
             point, normal = points.point[0], points.normal[0]
             approach = float(way @ normal)
             if not (residual[0] < _CONVERGED * 100 and approach < 0.0):

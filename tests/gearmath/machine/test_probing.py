@@ -219,7 +219,7 @@ def test_missing_metal_and_metal_in_the_way_stop_the_program_after_a_retract(gea
     for amount, alarm, message in (
         (-1.0, NOTHING_TOUCHED, "touched nothing"), (5.0, TOUCHED_TOO_EARLY, "touched something on the way in"),
     ):  # fmt: skip
-        there = ProbeMachine(gear_set.member("gear"), "gear", MACHINE, PROBE, lambda flank, tooth, a=amount: a)
+        there = ProbeMachine(gear_set.member("gear"), "gear", MACHINE, PROBE, lambda flank, tooth, place, a=amount: a)
         text = probing_program(gear_set, "gear", MACHINE, PROBE, "PROBE", topography=())
         there.body.point = there.body.point + amount * there.body.normal
         done = run_program(text, "P", there)

@@ -1,0 +1,105 @@
+"""``gearmath probe``: a probing or calibration program run on the machine model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from gearmath.cli.common import MACHINE, about, bar, output
+from gearmath.cli.probe import CALIBRATION
+from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    from gearmath.machine.control import Probe
+    from gearmath.machine.probe_machine import ProbeMachine
+    from gearmath.specs.calibration import Calibration
+    from gearmath.specs.milling_machine import MillingMachine
+    from gearmath.specs.simulated_machine import SimulatedMachine
+
+
+@click.command()
+@click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF")
+@click.option("--set", "gear_set", help="The gear set of the member that is probed.")
+@click.option("--member", type=click.Choice(["pinion", "gear"]), help="The member that is probed.")
+@MACHINE
+@CALIBRATION
+@click.option(
+    "--errors", help="What is wrong with the machine, the clamping and the probe: a file, or a bundled one such as "
+    "simulated_shop.toml.",
+)  # fmt: skip
+@click.option(
+    "--measured", type=click.Path(path_type=Path), metavar="M.csv",
+    help="Flank CSV of the metal that is probed, such as 'gearmath mill' writes.  [default: nominal flanks]",
+)  # fmt: skip
+@click.option("--run", type=click.IntRange(1, 99_999), default=1, show_default=True,
+              help="Number of the run in the file; each has its own noise.")  # fmt: skip
+@output("raw touches, CSV")
+def probe(
+    program: Path, gear_set: str | None, member: str | None, machine: str, calibration: str, errors: str | None,
+    measured: Path | None, run: int, target: Path,
+) -> None:  # fmt: skip
+    """Run a program that 'gearmath nc probe' or 'gearmath nc calibrate' wrote, and write the raw touches.
+
+    The tip of --calibration is moved as the text says, against the flanks of a member or, in a calibration program,
+    against ring and spheres; the touches are those that the program writes on the control. With --measured the flanks
+    are as that file says: splines between the points of its grids, teeth without a grid as the nearest one that has
+    one, turned to their reference point. With --errors axes, probe and work err as the file says: [axes], [probe], and
+    the clamping and drift of [measuring].
+
+    'gearmath touches' and 'gearmath calibrate' read what is written here.
+    """
+    from gearmath.files import read_text, write_text
+    from gearmath.machine.artefacts import Artefacts
+    from gearmath.machine.probe_run import run_touches, touch_count, touches_artefacts
+    from gearmath.specs.calibration import load_calibration
+    from gearmath.specs.milling_machine import load_milling_machine
+    from gearmath.specs.simulated_machine import load_simulated_machine
+    from gearmath.specs.toml import find
+
+    text = read_text(program)
+    milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
+    shop = load_simulated_machine(find(errors)) if errors else None
+    there: Probe
+    count: int | None
+    if touches_artefacts(text):
+        if measured is not None:
+            raise InputError(f"--measured {measured}: {program} touches ring and spheres, not a member")
+        count, there = None, Artefacts(milling_machine, known)
+    else:
+        if gear_set is None or member is None:
+            missing = "--set" if gear_set is None else "--member"
+            raise InputError(f"{missing} is missing: {program} probes a member")
+        there = _member_machine(gear_set, member, measured, milling_machine, known, shop)
+        count = touch_count(text, str(program))
+    blocks = 2 * count if count is not None else text.count("MEAS=1")
+    with bar(blocks, "block") as progress:
+        raw = run_touches(text, str(program), there, shop, count, run, progress)
+    write_text(target, raw)
+    click.echo(f"{target}: {len(raw.splitlines()) - 1} touches of run {run}")
+
+
+def _member_machine(
+    gear_set: str, member: str, measured: Path | None, machine: MillingMachine, calibration: Calibration,
+    shop: SimulatedMachine | None,
+) -> ProbeMachine:  # fmt: skip
+    """The machine with the member on it, nominal or as ``measured`` says, clamped as the shop does."""
+    from gearmath.machine.milled_surface import MilledSurface
+    from gearmath.machine.probe_machine import ProbeMachine
+    from gearmath.quality.correction import check_belongs
+    from gearmath.quality.nominal import check_points, nominal_rows
+    from gearmath.specs.bevel_set import load_bevel_set
+    from gearmath.specs.flank_csv import read_flank_csv
+    from gearmath.specs.toml import find
+
+    spec = load_bevel_set(find(gear_set)).member(member)
+    seat = shop.measuring_clamp(member) if shop else None
+    if measured is None:
+        return ProbeMachine(spec, member, machine, calibration, seat=seat)
+    file = read_flank_csv(measured)
+    with about(measured):
+        check_belongs(spec, member, file)
+        check_points(file, nominal_rows(file, spec, member))
+        metal = MilledSurface(file, spec, member, str(measured))
+    return ProbeMachine(spec, member, machine, calibration, metal, metal.lowest, seat)
