@@ -81,8 +81,8 @@ def check_blanks(pinion: Member, gear: Member, shaft_angle: float) -> None:
     members = {"pinion": pinion, "gear": gear}
     if pinion.teeth > gear.teeth:
         raise InputError(
-            f"pinion.teeth = {pinion.teeth}: the pinion is the member with fewer teeth, it must be at most gear.teeth = "
-            f"{gear.teeth}"
+            f"pinion.teeth = {pinion.teeth}: the pinion is the member with fewer teeth, it must be at most gear.teeth "
+            f"= {gear.teeth}"
         )
     _check_cones(pinion, gear, shaft_angle)
     for key, share in (("mean_cone_distance", _PRINTED_LENGTH), ("face_width", _WIDER_FACE)):
