@@ -12,7 +12,7 @@ from statistics import median
 
 from derivations import crown_gear
 from gearmath.bevel.blank import evaluate
-from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member, Settings
 
 #: Spiral angle where none of the flanks of the set tells it. [rad]
 _SPIRAL = math.radians(35)
@@ -35,15 +35,16 @@ class Misfit(Exception):
 
 @dataclass(frozen=True)
 class Suspect:
-    """A setting, its value, what the crown gear has instead (mm, degrees, as in the file), and how far apart [mm]."""
+    """A setting, its value and what it should be about (mm, degrees, as in the file), and how far apart [mm]."""
 
     key: str
     value: float
     expected: float
     apart: float
+    source: str = "crown gear"
 
     def __str__(self) -> str:
-        return f"{self.key} = {self.value:.6g} (crown gear: {self.expected:.4g})"
+        return f"{self.key} = {self.value:.6g} ({self.source}: {self.expected:.4g})"
 
 
 def farthest(members: dict[str, Member], where: Iterable[tuple[str, str]], spiral: float | None) -> Suspect:
@@ -52,22 +53,39 @@ def farthest(members: dict[str, Member], where: Iterable[tuple[str, str]], spira
     The crown gear takes its cutter from all flanks of the set (the middle ones of point radius and blade angle), and
     its ``spiral`` angle [rad] from those that can be solved.
     """
-    suspects = [
-        suspect
-        for name, flank in where
-        for suspect in _suspects(members, name, flank, _SPIRAL if spiral is None else spiral)
-    ]
+    return max((_worst(members, name, flank, spiral) for name, flank in where), key=lambda suspect: suspect.apart)
+
+
+def _worst(members: dict[str, Member], name: str, flank: str, spiral: float | None) -> Suspect:
+    """The worst setting of one flank; in face hobbing the sign of the indexing, where the other one explains more."""
+    member, angle = members[name], _SPIRAL if spiral is None else spiral
+
+    def worst(sign: int) -> Suspect:
+        expected = _crown_gear(members, member, flank, angle, sign)
+        suspects = _suspects(member, f"{name}.{flank}", member.flank(flank).nominal, expected, "crown gear")
+        return max(suspects, key=lambda suspect: suspect.apart)
+
+    sign = member.indexing_sign
+    found, other = worst(sign), worst(-sign)
+    if other.apart < found.apart / 2:
+        return Suspect(f"{name}.indexing_sign", sign, -sign, found.apart)
+    return found
+
+
+def most_changed(member: Member, name: str, flank: str) -> Suspect:
+    """The setting of a corrected flank that is farthest from its nominal value."""
+    spec = member.flank(flank)
+    nominal = {key: getattr(spec.nominal, key) for key in SETTINGS}
+    suspects = _suspects(member, f"{name}.{flank}", spec, nominal, "design")
     return max(suspects, key=lambda suspect: suspect.apart)
 
 
-def _suspects(members: dict[str, Member], name: str, flank: str, spiral: float) -> list[Suspect]:
-    member = members[name]
-    spec, expected = member.flank(flank).nominal, _crown_gear(members, member, flank, spiral)
-    R = member.blank.mean_cone_distance
-    degree = math.radians(1)
+def _suspects(member: Member, table: str, spec: Settings, expected: dict[str, float], source: str) -> list[Suspect]:
+    R, degree = member.blank.mean_cone_distance, math.radians(1)
     arms = {
         "cradle_angle": R * degree, "cutter_tilt": R * degree, "machine_root_angle": R * degree,
         "cutter_swivel": R * degree * abs(math.sin(spec.cutter_tilt * degree)),
+        "work_rotation_offset": R * degree * math.sin(member.blank.pitch_angle * degree),
         "blade_pressure_angle": _BLADE_ARM * R * degree, "ratio_of_roll": _ROLL_ARM * R / spec.ratio_of_roll,
     }  # fmt: skip
     suspects = []
@@ -76,17 +94,22 @@ def _suspects(members: dict[str, Member], name: str, flank: str, spiral: float) 
         if key in ("cradle_angle", "cutter_swivel"):
             off = math.remainder(off, 360)
         if math.isfinite(off):
-            suspects.append(Suspect(f"{name}.{flank}.{key}", getattr(spec, key), wanted, abs(off) * arms.get(key, 1.0)))
+            apart = abs(off) * arms.get(key, 1.0)
+            suspects.append(Suspect(f"{table}.{key}", getattr(spec, key), wanted, apart, source))
     return suspects
 
 
-def _crown_gear(members: dict[str, Member], member: Member, flank: str, spiral: float) -> dict[str, float]:
+def _crown_gear(
+    members: dict[str, Member], member: Member, flank: str, spiral: float, indexing_sign: int
+) -> dict[str, float]:
     """The settings of the crown gear by name, mm and degrees as in a file."""
     spec, blank = member.flank(flank).nominal, member.blank
     flanks = [each.flank(name).nominal for each in members.values() for name in FLANKS]
     radius, alpha = (
         median(getattr(one, key) for one in flanks) for key in ("blade_point_radius", "blade_pressure_angle")
     )
+    # blades of one cutter stand on both sides of its radius, by half the point width
+    beside = spec.blade_point_radius - _own_radius(member, flank)
     hand = 1 if member.hand == "right" else -1
     # of the mirrored right-hand member, whose swivel is 180 degrees less that of the left-hand one
     swivel = spec.cutter_swivel if hand == 1 else 180 - spec.cutter_swivel
@@ -99,7 +122,7 @@ def _crown_gear(members: dict[str, Member], member: Member, flank: str, spiral: 
     values = angles | {
         "hand_sign": hand, "side": SIDES[flank], "cutter_radius": radius, "mean_dedendum": blank.mean_dedendum,
         "mean_cone_distance": blank.mean_cone_distance,
-        "index_ratio": member.indexing_sign * (member.blade_groups or 0) / member.teeth,
+        "index_ratio": indexing_sign * (member.blade_groups or 0) / member.teeth,
     }  # fmt: skip
     make = crown_gear.crown_gear_space if member.cutting == "completing" else crown_gear.crown_gear_flank
     found = evaluate(make, values)
@@ -111,7 +134,7 @@ def _crown_gear(members: dict[str, Member], member: Member, flank: str, spiral: 
         "sliding_base": found["sliding_base"],
         "machine_center_to_crossing_point": 0.0,
         "machine_root_angle": blank.root_angle,
-        "blade_point_radius": radius,
+        "blade_point_radius": radius + beside,
         "blade_pressure_angle": alpha,
     }
     if spec.cutter_tilt and "cutter_swivel" in found:
@@ -119,3 +142,9 @@ def _crown_gear(members: dict[str, Member], member: Member, flank: str, spiral: 
     if member.generation == "generated":
         wanted["ratio_of_roll"] = found["ratio_of_roll"]
     return wanted
+
+
+def _own_radius(member: Member, flank: str) -> float:
+    """Point radius [mm] of the cutter of a flank: where it cuts both flanks, that of the middle between its blades."""
+    own = [flank] if member.cutting == "fixed_setting" else FLANKS
+    return sum(member.flank(each).nominal.blade_point_radius for each in own) / len(own)

@@ -16,6 +16,16 @@ def check_blades(member: Member, name: str) -> None:
         _check_point_width(member, name)
 
 
+def check_methods(pinion: Member, gear: Member) -> None:
+    """Refuse mates whose teeth are not curved alike. Raises InputError naming member, key, value and limit."""
+    for key in ("process", "blade_groups", "indexing_sign"):
+        one, two = getattr(pinion, key), getattr(gear, key)
+        if one != two:
+            raise InputError(
+                f"pinion.{key} = {one!r}: the gear has {two!r}; both must be the same, as one crown gear cuts both"
+            )
+
+
 def _check_method(member: Member, table: str, spec: Flank) -> None:
     if member.generation == "formate":
         for key, motion in (("motion", spec.motion), ("design.motion", spec.nominal_motion)):

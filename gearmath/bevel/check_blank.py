@@ -79,12 +79,6 @@ def check_blank(member: Member, name: str) -> None:
 def check_blanks(pinion: Member, gear: Member, shaft_angle: float) -> None:
     """Refuse blanks that do not belong together. Raises InputError naming member, key, value and limit."""
     members = {"pinion": pinion, "gear": gear}
-    if pinion.teeth > gear.teeth:
-        raise InputError(
-            f"pinion.teeth = {pinion.teeth}: the pinion is the member with fewer teeth, it must be at most gear.teeth = "
-            f"{gear.teeth}"
-        )
-    _check_cones(pinion, gear, shaft_angle)
     for key, share in (("mean_cone_distance", _PRINTED_LENGTH), ("face_width", _WIDER_FACE)):
         one, two = (getattr(member.blank, key) for member in members.values())
         if abs(one - two) > share * max(one, two):
@@ -110,8 +104,13 @@ def check_blanks(pinion: Member, gear: Member, shaft_angle: float) -> None:
             )
 
 
-def _check_cones(pinion: Member, gear: Member, shaft_angle: float) -> None:
-    """Pitch cones that roll on each other (11.1)."""
+def check_cones(pinion: Member, gear: Member, shaft_angle: float) -> None:
+    """Refuse pitch cones that do not roll on each other (11.1). Raises InputError naming member, key, value, limit."""
+    if pinion.teeth > gear.teeth:
+        raise InputError(
+            f"pinion.teeth = {pinion.teeth}: the pinion is the member with fewer teeth, it must be at most gear.teeth "
+            f"= {gear.teeth}"
+        )
     values = {
         "shaft_angle": math.radians(shaft_angle), "pinion_teeth": pinion.teeth, "wheel_teeth": gear.teeth,
         # sizes are not asked for

@@ -57,8 +57,8 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation) -> CutFlan
     if not abs(swing) <= _OFF_CENTER:
         raise Misfit.of(
             name, flank,
-            f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must be "
-            f"at most {_OFF_CENTER:g}",
+            f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must "
+            f"be at most {_OFF_CENTER:g}",
         )  # fmt: skip
     _check_root(member, name, flank, how, mean.contact)
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 0.5, 1.0]), np.ones(3))

@@ -89,17 +89,23 @@ def _check_top_land(member: Member, name: str, concave: CutFlank, convex: CutFla
     if not (land > 0).all():
         k = int(np.argmin(land))
         raise InputError(
-            f"{name}.blank.mean_addendum = {member.blank.mean_addendum:g}, face_angle = {member.blank.face_angle:g}: "
-            f"the teeth are pointed at the {place[k]}: a top land of {math.degrees(land[k]):.3g} degrees "
-            "about the axis is left, which must be above 0"
+            f"{name}: {_phase(member)}, blank.mean_addendum = {member.blank.mean_addendum:g}, blank.face_angle = "
+            f"{member.blank.face_angle:g}: the teeth are pointed at the {place[k]}: a top land of "
+            f"{math.degrees(land[k]):.3g} degrees about the axis is left, which must be above 0"
         )
+
+
+def _seen(cut: dict[str, Cut], name: str, flank: str, key: str) -> float:
+    """An angle [degree] at the mean point, that of a spiral as the pinion sees it: mates are of opposite hand."""
+    angle = math.degrees(getattr(cut[name][flank], key))
+    return -angle if key == "spiral_angle" and name == "gear" else angle
 
 
 def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[str, float]) -> None:
     """Refuse flanks that do not touch as mates at the mean point, and a pair with too much or too little backlash."""
     for flank, mating in zip(FLANKS, reversed(FLANKS), strict=True):
         for key, (limit, _) in _MATING.items():
-            one, two = (math.degrees(abs(getattr(cut[n][f], key))) for n, f in (("pinion", flank), ("gear", mating)))
+            one, two = (_seen(cut, *where, key) for where in (("pinion", flank), ("gear", mating)))
             if not abs(one - two) <= limit:
                 raise Misfit(
                     f"pinion {flank} flank: its {key.replace('_', ' ')} at the mean point is {one:.4g} degrees, that "
@@ -107,7 +113,7 @@ def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[st
                     ("pinion", flank), ("gear", mating),
                 )  # fmt: skip
     for key, (_, limit) in _MATING.items():
-        one, two = (math.degrees(sum(abs(getattr(cut[n][f], key)) for f in FLANKS) / 2) for n in ("pinion", "gear"))
+        one, two = (sum(_seen(cut, name, flank, key) for flank in FLANKS) / 2 for name in ("pinion", "gear"))
         if not abs(one - two) <= limit:
             raise Misfit(
                 f"the mean {key.replace('_', ' ')} of the two flanks of the pinion is {one:.4g} degrees, of the gear "

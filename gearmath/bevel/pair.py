@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 
-from gearmath.bevel.blame import Misfit, farthest
-from gearmath.bevel.check_blade import check_blades
-from gearmath.bevel.check_blank import check_blank, check_blanks, transverse_module
+from gearmath.bevel.blame import Misfit, farthest, most_changed
+from gearmath.bevel.check_blade import check_blades, check_methods
+from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, transverse_module
 from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
 from gearmath.bevel.check_mates import Cut, check_mates, check_space
 from gearmath.bevel.method import cut_generation_of, generation_of
@@ -23,6 +23,8 @@ from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member, load_bev
 
 #: What corrected settings may change of a flank at the mean point: either angle [degree], the arc over the module.
 _CORRECTED_ANGLE, _CORRECTED_ARC = 2.0, 0.15
+#: A smaller spiral angle is as likely wrong itself, and does not tell what the others should be. [rad]
+_TELLING_SPIRAL = math.radians(10)
 
 
 def load_pair(path: Path) -> BevelSet:
@@ -41,10 +43,14 @@ def load_pair(path: Path) -> BevelSet:
 def check_pair(pair: BevelSet) -> None:
     """Refuse a set that is no physical pair. Raises InputError naming member, flank, key, value and limit."""
     members = {name: pair.member(name) for name in MEMBERS if getattr(pair, name) is not None}
+    both = len(members) == len(MEMBERS)
+    if both:
+        check_cones(pair.pinion, pair.gear, pair.shaft_angle)
     for name, member in members.items():
         check_blank(member, name)
-    if len(members) == len(MEMBERS):
+    if both:
         check_blanks(pair.pinion, pair.gear, pair.shaft_angle)
+        check_methods(pair.pinion, pair.gear)
     for name, member in members.items():
         check_blades(member, name)
     cut: dict[str, Cut] = {name: {} for name in members}
@@ -75,7 +81,15 @@ def _check_corrected(member: Member, name: str, flank: str, nominal: CutFlank) -
     """Corrected settings cut the nominal flank but for what a correction may need."""
     spec = member.flank(flank).model_copy(update={"design": None})
     corrected = member.model_copy(update={flank: spec})
-    found = cut_flank(corrected, name, flank, cut_generation_of(member, flank))
+    try:
+        found = cut_flank(corrected, name, flank, cut_generation_of(member, flank))
+        _check_change(member, name, flank, nominal, found)
+    except Misfit as misfit:
+        raise InputError(f"{misfit}; the setting changed most is {most_changed(member, name, flank)}") from misfit
+
+
+def _check_change(member: Member, name: str, flank: str, nominal: CutFlank, found: CutFlank) -> None:
+    """How far a corrected flank is off the nominal one at the mean point. Raises Misfit."""
     for what in ("pressure_angle", "spiral_angle"):
         change = math.degrees(getattr(found, what) - getattr(nominal, what))
         if not abs(change) <= _CORRECTED_ANGLE:
@@ -96,6 +110,11 @@ def _check_corrected(member: Member, name: str, flank: str, nominal: CutFlank) -
 
 def _spiral(cut: dict[str, Cut], blamed: Sequence[tuple[str, str]]) -> float | None:
     """The middle one of the spiral angles [rad] of all flanks that are found and not to blame, else of all found."""
-    found = {(name, flank): abs(one.spiral_angle) for name, flanks in cut.items() for flank, one in flanks.items()}
+    found = {
+        (name, flank): angle
+        for name, flanks in cut.items()
+        for flank, one in flanks.items()
+        if (angle := abs(one.spiral_angle)) > _TELLING_SPIRAL
+    }
     others = [angle for where, angle in found.items() if where not in blamed] or list(found.values())
     return median(others) if others else None

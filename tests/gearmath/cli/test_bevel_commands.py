@@ -98,13 +98,13 @@ def test_bad_set_is_one_line_with_file_key_value_and_limit(refused, tmp_path, ol
     assert [path.name for path in tmp_path.iterdir()] == ["bad.toml"]
 
 
-def test_place_beyond_the_blade_is_a_failure_of_status_1_and_leaves_an_old_file_alone(command, tmp_path):
+def test_blade_that_does_not_reach_the_tip_is_bad_input_and_leaves_an_old_file_alone(command, tmp_path):
     short = tmp_path / "short.toml"
     short.write_text(bundled(SET).read_text("utf-8").replace("profile_height = 12.0", "profile_height = 3.0"), "utf-8")
     target = tmp_path / "f.csv"
     target.write_text("mine")
     status, out, err = command("flank", short, "--member", "gear", "--flank", "concave", "-o", target)
-    assert (status, out) == (1, "")
-    assert err.startswith("gearmath: gear concave flank, row ")
+    assert (status, out) == (2, "")
+    assert "short.toml: pinion concave flank: blade_profile_height = 3 does not reach the tip of the tooth" in err
     assert err.count("\n") == 1
     assert target.read_text() == "mine"
