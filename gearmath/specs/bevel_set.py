@@ -1,8 +1,8 @@
 """A spiral bevel gear set: blanks, cutters and machine settings of its members, in REXS vocabulary, mm and degrees.
 
 A file may be in inches, have angles in degrees, minutes and seconds (``sheet``), give the ratio of roll as cradle by
-work, and count ``machine_center_to_crossing_point`` from a crossing point that the pitch apex lies beyond. What is loaded
-is in mm and degrees, with work by cradle, and counts from the pitch apex.
+work, and count ``machine_center_to_crossing_point`` from a crossing point that the pitch apex lies beyond. What is
+loaded is in mm and degrees, with work by cradle, and counts from the pitch apex.
 """
 
 from __future__ import annotations
@@ -272,26 +272,40 @@ class Member(Sheet):
 
 
 class BevelSet(Sheet):
-    """A pair, with where it comes from. ``unit`` is that of the file's lengths; those of a loaded set are in mm."""
+    """A pair or one member of it, with where it comes from.
+
+    ``unit`` is that of the file's lengths; those of a loaded set are in mm.
+    """
 
     unit: Literal["mm", "inch"] = "mm"
     title: str = Field(min_length=1, max_length=200)
     source: str = Field(max_length=1000)
     shaft_angle: Angle = Field(gt=0, lt=180)
-    pinion: Member
-    gear: Member
+    pinion: Member | None = None
+    gear: Member | None = None
 
     @model_validator(mode="after")
     def _mates(self) -> BevelSet:
-        if self.pinion.hand == self.gear.hand:
+        if not self.members:
+            raise ValueError("holds neither a pinion nor a gear")
+        if self.pinion and self.gear and self.pinion.hand == self.gear.hand:
             raise ValueError(f"pinion and gear are both {self.pinion.hand} hand: a pair has one of each hand")
         return self
 
+    @property
+    def members(self) -> dict[str, Member]:
+        """The members that are there, by name."""
+        both = {"pinion": self.pinion, "gear": self.gear}
+        return {name: member for name, member in both.items() if member is not None}
+
     def member(self, name: str) -> Member:
-        """The member called ``name``. Raises InputError for any name but pinion and gear."""
+        """The member called ``name``. Raises InputError for any name but pinion and gear, and for one not there."""
         if name not in MEMBERS:
             raise InputError(f"member = {name!r}: must be pinion or gear")
-        return self.pinion if name == "pinion" else self.gear
+        members = self.members
+        if name not in members:
+            raise InputError(f"{name}: the set {self.title!r} has no {name}, only a {next(iter(members))}")
+        return members[name]
 
 
 def load_bevel_set(path: Path) -> BevelSet:
