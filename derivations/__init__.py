@@ -47,6 +47,7 @@ def expressions() -> Iterator[Expression]:
     yield cradle.cradle_pose()
     yield flank.flank_family()
     yield from (meshing.meshing(), meshing.contact_start(), blank.flank_place(), blank.flank_angles())
+    yield cradle.advance_from_apex()
     yield from (generation.straight_generation(), generation.arc_generation(), generation.modified_roll())
     yield generation.touching_blade()
     yield from (axes.axis_transform(), axes.tool_pose(), axes.cradle_tool_pose())

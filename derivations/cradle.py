@@ -8,7 +8,10 @@ Machine frame s: origin machine centre, k the cradle axis from the cutter head t
     φ_w  = φ_0 + R_a θ                                                         work angle     (2.4)
     r_w  = Rz(-φ_w) W r_s,   rows of W: [sin Γ, 0, -cos Γ], j, V_p             into the work  (2.5)
 
-(2.5) turns a machine point, taken from the pitch apex, by -φ_w about V_p into the work frame w.
+(2.5) turns a machine point, taken from the pitch apex, by -φ_w about V_p into the work frame w. A machine summary that
+counts from the crossing point, which the pitch apex lies t_z beyond, means
+
+    X_p = X_C + t_z                                                            from apex      (2.6)
 """
 
 from __future__ import annotations
@@ -92,6 +95,34 @@ def cradle_pose() -> Expression:
         ),
         source="Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, active signs",
     )
+
+
+@cache
+def advance_from_apex() -> Expression:
+    """(2.6) as an Expression."""
+    return Expression(
+        "advance_from_apex",
+        "Machine centre to the pitch apex out of that to the crossing point (2.6).",
+        (q.advance_from_crossing_point, q.pitch_apex_beyond_crossing_point),
+        (
+            (
+                q.machine_center_to_crossing_point,
+                q.advance_from_crossing_point.symbol + q.pitch_apex_beyond_crossing_point.symbol,
+            ),
+        ),
+        source="ISO 23509: t_z positive where the apex lies beyond the crossing point, seen from the teeth",
+    )
+
+
+def prove_cutter_stands_where_it_stood_from_the_crossing_point() -> None:
+    """(2.6) Crossing point at C, apex at C - t_z V_p: the cutter stands at one place, seen from either."""
+    X_C, t_z = q.advance_from_crossing_point.symbol, q.pitch_apex_beyond_crossing_point.symbol
+    advance = q.machine_center_to_crossing_point.symbol
+    cutter_from_crossing_point = apex_to_cutter().subs(advance, X_C)
+    apex_from_crossing_point = -t_z * work_axis()
+    X_p = advance_from_apex()["machine_center_to_crossing_point"]
+    difference = cutter_from_crossing_point - apex_from_crossing_point - apex_to_cutter().subs(advance, X_p)
+    assert sp.simplify(difference) == sp.zeros(3, 1)
 
 
 def prove_turning_into_the_work_is_a_rotation_about_its_axis() -> None:

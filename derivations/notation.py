@@ -54,6 +54,12 @@ sliding_base = _length("sliding_base", "X_b", -20.0, 20.0, "withdrawal of the wo
 machine_center_to_crossing_point = _length(
     "machine_center_to_crossing_point", "X_p", -20.0, 20.0, "advance of the work along its own axis"
 )
+advance_from_crossing_point = _length(
+    "advance_from_crossing_point", "X_C", -20.0, 20.0, "advance of the work, its crossing point taken for its apex"
+)
+pitch_apex_beyond_crossing_point = _length(
+    "pitch_apex_beyond_crossing_point", "t_z", -20.0, 20.0, "pitch apex beyond the crossing point, seen from the teeth"
+)
 machine_root_angle = _angle("machine_root_angle", r"\Gamma", 0.05, 1.45, "work axis against the machine plane")
 ratio_of_roll = Quantity(
     "ratio_of_roll", "work rotation per cradle rotation", "1", "R_a", (0.5, 8.0), scale=1.0

@@ -93,11 +93,11 @@ def crown_gear_set(
     """
     blank = blank_of(data)
     other: Literal["left", "right"] = "right" if hand == "left" else "left"
-    members = {
-        "pinion": crown_gear_member(_tooth(data, blank, blank.pinion, hand), pinion),
-        "gear": crown_gear_member(_tooth(data, blank, blank.wheel, other), gear),
-    }
-    return BevelSet(title=data.title, source=data.source, shaft_angle=data.shaft_angle, **members)
+    return BevelSet(
+        title=data.title, source=data.source, shaft_angle=data.shaft_angle,
+        pinion=crown_gear_member(_tooth(data, blank, blank.pinion, hand), pinion),
+        gear=crown_gear_member(_tooth(data, blank, blank.wheel, other), gear),
+    )  # fmt: skip
 
 
 def _tooth(data: BlankData, pair: BevelBlank, member: MemberBlank, hand: Literal["left", "right"]) -> Tooth:

@@ -170,8 +170,10 @@ def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, register
     from gearmath.specs.flank_csv import read_flank_csv
 
     mate = MEMBERS[1 - MEMBERS.index(member)]
+    with about(Path("--from-mate")):
+        other = pair.member(mate)
     with about(path):
-        judged = evaluate_member(read_flank_csv(path), pair.member(mate), mate, registered)
+        judged = evaluate_member(read_flank_csv(path), other, mate, registered)
         return moved_to_mate(pair, mate, judged.file, read_flank_csv(measured))
 
 

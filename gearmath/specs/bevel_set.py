@@ -1,10 +1,15 @@
-"""A spiral bevel gear set: blanks, cutters and machine settings of both members, in REXS vocabulary, mm and degrees."""
+"""A spiral bevel gear set: blanks, cutters and machine settings of its members, in REXS vocabulary, mm and degrees.
+
+A file may be in inches, have angles in degrees, minutes and seconds (``sheet``), give the ratio of roll as cradle by
+work, and count ``machine_center_to_crossing_point`` from a crossing point that the pitch apex lies beyond. What is
+loaded is in mm and degrees, with work by cradle, and counts from the pitch apex.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -12,9 +17,21 @@ import numpy as np
 import tomlkit
 from pydantic import Field, model_validator
 
-from derivations import Quantity, notation
+from derivations import Quantity, cradle, notation
 from gearmath.errors import InputError
 from gearmath.files import read_text, write_text
+from gearmath.specs.sheet import (
+    UNITS,
+    Angle,
+    Length,
+    Sheet,
+    Unit,
+    angle_text,
+    is_number,
+    refusal_of,
+    shown,
+    unit_of,
+)
 from gearmath.specs.toml import Spec, load, parse
 
 MEMBERS = ("pinion", "gear")
@@ -25,30 +42,40 @@ SETTINGS = tuple(component.name for component in notation.settings.components)
 #: The settings that belong to the machine and not to the blade: a completing cut shares them.
 MACHINE_SETTINGS = tuple(name for name in SETTINGS if not name.startswith("blade_"))
 _ANGULAR = {component.name for component in notation.settings.components if component.unit == "rad"}
+#: Cradle rotation by work rotation, in place of the ratio of roll.
+CRADLE_PER_WORK = "ratio_of_roll_cradle_per_work"
+_RATIO, _ADVANCE, _BEYOND = "ratio_of_roll", "machine_center_to_crossing_point", "pitch_apex_beyond_crossing_point"
 
 
-class Blank(Spec):
-    """Blank of one member; the pitch apex lies in the crossing point (mm, degrees)."""
+class Blank(Sheet):
+    """Blank of one member, counted from its pitch apex (mm, degrees).
 
-    pitch_angle: float = Field(gt=3, lt=87)
-    face_angle: float = Field(gt=3, lt=90)
-    root_angle: float = Field(gt=1, lt=87)
-    mean_cone_distance: float = Field(gt=5, le=1000)
-    face_width: float = Field(gt=1, le=300)
-    mean_addendum: float = Field(gt=0, le=50)
-    mean_dedendum: float = Field(gt=0, le=50)
-    clearance: float = Field(ge=0, le=10)
+    ``pitch_apex_beyond_crossing_point`` t_z is positive where the apex lies beyond the crossing point, seen from the
+    teeth. A file with it counts ``machine_center_to_crossing_point`` X_C from the crossing point (2.6)::
+
+        heel [ teeth ] toe      crossing point <-- t_z --> pitch apex      X_p = X_C + t_z, counted from the apex
+    """
+
+    pitch_angle: Angle = Field(gt=3, lt=87)
+    face_angle: Angle = Field(gt=3, lt=90)
+    root_angle: Angle = Field(gt=1, lt=87)
+    mean_cone_distance: Length = Field(gt=5, le=1000)
+    face_width: Length = Field(gt=1, le=300)
+    mean_addendum: Length = Field(gt=0, le=50)
+    mean_dedendum: Length = Field(gt=0, le=50)
+    clearance: Length = Field(ge=0, le=10)
+    pitch_apex_beyond_crossing_point: Length = Field(default=0.0, ge=-200, le=200)
 
     @model_validator(mode="after")
     def _consistent(self) -> Blank:
         if not self.root_angle <= self.pitch_angle <= self.face_angle:
             raise ValueError(f"root_angle {self.root_angle} <= pitch_angle {self.pitch_angle} <= face_angle must hold")
         if self.face_width >= self.mean_cone_distance:
-            raise ValueError(
-                f"face_width {self.face_width} must be less than mean_cone_distance {self.mean_cone_distance}"
-            )
+            face_width, distance = shown(self.face_width), shown(self.mean_cone_distance)
+            raise ValueError(f"face_width {face_width} must be less than mean_cone_distance {distance}")
         if self.clearance >= self.mean_dedendum:
-            raise ValueError(f"clearance {self.clearance} must be less than mean_dedendum {self.mean_dedendum}")
+            clearance, dedendum = shown(self.clearance), shown(self.mean_dedendum)
+            raise ValueError(f"clearance {clearance} must be less than mean_dedendum {dedendum}")
         return self
 
     @property
@@ -58,21 +85,23 @@ class Blank(Spec):
 
 
 _Coefficients = Annotated[tuple[Annotated[float, Field(ge=-1000, le=1000)], ...], Field(strict=False, max_length=7)]
+_Lengths = Annotated[_Coefficients, Unit("mm")]
+_Angles = Annotated[_Coefficients, Unit("degree")]
 
 
-class Motion(Spec):
+class Motion(Sheet):
     """Coefficients of θ^1 ... θ^7 of machine settings, mm and degrees per rad^j; ``modified_roll`` is 2C, 6D, ..."""
 
-    radial_distance: _Coefficients = ()
-    cradle_angle: _Coefficients = ()
-    cutter_tilt: _Coefficients = ()
-    cutter_swivel: _Coefficients = ()
-    blank_offset: _Coefficients = ()
-    sliding_base: _Coefficients = ()
-    machine_center_to_crossing_point: _Coefficients = ()
-    machine_root_angle: _Coefficients = ()
+    radial_distance: _Lengths = ()
+    cradle_angle: _Angles = ()
+    cutter_tilt: _Angles = ()
+    cutter_swivel: _Angles = ()
+    blank_offset: _Lengths = ()
+    sliding_base: _Lengths = ()
+    machine_center_to_crossing_point: _Lengths = ()
+    machine_root_angle: _Angles = ()
     ratio_of_roll: _Coefficients = ()
-    work_rotation_offset: _Coefficients = ()
+    work_rotation_offset: _Angles = ()
     modified_roll: Annotated[_Coefficients, Field(max_length=4)] = ()
 
     @property
@@ -90,21 +119,38 @@ class Motion(Spec):
         return np.pad(np.array(self.modified_roll, dtype=float), (0, 4 - len(self.modified_roll)))
 
 
-class Settings(Spec):
-    """The settings of machine and cutter of one flank (mm, degrees)."""
+class Settings(Sheet):
+    """The settings of machine and cutter of one flank (mm, degrees).
 
-    radial_distance: float = Field(gt=0, le=1000)
-    cradle_angle: float = Field(ge=-180, le=180)
-    cutter_tilt: float = Field(ge=-45, le=45)
-    cutter_swivel: float = Field(ge=-360, le=360)
-    blank_offset: float = Field(ge=-200, le=200)
-    sliding_base: float = Field(ge=-200, le=200)
-    machine_center_to_crossing_point: float = Field(ge=-200, le=200)
-    machine_root_angle: float = Field(gt=0, lt=87)
+    A file may give the ratio of roll, work by cradle, as ``ratio_of_roll_cradle_per_work`` instead.
+    """
+
+    radial_distance: Length = Field(gt=0, le=1000)
+    cradle_angle: Angle = Field(ge=-180, le=180)
+    cutter_tilt: Angle = Field(ge=-45, le=45)
+    cutter_swivel: Angle = Field(ge=-360, le=360)
+    blank_offset: Length = Field(ge=-200, le=200)
+    sliding_base: Length = Field(ge=-200, le=200)
+    machine_center_to_crossing_point: Length = Field(ge=-200, le=200)
+    machine_root_angle: Angle = Field(gt=0, lt=87)
     ratio_of_roll: float = Field(gt=0.1, le=50)
-    work_rotation_offset: float = Field(ge=-360, le=360)
-    blade_point_radius: float = Field(gt=5, le=500)
-    blade_pressure_angle: float = Field(ge=3, le=45)
+    work_rotation_offset: Angle = Field(ge=-360, le=360)
+    blade_point_radius: Length = Field(gt=5, le=500)
+    blade_pressure_angle: Angle = Field(ge=3, le=45)
+
+    @classmethod
+    def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
+        plain = super().plain(values, mm, where)
+        if CRADLE_PER_WORK in plain:
+            ratio = plain.pop(CRADLE_PER_WORK)
+            if _RATIO in plain:
+                raise refusal_of(
+                    cls, (*where, CRADLE_PER_WORK), ratio, f"{_RATIO} is given too: only one of them may be"
+                )
+            if not is_number(ratio) or not 1 / 50 <= ratio < 1 / 0.1:
+                raise refusal_of(cls, (*where, CRADLE_PER_WORK), ratio, "must be at least 0.02 and less than 10")
+            plain[_RATIO] = 1 / ratio
+        return plain
 
     @property
     def vector(self) -> np.ndarray:
@@ -121,23 +167,23 @@ class Design(Settings):
 class Flank(Settings):
     """How one flank is cut; ``design``, where given, holds the settings of the nominal flank, the others corrected."""
 
-    blade_profile_height: float = Field(gt=0, le=60)
-    blade_edge_radius: float = Field(default=0.0, ge=0, le=10)
+    blade_profile_height: Length = Field(gt=0, le=60)
+    blade_edge_radius: Length = Field(default=0.0, ge=0, le=10)
     #: Of a fixed-setting cutter, which has another side (mm); without it the root of the space decides.
-    blade_point_width: float | None = Field(default=None, gt=0, le=60)
-    blade_spheric_radius: float | None = Field(default=None, ge=-20_000, le=20_000)
-    blade_reference_height: float = Field(default=0.0, ge=0, le=60)
-    toprem_angle: float | None = Field(default=None, ge=0.5, le=45)
-    toprem_height: float = Field(default=0.0, ge=0, le=10)
-    blade_offset_angle: float = Field(default=0.0, ge=-45, le=45)
+    blade_point_width: Length | None = Field(default=None, gt=0, le=60)
+    blade_spheric_radius: Length | None = Field(default=None, ge=-20_000, le=20_000)
+    blade_reference_height: Length = Field(default=0.0, ge=0, le=60)
+    toprem_angle: Angle | None = Field(default=None, ge=0.5, le=45)
+    toprem_height: Length = Field(default=0.0, ge=0, le=10)
+    blade_offset_angle: Angle = Field(default=0.0, ge=-45, le=45)
     motion: Motion = Motion()
     design: Design | None = None
 
     @model_validator(mode="after")
     def _blade(self) -> Flank:
         if self.blade_spheric_radius is not None and abs(self.blade_spheric_radius) < 2 * self.blade_profile_height:
-            limit = 2 * self.blade_profile_height
-            raise ValueError(f"blade_spheric_radius = {self.blade_spheric_radius}: must be at least {limit} in size")
+            radius, limit = shown(self.blade_spheric_radius), shown(2 * self.blade_profile_height)
+            raise ValueError(f"blade_spheric_radius = {radius}: must be at least {limit} in size")
         if (self.toprem_angle is not None) != (self.toprem_height > 0):
             raise ValueError("toprem_angle and toprem_height belong together")
         return self
@@ -153,7 +199,7 @@ class Flank(Settings):
         return (self.design.motion if isinstance(self.design, Design) else None) or self.motion
 
 
-class Member(Spec):
+class Member(Sheet):
     """One member of the pair. ``index_correction`` turns each tooth space by that many degrees before it is cut."""
 
     teeth: int = Field(ge=3, le=400)
@@ -168,7 +214,19 @@ class Member(Spec):
     blank: Blank
     concave: Flank
     convex: Flank
-    index_correction: tuple[float, ...] = Field(default=(), strict=False)
+    index_correction: Annotated[tuple[float, ...], Unit("degree")] = Field(default=(), strict=False)
+
+    @classmethod
+    def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
+        plain = super().plain(values, mm, where)
+        blank = plain.get("blank")
+        beyond = blank.get(_BEYOND, 0.0) if isinstance(blank, dict) else 0.0
+        if beyond and is_number(beyond):
+            flanks = [plain[flank] for flank in FLANKS if isinstance(plain.get(flank), dict)]
+            for table in (*flanks, *(flank["design"] for flank in flanks if isinstance(flank.get("design"), dict))):
+                if is_number(table.get(_ADVANCE)):
+                    table[_ADVANCE] = _from_apex(table[_ADVANCE], beyond)
+        return plain
 
     @model_validator(mode="after")
     def _consistent(self) -> Member:
@@ -210,34 +268,49 @@ class Member(Spec):
         slack = abs(spec.blank_offset) + abs(spec.machine_center_to_crossing_point) + spec.blade_profile_height
         if not abs(S - r) - slack <= R <= S + r + slack:
             raise ValueError(
-                f"{name}.blade_point_radius = {r:g}: no real contact, the cutter does not reach the mean point: "
-                f"at radial_distance = {S:g} it must lie between {abs(R - S) - slack:.4g} and {R + S + slack:.4g}"
+                f"{name}.blade_point_radius = {shown(r):g}: no real contact, the cutter does not reach the mean point: "
+                f"at radial_distance = {shown(S):g} it must lie between {shown(abs(R - S) - slack):.4g} and {shown(R + S + slack):.4g}"
             )
 
     def flank(self, flank: str) -> Flank:
         return self.concave if flank == "concave" else self.convex
 
 
-class BevelSet(Spec):
-    """A pair, with where it comes from."""
+class BevelSet(Sheet):
+    """A pair or one member of it, with where it comes from.
 
+    ``unit`` is that of the file's lengths; those of a loaded set are in mm.
+    """
+
+    unit: Literal["mm", "inch"] = "mm"
     title: str = Field(min_length=1, max_length=200)
     source: str = Field(max_length=1000)
-    shaft_angle: float = Field(gt=0, lt=180)
-    pinion: Member
-    gear: Member
+    shaft_angle: Angle = Field(gt=0, lt=180)
+    pinion: Member | None = None
+    gear: Member | None = None
 
     @model_validator(mode="after")
     def _mates(self) -> BevelSet:
-        if self.pinion.hand == self.gear.hand:
+        if not self.members:
+            raise ValueError("holds neither a pinion nor a gear")
+        if self.pinion and self.gear and self.pinion.hand == self.gear.hand:
             raise ValueError(f"pinion and gear are both {self.pinion.hand} hand: a pair has one of each hand")
         return self
 
+    @property
+    def members(self) -> dict[str, Member]:
+        """The members that are there, by name."""
+        both = {"pinion": self.pinion, "gear": self.gear}
+        return {name: member for name, member in both.items() if member is not None}
+
     def member(self, name: str) -> Member:
-        """The member called ``name``. Raises InputError for any name but pinion and gear."""
+        """The member called ``name``. Raises InputError for any name but pinion and gear, and for one not there."""
         if name not in MEMBERS:
             raise InputError(f"member = {name!r}: must be pinion or gear")
-        return self.pinion if name == "pinion" else self.gear
+        members = self.members
+        if name not in members:
+            raise InputError(f"{name}: the set {self.title!r} has no {name}, only a {next(iter(members))}")
+        return members[name]
 
 
 def load_bevel_set(path: Path) -> BevelSet:
@@ -287,13 +360,15 @@ def save_corrected(
     """
     document = tomlkit.parse(read_text(source))
     table: Any = document[member]
+    mm, beyond = UNITS[document.get("unit", "mm")], table["blank"].get(_BEYOND, 0.0)
     for flank, vector in settings.items():
+        written = _written(table[flank], vector, mm, beyond)
         if "design" not in table[flank]:
-            table[flank]["design"] = {name: table[flank][name] for name in SETTINGS}
-        for name, value in zip(SETTINGS, vector, strict=True):
-            table[flank][name] = round(math.degrees(value) if name in _ANGULAR else float(value), 9)
+            table[flank]["design"] = {key: table[flank][key] for key in written}
+        for key, value in written.items():
+            table[flank][key] = value
     for flank, matrix in (motions or {}).items():
-        _save_motion(table[flank], matrix)
+        _save_motion(table[flank], matrix, mm)
     if index_correction is not None:
         table["index_correction"] = [round(math.degrees(value), 7) for value in index_correction]
     text = tomlkit.dumps(document)
@@ -305,14 +380,46 @@ def save_corrected(
     write_text(target, text)
 
 
-def _save_motion(table: Any, matrix: np.ndarray) -> None:
+def _written(table: Any, vector: np.ndarray, mm: float, beyond: float) -> dict[str, float | str]:
+    """Settings (12,) by key as the table of a flank has them: its unit, its angles, its ratio, its crossing point.
+
+    Nine decimals of a millimetre, or as many digits of an inch.
+    """
+    written: dict[str, float | str] = {}
+    for name, value in zip(SETTINGS, vector.tolist(), strict=True):
+        if name in _ANGULAR:
+            degrees, old = math.degrees(value), table.get(name)
+            written[name] = angle_text(degrees, old) if isinstance(old, str) else round(degrees, 9)
+        elif name == _RATIO:
+            inverse = CRADLE_PER_WORK in table
+            written[CRADLE_PER_WORK if inverse else _RATIO] = round(1 / value, 11) if inverse else round(value, 9)
+        else:
+            apart = beyond if name == _ADVANCE else 0.0
+            written[name] = round(value / mm - apart, _decimals(mm))
+    return written
+
+
+def _decimals(mm: float) -> int:
+    return 9 if mm == 1 else 11
+
+
+def _from_apex(advance: float, beyond: float) -> float:
+    """X_p from the pitch apex out of X_C from the crossing point (2.6)."""
+    from gearmath.lowering import lower
+
+    (value,) = lower(cradle.advance_from_apex())(advance, beyond)
+    return float(value)
+
+
+def _save_motion(table: Any, matrix: np.ndarray, mm: float) -> None:
     """A motion (10,7) into the table of a flank; the nominal one goes under ``design``, the modified roll stays."""
     before = dict(table.get("motion", {}))
     if "motion" not in table["design"]:
         table["design"]["motion"] = before
     motion = {"modified_roll": before["modified_roll"]} if "modified_roll" in before else {}
     for row, name in zip(matrix, MACHINE_SETTINGS, strict=True):
-        values = np.trim_zeros(np.round(np.degrees(row) if name in _ANGULAR else row, 9), "b")
+        factor = 1 / mm if unit_of(Motion, name) == "mm" else 1.0
+        values = np.trim_zeros(np.round(np.degrees(row) if name in _ANGULAR else row * factor, _decimals(mm)), "b")
         if len(values):
             motion[name] = values.tolist()
     table["motion"] = motion
@@ -326,9 +433,13 @@ def _vector(model: Spec, components: tuple[Quantity, ...]) -> np.ndarray:
 def set_text(gear_set: BevelSet) -> str:
     """A gear set as the text of its file, without what has its default value; numbers to nine decimals."""
     values = gear_set.model_dump(exclude_defaults=True)
-    for name in MEMBERS:
+    for name in (name for name in MEMBERS if name in values):
         if gear_set.member(name).process == "face_hobbing":
             values[name]["indexing_sign"] = gear_set.member(name).indexing_sign  # it has to be stated, whatever it is
+    for member in (values[name] for name in MEMBERS if name in values):
+        for table in (member[flank] for flank in FLANKS):
+            for settings in (table, *([table["design"]] if "design" in table else [])):
+                settings[_ADVANCE] -= member["blank"].get(_BEYOND, 0.0)
     head = "# Lengths in mm, angles in degrees.\n"
     return head + tomlkit.dumps(_plain(values))
 

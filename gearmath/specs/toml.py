@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import difflib
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from typing import Any, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -19,6 +19,11 @@ class Spec(BaseModel):
     """Base of every file model: frozen, no unknown keys, no NaN, no silent conversion of text to numbers."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    @classmethod
+    def from_file(cls, values: Mapping[str, Any]) -> Self:
+        """The model of the values of a file, where that may say in other words what the model has."""
+        return cls.model_validate(values)
 
 
 SpecT = TypeVar("SpecT", bound=Spec)
@@ -43,13 +48,19 @@ def parse(text: str, model: type[SpecT], name: str) -> SpecT:
         values = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{name}: is no TOML: {error}") from error
-    return checked(values, model, name)
+    return _checked(values, model, model.from_file, name)
 
 
 def checked(values: Mapping[str, Any], model: type[SpecT], name: str) -> SpecT:
     """Check values by key against ``model``; ``name`` is what they belong to in the messages."""
+    return _checked(values, model, model.model_validate, name)
+
+
+def _checked(
+    values: Mapping[str, Any], model: type[SpecT], validate: Callable[[Mapping[str, Any]], SpecT], name: str
+) -> SpecT:
     try:
-        return model.model_validate(values)
+        return validate(values)
     except ValidationError as error:
         raise InputError(f"{name}: {_sentence(error, model)}") from error
 

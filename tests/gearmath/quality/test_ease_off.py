@@ -152,3 +152,18 @@ def test_file_of_the_wrong_member_and_a_pair_that_does_not_mesh_are_refused(head
     gear = solve_flank(pair.gear, "gear", "convex", blank_grid(pair.gear))
     with pytest.raises(ComputationError, match=r"point \d+ does not meet the mate"):
         conjugate_places(pair, pair.gear, pair.pinion, gear.point * [1, 1, 3], gear.normal)
+
+
+def test_conjugate_places_do_not_depend_on_where_the_apexes_are_counted():
+    """One pair, the apex of each member put elsewhere on its axis: the places move along with it."""
+    pair = pair_of("nasa_tp3096_12x36")
+    flank = solve_flank(pair.gear, "gear", "convex", blank_grid(pair.gear))
+    axial, radial = conjugate_places(pair, pair.gear, pair.pinion, flank.point, flank.normal)
+    gear, pinion = (
+        member.model_copy(
+            update={"blank": member.blank.model_copy(update={"pitch_apex_beyond_crossing_point": beyond})}
+        )
+        for member, beyond in ((pair.gear, 0.3), (pair.pinion, -0.2))
+    )
+    moved = conjugate_places(pair, gear, pinion, flank.point + np.array([0.0, 0.0, 0.3]), flank.normal)
+    np.testing.assert_allclose(moved, (axial - 0.2, radial), rtol=0, atol=1e-9)
