@@ -56,7 +56,7 @@ class _Flank:
 
 def tooth_shifts(file: FlankFile, teeth: int, single: np.ndarray) -> Shifts:
     """What is off between the teeth of a file. ``single`` (n,) marks the rows that may be left out."""
-    turned, limit = _off_the_other_teeth(file, teeth)
+    turned, limit = _off_the_other_teeth(file, teeth, single)
     misses: dict[int, float] = {}
     lone: dict[int, float] = {}
     kept = []
@@ -82,10 +82,11 @@ def tooth_shifts(file: FlankFile, teeth: int, single: np.ndarray) -> Shifts:
     return Shifts(misses, lone, tuple(dict.fromkeys(kept)))
 
 
-def _off_the_other_teeth(file: FlankFile, teeth: int) -> tuple[np.ndarray, np.ndarray]:
+def _off_the_other_teeth(file: FlankFile, teeth: int, single: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """How far each row (n,) is off the same place of the other teeth [mm], and the limit [mm] of that place.
 
-    Positive where the flank is turned right-handed about z_w, at the mean of all arms. NaN where too few teeth tell.
+    Positive where the flank is turned right-handed about z_w, at the mean of all arms. NaN where too few teeth tell,
+    and at places that no single point has.
     """
     turned, limit = np.full(len(file), np.nan), np.full(len(file), np.nan)
     lever = file.point[:, 0] * file.normal[:, 1] - file.point[:, 1] * file.normal[:, 0]
@@ -93,7 +94,7 @@ def _off_the_other_teeth(file: FlankFile, teeth: int) -> tuple[np.ndarray, np.nd
         of_flank = (file.flank == flank) & np.isfinite(file.deviation)
         for row, col in sorted(set(zip(file.row[of_flank].tolist(), file.col[of_flank].tolist(), strict=True))):
             (here,) = np.nonzero(of_flank & (file.row == row) & (file.col == col))
-            if len(here) < _LEAST_TEETH:
+            if len(here) < _LEAST_TEETH or not single[here].any():
                 continue
             turn = 2 * np.pi * file.tooth[here] / teeth
             columns = np.stack([np.ones(len(here)), np.cos(turn), np.sin(turn)], axis=1)
