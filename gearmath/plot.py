@@ -40,13 +40,14 @@ def draw_topography(
         if topography is None:
             continue
         z = y + topography.deviation * 1000 * scale
+        most = "withheld, a point is missing" if topography.left_out else f"{topography.extreme * 1000:+.2f} µm"
         for k in range(rows):
             axes.plot(
                 x[k],
                 z[k],
                 color=color,
                 linewidth=1.2,
-                label=f"{label}: max {topography.extreme * 1000:+.2f} µm" if k == 0 else None,
+                label=f"{label}: max {most}" if k == 0 else None,
             )
         for k in range(columns):
             axes.plot(x[:, k], z[:, k], color=color, linewidth=0.5)
@@ -61,7 +62,7 @@ def draw_pitch(axes: Axes, before: Sequence[Pitch], after: Sequence[Pitch] = ())
     """Cumulative pitch deviation of both flanks over the teeth, in µm."""
     for pitches, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
         for pitch, style in zip(pitches, ("-", "--"), strict=False):
-            text = f"{label}, {pitch.flank}: F_p {pitch.total * 1000:.1f} µm"
+            text = f"{label}, {pitch.flank}: F_p {_or_withheld(pitch.total)}"
             axes.plot(pitch.cumulative * 1000, style, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
     axes.axhline(0, color="#bbbbbb", linewidth=0.6)
     axes.set_xlabel("tooth")
@@ -111,19 +112,24 @@ def uncertainty_figure(title: str, found: Sequence[Uncertain]) -> Figure:
     return figure
 
 
+def _or_withheld(value: float) -> str:
+    """A maximum [mm] in µm, or that it is withheld: there is none over data with a gap."""
+    return "withheld" if np.isnan(value) else f"{value * 1000:.1f} µm"
+
+
 def draw_runout(axes: Axes, before: Runout, after: Runout | None = None) -> None:
-    """Radial shift of a ball in every space over the teeth, in µm, and the first harmonic through it, dashed."""
+    """Movement of a ball in every space, normal to the pitch cone, in µm, and the first harmonic through it, dashed."""
     for runout, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
         if runout is None:
             continue
         size, direction = runout.eccentricity
-        wave = float(np.nanmean(runout.radial)) + size * np.cos(runout.azimuth - direction)
-        text = f"{label}: F_r {runout.total * 1000:.1f} µm"
-        axes.plot(runout.radial * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
+        wave = float(np.nanmean(runout.shift)) + size * np.cos(runout.azimuth - direction)
+        text = f"{label}: F_r {_or_withheld(runout.total)}"
+        axes.plot(runout.shift * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
         text = f"first harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
     axes.set_xlabel("space")
-    axes.set_ylabel("radial shift of a ball / µm")
+    axes.set_ylabel("movement of a ball, normal to the pitch cone / µm")
     axes.legend(fontsize=7, frameon=False)
 
 

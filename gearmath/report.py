@@ -141,7 +141,9 @@ def _summary(measurement: Measurement) -> str:
         extreme = max((mean.extreme for mean in means.values()), key=abs)
         parts.append(f"the largest deviation of a flank is {extreme * 1000:+.1f} um")
     if pitch := _pitches(found):
-        parts.append(f"the cumulative pitch deviation {max(one.total for one in pitch) * 1000:.1f} um")
+        gaps = [one.withheld for one in pitch if one.withheld is not None]
+        total = f"{max(one.total for one in pitch) * 1000:.1f} um"
+        parts.append(f"the cumulative pitch deviation {f'is withheld ({gaps[0]})' if gaps else total}")
     if correction is not None:
         left = max(correction.expected.values())
         parts.append(f"corrected settings are expected to leave {left * 1000:.1f} um of the flanks")
@@ -174,6 +176,7 @@ def _figures_section(page: Page, measurement: Measurement) -> None:
         rows.append(["its deviation, mean of the teeth", _micro(found.thickness.mean), "um"])
     if found.verdict is not None:
         rows += [[f"grade of {name}", str(grade or "beyond 11"), ""] for name, grade in found.verdict.grades.items()]
+        rows += [[f"grade of {name}", f"withheld: {why}", ""] for name, why in found.verdict.withheld.items()]
     if rows:
         page.table("Spaces and teeth", ["figure", "value", "unit"], rows)
 
