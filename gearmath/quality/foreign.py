@@ -29,7 +29,9 @@ _STEPS, _STILL = 8, 1e-13
 #: Flanks further apart than this part of a pitch are of different teeth.
 _SAME_TOOTH = 0.25
 #: A surface of third degree is taken through so many of the nearest points, where there are enough.
-_NEAREST, _CUBIC, _QUADRATIC, _PLANE = 40, 10, 6, 3
+_NEAREST, _CUBIC, _QUADRATIC, _PLANE = 30, 10, 6, 3
+#: A step of the depth counts like this part of the face width.
+_TALL = 0.4
 #: A margin that the places of a grid share is even; its digits. [mm]
 _EVEN, _DIGITS = SAME_POINT / 2, 6
 
@@ -169,12 +171,15 @@ def _reference_turn(one: Laid, lattice: Lattice | None, member: Member) -> float
 
 def _smooth(across: np.ndarray, up: np.ndarray, deviation: np.ndarray, place: np.ndarray) -> float:
     """The deviation at a place, out of a surface of up to third degree through the nearest points."""
-    x, y = across - place[0], up - place[1]
-    near = np.argsort(np.hypot(x, y))[:_NEAREST]
+    x, y = across - place[0], _TALL * (up - place[1])
+    away = np.hypot(x, y)
+    near = np.argsort(away)[: _NEAREST + 1]
+    weight = (1 - (away[near] / away[near].max()) ** 3) ** 1.5  # roots of the tricube weights; the farthest has none
     _, terms = kernel("deviation_surface")(x[near], y[near], np.zeros(_CUBIC))
     enough = [count for count in (_CUBIC, _QUADRATIC, _PLANE) if len(near) >= 1.5 * count]
     used = terms[:, : enough[0] if enough else 1]
-    return float(np.linalg.lstsq(used / np.abs(terms).max(axis=0)[: used.shape[1]], deviation[near], rcond=1e-9)[0][0])
+    scaled = used / np.abs(used).max(axis=0) * weight[:, None]
+    return float(np.linalg.lstsq(scaled, deviation[near] * weight, rcond=1e-9)[0][0])
 
 
 def _off(across: np.ndarray, up: np.ndarray, deviation: np.ndarray) -> np.ndarray:
