@@ -7,13 +7,13 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import JSON, MEMBER, SET, echo_json, output, table
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, echo_json, output, table
 from gearmath.errors import InputError
 
 _MOST_POINTS = 1_000_000
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @SET
 @MEMBER
 @click.option("--flank", "side", type=click.Choice(["concave", "convex"]), required=True, help="Flank of the member.")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import MACHINE, MEMBER, SET, about, bar, fast_kernels, output
+from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, about, bar, fast_kernels, output
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import InputError
 
@@ -66,7 +66,7 @@ def cut(
     click.echo(f"{target}: {len(wanted)} of {bevel_set.member(member).teeth} spaces, {text.count(chr(10))} blocks")
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @SET
 @MEMBER
 @MACHINE
