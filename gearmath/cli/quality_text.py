@@ -69,7 +69,8 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
             f"{name} {thickness[f'{name}_mm']:.4f} mm {thickness[f'{name}_deviation_um']:+.2f} um"
             for name in ("arc", "chord")
         )
-        yield f"tooth thickness at the reference point: {arc}, {chord}"
+        circle = f"transverse circle through the reference point, radius {thickness['radius_mm']:.4f} mm"
+        yield f"tooth thickness on the {circle}: {arc}, {chord}"
     if tolerance is not None and tolerance["grades"]:
         grades = [f"{name} {grade or 'beyond 11'}" for name, grade in tolerance["grades"].items()]
         module, diameter = tolerance["mean_normal_module"], tolerance["tolerance_diameter"]

@@ -12,7 +12,7 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.quality.correction import check_belongs
 from gearmath.quality.drift import Drift, untold_drift, without_drift
-from gearmath.quality.nominal import check_points, completed, nominal_rows
+from gearmath.quality.nominal import at_one_place, check_points, completed, nominal_rows
 from gearmath.quality.outliers import find_outliers
 from gearmath.quality.pitch import Pitch, evaluate_pitch, reference_rows
 from gearmath.quality.registration import Registration, register
@@ -125,7 +125,7 @@ def evaluate_member(
     zeroed = file.header["phase_zeroed"].lower() == "true"
     if zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
-    thickness = None if zeroed else evaluate_thickness(judged, member.teeth)
+    thickness = None if zeroed else evaluate_thickness(at_one_place(judged, member, name), member.teeth)
     progress(1)
     return Evaluation(name, judged, flanks, as_measured, runout, before, thickness, drifts, seat, verdict, remarks)
 
