@@ -124,27 +124,42 @@ def edge_round_of_arc() -> Expression:
     )
 
 
+def _off_blade(radius_there: sp.Expr, height: sp.Expr) -> sp.Expr:
+    """Distance of a place (ρ, h) from the straight blade (1.1), positive on the side of the blade's steel."""
+    return q.side.symbol * (radius(height) - radius_there) * sp.cos(q.blade_pressure_angle.symbol)
+
+
 def prove_edge_round_touches_tip_plane_and_blade() -> None:
-    """(1.5) The arc's lowest point is in the tip plane, and at u = α it is on the blade at the joint's height."""
-    round_ = edge_round()
-    (center_radius, center_height, r), joint = round_["blade_arc"], round_["joint_height"]
-    alpha, side = q.blade_pressure_angle.symbol, q.side.symbol
-    assert sp.simplify(center_height - r) == 0
-    assert is_zero(center_height - r * sp.sin(alpha) - joint)
-    assert is_zero(center_radius + side * r * sp.cos(alpha) - radius(joint))
+    """(1.5) Of all circles of radius r_e, it is the one in the steel that the tip plane and the straight blade touch.
+
+    Its centre is found from the two distances, (1.1) alone; the joint is the foot of the centre on the blade.
+    """
+    r, alpha, side = q.blade_edge_radius.symbol, q.blade_pressure_angle.symbol, q.side.symbol
+    rho, h = sp.symbols("rho h", real=True)
+    for one in (1, -1):
+        ((found_rho, found_h),) = sp.linsolve([h - r, _off_blade(rho, h).subs(side, one) - r], [rho, h])
+        center_radius, center_height, _ = edge_round()["blade_arc"].subs(side, one)
+        assert is_zero(found_rho - center_radius)
+        assert is_zero(found_h - center_height)
+        joint = edge_round()["joint_height"]
+        # from the centre to the joint is at right angles to the blade, along which (ρ, h) grows as (s sin α, cos α)
+        to_joint = sp.Matrix([radius(joint).subs(side, one) - found_rho, joint - found_h])
+        assert is_zero(to_joint.dot(sp.Matrix([one * sp.sin(alpha), sp.cos(alpha)])))
+        assert is_zero(to_joint.dot(to_joint) - r**2)
 
 
 def prove_edge_round_of_an_arc_touches_it() -> None:
-    """(1.6) At the joint both circles have the same point: the same height and the same cutting radius."""
+    """(1.6) Two circles touch where their centres are |r - r_e| apart; the joint is on both, on the line of centres."""
     round_ = edge_round_of_arc()
-    center, joint, side = round_["blade_arc"], round_["joint_angle"], q.side.symbol
+    (center_radius, center_height, edge), joint = round_["blade_arc"], round_["joint_angle"]
     main_radius, main_height, r = q.main_arc.symbols
-    edge = q.blade_edge_radius.symbol
-    assert sp.simplify((center[1] - edge * sp.sin(joint)) - (main_height - r * sp.sin(joint))) == 0
-    # cos(joint) = √(1 - sin²) = √((r - e)² - (h - e)²)/|r - e|, and sign(r)|r - e| = r - e where |r| > e
-    across = sp.sqrt((r - edge) ** 2 - (main_height - edge) ** 2)
-    gap = (center[0] - main_radius) / side - sp.sign(r) * across
-    assert sp.simplify(gap) == 0
+    across, up = center_radius - main_radius, center_height - main_height
+    # s² = 1, sign(r)² = 1
+    between = sp.expand(across**2 + up**2).subs(sp.sign(r) ** 2, 1).subs(q.side.symbol**2, 1)
+    assert is_zero(between - (r - edge) ** 2)
+    assert is_zero(center_height - q.blade_edge_radius.symbol)  # touches the tip plane
+    # a point of an arc at the angle u lies r sin u below its centre (10.3): both arcs are at one height at the joint
+    assert is_zero((center_height - edge * sp.sin(joint)) - (main_height - r * sp.sin(joint)))
 
 
 def prove_toprem_meets_the_blade() -> None:
@@ -155,11 +170,14 @@ def prove_toprem_meets_the_blade() -> None:
 
 
 def prove_spheric_blade_touches_the_straight_one() -> None:
-    """(1.4) At u = α the arc (10.3) is at the reference height, on the straight blade."""
+    """(1.4) Its centre is r from the straight blade (1.1), and its foot on the blade is at the reference height."""
     center_radius, center_height, r = spheric_blade()["blade_arc"]
-    alpha, height = q.blade_pressure_angle.symbol, q.reference_height.symbol
-    assert is_zero(center_height - r * sp.sin(alpha) - height)
-    assert is_zero(center_radius + q.side.symbol * r * sp.cos(alpha) - radius(height))
+    alpha, side, height = q.blade_pressure_angle.symbol, q.side.symbol, q.reference_height.symbol
+    along = sp.Matrix([side * sp.sin(alpha), sp.cos(alpha)])
+    to_blade = sp.Matrix([radius(height) - center_radius, height - center_height])
+    for one in (1, -1):
+        assert is_zero(_off_blade(center_radius, center_height).subs(side, one) - r)
+        assert is_zero(to_blade.dot(along).subs(side, one))
 
 
 def prove_normal_is_the_cross_product_of_the_tangents() -> None:

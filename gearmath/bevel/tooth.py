@@ -123,12 +123,15 @@ def flank_surface(member: Member, name: str, flank: str, columns: int = DEFAULT_
 def space_figures(member: Member, space: ToothSpace) -> dict[str, float]:
     """Thickness, top land and faults of a member's teeth, in mm and numbers of points, names as in the JSON.
 
-    The thickness is the transverse arc at the mean point of the pitch cone, found on the surfaces themselves.
+    Thicknesses are transverse arcs, found on the surfaces themselves: ``mean_`` at the mean point of the pitch cone,
+    ``reference_`` at the middle of the grid of flank files, where a measured member is evaluated.
     """
-    thickness = mean_tooth_thickness(member)
     land = space.top_land
+    axial, radial = kernel("flank_place")(member.blank.vector, 0.5, 0.5)
     return {
-        "mean_transverse_tooth_thickness_mm": thickness,
+        "mean_transverse_tooth_thickness_mm": mean_tooth_thickness(member),
+        "reference_transverse_tooth_thickness_mm": tooth_thickness(member, float(axial), float(radial)),
+        "reference_radius_mm": float(radial),
         "mean_transverse_pitch_mm": mean_pitch_radius(member) * space.pitch,
         "top_land_toe_mm": float(land[0]),
         "top_land_mean_mm": float(land[len(land) // 2]),
@@ -144,15 +147,19 @@ def mean_pitch_radius(member: Member) -> float:
 
 
 def mean_tooth_thickness(member: Member) -> float:
-    """Transverse arc [mm] of the tooth at the mean point of the pitch cone: the pitch less the space."""
-    radius = mean_pitch_radius(member)
+    """Transverse arc [mm] of the tooth at the mean point of the pitch cone."""
     axial = member.blank.mean_cone_distance * math.cos(math.radians(member.blank.pitch_angle))
+    return tooth_thickness(member, axial, mean_pitch_radius(member))
+
+
+def tooth_thickness(member: Member, axial: float, radius: float) -> float:
+    """Transverse arc [mm] of the tooth at a place on the blank, z_w and radius [mm]: the pitch less the space."""
     angles = []
     for flank in FLANKS:
         section = blade_sections(member.flank(flank), SIDES[flank])["main"]
         points = solve_section(generation_of(member, flank), section, np.array([axial]), np.array([radius]))
         if not points.converged.all():
-            raise ComputationError(f"{flank} flank: the mean point of the pitch cone is not on the flank")
+            raise ComputationError(f"{flank} flank: no point at z = {axial:.3f}, radius {radius:.3f} mm")
         angles.append(float(_angle(points.point)[0]))
     space = abs(float(_wrap(np.array(angles[1] - angles[0]))))
     return radius * (2 * math.pi / member.teeth - space)

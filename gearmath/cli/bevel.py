@@ -7,13 +7,13 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import JSON, MEMBER, SET, echo_json, output, table
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, echo_json, output, table
 from gearmath.errors import InputError
 
 _MOST_POINTS = 1_000_000
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @SET
 @MEMBER
 @click.option("--flank", "side", type=click.Choice(["concave", "convex"]), required=True, help="Flank of the member.")
@@ -63,6 +63,10 @@ def tooth(gear_set: str, member: str, columns: int, space: bool, as_json: bool, 
         echo_json({"triangles": len(triangles), **figures})
         return
     click.echo(table(["figure", "value"], [[name, f"{value:.4f}"] for name, value in figures.items()]))
+    click.echo(
+        "thicknesses are transverse arcs: mean_ at the mean point of the pitch cone, reference_ at the middle of the"
+    )
+    click.echo("grid of flank files, where 'gearmath evaluate' measures")
     click.echo(f"{target}: {len(triangles)} triangles")
 
 

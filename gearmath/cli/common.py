@@ -23,6 +23,15 @@ MEMBER = click.option("--member", type=click.Choice(["pinion", "gear"]), require
 MACHINE = click.option(
     "--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine: a file, or a bundled one."
 )
+#: The layouts of files in short, for the end of --help.
+FLANK_CSV = (
+    "Flank CSV, mm: lines '# key: value', then member, flank, tooth, row, col, x, y, z, nx, ny, nz, deviation_um, "
+    "u_um; frame and keys: docs/files.md."
+)
+TOUCH_CSV = (
+    "Touches, mm and degrees: run, point, member, flank, tooth, row, col, X, Y, Z, A, B, triggered; docs/files.md."
+)
+CALIBRATION_CSV = "Touches, mm and degrees: run, point, target, X, Y, Z, A, B, triggered; docs/files.md."
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from gearmath.cli.common import JSON, MEMBER, SET, about, echo_json, output, table
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, about, echo_json, output, table
 from gearmath.errors import ComputationError
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from gearmath.specs.flank_csv import FlankFile
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @SET
 @MEMBER
 @click.option("--measured", required=True, type=click.Path(path_type=Path), help="Measured flank CSV of the member.")
@@ -252,7 +252,7 @@ def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any
     }
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
 @click.option("--set", "gear_set", required=True, help="The gear set the blank is to be finished to.")
 @MEMBER

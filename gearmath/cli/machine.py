@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import MACHINE, MEMBER, SET, about, bar, fast_kernels, output
+from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, about, bar, fast_kernels, output
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import ComputationError, InputError
 
@@ -67,7 +67,7 @@ def cut(
     click.echo(f"{target}: {len(wanted)} of {bevel_set.member(member).teeth} spaces, {block_count(text)} blocks")
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @SET
 @MEMBER
 @MACHINE

@@ -9,13 +9,13 @@ from typing import TypeVar
 
 import click
 
-from gearmath.cli.common import JSON, MEMBER, about, bar, echo_json, output
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, about, bar, echo_json, output
 from gearmath.errors import InputError
 
 _T = TypeVar("_T")
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @click.argument("texts", type=click.Path(path_type=Path), metavar="POINTS.txt ...", nargs=-1, required=True)
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
 @MEMBER

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import MACHINE, MEMBER, SET, about, bar, output
+from gearmath.cli.common import CALIBRATION_CSV, FLANK_CSV, MACHINE, MEMBER, SET, TOUCH_CSV, about, bar, output
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
     click.echo(f"{target}: {text.count('R205=$')} touches, {block_count(text)} blocks")
 
 
-@click.command()
+@click.command(epilog=f"{TOUCH_CSV} {FLANK_CSV}")
 @_RAW
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
 @MACHINE
@@ -148,7 +148,7 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
     click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {worst:.3f} um")
 
 
-@click.command()
+@click.command(epilog=CALIBRATION_CSV)
 @_RAW
 @CALIBRATION
 @MACHINE

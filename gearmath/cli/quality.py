@@ -6,11 +6,11 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import JSON, about, bar, echo_json
+from gearmath.cli.common import FLANK_CSV, JSON, about, bar, echo_json
 from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
 @click.option(

@@ -96,7 +96,8 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
             f"{name} {thickness[f'{name}_mm']:.4f} mm {thickness[f'{name}_deviation_um']:+.2f} um"
             for name in ("arc", "chord")
         )
-        yield f"tooth thickness at the reference point, mean: {arc}, {chord}"
+        circle = f"transverse circle through the reference point, radius {thickness['radius_mm']:.4f} mm"
+        yield f"tooth thickness, mean, on the {circle}: {arc}, {chord}"
     if tolerance is not None:
         yield from _grades(tolerance)
     yield from (line for line in values["remarks"] if line not in values["left_out"])

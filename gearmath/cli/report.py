@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import MACHINE, about, bar, output
+from gearmath.cli.common import FLANK_CSV, MACHINE, about, bar, output
 from gearmath.cli.probe import CALIBRATION
 from gearmath.cli.uncertainty import MODEL, SIGMA, covariance_of, uncertain_correction
 
@@ -14,7 +14,7 @@ from gearmath.cli.uncertainty import MODEL, SIGMA, covariance_of, uncertain_corr
 _DRAWS, _SEED = 20_000, 0
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
 @click.option(

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import JSON, MACHINE, MEMBER, about, bar, echo_json, table
+from gearmath.cli.common import FLANK_CSV, JSON, MACHINE, MEMBER, about, bar, echo_json, table
 from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import ComputationError, InputError
 
@@ -36,7 +36,7 @@ MODEL = click.option(
 _FEW_DRAWS = 2000
 
 
-@click.command()
+@click.command(epilog=FLANK_CSV)
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
 @MEMBER

@@ -12,7 +12,7 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.quality.correction import check_belongs
 from gearmath.quality.drift import Drift, untold_drift, without_drift
-from gearmath.quality.nominal import check_points, completed, nominal_rows
+from gearmath.quality.nominal import at_one_place, check_points, completed, nominal_rows
 from gearmath.quality.outliers import find_outliers
 from gearmath.quality.pitch import Pitch, evaluate_pitch
 from gearmath.quality.registration import Registration, register, stated_noise
@@ -174,7 +174,7 @@ def evaluate_member(
     each_zeroed = file.header["phase_zeroed"].lower() == "true"
     if each_zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
-    thickness = None if each_zeroed else evaluate_thickness(judged, member.teeth)
+    thickness = None if each_zeroed else evaluate_thickness(at_one_place(judged, member, name), member.teeth)
     verdict = _verdict(member, name, flanks, runout)
     progress(1)
     return Evaluation(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,7 +30,9 @@ _STEPS, _STILL = 8, 1e-13
 #: Flanks further apart than this part of a pitch are of different teeth.
 _SAME_TOOTH = 0.25
 #: A surface of third degree is taken through so many of the nearest points, where there are enough.
-_NEAREST, _CUBIC, _QUADRATIC, _PLANE = 40, 10, 6, 3
+_NEAREST, _CUBIC, _QUADRATIC, _PLANE = 30, 10, 6, 3
+#: A step of the depth counts like this part of the face width.
+_TALL = 0.4
 #: A margin that the places of a grid share is even; its digits. [mm]
 _EVEN, _DIGITS = SAME_POINT / 2, 6
 
@@ -136,8 +139,9 @@ def _zeroed(
     """Turnings and points at which the deviation at the reference points is zero, or in the mean of the flanks."""
     found, turns = list(laid), list(turns)
     flanks = [one.part.flank for one in laid]
+    bad = [_off(one, member) for one in laid]
     for _ in range(_STEPS):
-        angles = np.array([_reference_turn(one, lattice, member) for one, lattice in zip(found, lattices, strict=True)])
+        angles = np.array([_reference_turn(*each, member) for each in zip(found, lattices, bad, strict=True)])
         if together:
             means = [angles[[each == flank for each in flanks]].mean() for flank in sorted(set(flanks))]
             angles[:] = np.mean(means)
@@ -148,14 +152,13 @@ def _zeroed(
     return turns, found
 
 
-def _reference_turn(one: Laid, lattice: Lattice | None, member: Member) -> float:
+def _reference_turn(one: Laid, lattice: Lattice | None, bad: np.ndarray, member: Member) -> float:
     """Angle [rad] by which the work must be turned so that the deviation at the reference point of a part is zero.
 
     Where that point is missing or stands out from the others, what they say of its place counts.
     """
     across, up = _fractions(one, member)
-    off = _off(across, up, one.deviation)
-    at = np.zeros(len(off), dtype=bool)
+    at, off = np.zeros(len(one.kept), dtype=bool), bad[one.kept]
     place = np.array([0.5, 0.5])
     if lattice is not None and len(lattice.row) == len(one.kept):
         row, col = lattice.rows // 2, lattice.columns // 2
@@ -169,20 +172,24 @@ def _reference_turn(one: Laid, lattice: Lattice | None, member: Member) -> float
 
 def _smooth(across: np.ndarray, up: np.ndarray, deviation: np.ndarray, place: np.ndarray) -> float:
     """The deviation at a place, out of a surface of up to third degree through the nearest points."""
-    x, y = across - place[0], up - place[1]
-    near = np.argsort(np.hypot(x, y))[:_NEAREST]
+    x, y = across - place[0], _TALL * (up - place[1])
+    away = np.hypot(x, y)
+    near = np.argsort(away)[: _NEAREST + 1]
+    weight = (1 - (away[near] / away[near].max()) ** 3) ** 1.5  # roots of the tricube weights; the farthest has none
     _, terms = kernel("deviation_surface")(x[near], y[near], np.zeros(_CUBIC))
     enough = [count for count in (_CUBIC, _QUADRATIC, _PLANE) if len(near) >= 1.5 * count]
     used = terms[:, : enough[0] if enough else 1]
-    return float(np.linalg.lstsq(used / np.abs(terms).max(axis=0)[: used.shape[1]], deviation[near], rcond=1e-9)[0][0])
+    scaled = used / np.abs(used).max(axis=0) * weight[:, None]
+    return float(np.linalg.lstsq(scaled, deviation[near] * weight, rcond=1e-9)[0][0])
 
 
-def _off(across: np.ndarray, up: np.ndarray, deviation: np.ndarray) -> np.ndarray:
-    """Which points stand out from a smooth surface through the others; none where most do."""
-    try:
-        return flag_outliers(across - across.mean(), up - up.mean(), deviation)[0]
-    except InputError:
-        return np.zeros(len(deviation), dtype=bool)
+def _off(one: Laid, member: Member) -> np.ndarray:
+    """Which points of a part stand out from a smooth surface through the others; none where many do."""
+    across, up = _fractions(one, member)
+    bad = np.zeros(len(one.part.point), dtype=bool)
+    with suppress(InputError):  # many that stand out are no single bad points: the evaluation says so
+        bad[one.kept] = flag_outliers(across - across.mean(), up - up.mean(), one.deviation)[0]
+    return bad
 
 
 def _left_out(one: Laid) -> list[str]:
@@ -209,7 +216,7 @@ def _on_grid(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[str]]:
     """Rows, columns, feet, normals and deviations on a grid of even margins, between the points of a part."""
     across, up = _fractions(one, member)
-    off = _off(across, up, one.deviation)
+    off = _off(one, member)[one.kept]
     for margin in _MARGINS:
         place = np.stack(np.meshgrid(np.linspace(margin, 1 - margin, _COLUMNS), np.linspace(margin, 1 - margin, _ROWS)))
         place = place.reshape(2, -1).T

@@ -7,14 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-#: Columns may lean by so much of the face width over the working depth; tried from upright on.
-_SLANTS = sorted(np.linspace(-0.4, 0.4, 81), key=abs)
+#: Columns may lean by so much of the face width over the working depth.
+_SLANTS = np.linspace(-0.4, 0.4, 81)
 #: The least gap between two columns against the largest within one.
 _CLEAR = 2.5
 #: Gaps below this part of the whole are none.
 _NO_GAP = 1e-4
-#: Part of the grid that must be there, and how far from even lines its points may lie, in steps of the grid.
-_LEAST_FULL, _EVEN = 0.8, 0.2
+#: Part of the grid that may be missing, and how far from even lines its points may lie, in steps of the grid.
+_MOST_MISSING, _EVEN = 0.2, 0.15
+#: More points than this are a scan.
+_MOST = 2000
 
 
 @dataclass(frozen=True)
@@ -32,21 +34,25 @@ def find_lattice(across: np.ndarray, up: np.ndarray) -> Lattice | None:
 
     Columns may lean and rows may run askew, and a fifth of the points may be missing. At least two rows and columns.
     """
-    for first, second, swapped in ((across, up, False), (up, across, True)):
+    found: list[tuple[float, float, Lattice]] = []
+    ways = ((across, up, False), (up, across, True)) if len(across) <= _MOST else ()
+    for first, second, swapped in ways:
         for lines in _lines(first, second):
             rank = _ranks(lines, second)
             if rank is None:
                 continue
             row, col = (lines, rank) if swapped else (rank, lines)
             rows, columns = int(row.max()) + 1, int(col.max()) + 1
-            full = len(across) >= _LEAST_FULL * rows * columns
-            if full and _even(across, col, row) and _even(up, row, col):
-                return Lattice(rows, columns, row, col)
-    return None
+            missing = 1 - len(across) / (rows * columns)
+            off = max(_off_even(across, col, row), _off_even(up, row, col))
+            if missing <= _MOST_MISSING and off < _EVEN:
+                found.append((missing, off, Lattice(rows, columns, row, col)))
+    return min(found, key=lambda one: one[:2])[2] if found else None
 
 
 def _lines(first: np.ndarray, second: np.ndarray) -> Iterator[np.ndarray]:
-    """Ways to part points (n,) into lines of nearly equal ``first``, upright ones before those that lean."""
+    """Ways to part points (n,) into lines of nearly equal ``first``, upright or leaning, each of them once."""
+    seen = set()
     for slant in _SLANTS:
         leaning = first + slant * second
         order = np.argsort(leaning)
@@ -60,7 +66,9 @@ def _lines(first: np.ndarray, second: np.ndarray) -> Iterator[np.ndarray]:
             continue
         label = np.empty(len(first), dtype=int)
         label[order] = np.concatenate([[0], np.cumsum(gaps > np.sqrt(sizes[cut] * sizes[cut + 1]))])
-        yield label
+        if label.tobytes() not in seen:
+            seen.add(label.tobytes())
+            yield label
 
 
 def _ranks(lines: np.ndarray, second: np.ndarray) -> np.ndarray | None:
@@ -86,12 +94,15 @@ def _ranks(lines: np.ndarray, second: np.ndarray) -> np.ndarray | None:
     return rank
 
 
-def _even(place: np.ndarray, line: np.ndarray, along: np.ndarray) -> bool:
-    """Whether points (n,) of a line share one place, but for lines that lean and bow together."""
+def _off_even(place: np.ndarray, line: np.ndarray, along: np.ndarray) -> float:
+    """How far the points (n,) of a line are from one place, but for lines that lean, fan out and bow, in steps."""
     count = int(line.max()) + 1
     middle = along - along.mean()
     base = (line[:, None] == np.arange(count)).astype(float)
-    terms = np.column_stack([base, middle, middle * line, middle**2, middle**2 * line])
-    fitted = terms @ np.linalg.lstsq(terms, place, rcond=None)[0]
-    step = np.ptp(fitted) / max(count - 1, 1)
-    return bool(np.sqrt(np.mean((place - fitted) ** 2)) < _EVEN * step)
+    terms = np.column_stack([base, middle, middle * line, middle**2])
+    solution, _, rank, _ = np.linalg.lstsq(terms, place, rcond=None)
+    spare = len(place) - int(rank)
+    step = np.ptp(solution[:count]) / (count - 1)
+    if spare < 1 or step <= 0:
+        return np.inf
+    return float(np.linalg.norm(place - terms @ solution) / np.sqrt(spare) / step)

@@ -11,6 +11,7 @@ from gearmath.bevel.flank import Grid, nominal_points, solve_flank
 from gearmath.bevel.newton import TOLERANCE
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
+from gearmath.quality.pitch import reference_point
 from gearmath.quality.places import feet, file_grid, has_own_places
 from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, Member
@@ -76,6 +77,28 @@ def distance_from_flank(
         k = int(np.argmax(~(residual <= TOLERANCE)))
         raise ComputationError(f"{flank} flank: the nominal surface does not reach the point at {point[k].round(3)} mm")
     return np.sum((at - surface.point) * surface.normal, axis=1)
+
+
+def at_one_place(file: FlankFile, member: Member, name: str) -> FlankFile:
+    """The reference points of a file whose points have their own places, both flanks brought to the same place.
+
+    Between flanks and teeth these places differ by what the measuring machine was off the commanded ones: deviations
+    hardly change over that, the thickness of the tooth does. Files of even margins stay as they are.
+    """
+    row, col = reference_point(file)
+    points = file.pick((file.row == row) & (file.col == col))
+    if not has_own_places(file) or not len(points):
+        return file
+    axial, radial = feet(points).mean(axis=0)
+    point, normal = np.empty((len(points), 3)), np.empty((len(points), 3))
+    for flank in np.unique(points.flank):
+        here = points.flank == flank
+        turn = 2 * math.pi * (points.tooth[here] % member.teeth) / member.teeth
+        solved = solve_flank(member, name, str(flank), Grid(np.array([[axial]]), np.array([[radial]])))
+        point[here] = turned(np.repeat(solved.point, len(turn), axis=0), turn)
+        normal[here] = turned(np.repeat(solved.normal, len(turn), axis=0), turn)
+    moved = np.nan_to_num(points.deviation)[:, None] * normal
+    return replace(points, point=point + moved, normal=normal)
 
 
 def completed(file: FlankFile, member: Member, name: str) -> tuple[FlankFile, tuple[str, ...]]:

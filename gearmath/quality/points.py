@@ -195,7 +195,7 @@ def _axial_fit(part: Part, frame: Frame, member: Member, turn: float) -> tuple[f
 
 
 def _plain(offset: float) -> str:
-    return f"{round(offset, 2) + 0.0:.2f}"
+    return f"{round(offset, 1) + 0.0:.1f}"
 
 
 def _nominal(member: Member, flank: str, point: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

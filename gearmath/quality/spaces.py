@@ -110,6 +110,7 @@ class Thickness:
 
     ``deviation`` has one value for each tooth, the one that follows the space of its number; where not all teeth were
     measured, one for each space, the sum of its two flanks. ``chord_factor`` turns an arc's deviation into the chord's.
+    ``radius`` [mm] is that of the transverse circle through the reference points, along which the arc runs.
     """
 
     arc: float
@@ -117,6 +118,7 @@ class Thickness:
     deviation: np.ndarray
     chord_factor: float
     teeth: int
+    radius: float
 
     @property
     def mean(self) -> float:
@@ -131,6 +133,8 @@ class Thickness:
 
     def as_dict(self) -> dict[str, Any]:
         return {
+            "measured_at": "reference_point",
+            "radius_mm": self.radius,
             "arc_mm": self.arc,
             "chord_mm": self.chord,
             "arc_deviation_um": self.mean * 1000,
@@ -189,7 +193,8 @@ def evaluate_thickness(file: FlankFile, teeth: int) -> Thickness | None:
         deviation = _allowance(one) + _allowance(other)
     if not np.isfinite(deviation).any():
         return None
-    return Thickness(float(arc), float(chord), deviation, float(factor), teeth)
+    radius = float(np.hypot(*_nominal(one)[0, :2]))
+    return Thickness(float(arc), float(chord), deviation, float(factor), teeth, radius)
 
 
 def _pairs(file: FlankFile) -> tuple[FlankFile, FlankFile]:

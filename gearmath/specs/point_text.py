@@ -21,7 +21,7 @@ from gearmath.errors import InputError
 #: Length of the units a file may be in. [mm]
 UNITS = {"mm": 1.0, "inch": 25.4}
 #: More points than any flank is measured at, and a larger coordinate than any machine has. [in the file's unit]
-MOST_POINTS, _LARGEST = 20_000, 1e5
+MOST_POINTS, _LARGEST = 5000, 1e5
 
 _NUMBER = re.compile(
     r"(?:(?:[XYZIJKUVW]|N[XYZ])\s*[=:]?\s*)?([+-]?(?:\d+\.?\d*|\.\d+)(?:[DEde][Xx]?[+-]?\d{1,3})?|[+-]?(?:nan|inf)\w*)"

@@ -94,8 +94,10 @@ def test_corrected_settings_are_those_that_compensate_writes(command, measured, 
     for flank, name in names:
         vector = correction.settings[flank][SETTINGS.index(name)]
         value = np.degrees(vector) if sharp[flank, name]["unit"] == "deg" else vector
-        assert sharp[flank, name]["value"] == pytest.approx(value, rel=1e-9)
-        assert sharp[flank, name]["u"] > 0
+        u = sharp[flank, name]["u"]
+        assert u > 0
+        # weak directions carry the rounding of the processor some thousand times larger: a thousandth of u is none
+        assert sharp[flank, name]["value"] == pytest.approx(value, abs=1e-3 * u)
     assert blunt["concave", "mean"]["u"] == pytest.approx(2 * sharp["concave", "mean"]["u"], rel=1e-9)
 
 
@@ -155,7 +157,7 @@ def test_compensation_shows_uncertainties_where_the_points_have_them(command, me
     for flank, settings in known["u"].items():
         assert len(settings) == 7
         for name, u in settings.items():
-            assert u == pytest.approx(whole[flank, name], rel=1e-9)
+            assert u == pytest.approx(whole[flank, name], rel=1e-3)  # an uncertainty has two or three digits
     known = json.loads(command(*arguments, "--json", "--sigma-um", 0.5, "--no-register")[1])
     for flank in FLANKS:
         # of 45 variances, what settings take up and what they leave make the whole, but for what damping does to both

@@ -158,13 +158,36 @@ def test_slopes_are_those_over_the_area_whatever_the_reference_point_and_the_gri
     assert orders(topography).length_crowning == pytest.approx(-1e-5 * length**2 / 4, abs=1e-12)
 
 
-def test_orders_are_a_linear_map_of_the_deviations(plane):
-    """The matrix times any deviations gives the figures, and two rows give no second order."""
-    rng = np.random.default_rng(3)
-    values = rng.normal(0, 0.01, 45)
-    topography = evaluate_topography(plane(lambda X, Y: values), "concave")
-    figures = orders_matrix(topography.along.ravel(), topography.upward.ravel()) @ values
-    np.testing.assert_allclose(figures, [getattr(orders(topography), name) for name in ORDERS], rtol=0, atol=1e-15)
+def test_orders_of_any_deviations_are_those_of_their_regressions(plane):
+    """On an even grid centered at the reference point, each figure is a sum by itself.
+
+    The slope along X is ΣXδ/ΣX²; a twist ΣXYδ/ΣX²Y²; a curvature is the slope of δ on X² less its mean, because the
+    even polynomials 1, X² - mean, Y² - mean are orthogonal there. Rises are over 20 and 5 mm.
+    """
+    values = np.random.default_rng(3).normal(0, 0.01, 45)
+    X, Y = (np.indices((5, 9))[k].ravel() for k in (1, 0))
+    X, Y = 2.5 * (X - 4), 1.25 * (Y - 2)
+
+    def slope(term):
+        return term @ values / (term @ term)
+
+    wanted = {
+        "mean": values.sum() / 45,
+        "spiral_angle_deviation": 20 * slope(X),
+        "pressure_angle_deviation": 5 * slope(Y),
+        "length_crowning": -(10**2) * slope(X**2 - np.mean(X**2)),
+        "twist": 20 * 5 * slope(X * Y),
+        "profile_crowning": -(2.5**2) * slope(Y**2 - np.mean(Y**2)),
+    }
+    topography = evaluate_topography(plane(lambda x, y: values), "concave")
+    found = orders(topography)
+    for name, value in wanted.items():
+        assert getattr(found, name) == pytest.approx(value, abs=1e-15), name
+    matrix = orders_matrix(topography.along.ravel(), topography.upward.ravel())
+    np.testing.assert_allclose(matrix @ values, [wanted[name] for name in ORDERS], rtol=0, atol=1e-15)
+
+
+def test_two_rows_have_no_second_order(plane):
     flat = orders(evaluate_topography(plane(lambda X, Y: 1e-3 * X + 2e-3 * Y, 2, 9), "concave"))
     assert flat.pressure_angle == pytest.approx(2e-3)
     assert (flat.length_crowning, flat.twist, flat.profile_crowning) == (0, 0, 0)

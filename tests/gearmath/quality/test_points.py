@@ -1,0 +1,295 @@
+"""Points of other measuring machines: what was put on the flank comes back, whatever the axes, order and rotation.
+
+A point p + δ n, with p on the nominal flank and n its normal, has foot p and deviation δ by construction; rotation,
+axes, units and order are put on by hand. Places lie where no grid of ours has them.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearmath.bevel.flank import Grid, blank_grid, solve_flank
+from gearmath.errors import InputError
+from gearmath.quality.correction import correct
+from gearmath.quality.evaluation import evaluate_member
+from gearmath.quality.foreign import foreign_file
+from gearmath.quality.points import Frame, Part
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, load_bevel_set
+from gearmath.specs.flank_csv import read_flank_csv
+from gearmath.specs.toml import bundled
+
+SETS = (
+    "nasa_tp3096_12x36.toml", "crown_gear_7x43.toml", "crown_gear_formate_14x39.toml", "crown_gear_hobbed_14x39.toml",
+    "crown_gear_universal_14x39.toml",
+)  # fmt: skip
+PLAIN = Frame()
+#: Row and column of the reference point of 5x9.
+MIDDLE = 2 * 9 + 4
+
+
+def around(points, angle):
+    c, s = np.cos(angle), np.sin(angle)
+    return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+
+
+def places(member, rows=5, columns=9, margin=0.13, off=0.03, seed=1):
+    """A grid as a measuring machine takes it: of another margin, every place beside it by some 0.03 mm."""
+    grid, rng = blank_grid(member, rows, columns, margin), np.random.default_rng(seed)
+    return Grid(grid.axial + off * rng.standard_normal(grid.shape), grid.radial + off * rng.standard_normal(grid.shape))
+
+
+def smooth(count=45):
+    """Deviations [mm] of up to some 50 µm, none at the reference point."""
+    row, col = np.divmod(np.arange(count), 9)
+    return 0.02 * np.sin((col - 4) / 3) + 0.01 * (row - 2) - 0.004 * ((row - 2) * (col - 4) / 4) ** 2
+
+
+def on_flank(member, name, flank, deviation, grid=None):
+    points = solve_flank(member, name, flank, places(member) if grid is None else grid)
+    return points.point + deviation[:, None] * points.normal, points.normal
+
+
+def deviations(file, flank, tooth=0):
+    points = file.select(flank, tooth)
+    return points.deviation[np.argsort(points.row * 9 + points.col)]
+
+
+@pytest.mark.parametrize("name", MEMBERS)
+@pytest.mark.parametrize("bundle", SETS)
+def test_deviations_come_back_from_shuffled_turned_points_of_every_set(bundle, name):
+    gear_set, rng = load_bevel_set(bundled(bundle)), np.random.default_rng(5)
+    member = gear_set.member(name)
+    for flank in FLANKS:
+        point, normal = on_flank(member, name, flank, smooth())
+        order = rng.permutation(45)
+        # the work axis of the file is -y: z_w = -y, and x y z keep their order; the origin lies 30 mm behind the apex
+        file = around(point, 2.5)[order] - [0, 0, 30.0]
+        file = np.stack([file[:, 1], -file[:, 2], -file[:, 0]], axis=1)
+        into = around(-normal, 2.5)[order]
+        into = np.stack([into[:, 1], -into[:, 2], -into[:, 0]], axis=1)
+        found = foreign_file([Part("p.txt", flank, 0, file, into)], Frame("-y", 30.0), gear_set, name)
+        assert (found.file.header["grid"], found.file.header["phase_zeroed"]) == ("5x9", "true")
+        assert "p.txt: normals point into the metal" in found.remarks
+        # 0.01 um is asked; feet are solved to 1e-10 mm
+        np.testing.assert_allclose(deviations(found.file, flank), smooth(), rtol=0, atol=1e-8)
+
+
+def test_axes_of_a_file_are_never_mirrored():
+    for axis in ("+x", "-x", "+y", "-y", "+z", "-z"):
+        rotation = Frame(axis).in_work(np.eye(3)).T
+        np.testing.assert_allclose(rotation.T @ rotation, np.eye(3))
+        assert np.linalg.det(rotation) == pytest.approx(1.0)
+        unit = np.zeros(3)
+        unit["xyz".index(axis[1])] = 1 if axis[0] == "+" else -1
+        np.testing.assert_allclose(rotation @ unit, [0, 0, 1])
+
+
+def test_thickness_and_pitch_stay_where_all_files_share_one_rotation(gear_set):
+    """Both flanks 5 µm too thick, tooth 3 shifted by 20 µm of arc on both: only the rotation of the whole goes."""
+    member, parts, shifts = gear_set.gear, [], {}
+    for flank in FLANKS:
+        points = solve_flank(member, "gear", flank, places(member))
+        for tooth in (0, 3):
+            deviation = np.full(45, 0.005)
+            extra = 0.020 / np.hypot(*points.point[MIDDLE, :2]) if tooth == 3 else 0.0
+            laid = around(points.point + deviation[:, None] * points.normal, 1.1 + extra + 2 * np.pi * tooth / 36)
+            parts.append(Part(f"{flank}{tooth}.txt", flank, tooth, laid))
+        middle, normal = points.point[MIDDLE], points.normal[MIDDLE]
+        shifts[flank] = extra * (middle[0] * normal[1] - middle[1] * normal[0])
+    found = foreign_file(parts, Frame(), gear_set, "gear")
+    assert found.file.header["phase_zeroed"] == "false"
+    for flank in FLANKS:
+        first, fourth = (deviations(found.file, flank, tooth)[MIDDLE] for tooth in (0, 3))
+        assert fourth - first == pytest.approx(shifts[flank], abs=1e-6)
+        # thickness: of both flanks together 10 um, the mean of each as much as its normal has of the arc
+    mean = [deviations(found.file, flank)[MIDDLE] + deviations(found.file, flank, 3)[MIDDLE] for flank in FLANKS]
+    assert sum(mean) / 2 == pytest.approx(0.010, abs=3e-4)
+    each = foreign_file(parts, Frame(), gear_set, "gear", "each")
+    assert each.file.header["phase_zeroed"] == "true"
+    assert max(abs(deviations(each.file, flank, tooth)[MIDDLE]) for flank in FLANKS for tooth in (0, 3)) < 1e-9
+
+
+def test_rotation_is_kept_on_request(gear_set):
+    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth() + 0.007)
+    found = foreign_file([Part("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion", "kept")
+    assert found.file.header["phase_zeroed"] == "false"
+    np.testing.assert_allclose(deviations(found.file, "concave"), smooth() + 0.007, rtol=0, atol=1e-9)
+    with pytest.raises(InputError, match=r"turned by (20\.0|19\.9)\d\d degrees against tooth 0 .* --phase kept"):
+        foreign_file([Part("p.txt", "concave", 0, around(point, np.radians(20)))], Frame(), gear_set, "pinion", "kept")
+
+
+@pytest.mark.parametrize("burr", [3, MIDDLE])
+def test_a_burr_is_kept_for_the_evaluation_and_moves_no_other_point(gear_set, burr):
+    deviation = smooth()
+    deviation[burr] += 0.5
+    point, _ = on_flank(gear_set.pinion, "pinion", "convex", deviation)
+    found = foreign_file([Part("p.txt", "convex", 0, around(point, -2))], Frame(), gear_set, "pinion")
+    others = np.arange(45) != burr
+    # where the reference point itself is bad, the smooth surface through the others stands for it
+    np.testing.assert_allclose(deviations(found.file, "convex")[others], smooth()[others], rtol=0, atol=1e-3)
+    judged = evaluate_member(found.file, gear_set.pinion, "pinion")
+    assert any(f"row {burr // 9}, col {burr % 9}" in remark and "left out" in remark for remark in judged.remarks)
+
+
+def test_points_far_off_are_left_out_and_counted(gear_set):
+    point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point[0] += 40 * normal[0]
+    found = foreign_file([Part("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion")
+    assert "p.txt: 1 points lie beyond the flank or far off it, left out" in found.remarks
+    assert len(found.file) == 44
+    judged = evaluate_member(found.file, gear_set.pinion, "pinion")
+    assert any("row 0, col 0: not measured" in remark for remark in judged.remarks)
+    assert judged.flanks["concave"].topographies[0].extreme == pytest.approx(smooth()[1], abs=1e-6)
+
+
+def test_centers_of_the_tip_are_brought_back_by_its_radius(gear_set):
+    point, normal = on_flank(gear_set.gear, "gear", "convex", smooth())
+    found = foreign_file(
+        [Part("p.txt", "convex", 0, around(point + 1.5 * normal, 0.3))], Frame("+z", 0.0, 1.5), gear_set, "gear"
+    )
+    np.testing.assert_allclose(deviations(found.file, "convex"), smooth(), rtol=0, atol=1e-8)
+
+
+def test_scattered_points_are_brought_onto_a_grid_between_them(gear_set):
+    """A cubic deviation over 300 random places, with three bad points among them."""
+    member, rng = gear_set.gear, np.random.default_rng(2)
+    across, up = rng.uniform(0.03, 0.97, (2, 300))
+    grid = blank_grid(member, 2, 2, 0.0)
+
+    def mixed(corners):
+        """Between the corners of the blank, where lines of the blank are straight."""
+        toe, heel = (corners[0, k] * (1 - up) + corners[1, k] * up for k in (0, 1))
+        return toe * (1 - across) + heel * across
+
+    spread = Grid(mixed(grid.axial)[None], mixed(grid.radial)[None])
+
+    def form(x, y):
+        return 0.03 * (x - 0.5) + 0.02 * (y - 0.5) ** 2 - 0.06 * (x - 0.5) ** 3
+
+    deviation = form(across, up)
+    deviation[[7, 70, 170]] += 0.4
+    point, _ = on_flank(member, "gear", "concave", deviation, spread)
+    found = foreign_file([Part("p.txt", "concave", 0, around(point, 1))], Frame(), gear_set, "gear")
+    assert any("300 points form no grid" in remark for remark in found.remarks)
+    assert any("3 points stand out from the others" in remark for remark in found.remarks)
+    assert found.file.header["margins"] == "0.1,0.1"
+    y, x = (each.ravel() for each in np.meshgrid(np.linspace(0.1, 0.9, 5), np.linspace(0.1, 0.9, 9), indexing="ij"))
+    # a rotation of the work adds what its lever adds, nearly the same all over the flank; rest: 0.2 um
+    left = deviations(found.file, "concave") - (form(x, y) - form(0.5, 0.5))
+    assert np.abs(left).max() < 2e-4
+    assert evaluate_member(found.file, member, "gear").flanks["concave"].orders.residual < 2e-3
+
+
+def test_evaluate_judges_points_at_their_own_places(gear_set, command, tmp_path):
+    """Text in inches with decimal commas, work axis -x, in; the largest deviation of either flank out."""
+    options = []
+    for flank in FLANKS:
+        point, _ = on_flank(gear_set.pinion, "pinion", flank, smooth())
+        z_on_x = around(point, 0.4) @ np.array([[0, 1, 0], [0, 0, -1], [-1, 0, 0]])
+        lines = [";".join(f"{v / 25.4:.9f}".replace(".", ",") for v in row) for row in z_on_x[::-1]]
+        (tmp_path / f"{flank}.txt").write_text("X;Y;Z\n" + "\n".join(lines) + "\n")
+        options += [tmp_path / f"{flank}.txt", "--flank", flank]
+    target = tmp_path / "m.csv"
+    set_ = ("--set", SETS[0])
+    status, out, err = command(
+        "points", *options, *set_, "--member", "pinion", "--unit", "inch", "--axis", "-x", "-o", target, "--json"
+    )
+    assert (status, err) == (0, "")
+    values = json.loads(out)
+    assert [each["turned_deg"] % 360 for each in values["files"]] == pytest.approx([np.degrees(0.4) % 360] * 2, abs=180)
+    assert values["margins"] == "own"
+    status, out, err = command("evaluate", target, *set_, "--json")
+    assert (status, err) == (0, "")
+    figures = json.loads(out)["flanks"]
+    for flank in FLANKS:
+        assert abs(figures[flank]["max_deviation_um"]) == pytest.approx(np.abs(smooth()).max() * 1000, abs=0.01)
+        assert figures[flank]["teeth_in_full"] == [0]
+    assert read_flank_csv(target).header["tip_radius_mm"] == "0"
+
+
+def test_a_machine_error_is_corrected_from_foreign_points(gear_set, altered):
+    """Cut with the cutter 0.05 mm too far out: points on that very flank ask for a radial distance 0.05 mm less."""
+    cut = altered(gear_set, "pinion", "concave", radial_distance=gear_set.pinion.concave.radial_distance + 0.05)
+    points = solve_flank(cut.pinion, "pinion", "concave", places(gear_set.pinion)).point
+    parts = [Part("p.txt", "concave", 0, around(points, 3)[::-1])]
+    whole = solve_flank(gear_set.pinion, "pinion", "convex", places(gear_set.pinion)).point
+    parts.append(Part("q.txt", "convex", 0, around(whole, 3)))
+    file = foreign_file(parts, Frame(), gear_set, "pinion", "each").file
+    found = correct(gear_set.pinion, "pinion", file, ("radial_distance", "work_rotation_offset"))
+    change = found.settings["concave"][0] - gear_set.pinion.concave.radial_distance
+    assert change == pytest.approx(-0.05, abs=5e-4)
+    assert found.expected["concave"] < 5e-4
+
+
+def refusal(gear_set, part, frame=PLAIN, name="pinion"):
+    with pytest.raises(InputError) as refused:
+        foreign_file([part], frame, gear_set, name)
+    return str(refused.value)
+
+
+def test_points_of_something_else_are_refused_with_what_would_fit(gear_set):
+    point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    part = Part("p.txt", "concave", 0, around(point, 1.0))
+    assert "p.txt: " in refusal(gear_set, replace(part, flank="convex"))
+    exact, _ = on_flank(gear_set.pinion, "pinion", "convex", np.zeros(45))
+    exact = Part("p.txt", "convex", 0, around(exact, 1.0))  # a slope of the deviations is some 0.5 mm of offset
+    cases = {
+        "most would fit with --flank concave": (replace(part, flank="convex"), Frame(), "pinion"),
+        "most would fit with --unit inch": (replace(part, point=part.point / 25.4), Frame(), "pinion"),
+        "most would fit with --unit mm": (replace(part, point=part.point * 25.4), Frame(), "pinion"),
+        "most would fit with --axis -z": (replace(part, point=part.point * [1, -1, -1]), Frame(), "pinion"),
+        "most would fit with --axis +x": (replace(part, point=part.point[:, [2, 0, 1]]), Frame(), "pinion"),
+        "most would fit with --member pinion": (part, Frame(), "gear"),
+        "the points are those of the mirror image": (replace(part, point=part.point * [1, -1, 1]), Frame(), "pinion"),
+        "most would fit with --apex-offset 0.0": (exact, Frame("+z", -14.0), "pinion"),
+        "with --apex-offset 0.0 more than": (exact, Frame("+z", 5.0), "pinion"),
+        "is the file of this set, member and flank": (replace(part, point=part.point * 0.5), Frame(), "pinion"),
+    }
+    for words, case in cases.items():
+        assert words in refusal(gear_set, *case), words
+    turned_normals = replace(part, normal=around(normal, 1.0)[:, [1, 2, 0]])
+    assert "normals lie within 15 degrees" in refusal(gear_set, turned_normals)
+
+
+def test_a_flank_of_another_tooth_is_named_with_its_tooth(gear_set):
+    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    parts = [Part(f"{k}.txt", "concave", k, around(point, -2 * np.pi * k / 12)) for k in (0, 1)]
+    with pytest.raises(InputError, match=r"1\.txt: .* it would be of tooth 11, counted as the set counts"):
+        foreign_file(parts, Frame(), gear_set, "pinion")
+
+
+def test_too_few_points_for_a_grid_are_refused(gear_set):
+    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    assert "its 9 points form no grid, and cover too little" in refusal(
+        gear_set, Part("p.txt", "concave", 0, point[18:27])
+    )
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--tooth", 12), r"p\.txt: --tooth 12: the member has teeth 0 to 11"),
+        (("--apex-offset", "nan"), r"--apex-offset nan: must lie between"),
+        (("--tip-radius", "-1"), r"--tip-radius -1: must lie between 0 and 10 mm"),
+        (("--flank", "convex", "--flank", "concave"), r"--flank: given 3 times for 1 files"),
+    ],
+)
+def test_options_out_of_range_are_refused(refused, tmp_path, options, sentence):
+    (tmp_path / "p.txt").write_text("1.5 2.5 3.5\n")
+    refused(
+        sentence, "points", tmp_path / "p.txt", "--set", SETS[0], "--member", "pinion", "--flank", "concave", *options,
+        "-o", tmp_path / "m.csv",
+    )  # fmt: skip
+
+
+def test_two_files_of_one_flank_are_refused(refused, tmp_path):
+    for name in "ab":
+        (tmp_path / f"{name}.txt").write_text("1.5 2.5 3.5\n")
+    refused(
+        r"b\.txt: is taken for the concave flank of tooth 0, as is \S*a\.txt", "points", tmp_path / "a.txt",
+        tmp_path / "b.txt", "--set", SETS[0], "--member", "pinion", "--flank", "concave", "-o", tmp_path / "m.csv",
+    )  # fmt: skip
