@@ -8,6 +8,9 @@ from pathlib import Path
 
 from gearmath.errors import InputError
 
+#: Bytes of the largest file that is read as text.
+_LARGEST = 200_000_000
+
 
 def write_text(path: Path, text: str) -> None:
     """Write ``text`` (UTF-8, LF) to ``path`` in one step. Raises InputError if the place cannot be written."""
@@ -31,10 +34,21 @@ def write_bytes(path: Path, content: bytes) -> None:
 
 
 def read_text(path: Path) -> str:
-    """The text of a file. Raises InputError naming the file if it is missing or is no text."""
+    """The text of a file: UTF-8, with or without a byte order mark, line ends of any kind as LF.
+
+    Raises InputError naming the file if it is missing, is no text, or is larger than any file that is read here.
+    """
     try:
-        return path.read_text("utf-8")
+        with path.open("rb") as stream:
+            content = stream.read(_LARGEST + 1)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    if len(content) > _LARGEST:
+        raise InputError(f"{path}: is larger than {_LARGEST // 10**6} MB, which is the limit")
+    try:
+        text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: is no text file: byte {error.start} is not UTF-8") from error
+    if "\0" in text:
+        raise InputError(f"{path}: is no text file: it holds a zero byte")
+    return text.replace("\r\n", "\n").replace("\r", "\n")

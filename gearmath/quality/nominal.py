@@ -19,6 +19,10 @@ from gearmath.specs.flank_csv import FlankFile, flank_file, join
 
 #: A measured point may lie this far beside its nominal normal. [mm]
 SAME_POINT = 0.01
+#: Its deviation and its place may differ by this much: files that are rounded to the micrometre. [mm]
+SAME_DEVIATION = 0.001
+#: Least cosine between the normal of a row and the nominal one, 1 degree.
+SAME_NORMAL = math.cos(math.radians(1.0))
 #: Part of a grid that may be missing.
 MOST_MISSING = 0.2
 _MM_PER_INCH = 25.4
@@ -131,17 +135,43 @@ def completed(file: FlankFile, member: Member, name: str) -> tuple[FlankFile, tu
 
 
 def check_points(file: FlankFile, rows: NominalRows) -> None:
-    """Raise InputError, with the likeliest cause, where a measured point does not lie on its nominal normal."""
-    touched = file.point - file.deviation[:, None] * file.normal
-    apart = np.nan_to_num(np.linalg.norm(touched - rows.point, axis=1))
-    if not (apart > SAME_POINT).any():
-        return
-    k = int(np.argmax(apart > SAME_POINT))
-    place = f"{file.flank[k]} flank, tooth {file.tooth[k]}, row {file.row[k]}, col {file.col[k]}"
-    raise InputError(
-        f"{place}: the measured point lies {apart[k]:.4f} mm beside the nominal normal, the limit is {SAME_POINT} mm; "
-        f"{_likeliest_cause(file, rows)}"
-    )
+    """Raise InputError, with the likeliest cause, where a row is none of its nominal point.
+
+    The normal must be the nominal one, the measured point lie on it, and as far along it as the deviation says.
+    """
+    off = file.point - rows.point
+    along = np.einsum("ij,ij->i", off, file.normal)
+    apart = np.where(np.isfinite(file.deviation), np.linalg.norm(off - along[:, None] * file.normal, axis=1), 0.0)
+    if (apart > SAME_POINT).any():
+        k = int(np.argmax(apart > SAME_POINT))
+        raise InputError(
+            f"{_place(file, k)}: the measured point lies {apart[k]:.4f} mm beside the nominal normal, the limit is "
+            f"{SAME_POINT} mm; {_likeliest_cause(file, rows)}"
+        )
+    turned_away = np.einsum("ij,ij->i", file.normal, rows.normal) < SAME_NORMAL
+    if turned_away.any():
+        k = int(np.argmax(turned_away))
+        inward = int((np.einsum("ij,ij->i", file.normal, rows.normal) < -SAME_NORMAL).sum())
+        why = f"{inward} of {len(file)} normals point into the metal" if inward else "is the file of this set and hand?"
+        raise InputError(
+            f"{_place(file, k)}: nx, ny, nz = {_shown(file.normal[k])}: must be the outward normal, "
+            f"{_shown(rows.normal[k])}, within {math.degrees(math.acos(SAME_NORMAL)):.1f} degrees; {why}"
+        )
+    wrong = np.nan_to_num(np.abs(along - file.deviation))
+    if (wrong > SAME_DEVIATION).any():
+        k = int(np.argmax(wrong > SAME_DEVIATION))
+        raise InputError(
+            f"{_place(file, k)}: deviation_um = {file.deviation[k] * 1000:.3f}: x, y, z lie {along[k] * 1000:.3f} um "
+            f"out of the nominal flank; both must agree within {SAME_DEVIATION * 1000:g} um"
+        )
+
+
+def _place(file: FlankFile, k: int) -> str:
+    return f"{file.flank[k]} flank, tooth {file.tooth[k]}, row {file.row[k]}, col {file.col[k]}"
+
+
+def _shown(vector: np.ndarray) -> str:
+    return ", ".join(f"{value:.4f}" for value in vector)
 
 
 def _likeliest_cause(file: FlankFile, rows: NominalRows) -> str:

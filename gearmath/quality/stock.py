@@ -15,6 +15,7 @@ import numpy as np
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError, InputError
 from gearmath.quality.correction import check_belongs
+from gearmath.quality.nominal import check_points, nominal_rows
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
 
@@ -46,9 +47,11 @@ def share_stock(member: Member, name: str, measured: FlankFile, advance: bool = 
     """The rotation that leaves the most stock where there is least; with ``advance`` after a shift that makes it even.
 
     ``measured`` is the probed blank, judged against the flanks to be finished. Raises InputError if the file is not of
-    this member, has no deviations or lacks a flank, ComputationError if less than ``least`` [mm] remains somewhere.
+    this member, not on its flanks, has no deviations or lacks a flank, and ComputationError if less than ``least`` [mm]
+    remains somewhere.
     """
     check_belongs(member, name, measured)
+    check_points(measured, nominal_rows(measured, member, name))
     kept = measured.pick(~np.isnan(measured.deviation))
     for flank in FLANKS:
         if not (kept.flank == flank).any():

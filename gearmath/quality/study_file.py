@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import time
 import zipfile
+import zlib
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
@@ -66,17 +67,25 @@ class Results:
         try:
             with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as stored:
                 sha256, done, values = str(stored["study"]), stored["done"], stored["values"]
+        except (zipfile.BadZipFile, zlib.error, EOFError, ValueError, KeyError, TypeError) as error:
+            raise InputError(f"{path}: is no results file of a study") from error
+        except (MemoryError, NotImplementedError, RuntimeError) as error:  # sizes, methods and passwords of the archive
+            raise InputError(f"{path}: is no results file of a study: {error}") from error
         except OSError as error:
             raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
-        except (ValueError, KeyError, EOFError, TypeError, zipfile.BadZipFile) as error:
-            raise InputError(f"{path}: is no results file of a study") from error
         if sha256 != self._sha256:
             raise InputError(
                 f"{path}: study = {sha256[:12]}...: holds the results of another study, this one is "
                 f"{self._sha256[:12]}...; take another name, or delete the file"
             )
-        if done.dtype != bool or values.shape != (len(done) * self._size, self.values.shape[1]):
+        width = self.values.shape[1]
+        if done.dtype != bool or done.ndim != 1 or values.shape != (len(done) * self._size, width):
             raise InputError(f"{path}: is no results file of a study")
+        if values.dtype != np.float64:
+            raise InputError(f"{path}: values are of type {values.dtype}, must be float64")
+        known = np.isfinite(values.reshape(len(done), self._size, width)).any(axis=(1, 2))
+        if (done & ~known).any():
+            raise InputError(f"{path}: block {int(np.argmax(done & ~known))} is marked as done and holds no numbers")
         if len(done) > len(self.done):
             self.done, self.values = done, values
         else:

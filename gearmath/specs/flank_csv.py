@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.files import read_text, write_text
+from gearmath.files import write_text
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
+from gearmath.specs.lines import Line, read_lines
 
 COLUMNS = ("member", "flank", "tooth", "row", "col", "x", "y", "z", "nx", "ny", "nz", "deviation_um", "u_um")
 #: Header keys of the contract that every file carries, in this order.
@@ -42,7 +43,14 @@ _HEADER_VALUES = {
         rf"(?i:false|true|{COMMON})",
         f"must be false, {COMMON} (both flanks turned alike) or true (each)",
     ),
+    "member": ("|".join(MEMBERS), f"must be {' or '.join(MEMBERS)}"),
+    "tip_radius_mm": (r"\d(\.\d{1,12})?|\de-\d\d", "must be a number from 0 to less than 10"),
+    "settings_sha256": (r"[0-9a-fA-F]{1,999}", "must be hexadecimal digits"),
 }
+#: Points of a grid; so many are solved in seconds.
+MOST_POINTS = 10_000
+#: No index is larger, no point farther from the apex [mm], no deviation larger [µm].
+_LARGEST_INDEX, _LARGEST, _LARGEST_UM = 1_000_000, 1e4, 1e4
 
 
 @dataclass(frozen=True)
@@ -116,25 +124,18 @@ def write_flank_csv(path: Path, file: FlankFile) -> None:
 
 
 def read_flank_csv(path: Path) -> FlankFile:
-    """Read a flank file. Raises InputError naming file, line, column, value and limit."""
-    header: dict[str, str] = {}
-    rows: list[list[str]] = []
-    for number, line in enumerate(read_text(path).splitlines(), 1):
-        if line.startswith("#"):
-            key, _, value = line[1:].partition(":")
-            header[key.strip()] = value.strip()
-        elif line.strip():
-            rows.append([str(number), *_cells(path, number, line)])
-    if not rows or tuple(rows[0][1:]) != COLUMNS:
+    """Read a flank file. Raises InputError naming file, line, key, value and limit."""
+    header, lines = read_lines(path, HEADER)
+    if not lines or lines[0].cells != COLUMNS:
         raise InputError(f"{path}: is no flank file: the column line must read {','.join(COLUMNS)}")
     missing = [key for key in HEADER if key not in header]
     if missing:
         raise InputError(f"{path}: the header line '# {missing[0]}: ...' is missing")
     _check_header(path, header)
-    records = [_record(path, row) for row in rows[1:]]
+    records = [_record(line, header) for line in lines[1:]]
     if not records:
         raise InputError(f"{path}: holds no point")
-    return _collect(path, header, records)
+    return _collect(header, records)
 
 
 def _check_header(path: Path, header: dict[str, str]) -> None:
@@ -143,70 +144,61 @@ def _check_header(path: Path, header: dict[str, str]) -> None:
             raise InputError(f"{path}: {key} = {header[key]!r}: {words}")
     row, col = (int(part) for part in header["reference_point"].split(","))
     rows, columns = (int(part) for part in header["grid"].split("x"))
+    if rows * columns > MOST_POINTS:
+        raise InputError(f"{path}: grid = {rows}x{columns}: has {rows * columns} points, the limit is {MOST_POINTS}")
     if not (row < rows and col < columns):
         raise InputError(f"{path}: reference_point = {row},{col}: must lie in the grid {rows}x{columns}")
 
 
-def _cells(path: Path, number: int, line: str) -> list[str]:
-    try:
-        return next(csv.reader([line]))
-    except csv.Error as error:
-        raise InputError(f"{path}, line {number}: is no CSV: {error}") from error
+def _record(line: Line, header: dict[str, str]) -> tuple[Line, tuple]:
+    line.counted(len(COLUMNS))
+    cells = dict(zip(COLUMNS, line.cells, strict=True))
+    member = line.one_of("member", cells["member"], MEMBERS)
+    if member != header["member"]:
+        raise line.refuse(f"member = {member}: the header says member: {header['member']}; one file holds one member")
+    names = (line.one_of("flank", cells["flank"], FLANKS),)
+    places = tuple(line.whole(key, cells[key], _LARGEST_INDEX) for key in ("tooth", "row", "col"))
+    point = tuple(line.real(key, cells[key], -_LARGEST, _LARGEST) for key in ("x", "y", "z"))
+    normal = tuple(line.real(key, cells[key]) for key in ("nx", "ny", "nz"))
+    if abs(math.hypot(*normal) - 1) > 1e-6:
+        raise line.refuse(f"nx, ny, nz have length {math.hypot(*normal):.7f}, must be 1")
+    deviation = _or_silent(line, "deviation_um", cells, -_LARGEST_UM)
+    uncertainty = _or_silent(line, "u_um", cells, 0.0)
+    return line, (*names, *places, *point, *normal, deviation, uncertainty)
 
 
-def _collect(path: Path, header: dict[str, str], records: list[tuple]) -> FlankFile:
-    members = {record[0] for record in records}
-    if len(members) > 1 or header["member"] not in members:
-        raise InputError(f"{path}: one file holds one member, this one {sorted(members | {header['member']})}")
-    _check_places(path, header, records)
-    fields = list(zip(*records, strict=True))
-    numbers = np.array(fields[5:], dtype=float).T
-    flank, tooth, row, col = (np.array(fields[k]) for k in (1, 2, 3, 4))
+def _or_silent(line: Line, key: str, cells: dict[str, str], least: float) -> float:
+    """A number in µm, NaN where the cell is empty."""
+    return line.real(key, cells[key], least, _LARGEST_UM) if cells[key] else math.nan
+
+
+def _collect(header: dict[str, str], records: list[tuple[Line, tuple]]) -> FlankFile:
+    _check_places(header, records)
+    fields = list(zip(*(values for _, values in records), strict=True))
+    numbers = np.array(fields[4:], dtype=float).T
+    flank, tooth, row, col = (np.array(fields[k]) for k in range(4))
     deviation, uncertainty = numbers[:, 6] / 1000, numbers[:, 7] / 1000
     return FlankFile(
-        header, records[0][0], flank, tooth, row, col, numbers[:, :3], numbers[:, 3:6], deviation, uncertainty
+        header, header["member"], flank, tooth, row, col, numbers[:, :3], numbers[:, 3:6], deviation, uncertainty
     )
 
 
-def _check_places(path: Path, header: dict[str, str], records: list[tuple]) -> None:
+def _check_places(header: dict[str, str], records: list[tuple[Line, tuple]]) -> None:
     """Every point once, within the header's counts; tooth = member_teeth is tooth 0 measured again, and only that."""
     rows, columns = (int(part) for part in header["grid"].split("x"))
     limits = {"tooth": int(header["member_teeth"]), "row": rows, "col": columns}
-    first = {(record[1], *record[3:5]) for record in records if record[2] == 0}
-    seen: set[tuple] = set()
-    for record in records:
-        for (name, limit), value in zip(limits.items(), record[2:5], strict=True):
+    first = {(values[0], *values[2:4]) for _, values in records if values[1] == 0}
+    seen: dict[tuple, int] = {}
+    for line, values in records:
+        for (name, limit), value in zip(limits.items(), values[1:4], strict=True):
             again = name == "tooth" and value == limit
-            if value >= limit and not (again and (record[1], *record[3:5]) in first):
+            if value >= limit and not (again and (values[0], *values[2:4]) in first):
                 only = f", and {limit} for a point of tooth 0 measured again" if again else ""
-                raise InputError(f"{path}: {name} = {value}: the header allows 0 to {limit - 1}{only}")
-        if record[1:5] in seen:
-            place = f"flank {record[1]}, tooth {record[2]}, row {record[3]}, col {record[4]}"
-            raise InputError(f"{path}: the point {place} is there twice")
-        seen.add(record[1:5])
-
-
-def _record(path: Path, row: list[str]) -> tuple:
-    line, cells = row[0], row[1:]
-    if len(cells) != len(COLUMNS):
-        raise InputError(f"{path}, line {line}: has {len(cells)} columns, must have {len(COLUMNS)}")
-    for name, allowed, cell in (("member", MEMBERS, cells[0]), ("flank", FLANKS, cells[1])):
-        if cell not in allowed:
-            raise InputError(f"{path}, line {line}: {name} = {cell!r}: must be {' or '.join(allowed)}")
-    try:
-        indices = [int(cell) for cell in cells[2:5]]
-        numbers = [float(cell) for cell in cells[5:11]]
-        measured = [float(cell) if cell else math.nan for cell in cells[11:]]
-    except ValueError as error:
-        raise InputError(f"{path}, line {line}: {error}") from error
-    given = [value for value, cell in zip(measured, cells[11:], strict=True) if cell]
-    if not all(math.isfinite(value) for value in (*numbers, *given)):
-        raise InputError(f"{path}, line {line}: every number must be finite")
-    if min(indices) < 0:
-        raise InputError(f"{path}, line {line}: tooth, row and col count from 0, not {min(indices)}")
-    if abs(math.hypot(*numbers[3:6]) - 1) > 1e-6:
-        raise InputError(f"{path}, line {line}: nx, ny, nz have length {math.hypot(*numbers[3:6]):.7f}, must be 1")
-    return (cells[0], cells[1], *indices, *numbers, *measured)
+                raise line.refuse(f"{name} = {value}: the header allows 0 to {limit - 1}{only}")
+        if values[:4] in seen:
+            place = f"flank {values[0]}, tooth {values[1]}, row {values[2]}, col {values[3]}"
+            raise line.refuse(f"the point {place} is there twice, in line {seen[values[:4]]} too")
+        seen[values[:4]] = line.number
 
 
 def _um(value: float) -> str:

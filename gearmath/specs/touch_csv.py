@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import csv
-import math
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.files import read_text
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
+from gearmath.specs.lines import Line, read_lines
 
 COLUMNS = ("run", "point", "member", "flank", "tooth", "row", "col", "X", "Y", "Z", "A", "B", "triggered")
 #: Columns of the touches on ring, its face, the spheres on table and work, and what is touched.
@@ -20,8 +18,8 @@ RING = ("ring_x_low", "ring_x_high", "ring_y_low", "ring_y_high")
 RING_FACE, SPHERE, WORK_SPHERE = "ring_face", "sphere", "work_sphere"
 _NAMES = {"member": MEMBERS, "flank": FLANKS, "target": (*RING, RING_FACE, SPHERE, WORK_SPHERE)}
 _WHOLE = ("run", "point", "tooth", "row", "col", "triggered")
-#: No axis of a machine is longer [mm], or turned further [degrees].
-_LARGEST = 1e5
+#: No axis of a machine is longer [mm], or turned further [degrees]; nothing counts further.
+_LARGEST, _LARGEST_COUNT = 1e5, 10_000_000
 
 
 @dataclass(frozen=True)
@@ -58,96 +56,91 @@ def read_touch_csv(path: Path, run: int | None = None) -> Touches:
     The control adds every run to the same file, each with its own column line. Raises InputError naming file, line,
     column, value and limit: for a point that is missing, twice there or did not trigger, too.
     """
-    return _collected(path, *_records(path, COLUMNS, run))
+    wanted, records = _records(path, COLUMNS, run)
+    _check_points(records)
+    return _collected(wanted, records)
 
 
 def read_calibration_csv(path: Path, run: int | None = None) -> CalibrationTouches:
     """The touches on ring and sphere of one run, by default the last one. Raises InputError as for touches."""
     wanted, records = _records(path, CALIBRATION_COLUMNS, run)
-    _check_points(path, wanted, records)
+    _check_points(records)
     return CalibrationTouches(wanted, np.array([record["target"] for record in records]), _axes(records))
+
+
+def run_numbers(path: Path) -> list[int]:
+    """The numbers of the runs in a file of touches on a member or on artefacts. Raises InputError as for touches."""
+    _, lines = read_lines(path)
+    columns = CALIBRATION_COLUMNS if lines and len(lines[0].cells) == len(CALIBRATION_COLUMNS) else COLUMNS
+    return sorted({record["run"] for record in _all(path, columns)})
 
 
 def _records(path: Path, columns: tuple[str, ...], run: int | None) -> tuple[int, list[dict]]:
     """Number and records of a run."""
-    records = [
-        _record(path, number, line, columns)
-        for number, line in enumerate(read_text(path).splitlines(), 1)
-        if line.strip() and not line.startswith("#") and _cells(path, number, line) != list(columns)
-    ]
-    if not records:
-        raise InputError(f"{path}: holds no touch; the column line reads {','.join(columns)}")
-    runs = sorted({int(record["run"]) for record in records})
+    records = _all(path, columns)
+    runs = sorted({record["run"] for record in records})
     wanted = runs[-1] if run is None else run
     if wanted not in runs:
         raise InputError(f"{path}: holds no run {wanted}, but {', '.join(map(str, runs))}")
     return wanted, [record for record in records if record["run"] == wanted]
 
 
-def _cells(path: Path, number: int, line: str) -> list[str]:
-    try:
-        return [cell.strip() for cell in next(csv.reader([line]))]
-    except (csv.Error, StopIteration) as error:
-        raise InputError(f"{path}, line {number}: is no CSV: {error}") from error
+def _all(path: Path, columns: tuple[str, ...]) -> list[dict]:
+    """The records of a file."""
+    _, lines = read_lines(path)
+    other, what = (COLUMNS, "a member") if columns == CALIBRATION_COLUMNS else (CALIBRATION_COLUMNS, "ring and spheres")
+    for line in lines:
+        if line.cells == other:
+            raise line.refuse(f"the touches are on {what}: the columns must be {','.join(columns)}")
+    records = [_record(line, columns) for line in lines if line.cells != columns]
+    if not records:
+        raise InputError(f"{path}: holds no touch; the column line reads {','.join(columns)}")
+    return records
 
 
-def _record(path: Path, number: int, line: str, columns: tuple[str, ...]) -> dict:
-    cells = _cells(path, number, line)
-    if len(cells) != len(columns):
-        raise InputError(f"{path}, line {number}: has {len(cells)} columns, must have {len(columns)}")
-    record: dict = {"line": number}
-    for name, cell in zip(columns, cells, strict=True):
+def _record(line: Line, columns: tuple[str, ...]) -> dict:
+    line.counted(len(columns))
+    record: dict = {"line": line}
+    for name, cell in zip(columns, line.cells, strict=True):
         if name in _NAMES:
-            if cell not in _NAMES[name]:
-                raise InputError(f"{path}, line {number}: {name} = {cell!r}: must be {' or '.join(_NAMES[name])}")
-            record[name] = cell
+            record[name] = line.one_of(name, cell, _NAMES[name])
+        elif name in _WHOLE:
+            record[name] = line.whole(name, cell, _LARGEST_COUNT)
         else:
-            record[name] = _number(path, number, name, cell)
+            record[name] = line.real(name, cell, -_LARGEST, _LARGEST)
     return record
 
 
-def _number(path: Path, line: int, name: str, cell: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError as error:
-        raise InputError(f"{path}, line {line}: {name} = {cell!r}: must be a number") from error
-    if not (math.isfinite(value) and abs(value) <= _LARGEST):
-        raise InputError(f"{path}, line {line}: {name} = {cell}: must be at most {_LARGEST:g} in size")
-    if name in _WHOLE and (value != int(value) or value < 0):
-        raise InputError(f"{path}, line {line}: {name} = {cell}: must be a whole number from 0")
-    return value
-
-
-def _collected(path: Path, run: int, records: list[dict]) -> Touches:
-    members = sorted({record["member"] for record in records})
-    if len(members) > 1:
-        raise InputError(f"{path}, run {run}: one run measures one member, this one {' and '.join(members)}")
-    _check_points(path, run, records)
+def _collected(run: int, records: list[dict]) -> Touches:
+    member = records[0]["member"]
     seen: dict[tuple, int] = {}
     before: tuple = ()
     for record in records:
+        line = record["line"]
+        if record["member"] != member:
+            raise line.refuse(f"member = {record['member']}: run {run} began with the {member}: one run, one member")
         place = tuple(record[name] for name in ("flank", "tooth", "row", "col"))
         if place in seen and place != before:
-            raise InputError(
-                f"{path}, line {record['line']}: the point of line {seen[place]} is there twice; touches of one point "
-                "must follow each other"
+            raise line.refuse(
+                f"the point of line {seen[place]} is there twice; touches of one point must follow each other"
             )
-        seen[place], before = record["line"], place
-    tooth, row, col = (np.array([int(record[name]) for record in records]) for name in ("tooth", "row", "col"))
-    return Touches(run, members[0], np.array([record["flank"] for record in records]), tooth, row, col, _axes(records))
+        seen[place], before = line.number, place
+    tooth, row, col = (np.array([record[name] for record in records]) for name in ("tooth", "row", "col"))
+    return Touches(run, member, np.array([record["flank"] for record in records]), tooth, row, col, _axes(records))
 
 
-def _check_points(path: Path, run: int, records: list[dict]) -> None:
-    """Points count up without a gap, and every one triggered."""
-    first = int(records[0]["point"])
+def _check_points(records: list[dict]) -> None:
+    """Points count up from 0 or 1 without a gap, and every one triggered."""
+    first = records[0]["point"]
     if first > 1:
-        raise InputError(f"{path}, run {run}: begins with point {first}: points count from 0 or 1")
+        raise records[0]["line"].refuse(f"run {records[0]['run']} begins with point = {first}: must be 0 or 1")
     for count, record in enumerate(records, start=first):
         line = record["line"]
         if record["point"] != count:
-            raise InputError(f"{path}, line {line}: point = {record['point']:g}: must be {count}, without a gap")
+            again = f": run {record['run']} is there twice" if record["point"] == first else ""
+            raise line.refuse(f"point = {record['point']}: must be {count}, without a gap{again}")
         if record["triggered"] != 1:
-            raise InputError(f"{path}, line {line}: triggered = {record['triggered']:g}: the probe touched nothing")
+            raise line.refuse(f"triggered = {record['triggered']}: must be 1: the probe touched nothing")
 
 
 def _axes(records: list[dict]) -> np.ndarray:
