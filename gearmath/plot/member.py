@@ -9,11 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearmath.plot.pitch import draw_pitch, draw_runout
+from gearmath.plot.style import signed
 from gearmath.plot.topography import draw_topography, um_per_row
 from gearmath.quality.evaluation import Evaluation
 from gearmath.quality.pitch import Pitch
 from gearmath.quality.registration import Registration
-from gearmath.quality.topography import Topography
+from gearmath.quality.topography import Topography, zeroed
 
 
 def member_figure(
@@ -24,7 +25,7 @@ def member_figure(
     pitch_after: Sequence[Pitch] = (),
 ) -> Figure:
     """Both flanks of a member before and after, at one scale, and its pitch, in one picture."""
-    drawn = _topographies(before, after)
+    drawn = _topographies(before, after, {})
     if pitch_before:
         drawn.append(partial(draw_pitch, before=pitch_before, after=pitch_after))
     return _together(title, drawn)
@@ -34,8 +35,9 @@ def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
     """A measured member: flanks as measured and as registered, pitch polygons, runout; what the clamping was."""
     registered = evaluation.registration is not None
     before, after = evaluation.as_measured, evaluation.flanks if registered else {}
-    means = [{k: f.mean for k, f in each.items() if f.mean is not None} for each in (before, after)]
-    drawn = _topographies(*means)
+    first, last = ({k: f.mean for k, f in each.items() if f.mean is not None} for each in (before, after))
+    charts = [{k: zeroed(mean, evaluation.file) for k, mean in each.items()} for each in (first, last)]
+    drawn = _topographies(charts[0], charts[1], {k: mean.at_reference for k, mean in (last or first).items()})
     pitches = [[f.pitch for f in each.values() if f.pitch is not None] for each in (before, after)]
     if pitches[0]:
         drawn.append(partial(draw_pitch, before=pitches[0], after=pitches[1]))
@@ -45,20 +47,25 @@ def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
     return _together(title + _seat_words(evaluation.registration), drawn)
 
 
-def _topographies(before: Mapping[str, Topography], after: Mapping[str, Topography]) -> list[Callable[[Axes], None]]:
+def _topographies(
+    before: Mapping[str, Topography], after: Mapping[str, Topography], taken: Mapping[str, float]
+) -> list[Callable[[Axes], None]]:
     """What draws each flank, all at one scale: after, with its numbers, over before."""
     scale = um_per_row([*before.values(), *after.values()])
-    return [partial(_flank, before=each, after=after.get(flank), scale=scale) for flank, each in before.items()]
+    return [
+        partial(_flank, before=each, after=after.get(flank), scale=scale, taken=taken.get(flank))
+        for flank, each in before.items()
+    ]
 
 
-def _flank(axes: Axes, before: Topography, after: Topography | None, scale: float) -> None:
+def _flank(axes: Axes, before: Topography, after: Topography | None, scale: float, taken: float | None) -> None:
     if after is None:
-        draw_topography(axes, before, scale=scale)
+        draw_topography(axes, before, scale=scale, taken=taken)
     else:
-        draw_topography(axes, after, before, scale)
+        draw_topography(axes, after, before, scale, taken)
     shown = [("", before)] if after is None else [("before ", before), ("after ", after)]
-    words = ", ".join(f"{when}{each.extreme * 1000:+.2f} µm" for when, each in shown)
-    axes.set_title(f"{before.flank} flank\nlargest, not zeroed: {words}", fontsize=9)
+    words = ", ".join(f"{when}{signed(each.extreme * 1000)} µm" for when, each in shown)
+    axes.set_title(f"{before.flank} flank: largest {words}", fontsize=9)
     axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncol=3, frameon=False)
 
 

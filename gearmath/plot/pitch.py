@@ -67,14 +67,17 @@ def draw_pitch(axes: Axes, before: Sequence[Pitch], after: Sequence[Pitch] = ())
             text = f"{label}, {pitch.flank}: F_p {pitch.total * 1000:.1f} µm"
             axes.plot(pitch.cumulative * 1000, style, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
     axes.axhline(0, color=NOMINAL, linewidth=0.6)
-    axes.set_xlabel("tooth")
-    axes.set_ylabel("cumulative pitch deviation / µm")
+    axes.set_xlabel("tooth", fontsize=8)
+    axes.set_ylabel("cumulative pitch deviation / µm", fontsize=8)
+    axes.tick_params(labelsize=7)
     axes.legend(fontsize=7, frameon=False)
 
 
-def draw_runout(axes: Axes, before: Runout, after: Runout | None = None) -> None:
+def draw_runout(
+    axes: Axes, before: Runout, after: Runout | None = None, names: tuple[str, str] = ("before", "after")
+) -> None:
     """Radial shift of a ball in every space over the teeth, in µm, and the first harmonic through it, dashed."""
-    for runout, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
+    for runout, color, label in ((before, BEFORE, names[0]), (after, AFTER, names[1])):
         if runout is None:
             continue
         size, direction = runout.eccentricity
@@ -83,8 +86,9 @@ def draw_runout(axes: Axes, before: Runout, after: Runout | None = None) -> None
         axes.plot(runout.radial * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
         text = f"first harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
-    axes.set_xlabel("space")
-    axes.set_ylabel("radial shift of a ball / µm")
+    axes.set_xlabel("space", fontsize=8)
+    axes.set_ylabel("radial shift of a ball / µm", fontsize=8)
+    axes.tick_params(labelsize=7)
     axes.legend(fontsize=7, frameon=False)
 
 

@@ -25,27 +25,21 @@ def reference_of(topography: Topography) -> tuple[int, int]:
     return int(row), int(column)
 
 
-def zeroed(topography: Topography) -> tuple[np.ndarray, float]:
-    """Deviations (rows, columns) [µm] less that of the reference point, and that; 0 where it has none."""
-    there = float(topography.deviation[reference_of(topography)]) * 1000
-    taken = there if np.isfinite(there) else 0.0
-    return topography.deviation * 1000 - taken, taken
-
-
 def um_per_row(topographies: Iterable[Topography]) -> float:
     """The scale that suits all of these flanks: how many µm are as high as the distance of two rows."""
-    largest = [float(np.nanmax(np.abs(zeroed(each)[0]))) for each in topographies]
+    largest = [float(np.nanmax(np.abs(each.deviation))) * 1000 for each in topographies]
     return max([_LEAST_UM, *largest]) / _REACH
 
 
 def draw_topography(
     axes: Axes, shown: Topography, earlier: Topography | None = None, scale: float | None = None,
-    names: tuple[str, str] = ("before", "after"),
+    taken: float | None = None,
 ) -> None:  # fmt: skip
-    """One flank, zero at its reference point; dashed below it the same flank ``earlier``, without numbers.
+    """One flank and its numbers; dashed below it the same flank ``earlier``, without numbers.
 
     Columns run from toe (left) to heel, rows from root (below) to tip; up is metal left on. ``scale`` is that of
-    :func:`um_per_row`, by default the one that suits what is drawn.
+    :func:`um_per_row`, by default the one that suits what is drawn. ``taken`` [mm] is what was taken off at the
+    reference point to make it zero, None where the flank is shown as it is.
     """
     drawn = [shown] if earlier is None else [shown, earlier]
     scale = um_per_row(drawn) if scale is None else scale
@@ -54,18 +48,17 @@ def draw_topography(
     x = x + _SLANT * y
     _net(axes, x, y, color=NOMINAL, linewidth=0.6, label="nominal")
     if earlier is not None:
-        z = y + zeroed(earlier)[0] / scale
-        _net(axes, x, z, color=BEFORE, linewidth=0.7, linestyle="--", label=names[0])
-    values, taken = zeroed(shown)
-    _net(axes, x, y + values / scale, color=INK, linewidth=1.0, label="measured" if earlier is None else names[1])
+        z = y + earlier.deviation * 1000 / scale
+        _net(axes, x, z, color=BEFORE, linewidth=0.7, linestyle="--", label="before")
+    values = shown.deviation * 1000
+    _net(axes, x, y + values / scale, color=INK, linewidth=1.0, label="measured" if earlier is None else "after")
     _sticks(axes, x, y, values, scale)
     _numbers(axes, x, y, values)
     row, column = reference_of(shown)
     axes.plot(x[row, column], y[row, column], "o", markersize=5, markerfacecolor="none", color=INK, gid="reference")
     _edges(axes, x, y)
     _scale_bar(axes, x, scale)
-    known = np.isfinite(shown.deviation[row, column])
-    zero = f"zero at the ring, where it measures {signed(taken)} µm" if known else "not zeroed: no reading at the ring"
+    zero = "not zeroed" if taken is None else f"zero at the ring, {signed(taken * 1000)} µm taken off there"
     count = f"; {shown.left_out} of {values.size} points left out (×)" if shown.left_out else ""
     axes.set_xlabel(f"{zero}{count}", fontsize=7)
     axes.set_xlim(-0.75, x.max() + 1.25)

@@ -121,9 +121,10 @@ def judge(member: Member, name: str, measured: dict[str, float]) -> Verdict:
     values = {key: value * 1000 for key, value in measured.items()}
     if data.outside is not None:
         return Verdict(data, values, {}, f"no grade: {data.outside}")
-    allowed = [iso17485(data.mean_normal_module, data.tolerance_diameter, grade) for grade in GRADES]
-    grades = {
-        key: next((each.grade for each in allowed if abs(value) <= each.rounded[key]), None)
-        for key, value in values.items()
-    }
-    return Verdict(data, values, grades, CAVEAT)
+    return Verdict(data, values, {key: finest_grade(data, key, value) for key, value in values.items()}, CAVEAT)
+
+
+def finest_grade(data: GearData, name: str, value: float) -> int | None:
+    """The finest grade whose rounded tolerance of ``f_pt``, ``F_p`` or ``F_r`` holds a value [µm]; None beyond 11."""
+    allowed = (iso17485(data.mean_normal_module, data.tolerance_diameter, grade) for grade in GRADES)
+    return next((each.grade for each in allowed if abs(value) <= each.rounded[name]), None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,6 +49,12 @@ class Topography:
     @property
     def rms(self) -> float:
         return float(np.sqrt(np.nanmean(self.deviation**2)))
+
+    @property
+    def at_reference(self) -> float:
+        """The deviation at the reference point [mm]; that of the cubic surface where the point was left out."""
+        here = self.deviation.flat[np.argmin(self.along**2 + self.upward**2)]
+        return float(here if np.isfinite(here) else self.coefficients[0])
 
     @property
     def left_out(self) -> int:
@@ -116,6 +122,11 @@ def evaluate_topography(file: FlankFile, flank: str, tooth: int = 0) -> Topograp
     residual = deviation - used @ fitted
     shape = (rows, columns)
     return Topography(flank, tooth, deviation.reshape(shape), coefficients, residual.reshape(shape), along, upward)
+
+
+def zeroed(topography: Topography, file: FlankFile) -> Topography:
+    """TEMPORARY until the branch that turns the flank is merged."""
+    return replace(topography, deviation=topography.deviation - topography.at_reference)
 
 
 def orders(topography: Topography) -> Orders:
