@@ -24,7 +24,7 @@ th, td { padding: .12rem .7rem .12rem 0; border-bottom: 1px solid #ddd; text-ali
 thead th { border-bottom: 1px solid #666; vertical-align: bottom }
 td.number, th.number { text-align: right; white-space: nowrap }
 table.head { width: 100%; border: 1px solid #1a1a1a }
-table.head th, table.head td { border: 1px solid #aaa; padding: .2rem .5rem }
+table.head th, table.head td { border: 1px solid #aaa; padding: .12rem .5rem }
 table.head tbody th { width: 9rem; font-weight: normal; color: #444 }
 table.head td { min-width: 6rem; height: 1.4em; overflow-wrap: anywhere }
 .first { border: 2px solid #b3301a; padding: .3rem .8rem; margin: .8rem 0 }
@@ -38,10 +38,12 @@ figcaption { font-size: .87rem; color: #333; font-weight: 600 }
 @media (max-width: 32rem) { body { padding: 0 .6rem } table { font-size: .82rem } th, td { padding-right: .45rem } }
 @page { size: A4; margin: 12mm }
 @media print {
-  body { font-size: 9.5pt; line-height: 1.3; max-width: none; margin: 0; padding: 0; print-color-adjust: exact }
+  html { font-size: 9.5pt }
+  body { font-size: 1rem; line-height: 1.3; max-width: none; margin: 0; padding: 0; print-color-adjust: exact }
   h2, h3, caption { break-after: avoid } table, tr, .first { break-inside: avoid } div.wide { overflow: visible }
   h2.new { break-before: page } h2 { margin-top: 1rem } h3 { margin-top: .7rem }
-  div.charts { grid-template-columns: 1fr 1fr; gap: .2rem 5mm } table { margin: .3rem 0 .6rem }
+  p + div.charts { break-before: avoid } div.charts { grid-template-columns: 1fr 1fr; gap: .2rem 5mm }
+  table { margin: .3rem 0 .6rem }
 }
 """
 

@@ -21,14 +21,14 @@ Limits = tuple[tuple[float, float], tuple[float, float]]
 
 def topography_chart(shown: Topography, scale: float, taken: float | None) -> Figure:
     """One flank with its numbers, at a given scale."""
-    figure = Figure(figsize=(_WIDTH, 3.5), layout="constrained")
+    figure = Figure(figsize=(_WIDTH, 2.95), layout="constrained")
     draw_topography(figure.subplots(), shown, scale=scale, taken=taken)
     return figure
 
 
 def pitch_chart(pitch: Pitch, after: Pitch | None, limits: Limits) -> Figure:
     """Bars of single pitch above the cumulative curve of one flank, in the given limits [µm]."""
-    figure = Figure(figsize=(_WIDTH, 3.0), layout="constrained")
+    figure = Figure(figsize=(_WIDTH, 2.7), layout="constrained")
     bars, curve = figure.subplots(2, sharex=True)
     draw_single_pitch(bars, pitch, after)
     draw_cumulative(curve, pitch, after)
@@ -39,13 +39,13 @@ def pitch_chart(pitch: Pitch, after: Pitch | None, limits: Limits) -> Figure:
 
 def runout_chart(runout: Runout) -> Figure:
     """Radial shift of a ball in every space."""
-    figure = Figure(figsize=(_WIDTH, 2.2), layout="constrained")
+    figure = Figure(figsize=(_WIDTH, 2.0), layout="constrained")
     draw_runout(figure.subplots(), runout, names=("measured", ""))
     return figure
 
 
 def tooth_chart(flanks: Mapping[str, ToothFlank], seen: str, times: float) -> Figure:
     """A tooth in perspective from the side of one flank, deviations enlarged so many ``times``."""
-    figure = Figure(figsize=(_WIDTH, 2.4), layout="constrained")
+    figure = Figure(figsize=(_WIDTH, 1.9), layout="constrained")
     draw_tooth(figure.subplots(), flanks, seen, times)
     return figure

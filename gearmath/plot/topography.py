@@ -62,7 +62,7 @@ def draw_topography(
     count = f"; {shown.left_out} of {values.size} points left out (×)" if shown.left_out else ""
     axes.set_xlabel(f"{zero}{count}", fontsize=7)
     axes.set_xlim(-0.75, x.max() + 1.25)
-    axes.set_ylim(-1.15, rows - 1 + 1.3)
+    axes.set_ylim(-1.0, rows - 1 + 1.15)
     axes.set_xticks([])
     axes.set_yticks([])
     axes.spines[:].set_visible(False)
@@ -103,8 +103,8 @@ def _numbers(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray) -> No
 def _edges(axes: Axes, x: np.ndarray, y: np.ndarray) -> None:
     middle = x.shape[1] // 2
     for text, at, ha, va in (
-        ("root", (x[0, middle], y[0, 0] - 0.62), "center", "top"),
-        ("tip", (x[-1, middle], y[-1, 0] + 0.9), "center", "bottom"),
+        ("root", (x[0, middle], y[0, 0] - 0.6), "center", "top"),
+        ("tip", (x[-1, middle], y[-1, 0] + 0.75), "center", "bottom"),
         ("toe", (x[:, 0].mean() - 0.55, y.mean()), "right", "center"),
         ("heel", (x[:, -1].mean() + 0.55, y.mean()), "left", "center"),
     ):

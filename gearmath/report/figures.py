@@ -15,8 +15,8 @@ from gearmath.report.measurement import Measurement, micro
 
 #: Figures that have a grade: name in the verdict, that of the figure of a flank, and in words.
 _SPACING = {
-    "f_pt": ("max_f_pt", "single pitch f_pt, the largest"), "F_p": ("F_p", "cumulative pitch F_p"),
-    "F_r": ("F_r", "runout F_r"),
+    "f_pt": ("max_f_pt", "f_pt, largest"), "F_p": ("F_p", "F_p"),
+    "F_r": ("F_r", "F_r"),
 }  # fmt: skip
 
 
@@ -24,15 +24,19 @@ def spacing_section(page: Page, one: Measurement) -> None:
     """Pitch and runout with tolerance and grade beside each value, then thickness."""
     found = one.evaluation
     rows = [
-        [words, flank, f"{value:.2f}", *_sure(one.uncertain(flank, figure)), *_graded(found.verdict, name, value, sure)]
+        [f"{words}, {flank}", f"{value:.2f}", _interval(sure), *_graded(found.verdict, name, value, sure)]
         for name, (figure, words) in _SPACING.items()
         for flank, value in _values(found, name)
         for sure in [one.uncertain(flank, figure)]
     ]
     if rows:
         caveat = f" {found.verdict.remark}." if found.verdict is not None else ""
-        head = ["figure / µm", "flank", "value", "u", "95 % from", "to", "grade", "its tolerance"]
-        page.table(f"Pitch and runout.{caveat}", head, rows)
+        head = ["figure / µm", "value", "95 % interval", "grade", "tolerance"]
+        page.table(
+            f"Single pitch f_pt, cumulative pitch F_p, runout F_r; tolerance of the grade that was found.{caveat}",
+            head,
+            rows,
+        )
     if found.thickness is not None:
         thickness = found.thickness
         page.table(
@@ -55,8 +59,8 @@ def _values(found: Evaluation, name: str) -> Iterator[tuple[str, float]]:
                 yield flank, value * 1000
 
 
-def _sure(known: Uncertain | None) -> list[str]:
-    return ["", "", ""] if known is None else [micro(known.uncertainty), *map(micro, known.interval)]
+def _interval(known: Uncertain | None) -> str:
+    return "" if known is None else "{} to {}".format(*map(micro, known.interval))
 
 
 def _graded(verdict: Verdict | None, name: str, value: float, known: Uncertain | None) -> list[str]:

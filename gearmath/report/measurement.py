@@ -63,15 +63,9 @@ def head_of(file: FlankFile, given: Mapping[str, str]) -> dict[str, str]:
 
 
 def counted(found: Evaluation) -> str:
-    """How many of the points, and of the teeth, the figures come from."""
-    file, words = found.file, []
-    for flank, figures in found.flanks.items():
-        points = file.select(flank)
-        used = int(np.isfinite(points.deviation).sum())
-        teeth = len(np.unique(points.tooth[np.isfinite(points.deviation)]))
-        full = len(figures.topographies)
-        words.append(f"{flank} {used} of {len(points)} points on {teeth} teeth, {full} with the whole grid")
-    return "; ".join(words)
+    """How many of the points on the grid of each flank and tooth the figures come from."""
+    used = int(np.isfinite(found.file.deviation).sum())
+    return f"{used} of {len(found.file)}" + ("" if used == len(found.file) else f", {len(found.file) - used} left out")
 
 
 def micro(value: float) -> str:

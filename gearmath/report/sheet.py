@@ -39,8 +39,8 @@ def _head(page: Page, members: Sequence[Measurement]) -> None:
         "Member": [f"{one.evaluation.member}, {one.member.teeth} teeth, {one.member.hand} hand" for one in members],
         "Measured file": [one.source for one in members],
         "Radius of the tip": [f"{header['tip_radius_mm']} mm" for header in headers],
-        "Grid": [f"{each['grid']}, reference point at row, col {each['reference_point']}" for each in headers],
-        "Points": [counted(one.evaluation) for one in members],
+        "Grid": [each["grid"] for each in headers],
+        "Points used": [counted(one.evaluation) for one in members],
     }
     page.head([one.evaluation.member for one in members], [*rows, *facts.items()])
 
@@ -59,7 +59,7 @@ def _left_out(page: Page, members: Sequence[Measurement]) -> None:
 
 def _member(page: Page, one: Measurement, new_sheet: bool) -> None:
     found = one.evaluation
-    page.heading(f"{found.member.capitalize()}", new_sheet)
+    page.heading(found.member.capitalize(), new_sheet)
     page.subheading("Topography of the flanks")
     if drawings := charts.flank_charts(one):
         page.paragraph(_ZERO)
