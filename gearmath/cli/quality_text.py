@@ -59,6 +59,8 @@ def _sure(found: Sequence[Uncertain]) -> Iterator[str]:
 
 def _lines(values: dict[str, Any]) -> Iterator[str]:
     yield from _seat(values["registration"])
+    if values["rotation"] is not None:
+        yield _rotation(values["rotation"])
     for flank, closure in values["drift_um"].items():
         yield f"{flank} flank: tooth 0 measured again at the end: {closure:+.2f} um, taken out evenly"
     runout, thickness, tolerance = values["runout"], values["thickness"], values["tolerance"]
@@ -91,6 +93,15 @@ def _seat(seat: dict[str, Any] | None) -> Iterator[str]:
         return
     size, twin = _with(seat["axial"], "axial_um"), seat["axial"]["confounded_with"]
     yield f"axial position, left in: {size} um if the mean form were nothing else; {twin} does the same"
+
+
+def _rotation(turn: dict[str, Any]) -> str:
+    at = f"{turn['radius_mm']:.2f} mm radius"
+    size, arc = _with(turn, "angle_arcsec"), _with(turn, "arc_um")
+    return (
+        f"rotation common to both flanks taken out: {turn['angle_deg']:+.6f} deg = {size} arcsec, "
+        f"an arc of {arc} um at {at}"
+    )
 
 
 def _with(values: dict[str, Any], name: str) -> str:

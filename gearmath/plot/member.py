@@ -14,7 +14,7 @@ from gearmath.plot.topography import draw_topography, um_per_row
 from gearmath.quality.evaluation import Evaluation
 from gearmath.quality.pitch import Pitch
 from gearmath.quality.registration import Registration
-from gearmath.quality.topography import Topography, zeroed
+from gearmath.quality.topography import Topography
 
 
 def member_figure(
@@ -35,9 +35,10 @@ def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
     """A measured member: flanks as measured and as registered, pitch polygons, runout; what the clamping was."""
     registered = evaluation.registration is not None
     before, after = evaluation.as_measured, evaluation.flanks if registered else {}
-    first, last = ({k: f.mean for k, f in each.items() if f.mean is not None} for each in (before, after))
-    charts = [{k: zeroed(mean, evaluation.file) for k, mean in each.items()} for each in (first, last)]
-    drawn = _topographies(charts[0], charts[1], {k: mean.at_reference for k, mean in (last or first).items()})
+    first, last = ({k: f.chart for k, f in each.items() if f.chart is not None} for each in (before, after))
+    shown = after or before
+    taken = {k: f.mean.at_reference for k, f in shown.items() if f.mean is not None}
+    drawn = _topographies(first, last, taken)
     pitches = [[f.pitch for f in each.values() if f.pitch is not None] for each in (before, after)]
     if pitches[0]:
         drawn.append(partial(draw_pitch, before=pitches[0], after=pitches[1]))

@@ -15,10 +15,19 @@ from gearmath.quality.drift import Drift, untold_drift, without_drift
 from gearmath.quality.nominal import check_points, completed, nominal_rows
 from gearmath.quality.outliers import find_outliers
 from gearmath.quality.pitch import Pitch, evaluate_pitch, reference_rows
-from gearmath.quality.registration import Registration, register
+from gearmath.quality.registration import Registration, register, stated_noise
+from gearmath.quality.rotation import Rotation, common_rotation
 from gearmath.quality.spaces import Runout, Thickness, evaluate_runout, evaluate_thickness
 from gearmath.quality.tolerance import Verdict, judge
-from gearmath.quality.topography import Orders, Topography, evaluate_topography, grid_shape, mean_topography, orders
+from gearmath.quality.topography import (
+    Orders,
+    Topography,
+    evaluate_topography,
+    grid_shape,
+    mean_topography,
+    orders,
+    zeroed,
+)
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
 
@@ -27,18 +36,20 @@ from gearmath.specs.flank_csv import FlankFile
 class FlankFigures:
     """One flank: the topography of every tooth measured in full, their mean, its first orders, and its pitch.
 
-    Where no tooth was measured in full, there are no topographies, and ``mean`` and ``orders`` are None.
+    ``chart`` is the mean as it is drawn: the flank turned until its reference point has no deviation. Where no tooth
+    was measured in full, there are no topographies, and ``mean``, ``chart`` and ``orders`` are None.
     """
 
     topographies: tuple[Topography, ...]
     mean: Topography | None
+    chart: Topography | None
     orders: Orders | None
     pitch: Pitch | None
 
     def as_dict(self) -> dict[str, Any]:
         """Figures for people and programs, those of topography of the first tooth in full: µm and degrees."""
         values: dict[str, Any] = {"teeth_in_full": [each.tooth for each in self.topographies]}
-        if self.orders is not None:
+        if self.orders is not None and self.mean is not None and self.chart is not None:
             first = self.topographies[0]
             values |= {
                 "tooth": first.tooth,
@@ -47,6 +58,11 @@ class FlankFigures:
                 "cubic_surface_residual_um": float(np.nanmax(np.abs(first.residual))) * 1000,
                 "surface_coefficients": first.coefficients.tolist(),
                 "left_out": first.left_out,
+                "zeroed_at_reference": {
+                    "taken_off_um": (self.mean.at_reference - self.chart.at_reference) * 1000,
+                    "max_deviation_um": self.chart.extreme * 1000,
+                    "rms_um": self.chart.rms * 1000,
+                },
                 "orders": self.orders.as_dict(),
             }
         if self.pitch is not None:
@@ -58,7 +74,8 @@ class FlankFigures:
 class Evaluation:
     """A measured member: its points as judged, the figures of both flanks and of the spaces, and what was done to them.
 
-    ``flanks`` and ``runout`` are those of ``file``; ``as_measured`` those before registration, the same without one.
+    ``flanks`` and ``runout`` are those of ``file``, without clamping and the rotation that both flanks have in common;
+    ``as_measured`` are those before either was taken out.
     ``remarks`` are sentences: points left out, what was not found and why.
     """
 
@@ -71,6 +88,7 @@ class Evaluation:
     thickness: Thickness | None
     drifts: dict[str, Drift]
     registration: Registration | None
+    rotation: Rotation | None
     verdict: Verdict | None
     remarks: tuple[str, ...]
 
@@ -83,24 +101,26 @@ class Evaluation:
             "thickness": self.thickness.as_dict() if self.thickness else None,
             "drift_um": {flank: drift.closure * 1000 for flank, drift in self.drifts.items()},
             "registration": self.registration.as_dict() if self.registration else None,
+            "rotation": self.rotation.as_dict() if self.rotation else None,
             "tolerance": self.verdict.as_dict() if self.verdict else None,
             "remarks": list(self.remarks),
         }
 
 
 #: How often ``evaluate_member`` tells its progress.
-STAGES = 3
+STAGES = 4
 
 
 def evaluate_member(
     file: FlankFile, member: Member, name: str, registered: bool = True,
-    progress: Callable[[int], object] = lambda _: None,
+    progress: Callable[[int], object] = lambda _: None, rotated: bool = True,
 ) -> Evaluation:  # fmt: skip
     """Judge a measured file of a member, of this machine or of another measuring centre.
 
     Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
-    the clamping where the points tell it. Raises InputError if the file is not of this member, or not in mm on its
-    flanks, or if neither a tooth in full nor pitch was measured.
+    the clamping where the points tell it; if ``rotated``, so is the rotation that both flanks have in common. Raises
+    InputError if the file is not of this member, or not in mm on its flanks, or if neither a tooth in full nor pitch
+    was measured.
     """
     check_belongs(member, name, file)
     check_points(file, nominal_rows(file, member, name))
@@ -119,15 +139,25 @@ def evaluate_member(
             remarks += (f"not registered: {error}",)
     progress(1)
     judged = measured if seat is None else seat.file
-    flanks = as_measured if seat is None else _flanks(judged, member, not partly)
+    turn = None
+    if rotated:
+        try:
+            turn = common_rotation(judged, member, name, stated_noise(file) if seat is None else seat.noise)
+            judged = turn.file
+        except InputError as error:
+            remarks += (f"rotation left in: {error}",)
+    progress(1)
+    flanks = as_measured if judged is measured else _flanks(judged, member, not partly)
     before, runout = (None if partly else evaluate_runout(each, member.teeth) for each in (measured, judged))
     verdict = _verdict(member, name, flanks, runout)
-    zeroed = file.header["phase_zeroed"].lower() == "true"
-    if zeroed:
+    each_zeroed = file.header["phase_zeroed"].lower() == "true"
+    if each_zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
-    thickness = None if zeroed else evaluate_thickness(judged, member.teeth)
+    thickness = None if each_zeroed else evaluate_thickness(judged, member.teeth)
     progress(1)
-    return Evaluation(name, judged, flanks, as_measured, runout, before, thickness, drifts, seat, verdict, remarks)
+    return Evaluation(
+        name, judged, flanks, as_measured, runout, before, thickness, drifts, seat, turn, verdict, remarks
+    )
 
 
 def _partly(file: FlankFile, member: Member) -> tuple[str, ...]:
@@ -150,12 +180,12 @@ def _figures(file: FlankFile, member: Member, flank: str, pitch: bool) -> FlankF
     teeth, counts = np.unique(points.tooth, return_counts=True)
     full = teeth[counts == np.prod(grid_shape(file))]
     if not len(full) and spacing is not None:
-        return FlankFigures((), None, None, spacing)
+        return FlankFigures((), None, None, None, spacing)
     if not len(full):
         full = teeth[[np.argmax(counts)]]  # refused, with the number of its points
     topographies = tuple(evaluate_topography(file, flank, int(tooth)) for tooth in full)
     mean = mean_topography(topographies)
-    return FlankFigures(topographies, mean, orders(mean), spacing)
+    return FlankFigures(topographies, mean, zeroed(mean, file), orders(mean), spacing)
 
 
 def _verdict(member: Member, name: str, flanks: dict[str, FlankFigures], runout: Runout | None) -> Verdict | None:

@@ -1,12 +1,14 @@
 """The figures of an evaluated member as one CasADi function of the deviations that were measured.
 
 The same figures as in ``evaluation``, of the same kernels and maps; here as a graph, to be differentiated and drawn. On
-the way from what was measured to what is judged, drift and clamping are taken out: linear maps, to first order. What is
-smooth has a Jacobian that carries covariances. Maxima and ranges are the largest of many differences; they are drawn.
+the way from what was measured to what is judged, drift, clamping and rotation are taken out: linear maps, to first
+order. What is smooth has a Jacobian that carries covariances. Maxima and ranges are the largest of many differences;
+they are drawn.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import casadi as ca
@@ -70,9 +72,9 @@ class Figures:
     """Figures (m,) of a member [mm and mm per mm^k] as a function of the deviations (n,) of its file [mm].
 
     ``deviation`` (n,) are those measured, zero where a point was left out. ``judging`` makes of deviations what is
-    judged (q,): deviations without drift and clamping, and the seat; ``of_judged`` makes figures of it. ``jacobian``
-    (m,n) is the derivative of the figures by the deviations. ``extremes`` has, for the index of every figure that is
-    not smooth, what it is the largest of.
+    judged (q,): deviations without drift, clamping and rotation, then the seat and the rotation; ``of_judged`` makes
+    figures of it. ``jacobian`` (m,n) is the derivative of the figures by the deviations. ``extremes`` has, for the
+    index of every figure that is not smooth, what it is the largest of.
     """
 
     items: tuple[Figure, ...]
@@ -100,6 +102,8 @@ def figures_of(file: FlankFile, member: Member, found: Evaluation) -> Figures:
     parts: list[_Part] = []
     if found.registration is not None:
         parts += _seat(found.registration, judged[len(found.file) :])
+    if found.rotation is not None:
+        parts.append((Figure("both", "rotation", "arcsec", factor=math.degrees(3600)), judged[len(found.file) + 4]))
     now = judged[: len(found.file)]
     for flank, figures in found.flanks.items():
         parts += _topography(found.file, flank, figures, now)

@@ -29,7 +29,7 @@ def flank_charts(measurement: Measurement) -> list[Drawing]:
     found = measurement.evaluation
     before, after = means(found), after_correction(measurement)
     words = "measured again" if measurement.again else "expected after the correction"
-    rows: list[list[tuple[Topography, Topography, str]]] = [
+    rows = [
         [(zeroed(each, found.file), each, f"{flank} flank, measured: {_teeth(found, flank)}")]
         for flank, each in before.items()
     ]
@@ -128,7 +128,11 @@ def expected_topographies(member: Member, found: Evaluation, correction: Correct
             deviation = np.full(target.grid_points, np.nan)
             deviation[slice(None) if target.used is None else target.used] = part
             shape = grid_shape(found.file)
-            expected[flank] = replace(found.flanks[flank].topographies[0], deviation=deviation.reshape(shape))
+            like = found.flanks[flank].topographies[0]
+            # no surface of third degree is expected to remain
+            surface = np.zeros_like(like.coefficients)
+            deviation = deviation.reshape(shape)
+            expected[flank] = replace(like, deviation=deviation, coefficients=surface, residual=deviation)
     return expected
 
 

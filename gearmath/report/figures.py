@@ -120,7 +120,7 @@ def uncertainty_section(page: Page, one: Measurement) -> None:
 
 def clamping_section(page: Page, found: Evaluation) -> None:
     """What was taken out of the deviations before they were judged."""
-    seat = found.registration
+    seat, turn = found.registration, found.rotation
     rows = []
     if seat is not None:
         at, about = np.degrees([seat.eccentricity_direction, seat.tilt_direction])
@@ -129,10 +129,13 @@ def clamping_section(page: Page, found: Evaluation) -> None:
         if seat.tilt_found:
             tilt, u = seat.tilt * 100, seat.tilt_uncertainty * 100
             rows.append(["tilt", micro(tilt), micro(u), "µm per 100 mm", f"about {about:.1f}°"])
+    if turn is not None:
+        words = f"of both flanks, {np.degrees(turn.angle) * 3600:+.1f} arcsec; here its arc at the reference point"
+        rows.append(["rotation", micro(turn.arc), micro(turn.uncertainty * turn.radius), "µm", words])
     rows += [
         [f"drift, {flank}", micro(drift.closure), "", "µm", "tooth 0 at the end against the start"]
         for flank, drift in found.drifts.items()
     ]
     if rows:
         page.subheading("Taken out before judging")
-        page.table("Clamping and drift", ["figure", "value", "u", "unit", ""], rows)
+        page.table("Clamping, rotation and drift", ["figure", "value", "u", "unit", ""], rows)
