@@ -27,7 +27,9 @@ def svg(figure: Figure) -> str:
     text = stream.getvalue()
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text[text.index("<svg") :], flags=re.DOTALL)
     text = re.sub(r'\sxmlns(:\w+)?="[^"]*"', "", text)
-    return re.sub(r'^<svg([^>]*?) width="[^"]*"', r"<svg\1", re.sub(r'^<svg([^>]*?) height="[^"]*"', r"<svg\1", text))
+    for name in ("width", "height"):
+        text = re.sub(rf'^<svg([^>]*?) {name}="[^"]*"', r"<svg\1", text)
+    return text.strip()
 
 
 def save(figure: Figure, path: Path) -> None:

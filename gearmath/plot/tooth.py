@@ -16,7 +16,7 @@ from gearmath.quality.topography import Topography
 from gearmath.specs.flank_csv import FlankFile
 
 #: Darker from missing to left on, so that a print without color shows the sign as well.
-_SHADES = LinearSegmentedColormap.from_list("deviation", ["#d9eef7", "#8fb9c9", "#b9b3ad", "#c9704f", "#7d1a0c"])
+_SHADES = LinearSegmentedColormap.from_list("deviation", ["#dceef6", "#a9cdda", "#b0a8a0", "#b96a4e", "#6e1a0e"])
 #: The eye, in widths of the face: along the tooth, above it, and away from the flank.
 _EYE = np.array([-0.9, 1.7, 3.8])
 #: The largest deviation is drawn as large as this part of the face.

@@ -97,7 +97,7 @@ def _numbers(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray) -> No
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
             )  # fmt: skip
     if step > 1:
-        axes.set_title(f"numbers at every {step}th column", fontsize=7)
+        axes.set_title(f"numbers at one column in {step}", fontsize=7)
 
 
 def _edges(axes: Axes, x: np.ndarray, y: np.ndarray) -> None:

@@ -98,7 +98,7 @@ def flank_section(page: Page, one: Measurement) -> None:
     rows += [[name.replace("_", " "), *(micro(getattr(each, name)) for each in orders.values())] for name in ORDERS]
     rows.append(["residual (RMS)", *(micro(each.residual) for each in orders.values())])
     page.table(
-        "Deviations as measured, not zeroed: size, mean, first and second order, and what they leave",
+        "Deviations, not zeroed at the reference point: size, mean, first and second order, and what they leave",
         ["figure / µm", *flanks], rows,
     )  # fmt: skip
 
