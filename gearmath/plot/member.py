@@ -65,9 +65,13 @@ def _flank(axes: Axes, before: Topography, after: Topography | None, scale: floa
     else:
         draw_topography(axes, after, before, scale, taken)
     shown = [("", before)] if after is None else [("before ", before), ("after ", after)]
-    words = ", ".join(f"{when}{signed(each.extreme * 1000)} µm" for when, each in shown)
+    words = ", ".join(f"{when}{_largest(each)}" for when, each in shown)
     axes.set_title(f"{before.flank} flank: largest {words}", fontsize=9)
     axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncol=3, frameon=False)
+
+
+def _largest(shown: Topography) -> str:
+    return "withheld, a point is missing" if shown.left_out else f"{signed(shown.extreme * 1000)} µm"
 
 
 def _together(title: str, drawn: Sequence[Callable[[Axes], None]]) -> Figure:

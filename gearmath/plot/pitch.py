@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
+from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL, or_withheld
 from gearmath.quality.pitch import Pitch
 from gearmath.quality.spaces import Runout
 
@@ -64,7 +64,7 @@ def draw_pitch(axes: Axes, before: Sequence[Pitch], after: Sequence[Pitch] = ())
     """Cumulative pitch deviation of both flanks in one diagram, in µm."""
     for pitches, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
         for pitch, style in zip(pitches, ("-", "--"), strict=False):
-            text = f"{label}, {pitch.flank}: F_p {pitch.total * 1000:.1f} µm"
+            text = f"{label}, {pitch.flank}: F_p {or_withheld(pitch.total)}"
             axes.plot(pitch.cumulative * 1000, style, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
     axes.axhline(0, color=NOMINAL, linewidth=0.6)
     axes.set_xlabel("tooth", fontsize=8)
@@ -76,18 +76,18 @@ def draw_pitch(axes: Axes, before: Sequence[Pitch], after: Sequence[Pitch] = ())
 def draw_runout(
     axes: Axes, before: Runout, after: Runout | None = None, names: tuple[str, str] = ("before", "after")
 ) -> None:
-    """Radial shift of a ball in every space over the teeth, in µm, and the first harmonic through it, dashed."""
+    """Movement of a ball in every space, normal to the pitch cone, in µm, and the first harmonic through it, dashed."""
     for runout, color, label in ((before, BEFORE, names[0]), (after, AFTER, names[1])):
         if runout is None:
             continue
         size, direction = runout.eccentricity
-        wave = float(np.nanmean(runout.radial)) + size * np.cos(runout.azimuth - direction)
-        text = f"{label}: F_r {runout.total * 1000:.1f} µm"
-        axes.plot(runout.radial * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
+        wave = float(np.nanmean(runout.shift)) + size * np.cos(runout.azimuth - direction)
+        text = f"{label}: F_r {or_withheld(runout.total)}"
+        axes.plot(runout.shift * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
         text = f"first harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
     axes.set_xlabel("space", fontsize=8)
-    axes.set_ylabel("radial shift of a ball / µm", fontsize=8)
+    axes.set_ylabel("movement of a ball, normal to the pitch cone / µm", fontsize=8)
     axes.tick_params(labelsize=7)
     axes.legend(fontsize=7, frameon=False)
 

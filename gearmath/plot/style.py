@@ -20,3 +20,8 @@ def round_length(most: float) -> float:
     """The largest of 1, 2, 5 times a power of ten that is not greater than ``most``."""
     power = 10.0 ** math.floor(math.log10(most))
     return power * next(step for step in (5, 2, 1) if step * power <= most * (1 + 1e-9))
+
+
+def or_withheld(value: float) -> str:
+    """A maximum [mm] in µm, or that it is withheld: there is none over data with a gap."""
+    return "withheld" if math.isnan(value) else f"{value * 1000:.1f} µm"

@@ -58,7 +58,8 @@ def _without_drift(file: FlankFile, member: Member, name: str) -> np.ndarray:
 
     Taking out the drift is linear and homogeneous, so that unit deviations of the nominal points give the columns.
     """
-    whole, _ = completed(find_outliers(file, member.teeth).without(file), member, name)
+    complete, _ = completed(file, member, name)
+    whole = find_outliers(complete, member.teeth).without(complete)
     known = np.isfinite(whole.deviation)
     kept = whole.tooth < member.teeth
     matrix = (np.eye(len(whole)) * known)[kept][:, : len(file)]

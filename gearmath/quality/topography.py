@@ -146,6 +146,17 @@ def zeroed(topography: Topography, file: FlankFile) -> Topography:
     return _fitted(topography.flank, topography.tooth, deviation, topography.along, topography.upward)
 
 
+def teeth_in_full(file: FlankFile, flank: str) -> list[int]:
+    """The teeth whose grid is there, and of it enough points with a deviation."""
+    points, needed = file.select(flank), math.prod(grid_shape(file))
+    known = np.isfinite(points.deviation)
+    teeth = np.unique(points.tooth).tolist()
+    counts = {tooth: (points.tooth == tooth, known & (points.tooth == tooth)) for tooth in teeth}
+    return [
+        t for t, (all_, there) in counts.items() if all_.sum() == needed and there.sum() >= (1 - _MOST_SILENT) * needed
+    ]
+
+
 def _full_tooth(points: FlankFile) -> int:
     """A tooth that has all points of the grid."""
     teeth, counts = np.unique(points.tooth, return_counts=True)

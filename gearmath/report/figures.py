@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearmath.page import Page
-from gearmath.quality.evaluation import Evaluation
+from gearmath.quality.evaluation import Evaluation, FlankFigures
 from gearmath.quality.tolerance import Verdict, finest_grade, iso17485
 from gearmath.quality.topography import ORDERS
 from gearmath.quality.uncertainty import Uncertain
@@ -24,39 +24,39 @@ def spacing_section(page: Page, one: Measurement) -> None:
     """Pitch and runout with tolerance and grade beside each value, then thickness."""
     found = one.evaluation
     rows = [
-        [f"{words}, {flank}", f"{value:.2f}", _interval(sure), *_graded(found.verdict, name, value, sure)]
+        [f"{words}, {flank}", *_graded(found.verdict, name, value, one.uncertain(flank, figure))]
         for name, (figure, words) in _SPACING.items()
         for flank, value in _values(found, name)
-        for sure in [one.uncertain(flank, figure)]
     ]
     if rows:
         caveat = f" {found.verdict.remark}." if found.verdict is not None else ""
-        head = ["figure / µm", "value", "95 % interval", "grade", "tolerance"]
         page.table(
             f"Single pitch f_pt, cumulative pitch F_p, runout F_r; tolerance of the grade that was found.{caveat}",
-            head,
-            rows,
-        )
+            ["figure / µm", "value", "95 % interval", "grade", "tolerance"], rows,
+        )  # fmt: skip
+    if found.runout is not None and np.isfinite(found.runout.of_noise[0]):
+        mean, spread = (f"{value * 1000:.1f}" for value in found.runout.of_noise)
+        so = ": F_r is mostly noise" if found.runout.mostly_noise else ""
+        page.paragraph(f"Noise of the points alone would give F_r {mean} ± {spread} µm{so}.")
     if found.thickness is not None:
         thickness = found.thickness
         page.table(
-            "Tooth thickness at the reference point", ["figure", "nominal / mm", "deviation / µm"],
+            "Tooth thickness at the reference point, mean of the teeth that have a reading",
+            ["figure", "nominal / mm", "deviation / µm"],
             [["arc", f"{thickness.arc:.4f}", micro(thickness.mean)],
              ["chord", f"{thickness.chord:.4f}", micro(thickness.mean * thickness.chord_factor)]],
         )  # fmt: skip
 
 
 def _values(found: Evaluation, name: str) -> Iterator[tuple[str, float]]:
-    """Flank and value [µm] of a figure, of each flank that has it."""
+    """Flank and value [mm] of a figure, of each flank that has it; NaN where it is withheld."""
     if name == "F_r":
         if found.runout is not None:
-            yield "both", found.runout.total * 1000
+            yield "both", found.runout.total
         return
     for flank, figures in found.flanks.items():
         if figures.pitch is not None:
-            value = figures.pitch.total if name == "F_p" else figures.pitch.largest_single
-            if np.isfinite(value):
-                yield flank, value * 1000
+            yield flank, figures.pitch.total if name == "F_p" else figures.pitch.largest_single
 
 
 def _interval(known: Uncertain | None) -> str:
@@ -64,19 +64,25 @@ def _interval(known: Uncertain | None) -> str:
 
 
 def _graded(verdict: Verdict | None, name: str, value: float, known: Uncertain | None) -> list[str]:
-    """The grade, with that of either end of the interval where it is another one, and the tolerance of the grade."""
-    if verdict is None or name not in verdict.grades:
-        return ["", ""]
-    grade = finest_grade(verdict.data, name, value)
+    """Value [mm], interval, grade and its tolerance; the grade with that of either end of the interval, if it differs.
+
+    Over data with a gap there is neither value nor grade; outside of the scope of the formulas there is no grade.
+    """
+    if not np.isfinite(value):
+        return ["withheld", "", "withheld", ""]
+    shown = [micro(value), _interval(known)]
+    if verdict is None or verdict.data.outside is not None:
+        return [*shown, "", ""]
+    data = verdict.data
+    grade = finest_grade(data, name, value * 1000)
     words = _grade_words(grade)
     if known is not None:
-        ends = [_grade_words(finest_grade(verdict.data, name, end * 1000)) for end in known.interval]
+        ends = [_grade_words(finest_grade(data, name, end * 1000)) for end in known.interval]
         if ends != [words, words]:
             words += f" ({ends[0]} to {ends[1]})"
     if grade is None:
-        return [words, ""]
-    data = verdict.data
-    return [words, f"{iso17485(data.mean_normal_module, data.tolerance_diameter, grade).rounded[name]:g}"]
+        return [*shown, words, ""]
+    return [*shown, words, f"{iso17485(data.mean_normal_module, data.tolerance_diameter, grade).rounded[name]:g}"]
 
 
 def _grade_words(grade: int | None) -> str:
@@ -91,7 +97,7 @@ def flank_section(page: Page, one: Measurement) -> None:
     page.subheading("Figures of the flanks")
     rows = [
         ["at the reference point", *(micro(each.mean.at_reference) for each in flanks.values() if each.mean)],
-        ["largest, with its sign", *(micro(each.mean.extreme) for each in flanks.values() if each.mean)],
+        ["largest, with its sign", *(_largest(each) for each in flanks.values())],
         ["RMS", *(micro(each.mean.rms) for each in flanks.values() if each.mean)],
     ]
     orders = {flank: each.orders for flank, each in flanks.items() if each.orders is not None}
@@ -101,6 +107,11 @@ def flank_section(page: Page, one: Measurement) -> None:
         "Deviations, not zeroed at the reference point: size, mean, first and second order, and what they leave",
         ["figure / µm", *flanks], rows,
     )  # fmt: skip
+
+
+def _largest(figures: FlankFigures) -> str:
+    withheld = figures.mean is None or figures.mean.left_out or "max_deviation" in figures.withheld
+    return "withheld" if withheld or figures.mean is None else micro(figures.mean.extreme)
 
 
 def uncertainty_section(page: Page, one: Measurement) -> None:

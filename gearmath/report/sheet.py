@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from gearmath.page import Page
+from gearmath.quality.evaluation import Evaluation
 from gearmath.report import charts
 from gearmath.report.figures import clamping_section, flank_section, spacing_section, uncertainty_section
 from gearmath.report.measurement import FIELDS, Measurement, Report, counted
 from gearmath.report.settings import settings_sections
+from gearmath.specs.bevel_set import FLANKS
 
 _ZERO = (
     "The plane net is the nominal flank. Up, and +, is metal left on; numbers are µm. Each flank is turned about the "
     "work axis until its reference point, in the ring, is zero: tooth thickness is not in the charts. All charts of "
     "this member have the same scale."
 )
+
+#: Names of figures that may be withheld, as the sheet writes them.
+_NAMES = {"max_deviation": "largest deviation", "F_p": "F_p", "max_f_pt": "largest f_pt"}
 
 
 def inspection_sheet(members: Sequence[Measurement]) -> Report:
@@ -46,15 +51,31 @@ def _head(page: Page, members: Sequence[Measurement]) -> None:
 
 
 def _left_out(page: Page, members: Sequence[Measurement]) -> None:
-    """Before any figure: what they do not contain."""
+    """Before any figure: what they do not contain, and which of them there are not for that."""
     sentences = []
     for one in members:
         found = one.evaluation
-        absent = [flank for flank in ("concave", "convex") if flank not in found.flanks]
-        absent_words = [f"the {flank} flank was not measured" for flank in absent]
-        sentences += [f"{found.member}: {text}." for text in (*absent_words, *found.remarks, *one.remarks)]
+        absent = [f"the {flank} flank was not measured" for flank in FLANKS if flank not in found.flanks]
+        others = [text for text in found.remarks if text not in found.left_out]
+        texts = [*absent, *found.left_out, *_withheld(found), *others, *one.remarks]
+        sentences += [f"{found.member}: {text}." for text in texts]
     if sentences:
-        page.first("Left out, or not known", sentences)
+        page.first("Left out, withheld, or not known", sentences)
+
+
+def _withheld(found: Evaluation) -> Iterator[str]:
+    """Figures that there are not over data with a gap, together with those that have the same reason."""
+    reasons: dict[str, list[str]] = {}
+    for flank, figures in found.flanks.items():
+        for name, why in figures.withheld.items():
+            reasons.setdefault(why, []).append(f"{_NAMES[name]} of the {flank} flank")
+    if found.runout is not None and found.runout.withheld is not None:
+        reasons.setdefault(found.runout.withheld, []).append("F_r")
+    if found.verdict is not None:
+        for name, why in found.verdict.withheld.items():
+            reasons.setdefault(why, []).append(f"grade of {name}")
+    for why, names in reasons.items():
+        yield f"withheld: {', '.join(names)}: {why}"
 
 
 def _member(page: Page, one: Measurement, new_sheet: bool) -> None:
