@@ -1,25 +1,50 @@
-"""A self-contained HTML page: headings, paragraphs, tables and pictures in one file that any browser shows, or prints.
+"""A self-contained HTML page that any browser shows, on paper of A4 and on a telephone: text, tables, drawings.
 
-Whatever text comes from a file is escaped here; no caller writes markup.
+Whatever text comes from a file is escaped here; no caller writes markup. Drawings are SVG of this program.
 """
 
 from __future__ import annotations
 
-import base64
+import re
 from collections.abc import Sequence
 from html import escape
 
 _STYLE = """
-body { font: 15px/1.5 system-ui, sans-serif; color: #222; background: #fff;
-  max-width: 66rem; margin: 2rem auto; padding: 0 1rem }
-h1 { font-size: 1.5rem } h2 { font-size: 1.15rem; margin-top: 2rem; border-bottom: 1px solid #ddd }
-table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums }
-caption { text-align: left; font-size: 0.9rem; color: #555; padding-bottom: 0.3rem }
-th, td { padding: 0.15rem 0.8rem; border-bottom: 1px solid #e4e4e4; text-align: left }
-th { border-bottom: 1px solid #888 } td.number, th.number { text-align: right }
-figure { margin: 1rem 0 } img { max-width: 100% } figcaption { font-size: 0.9rem; color: #555 }
-p.warning { border-left: 4px solid #c23b22; padding-left: 0.8rem }
-@media print { h2 { break-after: avoid } figure, table { break-inside: avoid } }
+:root { color-scheme: light }
+body { font: 15px/1.45 system-ui, sans-serif; color: #1a1a1a; background: #fff;
+  max-width: 66rem; margin: 1.5rem auto; padding: 0 1rem; overflow-wrap: break-word }
+h1 { font-size: 1.5rem; margin: 0 0 .2rem }
+h2 { font-size: 1.2rem; margin: 2rem 0 .6rem; border-bottom: 2px solid #1a1a1a }
+h3 { font-size: 1rem; margin: 1.3rem 0 .3rem }
+p { margin: .5rem 0 }
+div.wide { overflow-x: auto }
+table { border-collapse: collapse; margin: .6rem 0 1rem; font-variant-numeric: tabular-nums; font-size: .93rem }
+caption { text-align: left; font-size: .87rem; color: #444; padding-bottom: .25rem }
+th, td { padding: .12rem .7rem .12rem 0; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
+thead th { border-bottom: 1px solid #666; vertical-align: bottom }
+td.number, th.number { text-align: right; white-space: nowrap }
+table.head { width: 100%; border: 1px solid #1a1a1a }
+table.head th, table.head td { border: 1px solid #aaa; padding: .12rem .5rem }
+table.head tbody th { width: 9rem; font-weight: normal; color: #444 }
+table.head td { min-width: 6rem; height: 1.4em; overflow-wrap: anywhere }
+.first { border: 2px solid #b3301a; padding: .3rem .8rem; margin: .8rem 0 }
+.first h3 { margin: 0 } .first ul { margin: .2rem 0; padding-left: 1.2rem }
+p.warning { border-left: 4px solid #b3301a; padding-left: .8rem }
+div.charts { display: grid; grid-template-columns: 1fr; gap: .6rem 1.2rem }
+figure { margin: .3rem 0; break-inside: avoid }
+figure svg { display: block; width: 100%; height: auto; max-width: 34rem }
+figcaption { font-size: .87rem; color: #333; font-weight: 600 }
+@media (min-width: 44rem) { div.charts { grid-template-columns: 1fr 1fr } }
+@media (max-width: 32rem) { body { padding: 0 .6rem } table { font-size: .82rem } th, td { padding-right: .45rem } }
+@page { size: A4; margin: 12mm }
+@media print {
+  html { font-size: 9.5pt }
+  body { font-size: 1rem; line-height: 1.3; max-width: none; margin: 0; padding: 0; print-color-adjust: exact }
+  h2, h3, caption { break-after: avoid } table, tr, .first { break-inside: avoid } div.wide { overflow: visible }
+  h2.new { break-before: page } h2 { margin-top: 1rem } h3 { margin-top: .7rem }
+  p + div.charts { break-before: avoid } div.charts { grid-template-columns: 1fr 1fr; gap: .2rem 5mm }
+  table { margin: .3rem 0 .6rem }
+}
 """
 
 
@@ -29,29 +54,55 @@ class Page:
     def __init__(self, title: str) -> None:
         self._title = title
         self._parts = [f"<h1>{escape(title)}</h1>"]
+        self._drawings = 0
 
-    def heading(self, text: str) -> None:
-        """A section begins."""
-        self._parts.append(f"<h2>{escape(text)}</h2>")
+    def heading(self, text: str, new_sheet: bool = False) -> None:
+        """A section begins, on paper at the top of a sheet if ``new_sheet``."""
+        opening = '<h2 class="new">' if new_sheet else "<h2>"
+        self._parts.append(f"{opening}{escape(text)}</h2>")
+
+    def subheading(self, text: str) -> None:
+        """A part of a section begins."""
+        self._parts.append(f"<h3>{escape(text)}</h3>")
 
     def paragraph(self, text: str, warning: bool = False) -> None:
         """A paragraph; a warning has a red bar beside it."""
         opening = '<p class="warning">' if warning else "<p>"
         self._parts.append(f"{opening}{escape(text)}</p>")
 
+    def first(self, heading: str, sentences: Sequence[str]) -> None:
+        """What is to be read before anything else, in a frame."""
+        items = "\n".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
+        self._parts.append(f'<div class="first"><h3>{escape(heading)}</h3>\n<ul>{items}</ul></div>')
+
+    def head(self, columns: Sequence[str], rows: Sequence[tuple[str, Sequence[str]]]) -> None:
+        """The block at the head of a sheet: a label and its value in each column; what is empty is left to fill in."""
+        lines = []
+        if len(columns) > 1:
+            names = "".join(f"<th>{escape(column)}</th>" for column in ("", *columns))
+            lines.append(f"<thead><tr>{names}</tr></thead>")
+        for label, values in rows:
+            cells = "".join(f"<td>{escape(value)}</td>" for value in values)
+            lines.append(f"<tr><th>{escape(label)}</th>{cells}</tr>")
+        self._parts.append('<table class="head">\n' + "\n".join(lines) + "\n</table>")
+
     def table(self, caption: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
         """A table; columns that hold numbers, or nothing, in every row stand to the right."""
         right = [len(rows) > 0 and all(_is_number(row[k]) for row in rows) for k in range(len(head))]
-        cells = [_row("th", head, right), *(_row("td", row, right) for row in rows)]
-        self._parts.append(f"<table><caption>{escape(caption)}</caption>\n" + "\n".join(cells) + "\n</table>")
-
-    def picture(self, png: bytes, caption: str) -> None:
-        """A PNG, held in the page itself."""
-        data = base64.b64encode(png).decode("ascii")
+        top = f"<thead>{_row('th', head, right)}</thead>"
+        cells = "\n".join(_row("td", row, right) for row in rows)
         self._parts.append(
-            f'<figure><img alt="{escape(caption)}" src="data:image/png;base64,{data}">'
-            f"<figcaption>{escape(caption)}</figcaption></figure>"
+            f'<div class="wide"><table><caption>{escape(caption)}</caption>\n{top}\n{cells}\n</table></div>'
         )
+
+    def drawings(self, drawings: Sequence[tuple[str, str]]) -> None:
+        """Drawings, (svg, caption) each, side by side where there is room; the caption stands above."""
+        figures = []
+        for svg, caption in drawings:
+            self._drawings += 1
+            named = f'<svg role="img" aria-label="{escape(caption)}"' + _own_names(svg, f"d{self._drawings}-")[4:]
+            figures.append(f"<figure><figcaption>{escape(caption)}</figcaption>{named}</figure>")
+        self._parts.append('<div class="charts">' + "\n".join(figures) + "</div>")
 
     @property
     def html(self) -> str:
@@ -67,6 +118,11 @@ class Page:
         )
 
 
+def _own_names(svg: str, prefix: str) -> str:
+    """A drawing whose names are of no other drawing of the page."""
+    return re.sub(r'(\bid="|\bhref="#|url\(#)', rf"\g<1>{prefix}", svg)
+
+
 def _row(tag: str, cells: Sequence[str], right: Sequence[bool]) -> str:
     marked = (f'<{tag} class="number">' if is_right else f"<{tag}>" for is_right in right)
     return (
@@ -76,7 +132,7 @@ def _row(tag: str, cells: Sequence[str], right: Sequence[bool]) -> str:
 
 def _is_number(text: str) -> bool:
     try:
-        float(text)
+        float(text.replace("\N{MINUS SIGN}", "-"))
     except ValueError:
         return text == ""
     return True

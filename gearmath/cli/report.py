@@ -1,14 +1,22 @@
-"""``gearmath report``: one measurement as a page for people."""
+"""``gearmath report``: the inspection sheet of a member, or of both."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from gearmath.cli.common import FLANK_CSV, MACHINE, about, bar, output
 from gearmath.cli.probe import CALIBRATION
 from gearmath.cli.uncertainty import MODEL, SIGMA, covariance_of, uncertain_correction
+from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    from gearmath.quality.evaluation import Evaluation
+    from gearmath.report import Measurement
+    from gearmath.specs.bevel_set import BevelSet
+    from gearmath.specs.flank_csv import FlankFile
 
 #: Of the Monte Carlo for maxima and ranges: their intervals to about one part in a hundred.
 _DRAWS, _SEED = 20_000, 0
@@ -18,48 +26,103 @@ _DRAWS, _SEED = 20_000, 0
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
 @click.option(
-    "--again", type=click.Path(path_type=Path), metavar="M2.csv",
-    help="The member measured again after the correction; shown in place of what is expected.",
+    "--mate", type=click.Path(path_type=Path), metavar="M2.csv", help="The mate as measured; both stand on one sheet."
+)
+@click.option(
+    "--again", type=click.Path(path_type=Path), multiple=True, metavar="M3.csv",
+    help="A member measured again after the correction, shown in place of what is expected; once for each member.",
 )  # fmt: skip
+@click.option(
+    "--part-number",
+    multiple=True,
+    metavar="TEXT",
+    help="Of M.csv; given twice, of M.csv and of its mate, in this order.",
+)
+@click.option("--date", metavar="TEXT", help="When it was measured.")
+@click.option("--operator", metavar="TEXT", help="Who measured it.")
+@click.option("--measured-on", "measured_on", metavar="TEXT", help="The machine that it was measured on.")
+@click.option("--probe", metavar="TEXT", help="The probe.")
 @SIGMA
 @MODEL
 @MACHINE
 @CALIBRATION
-@output("HTML; the pictures are written beside it as PNG")
+@output("HTML; two pictures are written beside it as PNG")
 def report(
-    measured: Path, gear_set: str, again: Path | None, sigma_um: float | None, model: str | None, machine: str,
-    calibration: str, target: Path,
+    measured: Path, gear_set: str, mate: Path | None, again: tuple[Path, ...], part_number: tuple[str, ...],
+    date: str | None, operator: str | None, measured_on: str | None, probe: str | None, sigma_um: float | None,
+    model: str | None, machine: str, calibration: str, target: Path,
 ) -> None:  # fmt: skip
-    """The report of a measurement: flanks, pitch, figures with uncertainty, settings, and what they cannot mend."""
+    """The inspection sheet of a measured member: one HTML page that prints on A4.
+
+    What was left out stands first; then topography, pitch, figures with tolerance, grade and uncertainty, settings old
+    and new, and what they cannot correct. Part number, date, operator, machine and probe come from the options, or from
+    header comments of the file such as '# part_number: 4711'; what neither says is left blank, to be filled in by hand.
+    Grades are by formulas that are not confirmed against ISO 17485: no conformity is claimed.
+    """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_bytes, write_text
-    from gearmath.quality.evaluation import evaluate_member
-    from gearmath.quality.figures import figures_of
-    from gearmath.quality.uncertainty import uncertain_figures
-    from gearmath.report import Measurement, measurement_report
+    from gearmath.report import inspection_sheet
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
-    pair, file = load_pair(find(gear_set)), read_flank_csv(measured)
-    member = pair.member(file.member)
-    with about(measured):
-        found = evaluate_member(file, member, file.member)
-        figures = figures_of(file, member, found)
-        covariance, source = covariance_of(file, member, sigma_um, model, machine, calibration)
-    with bar(_DRAWS, "draw") as progress:
-        sure = uncertain_figures(figures, covariance, _DRAWS, _SEED, progress=progress)
-    correction, settings, effects, remarks = uncertain_correction(member, file, found, covariance)
-    caused = {flank: effect.caused for flank, effect in effects.items()}
-    second = None
-    if again is not None:
-        with about(again):
-            second = evaluate_member(read_flank_csv(again), member, file.member)
-    made = measurement_report(
-        Measurement(
-            pair.title, measured.name, member, found, correction, sure, settings, caused, source, second, remarks
-        )
-    )
+    pair = load_pair(find(gear_set))
+    files = {path: read_flank_csv(path) for path in (measured, *([mate] if mate else []))}
+    if mate is not None and files[mate].member == files[measured].member:
+        raise InputError(f"{mate}: member = {files[mate].member!r}: --mate must be of the other member than {measured}")
+    if len(part_number) > len(files):
+        raise InputError(f"--part-number: given {len(part_number)} times, for {len(files)} measured file(s)")
+    given = {"date": date, "operator": operator, "machine": measured_on, "probe": probe}
+    seconds = _again(again, pair, {file.member for file in files.values()})
+    sure = (sigma_um, model, machine, calibration)
+    members = []
+    for k, (path, file) in enumerate(files.items()):
+        known = {"part_number": part_number[k] if k < len(part_number) else "", **given}
+        head = {key: text for key, text in known.items() if text}
+        members.append(_measurement(path, file, pair, head, seconds.get(file.member), sure))
+    made = inspection_sheet(members)
     for name, picture in made.pictures.items():
         write_bytes(target.with_name(f"{target.stem}_{name}.png"), picture)
     write_text(target, made.html)
-    click.echo(f"{target}: {len(made.pictures)} pictures, also beside it as PNG")
+    names = ", ".join(f"{target.stem}_{name}.png" for name in made.pictures)
+    click.echo(f"{target}: inspection sheet, prints on A4; beside it {names}")
+
+
+def _measurement(
+    path: Path, file: FlankFile, pair: BevelSet, head: dict[str, str], again: Evaluation | None,
+    sure: tuple[float | None, str | None, str, str],
+) -> Measurement:  # fmt: skip
+    """One member evaluated, with its uncertainties and its correction."""
+    from gearmath.quality.evaluation import STAGES, evaluate_member
+    from gearmath.quality.figures import figures_of
+    from gearmath.quality.uncertainty import uncertain_figures
+    from gearmath.report import Measurement, head_of
+
+    member = pair.member(file.member)
+    with about(path), bar(STAGES, "stage") as progress:
+        found = evaluate_member(file, member, file.member, progress=progress)
+        figures = figures_of(file, member, found)
+        covariance, source = covariance_of(file, member, *sure)
+    with bar(_DRAWS, "draw") as progress:
+        drawn = uncertain_figures(figures, covariance, _DRAWS, _SEED, progress=progress)
+    correction, settings, effects, remarks = uncertain_correction(member, file, found, covariance)
+    caused = {flank: effect.caused for flank, effect in effects.items()}
+    return Measurement(
+        pair.title, path.name, member, found, correction, head_of(file, head), drawn, settings, caused, source, again,
+        remarks,
+    )  # fmt: skip
+
+
+def _again(paths: tuple[Path, ...], pair: BevelSet, wanted: set[str]) -> dict[str, Evaluation]:
+    """Second measurements by member."""
+    from gearmath.quality.evaluation import evaluate_member
+    from gearmath.specs.flank_csv import read_flank_csv
+
+    found: dict[str, Evaluation] = {}
+    for path in paths:
+        file = read_flank_csv(path)
+        if file.member not in wanted or file.member in found:
+            why = "is there twice" if file.member in found else "has no first measurement on the sheet"
+            raise InputError(f"{path}: member = {file.member!r}: {why}")
+        with about(path):
+            found[file.member] = evaluate_member(file, pair.member(file.member), file.member)
+    return found

@@ -6,7 +6,7 @@ The formulas (19.6) were not checked against the standard. Grades are given only
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -141,14 +141,16 @@ def judge(
     values = {key: value * 1000 for key, value in measured.items()}
     if data.outside is not None:
         return Verdict(data, values, {}, f"no grade: {data.outside}", dict(withheld), {})
-    allowed = [iso17485(data.mean_normal_module, data.tolerance_diameter, grade) for grade in GRADES]
-    of_flanks = {flank: _grades(allowed, one) for flank, one in flanks.items()}
-    return Verdict(data, values, _grades(allowed, measured), CAVEAT, dict(withheld), of_flanks)
+    of_flanks = {flank: _grades(data, one) for flank, one in flanks.items()}
+    return Verdict(data, values, _grades(data, measured), CAVEAT, dict(withheld), of_flanks)
 
 
-def _grades(allowed: Sequence[Tolerances], measured: dict[str, float]) -> Grades:
+def _grades(data: GearData, measured: dict[str, float]) -> Grades:
     """The finest grade of each measured figure [mm]; None where none is coarse enough."""
-    return {
-        key: next((each.grade for each in allowed if abs(value) * 1000 <= each.rounded[key]), None)
-        for key, value in measured.items()
-    }
+    return {key: finest_grade(data, key, value * 1000) for key, value in measured.items()}
+
+
+def finest_grade(data: GearData, name: str, value: float) -> int | None:
+    """The finest grade whose rounded tolerance of ``f_pt``, ``F_p`` or ``F_r`` holds a value [µm]; None beyond 11."""
+    allowed = (iso17485(data.mean_normal_module, data.tolerance_diameter, grade) for grade in GRADES)
+    return next((each.grade for each in allowed if abs(value) <= each.rounded[name]), None)

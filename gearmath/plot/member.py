@@ -1,0 +1,92 @@
+"""A member in one picture: flanks before and after, pitch, runout."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gearmath.plot.pitch import draw_pitch, draw_runout
+from gearmath.plot.style import signed
+from gearmath.plot.topography import draw_topography, um_per_row
+from gearmath.quality.evaluation import Evaluation
+from gearmath.quality.pitch import Pitch
+from gearmath.quality.registration import Registration
+from gearmath.quality.topography import Topography
+
+
+def member_figure(
+    title: str,
+    before: Mapping[str, Topography],
+    after: Mapping[str, Topography],
+    pitch_before: Sequence[Pitch] = (),
+    pitch_after: Sequence[Pitch] = (),
+) -> Figure:
+    """Both flanks of a member before and after, at one scale, and its pitch, in one picture."""
+    drawn = _topographies(before, after, {})
+    if pitch_before:
+        drawn.append(partial(draw_pitch, before=pitch_before, after=pitch_after))
+    return _together(title, drawn)
+
+
+def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
+    """A measured member: flanks as measured and as registered, pitch polygons, runout; what the clamping was."""
+    registered = evaluation.registration is not None
+    before, after = evaluation.as_measured, evaluation.flanks if registered else {}
+    first, last = ({k: f.chart for k, f in each.items() if f.chart is not None} for each in (before, after))
+    shown = after or before
+    taken = {k: f.mean.at_reference for k, f in shown.items() if f.mean is not None}
+    drawn = _topographies(first, last, taken)
+    pitches = [[f.pitch for f in each.values() if f.pitch is not None] for each in (before, after)]
+    if pitches[0]:
+        drawn.append(partial(draw_pitch, before=pitches[0], after=pitches[1]))
+    if evaluation.runout_as_measured:
+        after_runout = evaluation.runout if registered else None
+        drawn.append(partial(draw_runout, before=evaluation.runout_as_measured, after=after_runout))
+    return _together(title + _seat_words(evaluation.registration), drawn)
+
+
+def _topographies(
+    before: Mapping[str, Topography], after: Mapping[str, Topography], taken: Mapping[str, float]
+) -> list[Callable[[Axes], None]]:
+    """What draws each flank, all at one scale: after, with its numbers, over before."""
+    scale = um_per_row([*before.values(), *after.values()])
+    return [
+        partial(_flank, before=each, after=after.get(flank), scale=scale, taken=taken.get(flank))
+        for flank, each in before.items()
+    ]
+
+
+def _flank(axes: Axes, before: Topography, after: Topography | None, scale: float, taken: float | None) -> None:
+    if after is None:
+        draw_topography(axes, before, scale=scale, taken=taken)
+    else:
+        draw_topography(axes, after, before, scale, taken)
+    shown = [("", before)] if after is None else [("before ", before), ("after ", after)]
+    words = ", ".join(f"{when}{_largest(each)}" for when, each in shown)
+    axes.set_title(f"{before.flank} flank: largest {words}", fontsize=9)
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncol=3, frameon=False)
+
+
+def _largest(shown: Topography) -> str:
+    return "withheld, a point is missing" if shown.left_out else f"{signed(shown.extreme * 1000)} µm"
+
+
+def _together(title: str, drawn: Sequence[Callable[[Axes], None]]) -> Figure:
+    rows = 2 if len(drawn) > 3 else 1
+    columns = -(-len(drawn) // rows)
+    figure = Figure(figsize=(4.4 * max(columns, 2), 4.2 * rows), layout="constrained")
+    figure.suptitle(title, parse_math=False)
+    places = figure.subplots(rows, max(columns, 1), squeeze=False).ravel()
+    for place, draw in zip(places, drawn, strict=False):
+        draw(place)
+    return figure
+
+
+def _seat_words(seat: Registration | None) -> str:
+    if seat is None:
+        return ""
+    tilt = f", tilt {seat.tilt * 1e5:.1f} µm/100 mm" if seat.tilt_found else ""
+    return f"\nbefore and after registration: eccentricity {seat.eccentricity * 1000:.1f} µm{tilt} taken out"

@@ -1,0 +1,152 @@
+"""Tables of the figures of a member, with their uncertainties, tolerances and grades."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from gearmath.page import Page
+from gearmath.quality.evaluation import Evaluation, FlankFigures
+from gearmath.quality.tolerance import Verdict, finest_grade, iso17485
+from gearmath.quality.topography import ORDERS
+from gearmath.quality.uncertainty import Uncertain
+from gearmath.report.measurement import Measurement, micro
+
+#: Figures that have a grade: name in the verdict, that of the figure of a flank, and in words.
+_SPACING = {
+    "f_pt": ("max_f_pt", "f_pt, largest"), "F_p": ("F_p", "F_p"),
+    "F_r": ("F_r", "F_r"),
+}  # fmt: skip
+
+
+def spacing_section(page: Page, one: Measurement) -> None:
+    """Pitch and runout with tolerance and grade beside each value, then thickness."""
+    found = one.evaluation
+    rows = [
+        [f"{words}, {flank}", *_graded(found.verdict, name, value, one.uncertain(flank, figure))]
+        for name, (figure, words) in _SPACING.items()
+        for flank, value in _values(found, name)
+    ]
+    if rows:
+        caveat = f" {found.verdict.remark}." if found.verdict is not None else ""
+        page.table(
+            f"Single pitch f_pt, cumulative pitch F_p, runout F_r; tolerance of the grade that was found.{caveat}",
+            ["figure / µm", "value", "95 % interval", "grade", "tolerance"], rows,
+        )  # fmt: skip
+    if found.runout is not None and np.isfinite(found.runout.of_noise[0]):
+        mean, spread = (f"{value * 1000:.1f}" for value in found.runout.of_noise)
+        so = ": F_r is mostly noise" if found.runout.mostly_noise else ""
+        page.paragraph(f"Noise of the points alone would give F_r {mean} ± {spread} µm{so}.")
+    if found.thickness is not None:
+        thickness = found.thickness
+        page.table(
+            "Tooth thickness at the reference point, mean of the teeth that have a reading",
+            ["figure", "nominal / mm", "deviation / µm"],
+            [["arc", f"{thickness.arc:.4f}", micro(thickness.mean)],
+             ["chord", f"{thickness.chord:.4f}", micro(thickness.mean * thickness.chord_factor)]],
+        )  # fmt: skip
+
+
+def _values(found: Evaluation, name: str) -> Iterator[tuple[str, float]]:
+    """Flank and value [mm] of a figure, of each flank that has it; NaN where it is withheld."""
+    if name == "F_r":
+        if found.runout is not None:
+            yield "both", found.runout.total
+        return
+    for flank, figures in found.flanks.items():
+        if figures.pitch is not None:
+            yield flank, figures.pitch.total if name == "F_p" else figures.pitch.largest_single
+
+
+def _interval(known: Uncertain | None) -> str:
+    return "" if known is None else "{} to {}".format(*map(micro, known.interval))
+
+
+def _graded(verdict: Verdict | None, name: str, value: float, known: Uncertain | None) -> list[str]:
+    """Value [mm], interval, grade and its tolerance; the grade with that of either end of the interval, if it differs.
+
+    Over data with a gap there is neither value nor grade; outside of the scope of the formulas there is no grade.
+    """
+    if not np.isfinite(value):
+        return ["withheld", "", "withheld", ""]
+    shown = [micro(value), _interval(known)]
+    if verdict is None or verdict.data.outside is not None:
+        return [*shown, "", ""]
+    data = verdict.data
+    grade = finest_grade(data, name, value * 1000)
+    words = _grade_words(grade)
+    if known is not None:
+        ends = [_grade_words(finest_grade(data, name, end * 1000)) for end in known.interval]
+        if ends != [words, words]:
+            words += f" ({ends[0]} to {ends[1]})"
+    if grade is None:
+        return [*shown, words, ""]
+    return [*shown, words, f"{iso17485(data.mean_normal_module, data.tolerance_diameter, grade).rounded[name]:g}"]
+
+
+def _grade_words(grade: int | None) -> str:
+    return "beyond 11" if grade is None else str(grade)
+
+
+def flank_section(page: Page, one: Measurement) -> None:
+    """Size of the deviations and their orders, flank by flank."""
+    flanks = {flank: each for flank, each in one.evaluation.flanks.items() if each.mean is not None}
+    if not flanks:
+        return
+    page.subheading("Figures of the flanks")
+    rows = [
+        ["at the reference point", *(micro(each.mean.at_reference) for each in flanks.values() if each.mean)],
+        ["largest, with its sign", *(_largest(each) for each in flanks.values())],
+        ["RMS", *(micro(each.mean.rms) for each in flanks.values() if each.mean)],
+    ]
+    orders = {flank: each.orders for flank, each in flanks.items() if each.orders is not None}
+    rows += [[name.replace("_", " "), *(micro(getattr(each, name)) for each in orders.values())] for name in ORDERS]
+    rows.append(["residual (RMS)", *(micro(each.residual) for each in orders.values())])
+    page.table(
+        "Deviations, not zeroed at the reference point: size, mean, first and second order, and what they leave",
+        ["figure / µm", *flanks], rows,
+    )  # fmt: skip
+
+
+def _largest(figures: FlankFigures) -> str:
+    withheld = figures.mean is None or figures.mean.left_out or "max_deviation" in figures.withheld
+    return "withheld" if withheld or figures.mean is None else micro(figures.mean.extreme)
+
+
+def uncertainty_section(page: Page, one: Measurement) -> None:
+    """All figures with their uncertainties, but those of single teeth and coefficients."""
+    if not one.figures:
+        return
+    page.subheading("Uncertainty of the figures")
+    rows = [
+        [known.figure.flank, known.figure.name.replace("_", " "),
+         *(f"{value * known.figure.factor:.2f}" for value in (known.value, known.uncertainty, *known.interval)),
+         known.figure.unit, known.method]
+        for known in one.figures if not known.figure.name.startswith(("f_pt_", "c_"))
+    ]  # fmt: skip
+    head = ["flank", "figure", "value", "u", "from", "to", "unit", "by"]
+    page.table(f"Standard uncertainties u and intervals of 95 %: {one.how_sure}", head, rows)
+
+
+def clamping_section(page: Page, found: Evaluation) -> None:
+    """What was taken out of the deviations before they were judged."""
+    seat, turn = found.registration, found.rotation
+    rows = []
+    if seat is not None:
+        at, about = np.degrees([seat.eccentricity_direction, seat.tilt_direction])
+        u = seat.eccentricity_uncertainty
+        rows.append(["eccentricity", micro(seat.eccentricity), micro(u), "µm", f"towards {at:.1f}°"])
+        if seat.tilt_found:
+            tilt, u = seat.tilt * 100, seat.tilt_uncertainty * 100
+            rows.append(["tilt", micro(tilt), micro(u), "µm per 100 mm", f"about {about:.1f}°"])
+    if turn is not None:
+        words = f"of both flanks, {np.degrees(turn.angle) * 3600:+.1f} arcsec; here its arc at the reference point"
+        rows.append(["rotation", micro(turn.arc), micro(turn.uncertainty * turn.radius), "µm", words])
+    rows += [
+        [f"drift, {flank}", micro(drift.closure), "", "µm", "tooth 0 at the end against the start"]
+        for flank, drift in found.drifts.items()
+    ]
+    if rows:
+        page.subheading("Taken out before judging")
+        page.table("Clamping, rotation and drift", ["figure", "value", "u", "unit", ""], rows)

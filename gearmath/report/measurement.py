@@ -1,0 +1,75 @@
+"""What an inspection sheet is made of."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from gearmath.quality.correction import Correction
+from gearmath.quality.evaluation import Evaluation
+from gearmath.quality.uncertainty import Uncertain
+from gearmath.specs.bevel_set import Member
+from gearmath.specs.flank_csv import FlankFile
+
+#: What people write at the head of a sheet: header key of the file, and its label.
+FIELDS = {
+    "part_number": "Part number", "date": "Date", "operator": "Operator", "machine": "Machine", "probe": "Probe",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One member on the sheet.
+
+    ``title`` names the set, ``source`` the file; ``head`` has a text for each of ``FIELDS`` that is known; ``figures``
+    and ``settings`` are those with uncertainties, which come from ``how_sure``; ``caused`` is the RMS [mm] that errors
+    of measurement will leave on each flank after the correction; ``again`` is the member measured after it was cut with
+    corrected settings, if it was.
+    """
+
+    title: str
+    source: str
+    member: Member
+    evaluation: Evaluation
+    correction: Correction | None
+    head: Mapping[str, str] = field(default_factory=dict)
+    figures: Sequence[Uncertain] = ()
+    settings: Sequence[Uncertain] = ()
+    caused: Mapping[str, float] = field(default_factory=dict)
+    how_sure: str = ""
+    again: Evaluation | None = None
+    remarks: Sequence[str] = ()
+
+    def uncertain(self, flank: str, name: str) -> Uncertain | None:
+        """A figure with its uncertainty, None where it is not known."""
+        return next((one for one in self.figures if (one.figure.flank, one.figure.name) == (flank, name)), None)
+
+
+@dataclass(frozen=True)
+class Report:
+    """The page, and its pictures by name (PNG)."""
+
+    html: str
+    pictures: dict[str, bytes] = field(default_factory=dict)
+
+
+def head_of(file: FlankFile, given: Mapping[str, str]) -> dict[str, str]:
+    """What is known for the head of the sheet: as ``given``, or else as a header comment of the file says."""
+    said = {re.sub(r"[\s-]+", "_", key.lower()): value for key, value in file.header.items()}
+    return {key: given.get(key) or said.get(key, "") for key in FIELDS}
+
+
+def counted(found: Evaluation) -> str:
+    """How many of the points on the grid of each flank and tooth the figures come from."""
+    used = int(np.isfinite(found.file.deviation).sum())
+    return f"{used} of {len(found.file)}" + ("" if used == len(found.file) else f", {len(found.file) - used} left out")
+
+
+def micro(value: float) -> str:
+    """mm as µm, empty for what is not known; less than a nanometre is nothing."""
+    if not np.isfinite(value):
+        return ""
+    return f"{0.0 if abs(value) < 1e-6 else value * 1000:.2f}"

@@ -1,0 +1,85 @@
+"""Corrected settings on the sheet: old and new, and what they cannot correct and why."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from gearmath.page import Page
+from gearmath.quality.analysis import Analysis
+from gearmath.quality.correction import Correction, setting_changes
+from gearmath.quality.variables import reading
+from gearmath.report.measurement import Measurement, micro
+
+
+def settings_sections(page: Page, measurement: Measurement) -> None:
+    """The settings that change, and what is not corrected, where there is a correction."""
+    if measurement.correction is not None:
+        _settings_section(page, measurement, measurement.correction)
+        _limits_section(page, measurement.correction, measurement.caused)
+
+
+def _settings_section(page: Page, measurement: Measurement, correction: Correction) -> None:
+    page.subheading("Settings, old and new")
+    standard = {(one.figure.flank, one.figure.name): one.uncertainty for one in measurement.settings}
+    rows = []
+    for flank, name, old, new in setting_changes(measurement.member, correction):
+        factor, unit = reading(name)
+        u = standard.get((flank, name), math.nan)
+        values = (f"{value * factor:.6f}" for value in (old, new, new - old))
+        rows.append([flank, name, *values, f"{u * factor:.6f}" if math.isfinite(u) else "", unit])
+    page.table("Settings that change", ["flank", "setting", "old", "new", "change", "u", "unit"], rows)
+    if correction.index is not None:
+        size = math.degrees(np.ptp(correction.index)) * 3600
+        page.paragraph(f"The indexing of every tooth is corrected as well, within a range of {size:.1f} arcseconds.")
+
+
+def _limits_section(page: Page, correction: Correction, caused: Mapping[str, float]) -> None:
+    page.subheading("What is not corrected, and why")
+    rows = []
+    for group, analysis in correction.analysis.items():
+        result = correction.identified[group]
+        values = (result.rms_before, analysis.best_rms, result.rms_after)
+        rows.append([" and ".join(group), *map(micro, values)])
+    head = ["flanks", "RMS measured", "best that settings reach (first order)", "expected"]
+    page.table("RMS of the flanks / um", head, rows)
+    for group, analysis in correction.analysis.items():
+        for sentence in _limits(" and ".join(group), analysis, correction.identified[group].active):
+            page.paragraph(sentence)
+    for flank, count in correction.left_out.items():
+        if count:
+            page.paragraph(f"{flank} flank: {count} points of the grid took no part in the correction.", warning=True)
+    for flank, rms in caused.items():
+        page.paragraph(f"{flank} flank: errors of the measurement itself will leave {rms * 1000:.2f} um RMS.")
+    for flank, moved in correction.root.items():
+        toe, heel = moved * 1000
+        page.paragraph(f"{flank} flank: the root line moves by {toe:+.1f} um at the toe, {heel:+.1f} um at the heel.")
+
+
+def _limits(flanks: str, analysis: Analysis, active: Sequence[str]) -> Iterator[str]:
+    """Sentences on what holds a correction back."""
+    names = ", ".join(analysis.names)
+    yield (
+        f"{flanks}: what lies outside of the shapes that {names} can give a flank stays, "
+        f"{analysis.best_rms * 1000:.2f} um RMS of {analysis.rms * 1000:.2f} um."
+    )
+    for first, second, cosine in analysis.alike:
+        how = "alike" if cosine > 0 else "opposite ways"
+        yield (
+            f"{flanks}: {first} and {second} move the flank {how} (cosine {cosine:.5f}): these points cannot tell one "
+            "from the other."
+        )
+    if analysis.weak:
+        what = "; ".join(_direction(analysis, k) for k in analysis.weak)
+        yield f"{flanks}: weak directions, which much noise and little flank belong to: {what}."
+    if analysis.unseen:
+        yield f"{flanks}: without effect: {', '.join(analysis.unseen)}."
+    if active:
+        yield f"{flanks}: held back by the limit of {', '.join(active)}."
+
+
+def _direction(analysis: Analysis, k: int) -> str:
+    parts = " ".join(f"{part:+.2f} {name}" for name, part in analysis.direction(k).items())
+    return f"{parts} (singular value {analysis.singular_values[k] * 1000:.2g} um)"

@@ -1,0 +1,111 @@
+"""The inspection sheet from its head to its last remark."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from gearmath.page import Page
+from gearmath.quality.evaluation import Evaluation
+from gearmath.report import charts
+from gearmath.report.figures import clamping_section, flank_section, spacing_section, uncertainty_section
+from gearmath.report.measurement import FIELDS, Measurement, Report, counted
+from gearmath.report.settings import settings_sections
+from gearmath.specs.bevel_set import FLANKS
+
+_ZERO = (
+    "The plane net is the nominal flank. Up, and +, is metal left on; numbers are µm. Each flank is turned about the "
+    "work axis until its reference point, in the ring, is zero: tooth thickness is not in the charts. All charts of "
+    "this member have the same scale."
+)
+
+#: Names of figures that may be withheld, as the sheet writes them.
+_NAMES = {"max_deviation": "largest deviation", "F_p": "F_p", "max_f_pt": "largest f_pt"}
+
+
+def inspection_sheet(members: Sequence[Measurement]) -> Report:
+    """The sheet of one member, or of both, as a page that holds everything, and pictures once more for other uses."""
+    names = [one.evaluation.member for one in members]
+    page = Page(f"Inspection sheet: {' and '.join(names)}")
+    page.paragraph(members[0].title)
+    _head(page, members)
+    _left_out(page, members)
+    pictures: dict[str, bytes] = {}
+    for k, one in enumerate(members):
+        _member(page, one, new_sheet=k > 0)
+        prefix = "" if k == 0 else f"{names[k]}_"
+        pictures |= {prefix + name: picture for name, picture in charts.pictures(one).items()}
+    return Report(page.html, pictures)
+
+
+def _head(page: Page, members: Sequence[Measurement]) -> None:
+    rows = [(label, [one.head.get(key, "") for one in members]) for key, label in FIELDS.items()]
+    headers = [one.evaluation.file.header for one in members]
+    facts = {
+        "Member": [f"{one.evaluation.member}, {one.member.teeth} teeth, {one.member.hand} hand" for one in members],
+        "Measured file": [one.source for one in members],
+        "Radius of the tip": [f"{header['tip_radius_mm']} mm" for header in headers],
+        "Grid": [each["grid"] for each in headers],
+        "Points used": [counted(one.evaluation) for one in members],
+    }
+    page.head([one.evaluation.member for one in members], [*rows, *facts.items()])
+
+
+def _left_out(page: Page, members: Sequence[Measurement]) -> None:
+    """Before any figure: what they do not contain, and which of them there are not for that."""
+    sentences = []
+    for one in members:
+        found = one.evaluation
+        absent = [f"the {flank} flank was not measured" for flank in FLANKS if flank not in found.flanks]
+        others = [text for text in found.remarks if text not in found.left_out]
+        texts = [*absent, *found.left_out, *_withheld(found), *others, *one.remarks]
+        sentences += [f"{found.member}: {text}." for text in texts]
+    if sentences:
+        page.first("Left out, withheld, or not known", sentences)
+
+
+def _withheld(found: Evaluation) -> Iterator[str]:
+    """Figures that there are not over data with a gap, together with those that have the same reason."""
+    reasons: dict[str, list[str]] = {}
+    for flank, figures in found.flanks.items():
+        for name, why in figures.withheld.items():
+            reasons.setdefault(why, []).append(f"{_NAMES[name]} of the {flank} flank")
+    if found.runout is not None and found.runout.withheld is not None:
+        reasons.setdefault(found.runout.withheld, []).append("F_r")
+    if found.verdict is not None:
+        for name, why in found.verdict.withheld.items():
+            reasons.setdefault(why, []).append(f"grade of {name}")
+    for why, names in reasons.items():
+        yield f"withheld: {', '.join(names)}: {why}"
+
+
+def _member(page: Page, one: Measurement, new_sheet: bool) -> None:
+    found = one.evaluation
+    page.heading(found.member.capitalize(), new_sheet)
+    page.subheading("Topography of the flanks")
+    if drawings := charts.flank_charts(one):
+        page.paragraph(_ZERO)
+        page.drawings(drawings)
+    else:
+        page.paragraph("No tooth was measured in full: there is no topography.")
+    page.subheading("Pitch, runout, thickness")
+    if drawings := charts.pitch_charts(one):
+        after = "; ".join([
+            "gray bars and full lines: measured",
+            *(["hollow bars and dashed lines: " + ("measured again" if one.again else "expected after the correction")]
+              if charts.pitches_after(one) else []),
+        ])  # fmt: skip
+        page.paragraph(f"Teeth are counted from 0; {after}. Both flanks have the same scale.")
+        page.drawings([*drawings, *charts.space_charts(one)])
+    spacing_section(page, one)
+    drawings, times = charts.tooth_charts(one)
+    if drawings:
+        page.subheading("The tooth in perspective")
+        page.paragraph(
+            f"The part of the tooth that was measured; deviations along the normals, {times:g} times enlarged. "
+            "The darker, the more metal is left on."
+        )
+        page.drawings(drawings)
+    flank_section(page, one)
+    clamping_section(page, found)
+    settings_sections(page, one)
+    uncertainty_section(page, one)
