@@ -10,7 +10,7 @@ Levenberg-Marquardt iteration makes t(x) equal to what was measured; the correct
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,11 +20,10 @@ from gearmath.bevel.generation import Generation
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.newton import FlankPoints
 from gearmath.errors import ComputationError
-from gearmath.lowering import Kernel
 from gearmath.quality.deviation_surface import surface_map
 from gearmath.quality.identification import Identification, spread
 from gearmath.quality.least_squares import compensation_step, minimize
-from gearmath.quality.on_line import Kind, flank_on_line
+from gearmath.quality.on_line import Kind, Run, as_it_stands, flank_on_line
 from gearmath.quality.root_line import RootLine
 from gearmath.quality.variables import FREE, SIZE, Variable, parts, variables_of, whole
 from gearmath.specs.bevel_set import SETTINGS
@@ -36,28 +35,20 @@ ROOT_WEIGHT = 10.0
 #: With noise, what improves the sum of squares by less than this part of its square is no improvement.
 _MATTERS = 1e-6
 
-#: How a Kernel is run: as it stands, or compiled first (``gearmath.export.host.compile_kernel``).
-Run = Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]
-
-
-def as_it_stands(kernel: Kernel) -> Kernel:
-    """The Kernel itself, run by CasADi."""
-    return kernel
-
-
 @dataclass(frozen=True)
 class FlankTarget:
     """One measured flank: how it was cut, its nominal points (n,) and the deviations measured there (n,) [mm].
 
-    ``how.settings`` and ``how.motion`` are what the machine was set to. ``arc_blade`` holds radius and reference height
-    of an arc blade [mm]. ``place`` (n,2) holds X and Y of (6.3) for the fit of a deviation surface, ``root`` where the
+    ``how.settings`` and ``how.motion`` are what the machine was set to. ``curvature`` [1/mm] is that of the blade, zero
+    where it is straight, and touches the straight one at ``reference_height`` [mm]. ``place`` (n,2) holds X and Y of (6.3) for the fit of a deviation surface, ``root`` where the
     root line is to be held, and ``used`` (grid,) which points of the whole grid these are; ``absent`` are the others.
     """
 
     how: Generation
     nominal: FlankPoints
     deviation: np.ndarray
-    arc_blade: tuple[float, float] | None = None
+    curvature: float = 0.0
+    reference_height: float = 0.0
     place: np.ndarray | None = None
     root: RootLine | None = None
     used: np.ndarray | None = None
@@ -86,9 +77,15 @@ class FlankTarget:
 
     @property
     def kind(self) -> Kind:
-        if self.arc_blade is not None:
-            return "arc"
-        return "plain" if self.how.still and self.how.rolling else "straight"
+        """Which of the kernels on a line knows this flank as it is."""
+        return self.kind_of(self.vector)
+
+    def kind_of(self, vectors: np.ndarray, bending: bool = False) -> Kind:
+        """The kernel for whole vectors (...,83), with the gradient by the curvature where it is ``bending``."""
+        if bending or vectors[..., -1].any():
+            return "curved"
+        moved = self.how.index_ratio or not self.how.rolling or vectors[..., len(SETTINGS) : -1].any()
+        return "straight" if moved else "plain"
 
     @property
     def settings(self) -> np.ndarray:
@@ -97,46 +94,53 @@ class FlankTarget:
 
     @property
     def vector(self) -> np.ndarray:
-        """Settings and motion that the machine was set to, as one vector (82,)."""
-        return whole(self.how.settings, self.how.motion)
+        """Settings and motion that the machine was set to, and the curvature of the blade, as one vector (83,)."""
+        return whole(self.how.settings, self.how.motion, self.curvature)
 
     def given(self, vectors: np.ndarray, kind: Kind) -> tuple:
-        """The arguments of ``on_line.INPUTS`` for whole vectors (...,82)."""
+        """The arguments of ``on_line.INPUTS`` for whole vectors (...,83)."""
         settings, motion = parts(vectors)
         if kind == "plain":
             return settings, self.how.side
-        cut = (settings, motion, self.how.index_ratio, self.how.blade_offset_angle, *(self.arc_blade or ()))
+        blade = (vectors[..., -1], self.reference_height) if kind == "curved" else ()
+        cut = (settings, motion, self.how.index_ratio, self.how.blade_offset_angle, *blade)
         return *cut, self.how.side, float(self.how.rolling)
 
 
 def located(
-    target: FlankTarget, vectors: np.ndarray, run: Run = as_it_stands, moving: bool = True
+    target: FlankTarget, vectors: np.ndarray, run: Run = as_it_stands, moving: bool = True, bending: bool = False
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Deviations (n,) [mm] of settings and motions (82,), their gradient, and which points (n,) were not found.
+    """Deviations (n,) [mm] of settings and motions (83,), their gradient, and which points (n,) were not found.
 
-    ``vectors`` may also be (n,82), one for every point. The gradient is (n,82), or (n,12) if not ``moving``: by the
-    settings alone.
+    ``vectors`` may also be (n,83), one for every point. The gradient is (n,83), or (n,12) by the settings alone if
+    neither ``moving`` nor ``bending``; by the curvature it is zero where the blade is straight and not ``bending``.
     """
-    nominal, kind = target.nominal, target.kind
-    if kind == "plain" and np.any(vectors[..., len(SETTINGS) :]):
-        kind = "straight"
+    nominal, kind = target.nominal, target.kind_of(vectors, bending)
     contact, deviation, gradient, residual = run(flank_on_line(kind))(
         nominal.contact, *target.given(vectors, kind), nominal.point, nominal.normal
     )
+    failed = ~(residual <= _LINE_TOLERANCE)
+    by_settings, by_curvature = gradient[:, : len(SETTINGS)], gradient[:, len(SETTINGS) :]
+    if not moving and not bending:
+        return deviation, by_settings, failed
+    full = np.zeros((len(deviation), SIZE))
+    full[:, : len(SETTINGS)] = by_settings
     if moving:
-        (motion,) = kernel("coefficient_sensitivity")(contact[:, 2], gradient)
-        gradient = np.concatenate([gradient, motion.reshape(len(gradient), -1)], axis=1)
-    return deviation, gradient, ~(residual <= _LINE_TOLERANCE)
+        (motion,) = run(kernel("coefficient_sensitivity"))(contact[:, 2], by_settings)
+        full[:, len(SETTINGS) : -1] = motion.reshape(len(motion), -1)
+    if by_curvature.size:
+        full[:, -1:] = by_curvature
+    return deviation, full, failed
 
 
 def predicted(target: FlankTarget, settings: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray]:
     """Deviation (n,) [mm] that settings leave at the nominal points, and its gradient by them.
 
-    ``settings`` are (12,), with the motion of the target and a gradient (n,12), or the whole vector (82,) and (n,82).
+    ``settings`` are (12,), with the motion of the target and a gradient (n,12), or the whole vector (83,) and (n,83).
     Raises ComputationError if the surface does not cross the normal of one of the points.
     """
     vector = settings if len(settings) == SIZE else np.concatenate([settings, target.vector[len(SETTINGS) :]])
-    deviation, gradient, failed = located(target, vector, run, len(settings) == SIZE)
+    deviation, gradient, failed = located(target, vector, run, *[len(settings) == SIZE] * 2)
     if failed.any():
         raise ComputationError(
             f"the flank of the changed settings does not cross the normal of point {int(np.argmax(failed))}"
@@ -170,24 +174,41 @@ class Problem:
     @cached_property
     def moving(self) -> bool:
         """Whether coefficients of a motion are among the variables."""
-        return bool((self.index >= len(SETTINGS)).any())
+        return bool(((self.index >= len(SETTINGS)) & (self.index < SIZE - 1)).any())
+
+    @cached_property
+    def bending(self) -> bool:
+        """Whether the curvature of a blade is among the variables."""
+        return bool((self.index == SIZE - 1).any())
+
+    @cached_property
+    def _depths(self) -> list[np.ndarray]:
+        """Depths (2,) [mm] of the root lines as they were cut."""
+        return [t.root.depth(t.vector, self.run)[1] for t in self.targets if t.root is not None]
 
     def deviations(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
         """Residual (m,) of the points and its Jacobian (m,p); None where a point is not found."""
         values, jacobians = [], []
         for k, target in enumerate(self.targets):
-            deviation, gradient, failed = located(target, target.vector + self.change(v, k), self.run, self.moving)
+            deviation, gradient, failed = self.located(v, k)
             if failed.any():
                 return None
             values.append(deviation)
             jacobians.append(self.columns(gradient, k))
         return np.concatenate(values) - self.measured, np.concatenate(jacobians)
 
+    def located(self, v: np.ndarray, target: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """``located`` of one target for scaled variables (p,)."""
+        return located(
+            self.targets[target], self.targets[target].vector + self.change(v, target), self.run, self.moving,
+            self.bending,
+        )  # fmt: skip
+
     def change(self, v: np.ndarray, target: int) -> np.ndarray:
         return spread(self.variables, v * self.scale, target)
 
     def columns(self, gradient: np.ndarray, target: int) -> np.ndarray:
-        """The columns (n,p) of the variables of a gradient (n,82), or (n,12) if nothing moves, of one target."""
+        """The columns (n,p) of the variables of a gradient (n,83), or (n,12) by settings alone, of one target."""
         mine = np.array([variable.target in (None, target) for variable in self.variables])
         return gradient[:, self.index] * (self.scale * mine)
 
@@ -196,8 +217,8 @@ class Problem:
         moved = []
         for k, target in enumerate(self.targets):
             if target.root is not None:
-                sunk, gradient = target.root.sunk(target.vector, target.vector + self.change(v, k))
-                moved.append((sunk, self.columns(gradient, k)))
+                _, depth, gradient = target.root.depth(target.vector + self.change(v, k), self.run)
+                moved.append((depth - self._depths[len(moved)], self.columns(gradient, k)))
         return moved
 
     @property

@@ -33,8 +33,12 @@ HIGHER_ORDER = ("work_rotation_offset.2", "work_rotation_offset.3", "sliding_bas
 _ROLL = 0.5
 
 _POWERS = notation.motion.shape[1]
-#: The names of the whole vector (82,) of a flank.
-NAMES = (*SETTINGS, *(f"{name}.{power}" for name in MACHINE_SETTINGS for power in range(1, _POWERS + 1)))
+#: The names of the whole vector (83,) of a flank; the spheric radius stands there as the curvature, one over it.
+NAMES = (
+    *SETTINGS,
+    *(f"{name}.{power}" for name in MACHINE_SETTINGS for power in range(1, _POWERS + 1)),
+    "blade_spheric_radius",
+)
 SIZE = len(NAMES)
 
 
@@ -101,12 +105,12 @@ def free_settings(member: Member, higher_order: bool = False) -> tuple[str, ...]
     return FREE + (HIGHER_ORDER if higher_order else ())
 
 
-def whole(settings: np.ndarray, motion: np.ndarray) -> np.ndarray:
-    """Settings (12,) and motion (10,7) as the whole vector (82,) of a flank."""
-    return np.concatenate([settings, motion.ravel()])
+def whole(settings: np.ndarray, motion: np.ndarray, curvature: float = 0.0) -> np.ndarray:
+    """Settings (12,), motion (10,7) and curvature of the blade [1/mm] as the whole vector (83,) of a flank."""
+    return np.concatenate([settings, motion.ravel(), [curvature]])
 
 
 def parts(vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Settings (...,12) and motion (...,10,7) of whole vectors (...,82)."""
-    settings, motion = vector[..., : len(SETTINGS)], vector[..., len(SETTINGS) :]
+    """Settings (...,12) and motion (...,10,7) of whole vectors (...,83)."""
+    settings, motion = vector[..., : len(SETTINGS)], vector[..., len(SETTINGS) : -1]
     return settings, motion.reshape(*motion.shape[:-1], *notation.motion.shape)
