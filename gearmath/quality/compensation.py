@@ -21,17 +21,19 @@ from gearmath.bevel.kernels import kernel
 from gearmath.bevel.newton import FlankPoints
 from gearmath.errors import ComputationError
 from gearmath.quality.deviation_surface import surface_map
-from gearmath.quality.identification import Identification, spread
+from gearmath.quality.identification import Identification
 from gearmath.quality.least_squares import compensation_step, minimize
 from gearmath.quality.on_line import Kind, Run, as_it_stands, flank_on_line
 from gearmath.quality.root_line import RootLine
-from gearmath.quality.variables import FREE, SIZE, Variable, parts, variables_of, whole
+from gearmath.quality.variables import FREE, SIZE, Bounds, Variable, parts, variables_of, whole
 from gearmath.specs.bevel_set import SETTINGS
 
 _LINE_TOLERANCE = 1e-9
 #: What a root line and its place between its limits differ by counts so many times its length.
-ROOT_WEIGHT = 10.0
+ROOT_WEIGHT = 100.0
 
+#: Where a design leaves more than this part of the sum of squares, it also starts with so much of the tilt's bound.
+_GOOD, _TILTED = 0.01, 0.25
 #: With noise, what improves the sum of squares by less than this part of its square is no improvement.
 _MATTERS = 1e-6
 
@@ -160,6 +162,13 @@ class Problem:
     noise: float = 0.0
 
     @cached_property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Least and largest values of the scaled variables and of the slacks."""
+        low, high = np.array([variable.range for variable in self.variables]).T
+        ones = np.ones(self.slacks)
+        return np.concatenate([low, -ones]), np.concatenate([high, ones])
+
+    @cached_property
     def measured(self) -> np.ndarray:
         return np.concatenate([target.deviation for target in self.targets])
 
@@ -205,12 +214,19 @@ class Problem:
         )  # fmt: skip
 
     def change(self, v: np.ndarray, target: int) -> np.ndarray:
-        return spread(self.variables, v * self.scale, target)
+        """Scaled variables (...,p) as whole vectors (...,83) of one target."""
+        vector, mine = np.zeros((*v.shape[:-1], SIZE)), self._mine[target]
+        vector[..., self.index[mine]] = (v * self.scale)[..., mine]
+        return vector
+
+    @cached_property
+    def _mine(self) -> list[np.ndarray]:
+        """Which variables (p,) each target has."""
+        return [np.array([v.target in (None, k) for v in self.variables]) for k in range(len(self.targets))]
 
     def columns(self, gradient: np.ndarray, target: int) -> np.ndarray:
         """The columns (n,p) of the variables of a gradient (n,83), or (n,12) by settings alone, of one target."""
-        mine = np.array([variable.target in (None, target) for variable in self.variables])
-        return gradient[:, self.index] * (self.scale * mine)
+        return gradient[:, self.index] * (self.scale * self._mine[target])
 
     def root(self, v: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
         """How far the root lines sink at toe and heel (2,) [mm], and their gradients (2,p), of those that have one."""
@@ -246,16 +262,26 @@ class Problem:
             return None
         sunk, gradient = (np.concatenate(arrays) for arrays in zip(*roots, strict=True))
         apart = ROOT_WEIGHT * (sunk - self.root_limit * v[p:])
-        by_slack = -ROOT_WEIGHT * self.root_limit * np.eye(self.slacks)  # type: ignore[operator]
-        below = np.concatenate([ROOT_WEIGHT * gradient, by_slack], axis=1)
-        return np.concatenate([residual, apart]), np.block(
-            [[jacobian, np.zeros((len(jacobian), self.slacks))], [below]]
-        )
+        slopes = np.zeros((len(residual) + self.slacks, p + self.slacks))
+        slopes[: len(residual), :p], slopes[len(residual) :, :p] = jacobian, ROOT_WEIGHT * gradient
+        np.fill_diagonal(slopes[len(residual) :, p:], -ROOT_WEIGHT * self.root_limit)  # type: ignore[operator]
+        return np.concatenate([residual, apart]), slopes
+
+    @property
+    def other_starts(self) -> list[np.ndarray]:
+        """Where a design may start too: tilted to either side. Without tilt the swivel does nothing, and a fit sticks."""
+        names = [variable.name for variable in self.variables]
+        if "cutter_tilt" not in names:
+            return []
+        to_side = _TILTED * np.eye(len(names) + self.slacks)[names.index("cutter_tilt")]
+        low, high = self.bounds
+        return [v for v in (low * to_side, high * to_side) if self(v) is not None]
 
 
 def identify(
     targets: Sequence[FlankTarget], free: Sequence[str] = FREE, *, objective: str = "points",
-    weights: np.ndarray | None = None, root_limit: float | None = None, noise: float = 0.0, run: Run = as_it_stands,
+    weights: np.ndarray | None = None, root_limit: float | None = None, noise: float = 0.0, bounds: Bounds = "machine",
+    run: Run = as_it_stands,
 ) -> Identification:  # fmt: skip
     """The errors, common to all targets, whose exact flanks fit the measured deviations best.
 
@@ -265,18 +291,28 @@ def identify(
     so that directions which the flanks show less than the noise are hardly moved. Without noise, only those are left
     alone that the flanks do not show at all (singular value below 1e-6 of the largest).
 
+    ``bounds`` "design" are for a target of tens of micrometres that settings are to be chosen for; "machine" those of
+    errors of a machine.
+
     Bounded Levenberg-Marquardt in variables scaled by their bounds; a step is taken only if it makes the fit better on
     the re-solved surface.
     """
-    variables = variables_of(free, len(targets))
+    variables = variables_of(free, [target.vector for target in targets], bounds)
     weighting = surface_map(targets, weights) if objective == "surface" else None
     problem = Problem(targets, variables, weighting, root_limit, run, noise)
-    p, bound = len(variables), np.ones(len(variables) + problem.slacks)
-    found = minimize(problem, -bound, bound, run(compensation_step(len(bound))), _MATTERS * noise**2)
+    lower, upper = problem.bounds
+    step, p = run(compensation_step(len(lower))), len(variables)
+    found = minimize(problem, lower, upper, step, _MATTERS * noise**2)
+    if bounds == "design" and found.cost > _GOOD * float(problem.measured @ problem.measured):
+        others = [minimize(problem, lower, upper, step, _MATTERS * noise**2, v) for v in problem.other_starts]
+        found = min([found, *others], key=lambda one: one.cost)
     v, slack = found.variables[:p], found.variables[p:]
     residual, jacobian = problem.deviations(v)  # type: ignore[misc]
     rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (problem.measured, residual))
-    held = [variable.label for variable, part in zip(variables, v, strict=True) if abs(part) >= 1]
+    held = [
+        variable.label for variable, part, low, high in zip(variables, v, lower[:p], upper[:p], strict=True)
+        if not low < part < high
+    ]  # fmt: skip
     held += ["root line"] * bool((np.abs(slack) >= 1).any())
     return Identification(
         variables, v * problem.scale, rms_before, rms_after, found.iterations, found.converged, jacobian,

@@ -102,18 +102,19 @@ def flank_on_line(kind: Kind = "plain") -> Kernel:
     solution = guess
     for _ in range(_NEWTON_STEPS):
         solution = step(solution, *others)
+    outputs = (
+        notation.contact, notation.deviation,
+        notation.curved_rates if kind == "curved" else notation.sensitivity, residual_size,
+    )  # fmt: skip
     function = ca.Function(
         "flank_on_line" if kind == "plain" else f"{kind}_on_line",
         [guess, *others], [solution, *final(solution, *others)],
-        [quantity.name for quantity in quantities], ["contact", "deviation", "sensitivity", "residual_size"],
+        [quantity.name for quantity in quantities], [quantity.name for quantity in outputs],
     )  # fmt: skip
     return Kernel(
         function,
         "Deviation at a nominal point of the flank that other settings cut, with its gradient by the settings.",
         quantities,
-        (
-            notation.contact, notation.deviation,
-            notation.curved_rates if kind == "curved" else notation.sensitivity, residual_size,
-        ),  # fmt: skip
+        outputs,
         "family and meshing of chapters 3, 4 and 10 on a line; (20.1)",
     )

@@ -20,7 +20,7 @@ from gearmath.bevel.kernels import kernel
 from gearmath.bevel.newton import contact_guess, newton_step, residual_size
 from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel
-from gearmath.quality.on_line import INPUTS, Kind, Run, as_it_stands, family, symbols
+from gearmath.quality.on_line import INPUTS, Run, as_it_stands, family, symbols
 from gearmath.quality.variables import parts
 
 _NEWTON_STEPS = 12
@@ -34,10 +34,10 @@ _depth_gradient = Quantity(
 
 
 @cache
-def root_depth(kind: Kind) -> Kernel:
-    """Kernel: depth of the root line below the pitch cone at a cone distance, and its gradient."""
-    w, given, delta, distance = ca.SX.sym("w", 3), symbols(kind), ca.SX.sym("delta"), ca.SX.sym("distance")
-    at = family(kind, w, given, ca.SX([0, 0, 1]))
+def root_depth() -> Kernel:
+    """Kernel: depth of the root line below the pitch cone at a cone distance, and its gradient, for any blade."""
+    w, given, delta, distance = ca.SX.sym("w", 3), symbols("curved"), ca.SX.sym("delta"), ca.SX.sym("distance")
+    at = family("curved", w, given, ca.SX([0, 0, 1]))
     along, depth = kernel("root_place").function(at.point, delta)
     residual = ca.vertcat(at.height, along - distance, at.meshing)
     arguments = [w, *given, delta, distance]
@@ -45,19 +45,19 @@ def root_depth(kind: Kind) -> Kernel:
     multipliers = ca.SX.sym("multipliers", 3)
     lagrangian = depth - ca.dot(multipliers, residual)
     by_motion = ca.densify(ca.gradient(lagrangian, given[1]).T)
-    by_curvature = ca.gradient(lagrangian, given[4]) if kind == "curved" else ca.SX(0)
+    by_curvature = ca.gradient(lagrangian, given[4])
     gradient = ca.vertcat(ca.gradient(lagrangian, given[0]), ca.vec(by_motion), ca.densify(by_curvature))
     slope = ca.Function("root_slope", [multipliers, *arguments], [gradient])
     solved = ca.solve(ca.jacobian(residual, w).T, ca.jacobian(depth, w).T)
     final = ca.Function("root_at", arguments, [depth, solved, ca.norm_2(residual)])
-    quantities = (contact_guess, *INPUTS[kind], notation.pitch_angle, notation.cone_distance)
+    quantities = (contact_guess, *INPUTS["curved"], notation.pitch_angle, notation.cone_distance)
     guess, *others = (ca.MX.sym(quantity.name, *(quantity.shape or (1,))) for quantity in quantities)
     solution = guess
     for _ in range(_NEWTON_STEPS):
         solution = step(solution, *others)
     found, lagrange, left = final(solution, *others)
     function = ca.Function(
-        f"{kind}_root_depth", [guess, *others],
+        "root_depth", [guess, *others],
         [solution, found, slope(lagrange, solution, *others), left],
         [quantity.name for quantity in quantities], ["contact", "cone_depth", "depth_gradient", "residual_size"],
     )  # fmt: skip
@@ -85,12 +85,9 @@ class RootLine:
 
         Raises ComputationError if the tip of the blade does not reach the flank there.
         """
-        (settings, motion), curvature = parts(vector), float(vector[-1])
-        kind: Kind = "curved" if curvature else "straight"
-        blade = (curvature, self.reference_height) if curvature else ()
-        cut = (settings, motion, self.how.index_ratio, self.how.blade_offset_angle, *blade)
-        contact, depth, gradient, residual = run(root_depth(kind))(
-            self.start, *cut, self.how.side, float(self.how.rolling), self.pitch_angle, self.distances
+        blade = (self.how.blade_offset_angle, float(vector[-1]), self.reference_height)
+        contact, depth, gradient, residual = run(root_depth())(
+            self.start, *parts(vector), self.how.index_ratio, *blade, self.how.side, float(self.how.rolling), self.pitch_angle, self.distances
         )
         if not (residual <= _TOLERANCE).all():
             raise ComputationError("the tip of the blade does not reach the root of the flank")
