@@ -37,7 +37,9 @@ from derivations.proof import is_zero
 
 
 def _rates(profile: Profile, *besides: sp.Symbol) -> tuple[list[sp.Matrix], sp.Expr]:
-    """∂R/∂x_k for every setting, and what else the blade depends on, in the frame w before it turns, and φ_w, both at settings still to be moved.
+    """∂R/∂x_k for every setting and for what else the blade depends on, in the frame w before it turns, and φ_w.
+
+    Both at settings still to be moved.
 
     The derivative by x_k is that by x_k(θ): they differ by what does not depend on x_k.
     """
@@ -50,9 +52,7 @@ def _rates(profile: Profile, *besides: sp.Symbol) -> tuple[list[sp.Matrix], sp.E
     return rates, phi
 
 
-def _sensitivity(
-    name: str, description: str, profile: Profile, shift: Quantity, *extra: Quantity
-) -> Expression:
+def _sensitivity(name: str, description: str, profile: Profile, shift: Quantity, *extra: Quantity) -> Expression:
     """(20.1) of a blade as an Expression, by the settings and by the first of ``extra``."""
     rates, phi = _rates(profile, *(quantity.symbol for quantity in extra[:1]))
     back = Rz(phi + q.index_ratio.symbol * q.beta.symbol)  # out of the frame w before it turns
@@ -86,7 +86,7 @@ def curved_sensitivity() -> Expression:
     """(20.1) of a curved blade as an Expression, by the settings and by the curvature of the blade."""
     return _sensitivity(
         "curved_sensitivity",
-        "Shift along a line of the flank that a curved blade cuts, per unit of each setting and of its curvature (20.1).",
+        "Shift along a line of the flank that a curved blade cuts, per unit of each setting and its curvature (20.1).",
         generation.curved(), q.curved_rates, q.blade_curvature, q.reference_height,
     )  # fmt: skip
 

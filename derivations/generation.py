@@ -248,8 +248,10 @@ def prove_curved_blade_is_the_arc_that_touches_the_straight_one() -> None:
     assert is_zero((1 - sp.sin(phi) ** 2) - (root**2))
     height = foot + sag.subs(root, sp.cos(phi)) * sp.sin(alpha)
     radius = straight().radius.subs(q.u.symbol, foot) - side * sag.subs(root, sp.cos(phi)) * sp.cos(alpha)
-    for claimed, own in ((curved().height, foot + sag * sp.sin(alpha)),
-                         (curved().radius, straight().radius.subs(q.u.symbol, foot) - side * sag * sp.cos(alpha))):
+    for claimed, own in (
+        (curved().height, foot + sag * sp.sin(alpha)),
+        (curved().radius, straight().radius.subs(q.u.symbol, foot) - side * sag * sp.cos(alpha)),
+    ):
         assert is_zero(claimed.subs(values, simultaneous=True) - own)
     center = dict(zip(q.blade_arc.symbols, cutter.spheric_blade()["blade_arc"], strict=True))
     at = {q.arc_angle.symbol: alpha - phi}

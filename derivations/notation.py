@@ -647,7 +647,8 @@ motion_rates = Quantity(
     r"\partial t/\partial m", shape=(10, 7), scale=1000.0,
 )  # fmt: skip
 curved_rates = Quantity(
-    "curved_rates", "shift of a flank along a line per unit of every setting and of the curvature of the blade", "mixed",
+    "curved_rates", "shift of a flank along a line per unit of every setting, and of the curvature of the blade",
+    "mixed",
     r"\partial t/\partial(\mathbf{x}, \kappa)", shape=(13,), scale=1000.0,
 )  # fmt: skip
 curved_height = Quantity("curved_height", "height of a point of a curved blade above the tip plane", "mm", "h_u")

@@ -168,9 +168,7 @@ def analyse(targets: Sequence[FlankTarget], free: Sequence[str] = FREE, run: Run
     """What the free settings can do to the deviations of some targets, common to all of them."""
     variables = variables_of(free, len(targets))
     problem = Problem(targets, variables, None, None, run)
-    rows = [
-        problem.columns(problem.located(np.zeros(len(variables)), k)[1], k) for k in range(len(targets))
-    ]
+    rows = [problem.columns(problem.located(np.zeros(len(variables)), k)[1], k) for k in range(len(targets))]
     return Analysis(tuple(free), variables, np.concatenate(rows), problem.measured)
 
 

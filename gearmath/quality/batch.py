@@ -109,9 +109,7 @@ def _residuals(problem: Problem, v: np.ndarray, deviations: np.ndarray) -> tuple
     for k, target in enumerate(problem.targets):
         n = len(target.nominal.point)
         vectors = np.repeat(target.vector + problem.change(v, k), n, axis=0)
-        deviation, gradient, failed = located(
-            target.repeated(d), vectors, problem.run, problem.moving, problem.bending
-        )
+        deviation, gradient, failed = located(target.repeated(d), vectors, problem.run, problem.moving, problem.bending)
         parts.append(deviation.reshape(d, n))
         slopes.append(problem.columns(gradient, k).reshape(d, n, -1))
         found &= ~failed.reshape(d, n).any(axis=1)

@@ -10,9 +10,9 @@ Levenberg-Marquardt iteration makes t(x) equal to what was measured; the correct
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from gearmath.bevel.newton import FlankPoints
 from gearmath.errors import ComputationError
 from gearmath.quality.deviation_surface import surface_map
 from gearmath.quality.identification import Identification
-from gearmath.quality.least_squares import compensation_step, minimize
+from gearmath.quality.least_squares import Minimum, compensation_step, minimize
 from gearmath.quality.on_line import Kind, Run, as_it_stands, flank_on_line
 from gearmath.quality.root_line import RootLine
 from gearmath.quality.variables import FREE, SIZE, Bounds, Variable, parts, variables_of, whole
@@ -32,18 +32,21 @@ _LINE_TOLERANCE = 1e-9
 #: What a root line and its place between its limits differ by counts so many times its length.
 ROOT_WEIGHT = 100.0
 
-#: Where a design leaves more than this part of the sum of squares, it also starts with so much of the tilt's bound.
-_GOOD, _TILTED = 0.01, 0.25
+#: Where a design leaves more than this part of the sum of squares after so many steps, it also starts with so much of
+#: the bound of the tilt.
+_GOOD, _HEAT, _TILTED = 0.01, 12, 0.25
 #: With noise, what improves the sum of squares by less than this part of its square is no improvement.
 _MATTERS = 1e-6
+
 
 @dataclass(frozen=True)
 class FlankTarget:
     """One measured flank: how it was cut, its nominal points (n,) and the deviations measured there (n,) [mm].
 
     ``how.settings`` and ``how.motion`` are what the machine was set to. ``curvature`` [1/mm] is that of the blade, zero
-    where it is straight, and touches the straight one at ``reference_height`` [mm]. ``place`` (n,2) holds X and Y of (6.3) for the fit of a deviation surface, ``root`` where the
-    root line is to be held, and ``used`` (grid,) which points of the whole grid these are; ``absent`` are the others.
+    where it is straight; it touches the straight one at ``reference_height`` [mm]. ``place`` (n,2) holds X and Y of
+    (6.3) for the fit of a deviation surface, ``root`` where the root line is to be held, and ``used`` (grid,) which
+    points of the whole grid these are; ``absent`` are the others.
     """
 
     how: Generation
@@ -198,7 +201,7 @@ class Problem:
     def deviations(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
         """Residual (m,) of the points and its Jacobian (m,p); None where a point is not found."""
         values, jacobians = [], []
-        for k, target in enumerate(self.targets):
+        for k in range(len(self.targets)):
             deviation, gradient, failed = self.located(v, k)
             if failed.any():
                 return None
@@ -230,7 +233,7 @@ class Problem:
 
     def root(self, v: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
         """How far the root lines sink at toe and heel (2,) [mm], and their gradients (2,p), of those that have one."""
-        moved = []
+        moved: list[tuple[np.ndarray, np.ndarray]] = []
         for k, target in enumerate(self.targets):
             if target.root is not None:
                 _, depth, gradient = target.root.depth(target.vector + self.change(v, k), self.run)
@@ -269,7 +272,7 @@ class Problem:
 
     @property
     def other_starts(self) -> list[np.ndarray]:
-        """Where a design may start too: tilted to either side. Without tilt the swivel does nothing, and a fit sticks."""
+        """Where a design may start too: tilted to either side, as without tilt the swivel does nothing."""
         names = [variable.name for variable in self.variables]
         if "cutter_tilt" not in names:
             return []
@@ -302,10 +305,8 @@ def identify(
     problem = Problem(targets, variables, weighting, root_limit, run, noise)
     lower, upper = problem.bounds
     step, p = run(compensation_step(len(lower))), len(variables)
-    found = minimize(problem, lower, upper, step, _MATTERS * noise**2)
-    if bounds == "design" and found.cost > _GOOD * float(problem.measured @ problem.measured):
-        others = [minimize(problem, lower, upper, step, _MATTERS * noise**2, v) for v in problem.other_starts]
-        found = min([found, *others], key=lambda one: one.cost)
+    solve = partial(minimize, problem, lower, upper, step, _MATTERS * noise**2)
+    found = solve() if bounds == "machine" else _best_start(problem, solve)
     v, slack = found.variables[:p], found.variables[p:]
     residual, jacobian = problem.deviations(v)  # type: ignore[misc]
     rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (problem.measured, residual))
@@ -318,6 +319,16 @@ def identify(
         variables, v * problem.scale, rms_before, rms_after, found.iterations, found.converged, jacobian,
         residual, weighting, tuple(held), noise,
     )  # fmt: skip
+
+
+def _best_start(problem: Problem, solve: Callable[..., Minimum]) -> Minimum:
+    """The minimum of a design: the start that is ahead after some steps is followed to the end."""
+    first = solve(most=_HEAT)
+    heats = [first]
+    if first.cost > _GOOD * float(problem.measured @ problem.measured):
+        heats += [solve(start=v, most=_HEAT) for v in problem.other_starts]
+    ahead = min(heats, key=lambda one: one.cost)
+    return ahead if ahead.converged else solve(start=ahead.variables)
 
 
 def with_deviations(targets: Sequence[FlankTarget], deviations: np.ndarray) -> list[FlankTarget]:

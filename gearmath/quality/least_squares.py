@@ -162,15 +162,15 @@ class Minimum:
 
 def minimize(
     fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | None = None, matters: float = 0.0,
-    start: np.ndarray | None = None,
+    start: np.ndarray | None = None, most: int = _MOST_ITERATIONS,
 ) -> Minimum:  # fmt: skip
     """The variables within their bounds at which the residuals of ``fit`` are least, from ``start`` or zero on.
 
     ``fit`` returns residuals (m,) and their Jacobian (m,p), or None where the surface cannot be found; it must succeed
     at the start. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls,
     and none is sought that makes the sum of squares fall by no more than ``matters``. Once a step has not kept its
-    promise, the valley is curved, and every step is bent along it. It has converged where the linear model has nothing
-    to gain, or where ``_STALLED`` steps one after the other gained next to nothing.
+    promise, the valley is curved, and every step is bent along it; there are at most ``most`` steps. It has converged
+    where the linear model has nothing to gain, or where ``_STALLED`` steps one after the other gained next to nothing.
     """
     step = step or compensation_step(len(lower))
     v = np.zeros(len(lower)) if start is None else start
@@ -179,7 +179,7 @@ def minimize(
     if found is None:
         raise ValueError("there is no residual at the start")
     residual, jacobian = found
-    while iterations < _MOST_ITERATIONS:
+    while iterations < most:
         cost, matrix, gradient = residual @ residual, jacobian.T @ jacobian, jacobian.T @ residual
         _, possible = step(matrix, gradient, v, lower, upper, FLOOR)
         if enough(possible, cost, len(residual), matters) or idle >= _STALLED:
@@ -191,7 +191,7 @@ def minimize(
         there = np.clip(v + change, lower, upper)
         tried = fit(there) if np.isfinite(change).all() else None
         gained = -np.inf if tried is None else cost - tried[0] @ tried[0]
-        curved = curved or gained < _KEPT * promised
+        curved = curved or bool(gained < _KEPT * promised)
         damping = next_damping(damping, gained, promised)
         if tried is not None and gained > 0:
             v, (residual, jacobian) = there, tried

@@ -28,8 +28,8 @@ _STEP_LIMITS = (2.0, 0.1, 0.1)
 _TOLERANCE = 1e-9
 
 _depth_gradient = Quantity(
-    "depth_gradient", "depth gained per unit of every setting, of every coefficient of the motion, and of the curvature of the blade", "mixed",
-    r"\partial D/\partial\mathbf{x}", shape=(83,),
+    "depth_gradient", "depth gained per unit of every setting, of every coefficient of the motion and of the curvature",
+    "mixed", r"\partial D/\partial\mathbf{x}", shape=(83,),
 )  # fmt: skip
 
 
@@ -87,7 +87,14 @@ class RootLine:
         """
         blade = (self.how.blade_offset_angle, float(vector[-1]), self.reference_height)
         contact, depth, gradient, residual = run(root_depth())(
-            self.start, *parts(vector), self.how.index_ratio, *blade, self.how.side, float(self.how.rolling), self.pitch_angle, self.distances
+            self.start,
+            *parts(vector),
+            self.how.index_ratio,
+            *blade,
+            self.how.side,
+            float(self.how.rolling),
+            self.pitch_angle,
+            self.distances,
         )
         if not (residual <= _TOLERANCE).all():
             raise ComputationError("the tip of the blade does not reach the root of the flank")

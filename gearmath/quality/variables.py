@@ -97,7 +97,9 @@ class Variable:
         return self.name if self.target is None else f"{self.name}[{self.target}]"
 
 
-def variables_of(names: Sequence[str], vectors: int | Sequence[np.ndarray], bounds: Bounds = "machine") -> tuple[Variable, ...]:
+def variables_of(
+    names: Sequence[str], vectors: int | Sequence[np.ndarray], bounds: Bounds = "machine"
+) -> tuple[Variable, ...]:
     """The columns of a fit: machine settings are shared, every target has its own blade.
 
     ``vectors`` are the whole vectors (83,) of the targets, or for the bounds of a machine how many there are. Raises
