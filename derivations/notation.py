@@ -273,9 +273,15 @@ opposite_normal = _vector(
     "opposite_normal", r"\mathbf{n}'", "1", 1.0, 1.0, "outward unit normal of the opposite flank, work frame w"
 )
 opposite_deviation = Quantity("opposite_deviation", "deviation of the opposite flank", "mm", r"\delta'", (-0.5, 0.5))
-radial_shift = Quantity("radial_shift", "radial shift of a ball in a tooth space", "mm", r"\Delta_r", scale=10.0)
-tangential_shift = Quantity(
-    "tangential_shift", "shift around the axis of a ball in a tooth space", "mm", r"\Delta_t", scale=10.0
+cone_shift = Quantity(
+    "cone_shift",
+    "movement of a ball in a tooth space, along the normal of the pitch cone",
+    "mm",
+    r"\Delta",
+    scale=100.0,
+)
+space_turning = Quantity(
+    "space_turning", "angle by which a tooth space is turned about z_w", "rad", r"\varepsilon", scale=1.0
 )  # fmt: skip
 allowance = Quantity("allowance", "metal left on a flank, along the circle", "mm", "E", scale=300.0)
 arc_deviation = Quantity("arc_deviation", "deviation of the thickness of a tooth, as an arc", "mm", "E_s", (-1.0, 1.0))

@@ -1,14 +1,17 @@
 """Chapter 19. Spacing of the teeth: runout of a ball in a space, thickness of a tooth, and what is allowed of them.
 
-A ball lies in a tooth space, middle at azimuth A (15.2), and touches both flanks at their reference points, with
-outward normals n and n'. Flanks that stand by δ and δ' out of their places move it by Δ = Δ_r e_r + Δ_t e_t, radially
-and around the axis, so that it stays in touch with both:
+A ball lies in a tooth space, middle at azimuth A (15.2), and is pressed into it along the normal m of the pitch cone,
+m = (cos δ_0, 0, -sin δ_0) radially, around and along the axis at A, while the work is free to turn. It touches both
+flanks at their reference points R, R', with outward normals n and n' and arms ℓ = n·(z_w × R), ℓ' alike. Flanks that
+are by δ and δ' out of their places move it by Δ along m, and the work turns by ε:
 
-    Δ·n = δ,   Δ·n' = δ'                                                                       (19.1)
-    Δ_r = (δ n'_t - δ' n_t) / (n_r n'_t - n'_r n_t),   Δ_t = (n_r δ' - n'_r δ) / (n_r n'_t - n'_r n_t)
+    Δ m·n + ε ℓ = δ,   Δ m·n' + ε ℓ' = δ'                                                      (19.1)
+    Δ = (δ ℓ' - δ' ℓ) / (m·n ℓ' - m·n' ℓ),   ε = (m·n δ' - m·n' δ) / (m·n ℓ' - m·n' ℓ)
 
-Runout F_r is the range of Δ_r over the spaces; a gear eccentric by e has Δ_r = e cos(A - μ). At the radius r of the
-reference points a flank makes its tooth thicker, along the circle, by
+Runout F_r is the range of Δ over the spaces. A space that is indexed wrongly by ε has Δ = 0; one that is too narrow by
+δ on each flank, at the pressure angle α, has Δ = δ / sin α; one of a gear that is eccentric by e towards μ has
+Δ = e cos δ_0 cos(A - μ).
+At the radius r of the reference points a flank makes its tooth thicker, along the circle, by
 
     E = δ r / |n·(z_w × R)|                                                                    (19.2)
 
@@ -49,24 +52,44 @@ def _lever(point: sp.Matrix, normal: sp.Matrix) -> sp.Expr:
     return point[0] * normal[1] - point[1] * normal[0]
 
 
+def _cone_normal(azimuth: sp.Expr, angle: sp.Expr) -> sp.Matrix:
+    """Normal of a cone about z_w at an azimuth, out of the cone."""
+    return sp.Matrix([sp.cos(angle) * sp.cos(azimuth), sp.cos(angle) * sp.sin(azimuth), -sp.sin(angle)])
+
+
+def _middle() -> tuple[sp.Matrix, sp.Expr]:
+    """m of (19.1), the normal of the pitch cone at the middle of the space, and twice the radius of that middle."""
+    x, y = (q.point_w.symbol[k] + q.opposite_w.symbol[k] for k in (0, 1))
+    twice, delta = sp.sqrt(x**2 + y**2), q.pitch_angle.symbol
+    return sp.Matrix([sp.cos(delta) * x / twice, sp.cos(delta) * y / twice, -sp.sin(delta)]), twice
+
+
 @cache
 def ball_shift() -> Expression:
-    """(19.1) as an Expression; both points stand for one space."""
-    R, other = q.point_w.symbol, q.opposite_w.symbol
-    x, y = R[0] + other[0], R[1] + other[1]
-    length = sp.sqrt(x**2 + y**2)
-    outward, around = sp.Matrix([x, y, 0]) / length, sp.Matrix([-y, x, 0]) / length
-    n, m = sp.Matrix(q.normal_w.symbol), sp.Matrix(q.opposite_normal.symbol)
-    n_r, n_t, m_r, m_t = n.dot(outward), n.dot(around), m.dot(outward), m.dot(around)
+    """(19.1) as an Expression; both points are those of one space."""
+    m, twice = _middle()
+    n, other = sp.Matrix(q.normal_w.symbol), sp.Matrix(q.opposite_normal.symbol)
+    arm, other_arm = _lever(q.point_w.symbol, n), _lever(q.opposite_w.symbol, other)
     d, e = q.deviation_in.symbol, q.opposite_deviation.symbol
-    wedge = n[0] * m[1] - m[0] * n[1]  # n_r n'_t - n'_r n_t, which no turning of the axes changes
+    wedge = m.dot(n) * other_arm - m.dot(other) * arm
     return Expression(
         "ball_shift",
-        "Radial and tangential shift of a ball that touches both flanks of a space (19.1).",
-        (q.deviation_in, q.point_w, q.normal_w, q.opposite_deviation, q.opposite_w, q.opposite_normal),
-        ((q.radial_shift, (d * m_t - e * n_t) / wedge), (q.tangential_shift, (n_r * e - m_r * d) / wedge)),
-        requires=(sp.Abs(wedge) - sp.Rational(1, 10), x**2 + y**2 - 1),
-        source="a ball between two planes; definition of this house, close to a ball probe in the space",
+        "Movement, normal to the pitch cone, of a ball that touches both flanks of a space, and the turning (19.1).",
+        (
+            q.deviation_in,
+            q.point_w,
+            q.normal_w,
+            q.opposite_deviation,
+            q.opposite_w,
+            q.opposite_normal,
+            q.pitch_angle,
+        ),
+        (
+            (q.cone_shift, (d * other_arm - e * arm) / wedge),
+            (q.space_turning, (m.dot(n) * e - m.dot(other) * d) / wedge),
+        ),
+        requires=(sp.Abs(wedge) - twice / 20, twice - 1),
+        source="runout test with a ball probe that floats in the space, moved normal to the pitch cone",
     )
 
 
@@ -165,20 +188,50 @@ def spacing_tolerances() -> Expression:
     )
 
 
-def prove_ball_follows_the_planes_that_it_touches() -> None:
-    """(19.1) The shift keeps the distance from both planes, and a gear moved by e carries its ball along by e·e_r."""
-    e_x, e_y = sp.symbols("e_x e_y", real=True)
-    shift = ball_shift()
-    R, other = q.point_w.symbol, q.opposite_w.symbol
-    x, y = R[0] + other[0], R[1] + other[1]
-    n, m = sp.Matrix(q.normal_w.symbol), sp.Matrix(q.opposite_normal.symbol)
-    length = sp.sqrt(x**2 + y**2)
-    moved = (shift["radial_shift"] * sp.Matrix([x, y, 0]) + shift["tangential_shift"] * sp.Matrix([-y, x, 0])) / length
-    assert sp.simplify(moved.dot(n) - q.deviation_in.symbol) == 0
-    assert sp.simplify(moved.dot(m) - q.opposite_deviation.symbol) == 0
-    e = sp.Matrix([e_x, e_y, 0])
-    eccentric = {q.deviation_in.symbol: e.dot(n), q.opposite_deviation.symbol: e.dot(m)}
-    assert sp.simplify(shift["radial_shift"].subs(eccentric) - (e_x * x + e_y * y) / length) == 0
+def prove_ball_stays_in_touch_with_both_flanks() -> None:
+    """(19.1) The planes through R and R', moved with the turning work, meet the ball that went along m: both keep δ."""
+    shift, (m, _) = ball_shift(), _middle()
+    eps = sp.Symbol("eps", real=True)
+    for point, normal, deviation in (
+        (q.point_w, q.normal_w, q.deviation_in), (q.opposite_w, q.opposite_normal, q.opposite_deviation)
+    ):  # fmt: skip
+        n = sp.Matrix(normal.symbol)
+        swept = (Rz(eps) * sp.Matrix(point.symbol)).diff(eps).subs(eps, 0).dot(n)
+        touched = shift["cone_shift"] * m.dot(n) + shift["space_turning"] * swept
+        assert sp.simplify(touched - deviation.symbol) == 0
+
+
+def prove_indexing_moves_no_ball() -> None:
+    """(19.1) Both flanks turned by ε about z_w, whatever their normals and places: Δ = 0, and ε is found."""
+    eps, shift = sp.Symbol("eps", real=True), ball_shift()
+    turned = {
+        deviation.symbol: eps * _lever(point.symbol, normal.symbol)
+        for point, normal, deviation in (
+            (q.point_w, q.normal_w, q.deviation_in), (q.opposite_w, q.opposite_normal, q.opposite_deviation)
+        )
+    }  # fmt: skip
+    assert sp.simplify(shift["cone_shift"].subs(turned)) == 0
+    assert sp.simplify(shift["space_turning"].subs(turned) - eps) == 0
+
+
+def prove_narrow_space_and_eccentric_gear_move_the_ball_as_stated() -> None:
+    """(19.1) Flanks of one trace with pressure angles α, in a space so narrow that they meet at azimuth A."""
+    alpha, beta, delta, r, a = sp.symbols("alpha beta delta r a", positive=True)
+    A, mu, e = sp.symbols("A mu e", real=True)
+    out, along = _cone_normal(A, delta), _cone_normal(A, delta - sp.pi / 2)
+    around = sp.Matrix([-sp.sin(A), sp.cos(A), 0])
+    across = sp.cos(beta) * around - sp.sin(beta) * along
+    n, m = (sp.sin(alpha) * out + sign * sp.cos(alpha) * across for sign in (1, -1))
+    R = sp.Matrix([r * sp.cos(A), r * sp.sin(A), 7])
+    given = {q.pitch_angle.symbol: delta}
+    for quantity, value in ((q.point_w, R), (q.opposite_w, R), (q.normal_w, n), (q.opposite_normal, m)):
+        given |= dict(zip(quantity.symbols, value, strict=True))
+    moved = ball_shift()["cone_shift"].subs(given, simultaneous=True)
+    narrow = {q.deviation_in.symbol: a, q.opposite_deviation.symbol: a}
+    assert sp.simplify(moved.subs(narrow) - a / sp.sin(alpha)) == 0
+    offset = e * sp.Matrix([sp.cos(mu), sp.sin(mu), 0])
+    eccentric = {q.deviation_in.symbol: offset.dot(n), q.opposite_deviation.symbol: offset.dot(m)}
+    assert sp.simplify(moved.subs(eccentric) - e * sp.cos(delta) * sp.cos(A - mu)) == 0
 
 
 def prove_allowance_is_the_arc_that_turns_the_flank() -> None:

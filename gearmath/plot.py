@@ -23,11 +23,13 @@ from gearmath.quality.uncertainty import Uncertain
 BEFORE, AFTER = "#c23b22", "#1f6f8b"
 
 
-def draw_topography(axes: Axes, before: Topography, after: Topography | None = None) -> None:
+def draw_topography(
+    axes: Axes, before: Topography, after: Topography | None = None, zeroed: bool = False
+) -> None:  # fmt: skip
     """One flank as the measuring room draws it: the nominal grid, and the deviations standing on it, in µm.
 
     Columns run from toe (left) to heel, rows from root (below) to tip; one row's distance is the size of the largest
-    deviation drawn.
+    deviation drawn. ``zeroed`` says that the flanks were turned to zero at their reference points.
     """
     rows, columns = before.deviation.shape
     scale = 1.0 / max(abs(before.extreme) * 1000, 1e-9)
@@ -38,19 +40,20 @@ def draw_topography(axes: Axes, before: Topography, after: Topography | None = N
         if topography is None:
             continue
         z = y + topography.deviation * 1000 * scale
+        most = "withheld, a point is missing" if topography.left_out else f"{topography.extreme * 1000:+.2f} µm"
         for k in range(rows):
             axes.plot(
                 x[k],
                 z[k],
                 color=color,
                 linewidth=1.2,
-                label=f"{label}: max {topography.extreme * 1000:+.2f} µm" if k == 0 else None,
+                label=f"{label}: max {most}" if k == 0 else None,
             )
         for k in range(columns):
             axes.plot(x[:, k], z[:, k], color=color, linewidth=0.5)
     axes.set_xticks([0, columns - 1], ["toe", "heel"])
     axes.set_yticks([0, rows - 1], ["root", "tip"])
-    axes.set_title(f"{before.flank} flank", fontsize=10)
+    axes.set_title(f"{before.flank} flank{', zero at the reference point' if zeroed else ''}", fontsize=10)
     axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.06), ncol=2, frameon=False)
     axes.spines[:].set_visible(False)
 
@@ -59,7 +62,7 @@ def draw_pitch(axes: Axes, before: Sequence[Pitch], after: Sequence[Pitch] = ())
     """Cumulative pitch deviation of both flanks over the teeth, in µm."""
     for pitches, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
         for pitch, style in zip(pitches, ("-", "--"), strict=False):
-            text = f"{label}, {pitch.flank}: F_p {pitch.total * 1000:.1f} µm"
+            text = f"{label}, {pitch.flank}: F_p {_or_withheld(pitch.total)}"
             axes.plot(pitch.cumulative * 1000, style, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
     axes.axhline(0, color="#bbbbbb", linewidth=0.6)
     axes.set_xlabel("tooth")
@@ -109,19 +112,24 @@ def uncertainty_figure(title: str, found: Sequence[Uncertain]) -> Figure:
     return figure
 
 
+def _or_withheld(value: float) -> str:
+    """A maximum [mm] in µm, or that it is withheld: there is none over data with a gap."""
+    return "withheld" if np.isnan(value) else f"{value * 1000:.1f} µm"
+
+
 def draw_runout(axes: Axes, before: Runout, after: Runout | None = None) -> None:
-    """Radial shift of a ball in every space over the teeth, in µm, and the first harmonic through it, dashed."""
+    """Movement of a ball in every space, normal to the pitch cone, in µm, and the first harmonic through it, dashed."""
     for runout, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
         if runout is None:
             continue
         size, direction = runout.eccentricity
-        wave = float(np.nanmean(runout.radial)) + size * np.cos(runout.azimuth - direction)
-        text = f"{label}: F_r {runout.total * 1000:.1f} µm"
-        axes.plot(runout.radial * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
+        wave = float(np.nanmean(runout.shift)) + size * np.cos(runout.azimuth - direction)
+        text = f"{label}: F_r {_or_withheld(runout.total)}"
+        axes.plot(runout.shift * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
         text = f"first harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
     axes.set_xlabel("space")
-    axes.set_ylabel("radial shift of a ball / µm")
+    axes.set_ylabel("movement of a ball, normal to the pitch cone / µm")
     axes.legend(fontsize=7, frameon=False)
 
 
@@ -133,9 +141,9 @@ def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
     before, after = evaluation.as_measured, evaluation.flanks if registered else {}
     pitches = [[f.pitch for f in each.values() if f.pitch is not None] for each in (before, after)]
     drawn: list[Callable[[Axes], None]] = [
-        partial(draw_topography, before=figures.mean, after=after[flank].mean if registered else None)
+        partial(draw_topography, before=figures.chart, after=after[flank].chart if registered else None, zeroed=True)
         for flank, figures in before.items()
-        if figures.mean is not None
+        if figures.chart is not None
     ]
     if pitches[0]:
         drawn.append(partial(draw_pitch, before=pitches[0], after=pitches[1]))

@@ -141,7 +141,9 @@ def _summary(measurement: Measurement) -> str:
         extreme = max((mean.extreme for mean in means.values()), key=abs)
         parts.append(f"the largest deviation of a flank is {extreme * 1000:+.1f} um")
     if pitch := _pitches(found):
-        parts.append(f"the cumulative pitch deviation {max(one.total for one in pitch) * 1000:.1f} um")
+        gaps = [one.withheld for one in pitch if one.withheld is not None]
+        total = f"{max(one.total for one in pitch) * 1000:.1f} um"
+        parts.append(f"the cumulative pitch deviation {f'is withheld ({gaps[0]})' if gaps else total}")
     if correction is not None:
         left = max(correction.expected.values())
         parts.append(f"corrected settings are expected to leave {left * 1000:.1f} um of the flanks")
@@ -174,15 +176,16 @@ def _figures_section(page: Page, measurement: Measurement) -> None:
         rows.append(["its deviation, mean of the teeth", _micro(found.thickness.mean), "um"])
     if found.verdict is not None:
         rows += [[f"grade of {name}", str(grade or "beyond 11"), ""] for name, grade in found.verdict.grades.items()]
+        rows += [[f"grade of {name}", f"withheld: {why}", ""] for name, why in found.verdict.withheld.items()]
     if rows:
         page.table("Spaces and teeth", ["figure", "value", "unit"], rows)
 
 
 def _clamping_section(page: Page, found: Evaluation) -> None:
-    seat = found.registration
-    if seat is None and not found.drifts:
+    seat, turn = found.registration, found.rotation
+    if seat is None and turn is None and not found.drifts:
         return
-    page.heading("Clamping and drift, taken out before judging")
+    page.heading("Clamping, rotation and drift, taken out before judging")
     rows = []
     if seat is not None:
         at, about = np.degrees([seat.eccentricity_direction, seat.tilt_direction])
@@ -191,6 +194,9 @@ def _clamping_section(page: Page, found: Evaluation) -> None:
         if seat.tilt_found:
             tilt, u = seat.tilt * 100, seat.tilt_uncertainty * 100
             rows.append(["tilt", _micro(tilt), _micro(u), "um per 100 mm", f"about {about:.1f} degrees"])
+    if turn is not None:
+        size = f"common to both flanks: {math.degrees(turn.angle) * 3600:+.2f} arcsec, here its arc at the middle"
+        rows.append(["rotation", _micro(turn.arc), _micro(turn.uncertainty * turn.radius), "um", size])
     rows += [
         [f"drift, {flank}", _micro(drift.closure), "", "um", "tooth 0 at the end against the start"]
         for flank, drift in found.drifts.items()

@@ -17,11 +17,16 @@ from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
     "--register/--no-register", "registered", default=True, show_default=True,
     help="Take out how the work sat (eccentricity, tilt), where the points tell it.",
 )  # fmt: skip
+@click.option(
+    "--rotation/--no-rotation", "rotated", default=True, show_default=True,
+    help="Take out the rotation of the work that both flanks have in common.",
+)  # fmt: skip
 @SIGMA
 @click.option("--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), help="Topography and pitch as PNG.")
 @JSON
 def evaluate(
-    measured: Path, gear_set: str, registered: bool, sigma_um: float | None, picture: Path | None, as_json: bool
+    measured: Path, gear_set: str, registered: bool, rotated: bool, sigma_um: float | None, picture: Path | None,
+    as_json: bool,
 ) -> None:  # fmt: skip
     """Pitch, profile and topography of a measured member; how it sat, runout, tooth thickness, drift and grade.
 
@@ -36,7 +41,7 @@ def evaluate(
     file = read_flank_csv(measured)
     member = load_bevel_set(find(gear_set)).member(file.member)
     with about(measured), bar(STAGES, "stage") as progress:
-        found = evaluate_member(file, member, file.member, registered, progress)
+        found = evaluate_member(file, member, file.member, registered, progress, rotated)
     if picture:
         from gearmath.plot import evaluation_figure, save
 

@@ -1,4 +1,4 @@
-"""What ``gearmath evaluate`` prints: tables of figures, then one line for each thing that was found or left out."""
+"""What ``gearmath evaluate`` prints: what was left out and withheld, tables of figures, a line for each thing found."""
 
 from __future__ import annotations
 
@@ -22,9 +22,34 @@ def evaluation_text(found: Evaluation, sure: Sequence[Uncertain] = ()) -> str:
     flanks: dict[str, Any] = values["flanks"]
     first = table(
         ["flank", *_FIGURES],
-        [[flank, *(f"{row[name]:.3f}" if name in row else "" for name in _FIGURES)] for flank, row in flanks.items()],
+        [[flank, *(_cell(row, name) for name in _FIGURES)] for flank, row in flanks.items()],
     )
-    return "\n".join([first, "", *_orders(flanks), *_sure(sure), *_lines(values)]).rstrip()
+    return "\n".join([*_gaps(values), first, "", *_orders(flanks), *_sure(sure), *_lines(values)]).rstrip()
+
+
+def _cell(row: dict[str, Any], name: str) -> str:
+    """A figure, nothing where it was not measured, and that it is withheld where there is a gap in the data."""
+    return "" if name not in row else "withheld" if row[name] is None else f"{row[name]:.3f}"
+
+
+def _gaps(values: dict[str, Any]) -> Iterator[str]:
+    """What was left out, and which maxima are withheld for want of it."""
+    lines = [f"left out: {line}" for line in _without_suffix(values["left_out"])]
+    withheld: dict[str, list[str]] = {}
+    reasons = [(f"{name} of the {flank} flank", why) for flank, row in values["flanks"].items()
+               for name, why in row["withheld"].items()]  # fmt: skip
+    reasons += list((values["runout"] or {}).get("withheld", {}).items())
+    reasons += [("range of the thickness", why) for why in (values["thickness"] or {}).get("withheld", {}).values()]
+    for name, why in reasons:
+        withheld.setdefault(why, []).append(name)
+    lines += [f"withheld: {', '.join(names)}: {why}" for why, names in withheld.items()]
+    yield from lines
+    if lines:
+        yield ""
+
+
+def _without_suffix(lines: Sequence[str]) -> Iterator[str]:
+    yield from (line.replace("; left out, ", "; ").removesuffix("; left out") for line in lines)
 
 
 def _orders(flanks: dict[str, Any]) -> Iterator[str]:
@@ -59,24 +84,56 @@ def _sure(found: Sequence[Uncertain]) -> Iterator[str]:
 
 def _lines(values: dict[str, Any]) -> Iterator[str]:
     yield from _seat(values["registration"])
+    if values["rotation"] is not None:
+        yield _rotation(values["rotation"])
     for flank, closure in values["drift_um"].items():
         yield f"{flank} flank: tooth 0 measured again at the end: {closure:+.2f} um, taken out evenly"
     runout, thickness, tolerance = values["runout"], values["thickness"], values["tolerance"]
     if runout is not None:
-        yield f"runout F_r {runout['F_r_um']:.2f} um, first harmonic {runout['first_harmonic_um']:.2f} um"
+        yield from _runout(runout, values["runout_as_measured"] if values["registration"] else None)
     if thickness is not None:
         arc, chord = (
             f"{name} {thickness[f'{name}_mm']:.4f} mm {thickness[f'{name}_deviation_um']:+.2f} um"
             for name in ("arc", "chord")
         )
-        yield f"tooth thickness at the reference point: {arc}, {chord}"
-    if tolerance is not None and tolerance["grades"]:
-        grades = [f"{name} {grade or 'beyond 11'}" for name, grade in tolerance["grades"].items()]
-        module, diameter = tolerance["mean_normal_module"], tolerance["tolerance_diameter"]
-        yield f"grades: {', '.join(grades)} (m_mn {module:.3f} mm, d_T {diameter:.2f} mm)"
+        yield f"tooth thickness at the reference point, mean: {arc}, {chord}"
     if tolerance is not None:
-        yield tolerance["remark"]
-    yield from values["remarks"]
+        yield from _grades(tolerance)
+    yield from (line for line in values["remarks"] if line not in values["left_out"])
+
+
+def _runout(runout: dict[str, Any], before: dict[str, Any] | None) -> Iterator[str]:
+    wave = runout["first_harmonic_um"]
+    harmonic = "" if wave is None else f", first harmonic {wave:.2f} um"
+    if runout["F_r_um"] is None:
+        yield f"runout F_r withheld{harmonic}"
+        return
+    clamped = "" if before is None or before["F_r_um"] is None else f"; as it was clamped {before['F_r_um']:.2f} um"
+    yield f"runout F_r {_with(runout, 'F_r_um')} um, normal to the pitch cone{harmonic}{clamped}"
+    if runout["F_r_of_noise_um"] is not None:
+        mean, spread = runout["F_r_of_noise_um"], runout["F_r_of_noise_spread_um"]
+        so = ": it is mostly noise" if runout["mostly_noise"] else ""
+        yield f"  noise of the points alone would give F_r {mean:.2f} ± {spread:.2f} um{so}"
+
+
+def _grades(tolerance: dict[str, Any]) -> Iterator[str]:
+    """The grades, each figure without one with its reason, and the caveat beside them."""
+    known = {name: grade for name, grade in tolerance["grades"].items() if name not in tolerance["withheld"]}
+    module, diameter = tolerance["mean_normal_module"], tolerance["tolerance_diameter"]
+    if known:
+        yield f"grades: {_list(known)} (m_mn {module:.3f} mm, d_T {diameter:.2f} mm)"
+    if tolerance["withheld"]:
+        for flank, grades in tolerance["grades_of_flanks"].items():
+            yield f"grades of the {flank} flank alone: {_list(grades)}"
+        reasons: dict[str, list[str]] = {}
+        for name, why in tolerance["withheld"].items():
+            reasons.setdefault(why, []).append(name)
+        yield from (f"no grade of {', '.join(names)}: {why}" for why, names in reasons.items())
+    yield tolerance["remark"]
+
+
+def _list(grades: dict[str, Any]) -> str:
+    return ", ".join(f"{name} {grade or 'beyond 11'}" for name, grade in grades.items())
 
 
 def _seat(seat: dict[str, Any] | None) -> Iterator[str]:
@@ -91,6 +148,15 @@ def _seat(seat: dict[str, Any] | None) -> Iterator[str]:
         return
     size, twin = _with(seat["axial"], "axial_um"), seat["axial"]["confounded_with"]
     yield f"axial position, left in: {size} um if the mean form were nothing else; {twin} does the same"
+
+
+def _rotation(turn: dict[str, Any]) -> str:
+    at = f"{turn['radius_mm']:.2f} mm radius"
+    size, arc = _with(turn, "angle_arcsec"), _with(turn, "arc_um")
+    return (
+        f"rotation common to both flanks taken out: {turn['angle_deg']:+.6f} deg = {size} arcsec, "
+        f"an arc of {arc} um at {at}"
+    )
 
 
 def _with(values: dict[str, Any], name: str) -> str:

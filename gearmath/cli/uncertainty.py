@@ -41,6 +41,7 @@ _FEW_DRAWS = 2000
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
 @MEMBER
 @click.option("--register/--no-register", "registered", default=True, show_default=True, help="As in 'evaluate'.")
+@click.option("--rotation/--no-rotation", "rotated", default=True, show_default=True, help="As in 'evaluate'.")
 @SIGMA
 @MODEL
 @MACHINE
@@ -53,9 +54,9 @@ _FEW_DRAWS = 2000
 @click.option("-o", "--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), help="Figures as PNG.")
 @JSON
 def uncertainty(
-    measured: Path, gear_set: str, member: str, registered: bool, sigma_um: float | None, model: str | None,
-    machine: str, calibration: str, draws: int, seed: int, workers: int | None, cluster: str | None,
-    resume: Path | None, picture: Path | None, as_json: bool,
+    measured: Path, gear_set: str, member: str, registered: bool, rotated: bool, sigma_um: float | None,
+    model: str | None, machine: str, calibration: str, draws: int, seed: int, workers: int | None,
+    cluster: str | None, resume: Path | None, picture: Path | None, as_json: bool,
 ) -> None:  # fmt: skip
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
 
@@ -69,7 +70,7 @@ def uncertainty(
     file = read_flank_csv(measured)
     spec = load_bevel_set(find(gear_set)).member(member)
     with about(measured):
-        evaluation = evaluate_member(file, spec, member, registered)
+        evaluation = evaluate_member(file, spec, member, registered, rotated=rotated)
         figures = figures_of(file, spec, evaluation)
         covariance, source = covariance_of(file, spec, sigma_um, model, machine, calibration)
     with bar(draws, "draw") as progress, _executor(cluster) as executor:

@@ -165,7 +165,7 @@ def check_belongs(member: Member, name: str, measured: FlankFile) -> None:
 
 def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
     pitches = [evaluate_pitch(measured, member.teeth, flank) for flank in FLANKS]
-    found = [pitch for pitch in pitches if pitch is not None]
+    found = [pitch for pitch in pitches if pitch is not None and pitch.nearly_whole]
     if not found:
         return None
     before = np.radians(member.index_correction) if member.index_correction else np.zeros(member.teeth)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,11 +14,20 @@ from gearmath.quality.correction import check_belongs
 from gearmath.quality.drift import Drift, untold_drift, without_drift
 from gearmath.quality.nominal import check_points, completed, nominal_rows
 from gearmath.quality.outliers import find_outliers
-from gearmath.quality.pitch import Pitch, evaluate_pitch, reference_rows
-from gearmath.quality.registration import Registration, register
+from gearmath.quality.pitch import Pitch, evaluate_pitch
+from gearmath.quality.registration import Registration, register, stated_noise
+from gearmath.quality.rotation import Rotation, common_rotation
 from gearmath.quality.spaces import Runout, Thickness, evaluate_runout, evaluate_thickness
 from gearmath.quality.tolerance import Verdict, judge
-from gearmath.quality.topography import Orders, Topography, evaluate_topography, grid_shape, mean_topography, orders
+from gearmath.quality.topography import (
+    Orders,
+    Topography,
+    evaluate_topography,
+    mean_topography,
+    orders,
+    teeth_in_full,
+    zeroed,
+)
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
 
@@ -27,39 +36,63 @@ from gearmath.specs.flank_csv import FlankFile
 class FlankFigures:
     """One flank: the topography of every tooth measured in full, their mean, its first orders, and its pitch.
 
-    Where no tooth was measured in full, there are no topographies, and ``mean`` and ``orders`` are None.
+    ``chart`` is the mean as it is drawn: the flank turned until its reference point has no deviation. Where no tooth
+    was measured in full, there are no topographies, and ``mean``, ``chart`` and ``orders`` are None.
     """
 
     topographies: tuple[Topography, ...]
     mean: Topography | None
+    chart: Topography | None
     orders: Orders | None
     pitch: Pitch | None
 
+    @property
+    def withheld(self) -> dict[str, str]:
+        """Of each maximum that is not given, why."""
+        reasons = {}
+        if self.topographies and self.topographies[0].left_out:
+            first = self.topographies[0]
+            points = "1 point" if first.left_out == 1 else f"{first.left_out} points"
+            reasons["max_deviation"] = f"{first.flank} flank, tooth {first.tooth}: {points} without a reading"
+        if self.pitch is not None and self.pitch.withheld is not None:
+            reasons |= dict.fromkeys(("F_p", "max_f_pt"), self.pitch.withheld)
+        return reasons
+
     def as_dict(self) -> dict[str, Any]:
-        """Figures for people and programs, those of topography of the first tooth in full: µm and degrees."""
+        """Figures for people and programs, those of topography of the first tooth in full: µm and degrees.
+
+        A maximum over data with a gap is None, and ``withheld`` says why.
+        """
         values: dict[str, Any] = {"teeth_in_full": [each.tooth for each in self.topographies]}
-        if self.orders is not None:
+        if self.orders is not None and self.mean is not None and self.chart is not None:
             first = self.topographies[0]
             values |= {
                 "tooth": first.tooth,
-                "max_deviation_um": first.extreme * 1000,
+                "max_deviation_um": None if first.left_out else first.extreme * 1000,
                 "rms_um": first.rms * 1000,
                 "cubic_surface_residual_um": float(np.nanmax(np.abs(first.residual))) * 1000,
                 "surface_coefficients": first.coefficients.tolist(),
                 "left_out": first.left_out,
+                "zeroed_at_reference": {
+                    "taken_off_um": (self.mean.at_reference - self.chart.at_reference) * 1000,
+                    "max_deviation_um": None if self.chart.left_out else self.chart.extreme * 1000,
+                    "rms_um": self.chart.rms * 1000,
+                },
                 "orders": self.orders.as_dict(),
             }
         if self.pitch is not None:
             values |= {key: self.pitch.as_dict()[key] for key in ("F_p_um", "max_f_pt_um", "cumulative_um")}
-        return values
+        return values | {"withheld": self.withheld}
 
 
 @dataclass(frozen=True)
 class Evaluation:
     """A measured member: its points as judged, the figures of both flanks and of the spaces, and what was done to them.
 
-    ``flanks`` and ``runout`` are those of ``file``; ``as_measured`` those before registration, the same without one.
-    ``remarks`` are sentences: points left out, what was not found and why.
+    ``flanks`` and ``runout`` are those of ``file``, without clamping and the rotation that both flanks have in common;
+    ``as_measured`` are those before either was taken out.
+    ``left_out`` are sentences on the points that were left out, and ``remarks`` all sentences: these, teeth that are
+    far off and were kept, what was not found and why.
     """
 
     member: str
@@ -71,46 +104,53 @@ class Evaluation:
     thickness: Thickness | None
     drifts: dict[str, Drift]
     registration: Registration | None
+    rotation: Rotation | None
     verdict: Verdict | None
+    left_out: tuple[str, ...]
     remarks: tuple[str, ...]
 
     def as_dict(self) -> dict[str, Any]:
         """All figures for people and programs: µm, mm and degrees."""
         return {
             "member": self.member,
+            "left_out": list(self.left_out),
             "flanks": {flank: figures.as_dict() for flank, figures in self.flanks.items()},
             "runout": self.runout.as_dict() if self.runout else None,
+            "runout_as_measured": self.runout_as_measured.as_dict() if self.runout_as_measured else None,
             "thickness": self.thickness.as_dict() if self.thickness else None,
             "drift_um": {flank: drift.closure * 1000 for flank, drift in self.drifts.items()},
             "registration": self.registration.as_dict() if self.registration else None,
+            "rotation": self.rotation.as_dict() if self.rotation else None,
             "tolerance": self.verdict.as_dict() if self.verdict else None,
             "remarks": list(self.remarks),
         }
 
 
 #: How often ``evaluate_member`` tells its progress.
-STAGES = 3
+STAGES = 4
 
 
 def evaluate_member(
     file: FlankFile, member: Member, name: str, registered: bool = True,
-    progress: Callable[[int], object] = lambda _: None,
+    progress: Callable[[int], object] = lambda _: None, rotated: bool = True,
 ) -> Evaluation:  # fmt: skip
     """Judge a measured file of a member, of this machine or of another measuring centre.
 
     Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
-    the clamping where the points tell it. Raises InputError if the file is not of this member, or not in mm on its
-    flanks, or if neither a tooth in full nor pitch was measured.
+    the clamping where the points tell it; if ``rotated``, so is the rotation that both flanks have in common. Raises
+    InputError if the file is not of this member, or not in mm on its flanks, or if neither a tooth in full nor pitch
+    was measured.
     """
     check_belongs(member, name, file)
     check_points(file, nominal_rows(file, member, name))
-    outliers = find_outliers(file, member.teeth)
+    complete, absent = completed(file, member, name)
+    outliers = find_outliers(complete, member.teeth)
     progress(1)
-    whole, absent = completed(outliers.without(file), member, name)
+    whole = outliers.without(complete)
     measured, drifts = without_drift(whole, member.teeth)
-    partly = _partly(measured, member)
-    as_measured = _flanks(measured, member, not partly)
-    seat, remarks = None, (*outliers.reasons, *absent, *partly)
+    as_measured = _flanks(measured, member)
+    left_out = (*outliers.reasons, *absent)
+    seat, remarks = None, (*left_out, *outliers.kept, *_silent(as_measured))
     if registered:
         try:
             seat = register(measured, member, name, untold_drift(whole, member.teeth))
@@ -118,52 +158,76 @@ def evaluate_member(
         except InputError as error:
             remarks += (f"not registered: {error}",)
     progress(1)
-    judged = measured if seat is None else seat.file
-    flanks = as_measured if seat is None else _flanks(judged, member, not partly)
-    before, runout = (None if partly else evaluate_runout(each, member.teeth) for each in (measured, judged))
-    verdict = _verdict(member, name, flanks, runout)
-    zeroed = file.header["phase_zeroed"].lower() == "true"
-    if zeroed:
-        remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
-    thickness = None if zeroed else evaluate_thickness(judged, member.teeth)
+    judged, turn = measured if seat is None else seat.file, None
+    noise = stated_noise(file) if seat is None else seat.noise
+    if rotated:
+        try:
+            turn = common_rotation(judged, member, name, noise)
+            judged = turn.file
+        except InputError as error:
+            remarks += (f"rotation left in: {error}",)
     progress(1)
-    return Evaluation(name, judged, flanks, as_measured, runout, before, thickness, drifts, seat, verdict, remarks)
+    flanks = as_measured if judged is measured else _flanks(judged, member)
+    angle = math.radians(member.blank.pitch_angle)
+    before = evaluate_runout(measured, member.teeth, angle, noise)
+    runout = before if seat is None else evaluate_runout(judged, member.teeth, angle, noise, seat)
+    each_zeroed = file.header["phase_zeroed"].lower() == "true"
+    if each_zeroed:
+        remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
+    thickness = None if each_zeroed else evaluate_thickness(judged, member.teeth)
+    verdict = _verdict(member, name, flanks, runout)
+    progress(1)
+    return Evaluation(
+        name, judged, flanks, as_measured, runout, before, thickness, drifts, seat, turn, verdict, left_out, remarks
+    )
 
 
-def _partly(file: FlankFile, member: Member) -> tuple[str, ...]:
-    """Why there is no pitch and no runout, where some but not all of the teeth were measured."""
-    try:
-        for flank in FLANKS:
-            reference_rows(file, member.teeth, flank)
-    except InputError as error:
-        return (f"no pitch and no runout: {error}",)
-    return ()
+def _flanks(file: FlankFile, member: Member) -> dict[str, FlankFigures]:
+    """The figures of every flank in a file. Raises InputError where there are none of either."""
+    found = {flank: _figures(file, member, flank) for flank in FLANKS if (file.flank == flank).any()}
+    if not any(figures.topographies or figures.pitch for figures in found.values()):
+        flank = next(iter(found))
+        teeth, counts = np.unique(file.select(flank).tooth, return_counts=True)
+        evaluate_topography(file, flank, int(teeth[np.argmax(counts)]))  # refused, with the number of its points
+    return found
 
 
-def _flanks(file: FlankFile, member: Member, pitch: bool) -> dict[str, FlankFigures]:
-    return {flank: _figures(file, member, flank, pitch) for flank in FLANKS if (file.flank == flank).any()}
-
-
-def _figures(file: FlankFile, member: Member, flank: str, pitch: bool) -> FlankFigures:
-    spacing = evaluate_pitch(file, member.teeth, flank) if pitch else None
-    points = file.select(flank)
-    teeth, counts = np.unique(points.tooth, return_counts=True)
-    full = teeth[counts == np.prod(grid_shape(file))]
-    if not len(full) and spacing is not None:
-        return FlankFigures((), None, None, spacing)
-    if not len(full):
-        full = teeth[[np.argmax(counts)]]  # refused, with the number of its points
-    topographies = tuple(evaluate_topography(file, flank, int(tooth)) for tooth in full)
+def _figures(file: FlankFile, member: Member, flank: str) -> FlankFigures:
+    spacing = evaluate_pitch(file, member.teeth, flank)
+    topographies = tuple(evaluate_topography(file, flank, tooth) for tooth in teeth_in_full(file, flank))
+    if not topographies:
+        return FlankFigures((), None, None, None, spacing)
     mean = mean_topography(topographies)
-    return FlankFigures(topographies, mean, orders(mean), spacing)
+    return FlankFigures(topographies, mean, zeroed(mean, file), orders(mean), spacing)
+
+
+def _silent(flanks: dict[str, FlankFigures]) -> Iterator[str]:
+    """Flanks of which there are points, but no figures."""
+    for flank, figures in flanks.items():
+        if not figures.topographies and figures.pitch is None:
+            yield f"{flank} flank: neither a tooth in full nor two reference points have readings; not judged"
 
 
 def _verdict(member: Member, name: str, flanks: dict[str, FlankFigures], runout: Runout | None) -> Verdict | None:
-    """The grade of pitch and runout; None where pitch was not measured."""
-    pitches = [figures.pitch for figures in flanks.values() if figures.pitch is not None]
+    """The grade of pitch and runout, of what is known of every tooth; None where pitch was not measured."""
+    pitches = {flank: figures.pitch for flank, figures in flanks.items() if figures.pitch is not None}
     if not pitches:
         return None
-    measured = {"f_pt": max(p.largest_single for p in pitches), "F_p": max(p.total for p in pitches)}
-    if runout is not None:
+    whole = {flank: pitch for flank, pitch in pitches.items() if pitch.withheld is None}
+    of_flanks = {flank: {"f_pt": pitch.largest_single, "F_p": pitch.total} for flank, pitch in whole.items()}
+    measured, withheld = {}, {}
+    gaps = [
+        pitches[flank].withheld or "" if flank in pitches else f"{flank} flank: pitch was not measured"
+        for flank in FLANKS
+        if flank not in whole
+    ]
+    for key in ("f_pt", "F_p"):
+        if gaps:
+            withheld[key] = "; ".join(gaps)
+        else:
+            measured[key] = max(one[key] for one in of_flanks.values())
+    if runout is None or runout.withheld is not None:
+        withheld["F_r"] = "no two spaces have readings on both flanks" if runout is None else str(runout.withheld)
+    else:
         measured["F_r"] = runout.total
-    return judge(member, name, {key: value for key, value in measured.items() if math.isfinite(value)})
+    return judge(member, name, measured, withheld, of_flanks)

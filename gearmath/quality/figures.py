@@ -1,12 +1,14 @@
 """The figures of an evaluated member as one CasADi function of the deviations that were measured.
 
 The same figures as in ``evaluation``, of the same kernels and maps; here as a graph, to be differentiated and drawn. On
-the way from what was measured to what is judged, drift and clamping are taken out: linear maps, to first order. What is
-smooth has a Jacobian that carries covariances. Maxima and ranges are the largest of many differences; they are drawn.
+the way from what was measured to what is judged, drift, clamping and rotation are taken out: linear maps, to first
+order. What is smooth has a Jacobian that carries covariances. Maxima and ranges are the largest of many differences;
+they are drawn.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import casadi as ca
@@ -70,9 +72,9 @@ class Figures:
     """Figures (m,) of a member [mm and mm per mm^k] as a function of the deviations (n,) of its file [mm].
 
     ``deviation`` (n,) are those measured, zero where a point was left out. ``judging`` makes of deviations what is
-    judged (q,): deviations without drift and clamping, and the seat; ``of_judged`` makes figures of it. ``jacobian``
-    (m,n) is the derivative of the figures by the deviations. ``extremes`` has, for the index of every figure that is
-    not smooth, what it is the largest of.
+    judged (q,): deviations without drift, clamping and rotation, then the seat and the rotation; ``of_judged`` makes
+    figures of it. ``jacobian`` (m,n) is the derivative of the figures by the deviations. ``extremes`` has, for the
+    index of every figure that is not smooth, what it is the largest of.
     """
 
     items: tuple[Figure, ...]
@@ -100,11 +102,13 @@ def figures_of(file: FlankFile, member: Member, found: Evaluation) -> Figures:
     parts: list[_Part] = []
     if found.registration is not None:
         parts += _seat(found.registration, judged[len(found.file) :])
+    if found.rotation is not None:
+        parts.append((Figure("both", "rotation", "arcsec", factor=math.degrees(3600)), judged[len(found.file) + 4]))
     now = judged[: len(found.file)]
     for flank, figures in found.flanks.items():
         parts += _topography(found.file, flank, figures, now)
         parts += _pitch(found.file, flank, figures, now)
-    parts += _spaces(found.file, found, now)
+    parts += _spaces(found.file, found, member, now)
     at = np.nan_to_num(file.deviation)
     return _together(parts, judged, at, judging, slope)
 
@@ -179,7 +183,7 @@ def _topography(
     return [
         *((Figure(flank, name, "um"), by_order[k]) for k, name in enumerate(ORDERS) if orders[k].any()),
         *((Figure(flank, f"c_{k + 1}", _UNITS[_DEGREES[k]]), fitted[k]) for k in range(used)),
-        (Figure(flank, "max_deviation", "um", smooth=False), here),
+        *([] if first.left_out else [(Figure(flank, "max_deviation", "um", smooth=False), here)]),
     ]
 
 
@@ -190,15 +194,15 @@ def _points(file: FlankFile, flank: str, topography: Topography) -> tuple[np.nda
 
 
 def _reference(file: FlankFile, flank: str) -> np.ndarray:
-    """The rows (z,) of the reference point of every tooth, by tooth."""
+    """The rows (m,) of the reference points that have a reading, by tooth."""
     row, col = reference_point(file)
-    (index,) = np.nonzero((file.flank == flank) & (file.row == row) & (file.col == col))
+    here = (file.flank == flank) & (file.row == row) & (file.col == col) & np.isfinite(file.deviation)
+    (index,) = np.nonzero(here)
     return index[np.argsort(file.tooth[index])]
 
 
-def _by_tooth(name: str, file: FlankFile, flank: str, deviation: ca.MX, point: np.ndarray) -> list[ca.MX]:
-    """The outputs (z,) of a kernel of deviation, point and normal at the reference point of every tooth."""
-    rows = _reference(file, flank)
+def _by_tooth(name: str, file: FlankFile, rows: np.ndarray, deviation: ca.MX, point: np.ndarray) -> list[ca.MX]:
+    """The outputs (m,) of a kernel of deviation, point and normal at the reference points of these rows."""
     function = kernel(name).function.map(len(rows))
     return [
         row.T for row in function.call([deviation[rows.tolist()].T, ca.DM(point[rows].T), ca.DM(file.normal[rows].T)])
@@ -208,23 +212,30 @@ def _by_tooth(name: str, file: FlankFile, flank: str, deviation: ca.MX, point: n
 def _pitch(
     file: FlankFile, flank: str, figures: FlankFigures, deviation: ca.MX
 ) -> list[_Part]:  # fmt: skip
-    """Single pitch of every tooth, the largest of them, and the total: the largest difference of two teeth."""
-    if figures.pitch is None or not np.isfinite(figures.pitch.cumulative).all():
+    """Single pitch of every tooth, the largest of them, and the total: the largest difference of two teeth.
+
+    Of teeth without a reading there is no single pitch, and then neither of the maxima.
+    """
+    if figures.pitch is None:
         return []
-    _, arc = _by_tooth("flank_turning", file, flank, deviation, file.point)
+    rows = _reference(file, flank)
+    _, arc = _by_tooth("flank_turning", file, rows, deviation, file.point)
     cumulative = arc - arc[0]
-    n = cumulative.shape[0]
-    single = cumulative - ca.vertcat(cumulative[-1], cumulative[:-1])
-    return [
-        *((Figure(flank, f"f_pt_{k}", "um"), single[k]) for k in range(n)),
-        (Figure(flank, "max_f_pt", "um", smooth=False), single),
-        (Figure(flank, "F_p", "um", smooth=False, ranges=True), cumulative),
-    ]
+    at = {int(tooth): k for k, tooth in enumerate(file.tooth[rows])}
+    teeth = len(figures.pitch.cumulative)
+    single = {k: cumulative[at[k]] - cumulative[at[(k - 1) % teeth]] for k in at if (k - 1) % teeth in at}
+    parts = [(Figure(flank, f"f_pt_{k}", "um"), value) for k, value in single.items()]
+    if figures.pitch.withheld is None:
+        parts += [
+            (Figure(flank, "max_f_pt", "um", smooth=False), ca.vertcat(*single.values())),
+            (Figure(flank, "F_p", "um", smooth=False, ranges=True), cumulative),
+        ]
+    return parts
 
 
-def _spaces(file: FlankFile, found: Evaluation, deviation: ca.MX) -> list[_Part]:
+def _spaces(file: FlankFile, found: Evaluation, member: Member, deviation: ca.MX) -> list[_Part]:
     """Runout, and the mean thickness of the teeth: each flank of a tooth adds its allowance to it."""
-    if found.runout is None or not np.isfinite(found.runout.radial).all():
+    if found.runout is None or found.runout.withheld is not None:
         return []
     one, other = (_reference(file, flank) for flank in FLANKS)
     points = [
@@ -232,10 +243,12 @@ def _spaces(file: FlankFile, found: Evaluation, deviation: ca.MX) -> list[_Part]
         for rows in (one, other)
         for argument in (deviation[rows.tolist()].T, nominal_points_of(file)[rows].T, file.normal[rows].T)
     ]
-    radial, _ = kernel("ball_shift").function.map(len(one))(*points)
-    allowances = [_by_tooth("flank_allowance", file, flank, deviation, nominal_points_of(file))[0] for flank in FLANKS]
+    shift, _ = kernel("ball_shift").function.map(len(one))(*points, math.radians(member.blank.pitch_angle))
+    allowances = [
+        _by_tooth("flank_allowance", file, rows, deviation, nominal_points_of(file))[0] for rows in (one, other)
+    ]
     thicker = ca.sum1(ca.vertcat(*allowances)) / len(one)
     return [
         (Figure("both", "mean_thickness", "um"), thicker),
-        (Figure("both", "F_r", "um", smooth=False, ranges=True), radial.T),
+        (Figure("both", "F_r", "um", smooth=False, ranges=True), shift.T),
     ]

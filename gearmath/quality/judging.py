@@ -1,4 +1,4 @@
-"""On the way from what was measured to what is judged: points left out, drift and clamping taken out, as a linear map.
+"""From what was measured to what is judged: points left out; drift, clamping and rotation taken out, as a linear map.
 
 What ``evaluation`` does to a file, to first order in its deviations; the places of the points count as fixed.
 """
@@ -21,27 +21,34 @@ from gearmath.specs.flank_csv import FlankFile
 def judging_of(file: FlankFile, member: Member, found: Evaluation) -> tuple[ca.Function, np.ndarray]:
     """What is judged, as a function of the deviations measured, and its constant Jacobian (q,n).
 
-    Judged are the deviations of the evaluated file, zero where there are none, then the four components of the seat.
+    Judged are the deviations of the evaluated file, zero where there are none, then the four components of the seat and
+    the rotation common to both flanks.
     """
     at, n = np.nan_to_num(file.deviation), len(found.file)
-    slope = np.zeros((n + 4, len(file)))
+    slope = np.zeros((n + 5, len(file)))
     slope[:n] = _without_drift(file, member, found.member)
     deviation = ca.MX.sym("deviation", len(file))
     change = ca.mtimes(ca.sparsify(ca.DM(slope[:n])), deviation - ca.DM(at))
-    seat = ca.MX.zeros(4)
+    seat, turn = ca.MX.zeros(4), ca.MX.zeros(1)
     if found.registration is not None:
         gain, columns = found.registration.gain, found.registration.columns
         moved = ca.mtimes(ca.DM(gain), change)
         seat = ca.DM(found.registration.seat) + moved
         change -= ca.mtimes(ca.DM(columns), moved)
-        slope[n:] = gain @ slope[:n]
-        slope[:n] -= columns @ slope[n:]
+        slope[n : n + 4] = gain @ slope[:n]
+        slope[:n] -= columns @ slope[n : n + 4]
+    if found.rotation is not None:
+        turned = ca.mtimes(ca.DM(found.rotation.gain).T, change)
+        turn = found.rotation.angle + turned
+        change -= ca.DM(found.rotation.column) * turned
+        slope[n + 4] = found.rotation.gain @ slope[:n]
+        slope[:n] -= np.outer(found.rotation.column, slope[n + 4])
     now = ca.DM(np.nan_to_num(found.file.deviation)) + change
-    return ca.Function("judging", [deviation], [ca.vertcat(now, seat)], ["deviation"], ["judged"]), slope
+    return ca.Function("judging", [deviation], [ca.vertcat(now, seat, turn)], ["deviation"], ["judged"]), slope
 
 
 def judged_by_measured(file: FlankFile, member: Member, found: Evaluation) -> np.ndarray:
-    """How the deviations (m,) that were judged, without drift and clamping, depend on those measured (n,): (m,n)."""
+    """How the deviations (m,) that were judged depend on those measured (n,): (m,n)."""
     _, slope = judging_of(file, member, found)
     return np.where(np.isfinite(found.file.deviation)[:, None], slope[: len(found.file)], 0.0)
 
@@ -51,7 +58,8 @@ def _without_drift(file: FlankFile, member: Member, name: str) -> np.ndarray:
 
     Taking out the drift is linear and homogeneous, so that unit deviations of the nominal points give the columns.
     """
-    whole, _ = completed(find_outliers(file, member.teeth).without(file), member, name)
+    complete, _ = completed(file, member, name)
+    whole = find_outliers(complete, member.teeth).without(complete)
     known = np.isfinite(whole.deviation)
     kept = whole.tooth < member.teeth
     matrix = (np.eye(len(whole)) * known)[kept][:, : len(file)]

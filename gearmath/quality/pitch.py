@@ -8,23 +8,29 @@ are already in the nominal points. Tooth 0 measured again at the end shows the d
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.quality.drift import without_drift
-from gearmath.specs.flank_csv import FlankFile
+from gearmath.specs.flank_csv import FlankFile, join
+
+#: How many teeth without a reading are named.
+_NAMED = 5
+#: Part of the teeth without a reading, beyond which the others do not tell how they are indexed.
+_MOST_MISSING = 0.2
 
 
 @dataclass(frozen=True)
 class Pitch:
     """Pitch of one flank: turning (z,) [rad] and cumulative deviation s (z,) [mm] of every tooth against tooth 0.
 
-    Both are NaN for a tooth whose point has no deviation. ``drift`` is the arc [mm] by which tooth 0 had moved when it
-    was measured again, None where it was not.
+    Both are NaN for a tooth without a reading; where there is one, the maxima are NaN too. ``drift`` is the arc [mm] by
+    which tooth 0 had moved when it was measured again, None where it was not.
     """
 
     flank: str
@@ -39,31 +45,49 @@ class Pitch:
 
     @property
     def total(self) -> float:
-        """F_p [mm]."""
-        return float(np.nanmax(self.cumulative) - np.nanmin(self.cumulative))
+        """F_p [mm]; NaN where a tooth has no reading."""
+        return float(self.cumulative.max() - self.cumulative.min())
 
     @property
     def largest_single(self) -> float:
-        """The f_pt that is largest in size, without its sign [mm]; NaN where no two neighbours were measured."""
-        sizes = np.abs(self.single)
-        return float(np.nanmax(sizes)) if np.isfinite(sizes).any() else float("nan")
+        """The f_pt that is largest in size, without its sign [mm]; NaN where a tooth has no reading."""
+        return float(np.abs(self.single).max())
+
+    @property
+    def nearly_whole(self) -> bool:
+        """Whether no more than a fifth of the teeth have no reading."""
+        return bool(np.isnan(self.cumulative).mean() <= _MOST_MISSING)
+
+    @property
+    def withheld(self) -> str | None:
+        """Why there are no maxima; None where every tooth has a reading."""
+        return no_reading(f"{self.flank} flank", "tooth", np.isnan(self.cumulative))
 
     def as_dict(self) -> dict[str, Any]:
-        """Figures for people and programs, in µm; None for what was not measured."""
+        """Figures for people and programs, in µm; None for what was not measured or is withheld."""
         values = [None if np.isnan(value) else float(value) * 1000 for value in self.cumulative]
+        known = self.withheld is None
         return {
-            "F_p_um": self.total * 1000,
-            "max_f_pt_um": None if np.isnan(self.largest_single) else self.largest_single * 1000,
+            "F_p_um": self.total * 1000 if known else None,
+            "max_f_pt_um": self.largest_single * 1000 if known else None,
             "cumulative_um": values,
             "drift_um": None if self.drift is None else self.drift * 1000,
         }
 
 
-def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:
-    """Pitch of one flank from the points that every tooth has; None where only one tooth was measured.
+def no_reading(where: str, what: str, missing: np.ndarray) -> str | None:
+    """A sentence on which of the teeth or spaces (z,) have no reading; None where all have one."""
+    which = np.flatnonzero(missing).tolist()
+    if not which:
+        return None
+    named, more = ", ".join(map(str, which[:_NAMED])), len(which) - _NAMED
+    many = {"tooth": "teeth", "space": "spaces"}[what] if len(which) > 1 else what
+    rest = f" and {more} more" if more > 0 else ""
+    return f"{where}: no reading of {many} {named}{rest} ({len(which)} of {len(missing)})"
 
-    Raises InputError if some, but not all, of the teeth were measured.
-    """
+
+def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:
+    """Pitch of one flank from the reference points of its teeth; None where fewer than two have a reading."""
     file, drifts = without_drift(file, teeth)
     points = reference_rows(file, teeth, flank)
     if points is None:
@@ -78,26 +102,29 @@ def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:
 
 
 def reference_rows(file: FlankFile, teeth: int, flank: str) -> FlankFile | None:
-    """The reference point of every tooth, by tooth; None where only one tooth was measured.
+    """The reference point of every tooth, by tooth, nominal and silent where there is none.
 
-    Raises InputError if some, but not all, of the teeth were measured.
+    None where fewer than two teeth have a reading there. Tooth 0 measured again is not among them.
     """
-    points = file.select(flank)
-    points = points.pick(points.tooth < teeth)
-    measured = np.unique(points.tooth)
-    if len(measured) <= 1:
-        return None
-    if len(measured) != teeth:
-        absent = sorted(set(range(teeth)) - set(measured.tolist()))
-        raise InputError(
-            f"{flank} flank: tooth {absent[0]} was not measured; pitch needs all {teeth} teeth, or one only"
-        )
     row, col = reference_point(file)
-    points = points.pick((points.row == row) & (points.col == col))
+    points = file.select(flank)
+    points = points.pick((points.row == row) & (points.col == col) & (points.tooth < teeth))
+    if np.isfinite(points.deviation).sum() < 2:
+        return None
     points = points.pick(np.argsort(points.tooth))
-    if not np.array_equal(points.tooth, np.arange(teeth)):
-        raise InputError(f"{flank} flank: not every tooth has the reference point, row {row}, col {col}")
-    return points
+    absent = np.setdiff1d(np.arange(teeth), points.tooth)
+    if not len(absent):
+        return points
+    first = points.pick(np.zeros(len(absent), dtype=int))
+    turn = 2 * np.pi * (absent - first.tooth) / teeth
+    nominal = first.point - np.nan_to_num(first.deviation)[:, None] * first.normal
+    silent = np.full(len(absent), np.nan)
+    added = replace(
+        first, tooth=absent, point=turned(nominal, turn), normal=turned(first.normal, turn), deviation=silent,
+        uncertainty=silent,
+    )  # fmt: skip
+    both = join([points, added])
+    return both.pick(np.argsort(both.tooth))
 
 
 def reference_point(file: FlankFile) -> tuple[int, int]:

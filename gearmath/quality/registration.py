@@ -127,7 +127,7 @@ def register(file: FlankFile, member: Member, name: str, untold: np.ndarray | No
     model = seat_model(file, rows, columns, besides, used, member)
     seat, deviation, left = _fit(file, rows, columns, used, model, member)
     spare = int(used.sum()) - model.free.shape[1] - len(model.found)
-    noise = math.sqrt(float(left @ left) / spare) if spare >= _LEAST_SPARE else _stated(file)
+    noise = math.sqrt(float(left @ left) / spare) if spare >= _LEAST_SPARE else stated_noise(file)
     covariance, gain, found = np.full((4, 4), np.nan), np.zeros((4, len(file))), list(model.found)
     covariance[np.ix_(found, found)] = noise**2 * np.linalg.inv(model.columns.T @ model.columns)
     gain[np.ix_(found, used)] = np.linalg.pinv(model.columns)
@@ -176,7 +176,7 @@ def _without(file: FlankFile, rows: NominalRows, columns: np.ndarray, seat: np.n
     return deviation
 
 
-def _stated(file: FlankFile) -> float:
+def stated_noise(file: FlankFile) -> float:
     """Noise of one point as the file states it [mm], NaN where it does not."""
     stated = file.uncertainty[np.isfinite(file.uncertainty)]
     return float(np.sqrt(np.mean(stated**2))) if len(stated) else math.nan

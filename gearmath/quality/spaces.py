@@ -1,57 +1,112 @@
 """Runout and tooth thickness: what both flanks together say at their reference points.
 
-Runout is the radial way of a ball that lies in every space (19.1), as if its centre were read by a dial. Thickness is
-counted along the circle through the reference points, and straight across between them (19.2, 19.3).
+Runout is how far a ball is moved along the normal of the pitch cone when it is pressed into every space (19.1); uneven
+indexing does not move it. Being a range, it is more than nothing for a perfect gear: what noise of the points alone
+would make of it is said beside it. Thickness is counted along the circle through the reference points, and straight
+across between them (19.2, 19.3).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from gearmath.bevel.kernels import kernel
 from gearmath.quality.drift import without_drift
-from gearmath.quality.pitch import reference_point, reference_rows
+from gearmath.quality.pitch import no_reading, reference_point, reference_rows
+from gearmath.quality.registration import Registration
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile
+
+#: Spaces that a mean and a harmonic need.
+_HARMONIC = 3
+#: Of noise alone: its mean range to about half of a hundredth.
+_DRAWS = 4000
 
 
 @dataclass(frozen=True)
 class Runout:
-    """Radial shift (z,) [mm] of a ball in every space, and the azimuth (z,) [rad] of the middle of each space."""
+    """Movement (z,) [mm] of a ball in every space, normal to the pitch cone, and the azimuth (z,) [rad] of the space.
 
-    radial: np.ndarray
+    Both flanks of every space are needed for F_r. ``covariance`` (z,z) [mm²] is that of the movements, NaN where the
+    noise of a point is not known.
+    """
+
+    shift: np.ndarray
     azimuth: np.ndarray
+    covariance: np.ndarray
 
     @property
     def total(self) -> float:
-        """F_r [mm]."""
-        return float(np.nanmax(self.radial) - np.nanmin(self.radial))
+        """F_r [mm]; NaN where a space has no reading."""
+        return float(self.shift.max() - self.shift.min())
+
+    @property
+    def withheld(self) -> str | None:
+        """Why there is no F_r; None where every space has a reading."""
+        return no_reading("both flanks", "space", np.isnan(self.shift))
+
+    @property
+    def uncertainty(self) -> float:
+        """Standard uncertainty of the difference that F_r is [mm], NaN where it is not known."""
+        if self.withheld is not None:
+            return math.nan
+        ends = [int(np.argmax(self.shift)), int(np.argmin(self.shift))]
+        return math.sqrt(max(float(np.array([1, -1]) @ self.covariance[np.ix_(ends, ends)] @ [1, -1]), 0.0))
+
+    @cached_property
+    def of_noise(self) -> tuple[float, float]:
+        """F_r of a perfect gear measured with this noise: mean and standard deviation [mm], NaN where not known."""
+        if self.withheld is not None or not np.isfinite(self.covariance).all():
+            return math.nan, math.nan
+        sizes, axes = np.linalg.eigh(self.covariance)
+        normal = np.random.default_rng(0).standard_normal((_DRAWS, len(sizes)))
+        ranges = np.ptp((normal * np.sqrt(np.maximum(sizes, 0.0))) @ axes.T, axis=1)
+        return float(ranges.mean()), float(ranges.std())
+
+    @property
+    def mostly_noise(self) -> bool | None:
+        """Whether the square of F_r is to more than half that of noise alone; None where this is not known."""
+        mean = self.of_noise[0]
+        return None if math.isnan(mean) else bool(self.total**2 < 2 * mean**2)
 
     @property
     def eccentricity(self) -> tuple[float, float]:
-        """The first harmonic: its amplitude [mm], and the azimuth towards which the spaces lie farther out [rad]."""
-        known = np.isfinite(self.radial)
+        """The first harmonic: its amplitude [mm], and the azimuth towards which the balls lie farther out [rad].
+
+        NaN where fewer than three spaces have a reading.
+        """
+        known = np.isfinite(self.shift)
+        if known.sum() < _HARMONIC:
+            return math.nan, math.nan
         at = self.azimuth[known]
         columns = np.stack([np.ones(len(at)), np.cos(at), np.sin(at)], axis=1)
-        (_, x, y), *_ = np.linalg.lstsq(columns, self.radial[known], rcond=None)
+        (_, x, y), *_ = np.linalg.lstsq(columns, self.shift[known], rcond=None)
         return float(math.hypot(x, y)), float(math.atan2(y, x))
 
     def as_dict(self) -> dict[str, Any]:
+        """Figures for people and programs: µm and degrees; None for what is withheld, with the reason, or not known."""
         size, direction = self.eccentricity
-        return {
+        values = {
             "F_r_um": self.total * 1000,
+            "u_F_r_um": self.uncertainty * 1000,
+            "F_r_of_noise_um": self.of_noise[0] * 1000,
+            "F_r_of_noise_spread_um": self.of_noise[1] * 1000,
             "first_harmonic_um": size * 1000,
             "first_harmonic_direction_deg": math.degrees(direction),
         }
+        known = {key: value if math.isfinite(value) else None for key, value in values.items()}
+        withheld = {} if self.withheld is None else {"F_r": self.withheld}
+        return {**known, "mostly_noise": self.mostly_noise, "withheld": withheld}
 
 
 @dataclass(frozen=True)
 class Thickness:
-    """Nominal arc and chord [mm] of a tooth at the reference points, and the deviations (m,) [mm] of its arc.
+    """Nominal arc and chord [mm] of one of ``teeth`` at the reference points, the deviations (m,) [mm] of its arc.
 
     ``deviation`` has one value for each tooth, the one that follows the space of its number; where not all teeth were
     measured, one for each space, the sum of its two flanks. ``chord_factor`` turns an arc's deviation into the chord's.
@@ -61,11 +116,18 @@ class Thickness:
     chord: float
     deviation: np.ndarray
     chord_factor: float
+    teeth: int
 
     @property
     def mean(self) -> float:
-        """Mean deviation of the arc [mm]; negative = too thin."""
+        """Mean deviation of the arc over the teeth that have a reading [mm]; negative = too thin."""
         return float(np.nanmean(self.deviation))
+
+    @property
+    def withheld(self) -> str | None:
+        """Why there is no range over the teeth; None where every tooth has a reading."""
+        known = int(np.isfinite(self.deviation).sum())
+        return None if known == self.teeth else f"thickness was measured of {known} of {self.teeth} teeth"
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -73,30 +135,47 @@ class Thickness:
             "chord_mm": self.chord,
             "arc_deviation_um": self.mean * 1000,
             "chord_deviation_um": self.mean * self.chord_factor * 1000,
-            "range_um": float(np.nanmax(self.deviation) - np.nanmin(self.deviation)) * 1000,
+            "range_um": None if self.withheld else float(np.ptp(self.deviation)) * 1000,
+            "withheld": {"range": self.withheld} if self.withheld else {},
         }
 
 
-def evaluate_runout(file: FlankFile, teeth: int) -> Runout | None:
-    """Runout from the reference points of both flanks of every space; None where not all were measured.
+def evaluate_runout(
+    file: FlankFile, teeth: int, pitch_angle: float, noise: float = math.nan, seat: Registration | None = None
+) -> Runout | None:
+    """Runout from the reference points of both flanks of every space; None where fewer than two have both.
 
-    Raises InputError if some, but not all, of the teeth were measured.
+    ``pitch_angle`` is in rad, ``noise`` [mm] the standard deviation of one point; where ``seat`` was found in the same
+    points and taken out of them, what noise did to it is taken into account.
     """
     file, _ = without_drift(file, teeth)
     one, other = (reference_rows(file, teeth, flank) for flank in FLANKS)
     if one is None or other is None:
         return None
-    radial, _ = kernel("ball_shift")(
-        one.deviation, _nominal(one), one.normal, other.deviation, _nominal(other), other.normal
+    first, second = ((rows.deviation, _nominal(rows), rows.normal) for rows in (one, other))
+    shift, _ = kernel("ball_shift")(*first, *second, pitch_angle)
+    if np.isfinite(shift).sum() < 2:
+        return None
+    (azimuth,) = kernel("space_azimuth")(first[1], second[1])
+    by_one, by_other = (
+        kernel("ball_shift")(a, *first[1:], b, *second[1:], pitch_angle)[0] for a, b in ((1.0, 0.0), (0.0, 1.0))
     )
-    (azimuth,) = kernel("space_azimuth")(_nominal(one), _nominal(other))
-    return Runout(radial, azimuth)
+    slope = np.zeros((teeth, len(file)))
+    places = {key: k for k, key in enumerate(zip(file.flank, file.tooth, file.row, file.col, strict=True))}
+    for rows, by in ((one, by_one), (other, by_other)):
+        for i in range(teeth):
+            k = places.get((rows.flank[i], rows.tooth[i], rows.row[i], rows.col[i]))
+            if k is not None:
+                slope[i, k] = by[i]
+    if seat is not None:
+        slope = slope - (slope @ seat.columns) @ seat.gain
+    return Runout(shift, azimuth, noise**2 * slope @ slope.T)
 
 
 def evaluate_thickness(file: FlankFile, teeth: int) -> Thickness | None:
     """Thickness of every tooth, or for each space measured that of the tooth it stands for, where not all were.
 
-    None where no space has the reference points of both flanks.
+    None where no space has a reading at the reference points of both flanks.
     """
     file, _ = without_drift(file, teeth)
     one, other = _pairs(file)
@@ -108,7 +187,9 @@ def evaluate_thickness(file: FlankFile, teeth: int) -> Thickness | None:
         deviation = _allowance(high) + np.roll(_allowance(low), -1)  # the tooth after a space ends at the next one
     else:
         deviation = _allowance(one) + _allowance(other)
-    return Thickness(float(arc), float(chord), deviation, float(factor))
+    if not np.isfinite(deviation).any():
+        return None
+    return Thickness(float(arc), float(chord), deviation, float(factor), teeth)
 
 
 def _pairs(file: FlankFile) -> tuple[FlankFile, FlankFile]:

@@ -6,7 +6,9 @@ The formulas (19.6) were not checked against the standard. Grades are given only
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -54,24 +56,38 @@ class Tolerances:
         return {name: rounded(value) for name, value in self.exact.items()}
 
 
+Grades = dict[str, int | None]
+
+
 @dataclass(frozen=True)
 class Verdict:
-    """Measured figures [µm] and the grade of each; None where even the coarsest is exceeded. ``grade`` is the worst."""
+    """Measured figures [µm] and the grade of each; None where even the coarsest is exceeded. ``grade`` is the worst.
+
+    ``withheld`` says of each figure without a grade why it has none; then there is no ``grade`` of the whole either.
+    ``flanks`` has the grades of the figures of each flank that are known.
+    """
 
     data: GearData
     measured: dict[str, float]
-    grades: dict[str, int | None]
+    grades: Grades
     remark: str
+    withheld: dict[str, str]
+    flanks: dict[str, Grades]
 
     @property
     def grade(self) -> int | None:
         found = list(self.grades.values())
-        return max(found) if found and None not in found else None  # type: ignore[type-var]
+        if self.withheld or not found or None in found:
+            return None
+        return max(found)  # type: ignore[type-var]
 
     def as_dict(self) -> dict[str, Any]:
+        """For programs; grades are None beyond the coarsest, and where ``withheld`` says why there is none."""
         return {
             "grade": self.grade,
-            "grades": self.grades,
+            "grades": self.grades | dict.fromkeys(self.withheld),
+            "withheld": self.withheld,
+            "grades_of_flanks": self.flanks,
             "mean_normal_module": self.data.mean_normal_module,
             "tolerance_diameter": self.data.tolerance_diameter,
             "remark": self.remark,
@@ -112,18 +128,27 @@ def gear_data(member: Member, name: str) -> GearData:
     return GearData(member.teeth, float(np.mean(modules)), float(diameter), float(np.mean(angles)))
 
 
-def judge(member: Member, name: str, measured: dict[str, float]) -> Verdict:
+def judge(
+    member: Member, name: str, measured: dict[str, float], withheld: Mapping[str, str] = MappingProxyType({}),
+    flanks: Mapping[str, dict[str, float]] = MappingProxyType({}),
+) -> Verdict:  # fmt: skip
     """The grades of measured ``f_pt``, ``F_p``, ``F_r`` [mm]: of each the finest whose rounded tolerance holds it.
 
-    Outside of the scope there are no grades, and the remark says why.
+    ``withheld`` are those that are not known, and why; ``flanks`` those of one flank alone. Outside of the scope there
+    are no grades, and the remark says why.
     """
     data = gear_data(member, name)
     values = {key: value * 1000 for key, value in measured.items()}
     if data.outside is not None:
-        return Verdict(data, values, {}, f"no grade: {data.outside}")
+        return Verdict(data, values, {}, f"no grade: {data.outside}", dict(withheld), {})
     allowed = [iso17485(data.mean_normal_module, data.tolerance_diameter, grade) for grade in GRADES]
-    grades = {
-        key: next((each.grade for each in allowed if abs(value) <= each.rounded[key]), None)
-        for key, value in values.items()
+    of_flanks = {flank: _grades(allowed, one) for flank, one in flanks.items()}
+    return Verdict(data, values, _grades(allowed, measured), CAVEAT, dict(withheld), of_flanks)
+
+
+def _grades(allowed: Sequence[Tolerances], measured: dict[str, float]) -> Grades:
+    """The finest grade of each measured figure [mm]; None where none is coarse enough."""
+    return {
+        key: next((each.grade for each in allowed if abs(value) * 1000 <= each.rounded[key]), None)
+        for key, value in measured.items()
     }
-    return Verdict(data, values, grades, CAVEAT)

@@ -18,6 +18,8 @@ from gearmath.specs.flank_csv import FlankFile
 _COEFFICIENTS, _QUADRATIC, _PLANE = 10, 6, 3
 #: Part of a grid that may be without deviation: points that were left out.
 _MOST_SILENT = 0.2
+#: Of the components of a small motion (18.2): about z_w.
+_TURNING = 5
 #: The figures of ``orders``, in the order of the rows of ``orders_matrix``.
 ORDERS = (
     "mean", "spiral_angle_deviation", "pressure_angle_deviation", "length_crowning", "twist", "profile_crowning",
@@ -49,6 +51,12 @@ class Topography:
     @property
     def rms(self) -> float:
         return float(np.sqrt(np.nanmean(self.deviation**2)))
+
+    @property
+    def at_reference(self) -> float:
+        """The deviation at the reference point [mm]; that of the cubic surface where the point was left out."""
+        here = self.deviation.flat[np.argmin(self.along**2 + self.upward**2)]
+        return float(here if np.isfinite(here) else self.coefficients[0])
 
     @property
     def left_out(self) -> int:
@@ -109,13 +117,50 @@ def evaluate_topography(file: FlankFile, flank: str, tooth: int = 0) -> Topograp
             "is it a nominal file?"
         )
     along, upward = local_coordinates(points.point[order].reshape(rows, columns, 3), reference_point(file))
-    used = _monomials(along, upward)[:, : _COEFFICIENTS if min(rows, columns) >= 4 else _PLANE]
-    fitted, *_ = np.linalg.lstsq(used[known], deviation[known], rcond=None)
+    return _fitted(flank, tooth, deviation.reshape(rows, columns), along, upward)
+
+
+def _fitted(flank: str, tooth: int, deviation: np.ndarray, along: np.ndarray, upward: np.ndarray) -> Topography:
+    """The topography of deviations (rows, columns) at places of the local system, with the surface through them."""
+    known = np.isfinite(deviation).ravel()
+    used = _monomials(along, upward)[:, : _COEFFICIENTS if min(deviation.shape) >= 4 else _PLANE]
+    fitted, *_ = np.linalg.lstsq(used[known], deviation.ravel()[known], rcond=None)
     coefficients = np.zeros(_COEFFICIENTS)
     coefficients[: len(fitted)] = fitted
-    residual = deviation - used @ fitted
-    shape = (rows, columns)
-    return Topography(flank, tooth, deviation.reshape(shape), coefficients, residual.reshape(shape), along, upward)
+    residual = deviation - (used @ fitted).reshape(deviation.shape)
+    return Topography(flank, tooth, deviation, coefficients, residual, along, upward)
+
+
+def zeroed(topography: Topography, file: FlankFile) -> Topography:
+    """The topography of a flank that is turned about the work axis until its reference point has no deviation (6.5).
+
+    How charts are drawn: form without the thickness of the tooth. ``file`` tells the points and normals of the flank.
+    """
+    points = file.select(topography.flank)
+    points = points.pick(points.tooth == (topography.tooth if topography.tooth >= 0 else _full_tooth(points)))
+    order = np.lexsort((points.col, points.row))
+    lever = kernel("motion_sensitivity")(points.point[order], points.normal[order])[0][:, _TURNING]
+    lever = lever.reshape(topography.deviation.shape)
+    at = reference_point(file)
+    deviation = topography.deviation - topography.at_reference * lever / lever[at]
+    return _fitted(topography.flank, topography.tooth, deviation, topography.along, topography.upward)
+
+
+def teeth_in_full(file: FlankFile, flank: str) -> list[int]:
+    """The teeth whose grid is there, and of it enough points with a deviation."""
+    points, needed = file.select(flank), math.prod(grid_shape(file))
+    known = np.isfinite(points.deviation)
+    teeth = np.unique(points.tooth).tolist()
+    counts = {tooth: (points.tooth == tooth, known & (points.tooth == tooth)) for tooth in teeth}
+    return [
+        t for t, (all_, there) in counts.items() if all_.sum() == needed and there.sum() >= (1 - _MOST_SILENT) * needed
+    ]
+
+
+def _full_tooth(points: FlankFile) -> int:
+    """A tooth that has all points of the grid."""
+    teeth, counts = np.unique(points.tooth, return_counts=True)
+    return int(teeth[np.argmax(counts)])
 
 
 def orders(topography: Topography) -> Orders:

@@ -23,6 +23,10 @@ HEADER = (
     "settings_sha256",
 )  # fmt: skip
 
+#: ``phase_zeroed`` of a file without the rotation of the work that both flanks had in common. Elsewhere it is false, or
+#: true where the deviation at the reference point of each flank was set to zero by turning, so that thickness is lost.
+COMMON = "common"
+
 _MARGIN = r"(0(\.[0-4]\d*)?|\d(\.\d+)?e-\d\d)"  # as Python prints it: 0.1, 0, 1e-05
 #: What these header values must look like: pattern, and the words that say it.
 _HEADER_VALUES = {
@@ -32,6 +36,10 @@ _HEADER_VALUES = {
     "grid": (r"([2-9]|[1-9]\d{1,5})x([2-9]|[1-9]\d{1,5})", "must read like 5x9, two or more each way"),
     "margins": (rf"{_MARGIN},{_MARGIN}", "must read like 0.1,0.1, less than 0.5"),
     "reference_point": (r"\d{1,6},\d{1,6}", "must read like 2,4"),
+    "phase_zeroed": (
+        rf"(?i:false|true|{COMMON})",
+        f"must be false, {COMMON} (both flanks turned alike) or true (each)",
+    ),
 }
 
 

@@ -60,7 +60,7 @@ def test_table_and_json_have_the_same_figures(command, measured):
     assert head.split() == ["flank", "figure", "value", "u", "from", "to", "unit", "method"]
     found = values(command, measured)
     figures = found["figures"]
-    assert len(rows) == len(figures) == 2 + 2 * (6 + 10 + 1 + 12 + 2) + 2 + 2 * 7
+    assert len(rows) == len(figures) == 2 + 1 + 2 * (6 + 10 + 1 + 12 + 2) + 2 + 2 * 7
     assert found["remarks"] == []
     for line, flank in ((concave, "concave"), (convex, "convex")):
         assert line.startswith(f"{flank} flank: errors of measurement will leave ")
@@ -116,7 +116,7 @@ def test_uncertainty_of_points_comes_from_option_then_file_then_model(command, m
     write_flank_csv(stated, replace(file, uncertainty=np.full(len(file), 0.9e-3)))
 
     def mean(path, *more):
-        found = values(command, path, "--no-register", *more)
+        found = values(command, path, "--no-register", "--no-rotation", *more)
         return found["source"], next(one["u"] for one in found["figures"] if one["figure"] == "mean")
 
     assert mean(stated) == ("u_um of the file", pytest.approx(0.9 / 45**0.5, rel=1e-9))
@@ -127,7 +127,7 @@ def test_uncertainty_of_points_comes_from_option_then_file_then_model(command, m
 
 
 def test_evaluation_shows_uncertainties_where_the_points_have_them(command, measured, tmp_path):
-    arguments = ("evaluate", measured, "--set", SET, "--no-register")
+    arguments = ("evaluate", measured, "--set", SET, "--no-register", "--no-rotation")
     silent = json.loads(command(*arguments, "--json")[1])
     assert "uncertainty" not in silent
     assert "uncertainties" not in command(*arguments)[1]

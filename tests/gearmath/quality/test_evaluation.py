@@ -67,7 +67,7 @@ def test_misses_and_missing_points_are_left_out_in_words_and_change_nothing_else
     found = evaluate_member(dirty, pinion, "pinion")
     for place, words in (
         ("convex flank, tooth 0, row 1, col 2", "off the smooth surface through the others; left out"),
-        ("convex flank, tooth 3, row 2, col 4", "off the same place of the other teeth; left out"),
+        ("convex flank, tooth 3, row 2, col 4", "off the other points of its tooth; left out"),
         ("convex flank, tooth 6, row 3, col 3", "not measured; left out"),
     ):
         assert len([remark for remark in found.remarks if remark.startswith(place) and words in remark]) == 1
@@ -101,7 +101,9 @@ def test_pitch_alone_is_judged_without_a_topography(pair, pinion):
     found, wanted = (evaluate_member(each, pinion, "pinion", False) for each in (only, bad))
     for flank in ("concave", "convex"):
         assert (found.flanks[flank].mean, found.flanks[flank].orders) == (None, None)
-        assert set(found.flanks[flank].as_dict()) == {"teeth_in_full", "F_p_um", "max_f_pt_um", "cumulative_um"}
+        assert set(found.flanks[flank].as_dict()) == {
+            "teeth_in_full", "F_p_um", "max_f_pt_um", "cumulative_um", "withheld",
+        }  # fmt: skip
         np.testing.assert_allclose(
             found.flanks[flank].pitch.cumulative, wanted.flanks[flank].pitch.cumulative, rtol=0, atol=1e-15
         )
@@ -109,14 +111,29 @@ def test_pitch_alone_is_judged_without_a_topography(pair, pinion):
     assert len(evaluation_figure("pinion", found).axes) == 2
 
 
-def test_teeth_measured_in_part_give_no_pitch_but_all_the_rest(pair, pinion):
+def test_teeth_measured_in_part_withhold_maxima_and_grades_but_nothing_else(pair, pinion):
     """Nine of twelve teeth all around."""
-    some = pair[0].pick(~np.isin(pair[0].tooth, [1, 4, 8]))
-    found = evaluate_member(some, pinion, "pinion")
+    bad, _ = pair
+    gone = [1, 4, 8]
+    found, wanted = (evaluate_member(each, pinion, "pinion") for each in (bad.pick(~np.isin(bad.tooth, gone)), bad))
     assert np.abs(found.registration.seat - SEAT)[:2].max() < 0.1 * UM
     assert found.thickness.deviation.shape == (9,)
-    assert (found.runout, found.verdict, found.flanks["concave"].pitch) == (None, None, None)
-    assert found.remarks[0].startswith("no pitch and no runout: concave flank: tooth 1 was not measured; pitch needs")
+    reason = "concave flank: no reading of teeth 1, 4, 8 (3 of 12)"
+    values = found.as_dict()
+    concave = values["flanks"]["concave"]
+    assert (concave["F_p_um"], concave["max_f_pt_um"]) == (None, None)
+    assert concave["withheld"] == {"F_p": reason, "max_f_pt": reason}
+    assert concave["max_deviation_um"] == pytest.approx(
+        wanted.flanks["concave"].topographies[0].extreme * 1000, abs=0.3
+    )
+    assert values["runout"]["F_r_um"] is None
+    assert values["tolerance"]["grade"] is None
+    assert set(values["tolerance"]["withheld"]) == {"f_pt", "F_p", "F_r"}
+    keep = ~np.isin(np.arange(12), gone)
+    for flank in ("concave", "convex"):
+        one, other = found.flanks[flank].pitch.cumulative, wanted.flanks[flank].pitch.cumulative
+        np.testing.assert_allclose(one[keep], other[keep], rtol=0, atol=0.2 * UM)
+        assert np.isnan(one[gone]).all()
 
 
 def test_zeroed_phase_says_nothing_of_the_thickness(pair, pinion):
@@ -175,5 +192,5 @@ def test_picture_shows_both_flanks_pitch_and_runout(pair, pinion):
     figure = evaluation_figure("pinion", evaluate_member(pair[0], pinion, "pinion"))
     labels = [place.get_ylabel() for place in figure.axes]
     assert labels.count("cumulative pitch deviation / µm") == 1
-    assert labels.count("radial shift of a ball / µm") == 1
+    assert labels.count("movement of a ball, normal to the pitch cone / µm") == 1
     assert "eccentricity 15.0 µm, tilt 10.0 µm/100 mm taken out" in figure.get_suptitle()

@@ -87,14 +87,18 @@ def test_one_tooth_has_no_pitch(teeth):
     assert evaluate_pitch(teeth(DEVIATIONS), 4, "convex") is None
 
 
-def test_some_but_not_all_teeth_are_refused_by_the_first_that_is_absent(teeth):
-    with pytest.raises(InputError, match=r"^concave flank: tooth 1 was not measured; pitch needs all 4 teeth, or one"):
-        evaluate_pitch(teeth(DEVIATIONS, order=[0, 2, 3]), 4, "concave")
+def test_tooth_that_was_not_measured_withholds_the_maxima_and_nothing_else(teeth):
+    """s = 0, -, -2, 5 µm: the teeth stand where they stand; the largest may be at the tooth that is not there."""
+    pitch = evaluate_pitch(teeth(DEVIATIONS, order=[0, 2, 3]), 4, "concave")
+    np.testing.assert_allclose(pitch.cumulative, np.array([0, np.nan, -2, 5]) * UM, rtol=1e-3)
+    assert pitch.withheld == "concave flank: no reading of tooth 1 (1 of 4)"
+    values = pitch.as_dict()
+    assert (values["F_p_um"], values["max_f_pt_um"]) == (None, None)
+    assert values["cumulative_um"][1] is None
 
 
-def test_points_beside_the_reference_point_are_refused(teeth):
-    with pytest.raises(InputError, match=r"^concave flank: not every tooth has the reference point, row 2, col 4$"):
-        evaluate_pitch(teeth(DEVIATIONS, place=(2, 5)), 4, "concave")
+def test_points_beside_the_reference_point_are_no_pitch(teeth):
+    assert evaluate_pitch(teeth(DEVIATIONS, place=(2, 5)), 4, "concave") is None
 
 
 @pytest.mark.parametrize("text", ["", "2", "2,4,6", "a,b", "2.0,4"])

@@ -100,7 +100,7 @@ def test_pitch_runout_and_thickness_are_those_without_the_drift_and_report_it():
         # at 15° from the middle n·t is 0.8 cos 15° + 0.6 sin 15° in size
         lever = {"concave": 1, "convex": -1}[flank] * (0.8 * math.cos(HALF) + 0.6 * math.sin(HALF))
         assert pitch.drift == pytest.approx(closure / lever, rel=1e-4)
-    np.testing.assert_allclose(evaluate_runout(drifted, 4).radial, evaluate_runout(clean, 4).radial, atol=1e-12)
+    np.testing.assert_allclose(evaluate_runout(drifted, 4, 0.0).shift, evaluate_runout(clean, 4, 0.0).shift, atol=1e-12)
     np.testing.assert_allclose(
         evaluate_thickness(drifted, 4).deviation, evaluate_thickness(clean, 4).deviation, atol=1e-12
     )
@@ -108,9 +108,12 @@ def test_pitch_runout_and_thickness_are_those_without_the_drift_and_report_it():
 
 @pytest.mark.parametrize("first", ["concave", "convex"])
 def test_runout_of_four_spaces_by_hand(first):
-    """Normals (0.6, ±0.8): the ball moves out by (δ + δ')/1.2. Sums 6, 6, 1.2, -1.2 µm: 5, 5, 1, -1; F_r = 6 µm."""
-    runout = evaluate_runout(spaces(np.array([3, 0, 1.2, -2.4]) * UM, np.array([3, 6, 0, 1.2]) * UM, first), 4)
-    np.testing.assert_allclose(runout.radial, np.array([5, 5, 1, -1]) * UM, rtol=0, atol=1e-12)
+    """A pitch cylinder, normals (0.6, ±0.8): the ball moves out by (δ + δ')/1.2.
+
+    Sums 6, 6, 1.2, -1.2 µm: 5, 5, 1, -1; F_r = 6 µm.
+    """
+    runout = evaluate_runout(spaces(np.array([3, 0, 1.2, -2.4]) * UM, np.array([3, 6, 0, 1.2]) * UM, first), 4, 0.0)
+    np.testing.assert_allclose(runout.shift, np.array([5, 5, 1, -1]) * UM, rtol=0, atol=1e-12)
     assert runout.total == pytest.approx(6 * UM, abs=1e-12)
     np.testing.assert_allclose(np.exp(1j * runout.azimuth), [1, 1j, -1, -1j], atol=1e-9)
 
@@ -120,8 +123,8 @@ def test_runout_of_an_eccentric_gear_is_twice_its_eccentricity_and_points_there(
     e = np.array([0, 10 * UM, 0])
     clean = spaces(np.zeros(4), np.zeros(4), lean=0.3)
     moved = clean.normal @ e
-    runout = evaluate_runout(replace(clean, deviation=moved, point=clean.point + moved[:, None] * clean.normal), 4)
-    np.testing.assert_allclose(runout.radial, np.array([0, 10, 0, -10]) * UM, rtol=0, atol=1e-12)
+    runout = evaluate_runout(replace(clean, deviation=moved, point=clean.point + moved[:, None] * clean.normal), 4, 0.0)
+    np.testing.assert_allclose(runout.shift, np.array([0, 10, 0, -10]) * UM, rtol=0, atol=1e-12)
     assert runout.total == pytest.approx(20 * UM, abs=1e-12)
     assert runout.eccentricity == (pytest.approx(10 * UM, abs=1e-12), pytest.approx(math.pi / 2, abs=1e-9))
 
@@ -146,7 +149,7 @@ def test_thickness_of_one_space_is_the_sum_of_its_flanks():
     file = spaces(np.array([1, 0, 0, 0]) * UM, np.array([10, 0, 0, 0]) * UM, order=[0])
     lever = 0.8 * math.cos(HALF) + 0.6 * math.sin(HALF)
     np.testing.assert_allclose(evaluate_thickness(file, 4).deviation, [11 * UM / lever], rtol=1e-9)
-    assert evaluate_runout(file, 4) is None
+    assert evaluate_runout(file, 4, 0.0) is None
     assert evaluate_thickness(file.select("concave"), 4) is None
 
 
@@ -156,12 +159,62 @@ def test_tooth_without_a_deviation_is_left_out_of_pitch_and_runout():
     pitch = evaluate_pitch(silent, 4, "concave")
     assert np.flatnonzero(np.isnan(pitch.cumulative)).tolist() == [2]
     assert np.flatnonzero(np.isnan(pitch.single)).tolist() == [2, 3]
+    assert pitch.withheld == "concave flank: no reading of tooth 2 (1 of 4)"
+    values = pitch.as_dict()
+    assert (values["F_p_um"], values["max_f_pt_um"], values["cumulative_um"][2]) == (None, None, None)
     lever = 0.8 * math.cos(HALF) + 0.6 * math.sin(HALF)
-    assert pitch.total == pytest.approx(5 * UM / lever, rel=1e-4)
-    assert pitch.largest_single == pytest.approx(5 * UM / lever, rel=1e-4)
-    assert np.isnan(evaluate_runout(silent, 4).radial[2])
-    assert pitch.as_dict()["cumulative_um"][2] is None
-    assert pitch.as_dict()["F_p_um"] == pytest.approx(5 / lever, rel=1e-4)
+    assert values["cumulative_um"][3] == pytest.approx(5 / lever, rel=1e-4)
+    runout = evaluate_runout(silent, 4, 0.0, noise=0.5 * UM)
+    assert np.flatnonzero(np.isnan(runout.shift)).tolist() == [2]
+    values = runout.as_dict()
+    assert values["withheld"] == {"F_r": "both flanks: no reading of space 2 (1 of 4)"}
+    assert {values[key] for key in ("F_r_um", "u_F_r_um", "F_r_of_noise_um", "mostly_noise")} == {None}
+    thickness = evaluate_thickness(silent, 4).as_dict()
+    assert thickness["range_um"] is None
+    assert thickness["withheld"] == {"range": "thickness was measured of 3 of 4 teeth"}
+
+
+def bevel(low, high, alphas=(0.35, 0.40), spiral=0.6, cone=0.9):
+    """Four spaces of a bevel gear: normals of a spiral angle and of unlike pressure angles, on a pitch cone."""
+    files = []
+    for tooth in range(4):
+        for flank, side, alpha, values in (("concave", 1, alphas[0], low), ("convex", -1, alphas[1], high)):
+            across = side * math.cos(alpha)
+            out, along = math.sin(alpha), -across * math.sin(spiral)
+            normal = (
+                out * math.cos(cone) + along * math.sin(cone), across * math.cos(spiral),
+                -out * math.sin(cone) + along * math.cos(cone),
+            )  # fmt: skip
+            files.append(row(flank, tooth, -side * math.radians(3), normal, values[tooth]))
+    return join(files)
+
+
+def test_index_errors_are_no_runout_whatever_the_pressure_angles():
+    """Spaces turned by 20, -5, 0, 7 µm of arc at radius 50: each flank by its arm, n·(z × R)."""
+    clean = bevel(np.zeros(4), np.zeros(4))
+    turned = (np.array([20, -5, 0, 7]) * UM / 50)[clean.tooth]
+    deviation = turned * (clean.point[:, 0] * clean.normal[:, 1] - clean.point[:, 1] * clean.normal[:, 0])
+    wrong = replace(clean, deviation=deviation, point=clean.point + deviation[:, None] * clean.normal)
+    assert evaluate_runout(wrong, 4, 0.9).total < 1e-3 * UM
+
+
+def test_narrow_space_moves_its_ball_out_by_hand():
+    """Space 2 narrower by 5 µm a flank, both at 0.35 rad: m·n = sin 0.35, so that the ball comes out by 14.58 µm."""
+    narrow = np.array([0, 0, 5, 0]) * UM
+    runout = evaluate_runout(bevel(narrow, narrow, (0.35, 0.35)), 4, 0.9)
+    np.testing.assert_allclose(runout.shift, np.array([0, 0, 14.58161, 0]) * UM, rtol=0, atol=1e-8)
+
+
+def test_noise_of_the_points_and_its_share_in_runout_by_hand():
+    """A pitch cylinder: u of a ball is u √2 / 1.2; tables: of four normal numbers the range is 2.0588, its s 0.8798."""
+    runout = evaluate_runout(spaces(np.array([3, 0, 1.2, -2.4]) * UM, np.zeros(4)), 4, 0.0, noise=0.5 * UM)
+    u = 0.5 * UM * math.sqrt(2) / 1.2
+    assert runout.uncertainty == pytest.approx(u * math.sqrt(2), rel=1e-9)
+    mean, spread = runout.of_noise
+    assert mean == pytest.approx(2.0588 * u, rel=0.03)
+    assert spread == pytest.approx(0.8798 * u, rel=0.05)
+    assert runout.mostly_noise is False
+    assert evaluate_runout(spaces(np.zeros(4), np.zeros(4)), 4, 0.0).as_dict()["mostly_noise"] is None
 
 
 def test_thickness_of_a_published_pair_is_what_the_spaces_leave(gear_set, mill):

@@ -98,6 +98,7 @@ def test_figures_are_those_of_the_evaluation(evaluation, figures):
     assert [values["both", f"eccentricity_{axis}"] for axis in "xy"] == pytest.approx(seat[:2], abs=1e-15)
     assert values["both", "F_r"] == pytest.approx(evaluation.runout.total, abs=1e-14)
     assert values["both", "mean_thickness"] == pytest.approx(evaluation.thickness.mean, abs=1e-14)
+    assert values["both", "rotation"] == pytest.approx(evaluation.rotation.angle, abs=1e-15)
     assert not evaluation.registration.tilt_found
     assert ("both", "tilt_x") not in values
 
@@ -231,7 +232,7 @@ def test_file_states_its_uncertainty_only_where_it_has_it_at_every_point(small):
 
 def test_smooth_figures_have_the_spread_of_20000_draws_within_3_percent(found):
     smooth = [one for one in found if one.figure.smooth]
-    assert len(smooth) == 2 * (6 + 10 + 12) + 2 + 1
+    assert len(smooth) == 2 * (6 + 10 + 12) + 2 + 1 + 1
     worst = max(abs(one.drawn / one.uncertainty - 1) for one in smooth)
     assert worst <= 0.03
 
