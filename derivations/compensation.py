@@ -5,9 +5,9 @@ The flank of other settings crosses a line P + t d at a point with the normal n.
     ∂t/∂x_k = n·R_k / (n·d)                     R_k = ∂R/∂x_k(θ) at fixed u, β, θ                 (20.1)
     ∂t/∂m_kj = θ^j ∂t/∂x_k                      the motion (10.1) of a machine setting            (20.2)
 
-The root line is where the tip of the blade touches the flank: at the height zero, which on an arc blade is
+The root line is where the tip of the blade touches the flank: at the height zero, which on a curved blade is
 
-    h(u) = h_b - r sin u = 0                                                                      (20.3)
+    h(u) = u + σ(u) sin α = 0                                                                     (20.3)
 
 at a cone distance L, its depth below the pitch cone D:  L = z_w cos δ + r_w sin δ,  D = z_w sin δ - r_w cos δ  (20.4)
 
@@ -28,7 +28,7 @@ from functools import cache
 
 import sympy as sp
 
-from derivations import cradle, cutter, flank, generation
+from derivations import cradle, flank, generation
 from derivations import notation as q
 from derivations.expression import Expression, Quantity
 from derivations.frames import J, K, Rz, rotation
@@ -36,15 +36,10 @@ from derivations.generation import Profile
 from derivations.proof import is_zero
 
 
-def spheric() -> Profile:
-    """The arc blade (10.3) whose arc follows from its point radius and pressure angle (1.4)."""
-    profile, center = generation.arc(), cutter.spheric_blade()["blade_arc"]
-    values = dict(zip(q.blade_arc.symbols, center, strict=True))
-    return Profile(*(value.subs(values, simultaneous=True) for value in (profile.radius, profile.height, sp.S.One)))
+def _rates(profile: Profile, *besides: sp.Symbol) -> tuple[list[sp.Matrix], sp.Expr]:
+    """∂R/∂x_k for every setting and for what else the blade depends on, in the frame w before it turns, and φ_w.
 
-
-def _rates(profile: Profile) -> tuple[list[sp.Matrix], sp.Expr]:
-    """∂R/∂x_k for every setting in the frame w before it turns, and φ_w, both at settings still to be moved.
+    Both at settings still to be moved.
 
     The derivative by x_k is that by x_k(θ): they differ by what does not depend on x_k.
     """
@@ -53,13 +48,13 @@ def _rates(profile: Profile) -> tuple[list[sp.Matrix], sp.Expr]:
     in_cutter = Rz(q.beta.symbol) * in_plane
     p = cradle.frame_w() * (cradle.apex_to_cutter() + cradle.cutter_to_machine(in_cutter))
     phi, axis = cradle.work_angle(), sp.Matrix(K)
-    rates = [p.diff(x) - phi.diff(x) * axis.cross(p) for x in q.settings.symbols]
+    rates = [p.diff(x) - phi.diff(x) * axis.cross(p) for x in (*q.settings.symbols, *besides)]
     return rates, phi
 
 
-def _sensitivity(name: str, description: str, profile: Profile, parameter: Quantity, *extra: Quantity) -> Expression:
-    """(20.1) of a blade as an Expression."""
-    rates, phi = _rates(profile)
+def _sensitivity(name: str, description: str, profile: Profile, shift: Quantity, *extra: Quantity) -> Expression:
+    """(20.1) of a blade as an Expression, by the settings and by the first of ``extra``."""
+    rates, phi = _rates(profile, *(quantity.symbol for quantity in extra[:1]))
     back = Rz(phi + q.index_ratio.symbol * q.beta.symbol)  # out of the frame w before it turns
     n, d = sp.Matrix(q.normal_w.symbol), sp.Matrix(q.line_direction.symbol)
     unturned = back * n
@@ -67,10 +62,10 @@ def _sensitivity(name: str, description: str, profile: Profile, parameter: Quant
         name,
         description,
         (
-            parameter, q.beta, q.theta, q.settings, q.index_ratio, q.blade_offset_angle, *extra, q.side, q.normal_w,
+            q.u, q.beta, q.theta, q.settings, q.index_ratio, q.blade_offset_angle, *extra, q.side, q.normal_w,
             q.line_direction,
         ),
-        ((q.sensitivity, sp.Matrix([unturned.dot(rate) / n.dot(d) for rate in rates])),),
+        ((shift, sp.Matrix([unturned.dot(rate) / n.dot(d) for rate in rates])),),
         requires=(n.dot(d) ** 2 - sp.Rational(1, 100),),
         source="envelope theorem along a line: the shift of u, beta, theta stays in the surface",
     )  # fmt: skip
@@ -82,17 +77,17 @@ def straight_sensitivity() -> Expression:
     return _sensitivity(
         "straight_sensitivity",
         "Shift along a line of the flank that a straight blade cuts, per unit of each setting (20.1).",
-        generation.straight(), q.u,
+        generation.straight(), q.sensitivity,
     )  # fmt: skip
 
 
 @cache
-def arc_sensitivity() -> Expression:
-    """(20.1) of an arc blade as an Expression; the arc moves with point radius and pressure angle."""
+def curved_sensitivity() -> Expression:
+    """(20.1) of a curved blade as an Expression, by the settings and by the curvature of the blade."""
     return _sensitivity(
-        "arc_sensitivity",
-        "Shift along a line of the flank that an arc blade cuts, per unit of each setting (20.1).",
-        spheric(), q.arc_angle, q.blade_spheric_radius, q.reference_height,
+        "curved_sensitivity",
+        "Shift along a line of the flank that a curved blade cuts, per unit of each setting and its curvature (20.1).",
+        generation.curved(), q.curved_rates, q.blade_curvature, q.reference_height,
     )  # fmt: skip
 
 
@@ -111,14 +106,14 @@ def coefficient_sensitivity() -> Expression:
 
 
 @cache
-def arc_height() -> Expression:
+def curved_height() -> Expression:
     """(20.3) as an Expression."""
     return Expression(
-        "arc_height",
-        "Height above the tip plane of a point of an arc blade (20.3).",
-        (q.arc_angle, q.blade_arc),
-        ((q.arc_tip_height, generation.arc().height),),
-        source="(10.3)",
+        "curved_height",
+        "Height above the tip plane of a point of a curved blade (20.3).",
+        (q.u, q.blade_pressure_angle, q.blade_curvature, q.reference_height),
+        ((q.curved_height, generation.curved().height),),
+        source="(10.8)",
     )
 
 
@@ -204,12 +199,13 @@ def prove_motion_enters_through_the_moved_setting_alone() -> None:
             assert all(moving[other].diff(rows[k, j]) == 0 for other in others)
 
 
-def prove_spheric_blade_keeps_its_arc() -> None:
-    """(20.1) The blade of ``spheric`` has the arc's points: at u = α it is on the straight blade, at the height h_r."""
-    profile, alpha = spheric(), q.blade_pressure_angle.symbol
-    at = {q.arc_angle.symbol: alpha}
-    assert is_zero(profile.height.subs(at) - q.reference_height.symbol)
-    assert is_zero(profile.radius.subs(at) - cutter.radius(q.reference_height.symbol))
+def prove_curvature_moves_the_blade_by_the_sagitta() -> None:
+    """(20.1) At κ = 0, dR/dκ is t²/2 across the blade: in the plane of the axis, by (-s cos α, sin α) of (10.8)."""
+    profile, kappa, alpha = generation.curved(), q.blade_curvature.symbol, q.blade_pressure_angle.symbol
+    t = (q.u.symbol - q.reference_height.symbol) / sp.cos(alpha)
+    straight = {kappa: 0}
+    assert is_zero(profile.radius.diff(kappa).subs(straight) + q.side.symbol * t**2 / 2 * sp.cos(alpha))
+    assert is_zero(profile.height.diff(kappa).subs(straight) - t**2 / 2 * sp.sin(alpha))
 
 
 def prove_depth_and_cone_distance_are_a_rotation_of_the_axial_plane() -> None:
@@ -255,8 +251,8 @@ def prove_place_on_the_mate_is_that_in_its_own_frame() -> None:
     assert is_zero(own[0] ** 2 + own[1] ** 2 - off.dot(off))
 
 
-def prove_height_of_an_arc_falls_to_the_tip_plane_where_its_sine_says_so() -> None:
-    """(20.3) At sin u = h_b/r the arc is in the tip plane."""
-    _, center_height, r = q.blade_arc.symbols
-    at = arc_height()["arc_tip_height"].subs(q.arc_angle.symbol, sp.asin(center_height / r))
-    assert is_zero(at)
+def prove_height_of_a_curved_blade_is_that_of_its_foot_where_it_touches() -> None:
+    """(20.3) At the reference height, and everywhere without curvature, h = u."""
+    height, u = curved_height()["curved_height"], q.u.symbol
+    assert is_zero(height.subs(u, q.reference_height.symbol) - q.reference_height.symbol)
+    assert is_zero(height.subs(q.blade_curvature.symbol, 0) - u)

@@ -5,6 +5,8 @@ Settings may move with the cradle, the work may index with the cutter, and the b
     x_k(θ) = x_k + Σ_j m_kj θ^j,   j = 1 ... 7                       machine settings k        (10.1)
     φ_w = φ_0(θ) + R_a(θ) θ + ι β,   ι = N_b/z                       indexing of face hobbing  (10.2)
     ρ = ρ_b + s r cos u,   h = h_b - r sin u                         arc blade, u its normal's angle   (10.3)
+    t = (u - h_r)/cos α,   σ = κ t²/(1 + √(1 - κ² t²))                curved blade, u its foot's height  (10.8)
+    ρ = r_p + s (u tan α - σ cos α),   h = u + σ sin α
     r_c = Rz(β) [r_p + (ρ - r_p) cos η, (ρ - r_p) sin η, -h]         blade offset angle η      (10.4)
     R = Rz(-φ_w) W (V_ls + T r_c)                                                              (10.5)
     n = ±R_u × R_β / |R_u × R_β|,   f = n · R_θ = 0                                            (10.6)
@@ -15,6 +17,12 @@ Modified roll is φ_0(θ): with the published coefficients 2C, 6D, 24E, 120F
 
 helical motion is X_b(θ), universal motion all of them. Everything is derived in the frame w before it turns,
 p = W (V_ls + T r_c), where a derivative by a is g_a = p_a - φ_w,a z × p: rotations change no product.
+
+(10.8) is the arc (10.3) again, by the height u of the foot of a point on its tangent at the reference height h_r, and
+by its curvature κ = 1/r instead of its radius, so that a straight blade is the case κ = 0 and not a limit:
+
+    u = h_r + r sin(α - u_arc) cos α                                                           (10.9)
+
 The spine's (3.1, 3.2, 4.2) are the case m = 0, ι = 0. A Formate flank has no roll: θ = 0 takes the place of f = 0.
 """
 
@@ -53,6 +61,29 @@ def arc() -> Profile:
     center_radius, center_height, r = q.blade_arc.symbols
     u, side = q.arc_angle.symbol, q.side.symbol
     return Profile(center_radius + side * r * sp.cos(u), center_height - r * sp.sin(u), side * sp.sign(r))
+
+
+def curved() -> Profile:
+    """(10.8): a blade of any curvature, straight or arc."""
+    u, side, kappa = q.u.symbol, q.side.symbol, q.blade_curvature.symbol
+    alpha = q.blade_pressure_angle.symbol
+    t = (u - q.reference_height.symbol) / sp.cos(alpha)
+    sag = kappa * t**2 / (1 + sp.sqrt(1 - kappa**2 * t**2))
+    blade = straight()
+    return Profile(blade.radius - side * sag * sp.cos(alpha), u + sag * sp.sin(alpha), blade.outward)
+
+
+@cache
+def arc_foot() -> Expression:
+    """(10.9) as an Expression."""
+    r, alpha = q.blade_spheric_radius.symbol, q.blade_pressure_angle.symbol
+    return Expression(
+        "arc_foot",
+        "Height of the foot of a point of an arc blade on its tangent at the reference height (10.9).",
+        (q.arc_angle, q.blade_pressure_angle, q.blade_spheric_radius, q.reference_height),
+        ((q.u, q.reference_height.symbol + r * sp.sin(alpha - q.arc_angle.symbol) * sp.cos(alpha)),),
+        source="projection of a radius on a tangent",
+    )
 
 
 @cache
@@ -183,6 +214,50 @@ def arc_generation() -> Expression:
         "Point, outward normal and meshing residual of an arc blade under every motion (10.3, 10.5, 10.6).",
         arc(), q.arc_angle, (q.blade_arc,),
     )  # fmt: skip
+
+
+@cache
+def curved_generation() -> Expression:
+    """(10.5, 10.6) of a curved blade as an Expression."""
+    return _expression(
+        "curved_generation",
+        "Point, outward normal and meshing residual of a curved blade under every motion (10.5, 10.6, 10.8).",
+        curved(), q.u, (q.blade_curvature, q.reference_height),
+    )  # fmt: skip
+
+
+def prove_curved_blade_without_curvature_is_straight() -> None:
+    """(10.8) κ = 0: radius and height of chapter 1, at every u."""
+    bent, blade = curved(), straight()
+    values = {q.blade_curvature.symbol: 0}
+    assert is_zero(bent.radius.subs(values) - blade.radius)
+    assert is_zero(bent.height.subs(values) - blade.height)
+
+
+def prove_curved_blade_is_the_arc_that_touches_the_straight_one() -> None:
+    """(10.8, 10.9) With κ = 1/r and u = h_r + r sin φ cos α it is the point u_arc = α - φ of (10.3) on the arc (1.4).
+
+    √(1 - κ² t²) = √(1 - sin² φ) = cos φ for |φ| < π/2, and r (1 - cos φ) = r sin² φ/(1 + cos φ).
+    """
+    phi, r = sp.Symbol("phi", real=True), q.blade_spheric_radius.symbol
+    alpha, side = q.blade_pressure_angle.symbol, q.side.symbol
+    foot = arc_foot()["u"].subs(q.arc_angle.symbol, alpha - phi)
+    values = {q.u.symbol: foot, q.blade_curvature.symbol: 1 / r}
+    root = sp.sqrt(1 - ((foot - q.reference_height.symbol) / sp.cos(alpha) / r) ** 2)
+    sag = r * sp.sin(phi) ** 2 / (1 + root)
+    assert is_zero((1 - sp.sin(phi) ** 2) - (root**2))
+    height = foot + sag.subs(root, sp.cos(phi)) * sp.sin(alpha)
+    radius = straight().radius.subs(q.u.symbol, foot) - side * sag.subs(root, sp.cos(phi)) * sp.cos(alpha)
+    for claimed, own in (
+        (curved().height, foot + sag * sp.sin(alpha)),
+        (curved().radius, straight().radius.subs(q.u.symbol, foot) - side * sag * sp.cos(alpha)),
+    ):
+        assert is_zero(claimed.subs(values, simultaneous=True) - own)
+    center = dict(zip(q.blade_arc.symbols, cutter.spheric_blade()["blade_arc"], strict=True))
+    at = {q.arc_angle.symbol: alpha - phi}
+    round_ = arc()
+    assert is_zero(round_.height.subs(center).subs(at) - height)
+    assert is_zero(round_.radius.subs(center).subs(at) - radius)
 
 
 def still() -> dict[sp.Symbol, sp.Expr]:

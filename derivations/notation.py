@@ -501,6 +501,10 @@ toprem_point_radius = _length(
     "toprem_point_radius", "r_{pT}", 20.0, 250.0, "radius at which Toprem meets the tip plane"
 )
 blade_spheric_radius = _length("blade_spheric_radius", "r", 200.0, 2000.0, "radius of a circular-arc blade")
+blade_curvature = Quantity(
+    "blade_curvature", "curvature of a blade's edge: one over its radius, zero where it is straight", "1/mm", r"\kappa",
+    (-0.01, 0.01),
+)  # fmt: skip
 reference_height = _length("reference_height", "h_r", 0.0, 15.0, "height at which arc and straight blade touch")
 blade_edge_radius = _length("blade_edge_radius", "r_e", 0.1, 3.0, "radius of the rounded blade edge")
 joint_height = _length("joint_height", "h_j", 0.0, 5.0, "height above the tip plane at which edge and blade join")
@@ -656,7 +660,12 @@ motion_rates = Quantity(
     "motion_rates", "shift of a flank along a line per unit of every coefficient of the motion", "mixed",
     r"\partial t/\partial m", shape=(10, 7), scale=1000.0,
 )  # fmt: skip
-arc_tip_height = Quantity("arc_tip_height", "height of a point of an arc blade above the tip plane", "mm", "h_u")
+curved_rates = Quantity(
+    "curved_rates", "shift of a flank along a line per unit of every setting, and of the curvature of the blade",
+    "mixed",
+    r"\partial t/\partial(\mathbf{x}, \kappa)", shape=(13,), scale=1000.0,
+)  # fmt: skip
+curved_height = Quantity("curved_height", "height of a point of a curved blade above the tip plane", "mm", "h_u")
 cone_place = _length("cone_place", "L", -500.0, 500.0, "cone distance of a point, along the pitch cone")
 cone_depth = _length("cone_depth", "D", -500.0, 500.0, "depth of a point below the pitch cone")
 mate_ratio = _factor("mate_ratio", "z_m/z", 0.1, 10.0, "teeth of the mate over teeth of the member")

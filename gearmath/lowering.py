@@ -46,6 +46,10 @@ class Kernel:
                     f"{self.name}: {kind}s {names} of the function do not carry the names of its quantities"
                 )
 
+    def __hash__(self) -> int:
+        """By its name: kernels are looked up wherever they are run, and hardly two of them share it."""
+        return hash(self.name)
+
     @property
     def name(self) -> str:
         return self.function.name()

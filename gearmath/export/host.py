@@ -111,7 +111,7 @@ def _library(files: tuple[tuple[str, str], ...]) -> ctypes.CDLL:
 
 
 def _pointer(array: np.ndarray) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)
+    return ctypes.c_void_p(array.__array_interface__["data"][0])
 
 
 #: Feeds recorded encoder edges to the step rule of the firmware; the remainder is kept as the interrupt keeps it.

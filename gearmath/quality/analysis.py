@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands, located
+from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands
 from gearmath.quality.identification import RANK
 from gearmath.quality.least_squares import minimize
 from gearmath.quality.variables import FREE, Variable, variables_of
@@ -168,9 +168,7 @@ def analyse(targets: Sequence[FlankTarget], free: Sequence[str] = FREE, run: Run
     """What the free settings can do to the deviations of some targets, common to all of them."""
     variables = variables_of(free, len(targets))
     problem = Problem(targets, variables, None, None, run)
-    rows = [
-        problem.columns(located(target, target.vector, run, problem.moving)[1], k) for k, target in enumerate(targets)
-    ]
+    rows = [problem.columns(problem.located(np.zeros(len(variables)), k)[1], k) for k in range(len(targets))]
     return Analysis(tuple(free), variables, np.concatenate(rows), problem.measured)
 
 

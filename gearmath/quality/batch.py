@@ -109,7 +109,7 @@ def _residuals(problem: Problem, v: np.ndarray, deviations: np.ndarray) -> tuple
     for k, target in enumerate(problem.targets):
         n = len(target.nominal.point)
         vectors = np.repeat(target.vector + problem.change(v, k), n, axis=0)
-        deviation, gradient, failed = located(target.repeated(d), vectors, problem.run, problem.moving)
+        deviation, gradient, failed = located(target.repeated(d), vectors, problem.run, problem.moving, problem.bending)
         parts.append(deviation.reshape(d, n))
         slopes.append(problem.columns(gradient, k).reshape(d, n, -1))
         found &= ~failed.reshape(d, n).any(axis=1)
@@ -168,12 +168,12 @@ def _residual_graph(problem: Problem, v: ca.MX, measured: ca.MX) -> tuple[ca.MX,
             if variable.target in (None, k):
                 scale[variable.index, column] = problem.scale[column]
         settings = target.settings + ca.mtimes(ca.DM(scale), v)
-        given: list[Any] = [settings, *(_shared(value) for value in target.given(target.vector, target.kind)[1:])]
+        given: list[Any] = [settings, *map(_shared, target.given(target.vector, target.kind)[1:])]
         repeated = [ca.repmat(value, 1, n) for value in given]
         points = (nominal.contact.T, *repeated, nominal.point.T, nominal.normal.T)
         _, deviation, gradient, _ = flank_on_line(target.kind).function.map(n)(*points)
         residuals.append(deviation.T)
-        jacobians.append(ca.mtimes(gradient.T, ca.DM(scale)))
+        jacobians.append(ca.mtimes(gradient[: len(SETTINGS), :].T, ca.DM(scale)))
     return ca.vertcat(*residuals) - measured, ca.vertcat(*jacobians)
 
 

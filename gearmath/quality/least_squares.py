@@ -30,7 +30,12 @@ _FAR = 1e30
 #: fast; afterwards, in a curved valley, slowly.
 _FIRST, _REFUSED, _FAST, _SLOW = 1e-9, 1e-7, 100, 4
 _LARGEST = 1e8
-_MOST_ITERATIONS = 60
+_MOST_ITERATIONS = 120
+#: A step that keeps less of its promise says that the valley is curved. The trial that tells how lies so far ahead, and
+#: the answer to it is believed where it is at most so many times as large as the step.
+_KEPT, _AHEAD, _BELIEVED = 0.75, 0.1, 1.5
+#: So many steps one after the other that gain less than this part of the sum of squares each: nothing more to gain.
+_STALLED, _IDLE = 3, 1e-3
 #: Converged: an undamped step would change the residual by less than this in the RMS, and less than this part. [mm]
 _STILL, _STILL_PART = 1e-10, 1e-7
 #: To this the residuals are known, rounding of coordinates: what falls of their squares must be more. [mm]
@@ -149,35 +154,65 @@ class Minimum:
     iterations: int
     converged: bool
 
+    @property
+    def cost(self) -> float:
+        """The sum of squares that is left."""
+        return float(self.residual @ self.residual)
+
 
 def minimize(
-    fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | None = None, matters: float = 0.0
-) -> Minimum:
-    """The variables within their bounds at which the residuals of ``fit`` are least, from zero on.
+    fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | None = None, matters: float = 0.0,
+    start: np.ndarray | None = None, most: int = _MOST_ITERATIONS,
+) -> Minimum:  # fmt: skip
+    """The variables within their bounds at which the residuals of ``fit`` are least, from ``start`` or zero on.
 
     ``fit`` returns residuals (m,) and their Jacobian (m,p), or None where the surface cannot be found; it must succeed
-    at zero. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls, and
-    none is sought that makes the sum of squares fall by no more than ``matters``.
+    at the start. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls,
+    and none is sought that makes the sum of squares fall by no more than ``matters``. Once a step has not kept its
+    promise, the valley is curved, and every step is bent along it; there are at most ``most`` steps. It has converged
+    where the linear model has nothing to gain, or where ``_STALLED`` steps one after the other gained next to nothing.
     """
-    p = len(lower)
-    step = step or compensation_step(p)
-    v, damping, iterations = np.zeros(p), _FIRST, 0
-    start = fit(v)
-    if start is None:
+    step = step or compensation_step(len(lower))
+    v = np.zeros(len(lower)) if start is None else start
+    damping, iterations, curved, idle = _FIRST, 0, False, 0
+    found = fit(v)
+    if found is None:
         raise ValueError("there is no residual at the start")
-    residual, jacobian = start
-    while iterations < _MOST_ITERATIONS:
+    residual, jacobian = found
+    while iterations < most:
         cost, matrix, gradient = residual @ residual, jacobian.T @ jacobian, jacobian.T @ residual
         _, possible = step(matrix, gradient, v, lower, upper, FLOOR)
-        if enough(possible, cost, len(residual), matters):
+        if enough(possible, cost, len(residual), matters) or idle >= _STALLED:
             return Minimum(v, residual, jacobian, iterations, True)
         iterations += 1
         change, promised = step(matrix, gradient, v, lower, upper, damping)
-        tried = fit(np.clip(v + change, lower, upper)) if np.isfinite(change).all() else None
+        if curved and np.isfinite(change).all():
+            change = change + _bend(fit, step, v, change, residual, jacobian, matrix, lower, upper, damping)
+        there = np.clip(v + change, lower, upper)
+        tried = fit(there) if np.isfinite(change).all() else None
         gained = -np.inf if tried is None else cost - tried[0] @ tried[0]
+        curved = curved or bool(gained < _KEPT * promised)
         damping = next_damping(damping, gained, promised)
         if tried is not None and gained > 0:
-            v, (residual, jacobian) = np.clip(v + change, lower, upper), tried
+            v, (residual, jacobian) = there, tried
+            idle = idle + 1 if gained < _IDLE * cost else 0
         elif damping > _LARGEST:
             break
     return Minimum(v, residual, jacobian, iterations, False)
+
+
+def _bend(
+    fit: Fit, step: Callable, v: np.ndarray, change: np.ndarray, residual: np.ndarray, jacobian: np.ndarray,
+    matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, damping: float,
+) -> np.ndarray:  # fmt: skip
+    """What follows the second derivative of the residuals along a step: its answer to half of it, the geodesic's.
+
+    The second derivative is from a trial a tenth of the way; an answer as large as the step itself is not believed.
+    """
+    ahead = fit(np.clip(v + _AHEAD * change, lower, upper))
+    if ahead is None:
+        return np.zeros_like(change)
+    half = ((ahead[0] - residual) / _AHEAD - jacobian @ change) / _AHEAD
+    answer, _ = step(matrix, jacobian.T @ half, np.clip(v + change, lower, upper), lower, upper, damping)
+    size = np.linalg.norm(answer)
+    return answer if size < _BELIEVED * np.linalg.norm(change) else np.zeros_like(change)

@@ -8,11 +8,13 @@ gradient by the settings and by the coefficients of their motion.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
 import casadi as ca
+import numpy as np
 
 from derivations import Quantity, notation
 from gearmath.bevel.generation_kernels import rolling_flag
@@ -20,8 +22,11 @@ from gearmath.bevel.kernels import kernel
 from gearmath.bevel.newton import contact_guess, newton_step, residual_size
 from gearmath.lowering import Kernel
 
-#: plain: face milling of chapters 2 to 4; straight and arc: the family of chapter 10, by its blade.
-Kind = Literal["plain", "straight", "arc"]
+#: plain: face milling of chapters 2 to 4; straight and curved: the family of chapter 10, by its blade.
+Kind = Literal["plain", "straight", "curved"]
+
+#: How a Kernel is run: as it stands, or compiled first (``gearmath.export.host.compile_kernel``).
+Run = Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]
 
 _NEWTON_STEPS = 6
 _STEP_LIMITS = (1.0, 0.05, 0.05)
@@ -30,8 +35,13 @@ _CUT = (notation.settings, notation.motion, notation.index_ratio, notation.blade
 INPUTS: dict[str, tuple[Quantity, ...]] = {
     "plain": (notation.settings, notation.side),
     "straight": (*_CUT, notation.side, rolling_flag),
-    "arc": (*_CUT, notation.blade_spheric_radius, notation.reference_height, notation.side, rolling_flag),
+    "curved": (*_CUT, notation.blade_curvature, notation.reference_height, notation.side, rolling_flag),
 }
+
+
+def as_it_stands(kernel: Kernel) -> Kernel:
+    """The Kernel itself, run by CasADi."""
+    return kernel
 
 
 @dataclass(frozen=True)
@@ -59,13 +69,11 @@ def family(kind: Kind, w: ca.SX, given: list[ca.SX], direction: ca.SX) -> Family
         return Family(point, meshing / settings[0], w[0], gradient)
     *cut, side, rolling = given
     (settings_at,) = kernel("moved_settings").function.call([settings, cut[1], w[2]])
-    if kind == "arc":
-        cut, blade = cut[:4], cut[4:]
-        arc = kernel("spheric_blade").function(settings[10], settings[11], *blade, side)
-        point, normal, meshing = kernel("arc_generation").function(*uvw, *cut, arc, side)
-        here = (*uvw, settings_at, *cut[2:], *blade, side, normal, direction)
-        gradient = kernel("arc_sensitivity").function(*here)
-        height = kernel("arc_height").function(w[0], arc)
+    if kind == "curved":
+        blade = cut[4:]
+        point, normal, meshing = kernel("curved_generation").function(*uvw, *cut, side)
+        gradient = kernel("curved_sensitivity").function(*uvw, settings_at, *cut[2:], side, normal, direction)
+        height = kernel("curved_height").function(w[0], settings[11], *blade)
     else:
         point, normal, meshing = kernel("straight_generation").function(*uvw, *cut, side)
         gradient = kernel("straight_sensitivity").function(*uvw, settings_at, *cut[2:], side, normal, direction)
@@ -76,7 +84,10 @@ def family(kind: Kind, w: ca.SX, given: list[ca.SX], direction: ca.SX) -> Family
 
 @cache
 def flank_on_line(kind: Kind = "plain") -> Kernel:
-    """Kernel: where the flank of other settings crosses a line, and the gradient of that distance by the settings."""
+    """Kernel: where the flank of other settings crosses a line, and the gradient of that distance by the settings.
+
+    Of a curved blade, the gradient (13,) ends with that by its curvature.
+    """
     w, given = ca.SX.sym("contact", 3), symbols(kind)
     point, direction = ca.SX.sym("line_point", 3), ca.SX.sym("line_direction", 3)
     at = family(kind, w, given, direction)
@@ -91,15 +102,19 @@ def flank_on_line(kind: Kind = "plain") -> Kernel:
     solution = guess
     for _ in range(_NEWTON_STEPS):
         solution = step(solution, *others)
+    outputs = (
+        notation.contact, notation.deviation,
+        notation.curved_rates if kind == "curved" else notation.sensitivity, residual_size,
+    )  # fmt: skip
     function = ca.Function(
         "flank_on_line" if kind == "plain" else f"{kind}_on_line",
         [guess, *others], [solution, *final(solution, *others)],
-        [quantity.name for quantity in quantities], ["contact", "deviation", "sensitivity", "residual_size"],
+        [quantity.name for quantity in quantities], [quantity.name for quantity in outputs],
     )  # fmt: skip
     return Kernel(
         function,
         "Deviation at a nominal point of the flank that other settings cut, with its gradient by the settings.",
         quantities,
-        (notation.contact, notation.deviation, notation.sensitivity, residual_size),
+        outputs,
         "family and meshing of chapters 3, 4 and 10 on a line; (20.1)",
     )

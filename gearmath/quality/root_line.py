@@ -20,7 +20,7 @@ from gearmath.bevel.kernels import kernel
 from gearmath.bevel.newton import contact_guess, newton_step, residual_size
 from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel
-from gearmath.quality.on_line import INPUTS, Kind, family, symbols
+from gearmath.quality.on_line import INPUTS, Run, as_it_stands, family, symbols
 from gearmath.quality.variables import parts
 
 _NEWTON_STEPS = 12
@@ -28,35 +28,36 @@ _STEP_LIMITS = (2.0, 0.1, 0.1)
 _TOLERANCE = 1e-9
 
 _depth_gradient = Quantity(
-    "depth_gradient", "depth gained per unit of every setting and of every coefficient of the motion", "mixed",
-    r"\partial D/\partial\mathbf{x}", shape=(82,),
+    "depth_gradient", "depth gained per unit of every setting, of every coefficient of the motion and of the curvature",
+    "mixed", r"\partial D/\partial\mathbf{x}", shape=(83,),
 )  # fmt: skip
 
 
 @cache
-def root_depth(kind: Kind) -> Kernel:
-    """Kernel: depth of the root line below the pitch cone at a cone distance, and its gradient."""
-    w, given, delta, distance = ca.SX.sym("w", 3), symbols(kind), ca.SX.sym("delta"), ca.SX.sym("distance")
-    at = family(kind, w, given, ca.SX([0, 0, 1]))
+def root_depth() -> Kernel:
+    """Kernel: depth of the root line below the pitch cone at a cone distance, and its gradient, for any blade."""
+    w, given, delta, distance = ca.SX.sym("w", 3), symbols("curved"), ca.SX.sym("delta"), ca.SX.sym("distance")
+    at = family("curved", w, given, ca.SX([0, 0, 1]))
     along, depth = kernel("root_place").function(at.point, delta)
     residual = ca.vertcat(at.height, along - distance, at.meshing)
     arguments = [w, *given, delta, distance]
     step = ca.Function("root_newton_step", arguments, [newton_step(residual, w, _STEP_LIMITS)])
     multipliers = ca.SX.sym("multipliers", 3)
     lagrangian = depth - ca.dot(multipliers, residual)
-    by_motion = ca.gradient(lagrangian, given[1]).T if kind != "plain" else ca.SX.zeros(7, 10)
-    gradient = ca.vertcat(ca.gradient(lagrangian, given[0]), ca.vec(ca.densify(by_motion)))
+    by_motion = ca.densify(ca.gradient(lagrangian, given[1]).T)
+    by_curvature = ca.gradient(lagrangian, given[4])
+    gradient = ca.vertcat(ca.gradient(lagrangian, given[0]), ca.vec(by_motion), ca.densify(by_curvature))
     slope = ca.Function("root_slope", [multipliers, *arguments], [gradient])
     solved = ca.solve(ca.jacobian(residual, w).T, ca.jacobian(depth, w).T)
     final = ca.Function("root_at", arguments, [depth, solved, ca.norm_2(residual)])
-    quantities = (contact_guess, *INPUTS[kind], notation.pitch_angle, notation.cone_distance)
+    quantities = (contact_guess, *INPUTS["curved"], notation.pitch_angle, notation.cone_distance)
     guess, *others = (ca.MX.sym(quantity.name, *(quantity.shape or (1,))) for quantity in quantities)
     solution = guess
     for _ in range(_NEWTON_STEPS):
         solution = step(solution, *others)
     found, lagrange, left = final(solution, *others)
     function = ca.Function(
-        f"{kind}_root_depth", [guess, *others],
+        "root_depth", [guess, *others],
         [solution, found, slope(lagrange, solution, *others), left],
         [quantity.name for quantity in quantities], ["contact", "cone_depth", "depth_gradient", "residual_size"],
     )  # fmt: skip
@@ -74,27 +75,32 @@ class RootLine:
     """Where the root of a flank is watched: cone distances (2,) [mm] of toe and heel, and starts (2,3) for u, β, θ."""
 
     how: Generation
-    arc_blade: tuple[float, float] | None
+    reference_height: float
     pitch_angle: float
     distances: np.ndarray
     start: np.ndarray
 
-    def depth(self, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Contact (2,3), depth (2,) [mm] and its gradient (2,82) for settings and motion (82,).
+    def depth(self, vector: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Contact (2,3), depth (2,) [mm] and its gradient (2,83) for settings, motion and curvature (83,).
 
         Raises ComputationError if the tip of the blade does not reach the flank there.
         """
-        settings, motion = parts(vector)
-        kind: Kind = "straight" if self.arc_blade is None else "arc"
-        cut = (settings, motion, self.how.index_ratio, self.how.blade_offset_angle, *(self.arc_blade or ()))
-        contact, depth, gradient, residual = root_depth(kind)(
-            self.start, *cut, self.how.side, float(self.how.rolling), self.pitch_angle, self.distances
+        blade = (self.how.blade_offset_angle, float(vector[-1]), self.reference_height)
+        contact, depth, gradient, residual = run(root_depth())(
+            self.start,
+            *parts(vector),
+            self.how.index_ratio,
+            *blade,
+            self.how.side,
+            float(self.how.rolling),
+            self.pitch_angle,
+            self.distances,
         )
         if not (residual <= _TOLERANCE).all():
             raise ComputationError("the tip of the blade does not reach the root of the flank")
         return contact, depth, gradient
 
-    def sunk(self, before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """How much deeper (2,) [mm] the root lies after a change, at toe and heel, and its gradient (2,82)."""
-        _, depth, gradient = self.depth(after)
-        return depth - self.depth(before)[1], gradient
+    def sunk(self, before: np.ndarray, after: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray]:
+        """How much deeper (2,) [mm] the root lies after a change, at toe and heel, and its gradient (2,83)."""
+        _, depth, gradient = self.depth(after, run)
+        return depth - self.depth(before, run)[1], gradient

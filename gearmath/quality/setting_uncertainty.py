@@ -134,8 +134,10 @@ def _held(found: Identification) -> tuple[str, ...]:
 def curvature(target: FlankTarget, found: Identification, k: int, pull: np.ndarray) -> np.ndarray:
     """Σ_i pull_i ∇²t_i (p,p) of the points (n,) of target k, by the scaled variables, at the solution."""
     mine = np.array([variable.target in (None, k) for variable in found.variables])
-    moving = bool((found.index >= len(SETTINGS)).any())
-    kind = "straight" if target.kind == "plain" and (moving or found.motion.any()) else target.kind
+    moving = bool(((found.index >= len(SETTINGS)) & (found.index < SIZE - 1)).any())
+    bending = bool((found.index == SIZE - 1).any())
+    kind = target.kind_of(target.vector + found.change(k), bending)
+    kind = "straight" if kind == "plain" and moving else kind
     spread = np.zeros((SIZE, len(mine)))
     spread[found.index, np.arange(len(mine))] = found.scale * mine
     change = ca.MX.sym("change", len(mine))
@@ -143,17 +145,22 @@ def curvature(target: FlankTarget, found: Identification, k: int, pull: np.ndarr
     given = list(target.given(target.vector, kind))
     given[0] = vector[: len(SETTINGS)]
     if kind != "plain":
-        given[1] = ca.reshape(vector[len(SETTINGS) :], given[1].shape[1], given[1].shape[0]).T
+        given[1] = ca.reshape(vector[len(SETTINGS) : SIZE - 1], given[1].shape[1], given[1].shape[0]).T
+    if kind == "curved":
+        given[4] = vector[SIZE - 1]
     n, at = len(pull), target.nominal
     shared = [ca.repmat(ca.MX(value), 1, n) for value in given]
     solved = flank_on_line(kind).function.map(n)(at.contact.T, *shared, at.point.T, at.normal.T)
     contact, _, by_settings, _ = solved
+    by_settings, by_curvature = by_settings[: len(SETTINGS), :], by_settings[len(SETTINGS) :, :]
     gradient = ca.mtimes(by_settings, ca.DM(pull))
     if moving:
         by_motion = kernel("coefficient_sensitivity").function.map(n)(contact[2, :], by_settings)
         width = by_motion.shape[1] // n
         summed = ca.mtimes(by_motion, ca.DM(np.kron(pull[:, None], np.eye(width))))
         gradient = ca.vertcat(gradient, ca.vec(summed.T))
+    if bending:
+        gradient = ca.vertcat(gradient, ca.MX(SIZE - 1 - gradient.shape[0], 1), ca.mtimes(by_curvature, ca.DM(pull)))
     by_change = ca.mtimes(ca.DM(spread[: gradient.shape[0]]).T, gradient)
     slope = ca.Function("curvature", [change], [ca.jacobian(by_change, change)])
     return np.array(slope(np.zeros(len(mine))))

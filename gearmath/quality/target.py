@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from gearmath.bevel.flank import solve_flank
 from gearmath.bevel.generation import Generation
-from gearmath.bevel.method import blade_sections, cut_generation_of
+from gearmath.bevel.kernels import kernel
+from gearmath.bevel.method import cut_generation_of
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
@@ -15,7 +18,7 @@ from gearmath.quality.pitch import reference_point
 from gearmath.quality.places import file_grid
 from gearmath.quality.root_line import RootLine
 from gearmath.quality.topography import grid_shape, local_coordinates
-from gearmath.specs.bevel_set import SIDES, Flank, Member
+from gearmath.specs.bevel_set import Flank, Member
 from gearmath.specs.flank_csv import FlankFile
 
 #: Points of the file and of the set must agree this well, or the file belongs to another set. [mm]
@@ -67,12 +70,13 @@ def target_of(
 ) -> FlankTarget:  # fmt: skip
     """A target at the ``used`` ones (grid,) of nominal points, with the settings that the machine is set to."""
     spec, how = member.flank(flank), cut_generation_of(member, flank)
+    nominal = by_foot(spec, nominal)
     used = np.ones(len(nominal.point), dtype=bool) if used is None else used
     return FlankTarget(
         how,
         FlankPoints(nominal.contact[used], nominal.point[used], nominal.normal[used]),
         np.zeros(int(used.sum())) if deviation is None else deviation,
-        arc_blade(spec),
+        *blade_curve(spec),
         None if place is None else place[used],
         root_line(member, flank, how, nominal),
         used,
@@ -80,23 +84,36 @@ def target_of(
     )
 
 
-def arc_blade(spec: Flank) -> tuple[float, float] | None:
-    """Radius and reference height of an arc blade [mm], None for a straight one."""
-    return None if spec.blade_spheric_radius is None else (spec.blade_spheric_radius, spec.blade_reference_height)
+def blade_curve(spec: Flank) -> tuple[float, float]:
+    """Curvature [1/mm] of the blade of a flank, zero where it is straight, and its reference height [mm]."""
+    return 0.0 if spec.blade_spheric_radius is None else 1 / spec.blade_spheric_radius, spec.blade_reference_height
+
+
+def by_foot(spec: Flank, nominal: FlankPoints) -> FlankPoints:
+    """Points of a flank with the height of the foot (10.9) as the blade parameter, as the kernels on a line take it."""
+    if spec.blade_spheric_radius is None:
+        return nominal
+    (foot,) = kernel("arc_foot")(
+        nominal.contact[:, 0], spec.nominal.vector[-1], spec.blade_spheric_radius, spec.blade_reference_height
+    )
+    return replace(nominal, contact=np.column_stack([foot, nominal.contact[:, 1:]]))
 
 
 def root_line(member: Member, flank: str, how: Generation, nominal: FlankPoints) -> RootLine:
-    """The root line of a flank, watched near toe and heel; the starts are the nominal points nearest to them."""
-    blank, section = member.blank, blade_sections(member.flank(flank), SIDES[flank])["main"]
+    """The root line of a flank, watched near toe and heel; the starts are the nominal points nearest to them.
+
+    ``nominal`` is as ``by_foot`` has it.
+    """
+    blank = member.blank
     half = (0.5 - _ROOT_MARGIN) * blank.face_width
     distances = blank.mean_cone_distance + half * np.array([-1.0, 1.0])
     cone = np.linalg.norm(nominal.point, axis=1)
     # of the lowest points, as the blade counts, that nearest in cone distance
-    height = np.argsort(nominal.contact[:, 0] * (-1 if section.tip_is_upper else 1))
+    height = np.argsort(nominal.contact[:, 0])
     lowest = height[: max(2, len(height) // 5)]
     start = np.array([nominal.contact[lowest[np.argmin(np.abs(cone[lowest] - one))]] for one in distances])
-    start[:, 0] = section.upper if section.tip_is_upper else section.lower
-    return RootLine(how, arc_blade(member.flank(flank)), np.radians(blank.pitch_angle), distances, start)
+    start[:, 0] = 0.0
+    return RootLine(how, member.flank(flank).blade_reference_height, np.radians(blank.pitch_angle), distances, start)
 
 
 def _check_grid(flank: str, points: FlankFile, rows: int, columns: int) -> None:

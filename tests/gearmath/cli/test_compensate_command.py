@@ -24,7 +24,7 @@ UNIVERSAL, HOBBED = "crown_gear_universal_14x39.toml", "crown_gear_hobbed_14x39.
 def left_by(member, name, flank, **errors):
     """Deviations of a flank whose machine is off by ``errors``, by names of settings and motions (dots as __)."""
     target = target_of(member, flank, solve_flank(member, name, flank, blank_grid(member)))
-    change = np.zeros(82)
+    change = np.zeros(83)
     for key, value in errors.items():
         change[NAMES.index(key.replace("__", "."))] = value
     return target, predicted(target, target.vector + change)[0]

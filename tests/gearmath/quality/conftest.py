@@ -194,13 +194,13 @@ def artefacts() -> type[_Artefacts]:
 def brute_force(moved_edge) -> SimpleNamespace:
     """What a flank of changed settings really leaves, by the moving blade edge: no derivative, no equation of meshing.
 
-    ``left(member, flank, target, change)`` is the deviation (n,) at the points of a target for a change (82,) of its
+    ``left(member, flank, target, change)`` is the deviation (n,) at the points of a target for a change (83,) of its
     settings and motion, searched for over all cradle angles around each point.
     """
 
     def changed(member: Member, flank: str, change: np.ndarray) -> object:
         blade, spec = moved_edge.blade_of(member, flank), member.flank(flank)
-        settings, motion = change[:10], change[12:].reshape(10, 7)
+        settings, motion = change[:10], change[12:82].reshape(10, 7)
         moving = {}
         for name, row, first, more in zip(MACHINE_SETTINGS, blade.moving.values(), settings, motion, strict=True):
             assert name in blade.moving

@@ -143,7 +143,7 @@ def test_root_line_is_held_and_said_to_hold_back(gear_set):
     assert np.abs(sunk).max() == pytest.approx(0.03, abs=2e-3)
     # the gradient, by differences of the depth itself
     for name, h in (("sliding_base", 1e-3), ("machine_root_angle", 1e-5), ("radial_distance", 1e-3)):
-        step = h * np.eye(82)[SETTINGS.index(name)]
+        step = h * np.eye(83)[SETTINGS.index(name)]
         at = target.vector + held.change()
         up, down = (target.root.sunk(target.vector, at + sign * step)[0] for sign in (1, -1))
         np.testing.assert_allclose((up - down) / (2 * h), gradient[:, SETTINGS.index(name)], rtol=1e-5, atol=1e-8)
