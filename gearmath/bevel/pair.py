@@ -7,6 +7,7 @@ nominal flanks are checked strictly, those of corrected settings by how far they
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
@@ -19,6 +20,7 @@ from gearmath.bevel.check_mates import Cut, check_mates, check_space
 from gearmath.bevel.method import cut_generation_of, generation_of
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.errors import InputError
+from gearmath.files import read_text
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member, load_bevel_set
 
 #: What corrected settings may change of a flank at the mean point: either angle [degree], the arc over the module.
@@ -36,21 +38,24 @@ def load_pair(path: Path) -> BevelSet:
     try:
         check_pair(pair)
     except InputError as error:
-        raise InputError(f"{path}: {error}") from error
+        unit = tomllib.loads(read_text(path)).get("unit", "mm")
+        raise InputError(
+            f"{path}: {error}" + ("" if unit == "mm" else f" (lengths in mm, the file has {unit})")
+        ) from error
     return pair
 
 
 def check_pair(pair: BevelSet) -> None:
     """Refuse a set that is no physical pair. Raises InputError naming member, flank, key, value and limit."""
-    members = {name: pair.member(name) for name in MEMBERS if getattr(pair, name) is not None}
-    both = len(members) == len(MEMBERS)
-    if both:
-        check_cones(pair.pinion, pair.gear, pair.shaft_angle)
+    members = pair.members
+    pinion, gear = pair.pinion, pair.gear
+    if pinion is not None and gear is not None:
+        check_cones(pinion, gear, pair.shaft_angle)
     for name, member in members.items():
         check_blank(member, name)
-    if both:
-        check_blanks(pair.pinion, pair.gear, pair.shaft_angle)
-        check_methods(pair.pinion, pair.gear)
+    if pinion is not None and gear is not None:
+        check_blanks(pinion, gear, pair.shaft_angle)
+        check_methods(pinion, gear)
     for name, member in members.items():
         check_blades(member, name)
     cut: dict[str, Cut] = {name: {} for name in members}

@@ -269,7 +269,8 @@ class Member(Sheet):
         if not abs(S - r) - slack <= R <= S + r + slack:
             raise ValueError(
                 f"{name}.blade_point_radius = {shown(r):g}: no real contact, the cutter does not reach the mean point: "
-                f"at radial_distance = {shown(S):g} it must lie between {shown(abs(R - S) - slack):.4g} and {shown(R + S + slack):.4g}"
+                f"at radial_distance = {shown(S):g} it must lie between {shown(abs(R - S) - slack):.4g} and "
+                f"{shown(R + S + slack):.4g}"
             )
 
     def flank(self, flank: str) -> Flank:
