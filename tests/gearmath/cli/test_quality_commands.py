@@ -62,7 +62,7 @@ def test_evaluation_prints_a_table_and_json_with_the_same_figures(command, measu
         assert [float(cell) for cell in row[1:]] == pytest.approx([flank[name] for name in head[1:]], abs=6e-4)
         assert len(flank["surface_coefficients"]) == 10
     assert {row[0] for row in rows} == {"concave", "convex"}
-    assert f"runout F_r {values['runout']['F_r_um']:.2f} um" in out
+    assert f"runout F_r {values['runout']['F_r_um']:.2f} ± {values['runout']['u_F_r_um']:.2f} um, normal to" in out
     assert f"clamping taken out: eccentricity {values['registration']['eccentricity_um']:.2f} ±" in out
     assert "grades: f_pt " in out
     assert "no conformity claimed" in out
