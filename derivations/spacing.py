@@ -9,8 +9,8 @@ are by δ and δ' out of their places move it by Δ along m, and the work turns 
     Δ = (δ ℓ' - δ' ℓ) / (m·n ℓ' - m·n' ℓ),   ε = (m·n δ' - m·n' δ) / (m·n ℓ' - m·n' ℓ)
 
 Runout F_r is the range of Δ over the spaces. A space that is indexed wrongly by ε has Δ = 0; one that is too narrow by
-δ on each flank, at the pressure angle α, has Δ = δ / sin α; one of a gear that is eccentric by e towards μ has
-Δ = e cos δ_0 cos(A - μ).
+δ on each flank, at the pressure angle α, has Δ = δ / sin α; one between like flanks of a gear that is eccentric by e
+towards μ has Δ = e cos δ_0 cos(A - μ).
 At the radius r of the reference points a flank makes its tooth thicker, along the circle, by
 
     E = δ r / |n·(z_w × R)|                                                                    (19.2)
