@@ -116,10 +116,24 @@ def prove_meshing_equals_the_published_closed_form() -> None:
 
 
 def prove_start_values_put_the_cutter_circle_through_the_point() -> None:
-    """(4.3) The distance from the cutter centre to the crown-gear point is the cutting radius."""
-    S, d, rho, azimuth = sp.symbols("S d rho azimuth", positive=True)
-    cosine = (S**2 + d**2 - rho**2) / (2 * S * d)
-    for sign in (1, -1):
-        polar = azimuth + sign * sp.acos(cosine)
-        gap = sp.expand_trig(sp.cos(polar - azimuth))
-        assert sp.simplify(S**2 + d**2 - 2 * S * d * gap - rho**2) == 0
+    """(4.3) From the cutter centre at S, q + θ to the place of the point in the machine plane is the cutting radius ρ.
+
+    The place is that of (z_w, r_w) with the point above the work axis, turned by the root angle and moved by X_p, E_m.
+    """
+    S, z, r, X_p, E_m, X_b, gamma, alpha, point = (
+        sp.Rational(text) for text in ("75", "76", "26", "1", "7/2", "1/4", "7/24", "3/8", "80")
+    )
+    values = {
+        q.radial_distance.symbol: S, q.cradle_angle.symbol: 1, q.cutter_tilt.symbol: 0, q.cutter_swivel.symbol: 0,
+        q.blank_offset.symbol: E_m, q.sliding_base.symbol: X_b, q.machine_center_to_crossing_point.symbol: X_p,
+        q.machine_root_angle.symbol: gamma, q.blade_point_radius.symbol: point, q.blade_pressure_angle.symbol: alpha,
+        q.axial.symbol: z, q.radial.symbol: r,
+    }  # fmt: skip
+    for side in (1, -1):
+        height, _, theta = (sp.N(each.subs({**values, q.side.symbol: side}), 40) for each in contact_start()["contact"])
+        center = S * sp.Matrix([sp.cos(1 + theta), sp.sin(1 + theta)])
+        # along the work axis (cos γ, sin γ) and square to it, in the plane of machine axis and work axis
+        place = sp.Matrix([(z - X_p) * sp.cos(gamma) + r * sp.sin(gamma), -E_m])
+        level = (z - X_p) * sp.sin(gamma) - r * sp.cos(gamma)
+        assert abs(sp.N(height + level + X_b, 30)) < sp.Rational(1, 10**25)
+        assert abs(sp.N((place - center).norm() - point - side * height * sp.tan(alpha), 30)) < sp.Rational(1, 10**25)

@@ -264,8 +264,17 @@ def prove_spiral_angle_does_not_depend_on_the_pressure_angle() -> None:
 
 def prove_module_is_that_of_the_published_sample() -> None:
     """(19.4) ISO 23509:2016 sample 1: 14 teeth, d_m = 54.918, β_m = 35°, m_mn = 3.213 to its printed digits."""
-    module = sp.Rational(54918, 1000) * sp.cos(sp.pi * 35 / 180) / 14
-    assert abs(sp.N(module) - sp.Rational(3213, 1000)) < sp.Rational(5, 10_000)
+    delta, beta, alpha = sp.atan(sp.Rational(14, 39)), sp.pi * 35 / 180, sp.pi / 9
+    distance = sp.Rational(54918, 1000) / (2 * sp.sin(delta))
+    generatrix = sp.Matrix([sp.sin(delta), 0, sp.cos(delta)])
+    n = sp.cos(alpha) * (sp.cos(beta) * sp.Matrix([0, 1, 0]) - sp.sin(beta) * generatrix)
+    n += sp.sin(alpha) * sp.Matrix([sp.cos(delta), 0, -sp.sin(delta)])
+    given = {q.pitch_angle.symbol: delta, q.mean_cone_distance.symbol: distance, q.teeth.symbol: 14}
+    given |= dict(zip(q.point_w.symbols, distance * generatrix, strict=True))
+    given |= dict(zip(q.normal_w.symbols, n, strict=True))
+    found = mean_module()
+    assert abs(sp.N(found["trace_angle"].subs(given) - beta, 30)) < sp.Rational(1, 10**20)
+    assert abs(sp.N(found["module_found"].subs(given), 30) - sp.Rational(3213, 1000)) < sp.Rational(5, 10_000)
 
 
 def prove_tolerance_diameter_lies_at_half_the_working_depth() -> None:

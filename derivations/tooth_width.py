@@ -261,16 +261,18 @@ def prove_teeth_and_backlash_fill_the_pitch() -> None:
 def prove_chord_is_that_of_the_arc() -> None:
     """(13.4) Ends of the arc s on the diameter d: distance and sagitta; on the base cylinder
     cos² β_b = 1 - sin² β cos² α."""
-    d, s = sp.symbols("d s", positive=True)
-    half = s / d
-    ends = [d / 2 * sp.Matrix([sp.cos(angle), sp.sin(angle)]) for angle in (half, -half)]
+    tooth, d, s = chordal_tooth(), sp.Symbol("d", positive=True), q.mean_normal_thickness.symbol
+    diameter, delta, pitch = tooth["mean_normal_diameter"], q.pitch_angle.symbol, q.mean_pitch_diameter.symbol
+    on_d = {pitch: d * pitch / diameter}  # the member whose normal section has the diameter d
+    ends = [d / 2 * sp.Matrix([sp.cos(angle), sp.sin(angle)]) for angle in (s / d, -s / d)]
     chord = ends[0] - ends[1]
-    assert is_zero(chord.dot(chord) - (d * sp.sin(half)) ** 2)
-    assert is_zero(d / 2 - ends[0][0] - d * (1 - sp.cos(half)) / 2)
-    beta, alpha = sp.symbols("beta alpha", real=True)
+    assert is_zero(chord.dot(chord) - tooth["mean_normal_chordal_thickness"].subs(on_d) ** 2)
+    sagitta = (tooth["mean_chordal_addendum"] - q.mean_addendum.symbol).subs(on_d)
+    assert is_zero((d / 2 - ends[0][0]) * sp.cos(delta) - sagitta)
+    beta, alpha = q.mean_spiral_angle.symbol, q.mean_normal_pressure_angle.symbol
     transverse = sp.tan(alpha) / sp.cos(beta)  # tan α_t
-    base = sp.tan(beta) / sp.sqrt(1 + transverse**2)  # tan β_b = tan β cos α_t
-    assert sp.simplify(1 / (1 + base**2) - (1 - sp.sin(beta) ** 2 * sp.cos(alpha) ** 2)) == 0
+    squared = 1 / (1 + sp.tan(beta) ** 2 / (1 + transverse**2))  # cos² β_b, with tan β_b = tan β cos α_t
+    assert sp.simplify(pitch / (squared * sp.cos(delta)) - diameter) == 0
 
 
 def prove_slot_and_tooth_fill_the_pitch_along_the_face() -> None:
@@ -345,6 +347,8 @@ def prove_round_of_the_edge_takes_its_share_of_tip_and_flank() -> None:
 
 def prove_mutilation_is_the_sagitta_of_the_round() -> None:
     """(13.13) The tip of the opposite blade overlaps the round by k r - w: (k r - w)² = 2 r y."""
-    y, w, k = sp.symbols("y w k", positive=True)
-    radius = (y + w * k + sp.sqrt(y**2 + 2 * y * w * k)) / k**2
-    assert sp.simplify((k * radius - w) ** 2 - 2 * radius * y) == 0
+    radii, alpha = edge_radii(), sp.asin(sp.Rational(5, 13))
+    given = {q.flank_pressure_angle.symbol: alpha}
+    radius, k = radii["edge_radius_mutilation"].subs(given), sp.Rational(2, 3)  # (1 - 5/13) / (12/13)
+    w = q.minimum_slot_width.symbol - radii["blade_point_width"]
+    assert sp.simplify(sp.expand((k * radius - w) ** 2 - 2 * radius * q.mutilation.symbol)) == 0

@@ -28,12 +28,16 @@ _NUMBER = re.compile(
     r'\s*(?:mm|inch|in|")?',
     re.IGNORECASE | re.ASCII,
 )
-_COMMENT = re.compile(r"#|!|%|//|\$|'")
+_COMMENT, _TRAILING = re.compile(r"#|!|%|//|\$|'"), re.compile(r"\s+(?:#|!|//).*")
+_BRACKETS = str.maketrans("()[]{}<>", " " * 8)
+#: Columns of fixed width leave no blank before a sign.
+_GLUED = re.compile(r"(\.\d+)(?=[+-]\d*\.\d)")
+_DECIMAL_COMMA = re.compile(r"[A-Za-z]*=?[+-]?\d+,\d+([DEde][+-]?\d+)?")
 _AXES = "xyz"
 _ACTUAL = r"(?:act|actual|ist|meas|measured|mess|m)"
 _COORDINATE = re.compile(rf"([xyz])[ _.-]*{_ACTUAL}?|{_ACTUAL}[ _.-]+([xyz])")
 _MEASURED = re.compile(rf"([xyz])[ _.-]*{_ACTUAL}|{_ACTUAL}[ _.-]+([xyz])")
-_NORMAL = re.compile(r"(?:n|norm|normal)[ _.-]*([xyz])|([ijk])|([uvw])")
+_NORMAL = re.compile(r"(?:n|norm|normal|v|vec)[ _.-]*([xyz])|([ijk])|([uvw])")
 #: Rounding of normals, and how near to each other two sets of points of one file would be. [file's unit]
 _UNIT_LENGTH, _NEAR = 0.01, 5.0
 
@@ -51,7 +55,8 @@ class PointText:
 
 def read_point_text(path: Path, unit: str = "mm") -> PointText:
     """The points of a text. Raises InputError naming file, line, value and what is wrong with it."""
-    lines = [line.replace("\N{MINUS SIGN}", "-").replace("\xa0", " ").strip() for line in _text(path).splitlines()]
+    text = _text(path).replace("\N{MINUS SIGN}", "-").replace("\xa0", " ").replace("\x1a", "")
+    lines = [_TRAILING.sub("", line.strip()) for line in text.splitlines()]
     split, decimal_comma = _separator(lines)
     cells = {number: _cells(line, split, decimal_comma) for number, line in enumerate(lines, 1) if line}
     rows, names, remarks = _rows(path, lines, cells, split)
@@ -98,7 +103,8 @@ def _separator(lines: Sequence[str]) -> tuple[str, bool]:
     if not any("," in row for row in rows):
         return r"\s+", False
     # blanks alone between the columns: 1,5 2,5 3,5
-    decimal = points < commas and sum(len(re.findall(r"\d,\d+\s+[-+\d]", row)) >= 2 for row in rows) > len(rows) / 2
+    three = sum(sum(bool(_DECIMAL_COMMA.fullmatch(cell)) for cell in row.split()) >= 3 for row in rows)
+    decimal = points < commas and three > len(rows) / 2
     return (r"\s+", True) if decimal else (r"\s*,\s*", False)
 
 
@@ -107,12 +113,12 @@ def _cells(line: str, split: str, decimal_comma: bool) -> list[float | None]:
     if _COMMENT.match(line):
         return []
     found: list[float | None] = []
-    for cell in re.split(split, line.strip('"')):
+    for cell in re.split(split, _GLUED.sub(r"\1 ", line.translate(_BRACKETS)).strip(' "')):
         whole = _number(cell, decimal_comma)
         parts = [
             _number(part, decimal_comma) for part in re.split(r"[\s,;]+" if not decimal_comma else r"[\s;]+", cell)
         ]
-        found += parts if whole is None and sum(part is not None for part in parts) > 1 else [whole]
+        found += parts if whole is None and any(part is not None for part in parts) else [whole]
     return found
 
 

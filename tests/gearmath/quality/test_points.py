@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
+from gearmath.bevel.tooth import tooth_thickness
 from gearmath.errors import InputError
 from gearmath.quality.correction import correct
 from gearmath.quality.evaluation import evaluate_member
@@ -209,6 +210,25 @@ def test_evaluate_judges_points_at_their_own_places(gear_set, command, tmp_path)
         assert abs(figures[flank]["max_deviation_um"]) == pytest.approx(np.abs(smooth()).max() * 1000, abs=0.01)
         assert figures[flank]["teeth_in_full"] == [0]
     assert read_flank_csv(target).header["tip_radius_mm"] == "0"
+
+
+def test_thickness_of_foreign_points_is_that_at_one_place_of_both_flanks(gear_set):
+    """Flanks measured 0.1 mm apart along the axis: the tooth between them has the thickness of the place in the middle.
+
+    ``tooth_thickness`` is compared with a moving blade edge in the tests of the command ``tooth``.
+    """
+    grid, parts = places(gear_set.gear, off=0.0), []
+    for flank, shift in zip(FLANKS, (0.05, -0.05), strict=True):
+        there = Grid(
+            grid.axial + shift, grid.radial + 0.01 * np.sign(shift) + 1e-3 * np.sin(np.arange(45)).reshape(5, 9)
+        )
+        parts.append(Part(f"{flank}.txt", flank, 0, on_flank(gear_set.gear, "gear", flank, np.zeros(45), there)[0]))
+    found = foreign_file(parts, Frame(), gear_set, "gear")
+    assert found.file.header["margins"] == "own"
+    thickness = evaluate_member(found.file, gear_set.gear, "gear").thickness
+    radius = grid.radial.ravel()[MIDDLE] + 1e-3 * np.sin(MIDDLE)
+    assert thickness.radius == pytest.approx(radius, abs=1e-7)
+    assert thickness.arc == pytest.approx(tooth_thickness(gear_set.gear, grid.axial.ravel()[MIDDLE], radius), abs=1e-7)
 
 
 def test_a_machine_error_is_corrected_from_foreign_points(gear_set, altered):

@@ -31,6 +31,21 @@ LAYOUTS = {
     "counts in the header": "3 1 3\n12.5 -3.25 80.125\n13.0 -3.5 81.0625\n14.75 0.00015 79.5\n",
     "units and letters": "X=12.5mm Y=-3.25mm Z=80.125mm\nX=13.0mm Y=-3.5mm Z=81.0625mm\nX=14.75mm Y=0.00015mm Z=79.5mm",
     "units apart": "12.5 mm; -3.25 mm; 80.125 mm\n13.0 mm; -3.5 mm; 81.0625 mm\n14.75 mm; 0.00015 mm; 79.5 mm\n",
+    "units apart, blanks, decimal commas": (
+        "12,5 mm -3,25 mm 80,125 mm\n13,0 mm -3,5 mm 81,0625 mm\n14,75 mm 0,00015 mm 79,5 mm"
+    ),
+    "brackets": "P1 (12.5, -3.25, 80.125)\nP2 (13.0, -3.5, 81.0625)\nP3 (14.75, 0.00015, 79.5)\n",
+    "fixed width": "  12.50000 -3.25000  80.12500\n  13.00000 -3.50000  81.06250\n  14.75000  0.00015  79.50000\n",
+    "fixed width, no blank left": "12.500-3.250000  80.1250\n13.000-3.500000  81.0625\n14.750+0.000150  79.5000\n",
+    "a remark behind": "12.5 -3.25 80.125 ! row 1\n13.0 -3.5 81.0625\n14.75 0.00015 79.5 # 2 of 3\n",
+    "statements": (
+        "F(P1)=FEAT/POINT,CART,12.5,-3.25,80.125\nF(P2)=FEAT/POINT,CART,13.0,-3.5,81.0625\n"
+        "F(P3)=FEAT/POINT,CART,14.75,0.00015,79.5\n"
+    ),
+    "lines of a program": "N10 X12.5 Y-3.25 Z80.125\nN20 X13.0 Y-3.5 Z81.0625\nN30 X14.75 Y0.00015 Z79.5\nM30\n",
+    "rows announced": (
+        "Flank: concave\nRow 1\n 1: 12.5 -3.25 80.125\n\nRow 2\n 1: 13.0 -3.5 81.0625\n 2: 14.75 0.00015 79.5\n"
+    ),
     "quoted": '"12.5";"-3.25";"80.125"\n"13.0";"-3.5";"81.0625"\n"14.75";"0.00015";"79.5"\n',
     "a deviation behind": "12.5 -3.25 80.125 0.004\n13.0 -3.5 81.0625 0.002\n14.75 0.00015 79.5 -0.003\n",
     "measured beside nominal, named": (
