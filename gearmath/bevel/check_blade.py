@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import math
+
+from derivations import crown_gear
+from gearmath.bevel.blank import evaluate
 from gearmath.bevel.method import blade_sections
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
+
+#: How far a hobbing blade may be turned from square to its path: built-up cutters come in steps. [degree]
+_SQUARE = 8.0
 
 
 def check_blades(member: Member, name: str) -> None:
@@ -23,6 +30,30 @@ def check_methods(pinion: Member, gear: Member) -> None:
         if one != two:
             raise InputError(
                 f"pinion.{key} = {one!r}: the gear has {two!r}; both must be the same, as one crown gear cuts both"
+            )
+
+
+def check_offset(member: Member, name: str, spiral: float) -> None:
+    """Refuse hobbing blades that do not stand square to their path (14.6) at a mean ``spiral`` angle [rad], signed.
+
+    Raises InputError naming member, key, value and limit.
+    """
+    if member.blade_groups is None:
+        return
+    blank, flanks = member.blank, [member.flank(flank) for flank in FLANKS]
+    hand = 1 if member.hand == "right" else -1
+    square = evaluate(crown_gear.crown_gear_space, {
+        "hand_sign": hand, "mean_spiral_angle": hand * spiral, "mean_cone_distance": blank.mean_cone_distance,
+        "cutter_radius": sum(spec.nominal.blade_point_radius for spec in flanks) / len(flanks),
+        "pitch_angle": math.radians(blank.pitch_angle), "machine_root_angle": math.radians(blank.root_angle),
+        "mean_dedendum": blank.mean_dedendum,
+        "index_ratio": member.indexing_sign * member.blade_groups / member.teeth,
+    })["blade_offset_angle"]  # fmt: skip
+    for flank, spec in zip(FLANKS, flanks, strict=True):
+        if not abs(spec.blade_offset_angle - math.degrees(square)) <= _SQUARE:
+            raise InputError(
+                f"{name}.{flank}.blade_offset_angle = {spec.blade_offset_angle:g}: the blade must stand square to its "
+                f"path, {math.degrees(square):.4g} within {_SQUARE:g} degrees"
             )
 
 

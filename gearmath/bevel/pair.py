@@ -13,7 +13,7 @@ from pathlib import Path
 from statistics import median
 
 from gearmath.bevel.blame import Misfit, farthest, most_changed
-from gearmath.bevel.check_blade import check_blades, check_methods
+from gearmath.bevel.check_blade import check_blades, check_methods, check_offset
 from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, transverse_module
 from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
 from gearmath.bevel.check_mates import Cut, check_mates, check_space
@@ -73,6 +73,7 @@ def _check_cut(members: dict[str, Member], cut: dict[str, Cut]) -> None:
         for flank in FLANKS:
             cut[name][flank] = cut_flank(member, name, flank, generation_of(member, flank))
         spaces[name] = check_space(member, name, cut[name])
+        check_offset(member, name, sum(found.spiral_angle for found in cut[name].values()) / len(FLANKS))
     if len(members) == len(MEMBERS):
         check_mates(members, cut, spaces)
     for name, member in members.items():

@@ -211,6 +211,10 @@ REFUSED = {
     "indexing of both the other way": (
         HOBBED, {"pinion.indexing_sign": 1, "gear.indexing_sign": 1}, r"\.indexing_sign = 1 \(crown gear: -1\)",
     ),
+    "hobbing blades turned the wrong way": (
+        HOBBED, {f"gear.{flank}.blade_offset_angle": 0.0 for flank in FLANKS},
+        r"gear\.concave\.blade_offset_angle = 0: the blade must stand square to its path, 15\.\d+ within 8 degrees",
+    ),
     "mates cut by different processes": (
         HOBBED, {"pinion.process": "face_milling", "pinion.blade_groups": None, "pinion.indexing_sign": None},
         r"pinion\.process = 'face_milling': the gear has 'face_hobbing'",
