@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearmath.bevel.flank import Grid, blank_grid
+from gearmath.bevel.flank import Grid
+from gearmath.bevel.grid import grid_of
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
 from gearmath.quality.correction import check_belongs
 from gearmath.quality.target import flank_target
-from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member
 from gearmath.specs.flank_csv import FlankFile
 
@@ -33,8 +33,7 @@ def moved_to_mate(gear_set: BevelSet, name: str, measured: FlankFile, grid: Flan
     member, mate_name = gear_set.member(name), MEMBERS[1 - MEMBERS.index(name)]
     check_belongs(member, name, measured)
     mate = gear_set.member(mate_name)
-    rows, columns = grid_shape(grid)
-    wanted = blank_grid(mate, rows, columns, float(grid.header["margins"].split(",")[0]))
+    wanted = grid_of(grid, mate)
     moved = {}
     for flank in FLANKS:
         target = flank_target(member, name, flank, measured)

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmath.bevel.flank import Grid, blank_grid, nominal_points, solve_flank
+from gearmath.bevel.flank import Grid, nominal_points, solve_flank
+from gearmath.bevel.grid import grid_of
 from gearmath.bevel.newton import TOLERANCE
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
@@ -35,16 +36,12 @@ class NominalRows:
     tooth: np.ndarray
 
 
-def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
-    """The nominal point and normal of every row, in the work frame.
+def nominal_rows(file: FlankFile, member: Member, name: str, grid: Grid | None = None) -> NominalRows:
+    """The nominal point and normal of every row, in the work frame; ``grid`` is that of the file if none is given.
 
-    Raises InputError for unlike margins, ComputationError if the grid does not lie on the flank.
+    Raises ComputationError if the grid does not lie on the flank.
     """
-    rows, columns = grid_shape(file)
-    margins = [float(part) for part in file.header["margins"].split(",")]
-    if margins[0] != margins[1]:
-        raise InputError(f"margins = {file.header['margins']}: must be alike along the tooth and up the profile")
-    grid = blank_grid(member, rows, columns, margins[0])
+    grid = grid_of(file, member) if grid is None else grid
     point, normal = np.empty((len(file), 3)), np.empty((len(file), 3))
     tooth = file.tooth % member.teeth
     turn = 2 * math.pi * tooth / member.teeth
@@ -52,7 +49,7 @@ def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
         here = file.flank == flank
         if here.any():
             solved = solve_flank(member, name, flank, grid)
-            place = file.row[here] * columns + file.col[here]
+            place = file.row[here] * grid.shape[1] + file.col[here]
             point[here] = turned(solved.point[place], turn[here])
             normal[here] = turned(solved.normal[place], turn[here])
     return NominalRows(point, normal, turn, tooth)
@@ -99,7 +96,7 @@ def completed(file: FlankFile, member: Member, name: str) -> tuple[FlankFile, tu
     if not missing:
         return file, ()
     added = join(missing)
-    nominal = nominal_rows(added, member, name)
+    nominal = nominal_rows(added, member, name, grid_of(file, member))
     return join([file, replace(added, point=nominal.point, normal=nominal.normal)]), tuple(remarks)
 
 

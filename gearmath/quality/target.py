@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.flank import solve_flank
 from gearmath.bevel.generation import Generation
+from gearmath.bevel.grid import grid_of
 from gearmath.bevel.method import blade_sections, cut_generation_of
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import turned
@@ -51,8 +52,7 @@ def flank_target(
     order = np.argsort(place)
     order = order[kept[order]]
     at = place[order]
-    margin = float(measured.header["margins"].split(",")[0])
-    nominal = solve_flank(member, name, flank, blank_grid(member, rows, columns, margin))
+    nominal = solve_flank(member, name, flank, grid_of(measured, member))
     deviation = points.deviation[order]
     _check_places(flank, points.point[order], deviation, nominal, at, int(points.tooth[0]) / member.teeth, columns)
     used = np.zeros(rows * columns, dtype=bool)

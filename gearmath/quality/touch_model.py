@@ -12,11 +12,11 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.flank import Grid, blank_grid, solve_flank
+from gearmath.bevel.flank import Grid, solve_flank
+from gearmath.bevel.grid import grid_of
 from gearmath.bevel.kernels import kernel
 from gearmath.machine.probing import probe_height, tip_positions
 from gearmath.quality.covariance import Covariance
-from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.flank_csv import FlankFile
@@ -64,9 +64,8 @@ def touch_covariance(
 
     Raises ComputationError where the nominal flank has no point at a place of the grid.
     """
-    rows, columns = grid_shape(file)
-    grid = blank_grid(member, rows, columns, float(file.header["margins"].split(",")[0]))
-    place = file.row * columns + file.col
+    grid = grid_of(file, member)
+    place = file.row * grid.shape[1] + file.col
     slope = np.empty((len(file), 6))
     for flank in FLANKS:
         here = file.flank == flank

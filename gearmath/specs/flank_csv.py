@@ -15,6 +15,7 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.files import read_text, write_text
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
+from gearmath.specs.margins import LISTED, PATTERN
 
 COLUMNS = ("member", "flank", "tooth", "row", "col", "x", "y", "z", "nx", "ny", "nz", "deviation_um", "u_um")
 #: Header keys of the contract that every file carries, in this order.
@@ -23,14 +24,13 @@ HEADER = (
     "settings_sha256",
 )  # fmt: skip
 
-_MARGIN = r"(0(\.[0-4]\d*)?|\d(\.\d+)?e-\d\d)"  # as Python prints it: 0.1, 0, 1e-05
 #: What these header values must look like: pattern, and the words that say it.
 _HEADER_VALUES = {
     "frame": (r"w", "must be w, the work frame"),
     "unit": (r"mm", "must be mm"),
     "member_teeth": (r"[1-9]\d{0,2}", "must be a whole number from 1 to 999"),
     "grid": (r"([2-9]|[1-9]\d{1,5})x([2-9]|[1-9]\d{1,5})", "must read like 5x9, two or more each way"),
-    "margins": (rf"{_MARGIN},{_MARGIN}", "must read like 0.1,0.1, less than 0.5"),
+    "margins": (rf"{PATTERN}|{LISTED}", "must read like 0.1,0.1, or root,tip,toe,heel, each less than 0.5"),
     "reference_point": (r"\d{1,6},\d{1,6}", "must read like 2,4"),
 }
 
