@@ -10,8 +10,9 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 import tomlkit
@@ -33,6 +34,9 @@ from gearmath.specs.sheet import (
     unit_of,
 )
 from gearmath.specs.toml import Spec, load, parse
+
+if TYPE_CHECKING:
+    from gearmath.lowering import Kernel
 
 MEMBERS = ("pinion", "gear")
 FLANKS = ("concave", "convex")
@@ -395,10 +399,15 @@ def _decimals(mm: float) -> int:
 
 def _from_apex(advance: float, beyond: float) -> float:
     """X_p from the pitch apex out of X_C from the crossing point (2.6)."""
+    (value,) = _advance_kernel()(advance, beyond)
+    return float(value)
+
+
+@cache
+def _advance_kernel() -> Kernel:
     from gearmath.lowering import lower
 
-    (value,) = lower(cradle.advance_from_apex())(advance, beyond)
-    return float(value)
+    return lower(cradle.advance_from_apex())
 
 
 def _save_motion(table: Any, matrix: np.ndarray, mm: float) -> None:
