@@ -352,19 +352,22 @@ def save_corrected(
 ) -> None:
     """Write the set of ``source``, comments kept, with new settings (12,) of each flank, to ``target``.
 
-    The nominal settings are kept under ``design``. ``index_correction`` (z,) in rad replaces that of the member, and
-    ``motions`` (10,7) of each flank, without the modified roll, its motion. The text is checked as a set before
-    anything is written.
+    A setting that stays is left as it is written. The nominal settings are kept under ``design``.
+    ``index_correction`` (z,) in rad replaces that of the member, and ``motions`` (10,7) of each flank, without the
+    modified roll, its motion. The text is checked as a set before anything is written.
     """
-    document = tomlkit.parse(read_text(source))
+    content = read_text(source)
+    before, document = parse(content, BevelSet, str(source)).member(member), tomlkit.parse(content)
     table: Any = document[member]
     mm, beyond = UNITS[document.get("unit", "mm")], table["blank"].get(_BEYOND, 0.0)
     for flank, vector in settings.items():
         written = _written(table[flank], vector, mm, beyond)
         if "design" not in table[flank]:
             table[flank]["design"] = {key: table[flank][key] for key in written}
-        for key, value in written.items():
-            table[flank][key] = value
+        changed = vector != before.flank(flank).vector
+        for (key, value), new in zip(written.items(), changed, strict=True):
+            if new:
+                table[flank][key] = value
     for flank, matrix in (motions or {}).items():
         _save_motion(table[flank], matrix, mm)
     if index_correction is not None:
