@@ -24,6 +24,7 @@ from gearmath.bevel.newton import TOLERANCE, FlankPoints, contact_guess, newton_
 from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.specs.margins import Margins
 
 #: Newton steps of one call of the kernel; the solver repeats the call where that is not enough.
 NEWTON_STEPS = 5
@@ -49,9 +50,16 @@ class Grid:
         return self.axial.shape  # type: ignore[return-value]
 
 
-def blank_grid(member: Member, rows: int = 5, columns: int = 9, margin: float = 0.1) -> Grid:
-    """The grid of the flank files: ``margin`` of face width and working depth is left out on all four sides."""
-    across, up = (np.linspace(margin, 1 - margin, count) if count > 1 else np.array([0.5]) for count in (columns, rows))
+def blank_grid(member: Member, rows: int = 5, columns: int = 9, margin: float | Margins = 0.1) -> Grid:
+    """The grid of the flank files: ``margin`` of face width and working depth is left out, alike on all sides or not.
+
+    A single row or column stands in the middle of what is left.
+    """
+    margins = margin if isinstance(margin, Margins) else Margins.alike(margin)
+    across, up = (
+        np.linspace(low, 1 - high, count) if count > 1 else np.array([(low + 1 - high) / 2])
+        for low, high, count in ((margins.toe, margins.heel, columns), (margins.root, margins.tip, rows))
+    )
     up_all, across_all = (array.ravel() for array in np.meshgrid(up, across, indexing="ij"))
     axial, radial = kernel("flank_place")(member.blank.vector, across_all, up_all)
     return Grid(axial.reshape(rows, columns), radial.reshape(rows, columns))

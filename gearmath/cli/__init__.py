@@ -19,6 +19,7 @@ from gearmath.errors import ComputationError, InputError
 VERBS = {
     "demo": ("demo", "The whole closed loop on a bundled gear set and a bundled hobbing machine."),
     "gearbox": ("gearbox", "Electronic gearbox of a hobbing machine: plan a job, simulate the rule."),
+    "blank": ("blank", "The blank of a pair from its design data, as table, JSON or part of a gear set."),
     "flank": ("bevel", "Nominal points and outward normals of one flank."),
     "tooth": ("bevel", "Whole teeth of a member: figures, and an STL of a space or of the whole member."),
     "nc": ("machine", "NC programs for the vertical 5-axis machine."),

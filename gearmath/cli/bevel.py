@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, echo_json, output, table
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, about, echo_json, output, table
 from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    from gearmath.specs.margins import Margins
 
 _MOST_POINTS = 1_000_000
 
@@ -17,26 +21,47 @@ _MOST_POINTS = 1_000_000
 @SET
 @MEMBER
 @click.option("--flank", "side", type=click.Choice(["concave", "convex"]), required=True, help="Flank of the member.")
-@click.option("--grid", "size", default="5x9", show_default=True, help="Rows (root to tip) x columns (toe to heel).")
+@click.option("--grid", "size", show_default="5x9", help="Rows (root to tip) x columns (toe to heel).")
+@click.option("--margin", type=float, show_default="0.1", help="Part of face and depth left out at each end.")
+@click.option("--margin-root", "root", type=float, help="Part of the working depth left out at the root.")
+@click.option("--margin-tip", "tip", type=float, help="The same at the tip.")
+@click.option("--margin-toe", "toe", type=float, help="Part of the face width left out at the toe.")
+@click.option("--margin-heel", "heel", type=float, help="The same at the heel.")
 @click.option(
-    "--margin", type=float, default=0.1, show_default=True, help="Part of face and depth left out at each end."
-)
+    "--places", type=click.Path(path_type=Path), metavar="FILE",
+    help="Places in their stead: z_w and r_w in mm a line, from the pitch apex; row by row where --grid is given, else "
+    "one column, for other programs.",
+)  # fmt: skip
 @output("flank CSV")
-def flank(gear_set: str, member: str, side: str, size: str, margin: float, target: Path) -> None:
+def flank(
+    gear_set: str, member: str, side: str, size: str | None, margin: float | None, root: float | None,
+    tip: float | None, toe: float | None, heel: float | None, places: Path | None, target: Path,
+) -> None:  # fmt: skip
     """Nominal points and outward normals of one flank, as a flank CSV."""
     from gearmath.bevel.flank import blank_grid
+    from gearmath.bevel.grid import listed_grid
     from gearmath.bevel.pair import load_pair
     from gearmath.machine.mill import nominal_flank
     from gearmath.specs.flank_csv import write_flank_csv
+    from gearmath.specs.places import read_places
     from gearmath.specs.toml import find
 
     spec = load_pair(find(gear_set)).member(member)
-    rows, columns = _grid(size)
-    if not 0 <= margin < 0.5:
-        raise InputError(f"--margin {margin:g}: must be at least 0 and less than 0.5, or the grid leaves the blank")
-    grid = blank_grid(spec, rows, columns, margin)
-    write_flank_csv(target, nominal_flank(spec, member, side, grid, margin))
-    click.echo(f"{target}: {rows * columns} points of the {member}'s {side} flank")
+    given = {"": margin, "-root": root, "-tip": tip, "-toe": toe, "-heel": heel}
+    if places is not None:
+        for name, value in given.items():
+            if value is not None:
+                raise InputError(f"--margin{name} {value:g}: listed places (--places) have no margins")
+        axial, radial = read_places(places)
+        with about(places):
+            grid = listed_grid(spec, axial, radial, _grid(size) if size else (len(axial), 1))
+        file = nominal_flank(spec, member, side, grid, None)
+    else:
+        margins = _margins(given)
+        grid = blank_grid(spec, *_grid(size or "5x9"), margins)
+        file = nominal_flank(spec, member, side, grid, margins)
+    write_flank_csv(target, file)
+    click.echo(f"{target}: {len(file)} points of the {member}'s {side} flank")
 
 
 @click.command()
@@ -68,6 +93,20 @@ def tooth(gear_set: str, member: str, columns: int, space: bool, as_json: bool, 
     )
     click.echo("grid of flank files, where 'gearmath evaluate' measures")
     click.echo(f"{target}: {len(triangles)} triangles")
+
+
+def _margins(given: dict[str, float | None]) -> Margins:
+    """The margins of the options by the end of their names; that without one holds where no other does."""
+    from gearmath.specs.margins import Margins
+
+    for name, value in given.items():
+        if value is not None and not 0 <= value < 0.5:
+            raise InputError(
+                f"--margin{name} {value:g}: must be at least 0 and less than 0.5, or the grid leaves the blank"
+            )
+    common = 0.1 if given[""] is None else given[""]
+    sides = (given[f"-{side}"] for side in ("root", "tip", "toe", "heel"))
+    return Margins(*(common if value is None else value for value in sides))
 
 
 def _grid(size: str) -> tuple[int, int]:

@@ -12,7 +12,8 @@ import zlib
 
 import numpy as np
 
-from gearmath.bevel.flank import Grid, blank_grid, solve_flank
+from gearmath.bevel.flank import solve_flank
+from gearmath.bevel.grid import file_grid
 from gearmath.bevel.kernels import kernel
 from gearmath.machine.probing import landmarks, lobing
 from gearmath.machine.simulation import mounted
@@ -50,7 +51,7 @@ def _in_order(file: FlankFile, member: Member) -> FlankFile:
     """The points tooth by tooth, flank by flank, and the landmarks of tooth 0 once more as tooth z."""
     flank = np.array([FLANKS.index(one) for one in file.flank])
     order = np.lexsort((file.col, file.row, flank, file.tooth))
-    marked = (file.tooth == 0) & landmarks(file.row, file.col, _grid(file, member).shape, corners=True)
+    marked = (file.tooth == 0) & landmarks(file.row, file.col, file_grid(file, member).shape, corners=True)
     index = np.concatenate([order, order[marked[order]]])
     tooth = file.tooth[index]
     tooth[len(order) :] = member.teeth
@@ -62,7 +63,7 @@ def _in_order(file: FlankFile, member: Member) -> FlankFile:
 
 def _work_axis(file: FlankFile, member: Member, name: str) -> np.ndarray:
     """Positions (n,) [rad] of the work axis at which the points are touched, each with its space on top."""
-    grid = _grid(file, member)
+    grid = file_grid(file, member)
     points = {flank: solve_flank(member, name, flank, grid).point for flank in FLANKS}
     angle = {
         flank: kernel("space_azimuth")(points[flank], points[other])[0] for flank, other in (FLANKS, FLANKS[::-1])
@@ -70,8 +71,3 @@ def _work_axis(file: FlankFile, member: Member, name: str) -> np.ndarray:
     place = file.row * grid.shape[1] + file.col
     at = np.array([angle[flank][k] for flank, k in zip(file.flank, place, strict=True)])
     return at + 2 * math.pi * file.tooth / member.teeth
-
-
-def _grid(file: FlankFile, member: Member) -> Grid:
-    rows, columns = (int(part) for part in file.header["grid"].split("x"))
-    return blank_grid(member, rows, columns, float(file.header["margins"].split(",")[0]))

@@ -19,6 +19,7 @@ from gearmath.machine.run import Run, runs_of
 from gearmath.machine.simulation import mounted
 from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
+from gearmath.specs.margins import OWN, Margins
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
 
@@ -27,8 +28,8 @@ MARGIN = 0.1
 _SPACES = 12
 
 
-def flank_header(member: Member, name: str, grid: Grid, margin: float = MARGIN) -> dict[str, str]:
-    """The header of a flank file of a member."""
+def flank_header(member: Member, name: str, grid: Grid, margin: float | Margins | None = MARGIN) -> dict[str, str]:
+    """The header of a flank file of a member; without margins its places are listed."""
     rows, columns = grid.shape
     return {
         "member": name,
@@ -36,7 +37,7 @@ def flank_header(member: Member, name: str, grid: Grid, margin: float = MARGIN) 
         "frame": "w",
         "unit": "mm",
         "grid": f"{rows}x{columns}",
-        "margins": f"{margin:g},{margin:g}",
+        "margins": OWN if margin is None else str(Margins.alike(margin) if isinstance(margin, float) else margin),
         "reference_point": f"{rows // 2},{columns // 2}",
         "phase_zeroed": "false",
         "tip_radius_mm": "0",
@@ -45,7 +46,7 @@ def flank_header(member: Member, name: str, grid: Grid, margin: float = MARGIN) 
 
 
 def nominal_flank(
-    member: Member, name: str, flank: str, grid: Grid, margin: float = MARGIN, tooth: int = 0
+    member: Member, name: str, flank: str, grid: Grid, margin: float | Margins | None = MARGIN, tooth: int = 0
 ) -> FlankFile:
     """The nominal points of one flank of one tooth as a flank file."""
     points = solve_flank(member, name, flank, grid)

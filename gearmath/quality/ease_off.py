@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from gearmath.bevel.flank import Grid
+from gearmath.bevel.grid import file_grid
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
 from gearmath.quality.correction import check_belongs
-from gearmath.quality.places import file_grid
 from gearmath.quality.target import flank_target
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member
 from gearmath.specs.flank_csv import FlankFile

@@ -10,13 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.grid import blank_fractions
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.quality.lattice import Lattice, find_lattice
 from gearmath.quality.nominal import SAME_POINT
 from gearmath.quality.outliers import flag_outliers
-from gearmath.quality.places import blank_fractions
 from gearmath.quality.points import LEAST_FIT, Frame, Laid, Part, Phase, axial_hint, check_normals, lay, turn_of
 from gearmath.specs.bevel_set import BevelSet, Member, design_sha256
 from gearmath.specs.flank_csv import OWN, FlankFile, flank_file, join

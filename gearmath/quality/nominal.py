@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearmath.bevel.flank import Grid, nominal_points, solve_flank
+from gearmath.bevel.grid import feet, file_grid, has_own_places
 from gearmath.bevel.newton import TOLERANCE
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
 from gearmath.quality.pitch import reference_point
-from gearmath.quality.places import feet, file_grid, has_own_places
 from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
@@ -44,7 +44,7 @@ class NominalRows:
 def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
     """The nominal point and normal of every row, in the work frame.
 
-    Raises InputError for unlike margins, ComputationError if the grid does not lie on the flank.
+    Raises ComputationError if the grid does not lie on the flank.
     """
     columns, own = grid_shape(file)[1], has_own_places(file)
     point, normal = np.empty((len(file), 3)), np.empty((len(file), 3))

@@ -16,10 +16,10 @@ from typing import Literal
 import numpy as np
 
 from gearmath.bevel.flank import Grid, nominal_points
+from gearmath.bevel.grid import blank_fractions
 from gearmath.bevel.newton import TOLERANCE
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
-from gearmath.quality.places import blank_fractions
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
 
 Phase = Literal["common", "each", "kept"]

@@ -8,6 +8,7 @@ import numpy as np
 
 from gearmath.bevel.flank import solve_flank
 from gearmath.bevel.generation import Generation
+from gearmath.bevel.grid import file_grid
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import cut_generation_of
 from gearmath.bevel.newton import FlankPoints
@@ -15,7 +16,6 @@ from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.quality.compensation import FlankTarget
 from gearmath.quality.pitch import reference_point
-from gearmath.quality.places import file_grid
 from gearmath.quality.root_line import RootLine
 from gearmath.quality.topography import grid_shape, local_coordinates
 from gearmath.specs.bevel_set import Flank, Member

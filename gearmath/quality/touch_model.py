@@ -13,10 +13,10 @@ import casadi as ca
 import numpy as np
 
 from gearmath.bevel.flank import Grid, solve_flank
+from gearmath.bevel.grid import file_grid
 from gearmath.bevel.kernels import kernel
 from gearmath.machine.probing import probe_height, tip_positions
 from gearmath.quality.covariance import Covariance
-from gearmath.quality.places import file_grid
 from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration

@@ -10,8 +10,9 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Mapping
+from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 import tomlkit
@@ -33,6 +34,9 @@ from gearmath.specs.sheet import (
     unit_of,
 )
 from gearmath.specs.toml import Spec, load, parse
+
+if TYPE_CHECKING:
+    from gearmath.lowering import Kernel
 
 MEMBERS = ("pinion", "gear")
 FLANKS = ("concave", "convex")
@@ -355,19 +359,23 @@ def save_corrected(
 ) -> None:
     """Write the set of ``source``, comments kept, with new settings (12,) of each flank, to ``target``.
 
-    The nominal settings are kept under ``design``. ``index_correction`` (z,) in rad replaces that of the member, and
-    ``motions`` (10,7) of each flank, without the modified roll, its motion. The text is checked as a set, and by
-    ``check`` besides, before anything is written. Raises InputError naming the target.
+    A setting that stays is left as it is written. The nominal settings are kept under ``design``.
+    ``index_correction`` (z,) in rad replaces that of the member, and ``motions`` (10,7) of each flank, without the
+    modified roll, its motion. The text is checked as a set, and by ``check`` besides, before anything is written.
+    Raises InputError naming the target.
     """
-    document = tomlkit.parse(read_text(source))
+    content = read_text(source)
+    before, document = parse(content, BevelSet, str(source)).member(member), tomlkit.parse(content)
     table: Any = document[member]
     mm, beyond = UNITS[document.get("unit", "mm")], table["blank"].get(_BEYOND, 0.0)
     for flank, vector in settings.items():
         written = _written(table[flank], vector, mm, beyond)
         if "design" not in table[flank]:
             table[flank]["design"] = {key: table[flank][key] for key in written}
-        for key, value in written.items():
-            table[flank][key] = value
+        changed = vector != before.flank(flank).vector
+        for (key, value), new in zip(written.items(), changed, strict=True):
+            if new:
+                table[flank][key] = value
     for flank, matrix in (motions or {}).items():
         _save_motion(table[flank], matrix, mm)
     if index_correction is not None:
@@ -406,10 +414,15 @@ def _decimals(mm: float) -> int:
 
 def _from_apex(advance: float, beyond: float) -> float:
     """X_p from the pitch apex out of X_C from the crossing point (2.6)."""
+    (value,) = _advance_kernel()(advance, beyond)
+    return float(value)
+
+
+@cache
+def _advance_kernel() -> Kernel:
     from gearmath.lowering import lower
 
-    (value,) = lower(cradle.advance_from_apex())(advance, beyond)
-    return float(value)
+    return lower(cradle.advance_from_apex())
 
 
 def _save_motion(table: Any, matrix: np.ndarray, mm: float) -> None:

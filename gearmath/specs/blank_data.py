@@ -8,6 +8,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from gearmath.specs.sheet import Angle, Length, Sheet
 from gearmath.specs.toml import Spec, load
 
 #: The tapers of the depth, numbered as ``notation.depth_taper``.
@@ -16,11 +17,11 @@ TAPERS = ("uniform", "standard", "duplex", "tilted_root_line")
 BACKLASHES = ("outer_normal", "outer_transverse", "mean_normal", "mean_transverse")
 
 
-class Cutter(Spec):
+class Cutter(Sheet):
     """The cutter head: its mean radius, and the blade groups of a face hobbing head."""
 
     process: Literal["face_milling", "face_hobbing"]
-    cutter_radius: float = Field(ge=5, le=500)
+    cutter_radius: Length = Field(ge=5, le=500)
     blade_groups: int | None = Field(default=None, ge=1, le=60)
 
     @model_validator(mode="after")
@@ -30,12 +31,12 @@ class Cutter(Spec):
         return self
 
 
-class Taper(Spec):
+class Taper(Sheet):
     """How the depth changes along the tooth: a taper by name, or the two angles of the wheel."""
 
     kind: Literal["uniform", "standard", "duplex", "tilted_root_line"] | None = None
-    wheel_addendum_angle: float | None = Field(default=None, ge=0, le=15)
-    wheel_dedendum_angle: float | None = Field(default=None, ge=0, le=15)
+    wheel_addendum_angle: Angle | None = Field(default=None, ge=0, le=15)
+    wheel_dedendum_angle: Angle | None = Field(default=None, ge=0, le=15)
 
     @model_validator(mode="after")
     def _one_way(self) -> Taper:
@@ -45,7 +46,7 @@ class Taper(Spec):
         return self
 
 
-class DataType1(Spec):
+class DataType1(Sheet):
     """Data type I of ISO 23509: the basic crown gear."""
 
     crown_gear_addendum_factor: float = Field(ge=0.5, le=1.5)
@@ -63,7 +64,7 @@ class DataType1(Spec):
         return self
 
 
-class DataType2(Spec):
+class DataType2(Sheet):
     """Data type II of ISO 23509: depth, clearance, addendum and thickness factors."""
 
     tooth_depth_factor: float = Field(ge=1, le=3)
@@ -72,13 +73,13 @@ class DataType2(Spec):
     thickness_factor: float = Field(ge=-0.6, le=0.6)
 
 
-class Backlash(Spec):
+class Backlash(Sheet):
     """Backlash of the pair, square to the flank or as an arc on the pitch circle, at the heel or at the mean point."""
 
-    outer_normal: float | None = Field(default=None, ge=0, le=5)
-    outer_transverse: float | None = Field(default=None, ge=0, le=5)
-    mean_normal: float | None = Field(default=None, ge=0, le=5)
-    mean_transverse: float | None = Field(default=None, ge=0, le=5)
+    outer_normal: Length | None = Field(default=None, ge=0, le=5)
+    outer_transverse: Length | None = Field(default=None, ge=0, le=5)
+    mean_normal: Length | None = Field(default=None, ge=0, le=5)
+    mean_transverse: Length | None = Field(default=None, ge=0, le=5)
 
     @model_validator(mode="after")
     def _one_kind(self) -> Backlash:
@@ -96,20 +97,21 @@ class Backlash(Spec):
         return float(getattr(self, BACKLASHES[self.kind]))
 
 
-class BlankData(Spec):
-    """Design data of a spiral bevel pair without hypoid offset."""
+class BlankData(Sheet):
+    """Design data of a spiral bevel pair without hypoid offset. ``unit`` is that of the file's lengths; loaded: mm."""
 
+    unit: Literal["mm", "inch"] = "mm"
     title: str = Field(min_length=1, max_length=200)
     source: str = Field(max_length=1000)
-    shaft_angle: float = Field(ge=20, le=150)
+    shaft_angle: Angle = Field(ge=20, le=150)
     pinion_teeth: int = Field(ge=5, le=200)
     wheel_teeth: int = Field(ge=5, le=400)
-    wheel_outer_pitch_diameter: float | None = Field(default=None, gt=0, le=2000)
-    outer_transverse_module: float | None = Field(default=None, gt=0, le=50)
-    face_width: float = Field(gt=1, le=300)
-    mean_spiral_angle: float = Field(ge=0, le=50)
-    pressure_angle_drive: float = Field(ge=10, le=30)
-    pressure_angle_coast: float = Field(ge=10, le=30)
+    wheel_outer_pitch_diameter: Length | None = Field(default=None, gt=0, le=2000)
+    outer_transverse_module: Length | None = Field(default=None, gt=0, le=50)
+    face_width: Length = Field(gt=1, le=300)
+    mean_spiral_angle: Angle = Field(ge=0, le=50)
+    pressure_angle_drive: Angle = Field(ge=10, le=30)
+    pressure_angle_coast: Angle = Field(ge=10, le=30)
     cutter: Cutter
     taper: Taper
     data_type_1: DataType1 | None = None

@@ -16,6 +16,7 @@ from gearmath.errors import InputError
 from gearmath.files import write_text
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
 from gearmath.specs.lines import Line, read_lines
+from gearmath.specs.margins import OWN, PATTERN
 
 COLUMNS = ("member", "flank", "tooth", "row", "col", "x", "y", "z", "nx", "ny", "nz", "deviation_um", "u_um")
 #: Header keys of the contract that every file carries, in this order.
@@ -28,16 +29,13 @@ HEADER = (
 #: true where the deviation at the reference point of each flank was set to zero by turning, so that thickness is lost.
 COMMON = "common"
 
-#: Margins of a file whose points have their own places, as other measuring machines take them.
-OWN = "own"
-_MARGIN = r"(0(\.[0-4]\d*)?|\d(\.\d+)?e-\d\d)"  # as Python prints it: 0.1, 0, 1e-05
 #: What these header values must look like: pattern, and the words that say it.
 _HEADER_VALUES = {
     "frame": (r"w", "must be w, the work frame"),
     "unit": (r"mm", "must be mm"),
     "member_teeth": (r"[1-9]\d{0,2}", "must be a whole number from 1 to 999"),
     "grid": (r"([2-9]|[1-9]\d{1,5})x([2-9]|[1-9]\d{1,5})", "must read like 5x9, two or more each way"),
-    "margins": (rf"{OWN}|{_MARGIN},{_MARGIN}", "must read like 0.1,0.1, less than 0.5, or own"),
+    "margins": (rf"{PATTERN}|{OWN}", "must read like 0.1,0.1, or root,tip,toe,heel, each less than 0.5, or own"),
     "reference_point": (r"\d{1,6},\d{1,6}", "must read like 2,4"),
     "phase_zeroed": (
         rf"(?i:false|true|{COMMON})",

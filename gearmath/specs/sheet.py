@@ -36,8 +36,10 @@ Angle = Annotated[float, Unit("degree")]
 
 _DMS = re.compile(
     r"([+-]?)\s*(\d+(?:\.\d+)?)\s*(?:°\s*|[:\s]\s*)(?:(\d+(?:\.\d+)?)\s*(?:['′]\s*|[:\s]\s*|$)"
-    r"(?:(\d+(?:\.\d+)?)\s*(?:\"|″|''|′′)?)?)?"
+    r"(?:(\d+(?:\.\d+)?)\s*(?:\"|″|''|′′)?)?)?",
+    re.ASCII,
 )
+_LONGEST = 60  # characters of an angle
 _LIMITS = ("gt", "ge", "lt", "le")
 _PER_MM: ContextVar[float] = ContextVar("per_mm", default=1.0)
 
@@ -47,7 +49,7 @@ def degrees(text: str) -> float:
 
     Raises ValueError with the limit that is broken.
     """
-    match = _DMS.fullmatch(text.strip())
+    match = _DMS.fullmatch(text.strip()) if len(text) <= _LONGEST else None
     if match is None:
         raise ValueError("must be a number, or degrees, minutes and seconds such as '63 56 31.3'")
     sign, *parts = match.groups()
@@ -104,7 +106,7 @@ class Sheet(Spec):
             if inner is not None and isinstance(value, dict):
                 plain[key] = inner.plain(value, mm, (*where, key))
             elif unit == "mm" and mm != 1:
-                plain[key] = _each(value, lambda item: item * mm if is_number(item) else item)
+                plain[key] = _each(value, lambda item: float(item) * mm if is_number(item) else item)
             elif unit == "degree":
                 try:
                     plain[key] = _each(value, lambda item: degrees(item) if _is_dms(item) else item)
@@ -201,8 +203,8 @@ def _each(value: Any, change: Callable[[Any], Any]) -> Any:
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value of a TOML file is a number."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    """Whether a value of a TOML file is a number, one that a double can hold."""
+    return isinstance(value, float) or (isinstance(value, int) and not isinstance(value, bool) and abs(value) < 1e300)
 
 
 def _is_dms(value: Any) -> bool:

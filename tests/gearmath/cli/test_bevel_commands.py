@@ -39,6 +39,34 @@ def test_grid_and_margin_are_those_asked_for(command, tmp_path):
     assert np.ptp(cone) == pytest.approx(0.5 * 25.4, rel=0.02)  # half the face width is left
 
 
+def test_every_side_may_have_a_margin_of_its_own(command, tmp_path):
+    target = tmp_path / "f.csv"
+    arguments = ("flank", SET, "--member", "gear", "--flank", "concave", "-o", target, "--grid", "3x4")
+    assert command(*arguments, "--margin", "0.2", "--margin-toe", "0", "--margin-tip", "0.05")[0] == 0
+    file = read_flank_csv(target)
+    assert file.header["margins"] == "0.2,0.05,0,0.2"
+    cone = np.linalg.norm(file.point, axis=1)
+    assert np.ptp(cone) == pytest.approx(0.8 * 25.4, rel=0.02)
+    assert command(*arguments, "--margin-root", "0.2", "--margin-tip", "0.2")[0] == 0
+    assert read_flank_csv(target).header["margins"] == "0.2,0.1"
+
+
+def test_points_stand_at_the_places_of_a_list(command, tmp_path):
+    target, places = tmp_path / "f.csv", tmp_path / "places.csv"
+    arguments = ("flank", SET, "--member", "gear", "--flank", "concave", "-o", target)
+    assert command(*arguments, "--grid", "2x3", "--margin", "0.2")[0] == 0
+    grid = read_flank_csv(target)
+    place = np.stack([grid.point[:, 2], np.hypot(grid.point[:, 0], grid.point[:, 1])], axis=1)
+    places.write_text("z_w,r_w\n" + "".join(f"{z:.9f},{r:.9f}\n" for z, r in place), "utf-8")
+    assert command(*arguments, "--places", places, "--grid", "2x3")[0] == 0
+    file = read_flank_csv(target)
+    assert (file.header["grid"], file.header["margins"]) == ("2x3", "places")
+    np.testing.assert_allclose(file.point, grid.point, atol=1e-8)
+    status, out, _ = command(*arguments, "--places", places)
+    assert (status, "6 points" in out) == (0, True)
+    assert "# grid: 6x1\n" in target.read_text("utf-8")
+
+
 def test_set_may_be_a_file_of_ones_own(command, tmp_path):
     own = tmp_path / "own.toml"
     own.write_text(bundled(SET).read_text("utf-8"), "utf-8")
@@ -60,6 +88,10 @@ FLANK = ("flank", "{set}", "--member", "gear", "--flank", "concave", "-o", "{tar
         ),
         ((*FLANK, "--margin", "-0.1"), "--margin -0.1: must"),
         ((*FLANK, "--margin", "nan"), "--margin nan: must"),
+        ((*FLANK, "--margin-heel", "0.5"), "--margin-heel 0.5: must be at least 0 and less than 0.5"),
+        ((*FLANK, "--margin-root", "nan"), "--margin-root nan: must"),
+        ((*FLANK, "--places", "absent.csv"), r"absent\.csv: cannot be read"),
+        ((*FLANK, "--places", "absent.csv", "--margin-tip", "0.1"), r"--margin-tip 0\.1: listed places .* no margins"),
         ((*FLANK, "--margin", "wide"), "'wide' is not a valid float"),
         (("flank", "absent.toml", *FLANK[2:]), r"absent\.toml: cannot be read: there is no such file; bundled are"),
         (("flank", "{set}", "--member", "wheel", *FLANK[4:]), "'wheel' is not one of 'pinion', 'gear'"),

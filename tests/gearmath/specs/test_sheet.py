@@ -233,6 +233,7 @@ def test_number_between_quotes_is_no_angle(sheet):
 @pytest.fixture
 def new_settings(gear_set) -> dict[str, np.ndarray]:
     settings = {flank: gear_set.pinion.flank(flank).vector.copy() for flank in FLANKS}
+    settings["convex"] = parse(SHEET, BevelSet, "sheet").member("pinion").convex.vector
     for k, name in enumerate(SETTINGS):
         settings["concave"][k] += 0.001 * (k + 1) if name != "cutter_tilt" else 0.0
     return settings
@@ -256,7 +257,8 @@ def test_corrected_sheet_stays_a_sheet_with_its_comments(sheet, new_settings, tm
     assert concave["ratio_of_roll_cradle_per_work"] == pytest.approx(1 / new_settings["concave"][8], abs=1e-11)
     assert concave["radial_distance"] == pytest.approx(new_settings["concave"][0] / 25.4, abs=1e-11)
     assert re.fullmatch(r"-63 49 [\d.]+", concave["cradle_angle"])
-    assert re.fullmatch(r"-53°55'[\d.]+\"", raw["pinion"]["convex"]["cradle_angle"])
+    assert raw["pinion"]["convex"]["cradle_angle"] == "-53° 55' 33.58036812\""  # not corrected
+    assert "# cradle by work" in text.partition("[pinion.concave.design]")[0]
     assert concave["design"] == {
         key: value for key, value in tomllib.loads(sheet)["pinion"]["concave"].items() if key != "blade_profile_height"
     } | {"motion": {}}
@@ -326,3 +328,32 @@ def test_model_of_a_loaded_set_is_that_set_again(sheet):
     """A loaded set is in mm, from the apex: nothing is converted twice."""
     ours = parse(beyond_the_crossing_point(sheet), BevelSet, "sheet.toml")
     assert BevelSet.model_validate(ours.model_dump()) == ours
+
+
+ODD = [
+    "1" + "0" * 400, "-1" + "0" * 400, "true", '"x"', '""', '" "', "[]", "{}", "[1]", '["1 2 3"]', "nan", "-inf", "0",
+    '"1 2 3"', '"1 2 3 4"', f'"1{" " * 5000}2"', "1979-05-27", "1e308", "{a = 1}", '"\\u0661 2"',
+]  # fmt: skip
+
+
+def outcome(text: str) -> str | BevelSet:
+    """The set, or the sentence that refuses it. Anything else is a fault of the program."""
+    try:
+        return parse(text, BevelSet, "sheet.toml")
+    except InputError as error:
+        return str(error)
+
+
+@pytest.mark.parametrize("odd", ODD, ids=lambda odd: odd[:12])
+def test_odd_value_of_any_key_is_refused_in_one_sentence_or_taken(odd):
+    """Numbers beyond a double, other types, long texts, dates; for one member and one of its flanks."""
+    lines = beyond_the_crossing_point(SHEET).splitlines()
+    for k, line in enumerate(lines[: lines.index("[pinion.convex]")]):
+        if re.match(r"\w+ = ", line):
+            key = line.partition(" = ")[0]
+            found = outcome("\n".join([*lines[:k], f"{key} = {odd}", *lines[k + 1 :]]))
+            if isinstance(found, BevelSet):
+                vectors = [member.flank(flank).vector for member in found.members.values() for flank in FLANKS]
+                assert np.isfinite(vectors).all()
+            else:
+                assert re.fullmatch(r"sheet\.toml: [^\n]+", found)

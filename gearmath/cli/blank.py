@@ -1,0 +1,82 @@
+"""``gearmath blank``: the blank of a pair from its design data."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gearmath.cli.common import JSON, about, table
+
+if TYPE_CHECKING:
+    from gearmath.bevel.blank_table import Row
+
+
+@click.command()
+@click.argument("data", metavar="FILE.toml")
+@JSON
+@click.option("--set", "as_set", is_flag=True, help="Print the blanks as a gear set has them ([pinion.blank], ...).")
+@click.option(
+    "-o", "--output", "target", type=click.Path(path_type=Path, dir_okay=False), help="File to write instead (text)."
+)
+def blank(data: str, as_json: bool, as_set: bool, target: Path | None) -> None:
+    """The blank of a spiral bevel pair from its design data: ISO 23509 method 0, slot widths to AGMA 929.
+
+    FILE.toml is a file of design data, or a bundled one such as blank_iso23509_sample1.toml. Lengths are in mm, angles
+    in degrees. Edge radii are for a blade with a flat of 0.2 mm, and for a mutilation of 0.05 mm.
+    """
+    import json
+
+    from gearmath.bevel.blank import blank_of
+    from gearmath.bevel.blank_table import by_name, rows, set_fragment
+    from gearmath.bevel.slots import slots_of
+    from gearmath.errors import InputError
+    from gearmath.files import write_text
+    from gearmath.specs.blank_data import load_blank_data
+    from gearmath.specs.toml import find
+
+    if as_json and as_set:
+        raise InputError("--json and --set: only one of them may be given")
+    path = find(data)
+    given = load_blank_data(path)
+    made = blank_of(given, str(path))
+    if as_set:
+        text = set_fragment(made)
+    else:
+        with about(path):
+            found = rows(made, slots_of(made))
+        head = {"title": given.title, "process": made.process, "units": "mm, degree"}
+        values: dict[str, Any] = {**head, **by_name(found)}
+        text = json.dumps(values, indent=2) + "\n" if as_json else f"{given.title}\n\n{_text(found)}\n"
+    if target is None:
+        click.echo(text, nl=False)
+        return
+    write_text(target, text)
+    click.echo(f"{target}: written")
+
+
+def _text(found: list[Row]) -> str:
+    """The figures of the pair, then those of pinion and wheel; what changes along the tooth in three lines."""
+    from gearmath.bevel.blank_table import PLACES
+
+    pair, members = [], []
+    for row in found:
+        name = row.name.replace("_", " ")
+        if len(row.values) == 1:
+            pair.append([name, row.symbol, row.unit, _number(row.values[0])])
+        elif isinstance(row.values[0], tuple):
+            for place, *values in zip(PLACES, *row.values, strict=True):
+                members.append([f"{name}, {place}", row.symbol, row.unit, *map(_number, values)])
+        else:
+            members.append([name, row.symbol, row.unit, *map(_number, row.values)])
+    return "\n\n".join(
+        (
+            table(["pair", "symbol", "unit", "value"], pair),
+            table(["member", "symbol", "unit", "pinion", "wheel"], members),
+        )
+    )
+
+
+def _number(value: float) -> str:
+    return str(value) if isinstance(value, int) else f"{value:.4f}"

@@ -1,0 +1,123 @@
+"""docs/set_file.md says what the models of a gear set and of a blank's design data take: keys, units, ranges, defaults.
+
+Where a model changes, the failing test prints the rows as they must read; what a key means is written by hand.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from types import UnionType
+from typing import Any, Literal, Union, get_args, get_origin
+
+import annotated_types as at
+import pytest
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from gearmath.specs import bevel_set, blank_data
+from gearmath.specs.sheet import unit_of
+from gearmath.specs.toml import bundled, parse
+
+PAGE = (Path(__file__).parents[3] / "docs" / "set_file.md").read_text("utf-8")
+#: The heading of each table of the page, and the model that it is of.
+TABLES: dict[str, type[BaseModel]] = {
+    "Gear set": bevel_set.BevelSet,
+    "`[pinion]` and `[gear]`": bevel_set.Member,
+    "`[pinion.blank]` and `[gear.blank]`": bevel_set.Blank,
+    "`[pinion.concave]`, `[pinion.convex]`, `[gear.concave]`, `[gear.convex]`": bevel_set.Flank,
+    "`[pinion.concave.motion]` and the others": bevel_set.Motion,
+    "Design data of a blank": blank_data.BlankData,
+    "`[cutter]`": blank_data.Cutter,
+    "`[taper]`": blank_data.Taper,
+    "`[data_type_1]`": blank_data.DataType1,
+    "`[data_type_2]`": blank_data.DataType2,
+    "`[backlash]`": blank_data.Backlash,
+}
+#: Keys of a file that no model has: what stands in their place there.
+BESIDES = {bevel_set.Flank: {bevel_set.CRADLE_PER_WORK: ("", "at least 0.02, below 10", "or `ratio_of_roll`")}}
+
+
+def limits(field: FieldInfo) -> str:
+    """The range of a number, the words that a text may be, or how many numbers there may be."""
+    found = [*field.metadata, *parts(field.annotation)]
+    words = next((part for part in found if get_origin(part) is Literal), None)
+    if get_origin(field.annotation) is Literal or words is not None:
+        return ", ".join(f"`{value!r}`".replace("'", '"') for value in get_args(words or field.annotation))
+    bounds = {
+        at.Gt: ("above {}", "gt"), at.Ge: ("at least {}", "ge"), at.Lt: ("below {}", "lt"), at.Le: ("up to {}", "le"),
+        at.MaxLen: ("{} characters at most" if field.annotation is str else "{} numbers at most", "max_length"),
+    }  # fmt: skip
+    said = []
+    for kind, (text, name) in bounds.items():
+        values = [getattr(part, name) for part in found if isinstance(part, kind)]
+        if values:
+            said.append(text.format(f"{min(values):g}"))
+    return ", ".join(said)
+
+
+def parts(annotation: Any) -> list[Any]:
+    """An annotation and all it is made of."""
+    inside = () if get_origin(annotation) is Literal else get_args(annotation)
+    inner = [part for one in inside for part in parts(one)]
+    fields = [item for item in inner if isinstance(item, FieldInfo)]
+    return [annotation, *inner, *(mark for field in fields for mark in field.metadata)]
+
+
+def default(field: FieldInfo) -> str:
+    if field.is_required():
+        return "required"
+    union = get_origin(field.annotation) in (Union, UnionType) and type(None) in get_args(field.annotation)
+    value = field.default
+    return "" if union or value == () or isinstance(value, BaseModel) else f"`{value!r}`".replace("'", '"')
+
+
+def is_table(annotation: Any) -> bool:
+    return any(isinstance(part, type) and issubclass(part, BaseModel) for part in parts(annotation))
+
+
+def rows(model: type[BaseModel]) -> dict[str, tuple[str, str, str]]:
+    """Unit, range and default of every key that is no table."""
+    found = {}
+    for key, field in model.model_fields.items():
+        if not is_table(field.annotation):
+            unit = unit_of(model, key)  # type: ignore[arg-type]
+            found[key] = (unit or "", limits(field), default(field))
+    return found | BESIDES.get(model, {})
+
+
+def printed(heading: str) -> dict[str, tuple[str, str, str]]:
+    """The rows under a heading of the page."""
+    begin = PAGE.index(f" {heading}\n")
+    section = re.split(r"\n#+ ", PAGE[begin:], maxsplit=1)[0]
+    lines = [line for line in section.splitlines() if line.startswith("| `")]
+    cells = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
+    assert all(len(row) == 5 and row[4] for row in cells), "every row has key, unit, range, default and meaning"
+    return {row[0].strip("`"): (row[1], row[2], row[3]) for row in cells}
+
+
+@pytest.mark.parametrize("heading", TABLES)
+def test_page_has_every_key_with_unit_range_and_default(heading):
+    assert printed(heading) == rows(TABLES[heading])
+
+
+def test_page_is_of_every_table_of_the_files():
+    """Nothing is nested anywhere that the page does not tell of; a design has the keys of its flank's settings."""
+    told, seen = set(TABLES.values()) | {bevel_set.Design}, [bevel_set.BevelSet, blank_data.BlankData]
+    for model in seen:
+        for field in model.model_fields.values():
+            for part in parts(field.annotation):
+                if isinstance(part, type) and issubclass(part, BaseModel) and part not in seen:
+                    seen.append(part)
+    assert set(seen) == told
+
+
+def test_example_of_the_page_is_a_set():
+    """The example in inches, with minutes and seconds, cradle by work and a crossing point: one member alone."""
+    (example,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    made = parse(example, bevel_set.BevelSet, "example")
+    assert list(made.members) == ["gear"]
+    ours = parse(bundled("nasa_tp3096_12x36.toml").read_text("utf-8"), bevel_set.BevelSet, "set").member("gear")
+    for flank in bevel_set.FLANKS:
+        vector = made.member("gear").flank(flank).vector
+        assert vector == pytest.approx(ours.flank(flank).vector, abs=2e-6)
