@@ -23,7 +23,9 @@ _PROGRAM = ".MPF; its name becomes the program name"
 CALIBRATION = click.option(
     "--calibration", default="probe.toml", show_default=True, help="Calibrated probe: a file, or a bundled one."
 )
-_RUN = click.option("--run", type=int, help="Run of the touch file to take.  [default: the last one]")
+_RUN = click.option(
+    "--run", type=int, help="Run of the touch file to take, whole or not.  [default: the last one, which must be whole]"
+)
 _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
 
 
@@ -127,6 +129,8 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
 @output("measured flank CSV")
 def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int | None, target: Path) -> None:
     """Raw touches of a probe to measured points: corrected contact points and their deviations."""
+    from gearmath.bevel.flank import blank_grid
+    from gearmath.quality.completeness import missing_touches
     from gearmath.quality.touches import measured_member
     from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.calibration import load_calibration
@@ -137,6 +141,8 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
 
     found = read_touch_csv(raw, run)
     member = load_bevel_set(find(gear_set)).member(found.member)
+    missing = missing_touches(found, member.teeth, blank_grid(member).shape)
+    _check_whole(raw, run, found.run, missing)
     with about(raw):
         measured = measured_member(
             found, member, found.member, load_milling_machine(find(machine)), load_calibration(find(calibration))
@@ -144,6 +150,8 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
     write_flank_csv(target, measured)
     worst = float(abs(measured.deviation).max()) * 1000
     click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {worst:.3f} um")
+    for one in missing:
+        click.echo(f"run {found.run} is not whole: {one}")
 
 
 @click.command()
@@ -158,9 +166,16 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
 
     Touches of ``nc calibrate --cycle axes`` make a new machine file of that of --machine.
     """
+    from gearmath.quality.completeness import missing_calibration
+    from gearmath.specs.calibration import load_calibration
+    from gearmath.specs.milling_machine import load_milling_machine
+    from gearmath.specs.toml import find
     from gearmath.specs.touch_csv import WORK_SPHERE, read_calibration_csv
 
     found = read_calibration_csv(raw, run)
+    known, spindle = load_calibration(find(calibration)), load_milling_machine(find(machine))
+    missing = missing_calibration(found, known, spindle)
+    _check_whole(raw, run, found.run, missing)
     if (found.target == WORK_SPHERE).any():
         if lobing:
             raise InputError("--lobing needs touches on the sphere of the table; these are on that of the work")
@@ -169,7 +184,21 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
         lines = _calibrate_tip(raw, found, calibration, lobing, target)
     for line in lines:
         click.echo(line)
+    for one in missing:
+        click.echo(f"run {found.run} is not whole: {one}")
     click.echo(f"{target}: written")
+
+
+def _check_whole(raw: Path, wanted: int | None, run: int, missing: tuple[str, ...]) -> None:
+    """Raise InputError where the last run is not whole and was not asked for by its number."""
+    from gearmath.specs.touch_csv import run_numbers
+
+    if wanted is not None or not missing:
+        return
+    others = [number for number in run_numbers(raw) if number != run]
+    choice = f"--run {run} takes it as it is" + "".join(f", --run {number} another one" for number in others[-1:])
+    more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
+    raise InputError(f"{raw}: run {run}, the last one, is not whole: {missing[0]}{more}; {choice}")
 
 
 def _calibrate_tip(

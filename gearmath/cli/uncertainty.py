@@ -76,6 +76,7 @@ def uncertainty(
         found = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, progress)
     _, settings, effects, remarks = uncertain_correction(spec, file, evaluation, covariance)
     found += settings
+    remarks = [*evaluation.remarks, *remarks]
     if picture:
         from gearmath.plot import save, uncertainty_figure
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from gearmath.errors import InputError
+from gearmath.quality.completeness import missing_points
 from gearmath.quality.correction import check_belongs
 from gearmath.quality.drift import Drift, untold_drift, without_drift
 from gearmath.quality.nominal import check_points, completed, nominal_rows
@@ -110,7 +111,8 @@ def evaluate_member(
     measured, drifts = without_drift(whole, member.teeth)
     partly = _partly(measured, member)
     as_measured = _flanks(measured, member, not partly)
-    seat, remarks = None, (*outliers.reasons, *absent, *partly)
+    missing = missing_points(file, member.teeth)
+    seat, remarks = None, (*(f"not whole: {one}" for one in missing), *outliers.reasons, *absent, *partly)
     if registered:
         try:
             seat = register(measured, member, name, untold_drift(whole, member.teeth))
@@ -121,7 +123,7 @@ def evaluate_member(
     judged = measured if seat is None else seat.file
     flanks = as_measured if seat is None else _flanks(judged, member, not partly)
     before, runout = (None if partly else evaluate_runout(each, member.teeth) for each in (measured, judged))
-    verdict = _verdict(member, name, flanks, runout)
+    verdict = None if missing else _verdict(member, name, flanks, runout)
     zeroed = file.header["phase_zeroed"].lower() == "true"
     if zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
