@@ -49,7 +49,7 @@ def probe(
     gear_set: str, member: str, machine: str, calibration: str, topography: str, pitch: bool, registration: bool,
     repeat: int, errors: str | None, target: Path,
 ) -> None:  # fmt: skip
-    """The probing program of a member.
+    """Write the probing program of a member; 'gearmath probe' runs it on the machine model.
 
     Before it is written it is run: tip, stylus and spindle must stay clear of teeth, hub, shank and fixture.
     """
@@ -104,7 +104,10 @@ def _clearances(found: list[Approach], target: Path) -> str:
 )  # fmt: skip
 @output(_PROGRAM)
 def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> None:
-    """The program that calibrates the probe on ring and sphere, or the rotary axes on a sphere on the work side."""
+    """Write the program that calibrates the probe on ring and sphere, or the rotary axes on a sphere on the work side.
+
+    'gearmath probe' runs it on the machine model, 'gearmath calibrate' reads its touches.
+    """
     from gearmath.files import write_text
     from gearmath.machine.axis_cycle import axis_program
     from gearmath.machine.calibrating import calibration_program
