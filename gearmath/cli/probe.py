@@ -177,8 +177,8 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
 
     found = read_calibration_csv(raw, run)
     known, spindle = load_calibration(find(calibration)), load_milling_machine(find(machine))
-    missing = missing_calibration(found, known, spindle)
-    _check_whole(raw, run, found.run, missing)
+    parts, untouched = missing_calibration(found, known, spindle)
+    _check_whole(raw, run, found.run, parts)
     if (found.target == WORK_SPHERE).any():
         if lobing:
             raise InputError("--lobing needs touches on the sphere of the table; these are on that of the work")
@@ -187,7 +187,7 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
         lines = _calibrate_tip(raw, found, calibration, lobing, target)
     for line in lines:
         click.echo(line)
-    for one in missing:
+    for one in (*parts, *untouched):
         click.echo(f"run {found.run} is not whole: {one}")
     click.echo(f"{target}: written")
 

@@ -55,17 +55,18 @@ def missing_touches(touches: Touches, teeth: int, shape: tuple[int, int]) -> tup
 
 def missing_calibration(
     touches: CalibrationTouches, calibration: Calibration, machine: MillingMachine
-) -> tuple[str, ...]:  # fmt: skip
-    """What a run on ring and sphere does not have of the touches that its program makes."""
+) -> tuple[tuple[str, ...], tuple[str, ...]]:  # fmt: skip
+    """What a run on ring and sphere does not have of the touches that its program makes: parts, and whole targets."""
     if (touches.target == WORK_SPHERE).any() and calibration.work_sphere is not None:
         wanted = {WORK_SPHERE: axis_touches(machine, calibration)}
     else:
         wanted = calibration_touches(calibration)
     there = Counter(touches.target.tolist())
-    return tuple(
-        f"{target} was touched {there[target]} of {count} times"
-        for target, count in wanted.items() if there[target] < count
-    )  # fmt: skip
+    lacking = {target: count for target, count in wanted.items() if there[target] < count}
+    parts = tuple(
+        f"{name} was touched {there[name]} of {count} times" for name, count in lacking.items() if there[name]
+    )
+    return parts, tuple(f"{name} was not touched" for name in lacking if not there[name])
 
 
 def _places(flank: np.ndarray, tooth: np.ndarray, row: np.ndarray, col: np.ndarray) -> _Places:

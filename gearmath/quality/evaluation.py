@@ -112,7 +112,7 @@ def evaluate_member(
     partly = _partly(measured, member)
     as_measured = _flanks(measured, member, not partly)
     missing = missing_points(file, member.teeth)
-    seat, remarks = None, (*(f"not whole: {one}" for one in missing), *outliers.reasons, *absent, *partly)
+    seat, remarks = None, (*outliers.reasons, *absent, *partly, *(f"not whole: {one}" for one in missing))
     if registered:
         try:
             seat = register(measured, member, name, untold_drift(whole, member.teeth))
