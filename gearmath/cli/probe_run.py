@@ -44,11 +44,12 @@ def probe(
 
     The tip of --calibration is moved as the text says, against the flanks of a member or, in a calibration program,
     against ring and spheres; the touches are those that the program writes on the control. With --measured the flanks
-    are as that file says: splines between the points of its grids, teeth without a grid as the nearest one that has
-    one, turned to their reference point. With --errors axes, probe and work err as the file says: [axes], [probe], and
-    the clamping and drift of [measuring].
+    are as that file says, its noise included: splines between the points of its grids, teeth without a grid as the
+    nearest one that has one, turned to their reference point. With --errors axes, probe and work err as the file says:
+    [axes], [probe], and the clamping and drift of [measuring].
 
-    'gearmath touches' and 'gearmath calibrate' read what is written here.
+    Motion between the touches is not watched here; 'gearmath nc probe' does that when it writes the program. 'gearmath
+    touches' and 'gearmath calibrate' read what is written here.
     """
     from gearmath.files import read_text, write_text
     from gearmath.machine.artefacts import Artefacts
