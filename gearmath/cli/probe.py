@@ -75,18 +75,18 @@ def probe(
             text, str(target), bevel_set.member(member), member, milling_machine, known, fixture, head.spindle_radius,
             progress,
         )  # fmt: skip
-    clear = _clearances(found, target)
+    clear = clearances(found, target, "the program is not written")
     write_text(target, text)
     click.echo(f"{target}: {repeat * points} touches, {text.count(chr(10))} blocks; {clear}")
 
 
-def _clearances(found: list[Approach], target: Path) -> str:
+def clearances(found: list[Approach], program: Path, end: str) -> str:
     """The least clearance of every part of the probe in words. Raises InputError for the deepest collision."""
     worst = min(found, key=lambda one: one.distance)
     if worst.distance <= 0.0:
         raise InputError(
-            f"{target}, line {worst.line}: the {worst.probe} of the probe meets the {worst.work}, "
-            f"{-worst.distance:.3f} mm deep: the program is not written"
+            f"{program}, line {worst.line}: the {worst.probe} of the probe meets the {worst.work}, "
+            f"{-worst.distance:.3f} mm deep: {end}"
         )
     nearest: dict[str, Approach] = {}
     for one in sorted(found, key=lambda one: -one.distance):

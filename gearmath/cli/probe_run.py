@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gearmath.cli.common import MACHINE, about, bar, output
-from gearmath.cli.probe import CALIBRATION
+from gearmath.cli.probe import CALIBRATION, clearances
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -48,8 +48,8 @@ def probe(
     nearest one that has one, turned to their reference point. With --errors axes, probe and work err as the file says:
     [axes], [probe], and the clamping and drift of [measuring].
 
-    Motion between the touches is not watched here; 'gearmath nc probe' does that when it writes the program. 'gearmath
-    touches' and 'gearmath calibrate' read what is written here.
+    A program that collides with a nominal member, as 'gearmath nc probe' watches for it, is refused. 'gearmath touches'
+    and 'gearmath calibrate' read what is written here.
     """
     from gearmath.files import read_text, write_text
     from gearmath.machine.artefacts import Artefacts
@@ -72,13 +72,30 @@ def probe(
         if gear_set is None or member is None:
             missing = "--set" if gear_set is None else "--member"
             raise InputError(f"{missing} is missing: {program} probes a member")
-        there = _member_machine(gear_set, member, measured, milling_machine, known, shop)
+        there = at_member = _member_machine(gear_set, member, measured, milling_machine, known, shop)
         count = touch_count(text, str(program))
+        _check_clear(text, program, at_member, milling_machine, shop, 2 * count + text.count("\n"))
     blocks = 2 * count if count is not None else text.count("MEAS=1")
     with bar(blocks, "block") as progress:
         raw = run_touches(text, str(program), there, shop, count, run, progress)
     write_text(target, raw)
     click.echo(f"{target}: {len(raw.splitlines()) - 1} touches of run {run}")
+
+
+def _check_clear(
+    text: str, program: Path, there: ProbeMachine, machine: MillingMachine, shop: SimulatedMachine | None, steps: int
+) -> None:  # fmt: skip
+    """Raise InputError where the program moves the probe into a nominal member, or touches what it does not have."""
+    from gearmath.machine.probe_check import approaches
+    from gearmath.specs.simulated_machine import CutterHead, Fixture
+
+    fixture, head = (shop.fixture, shop.cutter_head) if shop else (Fixture(), CutterHead())
+    with bar(steps, "step") as progress:
+        found = approaches(
+            text, str(program), there.member, there.name, machine, there.calibration, fixture, head.spindle_radius,
+            progress,
+        )  # fmt: skip
+    clearances(found, program, "it is not run")
 
 
 def _member_machine(

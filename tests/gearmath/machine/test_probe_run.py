@@ -154,3 +154,21 @@ def test_command_names_what_is_missing_and_writes_nothing(command, refused, tmp_
     assert status == 1
     assert re.search(r"CAL\.MPF, line \d+: the run ends with alarm 65001 \(touched nothing\), after 0 touches", err)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["CAL.MPF", "PP.MPF", "bare.toml"]
+
+
+def test_command_refuses_a_program_that_collides_and_one_of_the_mate(gear_set, refused, tmp_path):
+    """The first rapid way down goes 20 mm too deep; and the gear is no pinion."""
+    text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PP", topography=())
+    program = tmp_path / "PP.MPF"
+    program.write_text(text)
+    refused(r"PP\.MPF, line \d+", "probe", program, "--set", NASA, "--member", "gear", "-o", tmp_path / "raw.csv")
+    first = re.search(r"MEAS=1 G1 X=IC\(0\) Y=IC\(0\) Z(-?\d+\.\d+)", text)
+    deep = f"G0 Z{float(first[1]) - 20.0:.5f}\n" + f"N1 G0 Z{float(first[1]) + 20.0:.5f}\n"
+    at = text.rindex("\n", 0, first.start()) + 1
+    program.write_text(text[:at] + "N1 " + deep + text[at:])
+    line = text[:at].count("\n") + 1
+    refused(
+        rf"PP\.MPF, line ({line}|{line + 1}): the (tip|stylus) of the probe meets the teeth, .* mm deep: it is not run",
+        "probe", program, "--set", NASA, "--member", "pinion", "-o", tmp_path / "raw.csv",
+    )  # fmt: skip
+    assert [path.name for path in tmp_path.iterdir()] == ["PP.MPF"]
