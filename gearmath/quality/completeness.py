@@ -43,9 +43,11 @@ def missing_touches(touches: Touches, teeth: int, shape: tuple[int, int]) -> tup
     """
     places = _places(touches.flank, touches.tooth, touches.row, touches.col)
     found = list(_missing(places, teeth, shape, (shape[0] // 2, shape[1] // 2), 0.0))
-    measured = {tooth for _, tooth in places}
-    if not found and len(measured) > 1 and not _in_full(places, shape) and teeth not in measured:
-        found.append("tooth 0 was not touched again at the end")
+    again = [places.get((flank, teeth), set()) for flank in FLANKS]
+    if not found and not _in_full(places, shape) and not (again[0] and again[0] == again[1]):
+        found.append(
+            f"tooth 0 was touched again at the end at {len(again[0])} concave and {len(again[1])} convex points"
+        )
     count = Counter(zip(*(getattr(touches, name).tolist() for name in ("flank", "tooth", "row", "col")), strict=True))
     last, often = list(count.items())[-1], max(count.values())
     if last[1] != often:

@@ -14,9 +14,10 @@ from gearmath.machine.artefacts import Artefacts
 from gearmath.machine.calibrating import calibration_program
 from gearmath.machine.probe_run import run_touches
 from gearmath.machine.probing import probe_targets
+from gearmath.quality.completeness import missing_touches
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.toml import bundled
-from gearmath.specs.touch_csv import COLUMNS
+from gearmath.specs.touch_csv import COLUMNS, read_touch_csv
 
 SET = "nasa_tp3096_12x36.toml"
 PROBE = load_calibration(bundled("probe.toml"))
@@ -136,6 +137,18 @@ def test_run_that_is_not_whole_is_taken_where_it_is_asked_for_and_said_not_to_be
     status, said, _ = command("calibrate", path, "--run", 2, "-o", tmp_path / "tip.toml")
     assert status == 0
     assert "run 2 is not whole: sphere was touched 20 of 25 times" in said
+
+
+def test_run_that_was_aborted_anywhere_is_never_whole(raw, gear_set, tmp_path):
+    """After every single touch but the last one; with the grid alone, only after both flanks are done."""
+    lines = raw.splitlines()
+    path = tmp_path / "raw.csv"
+    for count in range(2, len(lines)):
+        path.write_text("\n".join(lines[:count]) + "\n")
+        missing = missing_touches(read_touch_csv(path), 12, (5, 9))
+        assert bool(missing) == (count - 1 != 90), count  # the whole grid of one tooth is a measurement, too
+    path.write_text(raw)
+    assert missing_touches(read_touch_csv(path), 12, (5, 9)) == ()
 
 
 def test_kinds_of_touches_are_not_taken_for_each_other(command, raw, calibration_raw, tmp_path):
