@@ -8,8 +8,8 @@ from pathlib import Path
 
 from gearmath.errors import InputError
 
-#: Bytes of the largest file that is read as text.
-_LARGEST = 200_000_000
+#: Bytes of the largest file that is read as text, a program of many blocks.
+LARGEST = 200_000_000
 
 
 def write_text(path: Path, text: str) -> None:
@@ -33,18 +33,18 @@ def write_bytes(path: Path, content: bytes) -> None:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error
 
 
-def read_text(path: Path) -> str:
+def read_text(path: Path, most: int = LARGEST) -> str:
     """The text of a file: UTF-8, with or without a byte order mark, line ends of any kind as LF.
 
-    Raises InputError naming the file if it is missing, is no text, or is larger than any file that is read here.
+    Raises InputError naming the file if it is missing, is no text, or has more than ``most`` bytes.
     """
     try:
         with path.open("rb") as stream:
-            content = stream.read(_LARGEST + 1)
+            content = stream.read(most + 1)
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    if len(content) > _LARGEST:
-        raise InputError(f"{path}: is larger than {_LARGEST // 10**6} MB, which is the limit")
+    if len(content) > most:
+        raise InputError(f"{path}: is larger than {most / 1e6:g} MB, which is the limit")
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:

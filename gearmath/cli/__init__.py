@@ -24,7 +24,7 @@ VERBS = {
     "tooth": ("bevel", "Whole teeth of a member: figures, and an STL of a space or of the whole member."),
     "nc": ("machine", "NC programs for the vertical 5-axis machine."),
     "mill": ("machine", "Virtual milling from the program text."),
-    "probe": ("probe_run", "Run a probing or calibration program on the machine model: raw touches."),
+    "probe": ("probe_run", "Run a program of 'nc probe' or 'nc calibrate' on the machine model: raw touches."),
     "touches": ("probe", "Raw touches of a probe to measured points."),
     "calibrate": ("probe", "The tip of the probe from its touches on ring and sphere."),
     "points": ("points", "Points of another measuring machine, as text, to measured points."),

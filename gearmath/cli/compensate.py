@@ -263,6 +263,7 @@ def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any
 def stock(measured: Path, gear_set: str, member: str, advance: bool, least: float, as_json: bool) -> None:
     """How a precut blank must stand so that both flanks share its stock: probe it, then turn it by this."""
     from gearmath.bevel.pair import load_pair
+    from gearmath.quality.completeness import missing_points
     from gearmath.quality.stock import share_stock
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
@@ -270,9 +271,10 @@ def stock(measured: Path, gear_set: str, member: str, advance: bool, least: floa
     spec, file = load_pair(find(gear_set)).member(member), read_flank_csv(measured)
     with about(measured):
         found = share_stock(spec, member, file, advance, least / 1000)
+    remarks = [f"not whole: {one}" for one in missing_points(file, spec.teeth)]
     if as_json:
         echo_json({
-            "turn_deg": math.degrees(found.turn), "advance_mm": found.advance,
+            "turn_deg": math.degrees(found.turn), "advance_mm": found.advance, "remarks": remarks,
             **{f"{name}_um": {flank: value * 1000 for flank, value in getattr(found, name).items()}
                for name in ("least", "mean", "most", "least_before")},
         })  # fmt: skip
@@ -285,3 +287,5 @@ def stock(measured: Path, gear_set: str, member: str, advance: bool, least: floa
         [[flank, *(f"{values[flank] * 1000:.1f}" for values in (found.least, found.mean, found.most,
                                                                 found.least_before))] for flank in found.least],
     ))  # fmt: skip
+    for remark in remarks:
+        click.echo(remark)

@@ -56,16 +56,16 @@ def points(
     parted by blanks, tabs, commas or semicolons (docs/files.md). The rotation about the axis is found, and said;
     deviations are those along the normals of the nominal flank. The result is read by evaluate, compensate and report.
     """
+    from gearmath.bevel.pair import load_pair
     from gearmath.quality.foreign import foreign_file
     from gearmath.quality.points import Frame, Part
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.point_text import read_point_text
     from gearmath.specs.toml import find
 
     sides, teeth = _for_each(texts, sides, "--flank"), _for_each(texts, teeth, "--tooth")
     _check_lengths(apex_offset, tip_radius)
-    loaded = load_bevel_set(find(gear_set))
+    loaded = load_pair(find(gear_set))
     _check_parts(texts, sides, teeth, loaded.member(member).teeth)
     read = [read_point_text(path, unit) for path in texts]
     parts = [

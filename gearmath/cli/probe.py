@@ -23,7 +23,9 @@ _PROGRAM = ".MPF; its name becomes the program name"
 CALIBRATION = click.option(
     "--calibration", default="probe.toml", show_default=True, help="Calibrated probe: a file, or a bundled one."
 )
-_RUN = click.option("--run", type=int, help="Run of the touch file to take.  [default: the last one]")
+_RUN = click.option(
+    "--run", type=int, help="Run of the touch file to take, whole or not.  [default: the last one, which must be whole]"
+)
 _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
 
 
@@ -47,7 +49,7 @@ def probe(
     gear_set: str, member: str, machine: str, calibration: str, topography: str, pitch: bool, registration: bool,
     repeat: int, errors: str | None, target: Path,
 ) -> None:  # fmt: skip
-    """The probing program of a member.
+    """Write the probing program of a member; 'gearmath probe' runs it on the machine model.
 
     Before it is written it is run: tip, stylus and spindle must stay clear of teeth, hub, shank and fixture.
     """
@@ -74,18 +76,18 @@ def probe(
             text, str(target), bevel_set.member(member), member, milling_machine, known, fixture, head.spindle_radius,
             progress,
         )  # fmt: skip
-    clear = _clearances(found, target)
+    clear = clearances(found, target, "the program is not written")
     write_text(target, text)
     click.echo(f"{target}: {repeat * points} touches, {block_count(text)} blocks; {clear}")
 
 
-def _clearances(found: list[Approach], target: Path) -> str:
+def clearances(found: list[Approach], program: Path, end: str) -> str:
     """The least clearance of every part of the probe in words. Raises InputError for the deepest collision."""
     worst = min(found, key=lambda one: one.distance)
     if worst.distance <= 0.0:
         raise InputError(
-            f"{target}, line {worst.line}: the {worst.probe} of the probe meets the {worst.work}, "
-            f"{-worst.distance:.3f} mm deep: the program is not written"
+            f"{program}, line {worst.line}: the {worst.probe} of the probe meets the {worst.work}, "
+            f"{-worst.distance:.3f} mm deep: {end}"
         )
     nearest: dict[str, Approach] = {}
     for one in sorted(found, key=lambda one: -one.distance):
@@ -103,7 +105,10 @@ def _clearances(found: list[Approach], target: Path) -> str:
 )  # fmt: skip
 @output(_PROGRAM)
 def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> None:
-    """The program that calibrates the probe on ring and sphere, or the rotary axes on a sphere on the work side."""
+    """Write the program that calibrates the probe on ring and sphere, or the rotary axes on a sphere on the work side.
+
+    'gearmath probe' runs it on the machine model, 'gearmath calibrate' reads its touches.
+    """
     from gearmath.files import write_text
     from gearmath.machine.axis_cycle import axis_program
     from gearmath.machine.calibrating import calibration_program
@@ -129,7 +134,9 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
 @output("measured flank CSV")
 def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int | None, target: Path) -> None:
     """Raw touches of a probe to measured points: corrected contact points and their deviations."""
+    from gearmath.bevel.flank import blank_grid
     from gearmath.bevel.pair import load_pair
+    from gearmath.quality.completeness import missing_touches
     from gearmath.quality.touches import measured_member
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.flank_csv import write_flank_csv
@@ -139,6 +146,8 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
 
     found = read_touch_csv(raw, run)
     member = load_pair(find(gear_set)).member(found.member)
+    missing = missing_touches(found, member.teeth, blank_grid(member).shape)
+    _check_whole(raw, run, found.run, missing)
     with about(raw):
         measured = measured_member(
             found, member, found.member, load_milling_machine(find(machine)), load_calibration(find(calibration))
@@ -146,6 +155,8 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
     write_flank_csv(target, measured)
     worst = float(abs(measured.deviation).max()) * 1000
     click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {worst:.3f} um")
+    for one in missing:
+        click.echo(f"run {found.run} is not whole: {one}")
 
 
 @click.command(epilog=CALIBRATION_CSV)
@@ -160,9 +171,16 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
 
     Touches of ``nc calibrate --cycle axes`` make a new machine file of that of --machine.
     """
+    from gearmath.quality.completeness import missing_calibration
+    from gearmath.specs.calibration import load_calibration
+    from gearmath.specs.milling_machine import load_milling_machine
+    from gearmath.specs.toml import find
     from gearmath.specs.touch_csv import WORK_SPHERE, read_calibration_csv
 
     found = read_calibration_csv(raw, run)
+    known, spindle = load_calibration(find(calibration)), load_milling_machine(find(machine))
+    parts, untouched = missing_calibration(found, known, spindle)
+    _check_whole(raw, run, found.run, parts)
     if (found.target == WORK_SPHERE).any():
         if lobing:
             raise InputError("--lobing needs touches on the sphere of the table; these are on that of the work")
@@ -171,7 +189,21 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
         lines = _calibrate_tip(raw, found, calibration, lobing, target)
     for line in lines:
         click.echo(line)
+    for one in (*parts, *untouched):
+        click.echo(f"run {found.run} is not whole: {one}")
     click.echo(f"{target}: written")
+
+
+def _check_whole(raw: Path, wanted: int | None, run: int, missing: tuple[str, ...]) -> None:
+    """Raise InputError where the last run is not whole and was not asked for by its number."""
+    from gearmath.specs.touch_csv import run_numbers
+
+    if wanted is not None or not missing:
+        return
+    others = [number for number in run_numbers(raw) if number != run]
+    choice = f"--run {run} takes it as it is" + "".join(f", --run {number} another one" for number in others[-1:])
+    more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
+    raise InputError(f"{raw}: run {run}, the last one, is not whole: {missing[0]}{more}; {choice}")
 
 
 def _calibrate_tip(

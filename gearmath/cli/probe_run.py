@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gearmath.cli.common import MACHINE, about, bar, output
-from gearmath.cli.probe import CALIBRATION
+from gearmath.cli.probe import CALIBRATION, clearances
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -44,11 +44,12 @@ def probe(
 
     The tip of --calibration is moved as the text says, against the flanks of a member or, in a calibration program,
     against ring and spheres; the touches are those that the program writes on the control. With --measured the flanks
-    are as that file says: splines between the points of its grids, teeth without a grid as the nearest one that has
-    one, turned to their reference point. With --errors axes, probe and work err as the file says: [axes], [probe], and
-    the clamping and drift of [measuring].
+    are as that file says, its noise included: splines between the points of its grids, teeth without a grid as the
+    nearest one that has one, turned to their reference point. With --errors axes, probe and work err as the file says:
+    [axes], [probe], and the clamping and drift of [measuring].
 
-    'gearmath touches' and 'gearmath calibrate' read what is written here.
+    A program that collides with a nominal member, as 'gearmath nc probe' watches for it, is refused. 'gearmath touches'
+    and 'gearmath calibrate' read what is written here.
     """
     from gearmath.files import read_text, write_text
     from gearmath.machine.artefacts import Artefacts
@@ -71,8 +72,9 @@ def probe(
         if gear_set is None or member is None:
             missing = "--set" if gear_set is None else "--member"
             raise InputError(f"{missing} is missing: {program} probes a member")
-        there = _member_machine(gear_set, member, measured, milling_machine, known, shop)
+        there = at_member = _member_machine(gear_set, member, measured, milling_machine, known, shop)
         count = touch_count(text, str(program))
+        _check_clear(text, program, at_member, milling_machine, shop, 2 * count + text.count("\n"))
     blocks = 2 * count if count is not None else text.count("MEAS=1")
     with bar(blocks, "block") as progress:
         raw = run_touches(text, str(program), there, shop, count, run, progress)
@@ -80,20 +82,36 @@ def probe(
     click.echo(f"{target}: {len(raw.splitlines()) - 1} touches of run {run}")
 
 
+def _check_clear(
+    text: str, program: Path, there: ProbeMachine, machine: MillingMachine, shop: SimulatedMachine | None, steps: int
+) -> None:  # fmt: skip
+    """Raise InputError where the program moves the probe into a nominal member, or touches what it does not have."""
+    from gearmath.machine.probe_check import approaches
+    from gearmath.specs.simulated_machine import CutterHead, Fixture
+
+    fixture, head = (shop.fixture, shop.cutter_head) if shop else (Fixture(), CutterHead())
+    with bar(steps, "step") as progress:
+        found = approaches(
+            text, str(program), there.member, there.name, machine, there.calibration, fixture, head.spindle_radius,
+            progress,
+        )  # fmt: skip
+    clearances(found, program, "it is not run")
+
+
 def _member_machine(
     gear_set: str, member: str, measured: Path | None, machine: MillingMachine, calibration: Calibration,
     shop: SimulatedMachine | None,
 ) -> ProbeMachine:  # fmt: skip
     """The machine with the member on it, nominal or as ``measured`` says, clamped as the shop does."""
+    from gearmath.bevel.pair import load_pair
     from gearmath.machine.milled_surface import MilledSurface
     from gearmath.machine.probe_machine import ProbeMachine
     from gearmath.quality.correction import check_belongs
     from gearmath.quality.nominal import check_points, nominal_rows
-    from gearmath.specs.bevel_set import load_bevel_set
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
-    spec = load_bevel_set(find(gear_set)).member(member)
+    spec = load_pair(find(gear_set)).member(member)
     seat = shop.measuring_clamp(member) if shop else None
     if measured is None:
         return ProbeMachine(spec, member, machine, calibration, seat=seat)

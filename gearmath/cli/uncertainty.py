@@ -61,6 +61,7 @@ def uncertainty(
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
 
     from gearmath.bevel.pair import load_pair
+    from gearmath.quality.completeness import missing_points
     from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.figures import figures_of
     from gearmath.quality.uncertainty import uncertain_figures
@@ -77,6 +78,7 @@ def uncertainty(
         found = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, progress)
     _, settings, effects, remarks = uncertain_correction(spec, file, evaluation, covariance)
     found += settings
+    remarks = [*(f"not whole: {one}" for one in missing_points(file, spec.teeth)), *remarks]
     if picture:
         from gearmath.plot import save, uncertainty_figure
 

@@ -69,6 +69,14 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     return blocks.text(header, body())
 
 
+def axis_touches(machine: MillingMachine, calibration: Calibration) -> int:
+    """How many touches the program makes; none where the calibration file has no sphere on the work side."""
+    sphere = calibration.work_sphere
+    if sphere is None:
+        return 0
+    return sum(len(_directions(one, sphere, calibration)) for one in sphere_positions(machine, calibration, sphere))
+
+
 def sphere_positions(machine: MillingMachine, calibration: Calibration, sphere: WorkSphere) -> np.ndarray:
     """Positions X Y Z A B (n,5) that put the tip's centre into that of the sphere."""
     low, high = machine.travel.T

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 
 import numpy as np
@@ -17,6 +18,8 @@ from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING, RING_FACE, SPHER
 
 #: Targets in the ring, low and high, for X and for Y.
 PAIRS = (RING[:2], RING[2:])
+#: Directions from the axis of the bore to the touches on the face.
+_SIDES = ((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0))
 #: Touches on the sphere: the pole, then rings at these angles from it, with so many touches each.
 _POLAR = (30.0, 60.0, 85.0)
 _AROUND = 8
@@ -31,6 +34,15 @@ def sphere_directions() -> np.ndarray:
                 (math.sin(polar) * math.cos(azimuth), math.sin(polar) * math.sin(azimuth), math.cos(polar))
             )
     return np.array(directions)
+
+
+def calibration_touches(calibration: Calibration) -> dict[str, int]:
+    """How often the program touches every target, as far as the calibration file has them."""
+    ring = calibration.ring
+    pairs = [target for pair in (*PAIRS, PAIRS[0]) for target in pair] if ring is not None else []
+    face = [RING_FACE] * len(_SIDES) if ring is not None and ring.face is not None else []
+    sphere = [SPHERE] * len(sphere_directions()) if calibration.sphere is not None else []
+    return dict(Counter([*pairs, *face, *sphere]))
 
 
 def calibration_program(machine: MillingMachine, calibration: Calibration, program_name: str) -> str:
@@ -121,8 +133,8 @@ def _face(blocks: Blocks, calibration: Calibration, ring: Ring, face: Face, leve
     height = face.seat + face.height + calibration.tip_radius - calibration.tip_offset[2]
     away = (ring.diameter + face.width) / 2
     yield "; face of the ring"
-    for off_x, off_y in ((-away, 0.0), (away, 0.0), (0.0, -away), (0.0, away)):
-        place = f"{blocks.length('X', x + off_x)} {blocks.length('Y', y + off_y)}"
+    for to_x, to_y in _SIDES:
+        place = f"{blocks.length('X', x + to_x * away)} {blocks.length('Y', y + to_y * away)}"
         start = blocks.length("Z", height + APPROACH)
         yield f"G0 {place}"
         yield f"G0 {blocks.length('Z', level)}"

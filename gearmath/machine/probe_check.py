@@ -21,9 +21,10 @@ import numpy as np
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
 from gearmath.machine.collision import rings, work_profiles
+from gearmath.machine.control import Probe
 from gearmath.machine.executor import run_program
 from gearmath.machine.nc_expression import refuse
-from gearmath.machine.probe_machine import BODY_ERROR, to_segments
+from gearmath.machine.probe_machine import BODY_ERROR
 from gearmath.machine.probe_space import SpaceBody
 from gearmath.machine.probing import probe_height
 from gearmath.specs.bevel_set import Member
@@ -67,9 +68,11 @@ class _Block:
 def approaches(
     text: str, program: str, member: Member, name: str, machine: MillingMachine, calibration: Calibration,
     fixture: Fixture | None = None, spindle_radius: float = CutterHead().spindle_radius,
-    progress: Callable[[int], object] = lambda steps: None,
+    progress: Callable[[int], object] = lambda steps: None, probe: Probe | None = None,
 ) -> list[Approach]:  # fmt: skip
     """The nearest approach of every pair of tip, stylus, spindle and teeth, hub, shank, fixture.
+
+    ``probe`` says where touches end, by default at the body of the tooth space.
 
     A touch does not count, unless the tip goes deeper than the body of the space is exact. ``progress`` hears of
     every MEAS block that is run, and then of the lines of the text whose blocks are looked at.
@@ -78,7 +81,7 @@ def approaches(
     watch = _Watch(member, name, machine, calibration, fixture or Fixture(), spindle_radius)
     nearest: dict[tuple[str, str], Approach] = {}
     done = 0
-    for block in watch.blocks(text, program, progress):
+    for block in watch.blocks(text, program, probe or watch.probe, progress):
         for pair, distance in watch.distances(block):
             if pair not in nearest or distance < nearest[pair].distance:
                 nearest[pair] = Approach(*pair, distance, block.line)
@@ -103,14 +106,14 @@ class _Watch:
         slope = np.subtract(profiles["teeth"][-1], self._edge)
         self._up = np.array([-slope[1], slope[0]]) / np.linalg.norm(slope)  # square to the face cone, outward
 
-    def blocks(self, text: str, program: str, progress: Callable[[int], object]) -> list[_Block]:
+    def blocks(self, text: str, program: str, probe: Probe, progress: Callable[[int], object]) -> list[_Block]:
         """The blocks of a program, those that are the same in another space but once, at their first line."""
 
-        def probe(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+        def moved(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
             progress(1)
-            return self.probe(start, end)
+            return probe(start, end)
 
-        done = run_program(text, program, probe)
+        done = run_program(text, program, moved)
         if done.alarm is not None:
             refuse(program, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]} on the nominal member")
         path = done.path
@@ -157,7 +160,7 @@ class _Watch:
             yield (part, "teeth"), float(away.min(initial=math.inf))
             place = _place(points)
             for work, profile in self._profiles.items():
-                yield (part, work), float(to_segments(place, profile[:-1], profile[1:]).min()) - radius
+                yield (part, work), float(_to_segments(place, profile[:-1], profile[1:]).min()) - radius
         poses = block.poses[_every(len(tip), _SPINDLE_EVERY)][1:]  # the first one was the last of the block before
         for work, ring in self._rings.items():
             yield ("spindle", work), self._of_spindle(poses, ring)
@@ -191,6 +194,14 @@ class _Watch:
 def is_touch(start: np.ndarray, end: np.ndarray) -> bool:
     """Whether a MEAS block between two positions (5,) is a touch, and not the way straight down into a space."""
     return float(np.abs(end - start)[:2].max()) > _SAME
+
+
+def _to_segments(place: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+    """Distances (n,m) of points (n,2) from straight lines between ends (m,2)."""
+    way = last - first
+    length = np.maximum((way**2).sum(axis=1), 1e-12)
+    share = np.clip(((place[:, None] - first) * way).sum(axis=2) / length, 0.0, 1.0)
+    return np.linalg.norm(place[:, None] - first - share[..., None] * way, axis=2)
 
 
 def _every(count: int, step: int) -> np.ndarray:

@@ -45,6 +45,8 @@ _HEADER_VALUES = {
     "tip_radius_mm": (r"\d(\.\d{1,12})?|\de-\d\d", "must be a number from 0 to less than 10"),
     "settings_sha256": (r"[0-9a-fA-F]{1,999}", "must be hexadecimal digits"),
 }
+#: Header values of two numbers, between which there may be blanks.
+_PAIRS = ("grid", "margins", "reference_point")
 #: Points of a grid; so many are solved in seconds.
 MOST_POINTS = 10_000
 #: No index is larger, no point farther from the apex [mm], no deviation larger [µm].
@@ -137,6 +139,8 @@ def read_flank_csv(path: Path) -> FlankFile:
 
 
 def _check_header(path: Path, header: dict[str, str]) -> None:
+    for key in _PAIRS:
+        header[key] = header[key].replace(" ", "")
     for key, (pattern, words) in _HEADER_VALUES.items():
         if not re.fullmatch(pattern, header[key], re.ASCII):
             raise InputError(f"{path}: {key} = {header[key]!r}: {words}")

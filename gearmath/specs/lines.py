@@ -13,6 +13,8 @@ from gearmath.files import read_text
 
 #: Decimals with or without a digit before the point, a plus sign, and the exponent of a control: 1.5EX-05.
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eE][xX]?([+-]?\d{1,4}))?", re.ASCII)
+#: Bytes of the largest measured file, some 100 000 points; more cells than this of a line are not taken apart.
+_LARGEST, _MOST_CELLS = 20_000_000, 50
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+", re.ASCII)
 
 
@@ -71,7 +73,7 @@ def read_lines(path: Path, keys: tuple[str, ...] = ()) -> tuple[dict[str, str], 
     Raises InputError for one of the ``keys`` that is there twice with two values, and for a last line that is cut off:
     it has no line end, and it is shorter than the line before it.
     """
-    text = read_text(path)
+    text = read_text(path, _LARGEST)
     header: dict[str, str] = {}
     at: dict[str, int] = {}
     lines = []
@@ -91,7 +93,7 @@ def read_lines(path: Path, keys: tuple[str, ...] = ()) -> tuple[dict[str, str], 
 
 def _cells(line: str) -> Iterator[str]:
     """The cells of a line; a measured file has neither commas nor line ends within one."""
-    for cell in line.split(","):
+    for cell in line.split(",", _MOST_CELLS):
         cell = cell.strip()
         yield cell[1:-1].strip() if len(cell) > 1 and cell[0] == cell[-1] == '"' else cell
 

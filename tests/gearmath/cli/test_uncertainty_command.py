@@ -108,7 +108,10 @@ def test_half_a_measurement_says_why_there_are_no_settings(command, measured, tm
     found = values(command, few)
     assert {one["flank"] for one in found["figures"]} == {"concave"}
     assert found["caused_rms_um"] == {}
-    assert found["remarks"] == ["no corrected settings: convex flank: 0 points were measured, the grid 5x9 needs them"]
+    assert found["remarks"] == [
+        "not whole: convex flank: not measured at all",
+        "no corrected settings: convex flank: 0 points were measured, the grid 5x9 needs them",
+    ]
 
 
 def test_uncertainty_of_points_comes_from_option_then_file_then_model(command, measured, tmp_path):

@@ -9,10 +9,9 @@ import pytest
 
 from gearmath.errors import InputError
 from gearmath.machine.collision import work_profiles
-from gearmath.machine.executor import run_program
 from gearmath.machine.probe_check import approaches
 from gearmath.machine.probe_machine import ProbeMachine
-from gearmath.machine.probing import probing_program
+from gearmath.machine.probing import probing_program, tip_positions
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.simulated_machine import Fixture
@@ -33,16 +32,30 @@ def of(found):
 
 
 def test_cheap_probe_sees_what_the_exact_contact_search_sees(gear_set):
-    """Stylus within a step of it, tip not nearer than its watch, which also counts the beginning of a retract."""
+    """Every distance within a step: its touches end where those of the contact search do, to some 5 um."""
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PROBE", topography=(), around=(0, 5))
     heard = []
     found = of(approaches(text, "P", gear_set.pinion, "pinion", MACHINE, PROBE, progress=heard.append))
     assert text.count("MEAS=1") < sum(heard) <= text.count("MEAS=1") + text.count("\n")
     there = ProbeMachine(gear_set.pinion, "pinion", MACHINE, PROBE)
-    clear = there.clearances(run_program(text, "P", there).path)
-    assert found["stylus", "teeth"].distance == pytest.approx(clear.stylus, abs=0.1)
-    assert found["tip", "teeth"].distance >= clear.tip - 0.01
+    exact = of(approaches(text, "P", gear_set.pinion, "pinion", MACHINE, PROBE, probe=there))
+    assert found.keys() == exact.keys()
+    for pair, one in found.items():
+        assert one.distance == pytest.approx(exact[pair].distance, abs=0.1)
     assert min(one.distance for one in found.values()) > 0.2
+
+
+def test_distance_to_the_fixture_is_that_of_the_tip_beside_it_by_hand(gear_set):
+    """Tip beside a cylinder of 40 mm radius behind the pinion; the stylus points away from the axis of the work."""
+    member, fixture = gear_set.pinion, Fixture(radius=40.0, length=200.0)
+    z = work_profiles(member, fixture)["fixture"][:, 0].max() - 60.0
+    for gap in (5.0, 0.5, -0.3):
+        tip = np.array([[40.0 + PROBE.tip_radius + gap, 0.0, z]])
+        X, Y, Z, A, B = tip_positions(tip, np.zeros(1), np.radians(16.87), MACHINE, PROBE)[0]
+        words = f"X{X:.6f} Y{Y:.6f} Z{Z:.6f} A=DC({np.degrees(A):.6f}) B{np.degrees(B):.6f}"
+        text = f'G17 G40 G90 G710 G94 G54\nT="PROBE" D1\nM6\nSPOS=0\nG0 {words}\nG0 Y{Y:.6f}\nM30\n'
+        found = of(approaches(text, "P", member, "pinion", MACHINE, PROBE, fixture))
+        assert found["tip", "fixture"].distance == pytest.approx(gap, abs=2e-6)
 
 
 def line_down(program, change):

@@ -7,15 +7,14 @@ import pytest
 from scipy.spatial import cKDTree
 
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.machine.collision import work_profiles
-from gearmath.machine.executor import MachinePath, run_program
+from gearmath.machine.executor import run_program
+from gearmath.machine.probe_check import approaches
 from gearmath.machine.probe_machine import ProbeMachine
-from gearmath.machine.probing import probing_program, tip_positions
+from gearmath.machine.probing import probing_program
 from gearmath.quality.touches import measured_member
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, load_bevel_set
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.milling_machine import load_milling_machine
-from gearmath.specs.simulated_machine import CutterHead, Fixture
 from gearmath.specs.toml import bundled
 from gearmath.specs.touch_csv import read_touch_csv
 
@@ -35,7 +34,8 @@ def test_program_touches_gives_back_nominal_and_collides_with_nothing(gear_set, 
     bevel_set = load_bevel_set(bundled(f"{gear_set}.toml"))
     member = bevel_set.member(name)
     there = ProbeMachine(member, name, MACHINE, PROBE)
-    done = run_program(probing_program(bevel_set, name, MACHINE, PROBE, "PROBE"), "PROBE.MPF", there)
+    text = probing_program(bevel_set, name, MACHINE, PROBE, "PROBE")
+    done = run_program(text, "PROBE.MPF", there)
     assert done.alarm is None
     touches = tmp_path / "touches.csv"
     touches.write_text(done.files["PROBE_T"])
@@ -51,22 +51,7 @@ def test_program_touches_gives_back_nominal_and_collides_with_nothing(gear_set, 
             about = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
             targets.append((nominal.point + PROBE.tip_radius * nominal.normal) @ about.T)
     assert cKDTree(np.concatenate(targets)).query(np.array(there.touches))[0].max() <= 1e-3
-    clear = there.clearances(done.path)
-    assert clear.tip > 0.0
-    assert clear.touching > -0.02  # the body is no better than this
-    assert clear.stylus > 0.0
-    assert there.work_clearance(done.path, Fixture(), CutterHead().spindle_radius) > 0.0
-
-
-def test_distance_to_the_fixture_is_that_of_the_tip_beside_it_by_hand():
-    """Tip 5 mm off a cylinder of 40 mm radius behind the pinion; the stylus points away from the axis of the work."""
-    member = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
-    there, fixture = ProbeMachine(member, "pinion", MACHINE, PROBE), Fixture(radius=40.0, length=200.0)
-    z = work_profiles(member, fixture)["fixture"][:, 0].max() - 60.0
-    for gap in (5.0, 0.5, -0.3):
-        tip = np.array([[40.0 + PROBE.tip_radius + gap, 0.0, z]])
-        axes = np.repeat(tip_positions(tip, np.zeros(1), np.radians(16.87), MACHINE, PROBE), 2, axis=0)
-        path = MachinePath(
-            axes, np.ones(2, bool), np.zeros(2, int), ("PROBE",), np.arange(2), np.zeros(2), np.zeros(2, bool)
-        )
-        assert there.work_clearance(path, fixture, 1.0) == pytest.approx(gap, abs=1e-9)
+    near = {(one.probe, one.work): one.distance for one in approaches(text, "P", member, name, MACHINE, PROBE)}
+    assert {probe for probe, _ in near} == {"tip", "stylus", "spindle"}
+    assert {work for _, work in near} == {"teeth", "hub", "shank", "fixture"}
+    assert min(near.values()) > 0.0

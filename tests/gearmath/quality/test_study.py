@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import multiprocessing
 import os
 import subprocess
 import sys
+import zipfile
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 
 import casadi as ca
@@ -163,6 +165,59 @@ def test_file_that_is_no_results_file_is_refused(tmp_path):
         with pytest.raises(InputError, match=r"r\.npz: is no results file of a study$"):
             run(monte_carlo(wave(), 50, 11), file=file)
         assert file.read_bytes() == content
+
+
+def of_shape(shape, kind="<f8"):
+    """An array as .npy text that says it is this large, and has one number."""
+    stream = io.BytesIO()
+    np.lib.format.write_array_header_1_0(stream, {"descr": kind, "fortran_order": False, "shape": shape})
+    return stream.getvalue() + bytes(8)
+
+
+@pytest.mark.parametrize(
+    ("member", "content", "sentence"),
+    [
+        ("values", lambda raw: of_shape((10**13, 5)), "is no results file of a study"),
+        ("values", lambda raw: of_shape((10**9, 5)), "is no results file of a study"),
+        ("values", lambda raw: of_shape((1,), "<c16") + bytes(8), "is no results file of a study"),
+        ("values", lambda raw: raw.replace(b"<f8", b"<i8"), "values are of type int64, must be float64"),
+        (
+            "values",
+            lambda raw: raw[: -BLOCK * 5 * 8] + np.full(BLOCK * 5, np.nan).tobytes(),
+            "block 0 is marked as done",
+        ),
+        ("done", lambda raw: of_shape((), "|b1"), "is no results file of a study"),
+        ("study", lambda raw: b"text", "holds the results of another study"),
+    ],
+)
+def test_results_file_that_lies_is_refused_and_kept(tmp_path, member, content, sentence):
+    """Sizes that no memory has, other types, blocks that are said to be done and hold nothing."""
+    file = tmp_path / "r.npz"
+    run(monte_carlo(wave(), BLOCK, 11), file=file)
+    with zipfile.ZipFile(file) as archive:
+        parts = {name: archive.read(name) for name in archive.namelist()}
+    changed = content(parts[f"{member}.npy"])
+    assert changed != parts[f"{member}.npy"]
+    with zipfile.ZipFile(file, "w") as archive:
+        for name, raw in (parts | {f"{member}.npy": changed}).items():
+            archive.writestr(name, raw)
+    before = file.read_bytes()
+    with pytest.raises(InputError, match=rf"r\.npz: .*({sentence})"):
+        run(monte_carlo(wave(), BLOCK, 11), file=file)
+    assert file.read_bytes() == before
+
+
+@pytest.mark.parametrize("place", [0.1, 0.3, 0.6, 0.9])
+def test_results_file_with_a_damaged_byte_is_refused(tmp_path, place):
+    file = tmp_path / "r.npz"
+    expected = run(monte_carlo(wave(), 50, 11), file=file)
+    content = bytearray(file.read_bytes())
+    content[int(place * len(content))] ^= 0x55
+    file.write_bytes(content)
+    try:
+        np.testing.assert_array_equal(run(monte_carlo(wave(), 50, 11), file=file), expected)
+    except InputError as error:
+        assert "r.npz" in str(error)  # noqa: PT017
 
 
 _NAME = """

@@ -1,0 +1,180 @@
+"""Raw touches that lie: each is read rightly, or refused in one sentence, or said not to be whole.
+
+Runs that were aborted, second runs of a few touches, files that are cut off, numbers as a control prints them.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+
+import pytest
+
+from gearmath.machine.artefacts import Artefacts
+from gearmath.machine.calibrating import calibration_program
+from gearmath.machine.probe_run import run_touches
+from gearmath.machine.probing import probe_targets
+from gearmath.quality.completeness import missing_touches
+from gearmath.specs.calibration import load_calibration
+from gearmath.specs.toml import bundled
+from gearmath.specs.touch_csv import COLUMNS, read_touch_csv
+
+SET = "nasa_tp3096_12x36.toml"
+PROBE = load_calibration(bundled("probe.toml"))
+
+
+def cell(column, value, line):
+    """One cell of one line, counted from 0, as another one."""
+
+    def change(text):
+        lines = text.split("\n")
+        cells = lines[line].split(",")
+        cells[column] = value
+        return "\n".join([*lines[:line], ",".join(cells), *lines[line + 1 :]])
+
+    return change
+
+
+@pytest.fixture(scope="module")
+def raw(gear_set, vertical):
+    """A run of touches on the nominal pinion, as the probing program writes it: the positions of its targets."""
+    targets = probe_targets(gear_set.pinion, "pinion", vertical, PROBE)
+    lines = [",".join(COLUMNS)]
+    for k in range(len(targets)):
+        *linear, A, B = targets.touch[k]
+        axes = [*(f"{value:.9f}" for value in linear), f"{math.degrees(A) % 360:.9f}", f"{math.degrees(B):.9f}"]
+        place = [targets.flank[k], *(str(getattr(targets, name)[k]) for name in ("tooth", "row", "col"))]
+        lines.append(",".join(["1", str(k + 1), "pinion", *place, *axes, "1"]))
+    return "\n".join(lines) + "\n"
+
+
+@pytest.fixture(scope="module")
+def calibration_raw(vertical):
+    return run_touches(calibration_program(vertical, PROBE, "CAL"), "CAL.MPF", Artefacts(vertical, PROBE))
+
+
+def second_run(text, count):
+    """The file with a second run after the first one, of so many touches."""
+    head, *rows = text.splitlines()
+    return "\n".join([head, *rows, head, *("2" + row[1:] for row in rows[:count])]) + "\n"
+
+
+TOUCHES_REFUSED = {
+    "empty": (lambda text: "", "holds no touch"),
+    "column line only": (lambda text: text.split("\n")[0] + "\n", "holds no touch"),
+    "binary": (lambda text: b"\xfe\xed\xfa\xce" * 9, "is no text file"),
+    "five touches": (lambda text: "\n".join(text.split("\n")[:6]) + "\n", r"run 1, the last one, is not whole"),
+    "second run of five touches": (
+        lambda text: second_run(text, 5),
+        r"run 2, the last one, is not whole: .*; --run 2 takes it as it is, --run 1",
+    ),
+    "cut in half": (lambda text: "\n".join(text.split("\n")[: text.count("\n") // 2]) + "\n", "is not whole"),
+    "last touch missing": (lambda text: "\n".join(text.split("\n")[:-2]) + "\n", "is not whole"),
+    "cut within the last line": (lambda text: text[:-7], r"line \d+: .*(cut off|columns)"),
+    "gap in the points": (
+        lambda text: "\n".join(text.split("\n")[:8] + text.split("\n")[9:]),
+        r"line 9: point = 9: must be 8",
+    ),
+    "same run again": (lambda text: text + text, r"point = 1: must be \d+, without a gap: run 1 is there twice"),
+    "not triggered": (lambda text: text.replace(",1\n", ",0\n", 4), r"line 2: triggered = 0: must be 1"),
+    "triggered twice": (lambda text: text.replace(",1\n", ",2\n", 4), r"line 2: triggered = 2: must be 1"),
+    "decimal commas": (
+        lambda text: text.replace(".", ","),
+        r"line 2: has \d+ columns, .*; numbers have a decimal point",
+    ),
+    "semicolons": (lambda text: text.replace(",", ";"), r"line 1: has 1 columns, .*; columns stand between commas"),
+    "X nan": (cell(7, "nan", line=3), r"line 4: (X|B) = 'nan': must be a finite number"),
+    "run without end": (lambda text: text.replace("\n1,", "\n1e30,"), r"run = 1e30: must be a whole number from 0"),
+    "point negative": (cell(1, "-3", line=3), r"line 4: point = -3: must be a whole number from 0"),
+}
+
+
+@pytest.mark.parametrize("kind", ["touches", "calibrate"])
+@pytest.mark.parametrize("name", TOUCHES_REFUSED)
+def test_raw_touches_that_lie_are_refused(command, raw, calibration_raw, tmp_path, kind, name):
+    change, sentence = TOUCHES_REFUSED[name]
+    text = raw if kind == "touches" else calibration_raw
+    content = change(text)
+    path = tmp_path / "raw.csv"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
+    extra = ("--set", SET) if kind == "touches" else ()
+    status, out, err = command(kind, path, *extra, "-o", tmp_path / "out")
+    assert (status, out, err.count("\n")) == (2, "", 1), err
+    assert re.search(r"raw\.csv.*" + sentence, err), err
+    assert [entry.name for entry in tmp_path.iterdir()] == ["raw.csv"]
+
+
+@pytest.mark.parametrize(
+    ("column_", "value", "sentence"),
+    [
+        (4, "13", "tooth = 13: the pinion and its grid 5x9 end at 12"),
+        (5, "99999999", "row = 99999999: must be a whole number from 0 to 10000000"),
+        (6, "9", "col = 9: the pinion and its grid 5x9 end at 8"),
+        (4, "7", r"the touch lies .* mm from its nominal place"),
+        (9, "600.0", r"the touch lies .* mm from its nominal place"),
+        (2, "gear", "member = pinion: run 1 began with the gear"),
+    ],
+)
+def test_touch_of_another_place_is_refused(command, raw, tmp_path, column_, value, sentence):
+    """Asked for by its number, so that the run is not refused as one that is not whole."""
+    path = tmp_path / "raw.csv"
+    path.write_text(cell(column_, value, line=1)(raw))
+    status, out, err = command("touches", path, "--set", SET, "--run", 1, "-o", tmp_path / "out")
+    assert (status, out) == (2, "")
+    assert re.search(r"raw\.csv.*" + sentence, err), err
+
+
+def test_run_that_is_not_whole_is_taken_where_it_is_asked_for_and_said_not_to_be(
+    command, raw, calibration_raw, tmp_path
+):
+    path, out = tmp_path / "raw.csv", tmp_path / "out.csv"
+    path.write_text(second_run(raw, 60))
+    status, said, _ = command("touches", path, "--set", SET, "--run", 2, "-o", out)
+    assert status == 0
+    assert "run 2 is not whole: convex flank, tooth 0: 15 of 45 points of the grid were measured" in said
+    assert "not whole" not in command("touches", path, "--set", SET, "--run", 1, "-o", out)[1]
+    path.write_text(second_run(calibration_raw, 30))
+    status, said, _ = command("calibrate", path, "--run", 2, "-o", tmp_path / "tip.toml")
+    assert status == 0
+    assert "run 2 is not whole: sphere was touched 20 of 25 times" in said
+
+
+def test_run_that_was_aborted_anywhere_is_never_whole(raw, gear_set, tmp_path):
+    """After every single touch but the last one; with the grid alone, only after both flanks are done."""
+    lines = raw.splitlines()
+    path = tmp_path / "raw.csv"
+    for count in range(2, len(lines)):
+        path.write_text("\n".join(lines[:count]) + "\n")
+        missing = missing_touches(read_touch_csv(path), 12, (5, 9))
+        assert bool(missing) == (count - 1 != 90), count  # the whole grid of one tooth is a measurement, too
+    path.write_text(raw)
+    assert missing_touches(read_touch_csv(path), 12, (5, 9)) == ()
+
+
+def test_kinds_of_touches_are_not_taken_for_each_other(command, raw, calibration_raw, tmp_path):
+    path = tmp_path / "raw.csv"
+    path.write_text(calibration_raw)
+    assert "raw.csv, line 1: the touches are on ring and spheres" in command(
+        "touches", path, "--set", SET, "-o", tmp_path / "o"
+    )[2]  # fmt: skip
+    path.write_text(raw)
+    assert "raw.csv, line 1: the touches are on a member" in command("calibrate", path, "-o", tmp_path / "o")[2]
+
+
+def test_touches_in_the_numbers_of_a_control_are_read_as_they_are(command, raw, tmp_path):
+    """1.5EX-05, +1.0, .5, a byte order mark, CRLF and blanks: the same measured file comes out."""
+    path, out = tmp_path / "raw.csv", tmp_path / "m.csv"
+    path.write_text(raw)
+    assert command("touches", path, "--set", SET, "-o", out)[0] == 0
+    expected = out.read_text()
+
+    def dressed(match):
+        value = float(match[0])
+        mantissa, exponent = f"{value:+.17e}".split("e")
+        return f"{mantissa}EX{int(exponent):+03d}"
+
+    lines = raw.split("\n")
+    changed = [lines[0], *(re.sub(r"-?\d+\.\d+", dressed, line).replace(",", " , ") for line in lines[1:])]
+    path.write_bytes(b"\xef\xbb\xbf" + "\r\n".join(changed).encode())
+    assert command("touches", path, "--set", SET, "-o", out)[0] == 0
+    assert out.read_text() == expected
