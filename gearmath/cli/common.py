@@ -14,6 +14,7 @@ from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.figure import Figure
 
     from gearmath.lowering import Kernel
 
@@ -23,6 +24,22 @@ MACHINE = click.option(
     "--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine: a file, or a bundled one."
 )
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def plot(what: str) -> Any:
+    """The option --plot for one picture."""
+    return click.option(
+        "--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), metavar="PICTURE.png",
+        help=f"Picture to write (PNG): {what}.",
+    )  # fmt: skip
+
+
+def save_plot(figure: Figure, path: Path, as_json: bool) -> None:
+    """Write a picture and say so, on standard error where JSON is printed."""
+    from gearmath.plot import save
+
+    save(figure, path)
+    click.echo(f"picture: {path}", err=as_json)
 
 
 def output(suffix: str) -> Any:

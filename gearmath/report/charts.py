@@ -56,7 +56,11 @@ def pitch_charts(measurement: Measurement) -> list[Drawing]:
 def space_charts(measurement: Measurement) -> list[Drawing]:
     """Runout, where it was measured."""
     runout = measurement.evaluation.runout
-    return [] if runout is None else [(svg(runout_chart(runout)), "Runout: a ball in every space, normal to the pitch cone")]
+    return (
+        []
+        if runout is None
+        else [(svg(runout_chart(runout)), "Runout: a ball in every space, normal to the pitch cone")]
+    )
 
 
 def tooth_charts(measurement: Measurement) -> tuple[list[Drawing], float]:
