@@ -36,8 +36,7 @@ def _gaps(values: dict[str, Any]) -> Iterator[str]:
     """What was left out, and which maxima are withheld for want of it."""
     lines = [f"left out: {line}" for line in _without_suffix(values["left_out"])]
     withheld: dict[str, list[str]] = {}
-    reasons = [(f"{name} of the {flank} flank", why) for flank, row in values["flanks"].items()
-               for name, why in row["withheld"].items()]  # fmt: skip
+    reasons = [pair for row in values["flanks"].values() for pair in row["withheld"].items()]
     reasons += list((values["runout"] or {}).get("withheld", {}).items())
     reasons += [("range of the thickness", why) for why in (values["thickness"] or {}).get("withheld", {}).values()]
     for name, why in reasons:
@@ -83,6 +82,9 @@ def _sure(found: Sequence[Uncertain]) -> Iterator[str]:
 
 
 def _lines(values: dict[str, Any]) -> Iterator[str]:
+    for flank, row in values["flanks"].items():
+        if "zeroed_at_reference" in row:
+            yield _chart(flank, row["zeroed_at_reference"])
     yield from _seat(values["registration"])
     if values["rotation"] is not None:
         yield _rotation(values["rotation"])
@@ -148,6 +150,11 @@ def _seat(seat: dict[str, Any] | None) -> Iterator[str]:
         return
     size, twin = _with(seat["axial"], "axial_um"), seat["axial"]["confounded_with"]
     yield f"axial position, left in: {size} um if the mean form were nothing else; {twin} does the same"
+
+
+def _chart(flank: str, zeroed: dict[str, Any]) -> str:
+    most = "withheld" if zeroed["max_deviation_um"] is None else f"{zeroed['max_deviation_um']:+.3f} um"
+    return f"{flank} flank, turned to zero at its reference point: max {most}, rms {zeroed['rms_um']:.3f} um"
 
 
 def _rotation(turn: dict[str, Any]) -> str:

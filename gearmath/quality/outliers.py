@@ -81,11 +81,11 @@ def find_outliers(file: FlankFile, teeth: int) -> Outliers:
 
 def _words(file: FlankFile, shifts: Shifts) -> Iterator[str]:
     for k, off in shifts.misses.items():
-        yield f"{_place(file, k)} is {off * 1000:.1f} um off the other points of its tooth; left out"
+        yield f"{_place(file, k)} is an arc of {off * 1000:.1f} um off the other points of its tooth; left out"
     for k, off in shifts.doubtful.items():
         yield (
-            f"{_place(file, k)} is {off * 1000:.1f} um off the same place of the other teeth, and no other point of "
-            "the tooth confirms it: dirt, or an error of this flank; left out, measure it again"
+            f"{_place(file, k)} is an arc of {off * 1000:.1f} um off the same place of the other teeth, and no other "
+            "point of the tooth confirms it: dirt, or an error of this flank; left out, measure it again"
         )
 
 

@@ -2,8 +2,9 @@
 
 Where the work stood about its axis while it was measured is no property of the gear. At the reference points of a
 tooth its flanks are turned by θ and θ' (6.5): their mean is the tooth's place, half their difference its thickness.
-The mean of the places of all teeth that have both points is the rotation ω. Taking it out changes neither thickness
-nor pitch. Points are turned back by ω and judged against the exact nominal surface.
+The mean of the places of all teeth that have both points is the rotation ω; a tooth that is indexed far off the others
+takes no part. Taking it out changes neither thickness nor pitch. Points are turned back by ω and judged against the
+exact nominal surface.
 """
 
 from __future__ import annotations
@@ -19,6 +20,8 @@ from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
 from gearmath.quality.nominal import NominalRows, distance_from_flank, nominal_rows
 from gearmath.quality.pitch import reference_point
+from gearmath.quality.robust import limit_of
+from gearmath.quality.tooth_shifts import LEAST_BETWEEN_TEETH
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import COMMON, FlankFile
 
@@ -75,6 +78,8 @@ def common_rotation(file: FlankFile, member: Member, name: str, noise: float = m
     place, used = _pairs(file)
     rows = nominal_rows(file, member, name)
     column = kernel("motion_sensitivity")(rows.point, rows.normal)[0][:, _TURNING]
+    radius = float(np.hypot(*rows.point[np.argmax(used), :2]))
+    used &= np.isin(file.tooth, _alike(file.tooth[used], radius * file.deviation[used] / column[used]))
     gain = np.where(used, 1 / (used.sum() * column), 0.0)
     angle = 0.0
     for _ in range(_ITERATIONS):
@@ -87,7 +92,6 @@ def common_rotation(file: FlankFile, member: Member, name: str, noise: float = m
         raise ComputationError(f"no rotation of the {file.member} explains its points: after {_ITERATIONS} steps")
     point = rows.point + np.nan_to_num(deviation)[:, None] * rows.normal
     turned_back = replace(file, header=_header(file), point=point, deviation=deviation)
-    radius = float(np.hypot(*rows.point[np.argmax(used), :2]))
     return Rotation(
         turned_back, angle, noise * float(np.linalg.norm(gain)), radius, place, int(used.sum()) // 2,
         np.nan_to_num(file.deviation - deviation), gain, column,
@@ -115,6 +119,14 @@ def _pairs(file: FlankFile) -> tuple[tuple[int, int], np.ndarray]:
     at = min(((r, c) for r, c, _ in both), key=lambda place: (abs(place[0] - row) + abs(place[1] - col), place))
     teeth = [t for r, c, t in both if (r, c) == at]
     return at, known & (file.row == at[0]) & (file.col == at[1]) & np.isin(file.tooth, teeth)
+
+
+def _alike(tooth: np.ndarray, arc: np.ndarray) -> np.ndarray:
+    """The teeth, each told by its two flanks (n,), that are not far off the others [mm]."""
+    teeth = np.unique(tooth)
+    place = np.array([arc[tooth == each].mean() for each in teeth])
+    off = place - np.median(place)
+    return teeth[np.abs(off) <= limit_of(off, LEAST_BETWEEN_TEETH)]
 
 
 def _without(file: FlankFile, member: Member, rows: NominalRows, column: np.ndarray, angle: float) -> np.ndarray:

@@ -50,23 +50,25 @@ class Runout:
         """Why there is no F_r; None where every space has a reading."""
         return no_reading("both flanks", "space", np.isnan(self.shift))
 
-    @property
+    @cached_property
     def uncertainty(self) -> float:
-        """Standard uncertainty of the difference that F_r is [mm], NaN where it is not known."""
-        if self.withheld is not None:
-            return math.nan
-        ends = [int(np.argmax(self.shift)), int(np.argmin(self.shift))]
-        return math.sqrt(max(float(np.array([1, -1]) @ self.covariance[np.ix_(ends, ends)] @ [1, -1]), 0.0))
+        """Standard uncertainty of F_r [mm]: its spread under noise of this size. NaN where it is not known."""
+        return float(np.ptp(self.shift + self._noise, axis=1).std())
 
     @cached_property
     def of_noise(self) -> tuple[float, float]:
         """F_r of a perfect gear measured with this noise: mean and standard deviation [mm], NaN where not known."""
+        ranges = np.ptp(self._noise, axis=1)
+        return float(ranges.mean()), float(ranges.std())
+
+    @cached_property
+    def _noise(self) -> np.ndarray:
+        """Movements (draws,z) [mm] by noise alone, NaN where F_r is withheld or the noise is not known."""
         if self.withheld is not None or not np.isfinite(self.covariance).all():
-            return math.nan, math.nan
+            return np.full((1, len(self.shift)), math.nan)
         sizes, axes = np.linalg.eigh(self.covariance)
         normal = np.random.default_rng(0).standard_normal((_DRAWS, len(sizes)))
-        ranges = np.ptp((normal * np.sqrt(np.maximum(sizes, 0.0))) @ axes.T, axis=1)
-        return float(ranges.mean()), float(ranges.std())
+        return (normal * np.sqrt(np.maximum(sizes, 0.0))) @ axes.T
 
     @property
     def mostly_noise(self) -> bool | None:

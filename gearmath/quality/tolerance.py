@@ -82,11 +82,12 @@ class Verdict:
         return max(found)  # type: ignore[type-var]
 
     def as_dict(self) -> dict[str, Any]:
-        """For programs; grades are None beyond the coarsest, and where ``withheld`` says why there is none."""
+        """For programs; a grade is None where the coarsest is exceeded, and where ``withheld`` says why."""
         return {
             "grade": self.grade,
             "grades": self.grades | dict.fromkeys(self.withheld),
             "withheld": self.withheld,
+            "beyond_coarsest": [key for key, grade in self.grades.items() if grade is None],
             "grades_of_flanks": self.flanks,
             "mean_normal_module": self.data.mean_normal_module,
             "tolerance_diameter": self.data.tolerance_diameter,

@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from gearmath.bevel.kernels import kernel
 from gearmath.quality.robust import limit_of, off_the_fit
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile
@@ -38,7 +39,10 @@ _MOST = 0.2
 
 @dataclass(frozen=True)
 class Shifts:
-    """Rows to leave out, with how far off each is [mm]: ``misses`` for certain, ``doubtful`` not; what was kept."""
+    """Rows to leave out, with the arc [mm] that each is off: ``misses`` for certain, ``doubtful`` not.
+
+    ``kept`` are sentences on teeth that are off the others, and stay.
+    """
 
     misses: dict[int, float] = field(default_factory=dict)
     doubtful: dict[int, float] = field(default_factory=dict)
@@ -83,13 +87,13 @@ def tooth_shifts(file: FlankFile, teeth: int, single: np.ndarray) -> Shifts:
 
 
 def _off_the_other_teeth(file: FlankFile, teeth: int, single: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """How far each row (n,) is off the same place of the other teeth [mm], and the limit [mm] of that place.
+    """How far each row (n,) is off the same place of the other teeth, and the limit of that place, as arcs [mm].
 
-    Positive where the flank is turned right-handed about z_w, at the mean of all arms. NaN where too few teeth tell,
-    and at places that no single point has.
+    Positive where the flank is turned right-handed about z_w (6.5). NaN where too few teeth tell, and at places that no
+    single point has.
     """
     turned, limit = np.full(len(file), np.nan), np.full(len(file), np.nan)
-    lever = file.point[:, 0] * file.normal[:, 1] - file.point[:, 1] * file.normal[:, 0]
+    _, arc = kernel("flank_turning")(1.0, file.point, file.normal)
     for flank in FLANKS:
         of_flank = (file.flank == flank) & np.isfinite(file.deviation)
         for row, col in sorted(set(zip(file.row[of_flank].tolist(), file.col[of_flank].tolist(), strict=True))):
@@ -99,8 +103,8 @@ def _off_the_other_teeth(file: FlankFile, teeth: int, single: np.ndarray) -> tup
             turn = 2 * np.pi * file.tooth[here] / teeth
             columns = np.stack([np.ones(len(here)), np.cos(turn), np.sin(turn)], axis=1)
             off = off_the_fit(columns, file.deviation[here], LEAST_BETWEEN_TEETH)
-            turned[here] = off * np.abs(lever).mean() / lever[here]
-            limit[here] = limit_of(off, LEAST_BETWEEN_TEETH)
+            turned[here] = off * arc[here]
+            limit[here] = limit_of(off, LEAST_BETWEEN_TEETH) * np.abs(arc[here])
     return turned, limit
 
 
@@ -132,11 +136,12 @@ def _kept(tooth: int, flank: str, found: _Flank, other: _Flank | None) -> str:
     """What a tooth that is off the others is taken for."""
     if other is None:
         what = f"all {len(found.rows)} points" if len(found.rows) > 1 else "the tooth measured in full"
-        return f"{flank} flank, tooth {tooth}: {what} agree on {found.shift * 1000:+.1f} um off the other teeth; kept"
+        size = f"an arc of {found.shift * 1000:+.1f} um off the other teeth"
+        return f"{flank} flank, tooth {tooth}: {what} agree on {size}; kept"
     sizes = sorted((found.shift, other.shift), key=abs)
     alike = found.shift * other.shift > 0
     meaning = "an indexing error" if alike else "a space too wide or too narrow"
     return (
-        f"tooth {tooth}: both flanks are off the other teeth by {abs(sizes[1]) * 1000:.1f} and "
+        f"tooth {tooth}: both flanks are off the other teeth by arcs of {abs(sizes[1]) * 1000:.1f} and "
         f"{abs(sizes[0]) * 1000:.1f} um, {'the same way' if alike else 'opposite ways'}: {meaning}; kept"
     )
