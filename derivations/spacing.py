@@ -9,8 +9,8 @@ are by δ and δ' out of their places move it by Δ along m, and the work turns 
     Δ = (δ ℓ' - δ' ℓ) / (m·n ℓ' - m·n' ℓ),   ε = (m·n δ' - m·n' δ) / (m·n ℓ' - m·n' ℓ)
 
 Runout F_r is the range of Δ over the spaces. A space that is indexed wrongly by ε has Δ = 0; one that is too narrow by
-δ on each flank, at the pressure angle α, has Δ = δ / sin α; one of a gear that is eccentric by e towards μ has
-Δ = e cos δ_0 cos(A - μ).
+δ on each flank, at the pressure angle α, has Δ = δ / sin α; one between like flanks of a gear that is eccentric by e
+towards μ has Δ = e cos δ_0 cos(A - μ).
 At the radius r of the reference points a flank makes its tooth thicker, along the circle, by
 
     E = δ r / |n·(z_w × R)|                                                                    (19.2)
@@ -58,10 +58,10 @@ def _cone_normal(azimuth: sp.Expr, angle: sp.Expr) -> sp.Matrix:
 
 
 def _middle() -> tuple[sp.Matrix, sp.Expr]:
-    """m of (19.1), the normal of the pitch cone at the middle of the space, and twice the radius of that middle."""
+    """m of (19.1), times twice the radius of the middle of the space; and twice that radius."""
     x, y = (q.point_w.symbol[k] + q.opposite_w.symbol[k] for k in (0, 1))
     twice, delta = sp.sqrt(x**2 + y**2), q.pitch_angle.symbol
-    return sp.Matrix([sp.cos(delta) * x / twice, sp.cos(delta) * y / twice, -sp.sin(delta)]), twice
+    return sp.Matrix([sp.cos(delta) * x, sp.cos(delta) * y, -sp.sin(delta) * twice]), twice
 
 
 @cache
@@ -76,21 +76,15 @@ def ball_shift() -> Expression:
         "ball_shift",
         "Movement, normal to the pitch cone, of a ball that touches both flanks of a space, and the turning (19.1).",
         (
-            q.deviation_in,
-            q.point_w,
-            q.normal_w,
-            q.opposite_deviation,
-            q.opposite_w,
-            q.opposite_normal,
-            q.pitch_angle,
+            q.deviation_in, q.point_w, q.normal_w, q.opposite_deviation, q.opposite_w, q.opposite_normal, q.pitch_angle,
         ),
         (
-            (q.cone_shift, (d * other_arm - e * arm) / wedge),
+            (q.cone_shift, twice * (d * other_arm - e * arm) / wedge),
             (q.space_turning, (m.dot(n) * e - m.dot(other) * d) / wedge),
         ),
-        requires=(sp.Abs(wedge) - twice / 20, twice - 1),
+        requires=(sp.Abs(wedge) - twice**2 / 20, twice - 1),
         source="runout test with a ball probe that floats in the space, moved normal to the pitch cone",
-    )
+    )  # fmt: skip
 
 
 @cache
@@ -190,14 +184,14 @@ def spacing_tolerances() -> Expression:
 
 def prove_ball_stays_in_touch_with_both_flanks() -> None:
     """(19.1) The planes through R and R', moved with the turning work, meet the ball that went along m: both keep δ."""
-    shift, (m, _) = ball_shift(), _middle()
+    shift, (m, twice) = ball_shift(), _middle()
     eps = sp.Symbol("eps", real=True)
     for point, normal, deviation in (
         (q.point_w, q.normal_w, q.deviation_in), (q.opposite_w, q.opposite_normal, q.opposite_deviation)
     ):  # fmt: skip
         n = sp.Matrix(normal.symbol)
         swept = (Rz(eps) * sp.Matrix(point.symbol)).diff(eps).subs(eps, 0).dot(n)
-        touched = shift["cone_shift"] * m.dot(n) + shift["space_turning"] * swept
+        touched = shift["cone_shift"] * m.dot(n) / twice + shift["space_turning"] * swept
         assert sp.simplify(touched - deviation.symbol) == 0
 
 

@@ -30,6 +30,9 @@ def evaluate(
 ) -> None:  # fmt: skip
     """Pitch, profile and topography of a measured member; how it sat, runout, tooth thickness, drift and grade.
 
+    What was left out is said first. A maximum or a grade over data with a gap is withheld, with the reason; all other
+    figures are given. In JSON it is null, and 'withheld' beside it says why.
+
     With --sigma-um, or u_um in the file, figures have standard uncertainties; 'gearmath uncertainty' says more of them.
     Grades are by formulas that are not confirmed against ISO 17485: no conformity is claimed.
     """

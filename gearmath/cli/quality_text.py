@@ -99,7 +99,9 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
             for name in ("arc", "chord")
         )
         yield f"tooth thickness at the reference point, mean: {arc}, {chord}"
-    if tolerance is not None:
+    if tolerance is None:
+        yield "no grade: pitch was not measured"
+    else:
         yield from _grades(tolerance)
     yield from (line for line in values["remarks"] if line not in values["left_out"])
 

@@ -62,8 +62,16 @@ def test_evaluation_prints_a_table_and_json_with_the_same_figures(command, measu
         assert [float(cell) for cell in row[1:]] == pytest.approx([flank[name] for name in head[1:]], abs=6e-4)
         assert len(flank["surface_coefficients"]) == 10
     assert {row[0] for row in rows} == {"concave", "convex"}
-    assert f"runout F_r {values['runout']['F_r_um']:.2f} um" in out
+    assert f"runout F_r {values['runout']['F_r_um']:.2f} ± {values['runout']['u_F_r_um']:.2f} um, normal to" in out
     assert f"clamping taken out: eccentricity {values['registration']['eccentricity_um']:.2f} ±" in out
+    turn = values["rotation"]
+    assert turn["angle_arcsec"] == pytest.approx(turn["angle_deg"] * 3600, rel=1e-12)
+    assert turn["arc_um"] == pytest.approx(np.radians(turn["angle_deg"]) * turn["radius_mm"] * 1000, rel=1e-12)
+    assert f"rotation common to both flanks taken out: {turn['angle_deg']:+.6f} deg = " in out
+    left_in = json.loads(command("evaluate", measured, "--set", SET, "--no-rotation", "--json")[1])
+    assert left_in["rotation"] is None
+    assert left_in["thickness"]["arc_deviation_um"] == pytest.approx(values["thickness"]["arc_deviation_um"], abs=0.01)
+    assert left_in["flanks"]["convex"]["F_p_um"] == pytest.approx(values["flanks"]["convex"]["F_p_um"], abs=0.01)
     assert "grades: f_pt " in out
     assert "no conformity claimed" in out
     assert "no conformity claimed" in values["tolerance"]["remark"]
