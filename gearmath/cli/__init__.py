@@ -31,7 +31,7 @@ VERBS = {
     "evaluate": ("quality", "Pitch, profile and topography of a measured member."),
     "compensate": ("compensate", "Corrected machine settings from a measurement."),
     "stock": ("compensate", "How a precut blank must stand so that both flanks share its stock."),
-    "report": ("report", "A measurement as a page: figures, pictures, settings, and what they cannot mend."),
+    "report": ("report", "The inspection sheet of a measured member, or of both: charts, figures, settings."),
     "uncertainty": ("uncertainty", "How sure the figures of a measured member are."),
     "export": ("export", "C for the microcontroller and for the CNC post-processor."),
 }

@@ -15,6 +15,7 @@ from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.figure import Figure
 
     from gearmath.lowering import Kernel
 
@@ -33,6 +34,22 @@ TOUCH_CSV = (
 )
 CALIBRATION_CSV = "Touches, mm and degrees: run, point, target, X, Y, Z, A, B, triggered; docs/files.md."
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def plot(what: str) -> Any:
+    """The option --plot for one picture."""
+    return click.option(
+        "--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), metavar="PICTURE.png",
+        help=f"Picture to write (PNG): {what}.",
+    )  # fmt: skip
+
+
+def save_plot(figure: Figure, path: Path, as_json: bool) -> None:
+    """Write a picture and say so, on standard error where JSON is printed."""
+    from gearmath.plot import save
+
+    save(figure, path)
+    click.echo(f"picture: {path}", err=as_json)
 
 
 def output(suffix: str) -> Any:

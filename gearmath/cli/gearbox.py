@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import JSON, echo_json
+from gearmath.cli.common import JSON, echo_json, plot, save_plot
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from gearmath.gearbox.helix import Helix
     from gearmath.gearbox.job import ThreadPlan
     from gearmath.gearbox.simulation import Pattern
@@ -82,11 +84,12 @@ def plan_job(job: GearboxPlan | ThreadPlan, as_json: bool) -> None:
 @click.option("--edges", type=click.IntRange(min=1), required=True, help="Encoder edges to run through.")
 @click.option("--start", type=click.IntRange(min=0), default=0, show_default=True, help="Count before the first edge.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the random reversals.")
-@click.option("--plot", type=click.Path(path_type=Path, dir_okay=False), help="Draw the errors over time (PNG).")
+@plot("the errors over time")
 @JSON
 def simulate(
-    job: GearboxPlan | ThreadPlan, pattern: Pattern, edges: int, start: int, seed: int, plot: Path | None, as_json: bool
-) -> None:
+    job: GearboxPlan | ThreadPlan, pattern: Pattern, edges: int, start: int, seed: int, picture: Path | None,
+    as_json: bool,
+) -> None:  # fmt: skip
     """Run the compiled step rule, and the floating rule of the source text beside it; worst errors in steps."""
     from tqdm import tqdm
 
@@ -97,8 +100,8 @@ def simulate(
     trace = Trace(edges)
     with tqdm(total=edges, unit="edge", unit_scale=True, disable=edges < LONG_RUN or None) as bar:
         result = simulate_job(run_axes, job.ratio, pattern, edges, seed, bar.update, trace.add, start)
-    if plot is not None:
-        _draw(plot, job, trace)
+    if picture is not None:
+        save_plot(_error_figure(job, trace), picture, as_json)
     if as_json:
         terms = ("steps_numerator", "steps_denominator", "feed_numerator")
         echo_json(_values({key: getattr(job, key) for key in terms} | asdict(result)))
@@ -167,14 +170,14 @@ def _values(values: dict[str, Any]) -> dict[str, Any]:
     return {key: float(value) if isinstance(value, Fraction) else value for key, value in values.items()} | exact
 
 
-def _draw(path: Path, job: GearboxPlan | ThreadPlan, trace: Any) -> None:
+def _error_figure(job: GearboxPlan | ThreadPlan, trace: Any) -> Figure:
     from matplotlib.figure import Figure
 
-    from gearmath.plot import draw_gearbox_error, save
+    from gearmath.plot import draw_gearbox_error
 
     figure = Figure(figsize=(8, 4), layout="constrained")
     axes = figure.subplots()
     done, exact, floating = trace.arrays
     draw_gearbox_error(axes, done / job.edge_rate_hz, exact, floating)
     axes.set_title(f"{job.machine}: {job.steps_numerator}/{job.steps_denominator} steps per count, {job.rpm:.0f} rpm")
-    save(figure, path)
+    return figure

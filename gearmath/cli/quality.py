@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, about, bar, echo_json
+from gearmath.cli.common import FLANK_CSV, JSON, about, bar, echo_json, plot, save_plot
 from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
 
 
@@ -22,7 +22,7 @@ from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
     help="Take out the rotation of the work that both flanks have in common.",
 )  # fmt: skip
 @SIGMA
-@click.option("--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), help="Topography and pitch as PNG.")
+@plot("topography, pitch and runout")
 @JSON
 def evaluate(
     measured: Path, gear_set: str, registered: bool, rotated: bool, sigma_um: float | None, picture: Path | None,
@@ -46,9 +46,9 @@ def evaluate(
     with about(measured), bar(STAGES, "stage") as progress:
         found = evaluate_member(file, member, file.member, registered, progress, rotated)
     if picture:
-        from gearmath.plot import evaluation_figure, save
+        from gearmath.plot import evaluation_figure
 
-        save(evaluation_figure(f"{file.member}, {measured.name}", found), picture)
+        save_plot(evaluation_figure(f"{file.member}, {measured.name}", found), picture, as_json)
     sure = quick_figures(file, member, found, sigma_um)
     if as_json:
         echo_json(found.as_dict() | ({"uncertainty": shown(sure)} if sure else {}))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MACHINE, MEMBER, about, bar, echo_json, table
+from gearmath.cli.common import FLANK_CSV, JSON, MACHINE, MEMBER, about, bar, echo_json, plot, save_plot, table
 from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import ComputationError, InputError
 
@@ -51,7 +51,7 @@ _FEW_DRAWS = 2000
 @click.option("--workers", type=click.IntRange(1, 1024), help="Threads, or workers of the cluster.  [default: all]")
 @click.option("--cluster", metavar="ADDRESS", help="Scheduler of a dask cluster that draws; needs the extra 'cluster'.")
 @click.option("--resume", type=click.Path(path_type=Path, dir_okay=False), help="Results file to keep and continue.")
-@click.option("-o", "--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), help="Figures as PNG.")
+@plot("every figure in µm with its interval")
 @JSON
 def uncertainty(
     measured: Path, gear_set: str, member: str, registered: bool, rotated: bool, sigma_um: float | None,
@@ -80,9 +80,9 @@ def uncertainty(
     found += settings
     remarks = [*(f"not whole: {one}" for one in missing_points(file, spec.teeth)), *remarks]
     if picture:
-        from gearmath.plot import save, uncertainty_figure
+        from gearmath.plot import uncertainty_figure
 
-        save(uncertainty_figure(f"{member}, {measured.name}", found), picture)
+        save_plot(uncertainty_figure(f"{member}, {measured.name}", found), picture, as_json)
     if as_json:
         echo_json({
             "member": member, "source": source, "draws": draws, "seed": seed, "figures": shown(found),

@@ -19,12 +19,13 @@ _BAR, _ROOM = 0.8, 1.12
 
 def pitch_limits(pitches: Iterable[Pitch]) -> tuple[tuple[float, float], tuple[float, float]]:
     """The ends of the axes [µm] for single pitch and for the cumulative curve that suit all of these flanks."""
-    return tuple(_limits([getattr(one, name) for one in pitches]) for name in ("single", "cumulative"))  # type: ignore[return-value]
+    every = list(pitches)
+    return _limits([one.single for one in every]), _limits([one.cumulative for one in every])
 
 
 def _limits(values: Sequence[np.ndarray]) -> tuple[float, float]:
-    known = [each[np.isfinite(each)] * 1000 for each in values]
-    low, high = (float(find([find([*each, 0.0]) for each in known])) for find in (min, max))
+    known = np.concatenate([[0.0], *(each[np.isfinite(each)] * 1000 for each in values)])
+    low, high = float(known.min()), float(known.max())
     room = (_ROOM - 1) * max(high - low, _LEAST_UM)
     return low - room, high + room
 
@@ -84,12 +85,12 @@ def draw_runout(
         wave = float(np.nanmean(runout.shift)) + size * np.cos(runout.azimuth - direction)
         text = f"{label}: F_r {or_withheld(runout.total)}"
         axes.plot(runout.shift * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
-        text = f"first harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
+        text = f"harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
     axes.set_xlabel("space", fontsize=8)
     axes.set_ylabel("movement of a ball, normal to the pitch cone / µm", fontsize=8)
     axes.tick_params(labelsize=7)
-    axes.legend(fontsize=7, frameon=False)
+    axes.legend(fontsize=7, frameon=False, loc="lower left", bbox_to_anchor=(0, 1), ncol=2, borderaxespad=0.1)
 
 
 def _unknown(axes: Axes, values: np.ndarray) -> None:

@@ -90,7 +90,7 @@ def _numbers(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray) -> No
         for column in range(0, columns, step):
             value = values[row, column]
             text = signed(value) if np.isfinite(value) else "×"
-            below = not value < 0
+            below = not text.startswith("\N{MINUS SIGN}")
             axes.annotate(
                 text, (x[row, column], y[row, column]), (0, -2.5 if below else 2.5), textcoords="offset points",
                 ha="center", va="top" if below else "bottom", fontsize=size, zorder=5, gid=f"node {row},{column}",

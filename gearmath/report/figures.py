@@ -11,7 +11,7 @@ from gearmath.quality.evaluation import Evaluation, FlankFigures
 from gearmath.quality.tolerance import Verdict, finest_grade, iso17485
 from gearmath.quality.topography import ORDERS
 from gearmath.quality.uncertainty import Uncertain
-from gearmath.report.measurement import Measurement, micro
+from gearmath.report.measurement import Measurement, in_words, micro
 
 #: Figures that have a grade: name in the verdict, that of the figure of a flank, and in words.
 _SPACING = {
@@ -122,11 +122,11 @@ def uncertainty_section(page: Page, one: Measurement) -> None:
     rows = [
         [known.figure.flank, known.figure.name.replace("_", " "),
          *(f"{value * known.figure.factor:.2f}" for value in (known.value, known.uncertainty, *known.interval)),
-         known.figure.unit, known.method]
+         in_words(known.figure.unit), known.method]
         for known in one.figures if not known.figure.name.startswith(("f_pt_", "c_"))
     ]  # fmt: skip
     head = ["flank", "figure", "value", "u", "from", "to", "unit", "by"]
-    page.table(f"Standard uncertainties u and intervals of 95 %: {one.how_sure}", head, rows)
+    page.table(f"Standard uncertainties u and intervals of 95 %: {in_words(one.how_sure)}", head, rows)
 
 
 def clamping_section(page: Page, found: Evaluation) -> None:

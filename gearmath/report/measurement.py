@@ -63,9 +63,15 @@ def head_of(file: FlankFile, given: Mapping[str, str]) -> dict[str, str]:
 
 
 def counted(found: Evaluation) -> str:
-    """How many of the points on the grid of each flank and tooth the figures come from."""
+    """How many of the points the figures come from."""
     used = int(np.isfinite(found.file.deviation).sum())
-    return f"{used} of {len(found.file)}" + ("" if used == len(found.file) else f", {len(found.file) - used} left out")
+    left_out = "" if used == len(found.file) else f", {len(found.file) - used} left out"
+    return f"{used} of {len(found.file)} used{left_out}"
+
+
+def in_words(text: str) -> str:
+    """A sentence or a unit as people read it: the rest of the program writes um for µm."""
+    return re.sub(r"\bum\b", "µm", text)
 
 
 def micro(value: float) -> str:

@@ -44,7 +44,7 @@ def _limits_section(page: Page, correction: Correction, caused: Mapping[str, flo
         values = (result.rms_before, analysis.best_rms, result.rms_after)
         rows.append([" and ".join(group), *map(micro, values)])
     head = ["flanks", "RMS measured", "best that settings reach (first order)", "expected"]
-    page.table("RMS of the flanks / um", head, rows)
+    page.table("RMS of the flanks / µm", head, rows)
     for group, analysis in correction.analysis.items():
         for sentence in _limits(" and ".join(group), analysis, correction.identified[group].active):
             page.paragraph(sentence)
@@ -52,10 +52,10 @@ def _limits_section(page: Page, correction: Correction, caused: Mapping[str, flo
         if count:
             page.paragraph(f"{flank} flank: {count} points of the grid took no part in the correction.", warning=True)
     for flank, rms in caused.items():
-        page.paragraph(f"{flank} flank: errors of the measurement itself will leave {rms * 1000:.2f} um RMS.")
+        page.paragraph(f"{flank} flank: errors of the measurement itself will leave {rms * 1000:.2f} µm RMS.")
     for flank, moved in correction.root.items():
         toe, heel = moved * 1000
-        page.paragraph(f"{flank} flank: the root line moves by {toe:+.1f} um at the toe, {heel:+.1f} um at the heel.")
+        page.paragraph(f"{flank} flank: the root line moves by {toe:+.1f} µm at the toe, {heel:+.1f} µm at the heel.")
 
 
 def _limits(flanks: str, analysis: Analysis, active: Sequence[str]) -> Iterator[str]:
@@ -63,7 +63,7 @@ def _limits(flanks: str, analysis: Analysis, active: Sequence[str]) -> Iterator[
     names = ", ".join(analysis.names)
     yield (
         f"{flanks}: what lies outside of the shapes that {names} can give a flank stays, "
-        f"{analysis.best_rms * 1000:.2f} um RMS of {analysis.rms * 1000:.2f} um."
+        f"{analysis.best_rms * 1000:.2f} µm RMS of {analysis.rms * 1000:.2f} µm."
     )
     for first, second, cosine in analysis.alike:
         how = "alike" if cosine > 0 else "opposite ways"
@@ -82,4 +82,4 @@ def _limits(flanks: str, analysis: Analysis, active: Sequence[str]) -> Iterator[
 
 def _direction(analysis: Analysis, k: int) -> str:
     parts = " ".join(f"{part:+.2f} {name}" for name, part in analysis.direction(k).items())
-    return f"{parts} (singular value {analysis.singular_values[k] * 1000:.2g} um)"
+    return f"{parts} (singular value {analysis.singular_values[k] * 1000:.2g} µm)"

@@ -8,14 +8,13 @@ from gearmath.page import Page
 from gearmath.quality.evaluation import Evaluation
 from gearmath.report import charts
 from gearmath.report.figures import clamping_section, flank_section, spacing_section, uncertainty_section
-from gearmath.report.measurement import FIELDS, Measurement, Report, counted
+from gearmath.report.measurement import FIELDS, Measurement, Report, counted, in_words
 from gearmath.report.settings import settings_sections
 from gearmath.specs.bevel_set import FLANKS
 
 _ZERO = (
-    "The plane net is the nominal flank. Up, and +, is metal left on; numbers are µm. Each flank is turned about the "
-    "work axis until its reference point, in the ring, is zero: tooth thickness is not in the charts. All charts of "
-    "this member have the same scale."
+    "The plane net is the nominal flank; up, and +, is metal left on, in µm. Each flank is turned about the work axis "
+    "until its reference point (ring) is zero, so that tooth thickness is not in the charts. One scale for the member."
 )
 
 #: Names of figures that may be withheld, as the sheet writes them.
@@ -43,9 +42,10 @@ def _head(page: Page, members: Sequence[Measurement]) -> None:
     facts = {
         "Member": [f"{one.evaluation.member}, {one.member.teeth} teeth, {one.member.hand} hand" for one in members],
         "Measured file": [one.source for one in members],
-        "Radius of the tip": [f"{header['tip_radius_mm']} mm" for header in headers],
-        "Grid": [each["grid"] for each in headers],
-        "Points used": [counted(one.evaluation) for one in members],
+        "Points": [
+            f"grid {header['grid']}, tip radius {header['tip_radius_mm']} mm; {counted(one.evaluation)}"
+            for one, header in zip(members, headers, strict=True)
+        ],
     }
     page.head([one.evaluation.member for one in members], [*rows, *facts.items()])
 
@@ -58,7 +58,7 @@ def _left_out(page: Page, members: Sequence[Measurement]) -> None:
         absent = [f"the {flank} flank was not measured" for flank in FLANKS if flank not in found.flanks]
         others = [text for text in found.remarks if text not in found.left_out]
         texts = [*absent, *found.left_out, *_withheld(found), *others, *one.remarks]
-        sentences += [f"{found.member}: {text}." for text in texts]
+        sentences += [f"{found.member}: {in_words(text)}." for text in texts]
     if sentences:
         page.first("Left out, withheld, or not known", sentences)
 

@@ -104,8 +104,8 @@ def test_simulate_holds_for_every_kind_of_job(capsys, job):
 def test_simulate_draws_the_errors_over_time(capsys, tmp_path):
     path = tmp_path / "errors.png"
     arguments = ("hobbing_plewes.toml", "--teeth", "6", "--pattern", "forward", "--edges", "50000", "--plot", str(path))
-    status, _, _ = gearmath(capsys, "gearbox", "simulate", *arguments, "--start", str(2**26))
-    assert status == 0
+    status, out, _ = gearmath(capsys, "gearbox", "simulate", *arguments, "--start", str(2**26))
+    assert (status, out.splitlines()[0]) == (0, f"picture: {path}")
     assert path.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 

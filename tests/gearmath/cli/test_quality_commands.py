@@ -130,8 +130,11 @@ def test_pitch_alone_is_evaluated(command, measured, tmp_path):
     assert f"{values['F_p_um']:.3f}" in out
 
 
-def test_picture_is_a_png(command, measured, tmp_path):
-    assert command("evaluate", measured, "--set", SET, "--plot", tmp_path / "t.png")[0] == 0
+def test_picture_is_a_png_and_its_path_is_printed_beside_json(command, measured, tmp_path):
+    target = tmp_path / "t.png"
+    status, out, err = command("evaluate", measured, "--set", SET, "--json", "--plot", target)
+    assert (status, err) == (0, f"picture: {target}\n")
+    assert json.loads(out)["member"] == "pinion"
     assert (tmp_path / "t.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -174,19 +174,21 @@ def test_what_is_not_known_at_the_head_is_blank_and_never_made_up(page):
     found = head(page.read_text("utf-8"))
     for label in ("Part number", "Date", "Operator", "Machine", "Probe"):
         assert found[label] == [""]
-    assert found["Points used"] == ["200 of 200"]  # on each flank 45 of tooth 0, and 5 of eleven others
+    assert found["Points"] == [
+        "grid 5x9, tip radius 0 mm; 200 of 200 used"
+    ]  # on each flank 45 of tooth 0, and 5 of eleven others
     assert found["Measured file"] == ["m.csv"]
 
 
 @pytest.fixture(scope="module")
 def second_page(measured, tmp_path_factory):
-    """A point 80 µm off its neighbors, a set whose title is markup, and figures at the head that are markup."""
+    """A point 80 µm off its neighbors, a tooth missing, and markup for the title of the set and for the operator."""
     folder = tmp_path_factory.mktemp("bad")
     file = read_flank_csv(measured)
     (k,) = np.flatnonzero((file.flank == "convex") & (file.tooth == 0) & (file.row == 1) & (file.col == 6))
     file.deviation[k] += 0.08
     file.point[k] += 0.08 * file.normal[k]
-    write_flank_csv(folder / "bad.csv", file)
+    write_flank_csv(folder / "bad.csv", file.pick((file.flank == "convex") | (file.tooth != 7)))
     text = bundled(SET).read_text("utf-8")
     nasty = re.sub(r'^title = ".*"$', "title = '<img src=x onerror=alert(1)>'", text, flags=re.MULTILINE)
     assert nasty != text
@@ -200,7 +202,20 @@ def test_what_was_left_out_stands_before_every_figure(second_page):
     frame = second_page.index('<div class="first">')
     assert "convex flank, tooth 0, row 1, col 6" in second_page[frame : second_page.index("</div>", frame)]
     assert all(frame < second_page.index(mark) for mark in ("<h2>", "<svg", "<caption>"))
-    assert head(second_page)["Points used"] == ["199 of 200, 1 left out"]
+    assert head(second_page)["Points"][0].endswith("194 of 195 used, 1 left out")
+
+
+def test_what_a_gap_withholds_is_said_first_with_its_reason_and_has_no_value_and_no_grade(second_page):
+    frame = unescape(second_page[second_page.index('<div class="first">') : second_page.index("<h2>")])
+    assert re.search(r"withheld: F_p of the concave flank, .*: concave flank: no reading of tooth 7 \(1 of 12\)", frame)
+    assert "withheld: largest deviation of the convex flank" in frame
+    (rows,) = (rows for caption, rows in tables(second_page).items() if "tolerance of the grade" in caption)
+    withheld = {row[0]: row[1:] for row in rows if "withheld" in row}
+    assert set(withheld) == {"f_pt, largest, concave", "F_p, concave", "F_r, both"}
+    assert all(row == ["withheld", "", "withheld", ""] for row in withheld.values())
+    (sizes,) = (rows for caption, rows in tables(second_page).items() if "first and second order" in caption)
+    (largest,) = (row for row in sizes if row[0].startswith("largest"))
+    assert [cell == "withheld" for cell in largest[1:]] == [False, True]
 
 
 def test_free_text_of_set_and_options_cannot_become_markup(second_page):

@@ -200,8 +200,9 @@ def test_draws_of_a_cluster_are_the_same(command, measured):
     assert there == values(command, measured)
 
 
-def test_picture_is_a_png(command, measured, tmp_path):
-    assert command(*arguments(measured, "-o", tmp_path / "u.png"))[0] == 0
+def test_picture_is_a_png_and_its_path_is_printed(command, measured, tmp_path):
+    status, out, _ = command(*arguments(measured, "--plot", tmp_path / "u.png"))
+    assert (status, out.splitlines()[0]) == (0, f"picture: {tmp_path / 'u.png'}")
     assert (tmp_path / "u.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -154,6 +154,14 @@ def test_a_tooth_without_a_reading_has_a_cross_and_no_bar():
     assert [bar.get_height() for bar in bars.patches] == pytest.approx([-1.0, 0.0, 0.0, -2.0])
 
 
+def test_axes_of_pitch_begin_and_end_beyond_every_value_and_without_any_at_zero():
+    pitches = [Pitch("convex", np.zeros(3), np.array([0.0, s, np.nan]) / 1000) for s in (-7.0, 4.0)]
+    for low, high in pitch_limits(pitches):
+        assert low < -7.0 < 4.0 < high
+    for low, high in pitch_limits([]):
+        assert low < 0 < high
+
+
 def figures():
     """Both flanks have f_pt of three teeth and F_p, only one a mean, and both together F_r; values 1, 2, 3 ... µm."""
     names = [(each, name) for each in FLANKS for name in ("f_pt_0", "f_pt_1", "f_pt_2", "F_p")]
