@@ -321,6 +321,13 @@ def identify(
     )  # fmt: skip
 
 
+def nothing_identified(targets: Sequence[FlankTarget]) -> Identification:
+    """What was identified where no setting is free: everything is left."""
+    measured = np.concatenate([target.deviation for target in targets])
+    rms = float(np.sqrt(np.mean(measured**2)))
+    return Identification((), np.zeros(0), rms, rms, 0, True, np.zeros((len(measured), 0)), -measured)
+
+
 def _best_start(problem: Problem, solve: Callable[..., Minimum]) -> Minimum:
     """The minimum of a design: the start that is ahead after some steps is followed to the end."""
     first = solve(most=_HEAT)
