@@ -15,6 +15,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from gearmath.errors import ComputationError
 from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands
 from gearmath.quality.identification import RANK
 from gearmath.quality.variables import FREE, Bounds, Variable, variables_of
@@ -56,6 +57,7 @@ class Analysis:
     variables: tuple[Variable, ...]
     jacobian: np.ndarray
     deviation: np.ndarray
+    measured: np.ndarray
 
     @cached_property
     def _svd(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -74,7 +76,7 @@ class Analysis:
     @property
     def rms(self) -> float:
         """RMS of what was measured [mm]."""
-        return float(np.sqrt(np.mean(self.deviation**2)))
+        return float(np.sqrt(np.mean(self.measured**2)))
 
     @property
     def best_rms(self) -> float:
@@ -150,7 +152,8 @@ class Analysis:
             for name in self.names
         }
         names, left = fewest(columns, self.deviation)
-        return Choice(names, left, (left[-1] if left else self.rms) - self.best_rms)
+        nothing = float(np.sqrt(np.mean(self.deviation**2)))
+        return Choice(names, left, (left[-1] if left else nothing) - self.best_rms)
 
 
 def fewest(
@@ -196,8 +199,10 @@ def analyse(
     """What the free settings can do to the deviations of some targets, common to all of them."""
     variables = variables_of(free, [target.vector for target in targets], bounds)
     problem = Problem(targets, variables, None, None, run)
-    rows = [problem.columns(problem.located(np.zeros(len(variables)), k)[1], k) for k in range(len(targets))]
-    return Analysis(tuple(free), variables, np.concatenate(rows), problem.measured)
+    found = problem.deviations(np.zeros(len(variables)))
+    if found is None:
+        raise ComputationError("the flank as it was set does not cross the normals of all points")
+    return Analysis(tuple(free), variables, found[1], -found[0], problem.measured)
 
 
 def projection_residual(jacobian: np.ndarray, deviation: np.ndarray) -> np.ndarray:

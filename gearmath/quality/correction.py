@@ -104,8 +104,9 @@ def correct(
         found.left_out.update({f: t.grid_points - len(t.deviation) for f, t in zip(group, mine, strict=True)})
         found.analysis[group] = analyse(mine, names, bounds, run)
         best = identify(mine, names, root_limit=root_limit, bounds=bounds, run=run)
-        if few and identified[group].active and not _as_good(identified[group], best):
-            identified[group] = _identify(mine, names, noise, fit.how)  # the few are held back where others are not
+        held_back = bool(identified[group].active) and not _as_good(identified[group], best)
+        if few and (held_back or _made_worse(group, mine, identified[group], noise or 0.0)):
+            identified[group] = _identify(mine, names, noise, fit.how)  # all of them may do what the few do not
         result = identified[group]
         found.reachable[group] = min(best.rms_after, result.rms_after)
         _refuse_worse(name, group, mine, result, noise or 0.0)
@@ -181,7 +182,7 @@ def _identify(
 ) -> Identification:
     """The identification at the given noise, or at the noise that it leaves itself: at first what no setting shows."""
     if not names:
-        return nothing_identified(targets)
+        return nothing_identified(targets, how["run"])
     if noise is not None:
         return identify(targets, names, noise=noise, **how)
     level = analyse(targets, names, how["bounds"], how["run"]).noise
@@ -211,20 +212,33 @@ def _check_determined(name: str, group: Sequence[str], targets: Sequence[FlankTa
         )
 
 
+def _rms(targets: Sequence[FlankTarget], result: Identification) -> list[tuple[float, float]]:
+    """RMS [mm] of every flank as it was measured, and as it is expected to remain."""
+    pieces = np.split(result.residual, np.cumsum([len(target.deviation) for target in targets])[:-1])
+    return [
+        (float(np.sqrt(np.mean(target.deviation**2))), float(np.sqrt(np.mean(piece**2))))
+        for target, piece in zip(targets, pieces, strict=True)
+    ]
+
+
+def _made_worse(
+    group: Sequence[str], targets: Sequence[FlankTarget], result: Identification, noise: float
+) -> list[str]:
+    """The flanks that a correction makes worse, by more than the noise of a point."""
+    pairs = zip(group, _rms(targets, result), strict=True)
+    return [flank for flank, (before, after) in pairs if after > before + max(_WORSE, noise)]
+
+
 def _refuse_worse(
     name: str, group: Sequence[str], targets: Sequence[FlankTarget], result: Identification, noise: float
 ) -> None:
-    """Raise ComputationError where a correction makes one of its flanks worse, by more than the noise of a point."""
-    ends = np.cumsum([len(target.deviation) for target in targets])[:-1]
-    pieces = np.split(result.residual, ends)
-    before = [float(np.sqrt(np.mean(target.deviation**2))) for target in targets]
-    after = [float(np.sqrt(np.mean(piece**2))) for piece in pieces]
-    worse = [flank for flank, b, a in zip(group, before, after, strict=True) if a > b + max(_WORSE, noise)]
-    if worse:
+    """Raise ComputationError where a correction makes one of its flanks worse."""
+    if worse := _made_worse(group, targets, result, noise):
         figures = ", ".join(
-            f"{flank} {b * 1000:.3f} to {a * 1000:.3f} um" for flank, b, a in zip(group, before, after, strict=True)
+            f"{flank} {before * 1000:.3f} to {after * 1000:.3f} um"
+            for flank, (before, after) in zip(group, _rms(targets, result), strict=True)
         )
-        names = ", ".join(variable.label for variable in result.variables)
+        names = ", ".join(variable.label for variable in result.variables) or "no setting"
         raise ComputationError(
             f"{name}: the correction by {names} makes the {' and '.join(worse)} flank worse (RMS {figures}); nothing "
             "is written; free other settings"

@@ -172,7 +172,7 @@ def minimize(
     at the start. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls,
     and none is sought that makes the sum of squares fall by no more than ``matters``. Once a step has not kept its
     promise, the valley is curved, and every step is bent along it; there are at most ``most`` steps. It has converged
-    where the linear model has nothing to gain, or where ``_STALLED`` steps one after the other gained next to nothing, or
+    where the linear model has nothing to gain, where ``_STALLED`` steps one after the other gained next to nothing, or
     where less than ``_NOTHING`` is left.
     """
     step = step or compensation_step(len(lower))
