@@ -16,7 +16,7 @@ from gearmath.quality.identification import RANK, Identification
 from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.pitch import evaluate_pitch, index_correction
 from gearmath.quality.target import flank_target, nominal_curvature
-from gearmath.quality.unknown_rotation import UnknownRotation, rotation_columns, step_of
+from gearmath.quality.unknown_rotation import UnknownRotation, rotation_columns, rotation_step, step_of
 from gearmath.quality.variables import NAMES, Bounds, free_settings, parts, whole
 from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
 from gearmath.specs.flank_csv import FlankFile
@@ -163,7 +163,7 @@ class _Fit:
         self, names: dict[tuple[str, ...], tuple[str, ...]], noise: float | None
     ) -> tuple[dict[tuple[str, ...], Identification], UnknownRotation]:
         """Every group by its settings, and the rotation, found in turns until it rests."""
-        rotation = UnknownRotation(np.zeros(self.columns.shape[1]), self.columns, np.zeros(self.columns.T.shape))
+        rotation = self._first(names, noise)
         for _ in range(_TURNS):
             now = self.turned(rotation.shift)
             found = {
@@ -175,6 +175,18 @@ class _Fit:
             if np.abs(self.columns @ step).max(initial=0.0) <= _AT_REST:
                 break
         return found, rotation
+
+    def _first(self, names: dict[tuple[str, ...], tuple[str, ...]], noise: float | None) -> UnknownRotation:
+        """The rotation to first order, before any setting is moved: what settings could do as well is left to it."""
+        jacobians = [
+            one.jacobian[:, [variable.name in names[group] for variable in one.variables]]
+            for group, one in zip(self.groups, self.analysis, strict=True)
+        ]
+        levels = [one.noise if noise is None else noise for one in self.analysis]
+        weights = np.repeat(levels, [jacobian.shape[1] for jacobian in jacobians])
+        measured = np.concatenate([one.deviation for one in self.analysis])
+        angles, gain = rotation_step(self.columns, jacobians, -measured, np.zeros(len(weights)), weights)
+        return UnknownRotation(angles, self.columns, gain)
 
 
 def _identify(

@@ -81,9 +81,9 @@ def rotation_step(
     # what rotation and a setting may both explain is rotation: the settings see what no rotation explains
     blind = np.eye(m + p)
     blind[:m, :m] -= columns @ back
-    inverse = damped_inverse(blind @ slopes) @ blind
-    change = -inverse @ np.concatenate([residual, noise * values])
-    return -back @ (residual + slopes[:m] @ change), back @ (np.eye(m) - slopes[:m] @ inverse[:, :m])
+    inverse = (damped_inverse(blind @ slopes) @ blind)[:, :m]
+    change = inverse @ (slopes[:m] @ values - residual) - values  # of all that fit alike, the least values
+    return -back @ (residual + slopes[:m] @ change), back @ (np.eye(m) - slopes[:m] @ inverse)
 
 
 def step_of(columns: np.ndarray, found: Sequence[Identification]) -> tuple[np.ndarray, np.ndarray]:

@@ -70,8 +70,7 @@ CASES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize("arcsec", [0, 30])
+@pytest.mark.parametrize(("sign", "arcsec"), [(1, 0), (-1, 30)])
 @pytest.mark.parametrize(("name", "flanks"), CASES)
 def test_radial_error_alone_is_corrected_by_the_radial_distance_alone(name, flanks, arcsec, sign):
     """Exact surface without noise: to 0.1 um, by no other setting, on no other flank, however the work stood."""
@@ -86,8 +85,7 @@ def test_radial_error_alone_is_corrected_by_the_radial_distance_alone(name, flan
             assert after < 1e-5
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("sign", "seed"), [(1, 0), (-1, 1)])
 @pytest.mark.parametrize(("name", "flanks"), CASES)
 def test_radial_error_under_noise_is_corrected_within_three_of_its_uncertainties(name, flanks, sign, seed):
     member = NASA.member(name)
@@ -108,7 +106,7 @@ def test_radial_error_under_noise_is_corrected_within_three_of_its_uncertainties
 
 
 @pytest.mark.parametrize("sigma", [0.0, SIGMA])
-@pytest.mark.parametrize("arcsec", [30, -30, 300])
+@pytest.mark.parametrize("arcsec", [30, -300])
 @pytest.mark.parametrize("name", ["pinion", "gear"])
 def test_pure_rotation_of_the_work_corrects_no_setting(name, arcsec, sigma):
     changes, _, found = corrected(name, measured(name, {}, arcsec * ARCSEC, sigma))
