@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, cast
 import click
 
 from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, about, echo_json, output, table
-from gearmath.errors import ComputationError
+from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from gearmath.quality.analysis import Analysis
     from gearmath.quality.correction import Correction
     from gearmath.quality.evaluation import Evaluation
     from gearmath.quality.thickness import By
+    from gearmath.quality.variables import Bounds
     from gearmath.specs.bevel_set import BevelSet, Member
     from gearmath.specs.flank_csv import FlankFile
 
@@ -27,9 +28,9 @@ if TYPE_CHECKING:
 @click.option(
     "--settings",
     "names",
-    default="standard",
+    default="few",
     show_default=True,
-    help="standard, few (the fewest that lose little), all, or names with commas between them.",
+    help="few (the fewest of the standard ones that lose little), standard, all, or names with commas between them.",
 )
 @click.option("--higher-order", is_flag=True, help="Correct motions as well: modified roll, helical motion, ...")
 @click.option(
@@ -49,6 +50,14 @@ if TYPE_CHECKING:
     "--register/--no-register", "registered", default=True, show_default=True,
     help="Take out how the work sat (eccentricity, tilt), where the points tell it.",
 )  # fmt: skip
+@click.option(
+    "--rotation/--no-rotation", "rotated", default=True, show_default=True,
+    help="Leave open how the work stood about its axis: what turns both flanks alike is no error of a setting.",
+)  # fmt: skip
+@click.option(
+    "--bounds", type=click.Choice(["machine", "design"]), default="machine", show_default=True,
+    help="How far settings may change: as a machine may be off, or as a new design may want it.",
+)  # fmt: skip
 @click.option("--root-limit", type=click.FloatRange(0.001, 2), metavar="MM", help="Most that the root line may move.")
 @click.option(
     "--noise", "--sigma-um", "noise", type=click.FloatRange(0, 100), metavar="UM",
@@ -62,16 +71,18 @@ if TYPE_CHECKING:
     show_default=True,
     help="What makes them thicker.",
 )
+@click.option("--verbose", is_flag=True, help="All tables: settings old and new, sensitivities, what is alike or weak.")
 @JSON
 @output("corrected set, TOML")
 def compensate(
     gear_set: str, member: str, measured: Path, names: str, higher_order: bool, objective: str, from_mate: Path | None,
-    registered: bool, root_limit: float | None, noise: float | None, thickness: float, thickness_by: str,
-    as_json: bool, target: Path,
+    registered: bool, rotated: bool, bounds: Bounds, root_limit: float | None, noise: float | None, thickness: float,
+    thickness_by: str, verbose: bool, as_json: bool, target: Path,
 ) -> None:  # fmt: skip
     """Corrected machine settings from a measurement; the nominal settings stay in the file under 'design'.
 
-    Points that missed, drift and clamping are taken out first, as 'evaluate' does.
+    Points that missed, drift and clamping are taken out first, as 'evaluate' does. Says in two lines what remains of
+    what, and which limit binds.
     """
     from gearmath.bevel.pair import check_pair, load_pair
     from gearmath.quality.correction import ROOT_LIMIT, correct
@@ -86,11 +97,11 @@ def compensate(
     spec, file = pair.member(member), read_flank_csv(measured)
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured):
-        evaluation = evaluate_member(file, spec, member, registered)
+        evaluation = evaluate_member(file, spec, member, registered, rotated=rotated)
         correction = correct(
             spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
             few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=None if noise is None else noise / 1000,
-            added=moved,
+            added=moved, bounds=bounds,
         )  # fmt: skip
     if thickness:
         by = cast("By", thickness_by)
@@ -103,13 +114,46 @@ def compensate(
     if as_json:
         echo_json(values)
         return
-    for group, analysis in correction.analysis.items():
-        _say_analysis(" and ".join(group), analysis)
-    _say_changes(values)
-    _say_result(correction)
+    for line in verdict(spec, correction):
+        click.echo(line)
+    if verbose:
+        for group, analysis in correction.analysis.items():
+            _say_analysis(" and ".join(group), analysis)
+        _say_changes(values)
+        _say_result(correction)
+    for flank, count in correction.left_out.items():
+        if count:
+            click.echo(f"{flank}: {count} points of the grid were left out")
     for remark in evaluation.remarks:
         click.echo(remark)
     click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
+
+
+def verdict(member: Member, correction: Correction) -> tuple[str, str]:
+    """What remains of what was measured, by which settings; and which limit binds, or what could be reached."""
+    from gearmath.quality.correction import setting_changes
+    from gearmath.quality.variables import reading
+
+    remains = []
+    for flank, (before, after) in correction.rms.items():
+        changes = [
+            f"{name} {(new - old) * reading(name)[0]:+.4f} {reading(name)[1]}"
+            for where, name, old, new in setting_changes(member, correction) if where == flank
+        ]  # fmt: skip
+        (found,) = (one for group, one in correction.identified.items() if flank in group)
+        kept = "expected to remain" if found.converged else f"left where the fit stopped after {found.iterations} steps"
+        remains.append(f"{flank} {after * 1000:.2f} um {kept} of {before * 1000:.2f} um "
+                       f"({', '.join(changes) or 'nothing is changed'})")  # fmt: skip
+    limits = []
+    for group, found in correction.identified.items():
+        flanks, best = " and ".join(group), correction.reachable[group] * 1000
+        if not found.converged:
+            limits.append(f"{flanks}: not converged, try fewer settings")
+        elif found.active:
+            limits.append(f"{flanks}: held back by the limit of {', '.join(found.active)}, {best:.2f} um at best")
+        else:
+            limits.append(f"{flanks}: no limit binds, all settings that are free would leave {best:.2f} um")
+    return f"RMS: {'; '.join(remains)}", "; ".join(limits)
 
 
 def _uncertainty(
@@ -160,6 +204,8 @@ def _free(names: str) -> tuple[str, ...] | None:
 
     if names in ("standard", "few"):
         return None
+    if not names.strip(" ,"):
+        raise InputError("--settings: at least one must be named")
     return MACHINE_SETTINGS if names == "all" else tuple(name.strip() for name in names.split(","))
 
 
@@ -180,14 +226,15 @@ def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, register
 def _say_analysis(flanks: str, analysis: Analysis) -> None:
     kind = "simple" if analysis.is_simple else "complex"
     click.echo(
-        f"{flanks}: {kind} target, RMS {analysis.rms * 1000:.3f} um; no correction by these {len(analysis.names)} "
-        f"settings gets below {analysis.best_rms * 1000:.3f} um, none within their bounds below "
-        f"{analysis.reachable_rms * 1000:.3f} um"
+        f"{flanks}: {kind} target, RMS {analysis.rms * 1000:.3f} um; these {len(analysis.names)} settings would leave "
+        f"{analysis.best_rms * 1000:.3f} um by a linear estimate without bounds"
     )
     click.echo("  singular values [um]: " + ", ".join(f"{value * 1000:.3g}" for value in analysis.singular_values))
     for first, second, cosine in analysis.alike:
         how = "alike" if cosine > 0 else "opposite ways"
-        click.echo(f"  {first} and {second} move the flank {how} (cosine {cosine:.5f}): hardly told apart")
+        click.echo(
+            f"  {first} and {second} move the flank {how} (cosine {cosine:.5f}), and cannot be told from each other"
+        )
     for k in analysis.weak:
         named = " ".join(f"{part:+.2f} {name}" for name, part in analysis.direction(k).items())
         click.echo(f"  weak direction, {analysis.singular_values[k] * 1000:.3g} um: {named} (parts of their bounds)")
@@ -200,17 +247,13 @@ def _say_analysis(flanks: str, analysis: Analysis) -> None:
 
 def _say_result(correction: Correction) -> None:
     for group, found in correction.identified.items():
+        kept = "expected to remain" if found.converged else "not converged, left so far"
         click.echo(
-            f"{' and '.join(group)}: RMS {found.rms_before * 1000:.3f} um, expected to remain "
-            f"{found.rms_after * 1000:.3f} um ({found.iterations} iterations)"
+            f"{' and '.join(group)}: RMS {found.rms_before * 1000:.3f} um, {kept} {found.rms_after * 1000:.3f} um "
+            f"({found.iterations} iterations)"
         )
-        if found.active:
-            click.echo(f"  held back by the limit of {', '.join(found.active)}")
     for flank, moved in correction.root.items():
         click.echo(f"{flank}: root line {moved[0] * 1000:+.1f} um at the toe, {moved[1] * 1000:+.1f} um at the heel")
-    for flank, count in correction.left_out.items():
-        if count:
-            click.echo(f"{flank}: {count} points of the grid were left out")
 
 
 def _values(member: Member, correction: Correction) -> dict[str, Any]:
@@ -223,10 +266,12 @@ def _values(member: Member, correction: Correction) -> dict[str, Any]:
         changes.append({"flank": flank, "setting": name, "old": old * factor, "new": new * factor, "unit": unit})
     return {
         "changes": changes,
+        "rms_um": {flank: [value * 1000 for value in both] for flank, both in correction.rms.items()},
         "expected_max_um": {flank: value * 1000 for flank, value in correction.expected.items()},
         "index_correction_deg": [] if correction.index is None else [math.degrees(v) for v in correction.index],
         "root_line_um": {flank: [value * 1000 for value in moved] for flank, moved in correction.root.items()},
         "left_out": correction.left_out,
+        "rotation_left_open_deg": [math.degrees(angle) for angle in correction.rotation.angles],
         "fits": [_fit_values(correction, group) for group in correction.identified],
     }
 
@@ -236,16 +281,18 @@ def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any
     choice = analysis.choose()
     return {
         "flanks": list(group),
-        "settings": list(analysis.names),
+        "free": list(analysis.names),
+        "settings": list(dict.fromkeys(variable.name for variable in found.variables)),
         "simple": analysis.is_simple,
         "singular_values_um": [value * 1000 for value in analysis.singular_values],
         "alike": [list(pair) for pair in analysis.alike],
         "weak_directions": [analysis.direction(k) for k in analysis.weak],
         "without_effect": list(analysis.unseen),
         "rms_um": found.rms_before * 1000,
-        "best_rms_um": analysis.best_rms * 1000,
-        "reachable_rms_um": analysis.reachable_rms * 1000,
+        "linear_estimate_rms_um": analysis.best_rms * 1000,
+        "reachable_rms_um": correction.reachable[group] * 1000,
         "remaining_rms_um": found.rms_after * 1000,
+        "converged": found.converged,
         "enough": {"settings": list(choice.names), "loss_um": choice.loss * 1000},
         "held_back_by": list(found.active),
         "iterations": found.iterations,

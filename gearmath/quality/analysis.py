@@ -1,29 +1,34 @@
-"""What a correction can do, before it is done: which settings the flanks tell apart, and what none of them can mend.
+"""What a correction can do, before it is done: which settings the flanks tell apart, and what none of them corrects.
 
 With the Jacobian J of the deviations by the settings, each in parts of its bound, J = U S Vᵀ: a direction whose
 singular value is small moves the flank little, and two settings whose columns are parallel cannot be told apart. What
-is measured and lies outside of the columns is the projection residual (I - U Uᵀ) δ: no correction gets below it.
+is measured and lies outside of the columns is the projection residual (I - U Uᵀ) δ. It is an estimate of what is left:
+to first order, and without bounds. The limit is the optimum on the exact surface (``correction``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
+from gearmath.errors import ComputationError
 from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands
 from gearmath.quality.identification import RANK
-from gearmath.quality.least_squares import minimize
-from gearmath.quality.variables import FREE, Variable, variables_of
+from gearmath.quality.variables import FREE, Bounds, Variable, variables_of
 
+#: What names a block of columns.
+Key = TypeVar("Key", bound=Hashable)
 #: Columns whose directions agree this well move the flank alike. [cosine]
 ALIKE = 0.999
 #: A direction with less than this part of the largest singular value is weak.
 WEAK = 0.01
-#: Settings are chosen until no more is lost than this part of what all of them leave, or this much. [mm]
-_LOSS_PART, _LOSS = 0.05, 5e-5
+#: Settings are chosen until no more is lost than this part of what all of them leave, or this much [mm], or until the
+#: others together take away no more than this many times what as many of them take away of noise.
+LOSS_PART, LOSS, _LOSS_NOISE = 0.05, 5e-5, 3.0
 #: A setting that belongs to a direction has at least this part of its largest component.
 _NAMED = 0.2
 
@@ -52,6 +57,7 @@ class Analysis:
     variables: tuple[Variable, ...]
     jacobian: np.ndarray
     deviation: np.ndarray
+    measured: np.ndarray
 
     @cached_property
     def _svd(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -70,19 +76,12 @@ class Analysis:
     @property
     def rms(self) -> float:
         """RMS of what was measured [mm]."""
-        return float(np.sqrt(np.mean(self.deviation**2)))
+        return float(np.sqrt(np.mean(self.measured**2)))
 
     @property
     def best_rms(self) -> float:
-        """RMS of the projection residual [mm]: what any correction by these settings leaves."""
+        """RMS of the projection residual [mm]: an estimate, to first order, of what is left without bounds."""
         return self._left(self.jacobian)
-
-    @cached_property
-    def reachable_rms(self) -> float:
-        """RMS [mm] of what a correction within the bounds leaves, to first order: at least ``best_rms``."""
-        bound = np.ones(len(self.variables))
-        found = minimize(lambda v: (self.jacobian @ v - self.deviation, self.jacobian), -bound, bound)
-        return float(np.sqrt(np.mean(found.residual**2)))
 
     @property
     def noise(self) -> float:
@@ -125,7 +124,7 @@ class Analysis:
 
     @property
     def weak(self) -> tuple[int, ...]:
-        """The directions whose singular value is below one hundredth of the largest: hardly told apart."""
+        """The directions whose singular value is below one hundredth of the largest."""
         return tuple(int(k) for k in np.flatnonzero(self.singular_values < WEAK * self.singular_values[0]))
 
     @property
@@ -143,37 +142,71 @@ class Analysis:
         strong = WEAK * S[0] <= S
         change = V[strong].T @ ((U[:, strong].T @ self.deviation) / S[strong])
         left = self.deviation - self.jacobian @ change
-        enough = float(np.sqrt(np.mean(left**2))) <= max(self.best_rms * (1 + _LOSS_PART), self.best_rms + _LOSS)
+        enough = float(np.sqrt(np.mean(left**2))) <= max(self.best_rms * (1 + LOSS_PART), self.best_rms + LOSS)
         return enough and bool((np.abs(change) <= 1).all())
 
     def choose(self) -> Choice:
-        """The fewest settings, taken one by one, each that with which the least is left, until little is lost."""
-        best, taken, left = self.best_rms, [], []  # type: ignore[var-annotated]
-        names = list(self.names)
-        while names:
-            trial = {name: self._left(self._columns([*taken, name])) for name in names}
-            name = min(trial, key=lambda one: trial[one])
-            taken.append(name)
-            names.remove(name)
-            left.append(trial[name])
-            if left[-1] <= max(best * (1 + _LOSS_PART), best + _LOSS):
-                break
-        return Choice(tuple(taken), tuple(left), left[-1] - best)
-
-    def _columns(self, names: Sequence[str]) -> np.ndarray:
-        return self.jacobian[:, [k for k, variable in enumerate(self.variables) if variable.name in names]]
+        """The fewest settings that lose little, by ``fewest``."""
+        columns = {
+            name: self.jacobian[:, [k for k, variable in enumerate(self.variables) if variable.name == name]]
+            for name in self.names
+        }
+        names, left = fewest(columns, self.deviation)
+        nothing = float(np.sqrt(np.mean(self.deviation**2)))
+        return Choice(names, left, (left[-1] if left else nothing) - self.best_rms)
 
 
-def analyse(targets: Sequence[FlankTarget], free: Sequence[str] = FREE, run: Run = as_it_stands) -> Analysis:
+def fewest(
+    columns: Mapping[Key, np.ndarray], deviation: np.ndarray, besides: np.ndarray | None = None,
+    noise: float | None = None,
+) -> tuple[tuple[Key, ...], tuple[float, ...]]:  # fmt: skip
+    """The fewest blocks of columns (m,k) that explain deviations (m,) nearly as well as all, and RMS left after each.
+
+    They are taken one by one, each that with which the least is left, and then what is no more needed is given back.
+    ``besides`` (m,q) explains what it can before any is taken. It is enough where little is lost, or where the others
+    gain no more than they would of noise: ``noise`` [mm] of one deviation, or what all of them leave.
+    """
+    first = np.zeros((len(deviation), 0)) if besides is None else besides
+
+    def squares(keys: Sequence[Key]) -> float:
+        together = np.hstack([first, *(columns[key] for key in keys)])
+        left = projection_residual(together, deviation) if together.shape[1] else deviation
+        return float(left @ left)
+
+    keys, m = list(columns), len(deviation)
+    least, size = squares(keys), first.shape[1] + sum(block.shape[1] for block in columns.values())
+    variance = least / max(m - size, 1) if noise is None else noise**2
+    best = np.sqrt(least / m)
+    little = m * max(best * (1 + LOSS_PART), best + LOSS) ** 2
+
+    def enough(taken: Sequence[Key], left: float) -> bool:
+        others = sum(columns[key].shape[1] for key in keys if key not in taken)
+        return left <= max(little, least + _LOSS_NOISE * others * variance)
+
+    taken: list[Key] = []
+    while not enough(taken, squares(taken)):
+        taken.append(min((key for key in keys if key not in taken), key=lambda key: squares([*taken, key])))
+    for key in taken[:-1]:
+        fewer = [other for other in taken if other != key]
+        if enough(fewer, squares(fewer)):
+            taken = fewer
+    return tuple(taken), tuple(float(np.sqrt(squares(taken[: k + 1]) / m)) for k in range(len(taken)))
+
+
+def analyse(
+    targets: Sequence[FlankTarget], free: Sequence[str] = FREE, bounds: Bounds = "machine", run: Run = as_it_stands
+) -> Analysis:
     """What the free settings can do to the deviations of some targets, common to all of them."""
-    variables = variables_of(free, len(targets))
+    variables = variables_of(free, [target.vector for target in targets], bounds)
     problem = Problem(targets, variables, None, None, run)
-    rows = [problem.columns(problem.located(np.zeros(len(variables)), k)[1], k) for k in range(len(targets))]
-    return Analysis(tuple(free), variables, np.concatenate(rows), problem.measured)
+    found = problem.deviations(np.zeros(len(variables)))
+    if found is None:
+        raise ComputationError("the flank as it was set does not cross the normals of all points")
+    return Analysis(tuple(free), variables, found[1], -found[0], problem.measured)
 
 
 def projection_residual(jacobian: np.ndarray, deviation: np.ndarray) -> np.ndarray:
-    """What of deviations (m,) lies outside of the columns of a Jacobian (m,p): no setting can take it away."""
+    """What of deviations (m,) lies outside of the columns of a Jacobian (m,p): to first order none takes it away."""
     U, S, _ = np.linalg.svd(jacobian, full_matrices=False)
-    shown = U[:, RANK * S[0] < S]
+    shown = U[:, RANK * S.max(initial=0.0) < S]
     return deviation - shown @ (shown.T @ deviation)

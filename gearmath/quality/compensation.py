@@ -321,6 +321,14 @@ def identify(
     )  # fmt: skip
 
 
+def nothing_identified(targets: Sequence[FlankTarget], run: Run = as_it_stands) -> Identification:
+    """What was identified where no setting is free: the flanks are as they were set."""
+    measured = np.concatenate([target.deviation for target in targets])
+    left = np.concatenate([located(target, target.vector, run, moving=False)[0] for target in targets]) - measured
+    before, after = (float(np.sqrt(np.mean(values**2))) for values in (measured, left))
+    return Identification((), np.zeros(0), before, after, 0, True, np.zeros((len(measured), 0)), left)
+
+
 def _best_start(problem: Problem, solve: Callable[..., Minimum]) -> Minimum:
     """The minimum of a design: the start that is ahead after some steps is followed to the end."""
     first = solve(most=_HEAT)

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from gearmath.errors import ComputationError, InputError
-from gearmath.quality.analysis import Analysis, analyse
-from gearmath.quality.compensation import FlankTarget, Run, as_it_stands, identify, located
+from gearmath.quality.analysis import LOSS, LOSS_PART, Analysis, analyse, fewest
+from gearmath.quality.compensation import FlankTarget, identify, located, nothing_identified
 from gearmath.quality.identification import RANK, Identification
+from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.pitch import evaluate_pitch, index_correction
-from gearmath.quality.target import flank_target
-from gearmath.quality.variables import NAMES, free_settings, parts, whole
+from gearmath.quality.target import flank_target, nominal_curvature
+from gearmath.quality.unknown_rotation import UnknownRotation, rotation_columns, rotation_step, step_of
+from gearmath.quality.variables import NAMES, Bounds, free_settings, parts, whole
 from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
 from gearmath.specs.flank_csv import FlankFile
 
-#: What a correction may add to the RMS of a flank that is as good as perfect: rounding. [mm]
+#: What is left is rounding. [mm]
 _ROUNDING = 1e-6
+#: What a correction may add to the RMS of a flank that is as good as perfect: no probe shows it. [mm]
+_WORSE = 5e-5
+#: The open rotation and the settings are found in so many turns, until it moves no point by more than this [mm].
+_TURNS, _AT_REST = 6, 1e-7
 #: Trials of the noise, each at most half of the one before.
 _NOISE_TRIALS = 6
 #: A point that was left out must be predicted this well: the variance of the prediction against that of one point.
@@ -32,9 +40,12 @@ ROOT_LIMIT = 0.15
 class Correction:
     """Corrected settings (12,) of each flank, what was identified for each group of flanks, and index corrections.
 
-    ``motions`` (10,7) of each flank, without the modified roll, is empty where no motion was corrected. ``expected`` is
-    the largest deviation [mm] that the model expects to remain, per flank; ``root`` how much higher or deeper (+) the
-    root line at toe and heel (2,) [mm] will be than it was cut. ``analysis`` was made before anything was corrected,
+    ``motions`` (10,7) of each flank, without the modified roll, is empty where no motion was corrected; ``curvatures``
+    [1/mm] holds those of blades that were. ``rms`` [mm] of each flank is as measured and as expected to remain,
+    ``expected`` the largest deviation [mm] that is expected to remain; ``root`` how much higher or deeper (+) the root
+    line at toe and heel (2,) [mm] will be than it was cut. ``analysis`` is of all settings that were free, and
+    ``reachable`` the RMS [mm] that they leave at best: the optimum on the exact surface within bounds and root limit,
+    never above what was identified. ``rotation`` is what was left open of how the work stood, taken off before.
     ``left_out`` says per flank how many points of the grid were not used. ``index`` (z,) [rad] is None where pitch was
     not measured.
     """
@@ -47,58 +58,148 @@ class Correction:
     analysis: dict[tuple[str, ...], Analysis]
     root: dict[str, np.ndarray]
     left_out: dict[str, int]
+    reachable: dict[tuple[str, ...], float]
+    rotation: UnknownRotation
+    curvatures: dict[str, float]
+    rms: dict[str, tuple[float, float]]
 
 
 def correct(
     member: Member, name: str, measured: FlankFile, free: Sequence[str] | None = None, *, objective: str = "points",
     higher_order: bool = False, few: bool = False, root_limit: float | None = ROOT_LIMIT,
     noise: float | None = None, added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None,
-    run: Run = as_it_stands,
+    bounds: Bounds = "machine", run: Run = as_it_stands,
 ) -> Correction:  # fmt: skip
     """The settings that make up for what was measured on a member.
 
     Flanks of a completing cut share their correction. ``free`` names what may change, by default the settings that suit
-    the cutting method and, with ``higher_order``, motions; ``few`` takes of them the fewest that lose little.
-    ``noise`` [mm] is the standard deviation of a measured deviation, by default what all of the settings leave: weak
-    directions are not moved for its sake. ``excluded`` (points of the file,) marks points that are not to be used;
-    ``added`` gives for each flank deviations [mm] on the grid that are corrected besides, such as those of the mate.
+    the cutting method and, with ``higher_order``, motions; ``few`` takes of them the fewest that lose little, and none
+    where there is nothing to gain. ``noise`` [mm] is the standard deviation of a measured deviation, by default what
+    all of the settings leave: weak directions are not moved for its sake. ``excluded`` (points of the file,) marks
+    points that are not to be used; ``added`` gives for each flank deviations [mm] on the grid that are corrected
+    besides, such as those of the mate. ``bounds`` are those of errors of a machine, or of a design.
+
+    Where the rotation of the work was taken out of the file (``phase_zeroed``), it stays open: see
+    :mod:`gearmath.quality.unknown_rotation`.
 
     Raises InputError if the file is not of this member or does not determine the settings, and ComputationError if the
-    correction would make a flank worse.
+    correction would make one of the flanks worse.
     """
     check_belongs(member, name, measured)
     names = tuple(free) if free is not None else free_settings(member, higher_order)
     groups = [FLANKS] if member.cutting == "completing" else [(flank,) for flank in FLANKS]
-    found = Correction({}, {}, {}, _index(member, measured), {}, {}, {}, {})
+    targets = {flank: flank_target(member, name, flank, measured, excluded=excluded) for flank in FLANKS}
     for group in groups:
-        targets = [flank_target(member, name, flank, measured, excluded=excluded) for flank in group]
-        found.left_out.update({f: t.grid_points - len(t.deviation) for f, t in zip(group, targets, strict=True)})
-        _check_determined(name, group, targets, names)
-        if added:
-            targets = [target.plus(added[flank]) for flank, target in zip(group, targets, strict=True)]
-        analysis = analyse(targets, names, run=run)
-        if few:
-            analysis = analyse(targets, analysis.choose().names, run=run)
-        found.analysis[group] = analysis
-        result = _identify(targets, analysis.names, objective, root_limit, noise, run)
-        _refuse_worse(name, group, targets, result)
-        found.identified[group] = result
-        for k, (flank, target) in enumerate(zip(group, targets, strict=True)):
+        _check_determined(name, group, [targets[flank] for flank in group], names)
+    if added:
+        targets = {flank: target.plus(added[flank]) for flank, target in targets.items()}
+    fit = _Fit(targets, groups, names, rotation_columns(list(targets.values()), measured), {
+        "objective": objective, "root_limit": root_limit, "bounds": bounds, "run": run
+    })  # fmt: skip
+    identified, rotation = fit.solve(fit.chosen(noise) if few else dict.fromkeys(groups, names), noise)
+    targets = fit.turned(rotation.shift)
+    found = Correction({}, identified, {}, _index(member, measured), {}, {}, {}, {}, {}, rotation, {}, {})
+    for group in groups:
+        mine = [targets[flank] for flank in group]
+        found.left_out.update({f: t.grid_points - len(t.deviation) for f, t in zip(group, mine, strict=True)})
+        found.analysis[group] = analyse(mine, names, bounds, run)
+        best = identify(mine, names, root_limit=root_limit, bounds=bounds, run=run)
+        held_back = bool(identified[group].active) and not _as_good(identified[group], best)
+        if few and (held_back or _made_worse(group, mine, identified[group], noise or 0.0)):
+            identified[group] = _identify(mine, names, noise, fit.how)  # all of them may do what the few do not
+        result = identified[group]
+        found.reachable[group] = min(best.rms_after, result.rms_after)
+        _refuse_worse(name, group, mine, result, noise or 0.0)
+        for k, (flank, target) in enumerate(zip(group, mine, strict=True)):
             _settle(found, member, flank, target, result, k)
     return found
 
 
+def _as_good(found: Identification, best: Identification) -> bool:
+    """Whether settings that a limit holds back leave next to nothing more than all of them."""
+    return found.rms_after <= max(best.rms_after * (1 + LOSS_PART), best.rms_after + LOSS)
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Both flanks of a member, the groups of them that share settings, and the rotation that is open."""
+
+    targets: dict[str, FlankTarget]
+    groups: Sequence[tuple[str, ...]]
+    names: tuple[str, ...]
+    columns: np.ndarray
+    how: dict[str, Any]
+
+    @cached_property
+    def analysis(self) -> list[Analysis]:
+        return [
+            analyse([self.targets[flank] for flank in group], self.names, self.how["bounds"], self.how["run"])
+            for group in self.groups
+        ]
+
+    def chosen(self, noise: float | None) -> dict[tuple[str, ...], tuple[str, ...]]:
+        """The fewest settings of all groups together that explain both flanks, with the rotation for nothing."""
+        ends = np.cumsum([0, *(len(one.deviation) for one in self.analysis)])
+        columns = {}
+        for k, (group, one) in enumerate(zip(self.groups, self.analysis, strict=True)):
+            for name in self.names:
+                block = one.jacobian[:, [variable.name == name for variable in one.variables]]
+                whole_block = np.zeros((ends[-1], block.shape[1]))
+                whole_block[ends[k] : ends[k + 1]] = block
+                columns[group, name] = whole_block
+        measured = np.concatenate([one.deviation for one in self.analysis])
+        taken, _ = fewest(columns, measured, self.columns, noise)
+        return {group: tuple(name for one, name in taken if one == group) for group in self.groups}
+
+    def turned(self, shift: np.ndarray) -> dict[str, FlankTarget]:
+        """The targets without what a rotation makes of their points (m,) [mm]."""
+        parts = np.split(shift, np.cumsum([len(target.deviation) for target in self.targets.values()])[:-1])
+        return {
+            flank: replace(target, deviation=target.deviation - part)
+            for (flank, target), part in zip(self.targets.items(), parts, strict=True)
+        }
+
+    def solve(
+        self, names: dict[tuple[str, ...], tuple[str, ...]], noise: float | None
+    ) -> tuple[dict[tuple[str, ...], Identification], UnknownRotation]:
+        """Every group by its settings, and the rotation, found in turns until it rests."""
+        rotation = self._first(names, noise)
+        for _ in range(_TURNS):
+            now = self.turned(rotation.shift)
+            found = {
+                group: _identify([now[flank] for flank in group], names[group], noise, self.how)
+                for group in self.groups
+            }
+            step, gain = step_of(self.columns, list(found.values()))
+            rotation = UnknownRotation(rotation.angles + step, self.columns, gain)
+            if np.abs(self.columns @ step).max(initial=0.0) <= _AT_REST:
+                break
+        return found, rotation
+
+    def _first(self, names: dict[tuple[str, ...], tuple[str, ...]], noise: float | None) -> UnknownRotation:
+        """The rotation to first order, before any setting is moved: what settings could do as well is left to it."""
+        jacobians = [
+            one.jacobian[:, [variable.name in names[group] for variable in one.variables]]
+            for group, one in zip(self.groups, self.analysis, strict=True)
+        ]
+        levels = [one.noise if noise is None else noise for one in self.analysis]
+        weights = np.repeat(levels, [jacobian.shape[1] for jacobian in jacobians])
+        measured = np.concatenate([one.deviation for one in self.analysis])
+        angles, gain = rotation_step(self.columns, jacobians, -measured, np.zeros(len(weights)), weights)
+        return UnknownRotation(angles, self.columns, gain)
+
+
 def _identify(
-    targets: Sequence[FlankTarget], names: Sequence[str], objective: str, root_limit: float | None,
-    noise: float | None, run: Run,
-) -> Identification:  # fmt: skip
+    targets: Sequence[FlankTarget], names: Sequence[str], noise: float | None, how: dict[str, Any]
+) -> Identification:
     """The identification at the given noise, or at the noise that it leaves itself: at first what no setting shows."""
-    given = {"objective": objective, "root_limit": root_limit, "run": run}
+    if not names:
+        return nothing_identified(targets, how["run"])
     if noise is not None:
-        return identify(targets, names, noise=noise, **given)  # type: ignore[arg-type]
-    level = analyse(targets, names, run=run).noise
+        return identify(targets, names, noise=noise, **how)
+    level = analyse(targets, names, how["bounds"], how["run"]).noise
     for _ in range(_NOISE_TRIALS):
-        found = identify(targets, names, noise=level, **given)  # type: ignore[arg-type]
+        found = identify(targets, names, noise=level, **how)
         free = max(len(found.residual) - found.corrected_parameters, 1.0)
         left = float(np.sqrt(found.residual @ found.residual / free))
         if left > level / 2 or left <= _ROUNDING:
@@ -123,17 +224,36 @@ def _check_determined(name: str, group: Sequence[str], targets: Sequence[FlankTa
         )
 
 
-def _refuse_worse(name: str, group: Sequence[str], targets: Sequence[FlankTarget], result: Identification) -> None:
-    """Raise ComputationError where a correction makes its flanks worse, together or one of them for the other."""
-    ends = np.cumsum([len(target.deviation) for target in targets])[:-1]
-    pieces = np.split(result.residual, ends)
-    before = [np.sqrt(np.mean(target.deviation**2)) for target in targets]
-    after = [np.sqrt(np.mean(piece**2)) for piece in pieces]
-    worse = result.rms_after > result.rms_before + _ROUNDING
-    if worse:
-        figures = ", ".join(f"{b * 1000:.3f} to {a * 1000:.3f} um" for b, a in zip(before, after, strict=True))
+def _rms(targets: Sequence[FlankTarget], result: Identification) -> list[tuple[float, float]]:
+    """RMS [mm] of every flank as it was measured, and as it is expected to remain."""
+    pieces = np.split(result.residual, np.cumsum([len(target.deviation) for target in targets])[:-1])
+    return [
+        (float(np.sqrt(np.mean(target.deviation**2))), float(np.sqrt(np.mean(piece**2))))
+        for target, piece in zip(targets, pieces, strict=True)
+    ]
+
+
+def _made_worse(
+    group: Sequence[str], targets: Sequence[FlankTarget], result: Identification, noise: float
+) -> list[str]:
+    """The flanks that a correction makes worse, by more than the noise of a point."""
+    pairs = zip(group, _rms(targets, result), strict=True)
+    return [flank for flank, (before, after) in pairs if after > before + max(_WORSE, noise)]
+
+
+def _refuse_worse(
+    name: str, group: Sequence[str], targets: Sequence[FlankTarget], result: Identification, noise: float
+) -> None:
+    """Raise ComputationError where a correction makes one of its flanks worse."""
+    if worse := _made_worse(group, targets, result, noise):
+        figures = ", ".join(
+            f"{flank} {before * 1000:.3f} to {after * 1000:.3f} um"
+            for flank, (before, after) in zip(group, _rms(targets, result), strict=True)
+        )
+        names = ", ".join(variable.label for variable in result.variables) or "no setting"
         raise ComputationError(
-            f"{name} {' and '.join(group)}: no correction makes the flank better (RMS {figures}); nothing is written"
+            f"{name}: the correction by {names} makes the {' and '.join(worse)} flank worse (RMS {figures}); nothing "
+            "is written; free other settings"
         )
 
 
@@ -141,11 +261,15 @@ def _settle(found: Correction, member: Member, flank: str, target: FlankTarget, 
     """Enter the corrected settings of one flank, and what is expected of it."""
     spec, change = member.flank(flank), result.change(k)
     errors, moved = parts(change)
+    if change[-1]:
+        found.curvatures[flank] = nominal_curvature(spec) - float(change[-1])
     found.settings[flank] = spec.nominal.vector - errors
     if moved.any() or spec.nominal_motion != spec.motion:
         found.motions[flank] = spec.nominal_motion.matrix - moved
     deviation, _, _ = located(target, target.vector + change)
-    found.expected[flank] = float(np.abs(target.deviation - deviation).max())
+    left = target.deviation - deviation
+    found.expected[flank] = float(np.abs(left).max())
+    found.rms[flank] = float(np.sqrt(np.mean(target.deviation**2))), float(np.sqrt(np.mean(left**2)))
     if target.root is not None:
         found.root[flank] = -target.root.sunk(target.vector, target.vector + change)[0]
 

@@ -38,6 +38,8 @@ _KEPT, _AHEAD, _BELIEVED = 0.75, 0.1, 1.5
 _STALLED, _IDLE = 3, 1e-3
 #: Converged: an undamped step would change the residual by less than this in the RMS, and less than this part. [mm]
 _STILL, _STILL_PART = 1e-10, 1e-7
+#: Where a fit stops for another reason, so little in the RMS is nothing that is left. [mm]
+_NOTHING = 1e-5
 #: To this the residuals are known, rounding of coordinates: what falls of their squares must be more. [mm]
 _ROUNDING = 1e-13
 
@@ -170,7 +172,8 @@ def minimize(
     at the start. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls,
     and none is sought that makes the sum of squares fall by no more than ``matters``. Once a step has not kept its
     promise, the valley is curved, and every step is bent along it; there are at most ``most`` steps. It has converged
-    where the linear model has nothing to gain, or where ``_STALLED`` steps one after the other gained next to nothing.
+    where the linear model has nothing to gain, where ``_STALLED`` steps one after the other gained next to nothing, or
+    where less than ``_NOTHING`` is left.
     """
     step = step or compensation_step(len(lower))
     v = np.zeros(len(lower)) if start is None else start
@@ -198,7 +201,7 @@ def minimize(
             idle = idle + 1 if gained < _IDLE * cost else 0
         elif damping > _LARGEST:
             break
-    return Minimum(v, residual, jacobian, iterations, False)
+    return Minimum(v, residual, jacobian, iterations, bool(residual @ residual <= len(residual) * _NOTHING**2))
 
 
 def _bend(

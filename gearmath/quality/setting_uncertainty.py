@@ -79,6 +79,8 @@ def setting_uncertainty(
     ``root_limit`` [mm] is that of the identification. Raises ComputationError where the flanks do not determine the
     settings: the solution is no strict minimum.
     """
+    if not found.variables:
+        return _nothing(len(found.residual), measured)
     gain = exact_gain(targets, found, root_limit)
     passed = found.jacobian @ (gain / found.scale[:, None])
     return SettingUncertainty(
@@ -88,6 +90,12 @@ def setting_uncertainty(
         measured.standard_uncertainty(passed),
         _held(found),
     )
+
+
+def _nothing(points: int, measured: Covariance) -> SettingUncertainty:
+    """Where no setting was corrected, what was measured remains as uncertain as it is."""
+    remaining = measured.standard_uncertainty(np.eye(points))
+    return SettingUncertainty(np.zeros((0, 0)), np.zeros((0, points)), remaining, np.zeros(points), ())
 
 
 def exact_gain(targets: Sequence[FlankTarget], found: Identification, root_limit: float | None = None) -> np.ndarray:
@@ -177,10 +185,16 @@ def uncertain_settings(
     """
     settings: list[Uncertain] = []
     effects: dict[str, Effect] = {}
+    every = {flank: flank_target(member, name, flank, file) for flank in FLANKS}
+    places = {flank: rows_of(file, flank, target) for flank, target in every.items()}
+    own = measured.pick(np.concatenate(list(places.values())))
+    if correction.rotation.angles.size:  # it was found from both flanks
+        own = own.carried(correction.rotation.projector)
+    start = dict(zip(FLANKS, (0, len(places[FLANKS[0]])), strict=True))
     for group, found in correction.identified.items():
-        targets = [flank_target(member, name, flank, file) for flank in group]
-        rows = [rows_of(file, flank, target) for flank, target in zip(group, targets, strict=True)]
-        known = setting_uncertainty(targets, found, measured.pick(np.concatenate(rows)), root_limit)
+        targets, rows = [every[flank] for flank in group], [places[flank] for flank in group]
+        at = np.concatenate([start[flank] + np.arange(len(places[flank])) for flank in group])
+        known = setting_uncertainty(targets, found, own.pick(at), root_limit)
         ends = np.cumsum([len(part) for part in rows])[:-1]
         pieces = zip(np.split(known.caused, ends), np.split(known.remaining, ends), strict=True)
         for k, (flank, piece) in enumerate(zip(group, pieces, strict=True)):

@@ -89,6 +89,11 @@ def blade_curve(spec: Flank) -> tuple[float, float]:
     return 0.0 if spec.blade_spheric_radius is None else 1 / spec.blade_spheric_radius, spec.blade_reference_height
 
 
+def nominal_curvature(spec: Flank) -> float:
+    """Curvature [1/mm] of the blade that the nominal flank is cut by."""
+    return blade_curve(spec)[0]
+
+
 def by_foot(spec: Flank, nominal: FlankPoints) -> FlankPoints:
     """Points of a flank with the height of the foot (10.9) as the blade parameter, as the kernels on a line take it."""
     if spec.blade_spheric_radius is None:

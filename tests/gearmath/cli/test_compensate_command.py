@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -53,13 +54,15 @@ def measured(tmp_path):
 
 
 def worst_after(path, name, **errors):
-    """Largest deviation of the flanks that a corrected set cuts on the machine with those errors."""
+    """Largest deviation of the flanks that a corrected set cuts on the machine with those errors.
+
+    But for a rotation of the work common to both: how the work stood was left open.
+    """
     member = load_bevel_set(path).member(name)
-    worst = 0.0
-    for flank in FLANKS:
-        _, deviation = left_by(member, name, flank, **errors)
-        worst = max(worst, np.abs(deviation).max())
-    return worst
+    targets, deviations = zip(*(left_by(member, name, flank, **errors) for flank in FLANKS), strict=True)
+    deviation = np.concatenate(deviations)
+    column = np.concatenate([predicted(t, t.vector)[1][:, NAMES.index("work_rotation_offset")] for t in targets])
+    return np.abs(deviation - column * (column @ deviation) / (column @ column)).max()
 
 
 @pytest.mark.parametrize("name", ["pinion", "gear"])
@@ -68,20 +71,33 @@ def test_corrected_set_cuts_the_nominal_flank_on_the_machine_that_errs(command, 
     csv, new = measured(bundled(source), name, **ERRORS), tmp_path / "new.toml"
     status, out, err = command("compensate", source, "--member", name, "--measured", csv, "-o", new)
     assert (status, err) == (0, "")
-    assert "no correction by these 7 settings gets below" in out
-    assert "singular values [um]:" in out
+    assert re.match(r"RMS: concave 0\.0\d um expected to remain of \d+\.\d\d um \(radial_distance -0\.03", out)
+    assert "no limit binds" in out.splitlines()[1]
     assert worst_after(bundled(source), name, **ERRORS) > 5e-3
-    assert worst_after(new, name, **ERRORS) < 2e-5
+    assert worst_after(new, name, **ERRORS) < 2e-4  # the few lose 0.05 um in the RMS
     pair, old = load_bevel_set(new), load_bevel_set(bundled(source))
     assert design_sha256(pair.member(name)) == design_sha256(old.member(name))
     assert settings_sha256(pair.member(name)) != settings_sha256(old.member(name))
+
+
+def test_tables_are_shown_when_asked_and_standard_settings_leave_nothing(command, measured, tmp_path):
+    source, new = "crown_gear_7x43.toml", tmp_path / "new.toml"
+    csv = measured(bundled(source), "pinion", **ERRORS)
+    base = ("compensate", source, "--member", "pinion", "--measured", csv, "-o", new, "--settings", "standard")
+    short, full = command(*base)[1], command(*base, "--verbose")[1]
+    assert full.startswith("\n".join(short.splitlines()[:2]))
+    for table in ("by a linear estimate without bounds", "singular values [um]:", "weak direction", "root line"):
+        assert table in full
+        assert table not in short
+    assert worst_after(new, "pinion", **ERRORS) < 2e-5
 
 
 def test_motions_are_corrected_when_asked_and_kept_in_the_file(command, measured, tmp_path):
     errors = {"work_rotation_offset__2": 2e-3, "sliding_base__1": 0.1}
     csv = measured(bundled(UNIVERSAL), "pinion", **errors)
     rest, moving = tmp_path / "rest.toml", tmp_path / "moving.toml"
-    base = ("compensate", UNIVERSAL, "--member", "pinion", "--measured", csv)
+    # the work of these files stands as it was cut: with its rotation left open, a motion of it could be a rotation too
+    base = ("compensate", UNIVERSAL, "--member", "pinion", "--no-rotation", "--measured", csv)
     assert command(*base, "-o", rest)[0] == 0
     values = json.loads(command(*base, "--higher-order", "-o", moving, "--json")[1])
     assert worst_after(moving, "pinion", **errors) < 0.1 * worst_after(rest, "pinion", **errors)
@@ -100,7 +116,8 @@ def test_motions_are_corrected_when_asked_and_kept_in_the_file(command, measured
     # a second round starts from the corrected file and its own design
     again = measured(moving, "pinion", **errors)
     status, out, err = command(
-        "compensate", moving, "--member", "pinion", "--measured", again, "--higher-order", "-o", tmp_path / "2.toml"
+        "compensate", moving, "--member", "pinion", "--measured", again, "--no-rotation", "--higher-order",
+        "-o", tmp_path / "2.toml",
     )  # fmt: skip
     assert (status, err) == (0, ""), out
     assert worst_after(tmp_path / "2.toml", "pinion", **errors) < 1e-4
