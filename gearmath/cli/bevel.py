@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, about, echo_json, output, table
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, about, echo_json, member_of, output, table
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ _MOST_POINTS = 1_000_000
 )  # fmt: skip
 @output("flank CSV")
 def flank(
-    gear_set: str, member: str, side: str, size: str | None, margin: float | None, root: float | None,
+    gear_set: str, member: str | None, side: str, size: str | None, margin: float | None, root: float | None,
     tip: float | None, toe: float | None, heel: float | None, places: Path | None, target: Path,
 ) -> None:  # fmt: skip
     """Nominal points and outward normals of one flank, as a flank CSV."""
@@ -46,7 +46,9 @@ def flank(
     from gearmath.specs.places import read_places
     from gearmath.specs.toml import find
 
-    spec = load_pair(find(gear_set)).member(member)
+    pair = load_pair(find(gear_set))
+    member = member_of(pair, member)
+    spec = pair.member(member)
     given = {"": margin, "-root": root, "-tip": tip, "-toe": toe, "-heel": heel}
     if places is not None:
         for name, value in given.items():
@@ -71,7 +73,7 @@ def flank(
 @click.option("--space", is_flag=True, help="Write the surface of one tooth space, not the closed solid of the member.")
 @JSON
 @output("STL")
-def tooth(gear_set: str, member: str, columns: int, space: bool, as_json: bool, target: Path) -> None:
+def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; and an STL."""
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
@@ -79,6 +81,7 @@ def tooth(gear_set: str, member: str, columns: int, space: bool, as_json: bool, 
     from gearmath.specs.toml import find
 
     bevel_set = load_pair(find(gear_set))
+    member = member_of(bevel_set, member)
     spec = bevel_set.member(member)
     surface = tooth_space(spec, member, columns)
     triangles = space_triangles(surface) if space else member_triangles(spec, surface)

@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("data", metavar="FILE.toml")
 @JSON
-@click.option("--set", "as_set", is_flag=True, help="Print the blanks as a gear set has them ([pinion.blank], ...).")
+@click.option(
+    "--fragment", "as_set", is_flag=True, help="Print the blanks as a gear set has them ([pinion.blank], ...)."
+)
 @click.option(
     "-o", "--output", "target", type=click.Path(path_type=Path, dir_okay=False), help="File to write instead (text)."
 )
@@ -37,7 +39,7 @@ def blank(data: str, as_json: bool, as_set: bool, target: Path | None) -> None:
     from gearmath.specs.toml import find
 
     if as_json and as_set:
-        raise InputError("--json and --set: only one of them may be given")
+        raise InputError("--json and --fragment: only one of them may be given")
     path = find(data)
     given = load_blank_data(path)
     made = blank_of(given, str(path))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,9 +19,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearmath.lowering import Kernel
+    from gearmath.specs.bevel_set import BevelSet
 
-SET = click.argument("gear_set", metavar="SET.toml")
-MEMBER = click.option("--member", type=click.Choice(["pinion", "gear"]), required=True, help="Member of the pair.")
+#: The gear set of a verb whose first argument is another file.
+SET_OPTION = click.option(
+    "--set", "gear_set", metavar="SET.toml", required=True, help="Gear set: a file, or a bundled one."
+)
+MEMBER = click.option(
+    "--member", type=click.Choice(["pinion", "gear"]),
+    help="Member of the pair; may be left out where the set has one only, or a file says it.",
+)  # fmt: skip
 MACHINE = click.option(
     "--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine: a file, or a bundled one."
 )
@@ -34,6 +42,35 @@ TOUCH_CSV = (
 )
 CALIBRATION_CSV = "Touches, mm and degrees: run, point, target, X, Y, Z, A, B, triggered; docs/files.md."
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def SET(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The gear set of a verb as its argument or, as all verbs have it, by --set; the verb gets ``gear_set``."""
+
+    @click.argument("set_argument", metavar="SET.toml", required=False)
+    @click.option("--set", "set_option", metavar="SET.toml", help="The gear set, in place of the argument.")
+    @functools.wraps(command)
+    def with_set(set_argument: str | None, set_option: str | None, **values: Any) -> Any:
+        given = [one for one in (set_argument, set_option) if one is not None]
+        if len(given) != 1:
+            raise click.UsageError(
+                "the gear set must be named once, as SET.toml or with --set: a file, or a bundled one"
+            )
+        return command(gear_set=given[0], **values)
+
+    return with_set
+
+
+def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> str:
+    """The member that is meant: as ``given`` by --member, as ``stated`` by a file, or the only one of the set.
+
+    Raises InputError where none of these tells it.
+    """
+    members = list(pair.members)
+    name = given or stated or (members[0] if len(members) == 1 else None)
+    if name is None:
+        raise InputError("--member is missing: the set has both, so it must be pinion or gear")
+    return name
 
 
 def plot(what: str) -> Any:

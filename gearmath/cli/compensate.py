@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, about, echo_json, output, table
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, SET_OPTION, about, echo_json, member_of, output, table
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ if TYPE_CHECKING:
 @JSON
 @output("corrected set, TOML")
 def compensate(
-    gear_set: str, member: str, measured: Path, names: str, higher_order: bool, objective: str, from_mate: Path | None,
+    gear_set: str, member: str | None, measured: Path, names: str, higher_order: bool, objective: str, from_mate: Path | None,
     registered: bool, rotated: bool, bounds: Bounds, root_limit: float | None, noise: float | None, thickness: float,
     thickness_by: str, verbose: bool, as_json: bool, target: Path,
 ) -> None:  # fmt: skip
@@ -94,7 +94,9 @@ def compensate(
 
     source = find(gear_set)
     pair = load_pair(source)
-    spec, file = pair.member(member), read_flank_csv(measured)
+    file = read_flank_csv(measured)
+    member = member_of(pair, member, file.member)
+    spec = pair.member(member)
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured):
         evaluation = evaluate_member(file, spec, member, registered, rotated=rotated)
@@ -301,13 +303,13 @@ def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any
 
 @click.command(epilog=FLANK_CSV)
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
-@click.option("--set", "gear_set", required=True, help="The gear set the blank is to be finished to.")
+@SET_OPTION
 @MEMBER
 @click.option("--advance", is_flag=True, help="Find an axial shift too, not only the rotation.")
 @click.option("--least", type=click.FloatRange(0, 2000), default=0.0, show_default=True, metavar="UM",
               help="Stock that must remain everywhere.")  # fmt: skip
 @JSON
-def stock(measured: Path, gear_set: str, member: str, advance: bool, least: float, as_json: bool) -> None:
+def stock(measured: Path, gear_set: str, member: str | None, advance: bool, least: float, as_json: bool) -> None:
     """How a precut blank must stand so that both flanks share its stock: probe it, then turn it by this."""
     from gearmath.bevel.pair import load_pair
     from gearmath.quality.completeness import missing_points
@@ -315,7 +317,9 @@ def stock(measured: Path, gear_set: str, member: str, advance: bool, least: floa
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
-    spec, file = load_pair(find(gear_set)).member(member), read_flank_csv(measured)
+    pair, file = load_pair(find(gear_set)), read_flank_csv(measured)
+    member = member_of(pair, member, file.member)
+    spec = pair.member(member)
     with about(measured):
         found = share_stock(spec, member, file, advance, least / 1000)
     remarks = [f"not whole: {one}" for one in missing_points(file, spec.teeth)]

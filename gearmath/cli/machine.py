@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, about, bar, fast_kernels, output
+from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, about, bar, fast_kernels, member_of, output
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import ComputationError, InputError
 
@@ -46,7 +46,7 @@ nc.add_command(nc_calibrate)
 @click.option("--dry-run", is_flag=True, help="Cut air: everything above the work, without coolant.")
 @output(".MPF; its name becomes the program name")
 def cut(
-    gear_set: str, member: str, machine: str, spaces: str, tolerance_um: float, feed: float, rpm: float,
+    gear_set: str, member: str | None, machine: str, spaces: str, tolerance_um: float, feed: float, rpm: float,
     roughing_stock: float, finishing_stock: float, dry_run: bool, target: Path,
 ) -> None:  # fmt: skip
     """The cutting program of a member."""
@@ -58,6 +58,7 @@ def cut(
     from gearmath.specs.toml import find
 
     bevel_set = load_pair(find(gear_set))
+    member = member_of(bevel_set, member)
     wanted = _spaces(spaces, bevel_set.member(member).teeth)
     job = Job(wanted, tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
     milling_machine = load_milling_machine(find(machine))
@@ -84,7 +85,7 @@ def cut(
               help="Number of the measurement of --measured: each has its own noise.")  # fmt: skip
 @output("flank CSV")
 def mill(
-    gear_set: str, member: str, machine: str, program: Path, errors: str | None, report: Path | None,
+    gear_set: str, member: str | None, machine: str, program: Path, errors: str | None, report: Path | None,
     report_tolerance_um: float, measured: bool, run: int, target: Path,
 ) -> None:  # fmt: skip
     """Virtual milling from the program text: the deviations it leaves, as a measured flank CSV.
@@ -102,15 +103,17 @@ def mill(
     from gearmath.machine.metal import metal
     from gearmath.machine.mill import mill_member
     from gearmath.machine.probing import teeth_around
+    from gearmath.machine.watch import stated_member
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
 
-    spec = load_pair(find(gear_set)).member(member)
+    pair, text = load_pair(find(gear_set)), read_text(program)
+    member = member_of(pair, member, stated_member(text))
+    spec = pair.member(member)
     milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
-    text = read_text(program)
     path = execute(text, str(program))
     if measured and simulated is None:
         raise InputError("--measured needs --errors: the file that says how the member sits and what the probe does")

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, about, bar, echo_json, output
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET_OPTION, about, bar, echo_json, member_of, output
 from gearmath.errors import InputError
 
 _T = TypeVar("_T")
@@ -17,7 +17,7 @@ _T = TypeVar("_T")
 
 @click.command(epilog=FLANK_CSV)
 @click.argument("texts", type=click.Path(path_type=Path), metavar="POINTS.txt ...", nargs=-1, required=True)
-@click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
+@SET_OPTION
 @MEMBER
 @click.option(
     "--flank", "sides", type=click.Choice(["concave", "convex"]), multiple=True, required=True,
@@ -47,7 +47,7 @@ _T = TypeVar("_T")
 @JSON
 @output("flank CSV")
 def points(
-    texts: Sequence[Path], gear_set: str, member: str, sides: Sequence[str], teeth: Sequence[int], unit: str, axis: str,
+    texts: Sequence[Path], gear_set: str, member: str | None, sides: Sequence[str], teeth: Sequence[int], unit: str, axis: str,
     apex_offset: float, tip_radius: float, phase: str, as_json: bool, target: Path,
 ) -> None:  # fmt: skip
     """Points of another measuring machine, as plain text, to a measured flank file.
@@ -66,6 +66,7 @@ def points(
     sides, teeth = _for_each(texts, sides, "--flank"), _for_each(texts, teeth, "--tooth")
     _check_lengths(apex_offset, tip_radius)
     loaded = load_pair(find(gear_set))
+    member = member_of(loaded, member)
     _check_parts(texts, sides, teeth, loaded.member(member).teeth)
     read = [read_point_text(path, unit) for path in texts]
     parts = [

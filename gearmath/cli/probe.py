@@ -9,7 +9,19 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import CALIBRATION_CSV, FLANK_CSV, MACHINE, MEMBER, SET, TOUCH_CSV, about, bar, output
+from gearmath.cli.common import (
+    CALIBRATION_CSV,
+    FLANK_CSV,
+    MACHINE,
+    MEMBER,
+    SET,
+    SET_OPTION,
+    TOUCH_CSV,
+    about,
+    bar,
+    member_of,
+    output,
+)
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -46,7 +58,7 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
 @click.option("--errors", help="Simulated machine whose [fixture] and spindle the probe must clear.")
 @output(_PROGRAM)
 def probe(
-    gear_set: str, member: str, machine: str, calibration: str, topography: str, pitch: bool, registration: bool,
+    gear_set: str, member: str | None, machine: str, calibration: str, topography: str, pitch: bool, registration: bool,
     repeat: int, errors: str | None, target: Path,
 ) -> None:  # fmt: skip
     """Write the probing program of a member; 'gearmath probe' runs it on the machine model.
@@ -64,6 +76,7 @@ def probe(
     from gearmath.specs.toml import find
 
     bevel_set = load_pair(find(gear_set))
+    member = member_of(bevel_set, member)
     count = bevel_set.member(member).teeth
     teeth, around = _teeth(topography, count), teeth_around(count) if registration else ()
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
@@ -127,7 +140,7 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
 
 @click.command(epilog=f"{TOUCH_CSV} {FLANK_CSV}")
 @_RAW
-@click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
+@SET_OPTION
 @MACHINE
 @CALIBRATION
 @_RUN

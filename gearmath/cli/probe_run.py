@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import MACHINE, about, bar, output
+from gearmath.cli.common import MACHINE, MEMBER, about, bar, member_of, output
 from gearmath.cli.probe import CALIBRATION, clearances
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.machine.control import Probe
     from gearmath.machine.probe_machine import ProbeMachine
+    from gearmath.specs.bevel_set import Member
     from gearmath.specs.calibration import Calibration
     from gearmath.specs.milling_machine import MillingMachine
     from gearmath.specs.simulated_machine import SimulatedMachine
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF")
-@click.option("--set", "gear_set", help="The gear set of the member that is probed.")
-@click.option("--member", type=click.Choice(["pinion", "gear"]), help="The member that is probed.")
+@click.option("--set", "gear_set", metavar="SET.toml", help="Gear set of the member that is probed.")
+@MEMBER
 @MACHINE
 @CALIBRATION
 @click.option(
@@ -51,9 +52,11 @@ def probe(
     A program that collides with a nominal member, as 'gearmath nc probe' watches for it, is refused. 'gearmath touches'
     and 'gearmath calibrate' read what is written here.
     """
+    from gearmath.bevel.pair import load_pair
     from gearmath.files import read_text, write_text
     from gearmath.machine.artefacts import Artefacts
     from gearmath.machine.probe_run import run_touches, touch_count, touches_artefacts
+    from gearmath.machine.watch import stated_member
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
@@ -69,10 +72,11 @@ def probe(
             raise InputError(f"--measured {measured}: {program} touches ring and spheres, not a member")
         count, there = None, Artefacts(milling_machine, known)
     else:
-        if gear_set is None or member is None:
-            missing = "--set" if gear_set is None else "--member"
-            raise InputError(f"{missing} is missing: {program} probes a member")
-        there = at_member = _member_machine(gear_set, member, measured, milling_machine, known, shop)
+        if gear_set is None:
+            raise InputError(f"--set is missing: {program} probes a member")
+        pair = load_pair(find(gear_set))
+        name = member_of(pair, member, stated_member(text))
+        there = at_member = _member_machine(pair.member(name), name, measured, milling_machine, known, shop)
         count = touch_count(text, str(program))
         _check_clear(text, program, at_member, milling_machine, shop, 2 * count + text.count("\n"))
     blocks = 2 * count if count is not None else text.count("MEAS=1")
@@ -99,19 +103,16 @@ def _check_clear(
 
 
 def _member_machine(
-    gear_set: str, member: str, measured: Path | None, machine: MillingMachine, calibration: Calibration,
+    spec: Member, member: str, measured: Path | None, machine: MillingMachine, calibration: Calibration,
     shop: SimulatedMachine | None,
 ) -> ProbeMachine:  # fmt: skip
     """The machine with the member on it, nominal or as ``measured`` says, clamped as the shop does."""
-    from gearmath.bevel.pair import load_pair
     from gearmath.machine.milled_surface import MilledSurface
     from gearmath.machine.probe_machine import ProbeMachine
     from gearmath.quality.correction import check_belongs
     from gearmath.quality.nominal import check_points, nominal_rows
     from gearmath.specs.flank_csv import read_flank_csv
-    from gearmath.specs.toml import find
 
-    spec = load_pair(find(gear_set)).member(member)
     seat = shop.measuring_clamp(member) if shop else None
     if measured is None:
         return ProbeMachine(spec, member, machine, calibration, seat=seat)

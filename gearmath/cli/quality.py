@@ -6,13 +6,13 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, about, bar, echo_json, plot, save_plot
+from gearmath.cli.common import FLANK_CSV, JSON, SET_OPTION, about, bar, echo_json, plot, save_plot
 from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
 
 
 @click.command(epilog=FLANK_CSV)
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
-@click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
+@SET_OPTION
 @click.option(
     "--register/--no-register", "registered", default=True, show_default=True,
     help="Take out how the work sat (eccentricity, tilt), where the points tell it.",

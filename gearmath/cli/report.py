@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, MACHINE, about, bar, output
+from gearmath.cli.common import FLANK_CSV, MACHINE, SET_OPTION, about, bar, output
 from gearmath.cli.probe import CALIBRATION
 from gearmath.cli.uncertainty import MODEL, SIGMA, covariance_of, uncertain_correction
 from gearmath.errors import InputError
@@ -24,7 +24,7 @@ _DRAWS, _SEED = 20_000, 0
 
 @click.command(epilog=FLANK_CSV)
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
-@click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
+@SET_OPTION
 @click.option(
     "--mate", type=click.Path(path_type=Path), metavar="M2.csv", help="The mate as measured; both stand on one sheet."
 )

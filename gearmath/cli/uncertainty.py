@@ -10,7 +10,20 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MACHINE, MEMBER, about, bar, echo_json, plot, save_plot, table
+from gearmath.cli.common import (
+    FLANK_CSV,
+    JSON,
+    MACHINE,
+    MEMBER,
+    SET_OPTION,
+    about,
+    bar,
+    echo_json,
+    member_of,
+    plot,
+    save_plot,
+    table,
+)
 from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import ComputationError, InputError
 
@@ -38,7 +51,7 @@ _FEW_DRAWS = 2000
 
 @click.command(epilog=FLANK_CSV)
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
-@click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
+@SET_OPTION
 @MEMBER
 @click.option("--register/--no-register", "registered", default=True, show_default=True, help="As in 'evaluate'.")
 @click.option("--rotation/--no-rotation", "rotated", default=True, show_default=True, help="As in 'evaluate'.")
@@ -54,7 +67,7 @@ _FEW_DRAWS = 2000
 @plot("every figure in µm with its interval")
 @JSON
 def uncertainty(
-    measured: Path, gear_set: str, member: str, registered: bool, rotated: bool, sigma_um: float | None,
+    measured: Path, gear_set: str, member: str | None, registered: bool, rotated: bool, sigma_um: float | None,
     model: str | None, machine: str, calibration: str, draws: int, seed: int, workers: int | None,
     cluster: str | None, resume: Path | None, picture: Path | None, as_json: bool,
 ) -> None:  # fmt: skip
@@ -69,7 +82,9 @@ def uncertainty(
     from gearmath.specs.toml import find
 
     file = read_flank_csv(measured)
-    spec = load_pair(find(gear_set)).member(member)
+    pair = load_pair(find(gear_set))
+    member = member_of(pair, member, file.member)
+    spec = pair.member(member)
     with about(measured):
         evaluation = evaluate_member(file, spec, member, registered, rotated=rotated)
         figures = figures_of(file, spec, evaluation)

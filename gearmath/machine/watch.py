@@ -36,6 +36,7 @@ _UP, _ACROSS = (1.0,), (0.0, 1.0)
 #: X and Y so far off the path are wrong wherever the flank is. [mm]
 _FAR_ASIDE = 0.05
 _TOLERANCE = re.compile(r"^; flank tolerance: ([0-9.]+) um", re.MULTILINE)
+_MEMBER = re.compile(r"^; member: (pinion|gear)\b", re.MULTILINE)
 _FINISHED = re.compile(r"^; finish: stock 0 mm", re.MULTILINE)
 
 
@@ -194,3 +195,9 @@ def stated_tolerance(text: str) -> float | None:
     """The tolerance [mm] that a cutting program promises in its head; None if it leaves stock, or says nothing."""
     found = _TOLERANCE.search(text)
     return float(found[1]) / 1000 if found and _FINISHED.search(text) else None
+
+
+def stated_member(text: str) -> str | None:
+    """The member that a program says in its head it is for; None if it says nothing."""
+    found = _MEMBER.search(text)
+    return found[1] if found else None

@@ -81,10 +81,10 @@ def test_json_says_the_same_by_name_in_mm_and_degrees(command):
 
 def test_fragment_loads_as_the_blanks_of_a_set(command, tmp_path):
     target = tmp_path / "blanks.toml"
-    status, out, _ = command("blank", SAMPLE, "--set", "-o", target)
+    status, out, _ = command("blank", SAMPLE, "--fragment", "-o", target)
     assert (status, out) == (0, f"{target}: written\n")
     text = target.read_text("utf-8")
-    assert command("blank", SAMPLE, "--set")[1] == text
+    assert command("blank", SAMPLE, "--fragment")[1] == text
     sections = {name: text[text.index(f"[{name}.blank]") :].split("\n\n")[0] for name in ("pinion", "gear")}
     for name, angles in (("pinion", (19.747, 26.240, 17.613)), ("gear", (70.253, 72.387, 63.760))):
         made = parse(sections[name].split("\n", 1)[1], Blank, "blank")
@@ -139,7 +139,7 @@ def test_hobbed_pair_has_its_cutter_and_no_cone_distance_of_milling(command, tmp
     [
         (("blank", "absent.toml"), r"absent\.toml: cannot be read: there is no such file; bundled are"),
         (("blank", "nasa_tp3096_12x36.toml"), r"nasa_tp3096_12x36\.toml: .*(the key is missing|no such key)"),
-        (("blank", SAMPLE, "--json", "--set"), "--json and --set: only one of them"),
+        (("blank", SAMPLE, "--json", "--fragment"), "--json and --fragment: only one of them"),
         (("blank",), "Missing argument 'FILE.toml'"),
     ],
 )
