@@ -29,6 +29,8 @@ _NEAR_STEPS = 0.8
 _STEPS, _STILL = 8, 1e-13
 #: Flanks further apart than this part of a pitch are of different teeth.
 _SAME_TOOTH = 0.25
+#: A file whose points cover less than this part of face width or depth may have been cut off.
+_LEAST_COVERED = 0.6
 #: A surface of third degree is taken through so many of the nearest points, where there are enough.
 _NEAREST, _CUBIC, _QUADRATIC, _PLANE = 30, 10, 6, 3
 #: A step of the depth counts like this part of the face width.
@@ -77,7 +79,8 @@ def foreign_file(
         file, found = _file(one, lattice, member, name)
         files.append(file)
         told = check_normals(one, frame, member, turn)
-        remarks += [f"{one.part.name}: {each}" for each in (*_left_out(one), *found, told) if each]
+        said = (*_left_out(one), *_covered(one, member), *found, told)
+        remarks += [f"{one.part.name}: {each}" for each in said if each]
         progress(1)
     remarks = [each for each in remarks if each]
     header = _header(member, name, files, frame)
@@ -195,6 +198,16 @@ def _off(one: Laid, member: Member) -> np.ndarray:
 def _left_out(one: Laid) -> list[str]:
     lost = len(one.part.point) - len(one.kept)
     return [f"{lost} points lie beyond the flank or far off it, left out"] if lost else []
+
+
+def _covered(one: Laid, member: Member) -> list[str]:
+    """What to say of points that leave out much of the flank: the file may not be whole."""
+    found = []
+    for part, what in zip(_fractions(one, member), ("face width", "working depth"), strict=True):
+        if np.ptp(part) < _LEAST_COVERED:
+            low, high = 100 * part.min(), 100 * part.max()
+            found.append(f"its points cover the {what} from {low:.0f} to {high:.0f} % only: is the file whole?")
+    return found
 
 
 def _file(one: Laid, lattice: Lattice | None, member: Member, name: str) -> tuple[FlankFile, list[str]]:

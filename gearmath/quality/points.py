@@ -246,7 +246,7 @@ def _likeliest_cause(part: Part, frame: Frame, gear_set: BevelSet, name: str) ->
         [("", 1.0), ("--unit inch", _MM_PER_INCH), ("--unit mm", 1 / _MM_PER_INCH)],
         [("", frame.axis), *((f"--axis {axis}", axis) for axis in AXES if axis != frame.axis)],
         [("", name), (f"--member {other_name}", other_name)],
-        [("", 1), ("a file of this hand: the points are those of the mirror image", mirror)],
+        [("", 1), ("the mirror image: the file is of the other hand", mirror)],
     ]
 
     def fit(flank: str, scale: float, axis: str, which: str, hand: np.ndarray) -> float:
@@ -261,6 +261,12 @@ def _likeliest_cause(part: Part, frame: Frame, gear_set: BevelSet, name: str) ->
             break
         if fit(*(value for _, value in way)) >= LEAST_FIT:  # type: ignore[arg-type]
             return f"most would fit with {' and '.join(words)}"
+    halves = np.array_split(frame.placed(part.point), 2)
+    for flanks in (FLANKS, FLANKS[::-1]):
+        shares = [_turn(gear_set.member(name), flank, half, frame.tip_radius)[1].mean()
+                  for flank, half in zip(flanks, halves, strict=True)]  # fmt: skip
+        if min(shares) >= LEAST_FIT:
+            return "it holds the points of both flanks: give each flank a file of its own"
     offset = _likely_offset(part, frame, gear_set.member(name))
     if offset is not None:
         return f"most would fit with --apex-offset {_plain(offset)}"

@@ -38,6 +38,10 @@ _ACTUAL = r"(?:act|actual|ist|meas|measured|mess|m)"
 _COORDINATE = re.compile(rf"([xyz])[ _.-]*{_ACTUAL}?|{_ACTUAL}[ _.-]+([xyz])")
 _MEASURED = re.compile(rf"([xyz])[ _.-]*{_ACTUAL}|{_ACTUAL}[ _.-]+([xyz])")
 _NORMAL = re.compile(r"(?:n|norm|normal|v|vec)[ _.-]*([xyz])|([ijk])|([uvw])")
+#: A line of text that says how many points follow.
+_ANNOUNCED = re.compile(
+    r"\W*(?:.*\W)?(?:points|punkte|pts|point count)\W*[=:]\s*(\d+)\W*|\W*(\d+)\s+(?:points|punkte)\W*", re.IGNORECASE
+)
 #: Rounding of normals, and how near to each other two sets of points of one file would be. [file's unit]
 _UNIT_LENGTH, _NEAR = 0.01, 5.0
 
@@ -63,7 +67,7 @@ def read_point_text(path: Path, unit: str = "mm") -> PointText:
     values = np.array([_finite(path, number, cells[number], columns) for number, columns in rows.items()])
     texts = sum(cell is None for cell in cells[next(iter(rows))])
     point, normal, left = _columns(path, values, names)
-    remarks += [f"{left + texts} more columns are not used"] if left + texts else []
+    remarks += [f"columns that are not used: {left + texts}"] if left + texts else []
     same = _first_of_same(point)
     if not same.all():
         remarks.append(f"{int((~same).sum())} points are there twice and count once")
@@ -157,6 +161,10 @@ def _rows(
                 f"{path}, line {number}: has {len(one)} numbers, the rows above have {len(columns)}: "
                 f"{lines[number - 1][:40]!r}"
             )
+    for line in lines[: first - 1]:
+        announced = _ANNOUNCED.fullmatch(line)
+        if announced and len(rows) < int(announced[1] or announced[2]):
+            raise InputError(f"{path}: holds {len(rows)} points, and says {line.strip()[:60]!r}: is it whole?")
     if len(rows) > MOST_POINTS:
         raise InputError(f"{path}: holds {len(rows)} points, the limit is {MOST_POINTS}")
     return rows, _names(lines[: first - 1], split, columns, len(cells[first])), remarks

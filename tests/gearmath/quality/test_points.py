@@ -264,13 +264,20 @@ def test_points_of_something_else_are_refused_with_what_would_fit(gear_set):
         "most would fit with --axis -z": (replace(part, point=part.point * [1, -1, -1]), Frame(), "pinion"),
         "most would fit with --axis +x": (replace(part, point=part.point[:, [2, 0, 1]]), Frame(), "pinion"),
         "most would fit with --member pinion": (part, Frame(), "gear"),
-        "the points are those of the mirror image": (replace(part, point=part.point * [1, -1, 1]), Frame(), "pinion"),
+        "most would fit with the mirror image: the file is of the other hand": (
+            replace(part, point=part.point * [1, -1, 1]),
+            Frame(),
+            "pinion",
+        ),
         "most would fit with --apex-offset 0.0": (exact, Frame("+z", -14.0), "pinion"),
         "with --apex-offset 0.0 more than": (exact, Frame("+z", 5.0), "pinion"),
         "is the file of this set, member and flank": (replace(part, point=part.point * 0.5), Frame(), "pinion"),
     }
     for words, case in cases.items():
         assert words in refusal(gear_set, *case), words
+    other, _ = on_flank(gear_set.pinion, "pinion", "convex", smooth())
+    both = replace(part, point=np.concatenate([other, point]))
+    assert "it holds the points of both flanks" in refusal(gear_set, both)
     turned_normals = replace(part, normal=around(normal, 1.0)[:, [1, 2, 0]])
     assert "normals lie within 15 degrees" in refusal(gear_set, turned_normals)
 
@@ -280,6 +287,15 @@ def test_a_flank_of_another_tooth_is_named_with_its_tooth(gear_set):
     parts = [Part(f"{k}.txt", "concave", k, around(point, -2 * np.pi * k / 12)) for k in (0, 1)]
     with pytest.raises(InputError, match=r"1\.txt: .* it would be of tooth 11, counted as the set counts"):
         foreign_file(parts, Frame(), gear_set, "pinion")
+
+
+def test_half_a_file_is_told_from_a_whole_one(gear_set):
+    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    found = foreign_file([Part("p.txt", "concave", 0, point[:22])], Frame(), gear_set, "pinion")
+    (covered,) = (each for each in found.remarks if "% only: is the file whole?" in each)
+    assert "cover the working depth from 1" in covered
+    whole = foreign_file([Part("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion")
+    assert not any("is the file whole?" in each for each in whole.remarks)
 
 
 def test_too_few_points_for_a_grid_are_refused(gear_set):

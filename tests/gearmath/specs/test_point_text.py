@@ -110,6 +110,11 @@ def test_inches_become_millimetres(tmp_path):
         (LAYOUTS["blanks"] + "15.0 ***** 80.0\n", r"line 4: has 2 numbers, the rows above have 3"),
         (LAYOUTS["blanks"] + "15.0 nan 80.0\n", r"line 4: nan: must be a number, at most 100000 in size$"),
         (LAYOUTS["blanks"] + "15.0 1e30 80.0\n", r"line 4: 1e\+30: must be a number"),
+        (
+            "Number of points: 45\n" + LAYOUTS["blanks"],
+            r"holds 3 points, and says 'Number of points: 45': is it whole\?$",
+        ),
+        ("# 9 points\n" + LAYOUTS["blanks"], r"holds 3 points, and says '# 9 points'"),
         ("x;y;z;nx;ny;nz\n1.5;2.5;3.5;.6;.6;0\n", r"a normal has length 0\.8485: must be 1$"),
         ("1.5 2.5 3.5 1.51 2.52 3.49\n2.5 3.5 4.5 2.51 3.5 4.5\n", r"columns 4 to 6 look like points too"),
     ],
