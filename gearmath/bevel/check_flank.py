@@ -13,7 +13,7 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import InputError
 from gearmath.specs.bevel_set import SIDES, Member
 
 #: Pressure angles of a flank at the mean point, and the steepest spiral angle. [degree]
@@ -73,7 +73,7 @@ def check_grid(member: Member, name: str, flank: str) -> None:
     """Refuse a flank that is not there on the whole of the standard grid. Raises Misfit."""
     try:
         solve_flank(member, name, flank, blank_grid(member))
-    except (ComputationError, InputError) as error:
+    except InputError as error:
         raise Misfit.of(name, flank, str(error).removeprefix(f"{name} {flank} flank, ")) from error
 
 

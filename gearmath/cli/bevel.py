@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import JSON, MEMBER, SET, echo_json, output, table
+from gearmath.cli.common import JSON, MEMBER, SET, about, echo_json, output, table
 from gearmath.errors import InputError
 
 _MOST_POINTS = 1_000_000
@@ -30,12 +30,15 @@ def flank(gear_set: str, member: str, side: str, size: str, margin: float, targe
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.toml import find
 
-    spec = load_pair(find(gear_set)).member(member)
+    source = find(gear_set)
+    spec = load_pair(source).member(member)
     rows, columns = _grid(size)
     if not 0 <= margin < 0.5:
         raise InputError(f"--margin {margin:g}: must be at least 0 and less than 0.5, or the grid leaves the blank")
     grid = blank_grid(spec, rows, columns, margin)
-    write_flank_csv(target, nominal_flank(spec, member, side, grid, margin))
+    with about(source):
+        points = nominal_flank(spec, member, side, grid, margin)
+    write_flank_csv(target, points)
     click.echo(f"{target}: {rows * columns} points of the {member}'s {side} flank")
 
 
@@ -53,9 +56,10 @@ def tooth(gear_set: str, member: str, columns: int, space: bool, as_json: bool, 
     from gearmath.bevel.tooth import space_figures, tooth_space
     from gearmath.specs.toml import find
 
-    bevel_set = load_pair(find(gear_set))
-    spec = bevel_set.member(member)
-    surface = tooth_space(spec, member, columns)
+    source = find(gear_set)
+    spec = load_pair(source).member(member)
+    with about(source):
+        surface = tooth_space(spec, member, columns)
     triangles = space_triangles(surface) if space else member_triangles(spec, surface)
     write_stl(target, triangles, f"{member} {'space' if space else 'member'}")
     figures = space_figures(spec, surface)
