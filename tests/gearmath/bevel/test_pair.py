@@ -131,6 +131,10 @@ REFUSED = {
     "point width that is not that of the radii": (
         NASA, {"gear.convex.blade_point_width": 2.5}, r"gear\.convex\.blade_point_width = 2\.5: .* make it 1\.651 mm",
     ),
+    "cutter wider than the root": (
+        NASA, {"pinion.convex.blade_point_width": 2.0},
+        r"pinion\.convex\.blade_point_width = 2: the root of the space is 1\.6\d mm wide at the toe",
+    ),
     "edges wider than the tip": (
         NASA, {"gear.convex.blade_edge_radius": 1.4, "gear.concave.blade_edge_radius": 1.4},
         r"gear\.concave\.blade_edge_radius = 1\.4, .* take 1\.89 mm of the tip, the point width is 1\.651 mm",
