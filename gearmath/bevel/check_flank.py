@@ -13,7 +13,7 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import InputError
 from gearmath.specs.bevel_set import SIDES, Member
 
 #: Pressure angles of a flank at the mean point, and the steepest spiral angle. [degree]
@@ -33,13 +33,15 @@ _BLADE_SLACK = 1e-7
 @dataclass(frozen=True)
 class CutFlank:
     """A flank of space 0 (mm, rad): signed pressure and spiral angle at the mean point (8.4), the direction about z_w
-    of the mean point and of the tips (3,), and ``across``, +1 where the space lies towards larger angles."""
+    of the mean point and of the tips (3,), and ``across``, +1 where the space lies towards larger angles. ``root``
+    (3,3) are the points that the tip of the blade leaves, toe to heel."""
 
     pressure_angle: float
     spiral_angle: float
     azimuth: float
     across: int
     tip_azimuth: np.ndarray
+    root: np.ndarray
 
 
 def cut_flank(member: Member, name: str, flank: str, how: Generation) -> CutFlank:
@@ -60,20 +62,20 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation) -> CutFlan
             f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must "
             f"be at most {_OFF_CENTER:g}",
         )  # fmt: skip
-    _check_root(member, name, flank, how, mean.contact)
+    root = _root(member, name, flank, how, mean.contact)
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 0.5, 1.0]), np.ones(3))
     tips = solve_section(how, section, axial, radial)
     _check_tips(name, flank, section, tips.contact[:, 0], tips.converged, spec.blade_profile_height)
     tip_azimuth = np.arctan2(tips.point[:, 1], tips.point[:, 0])
     _check_hand(member, name, flank, spiral, tip_azimuth)
-    return CutFlank(pressure, spiral, azimuth, 1 if across > 0 else -1, tip_azimuth)
+    return CutFlank(pressure, spiral, azimuth, 1 if across > 0 else -1, tip_azimuth, root)
 
 
 def check_grid(member: Member, name: str, flank: str) -> None:
     """Refuse a flank that is not there on the whole of the standard grid. Raises Misfit."""
     try:
         solve_flank(member, name, flank, blank_grid(member))
-    except (ComputationError, InputError) as error:
+    except InputError as error:
         raise Misfit.of(name, flank, str(error).removeprefix(f"{name} {flank} flank, ")) from error
 
 
@@ -117,8 +119,9 @@ def _check_hand(member: Member, name: str, flank: str, spiral: float, tip_azimut
     )  # fmt: skip
 
 
-def _check_root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarray) -> None:
-    """The tip of the blade leaves the root of the blank, to a part of the clearance."""
+def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarray) -> np.ndarray:
+    """Points (3,3) that the tip of the blade leaves: they have to lie on the root of the blank, to a part of the
+    clearance."""
     blank = member.blank
     across, delta = np.array([0.0, 0.5, 1.0]), math.radians(blank.pitch_angle)
     place, out = (math.cos(delta), math.sin(delta)), (-math.sin(delta), math.cos(delta))
@@ -144,6 +147,7 @@ def _check_root(member: Member, name: str, flank: str, how: Generation, mean: np
             f"the blank at the {_PLACES[k]}, which must be at most {share[k] * blank.clearance:.3g} mm, "
             f"{share[k]:g} of the clearance",
         )  # fmt: skip
+    return found.point
 
 
 def _check_tips(name: str, flank: str, section: Section, u: np.ndarray, converged: np.ndarray, height: float) -> None:

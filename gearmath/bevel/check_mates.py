@@ -25,6 +25,8 @@ _MATING = {"spiral_angle": (2.0, 0.5), "pressure_angle": (5.0, 1.5)}
 #: Transverse backlash at the mean point over the module.
 _BACKLASH = (-0.01, 0.2)
 
+_PLACES = ("toe", "mean point", "heel")
+
 Cut = dict[str, CutFlank]
 
 
@@ -62,6 +64,7 @@ def check_space(member: Member, name: str, cut: Cut) -> float:
             f"lie between {_DEPTH[0] * module:.4g} and {_DEPTH[1] * module:.4g} mm: mean normal module {module:.4g}"
         )
     _check_top_land(member, name, concave, convex, pitch)
+    _check_root_width(member, name, concave, convex, cosine)
     return radius * turn
 
 
@@ -84,15 +87,34 @@ def _hint(member: Member, turn: float, pitch: float, least: float) -> str:
 
 def _check_top_land(member: Member, name: str, concave: CutFlank, convex: CutFlank, pitch: float) -> None:
     turns = concave.across * (convex.tip_azimuth - concave.tip_azimuth)
-    place = ("toe", "mean point", "heel")
     land = pitch - (np.mod(turns + math.pi, 2 * math.pi) - math.pi)
     if not (land > 0).all():
         k = int(np.argmin(land))
         raise InputError(
             f"{name}: {_phase(member)}, blank.mean_addendum = {member.blank.mean_addendum:g}, blank.face_angle = "
-            f"{member.blank.face_angle:g}: the teeth are pointed at the {place[k]}: a top land of "
+            f"{member.blank.face_angle:g}: the teeth are pointed at the {_PLACES[k]}: a top land of "
             f"{math.degrees(land[k]):.3g} degrees about the axis is left, which must be above 0"
         )
+
+
+def _check_root_width(member: Member, name: str, concave: CutFlank, convex: CutFlank, cosine: float) -> None:
+    """The space is open down to its root, and wide enough there for a cutter of a stated point width."""
+    azimuths = [np.arctan2(flank.root[:, 1], flank.root[:, 0]) for flank in (concave, convex)]
+    turn = np.mod(concave.across * (azimuths[1] - azimuths[0]) + math.pi, 2 * math.pi) - math.pi
+    width = np.hypot(concave.root[:, 0], concave.root[:, 1]) * turn * cosine
+    k = int(np.argmin(width))
+    if not width[k] > 0:
+        raise InputError(
+            f"{name}: {_phase(member)}: the flanks cross above the root at the {_PLACES[k]}: a root of {width[k]:.3g} "
+            "mm is left between them, which must be above 0"
+        )
+    for flank in FLANKS:
+        stated = member.flank(flank).blade_point_width
+        if member.cutting == "fixed_setting" and stated is not None and stated > width[k]:
+            raise InputError(
+                f"{name}.{flank}.blade_point_width = {stated:g}: the root of the space is {width[k]:.3g} mm wide at "
+                f"the {_PLACES[k]}, the cutter must be no wider"
+            )
 
 
 def _seen(cut: dict[str, Cut], name: str, flank: str, key: str) -> float:

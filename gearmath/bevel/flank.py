@@ -21,7 +21,7 @@ from gearmath.bevel.generation import Generation, Section, SurfacePoints, solve_
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.newton import TOLERANCE, FlankPoints, contact_guess, newton_step, residual_size
-from gearmath.errors import ComputationError
+from gearmath.errors import InputError
 from gearmath.lowering import Kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 from gearmath.specs.margins import Margins
@@ -138,7 +138,7 @@ def nominal_points(member: Member, flank: str, grid: Grid) -> tuple[FlankPoints,
 def solve_flank(member: Member, name: str, flank: str, grid: Grid) -> FlankPoints:
     """The points of a grid on one flank, row by row.
 
-    Raises ComputationError naming member, flank, row and column of the first point that does not converge, that is
+    Raises InputError naming member, flank, row and column of the first point that does not converge, that is
     undercut, or that lies off the main section of the blade.
     """
     if flank not in FLANKS:
@@ -161,7 +161,7 @@ def solve_flank(member: Member, name: str, flank: str, grid: Grid) -> FlankPoint
             row, column = divmod(k, grid.shape[1])
             if not points.converged[k] and _folds_above(how, section, points, grid, k, member.blank.pitch_angle):
                 what = _UNDERCUT
-            raise ComputationError(
+            raise InputError(
                 f"{name} {flank} flank, row {row}, column {column}: {what} "
                 f"(u = {u[k]:.4f} {unit}, the main section runs from {section.lower:g} to {section.upper:g} {unit})"
             )

@@ -15,7 +15,7 @@ import numpy as np
 from gearmath.bevel.generation import Section, SurfacePoints, solve_curve, solve_section
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
-from gearmath.errors import ComputationError
+from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
 #: A blade without edge radius is taken to have this one: no edge that cuts is sharper. [mm]
@@ -81,7 +81,7 @@ class ToothSpace:
 def tooth_space(member: Member, name: str, columns: int = DEFAULT_COLUMNS) -> ToothSpace:
     """Space 0 of a member, whatever the method that cuts it.
 
-    Raises ComputationError naming member, flank, section, row and column of the first point without a solution.
+    Raises InputError naming member, flank, section, row and column of the first point without a solution.
     """
     surfaces = [flank_surface(member, name, flank, columns) for flank in FLANKS]
     return ToothSpace(surfaces[0], surfaces[1], 2 * math.pi / member.teeth)
@@ -159,7 +159,7 @@ def tooth_thickness(member: Member, axial: float, radius: float) -> float:
         section = blade_sections(member.flank(flank), SIDES[flank])["main"]
         points = solve_section(generation_of(member, flank), section, np.array([axial]), np.array([radius]))
         if not points.converged.all():
-            raise ComputationError(f"{flank} flank: no point at z = {axial:.3f}, radius {radius:.3f} mm")
+            raise InputError(f"{flank} flank: no point at z = {axial:.3f}, radius {radius:.3f} mm")
         angles.append(float(_angle(points.point)[0]))
     space = abs(float(_wrap(np.array(angles[1] - angles[0]))))
     return radius * (2 * math.pi / member.teeth - space)
@@ -187,7 +187,7 @@ def _check(points: SurfacePoints, name: str, flank: str, part: str, row: int, co
     lost = ~points.converged
     if lost.any():
         column = int(np.argmax(lost))
-        raise ComputationError(
+        raise InputError(
             f"{name} {flank} flank, {part} section, row {row}, column {column} of {columns}: the equation of meshing "
             "has no solution there"
         )

@@ -46,7 +46,8 @@ def flank(
     from gearmath.specs.places import read_places
     from gearmath.specs.toml import find
 
-    pair = load_pair(find(gear_set))
+    source = find(gear_set)
+    pair = load_pair(source)
     member = member_of(pair, member)
     spec = pair.member(member)
     given = {"": margin, "-root": root, "-tip": tip, "-toe": toe, "-heel": heel}
@@ -57,11 +58,13 @@ def flank(
         axial, radial = read_places(places)
         with about(places):
             grid = listed_grid(spec, axial, radial, _grid(size) if size else (len(axial), 1))
-        file = nominal_flank(spec, member, side, grid, None)
+        with about(source):
+            file = nominal_flank(spec, member, side, grid, None)
     else:
         margins = _margins(given)
         grid = blank_grid(spec, *_grid(size or "5x9"), margins)
-        file = nominal_flank(spec, member, side, grid, margins)
+        with about(source):
+            file = nominal_flank(spec, member, side, grid, margins)
     write_flank_csv(target, file)
     click.echo(f"{target}: {len(file)} points of the {member}'s {side} flank")
 
@@ -80,10 +83,12 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     from gearmath.bevel.tooth import space_figures, tooth_space
     from gearmath.specs.toml import find
 
-    bevel_set = load_pair(find(gear_set))
+    source = find(gear_set)
+    bevel_set = load_pair(source)
     member = member_of(bevel_set, member)
     spec = bevel_set.member(member)
-    surface = tooth_space(spec, member, columns)
+    with about(source):
+        surface = tooth_space(spec, member, columns)
     triangles = space_triangles(surface) if space else member_triangles(spec, surface)
     write_stl(target, triangles, f"{member} {'space' if space else 'member'}")
     figures = space_figures(spec, surface)

@@ -47,8 +47,8 @@ _T = TypeVar("_T")
 @JSON
 @output("flank CSV")
 def points(
-    texts: Sequence[Path], gear_set: str, member: str | None, sides: Sequence[str], teeth: Sequence[int], unit: str, axis: str,
-    apex_offset: float, tip_radius: float, phase: str, as_json: bool, target: Path,
+    texts: Sequence[Path], gear_set: str, member: str | None, sides: Sequence[str], teeth: Sequence[int], unit: str,
+    axis: str, apex_offset: float, tip_radius: float, phase: str, as_json: bool, target: Path,
 ) -> None:  # fmt: skip
     """Points of another measuring machine, as plain text, to a measured flank file.
 

@@ -9,7 +9,7 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank, solve_places
-from gearmath.errors import ComputationError
+from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES
 
 each_flank = pytest.mark.parametrize(("member", "flank"), [(m, f) for m in MEMBERS for f in FLANKS])
@@ -148,7 +148,7 @@ def test_point_beyond_a_short_blade_is_refused_by_member_flank_row_and_column(ge
     whole = solve_flank(gear_set.gear, "gear", "concave", blank_grid(gear_set.gear))
     first = int(np.argmax(whole.contact[:, 0] > 5.0))
     place = f"gear concave flank, row {first // 9}, column {first % 9}: "
-    with pytest.raises(ComputationError, match=place + r".*above the blade.* 5\.\d{4} mm"):
+    with pytest.raises(InputError, match=place + r".*above the blade.* 5\.\d{4} mm"):
         solve_flank(short, "gear", "concave", blank_grid(short))
 
 
@@ -169,13 +169,13 @@ def test_place_off_the_flank_is_refused_by_member_flank_row_and_column(
     axial, radial = grid.axial.copy(), grid.radial.copy()
     axial[row, column] -= deeper * np.sin(delta)
     radial[row, column] += deeper * np.cos(delta)
-    with pytest.raises(ComputationError, match=f"^{member} {flank} flank, row {row}, column {column}: .*({words})"):
+    with pytest.raises(InputError, match=f"^{member} {flank} flank, row {row}, column {column}: .*({words})"):
         solve_flank(spec, member, flank, Grid(axial, radial))
 
 
 def test_place_beneath_the_root_lies_below_the_blade_tip(gear_set):
     grid = blank_grid(gear_set.gear)
-    with pytest.raises(ComputationError, match=r"row 0, column 0: .* below the blade tip"):
+    with pytest.raises(InputError, match=r"row 0, column 0: .* below the blade tip"):
         solve_flank(gear_set.gear, "gear", "convex", Grid(grid.axial + 2.5, grid.radial - 1.0))
 
 
@@ -183,7 +183,7 @@ def test_place_that_is_no_number_is_refused(gear_set):
     grid = blank_grid(gear_set.pinion)
     axial = grid.axial.copy()
     axial[1, 1] = np.nan
-    with pytest.raises(ComputationError, match=r"pinion convex flank, row 1, column 1: .*no solution"):
+    with pytest.raises(InputError, match=r"pinion convex flank, row 1, column 1: .*no solution"):
         solve_flank(gear_set.pinion, "pinion", "convex", Grid(axial, grid.radial))
 
 
@@ -198,7 +198,7 @@ def test_no_point_is_returned_that_is_not_in_mesh_at_its_place_and_on_the_blade(
     axial, radial = grid.axial[2:3, 4:5] + axial_shift, grid.radial[2:3, 4:5] + radial_shift
     try:
         points = solve_flank(spec, member, flank, Grid(axial, radial))
-    except ComputationError as error:
+    except InputError as error:
         assert f"{member} {flank} flank, row 0, column 0: " in str(error)  # noqa: PT017
         return
     x, side, step = spec.flank(flank).vector, SIDES[flank], 1e-4

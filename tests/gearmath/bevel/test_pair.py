@@ -117,7 +117,7 @@ REFUSED = {
     ),
     "work rotation in radians": (
         FORMATE, {"pinion.concave.work_rotation_offset": -5.365469014 * RADIAN},
-        r"pinion concave\.work_rotation_offset = -0\.0936451.* backlash of -2\.4 mm",
+        r"pinion: concave\.work_rotation_offset = -0\.0936451, .* cross above the root at the heel",
     ),
     "too much backlash": (
         NASA, {"pinion.convex.work_rotation_offset": 32.0},
@@ -130,6 +130,10 @@ REFUSED = {
     ),
     "point width that is not that of the radii": (
         NASA, {"gear.convex.blade_point_width": 2.5}, r"gear\.convex\.blade_point_width = 2\.5: .* make it 1\.651 mm",
+    ),
+    "cutter wider than the root": (
+        NASA, {"pinion.convex.blade_point_width": 3.2},
+        r"pinion\.convex\.blade_point_width = 3\.2: the root of the space is 2\.8\d mm wide at the toe",
     ),
     "edges wider than the tip": (
         NASA, {"gear.convex.blade_edge_radius": 1.4, "gear.concave.blade_edge_radius": 1.4},

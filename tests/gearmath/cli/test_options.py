@@ -82,7 +82,7 @@ def test_member_is_asked_for_only_where_nothing_tells_it(command, refused, tmp_p
     assert command("flank", alone, *rest)[0] == 0
     program, metal = tmp_path / "GEAR.MPF", tmp_path / "m.csv"
     assert command("nc", "cut", SET, "--member", "gear", "--spaces", "0", "--tolerance-um", "5", "-o", program)[0] == 0
-    status, out, err = command("mill", SET, "--program", program, "-o", metal)
+    status, _, err = command("mill", SET, "--program", program, "-o", metal)
     assert status == 0, err
     status, _, err = command("compensate", SET, "--measured", metal, "-o", tmp_path / "new.toml")
     assert status == 0, err

@@ -18,7 +18,7 @@ from gearmath.bevel.crown_gear import Method
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections, generation_of
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES
 
 SETS = 20
@@ -94,7 +94,7 @@ def audit(gear_set, moved_edge) -> Counter:
                 )
                 counts["missed"] += int(lost.sum())
                 counts["absent"] += int((~lost).sum())
-                with pytest.raises(ComputationError, match=rf"^{name} {flank} flank, row \d+, column \d+: "):
+                with pytest.raises(InputError, match=rf"^{name} {flank} flank, row \d+, column \d+: "):
                     solve_flank(member, name, flank, grid)
     return counts
 
@@ -127,7 +127,7 @@ def test_the_witness_finds_what_is_on_the_flank_and_nothing_beyond_an_undercut(p
 def test_undercut_is_reported_as_such_by_member_flank_row_and_column(pair):
     member = pair(Method("fixed_setting"), pinion_teeth=7, wheel_teeth=43).pinion
     for flank in FLANKS:
-        with pytest.raises(ComputationError, match=f"^pinion {flank} flank, row 0, column 0: .*undercut"):
+        with pytest.raises(InputError, match=f"^pinion {flank} flank, row 0, column 0: .*undercut"):
             solve_flank(member, "pinion", flank, blank_grid(member))
 
 
