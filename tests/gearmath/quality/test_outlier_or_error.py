@@ -181,6 +181,17 @@ def test_many_single_points_off_are_uneven_pitch(gear_set, measured):
     assert found.flanks["convex"].pitch.total == pytest.approx(0.2, abs=4 * UM)
 
 
+@pytest.mark.parametrize("first", [6, 7, 8])
+def test_step_on_a_flank_is_form_and_not_many_misses(gear_set, measured, first):
+    """One, two or three columns at the heel lie 60 um lower, as where a flank was ground over."""
+    file = measured("gear")
+    step = (file.flank == "concave") & (file.tooth == 0) & (file.col >= first)
+    found = evaluate_member(moved(file, np.where(step, -0.06, 0.0)), gear_set.gear, "gear")
+    assert found.left_out == ()
+    assert any(line.startswith("concave flank, tooth 0: ") and "kept" in line for line in found.remarks)
+    assert found.as_dict()["flanks"]["concave"]["max_deviation_um"] == pytest.approx(-60, abs=4)
+
+
 def test_miss_on_a_grid_with_a_hole_is_still_found(gear_set, measured):
     file = measured("gear")
     file = off(file, at(file, "concave", 0, 1, 2), 0.1)
