@@ -129,7 +129,7 @@ def draw_runout(axes: Axes, before: Runout, after: Runout | None = None) -> None
         text = f"first harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
     axes.set_xlabel("space")
-    axes.set_ylabel("movement of a ball, normal to the pitch cone / µm")
+    axes.set_ylabel("ball, normal to the pitch cone / µm")
     axes.legend(fontsize=7, frameon=False)
 
 
