@@ -76,8 +76,8 @@ if TYPE_CHECKING:
 @output("corrected set, TOML")
 def compensate(
     gear_set: str, member: str | None, measured: Path, names: str, higher_order: bool, objective: str,
-    from_mate: Path | None, registered: bool, rotated: bool, bounds: Bounds, root_limit: float | None, noise: float | None, thickness: float,
-    thickness_by: str, verbose: bool, as_json: bool, target: Path,
+    from_mate: Path | None, registered: bool, rotated: bool, bounds: Bounds, root_limit: float | None,
+    noise: float | None, thickness: float, thickness_by: str, verbose: bool, as_json: bool, target: Path,
 ) -> None:  # fmt: skip
     """Corrected machine settings from a measurement; the nominal settings stay in the file under 'design'.
 
