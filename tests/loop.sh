@@ -29,12 +29,13 @@ sed 's/^tip_radius = .*/tip_radius = 0.743/; s/^stylus_radius/offset = [0.031, -
 "$gearmath" probe CALIBRATE.MPF --calibration true.toml --errors "$shop" -o calibration.csv
 "$gearmath" calibrate calibration.csv --calibration believed.toml -o found.toml
 
+"$gearmath" nc probe "$set" --member "$member" --calibration found.toml -o PROBE.MPF
+
 # cut_and_measure NUMBER SETTINGS: the part of this number, cut by these settings, judged in evaluated_NUMBER.json
 cut_and_measure() {
     "$gearmath" nc cut "$2" --member "$member" --tolerance-um 2 -o "CUT_$1.MPF"
     "$gearmath" mill "$2" --member "$member" --program "CUT_$1.MPF" --errors "$shop" -o "metal_$1.csv"
-    "$gearmath" nc probe "$set" --member "$member" --calibration found.toml -o "PROBE_$1.MPF"
-    "$gearmath" probe "PROBE_$1.MPF" --set "$set" --member "$member" --calibration true.toml --errors "$shop" \
+    "$gearmath" probe PROBE.MPF --set "$set" --member "$member" --calibration true.toml --errors "$shop" \
         --measured "metal_$1.csv" --run "$1" -o "raw_$1.csv"
     "$gearmath" touches "raw_$1.csv" --set "$set" --calibration found.toml -o "measured_$1.csv"
     "$gearmath" evaluate "measured_$1.csv" --set "$set" --json > "evaluated_$1.json"

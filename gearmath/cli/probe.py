@@ -209,14 +209,18 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
 
 def _check_whole(raw: Path, wanted: int | None, run: int, missing: tuple[str, ...]) -> None:
     """Raise InputError where the last run is not whole and was not asked for by its number."""
-    from gearmath.specs.touch_csv import run_numbers
+    from gearmath.specs.touch_csv import run_lengths
 
-    if wanted is not None or not missing:
+    if wanted is not None:
         return
-    others = [number for number in run_numbers(raw) if number != run]
-    choice = f"--run {run} takes it as it is" + "".join(f", --run {number} another one" for number in others[-1:])
-    more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
-    raise InputError(f"{raw}: run {run}, the last one, is not whole: {missing[0]}{more}; {choice}")
+    lengths = run_lengths(raw)
+    longest = max(lengths, key=lambda number: lengths[number])
+    if not missing and lengths[run] < lengths[longest]:  # runs of one file are runs of one program
+        missing = (f"it has {lengths[run]} touches, run {longest} has {lengths[longest]}",)
+    if missing:
+        choice = f"--run {run} takes it as it is" + (f", --run {longest} another one" if longest != run else "")
+        more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
+        raise InputError(f"{raw}: run {run}, the last one, is not whole: {missing[0]}{more}; {choice}")
 
 
 def _calibrate_tip(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -68,11 +69,11 @@ def read_calibration_csv(path: Path, run: int | None = None) -> CalibrationTouch
     return CalibrationTouches(wanted, np.array([record["target"] for record in records]), _axes(records))
 
 
-def run_numbers(path: Path) -> list[int]:
-    """The numbers of the runs in a file of touches on a member or on artefacts. Raises InputError as for touches."""
+def run_lengths(path: Path) -> dict[int, int]:
+    """How many touches every run of a file has, on a member or on artefacts. Raises InputError as for touches."""
     _, lines = read_lines(path)
     columns = CALIBRATION_COLUMNS if lines and len(lines[0].cells) == len(CALIBRATION_COLUMNS) else COLUMNS
-    return sorted({record["run"] for record in _all(path, columns)})
+    return dict(sorted(Counter(record["run"] for record in _all(path, columns)).items()))
 
 
 def _records(path: Path, columns: tuple[str, ...], run: int | None) -> tuple[int, list[dict]]:

@@ -68,6 +68,14 @@ TOUCHES_REFUSED = {
         lambda text: second_run(text, 5),
         r"run 2, the last one, is not whole: .*; --run 2 takes it as it is, --run 1",
     ),
+    "second run without its last third": (
+        lambda text: second_run(text, text.count("\n") * 2 // 3),
+        r"run 2, the last one, is n",
+    ),
+    "second run that looks whole": (
+        lambda text: second_run(text, 90 if "concave" in text else 10),
+        r"is not whole: it has (90|10) touches, run 1 has (122|35); --run 2 takes it as it is, --run 1 another one",
+    ),
     "cut in half": (lambda text: "\n".join(text.split("\n")[: text.count("\n") // 2]) + "\n", "is not whole"),
     "last touch missing": (lambda text: "\n".join(text.split("\n")[:-2]) + "\n", "is not whole"),
     "cut within the last line": (lambda text: text[:-7], r"line \d+: .*(cut off|columns)"),
