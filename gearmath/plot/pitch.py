@@ -88,7 +88,7 @@ def draw_runout(
         text = f"harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
     axes.set_xlabel("space", fontsize=8)
-    axes.set_ylabel("movement of a ball, normal to the pitch cone / µm", fontsize=8)
+    axes.set_ylabel("ball, normal to the pitch cone / µm", fontsize=8)
     axes.tick_params(labelsize=7)
     axes.legend(fontsize=7, frameon=False, loc="lower left", bbox_to_anchor=(0, 1), ncol=2, borderaxespad=0.1)
 

@@ -1,10 +1,11 @@
 """Points that are not of the flank: a probe that missed, dirt, a burr. Said in words and left out, never fitted.
 
 A single point off its neighbors is an outlier. Where a tooth has a grid, its deviations are fitted by a surface of
-third degree that single points do not pull. Elsewhere a place that many teeth have is fitted by its mean and first
-harmonic over the teeth, and the points of each tooth are compared with each other (module ``tooth_shifts``).
-A point counts as off where its distance exceeds six standard deviations of the others, told by the median of their
-distances, and a least size: uneven flanks and uneven pitch are what is measured, and must not be flagged.
+third degree that single points do not pull; neighbors that are off together are form, or a burr, and kept. Elsewhere a
+place that many teeth have is fitted by its mean and first harmonic over the teeth, and the points of each tooth are
+compared with each other (module ``tooth_shifts``). A point counts as off where its distance exceeds six standard
+deviations of the others, told by the median of their distances, and a least size: uneven flanks and uneven pitch are
+what is measured, and must not be flagged.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ LEAST_ON_GRID = 0.02
 _LEAST_POINTS = 20
 #: Where more than this part of the points is off, it is not single points that are wrong.
 _MOST = 0.2
+#: So many neighbors that are off to the same side are form.
+_FORM = 3
 
 
 @dataclass(frozen=True)
@@ -65,18 +68,43 @@ def flag_outliers(along: np.ndarray, upward: np.ndarray, deviation: np.ndarray) 
 
 
 def find_outliers(file: FlankFile, teeth: int) -> Outliers:
-    """The points of a measured file to leave out. Raises InputError where too many are off to be single points."""
-    mask, on_grid, reasons = np.zeros(len(file), dtype=bool), np.zeros(len(file), dtype=bool), []
-    for rows, flags, off in _on_grids(file):
+    """The points of a measured file to leave out; where too many are off to be single points, all are kept."""
+    mask, on_grid = np.zeros(len(file), dtype=bool), np.zeros(len(file), dtype=bool)
+    reasons, kept = [], []
+    for rows, along, upward in _grids(file):
         on_grid[rows] = True
-        for k in np.flatnonzero(flags):
+        try:
+            flags, off = flag_outliers(along, upward, file.deviation[rows])
+        except InputError as error:
+            kept.append(f"{file.flank[rows[0]]} flank, tooth {file.tooth[rows[0]]}: {error}; kept")
+            continue
+        together = _together(flags, off, grid_shape(file)[1])
+        for group in together:
+            points = " ".join(f"{file.row[k]},{file.col[k]}" for k in rows[group])
+            what = f"{len(group)} neighboring points are off the others alike, which no misses are"
+            kept.append(f"{file.flank[rows[0]]} flank, tooth {file.tooth[rows[0]]}: {what}; kept (row,col {points})")
+        for k in sorted(set(np.flatnonzero(flags).tolist()).difference(*together)):
             mask[rows[k]] = True
             what = f"is {abs(off[k]) * 1000:.1f} um off the smooth surface through the others; left out"
             reasons.append(f"{_place(file, rows[k])} {what}")
     shifts = tooth_shifts(replace(file, deviation=np.where(mask, np.nan, file.deviation)), teeth, ~on_grid)
     reasons += _words(file, shifts)
     mask[list(shifts.misses) + list(shifts.doubtful)] = True
-    return Outliers(mask, tuple(reasons), shifts.kept)
+    return Outliers(mask, tuple(reasons), (*kept, *shifts.kept))
+
+
+def _together(flags: np.ndarray, off: np.ndarray, columns: int) -> list[list[int]]:
+    """The flagged points (n,) of a grid that lie together, three or more, off to the same side: form, or a burr."""
+    left, groups = set(np.flatnonzero(flags).tolist()), []
+    while left:
+        group = [left.pop()]
+        for k in group:  # grows as neighbors are found
+            near = [j for j in left if abs(j // columns - k // columns) <= 1 and abs(j % columns - k % columns) <= 1]
+            alike = [j for j in near if off[j] * off[k] > 0]
+            left.difference_update(alike)
+            group += alike
+        groups.append(sorted(group))
+    return [group for group in groups if len(group) >= _FORM]
 
 
 def _words(file: FlankFile, shifts: Shifts) -> Iterator[str]:
@@ -95,8 +123,8 @@ def _place(file: FlankFile, at: int) -> str:
     return f"{place}: {file.deviation[at] * 1000:+.1f} um"
 
 
-def _on_grids(file: FlankFile) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Rows, flags and distances of every flank of every tooth that has a grid."""
+def _grids(file: FlankFile) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Rows of every flank of every tooth that has a grid, and their places of the local system [mm]."""
     rows, columns = grid_shape(file)
     for flank in FLANKS:
         for tooth in np.unique(file.tooth[file.flank == flank]):
@@ -106,8 +134,4 @@ def _on_grids(file: FlankFile) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndar
             here = here[np.lexsort((file.col[here], file.row[here]))]
             middle = (rows // 2, columns // 2)
             along, upward = local_coordinates(file.point[here].reshape(rows, columns, 3), middle)
-            try:
-                flags, off = flag_outliers(along.ravel(), upward.ravel(), file.deviation[here])
-            except InputError as error:
-                raise InputError(f"{flank} flank, tooth {tooth}: {error}") from error
-            yield here, flags, off
+            yield here, along.ravel(), upward.ravel()

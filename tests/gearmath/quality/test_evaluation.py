@@ -192,5 +192,5 @@ def test_picture_shows_both_flanks_pitch_and_runout(pair, pinion):
     figure = evaluation_figure("pinion", evaluate_member(pair[0], pinion, "pinion"))
     labels = [place.get_ylabel() for place in figure.axes]
     assert labels.count("cumulative pitch deviation / µm") == 1
-    assert labels.count("movement of a ball, normal to the pitch cone / µm") == 1
+    assert labels.count("ball, normal to the pitch cone / µm") == 1
     assert "eccentricity 15.0 µm, tilt 10.0 µm/100 mm taken out" in figure.get_suptitle()

@@ -13,6 +13,7 @@ from gearmath.bevel.turning import turned
 from gearmath.cli.quality_text import evaluation_text
 from gearmath.machine.mill import nominal_flank
 from gearmath.quality.evaluation import evaluate_member
+from gearmath.quality.figures import figures_of
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import join
 
@@ -158,6 +159,24 @@ def test_single_point_that_nothing_confirms_is_left_out_and_the_grade_with_it(ge
     assert not any(line.startswith("grades: ") for line in text)
 
 
+def test_figures_with_uncertainty_are_those_that_are_not_withheld(gear_set, measured):
+    """Tooth 20 has no reading on the convex flank: no single pitch of 20 and 21, no maximum, no runout."""
+    file = measured("gear")
+    file = off(file, at(file, "convex", 20), 0.08)
+    found = evaluate_member(file, gear_set.gear, "gear")
+    figures = figures_of(file, gear_set.gear, found)
+    values = dict(zip([(one.flank, one.name) for one in figures.items], figures.values, strict=True))
+    for flank, gone in (("concave", set()), ("convex", {20, 21})):
+        assert {k for k in range(36) if (flank, f"f_pt_{k}") not in values} == gone
+        single = found.flanks[flank].pitch.single
+        for k in set(range(36)) - gone:
+            assert values[flank, f"f_pt_{k}"] == pytest.approx(single[k], abs=1e-12)
+        assert {name for name in ("F_p", "max_f_pt") if (flank, name) in values} == (
+            set() if gone else {"F_p", "max_f_pt"}
+        )
+    assert ("both", "F_r") not in values
+
+
 def test_tooth_0_measured_again_confirms_a_single_point(gear_set, measured):
     """Twice 80 um on one flank is no dirt; once 80 um and once nothing is."""
     file = measured("gear", whole=())
@@ -179,6 +198,17 @@ def test_many_single_points_off_are_uneven_pitch(gear_set, measured):
     assert found.left_out == ()
     assert "convex flank: 9 of 35 single points are off the other teeth, too many to be misses; kept" in found.remarks
     assert found.flanks["convex"].pitch.total == pytest.approx(0.2, abs=4 * UM)
+
+
+@pytest.mark.parametrize("first", [6, 7, 8])
+def test_step_on_a_flank_is_form_and_not_many_misses(gear_set, measured, first):
+    """One, two or three columns at the heel lie 60 um lower, as where a flank was ground over."""
+    file = measured("gear")
+    step = (file.flank == "concave") & (file.tooth == 0) & (file.col >= first)
+    found = evaluate_member(moved(file, np.where(step, -0.06, 0.0)), gear_set.gear, "gear")
+    assert found.left_out == ()
+    assert any(line.startswith("concave flank, tooth 0: ") and "kept" in line for line in found.remarks)
+    assert found.as_dict()["flanks"]["concave"]["max_deviation_um"] == pytest.approx(-60, abs=4)
 
 
 def test_miss_on_a_grid_with_a_hole_is_still_found(gear_set, measured):
