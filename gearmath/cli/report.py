@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 
 #: Of the Monte Carlo for maxima and ranges: their intervals to about one part in a hundred.
 _DRAWS, _SEED = 20_000, 0
+#: Steps of the progress bar for them and for the correction.
+_DRAWING, _CORRECTING = 8, 2
+
+Progress = Callable[[int], object]
 
 
 @click.command(epilog=FLANK_CSV)
@@ -61,7 +66,8 @@ def report(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_bytes, write_text
-    from gearmath.report import inspection_sheet
+    from gearmath.quality.evaluation import STAGES
+    from gearmath.report import STEPS, inspection_sheet
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
@@ -72,14 +78,15 @@ def report(
     if len(part_number) > len(files):
         raise InputError(f"--part-number: given {len(part_number)} times, for {len(files)} measured file(s)")
     given = {"date": date, "operator": operator, "machine": measured_on, "probe": probe}
-    seconds = _again(again, pair, {file.member for file in files.values()})
     sure = (sigma_um, model, machine, calibration)
     members = []
-    for k, (path, file) in enumerate(files.items()):
-        known = {"part_number": part_number[k] if k < len(part_number) else "", **given}
-        head = {key: text for key, text in known.items() if text}
-        members.append(_measurement(path, file, pair, head, seconds.get(file.member), sure))
-    made = inspection_sheet(members)
+    with bar(len(again) * STAGES + len(files) * (STAGES + _DRAWING + _CORRECTING + STEPS), "step") as progress:
+        seconds = _again(again, pair, {file.member for file in files.values()}, progress)
+        for k, (path, file) in enumerate(files.items()):
+            known = {"part_number": part_number[k] if k < len(part_number) else "", **given}
+            head = {key: text for key, text in known.items() if text}
+            members.append(_measurement(path, file, pair, head, seconds.get(file.member), sure, progress))
+        made = inspection_sheet(members, progress)
     for name, picture in made.pictures.items():
         write_bytes(target.with_name(f"{target.stem}_{name}.png"), picture)
     write_text(target, made.html)
@@ -89,22 +96,22 @@ def report(
 
 def _measurement(
     path: Path, file: FlankFile, pair: BevelSet, head: dict[str, str], again: Evaluation | None,
-    sure: tuple[float | None, str | None, str, str],
+    sure: tuple[float | None, str | None, str, str], progress: Progress,
 ) -> Measurement:  # fmt: skip
     """One member evaluated, with its uncertainties and its correction."""
-    from gearmath.quality.evaluation import STAGES, evaluate_member
+    from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.figures import figures_of
     from gearmath.quality.uncertainty import uncertain_figures
     from gearmath.report import Measurement, head_of
 
     member = pair.member(file.member)
-    with about(path), bar(STAGES, "stage") as progress:
+    with about(path):
         found = evaluate_member(file, member, file.member, progress=progress)
         figures = figures_of(file, member, found)
         covariance, source = covariance_of(file, member, *sure)
-    with bar(_DRAWS, "draw") as progress:
-        drawn = uncertain_figures(figures, covariance, _DRAWS, _SEED, progress=progress)
+    drawn = uncertain_figures(figures, covariance, _DRAWS, _SEED, progress=_share(progress))
     correction, settings, effects, remarks = uncertain_correction(member, file, found, covariance)
+    progress(_CORRECTING)
     caused = {flank: effect.caused for flank, effect in effects.items()}
     return Measurement(
         pair.title, path.name, member, found, correction, head_of(file, head), drawn, settings, caused, source, again,
@@ -112,7 +119,19 @@ def _measurement(
     )  # fmt: skip
 
 
-def _again(paths: tuple[Path, ...], pair: BevelSet, wanted: set[str]) -> dict[str, Evaluation]:
+def _share(progress: Progress) -> Progress:
+    """Progress of the draws, as their share of the steps of a bar."""
+    done = 0
+
+    def drawn(count: int) -> None:
+        nonlocal done
+        before, done = done, done + count
+        progress(done * _DRAWING // _DRAWS - before * _DRAWING // _DRAWS)
+
+    return drawn
+
+
+def _again(paths: tuple[Path, ...], pair: BevelSet, wanted: set[str], progress: Progress) -> dict[str, Evaluation]:
     """Second measurements by member."""
     from gearmath.quality.evaluation import evaluate_member
     from gearmath.specs.flank_csv import read_flank_csv
@@ -124,5 +143,5 @@ def _again(paths: tuple[Path, ...], pair: BevelSet, wanted: set[str]) -> dict[st
             why = "is there twice" if file.member in found else "has no first measurement on the sheet"
             raise InputError(f"{path}: member = {file.member!r}: {why}")
         with about(path):
-            found[file.member] = evaluate_member(file, pair.member(file.member), file.member)
+            found[file.member] = evaluate_member(file, pair.member(file.member), file.member, progress=progress)
     return found

@@ -63,7 +63,8 @@ def _flank(axes: Axes, before: Topography, after: Topography | None, scale: floa
     if after is None:
         draw_topography(axes, before, scale=scale, taken=taken)
     else:
-        draw_topography(axes, after, before, scale, taken)
+        same_grid = after.deviation.shape == before.deviation.shape
+        draw_topography(axes, after, before if same_grid else None, scale, taken)
     shown = [("", before)] if after is None else [("before ", before), ("after ", after)]
     words = ", ".join(f"{when}{_largest(each)}" for when, each in shown)
     axes.set_title(f"{before.flank} flank: largest {words}", fontsize=9)

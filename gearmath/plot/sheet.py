@@ -40,9 +40,7 @@ def pitch_chart(pitch: Pitch, after: Pitch | None, limits: Limits) -> Figure:
 def runout_chart(runout: Runout) -> Figure:
     """Movement of a ball in every space."""
     figure = Figure(figsize=(_WIDTH, 2.0), layout="constrained")
-    axes = figure.subplots()
-    draw_runout(axes, runout, names=("measured", ""))
-    axes.set_ylabel("movement / µm", fontsize=8)
+    draw_runout(figure.subplots(), runout, names=("measured", ""))
     return figure
 
 

@@ -91,11 +91,12 @@ def _numbers(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray) -> No
             value = values[row, column]
             text = signed(value) if np.isfinite(value) else "×"
             below = not text.startswith("\N{MINUS SIGN}")
-            axes.annotate(
+            number = axes.annotate(
                 text, (x[row, column], y[row, column]), (0, -2.5 if below else 2.5), textcoords="offset points",
                 ha="center", va="top" if below else "bottom", fontsize=size, zorder=5, gid=f"node {row},{column}",
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
             )  # fmt: skip
+            number.set_in_layout(False)  # well within the axes; asking every number takes most of the time
     if step > 1:
         axes.set_title(f"numbers at one column in {step}", fontsize=7)
 

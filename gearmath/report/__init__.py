@@ -5,6 +5,6 @@ correction has not said.
 """
 
 from gearmath.report.measurement import FIELDS, Measurement, Report, head_of
-from gearmath.report.sheet import inspection_sheet
+from gearmath.report.sheet import STEPS, inspection_sheet
 
-__all__ = ["FIELDS", "Measurement", "Report", "head_of", "inspection_sheet"]
+__all__ = ["FIELDS", "STEPS", "Measurement", "Report", "head_of", "inspection_sheet"]

@@ -24,10 +24,10 @@ from gearmath.specs.bevel_set import Member
 Drawing = tuple[str, str]
 
 
-def flank_charts(measurement: Measurement) -> list[Drawing]:
-    """Both flanks side by side, each with what it is after the correction, all at one scale."""
+def flank_charts(measurement: Measurement, after: Mapping[str, Topography]) -> list[Drawing]:
+    """Both flanks, each with what it is ``after`` the correction beside it, all at one scale."""
     found = measurement.evaluation
-    before, after = means(found), after_correction(measurement)
+    before = means(found)
     words = "measured again" if measurement.again else "expected after the correction"
     rows = [
         [(zeroed(each, found.file), each, f"{flank} flank, measured: {_teeth(found, flank)}")]
@@ -71,11 +71,11 @@ def tooth_charts(measurement: Measurement) -> tuple[list[Drawing], float]:
     return [(svg(tooth_chart(flanks, seen, times)), f"seen from its {seen} flank") for seen in flanks], times
 
 
-def pictures(measurement: Measurement) -> dict[str, bytes]:
-    """Two pictures of the member as PNG, for other uses than the page."""
+def pictures(measurement: Measurement, after: Mapping[str, Topography]) -> dict[str, bytes]:
+    """Two pictures of the member as PNG, for other uses than the page: measured, and before and ``after``."""
     found = measurement.evaluation
     drawn = {"measured": png(evaluation_figure(f"{found.member}, {measurement.source}", found))}
-    if after := after_correction(measurement):
+    if after:
         words = "both measured" if measurement.again else "measured, and expected after the correction"
         before = means(found) if measurement.again else first(found)
         figure = member_figure(
@@ -126,6 +126,8 @@ def expected_topographies(member: Member, found: Evaluation, correction: Correct
         targets = [flank_target(member, found.member, flank, found.file) for flank in group]
         ends = np.cumsum([len(target.deviation) for target in targets])[:-1]
         for flank, target, part in zip(group, targets, np.split(-result.residual, ends), strict=True):
+            if not found.flanks[flank].topographies:
+                continue  # corrected from fewer points than a topography needs
             deviation = np.full(target.grid_points, np.nan)
             deviation[slice(None) if target.used is None else target.used] = part
             shape = grid_shape(found.file)

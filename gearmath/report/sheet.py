@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from gearmath.page import Page
 from gearmath.quality.evaluation import Evaluation
+from gearmath.quality.topography import Topography
 from gearmath.report import charts
 from gearmath.report.figures import clamping_section, flank_section, spacing_section, uncertainty_section
 from gearmath.report.measurement import FIELDS, Measurement, Report, counted, in_words
@@ -21,7 +22,11 @@ _ZERO = (
 _NAMES = {"max_deviation": "largest deviation", "F_p": "F_p", "max_f_pt": "largest f_pt"}
 
 
-def inspection_sheet(members: Sequence[Measurement]) -> Report:
+#: How often ``inspection_sheet`` tells its progress for each member.
+STEPS = 5
+
+
+def inspection_sheet(members: Sequence[Measurement], progress: Callable[[int], object] = lambda _: None) -> Report:
     """The sheet of one member, or of both, as a page that holds everything, and pictures once more for other uses."""
     names = [one.evaluation.member for one in members]
     page = Page(f"Inspection sheet: {' and '.join(names)}")
@@ -30,9 +35,11 @@ def inspection_sheet(members: Sequence[Measurement]) -> Report:
     _left_out(page, members)
     pictures: dict[str, bytes] = {}
     for k, one in enumerate(members):
-        _member(page, one, new_sheet=k > 0)
+        after = charts.after_correction(one)
+        _member(page, one, after, k > 0, progress)
         prefix = "" if k == 0 else f"{names[k]}_"
-        pictures |= {prefix + name: picture for name, picture in charts.pictures(one).items()}
+        pictures |= {prefix + name: picture for name, picture in charts.pictures(one, after).items()}
+        progress(1)
     return Report(page.html, pictures)
 
 
@@ -56,6 +63,11 @@ def _left_out(page: Page, members: Sequence[Measurement]) -> None:
     for one in members:
         found = one.evaluation
         absent = [f"the {flank} flank was not measured" for flank in FLANKS if flank not in found.flanks]
+        absent += [
+            f"no tooth was measured in full on the {flank} flank: there is no topography of it"
+            for flank, figures in found.flanks.items()
+            if not figures.topographies
+        ]
         others = [text for text in found.remarks if text not in found.left_out]
         texts = [*absent, *found.left_out, *_withheld(found), *others, *one.remarks]
         sentences += [f"{found.member}: {in_words(text)}." for text in texts]
@@ -78,25 +90,20 @@ def _withheld(found: Evaluation) -> Iterator[str]:
         yield f"withheld: {', '.join(names)}: {why}"
 
 
-def _member(page: Page, one: Measurement, new_sheet: bool) -> None:
+def _member(
+    page: Page, one: Measurement, after: Mapping[str, Topography], new_sheet: bool, progress: Callable[[int], object]
+) -> None:
     found = one.evaluation
     page.heading(found.member.capitalize(), new_sheet)
     page.subheading("Topography of the flanks")
-    if drawings := charts.flank_charts(one):
+    if drawings := charts.flank_charts(one, after):
         page.paragraph(_ZERO)
         page.drawings(drawings)
     else:
         page.paragraph("No tooth was measured in full: there is no topography.")
-    page.subheading("Pitch, runout, thickness")
-    if drawings := charts.pitch_charts(one):
-        after = "; ".join([
-            "gray bars and full lines: measured",
-            *(["hollow bars and dashed lines: " + ("measured again" if one.again else "expected after the correction")]
-              if charts.pitches_after(one) else []),
-        ])  # fmt: skip
-        page.paragraph(f"Teeth are counted from 0; {after}. Both flanks have the same scale.")
-        page.drawings([*drawings, *charts.space_charts(one)])
-    spacing_section(page, one)
+    progress(1)
+    _spacing(page, one)
+    progress(1)
     drawings, times = charts.tooth_charts(one)
     if drawings:
         page.subheading("The tooth in perspective")
@@ -105,7 +112,23 @@ def _member(page: Page, one: Measurement, new_sheet: bool) -> None:
             "The darker, the more metal is left on."
         )
         page.drawings(drawings)
+    progress(1)
     flank_section(page, one)
     clamping_section(page, found)
     settings_sections(page, one)
     uncertainty_section(page, one)
+    progress(1)
+
+
+def _spacing(page: Page, one: Measurement) -> None:
+    page.subheading("Pitch, runout, thickness")
+    if drawings := charts.pitch_charts(one):
+        later = "measured again" if one.again else "expected after the correction"
+        dashed = f"; hollow bars and dashed lines: {later}" if charts.pitches_after(one) else ""
+        page.paragraph(
+            f"Teeth are counted from 0; gray bars and full lines: measured{dashed}. Both flanks have the same scale."
+        )
+        page.drawings([*drawings, *charts.space_charts(one)])
+    else:
+        page.paragraph("No two teeth were measured on a flank: there is no pitch.")
+    spacing_section(page, one)
