@@ -224,9 +224,9 @@ def _limits_section(page: Page, correction: Correction, caused: Mapping[str, flo
     rows = []
     for group, analysis in correction.analysis.items():
         result = correction.identified[group]
-        values = (result.rms_before, analysis.best_rms, result.rms_after)
+        values = (result.rms_before, correction.reachable[group], result.rms_after)
         rows.append([" and ".join(group), *map(_micro, values)])
-    head = ["flanks", "RMS measured", "best that settings reach (first order)", "expected"]
+    head = ["flanks", "RMS measured", "best that settings reach", "expected"]
     page.table("RMS of the flanks / um", head, rows)
     for group, analysis in correction.analysis.items():
         for sentence in _limits(" and ".join(group), analysis, correction.identified[group].active):

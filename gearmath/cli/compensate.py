@@ -105,7 +105,9 @@ def compensate(
     if thickness:
         by = cast("By", thickness_by)
         correction.settings.update(with_thickness(spec, member, correction.settings, thickness / 1000, by))
-    save_corrected(source, target, member, correction.settings, correction.index, correction.motions)
+    save_corrected(
+        source, target, member, correction.settings, correction.index, correction.motions, correction.curvatures
+    )
     values = _values(spec, correction) | {"remarks": list(evaluation.remarks)}
     values |= _uncertainty(spec, file, evaluation, correction, noise, root_limit or ROOT_LIMIT)
     if as_json:

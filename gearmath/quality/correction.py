@@ -15,7 +15,7 @@ from gearmath.quality.compensation import FlankTarget, identify, located, nothin
 from gearmath.quality.identification import RANK, Identification
 from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.pitch import evaluate_pitch, index_correction
-from gearmath.quality.target import flank_target, nominal_curvature
+from gearmath.quality.target import blade_curve, flank_target, nominal_curvature
 from gearmath.quality.unknown_rotation import UnknownRotation, rotation_columns, rotation_step, step_of
 from gearmath.quality.variables import NAMES, Bounds, free_settings, parts, whole
 from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
@@ -261,7 +261,7 @@ def _settle(found: Correction, member: Member, flank: str, target: FlankTarget, 
     """Enter the corrected settings of one flank, and what is expected of it."""
     spec, change = member.flank(flank), result.change(k)
     errors, moved = parts(change)
-    if change[-1]:
+    if change[-1] or blade_curve(spec)[0] != nominal_curvature(spec):
         found.curvatures[flank] = nominal_curvature(spec) - float(change[-1])
     found.settings[flank] = spec.nominal.vector - errors
     if moved.any() or spec.nominal_motion != spec.motion:
@@ -297,12 +297,16 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
 
 
 def setting_changes(member: Member, correction: Correction) -> list[tuple[str, str, float, float]]:
-    """(flank, setting, old, new) of every setting and coefficient of a motion that changes, mm and rad."""
+    """(flank, setting, old, new) of what changes: settings, coefficients of a motion, curvature; mm and rad."""
     changes = []
     for flank, vector in correction.settings.items():
         spec = member.flank(flank)
         motion = spec.motion.matrix
-        pairs = whole(spec.vector, motion), whole(vector, correction.motions.get(flank, motion))
+        bent, _ = blade_curve(spec)
+        pairs = (
+            whole(spec.vector, motion, bent),
+            whole(vector, correction.motions.get(flank, motion), correction.curvatures.get(flank, bent)),
+        )
         changes += [
             (flank, name, float(old), float(new)) for name, old, new in zip(NAMES, *pairs, strict=True) if old != new
         ]
