@@ -18,6 +18,7 @@ from gearmath.plot import evaluation_figure, member_figure, png
 from gearmath.quality.analysis import Analysis
 from gearmath.quality.correction import Correction, setting_changes
 from gearmath.quality.evaluation import Evaluation
+from gearmath.quality.identification import Identification
 from gearmath.quality.pitch import Pitch, index_correction, reference_rows
 from gearmath.quality.target import flank_target
 from gearmath.quality.topography import ORDERS, Topography, grid_shape
@@ -229,7 +230,8 @@ def _limits_section(page: Page, correction: Correction, caused: Mapping[str, flo
     head = ["flanks", "RMS measured", "best that settings reach", "expected"]
     page.table("RMS of the flanks / um", head, rows)
     for group, analysis in correction.analysis.items():
-        for sentence in _limits(" and ".join(group), analysis, correction.identified[group].active):
+        result = correction.identified[group]
+        for sentence in _limits(" and ".join(group), analysis, result, correction.reachable[group]):
             page.paragraph(sentence)
     for flank, count in correction.left_out.items():
         if count:
@@ -241,23 +243,25 @@ def _limits_section(page: Page, correction: Correction, caused: Mapping[str, flo
         page.paragraph(f"{flank} flank: the root line moves by {toe:+.1f} um at the toe, {heel:+.1f} um at the heel.")
 
 
-def _limits(flanks: str, analysis: Analysis, active: Sequence[str]) -> Iterator[str]:
+def _limits(flanks: str, analysis: Analysis, found: Identification, reachable: float) -> Iterator[str]:
     """Sentences on what holds a correction back."""
     names = ", ".join(analysis.names)
     yield (
-        f"{flanks}: what lies outside of the shapes that {names} can give a flank stays, "
-        f"{analysis.best_rms * 1000:.2f} um RMS of {analysis.rms * 1000:.2f} um."
+        f"{flanks}: what {names} cannot do within their bounds stays, {reachable * 1000:.2f} um RMS of "
+        f"{analysis.rms * 1000:.2f} um."
     )
+    if not found.converged:
+        yield f"{flanks}: the fit stopped after {found.iterations} steps without converging: less may remain."
     for first, second, cosine in analysis.alike:
         how = "alike" if cosine > 0 else "opposite ways"
-        yield f"{flanks}: {first} and {second} move the flank {how} (cosine {cosine:.5f}) and are hardly told apart."
+        yield f"{flanks}: {first} and {second} move the flank {how} (cosine {cosine:.5f}) and cannot be told from each other."
     if analysis.weak:
         what = "; ".join(_direction(analysis, k) for k in analysis.weak)
         yield f"{flanks}: weak directions, which much noise and little flank belong to: {what}."
     if analysis.unseen:
         yield f"{flanks}: without effect: {', '.join(analysis.unseen)}."
-    if active:
-        yield f"{flanks}: held back by the limit of {', '.join(active)}."
+    if found.active:
+        yield f"{flanks}: held back by the limit of {', '.join(found.active)}."
 
 
 def _direction(analysis: Analysis, k: int) -> str:
