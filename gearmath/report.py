@@ -223,8 +223,7 @@ def _settings_section(page: Page, measurement: Measurement, correction: Correcti
 def _limits_section(page: Page, correction: Correction, caused: Mapping[str, float]) -> None:
     page.heading("What is not corrected, and why")
     rows = []
-    for group, analysis in correction.analysis.items():
-        result = correction.identified[group]
+    for group, result in correction.identified.items():
         values = (result.rms_before, correction.reachable[group], result.rms_after)
         rows.append([" and ".join(group), *map(_micro, values)])
     head = ["flanks", "RMS measured", "best that settings reach", "expected"]
@@ -254,7 +253,7 @@ def _limits(flanks: str, analysis: Analysis, found: Identification, reachable: f
         yield f"{flanks}: the fit stopped after {found.iterations} steps without converging: less may remain."
     for first, second, cosine in analysis.alike:
         how = "alike" if cosine > 0 else "opposite ways"
-        yield f"{flanks}: {first} and {second} move the flank {how} (cosine {cosine:.5f}) and cannot be told from each other."
+        yield f"{flanks}: {first} and {second} move the flank {how} (cosine {cosine:.5f}): no flank tells them apart."
     if analysis.weak:
         what = "; ".join(_direction(analysis, k) for k in analysis.weak)
         yield f"{flanks}: weak directions, which much noise and little flank belong to: {what}."
