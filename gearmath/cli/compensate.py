@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from gearmath.cli.common import JSON, MEMBER, SET, about, echo_json, output, table
+from gearmath.cli.common import JSON, MEMBER, SET, about, bar, echo_json, output, table
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -84,8 +84,9 @@ def compensate(
     Points that missed, drift and clamping are taken out first, as 'evaluate' does. Says in two lines what remains of
     what, and which limit binds.
     """
+    from gearmath.quality import correction as correcting
     from gearmath.quality.correction import ROOT_LIMIT, correct
-    from gearmath.quality.evaluation import evaluate_member
+    from gearmath.quality.evaluation import STAGES, evaluate_member
     from gearmath.quality.thickness import with_thickness
     from gearmath.specs.bevel_set import load_bevel_set, save_corrected
     from gearmath.specs.flank_csv import read_flank_csv
@@ -95,12 +96,12 @@ def compensate(
     pair = load_bevel_set(source)
     spec, file = pair.member(member), read_flank_csv(measured)
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
-    with about(measured):
-        evaluation = evaluate_member(file, spec, member, registered, rotated=rotated)
+    with about(measured), bar(STAGES + correcting.STAGES, "stage", as_json) as progress:
+        evaluation = evaluate_member(file, spec, member, registered, progress, rotated)
         correction = correct(
             spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
             few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=None if noise is None else noise / 1000,
-            added=moved, bounds=bounds,
+            added=moved, bounds=bounds, progress=progress,
         )  # fmt: skip
     if thickness:
         by = cast("By", thickness_by)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -34,6 +34,10 @@ _LEVERAGE = 4.0
 #: How far a correction may move the root line at toe and heel [mm]. Peers hold 0.025 mm when they design; a machine
 #: whose root angle or base is off by as much as the bundled shop's needs more.
 ROOT_LIMIT = 0.15
+
+
+#: How often ``correct`` tells its progress.
+STAGES = 2
 
 
 @dataclass(frozen=True)
@@ -68,7 +72,7 @@ def correct(
     member: Member, name: str, measured: FlankFile, free: Sequence[str] | None = None, *, objective: str = "points",
     higher_order: bool = False, few: bool = False, root_limit: float | None = ROOT_LIMIT,
     noise: float | None = None, added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None,
-    bounds: Bounds = "machine", run: Run = as_it_stands,
+    bounds: Bounds = "machine", run: Run = as_it_stands, progress: Callable[[int], object] = lambda _: None,
 ) -> Correction:  # fmt: skip
     """The settings that make up for what was measured on a member.
 
@@ -98,6 +102,7 @@ def correct(
     })  # fmt: skip
     identified, rotation = fit.solve(fit.chosen(noise) if few else dict.fromkeys(groups, names), noise)
     targets = fit.turned(rotation.shift)
+    progress(1)
     found = Correction({}, identified, {}, _index(member, measured), {}, {}, {}, {}, {}, rotation, {}, {})
     for group in groups:
         mine = [targets[flank] for flank in group]
@@ -112,6 +117,7 @@ def correct(
         _refuse_worse(name, group, mine, result, noise or 0.0)
         for k, (flank, target) in enumerate(zip(group, mine, strict=True)):
             _settle(found, member, flank, target, result, k)
+    progress(1)
     return found
 
 
