@@ -94,9 +94,9 @@ def blade_sections(spec: Flank, side: int) -> dict[str, Section]:
 def _main(spec: Flank, side: int, bottom: float) -> Section:
     """The main section: straight, by height; or the arc, by the angle of its normal."""
     radius, alpha = spec.nominal.blade_point_radius, math.radians(spec.nominal.blade_pressure_angle)
-    if spec.blade_spheric_radius is None:
+    if spec.nominal_spheric_radius is None:
         return Section(bottom, spec.blade_profile_height, radius, alpha)
-    (arc,) = _kernel("spheric_blade")(radius, alpha, spec.blade_spheric_radius, spec.blade_reference_height, side)
+    (arc,) = _kernel("spheric_blade")(radius, alpha, spec.nominal_spheric_radius, spec.blade_reference_height, side)
     ends = [math.asin((arc[1] - height) / arc[2]) for height in (bottom, spec.blade_profile_height)]
     return Section(min(ends), max(ends), radius, alpha, _triple(arc))
 

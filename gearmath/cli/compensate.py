@@ -8,7 +8,19 @@ from typing import TYPE_CHECKING, Any, cast
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, SET_OPTION, about, echo_json, member_of, output, table
+from gearmath.cli.common import (
+    FLANK_CSV,
+    JSON,
+    MEMBER,
+    SET,
+    SET_OPTION,
+    about,
+    bar,
+    echo_json,
+    member_of,
+    output,
+    table,
+)
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -85,8 +97,9 @@ def compensate(
     what, and which limit binds.
     """
     from gearmath.bevel.pair import check_pair, load_pair
+    from gearmath.quality import correction as correcting
     from gearmath.quality.correction import ROOT_LIMIT, correct
-    from gearmath.quality.evaluation import evaluate_member
+    from gearmath.quality.evaluation import STAGES, evaluate_member
     from gearmath.quality.thickness import with_thickness
     from gearmath.specs.bevel_set import save_corrected
     from gearmath.specs.flank_csv import read_flank_csv
@@ -98,24 +111,30 @@ def compensate(
     member = member_of(pair, member, file.member)
     spec = pair.member(member)
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
-    with about(measured):
-        evaluation = evaluate_member(file, spec, member, registered, rotated=rotated)
+    with about(measured), bar(STAGES + correcting.STAGES, "stage", as_json) as progress:
+        evaluation = evaluate_member(file, spec, member, registered, progress, rotated)
         correction = correct(
             spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
             few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=None if noise is None else noise / 1000,
-            added=moved, bounds=bounds,
+            added=moved, bounds=bounds, progress=progress,
         )  # fmt: skip
     if thickness:
         by = cast("By", thickness_by)
         correction.settings.update(with_thickness(spec, member, correction.settings, thickness / 1000, by))
     save_corrected(
-        source, target, member, correction.settings, correction.index, correction.motions, check=check_pair
+        source, target, member, correction.settings, correction.index, correction.motions, correction.curvatures,
+        check=check_pair,
     )  # fmt: skip
     values = _values(spec, correction) | {"remarks": list(evaluation.remarks)}
     values |= _uncertainty(spec, file, evaluation, correction, noise, root_limit or ROOT_LIMIT)
     if as_json:
         echo_json(values)
         return
+    for remark in evaluation.left_out:
+        click.echo(remark)
+    for flank, count in correction.left_out.items():
+        if count:
+            click.echo(f"{flank}: {count} points of the grid were left out")
     for line in verdict(spec, correction):
         click.echo(line)
     if verbose:
@@ -123,11 +142,9 @@ def compensate(
             _say_analysis(" and ".join(group), analysis)
         _say_changes(values)
         _say_result(correction)
-    for flank, count in correction.left_out.items():
-        if count:
-            click.echo(f"{flank}: {count} points of the grid were left out")
     for remark in evaluation.remarks:
-        click.echo(remark)
+        if remark not in evaluation.left_out:
+            click.echo(remark)
     click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
 
 

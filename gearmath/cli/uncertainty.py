@@ -136,7 +136,7 @@ def uncertain_correction(
 
     name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))
     try:
-        correction = correct(member, name, found.file, noise=noise_of(member, name, found.file, judged))
+        correction = correct(member, name, found.file, few=True, noise=noise_of(member, name, found.file, judged))
         settings, effects = uncertain_settings(member, name, found.file, correction, judged)
     except (InputError, ComputationError) as error:
         return None, [], {}, [f"no corrected settings: {error}"]

@@ -212,7 +212,7 @@ def _curves(member: Member) -> Iterator[Grid]:
 def _row(member: Member, flank: str, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Cradle rotations (n,), rising, and lines (n,9) of the points of one row that lie on the blade."""
     spec, side = member.flank(flank), SIDES[flank]
-    section = blade_sections(spec, side)["main"]
+    section = blade_sections(spec.model_copy(update={"design": None}), side)["main"]
     points = flank_points(member, flank, grid)
     u = points.contact[:, 0]
     if section.arc is None:

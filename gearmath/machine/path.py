@@ -55,7 +55,7 @@ def flank_points(member: Member, flank: str, grid: Grid) -> FlankPoints:
     """
     spec = member.flank(flank)
     how = cut_generation_of(member, flank)
-    section = blade_sections(spec, SIDES[flank])["main"]
+    section = blade_sections(spec.model_copy(update={"design": None}), SIDES[flank])["main"]
     axial, radial = grid.axial.ravel(), grid.radial.ravel()
     if how.still and how.rolling and section.arc is None:
         points, residual = solve_places(how.settings, how.side, axial, radial)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -15,7 +15,7 @@ from gearmath.quality.compensation import FlankTarget, identify, located, nothin
 from gearmath.quality.identification import RANK, Identification
 from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.pitch import evaluate_pitch, index_correction
-from gearmath.quality.target import flank_target, nominal_curvature
+from gearmath.quality.target import blade_curve, flank_target, nominal_curvature
 from gearmath.quality.unknown_rotation import UnknownRotation, rotation_columns, rotation_step, step_of
 from gearmath.quality.variables import NAMES, Bounds, free_settings, parts, whole
 from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
@@ -34,6 +34,10 @@ _LEVERAGE = 4.0
 #: How far a correction may move the root line at toe and heel [mm]. Peers hold 0.025 mm when they design; a machine
 #: whose root angle or base is off by as much as the bundled shop's needs more.
 ROOT_LIMIT = 0.15
+
+
+#: How often ``correct`` tells its progress.
+STAGES = 2
 
 
 @dataclass(frozen=True)
@@ -68,7 +72,7 @@ def correct(
     member: Member, name: str, measured: FlankFile, free: Sequence[str] | None = None, *, objective: str = "points",
     higher_order: bool = False, few: bool = False, root_limit: float | None = ROOT_LIMIT,
     noise: float | None = None, added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None,
-    bounds: Bounds = "machine", run: Run = as_it_stands,
+    bounds: Bounds = "machine", run: Run = as_it_stands, progress: Callable[[int], object] = lambda _: None,
 ) -> Correction:  # fmt: skip
     """The settings that make up for what was measured on a member.
 
@@ -98,6 +102,7 @@ def correct(
     })  # fmt: skip
     identified, rotation = fit.solve(fit.chosen(noise) if few else dict.fromkeys(groups, names), noise)
     targets = fit.turned(rotation.shift)
+    progress(1)
     found = Correction({}, identified, {}, _index(member, measured), {}, {}, {}, {}, {}, rotation, {}, {})
     for group in groups:
         mine = [targets[flank] for flank in group]
@@ -112,6 +117,7 @@ def correct(
         _refuse_worse(name, group, mine, result, noise or 0.0)
         for k, (flank, target) in enumerate(zip(group, mine, strict=True)):
             _settle(found, member, flank, target, result, k)
+    progress(1)
     return found
 
 
@@ -261,7 +267,7 @@ def _settle(found: Correction, member: Member, flank: str, target: FlankTarget, 
     """Enter the corrected settings of one flank, and what is expected of it."""
     spec, change = member.flank(flank), result.change(k)
     errors, moved = parts(change)
-    if change[-1]:
+    if change[-1] or blade_curve(spec)[0] != nominal_curvature(spec):
         found.curvatures[flank] = nominal_curvature(spec) - float(change[-1])
     found.settings[flank] = spec.nominal.vector - errors
     if moved.any() or spec.nominal_motion != spec.motion:
@@ -297,12 +303,16 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
 
 
 def setting_changes(member: Member, correction: Correction) -> list[tuple[str, str, float, float]]:
-    """(flank, setting, old, new) of every setting and coefficient of a motion that changes, mm and rad."""
+    """(flank, setting, old, new) of what changes: settings, coefficients of a motion, curvature; mm and rad."""
     changes = []
     for flank, vector in correction.settings.items():
         spec = member.flank(flank)
         motion = spec.motion.matrix
-        pairs = whole(spec.vector, motion), whole(vector, correction.motions.get(flank, motion))
+        bent, _ = blade_curve(spec)
+        pairs = (
+            whole(spec.vector, motion, bent),
+            whole(vector, correction.motions.get(flank, motion), correction.curvatures.get(flank, bent)),
+        )
         changes += [
             (flank, name, float(old), float(new)) for name, old, new in zip(NAMES, *pairs, strict=True) if old != new
         ]

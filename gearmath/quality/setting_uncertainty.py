@@ -30,7 +30,7 @@ from gearmath.quality.covariance import Covariance, coverage_factor
 from gearmath.quality.figures import Figure
 from gearmath.quality.identification import RANK, Identification
 from gearmath.quality.on_line import flank_on_line
-from gearmath.quality.target import flank_target
+from gearmath.quality.target import blade_curve, flank_target
 from gearmath.quality.topography import grid_shape
 from gearmath.quality.uncertainty import PROBABILITY, Uncertain
 from gearmath.quality.variables import SIZE, Variable, reading, whole
@@ -199,9 +199,11 @@ def uncertain_settings(
         pieces = zip(np.split(known.caused, ends), np.split(known.remaining, ends), strict=True)
         for k, (flank, piece) in enumerate(zip(group, pieces, strict=True)):
             effects[flank] = Effect(*(float(np.sqrt(np.mean(u**2))) for u in piece))
+            spec = member.flank(flank)
             corrected = whole(
-                correction.settings[flank], correction.motions.get(flank, member.flank(flank).motion.matrix)
-            )
+                correction.settings[flank], correction.motions.get(flank, spec.motion.matrix),
+                correction.curvatures.get(flank, blade_curve(spec)[0]),
+            )  # fmt: skip
             settings += [
                 _setting(flank, variable, float(corrected[variable.index]), float(u))
                 for variable, u in zip(found.variables, known.standard, strict=True)

@@ -72,4 +72,4 @@ def _reference(member: Member, name: str, flank: str) -> FlankTarget:
 
 
 def _vector(target: FlankTarget, settings: np.ndarray) -> np.ndarray:
-    return whole(settings, target.how.motion)
+    return whole(settings, target.how.motion, target.curvature)

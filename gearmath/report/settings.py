@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from gearmath.page import Page
 from gearmath.quality.analysis import Analysis
 from gearmath.quality.correction import Correction, setting_changes
+from gearmath.quality.identification import Identification
 from gearmath.quality.variables import reading
 from gearmath.report.measurement import Measurement, micro
 
@@ -39,14 +40,14 @@ def _settings_section(page: Page, measurement: Measurement, correction: Correcti
 def _limits_section(page: Page, correction: Correction, caused: Mapping[str, float]) -> None:
     page.subheading("What is not corrected, and why")
     rows = []
-    for group, analysis in correction.analysis.items():
-        result = correction.identified[group]
-        values = (result.rms_before, analysis.best_rms, result.rms_after)
+    for group, result in correction.identified.items():
+        values = (result.rms_before, correction.reachable[group], result.rms_after)
         rows.append([" and ".join(group), *map(micro, values)])
-    head = ["flanks", "RMS measured", "best that settings reach (first order)", "expected"]
+    head = ["flanks", "RMS measured", "best that settings reach", "expected"]
     page.table("RMS of the flanks / µm", head, rows)
     for group, analysis in correction.analysis.items():
-        for sentence in _limits(" and ".join(group), analysis, correction.identified[group].active):
+        result = correction.identified[group]
+        for sentence in _limits(" and ".join(group), analysis, result, correction.reachable[group]):
             page.paragraph(sentence)
     for flank, count in correction.left_out.items():
         if count:
@@ -58,13 +59,15 @@ def _limits_section(page: Page, correction: Correction, caused: Mapping[str, flo
         page.paragraph(f"{flank} flank: the root line moves by {toe:+.1f} µm at the toe, {heel:+.1f} µm at the heel.")
 
 
-def _limits(flanks: str, analysis: Analysis, active: Sequence[str]) -> Iterator[str]:
+def _limits(flanks: str, analysis: Analysis, found: Identification, reachable: float) -> Iterator[str]:
     """Sentences on what holds a correction back."""
     names = ", ".join(analysis.names)
     yield (
-        f"{flanks}: what lies outside of the shapes that {names} can give a flank stays, "
-        f"{analysis.best_rms * 1000:.2f} µm RMS of {analysis.rms * 1000:.2f} µm."
+        f"{flanks}: what {names} cannot do within their bounds stays, {reachable * 1000:.2f} µm RMS of "
+        f"{analysis.rms * 1000:.2f} µm."
     )
+    if not found.converged:
+        yield f"{flanks}: the fit stopped after {found.iterations} steps without converging: less may remain."
     for first, second, cosine in analysis.alike:
         how = "alike" if cosine > 0 else "opposite ways"
         yield (
@@ -76,8 +79,8 @@ def _limits(flanks: str, analysis: Analysis, active: Sequence[str]) -> Iterator[
         yield f"{flanks}: weak directions, which much noise and little flank belong to: {what}."
     if analysis.unseen:
         yield f"{flanks}: without effect: {', '.join(analysis.unseen)}."
-    if active:
-        yield f"{flanks}: held back by the limit of {', '.join(active)}."
+    if found.active:
+        yield f"{flanks}: held back by the limit of {', '.join(found.active)}."
 
 
 def _direction(analysis: Analysis, k: int) -> str:

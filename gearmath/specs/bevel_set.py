@@ -45,6 +45,8 @@ SIDES = {"concave": 1, "convex": -1}
 SETTINGS = tuple(component.name for component in notation.settings.components)
 #: The settings that belong to the machine and not to the blade: a completing cut shares them.
 MACHINE_SETTINGS = tuple(name for name in SETTINGS if not name.startswith("blade_"))
+#: The largest radius of a blade that is no straight one [mm]: its sagitta over 10 mm is 0.6 um.
+STRAIGHT = 20_000.0
 _ANGULAR = {component.name for component in notation.settings.components if component.unit == "rad"}
 #: Cradle rotation by work rotation, in place of the ratio of roll.
 CRADLE_PER_WORK = "ratio_of_roll_cradle_per_work"
@@ -163,9 +165,13 @@ class Settings(Sheet):
 
 
 class Design(Settings):
-    """The settings of the nominal flank of a corrected one; ``motion`` where the motion was corrected too."""
+    """The settings of the nominal flank of a corrected one; ``motion`` where the motion was corrected too.
+
+    ``blade_spheric_radius`` is that of the nominal blade, or "straight", where it was corrected.
+    """
 
     motion: Motion | None = None
+    blade_spheric_radius: Annotated[Length, Field(ge=-STRAIGHT, le=STRAIGHT)] | Literal["straight"] | None = None
 
 
 class Flank(Settings):
@@ -175,7 +181,7 @@ class Flank(Settings):
     blade_edge_radius: Length = Field(default=0.0, ge=0, le=10)
     #: Of a fixed-setting cutter, which has another side (mm); without it the root of the space decides.
     blade_point_width: Length | None = Field(default=None, gt=0, le=60)
-    blade_spheric_radius: Length | None = Field(default=None, ge=-20_000, le=20_000)
+    blade_spheric_radius: Length | None = Field(default=None, ge=-STRAIGHT, le=STRAIGHT)
     blade_reference_height: Length = Field(default=0.0, ge=0, le=60)
     toprem_angle: Angle | None = Field(default=None, ge=0.5, le=45)
     toprem_height: Length = Field(default=0.0, ge=0, le=10)
@@ -196,6 +202,12 @@ class Flank(Settings):
     def nominal(self) -> Settings:
         """The settings whose tooth surface is wanted."""
         return self.design or self
+
+    @property
+    def nominal_spheric_radius(self) -> float | None:
+        """The radius of the blade whose tooth surface is wanted, None where it is straight."""
+        before = self.design.blade_spheric_radius if isinstance(self.design, Design) else None
+        return self.blade_spheric_radius if before is None else None if before == "straight" else before
 
     @property
     def nominal_motion(self) -> Motion:
@@ -326,24 +338,26 @@ def load_bevel_set(path: Path) -> BevelSet:
 def design_sha256(member: Member) -> str:
     """What a measurement is judged against: the digest of all that makes the nominal flanks of a member."""
     nominal = [member.flank(flank).nominal.vector.tolist() for flank in FLANKS]
-    return _digest(member, [member.flank(flank).nominal_motion for flank in FLANKS], nominal)
+    motions = [member.flank(flank).nominal_motion for flank in FLANKS]
+    return _digest(member, motions, [member.flank(flank).nominal_spheric_radius for flank in FLANKS], nominal)
 
 
 def settings_sha256(member: Member) -> str:
     """What a program is made from: the digest of the method, the machine settings and the index corrections."""
     actual = [member.flank(flank).vector.tolist() for flank in FLANKS]
+    radii = [member.flank(flank).blade_spheric_radius for flank in FLANKS]
     return _digest(
-        member, [member.flank(flank).motion for flank in FLANKS], actual, list(member.index_correction)
+        member, [member.flank(flank).motion for flank in FLANKS], radii, actual, list(member.index_correction)
     )  # fmt: skip
 
 
-def _digest(member: Member, motions: list[Motion], *settings: list) -> str:
+def _digest(member: Member, motions: list[Motion], radii: list[float | None], *settings: list) -> str:
     """The digest of settings and motions together with the method and the blades, which no correction changes."""
     method = member.model_dump(include={"teeth", "process", "generation", "blade_groups", "indexing_sign"})
     others = {"design", *SETTINGS}
     blades = [
-        member.flank(flank).model_dump(exclude=others) | {"motion": motion.model_dump()}
-        for flank, motion in zip(FLANKS, motions, strict=True)
+        member.flank(flank).model_dump(exclude=others) | {"motion": motion.model_dump(), "blade_spheric_radius": radius}
+        for flank, motion, radius in zip(FLANKS, motions, radii, strict=True)
     ]
     return hashlib.sha256(repr((sorted(method.items()), blades, *settings)).encode()).hexdigest()
 
@@ -355,14 +369,15 @@ def save_corrected(
     settings: dict[str, np.ndarray],
     index_correction: np.ndarray | None = None,
     motions: dict[str, np.ndarray] | None = None,
+    curvatures: dict[str, float] | None = None,
     check: Callable[[BevelSet], object] = lambda _: None,
 ) -> None:
     """Write the set of ``source``, comments kept, with new settings (12,) of each flank, to ``target``.
 
     A setting that stays is left as it is written. The nominal settings are kept under ``design``.
     ``index_correction`` (z,) in rad replaces that of the member, and ``motions`` (10,7) of each flank, without the
-    modified roll, its motion. The text is checked as a set, and by ``check`` besides, before anything is written.
-    Raises InputError naming the target.
+    modified roll, its motion, and ``curvatures`` [1/mm] those of its blade. The text is checked as a set, and by
+    ``check`` besides, before anything is written. Raises InputError naming the target.
     """
     content = read_text(source)
     before, document = parse(content, BevelSet, str(source)).member(member), tomlkit.parse(content)
@@ -378,6 +393,8 @@ def save_corrected(
                 table[flank][key] = value
     for flank, matrix in (motions or {}).items():
         _save_motion(table[flank], matrix, mm)
+    for flank, curvature in (curvatures or {}).items():
+        _save_curvature(table[flank], curvature, mm)
     if index_correction is not None:
         table["index_correction"] = [round(math.degrees(value), 7) for value in index_correction]
     text = tomlkit.dumps(document)
@@ -437,6 +454,15 @@ def _save_motion(table: Any, matrix: np.ndarray, mm: float) -> None:
         if len(values):
             motion[name] = values.tolist()
     table["motion"] = motion
+
+
+def _save_curvature(table: Any, curvature: float, mm: float) -> None:
+    """The curvature [1/mm] of a blade into the table of a flank; the nominal radius goes under ``design``."""
+    if "blade_spheric_radius" not in table["design"]:
+        table["design"]["blade_spheric_radius"] = table.get("blade_spheric_radius", "straight")
+    table.pop("blade_spheric_radius", None)
+    if abs(curvature) > 1 / STRAIGHT:
+        table["blade_spheric_radius"] = round(1 / curvature / mm, 6 if mm == 1 else 8)
 
 
 def _vector(model: Spec, components: tuple[Quantity, ...]) -> np.ndarray:

@@ -139,6 +139,24 @@ def test_few_or_named_settings_are_changed_and_no_others(command, measured, tmp_
     assert surface["fits"][0]["remaining_rms_um"] < 0.05
 
 
+def test_curvature_of_a_blade_is_corrected_when_named_and_kept_in_the_file(command, measured, tmp_path):
+    """A blade that was ground with a radius of 5 m: the next one gets as much the other way; straight is wanted."""
+    source, errors = "nasa_tp3096_12x36.toml", {"blade_spheric_radius": 2e-4}
+    csv, new = measured(bundled(source), "pinion", **errors), tmp_path / "new.toml"
+    base = ("compensate", source, "--member", "pinion", "--measured", csv, "-o", new, "--json")
+    values = json.loads(command(*base, "--settings", "blade_spheric_radius")[1])
+    assert {change["setting"] for change in values["changes"]} == {"blade_spheric_radius"}
+    for flank in FLANKS:
+        spec = load_bevel_set(new).pinion.flank(flank)
+        assert spec.blade_spheric_radius == pytest.approx(-5000, rel=1e-3)
+        assert spec.nominal_spheric_radius is None
+    assert worst_after(bundled(source), "pinion", **errors) > 2e-3
+    assert worst_after(new, "pinion", **errors) < 1e-5
+    old, now = load_bevel_set(bundled(source)).pinion, load_bevel_set(new).pinion
+    assert design_sha256(now) == design_sha256(old)
+    assert settings_sha256(now) != settings_sha256(old)
+
+
 def test_errors_of_the_gear_are_corrected_on_the_pinion(command, measured, tmp_path):
     source = "nasa_tp3096_12x36.toml"
     gear, pinion = measured(bundled(source), "gear", **ERRORS), measured(bundled(source), "pinion")
