@@ -93,8 +93,9 @@ def mill(
     With --measured they are those of a measuring machine, with the clamping, drift and probe of the file of --errors:
     tooth 0 in full, the corners of the grid on eight teeth around, and tooth 0 again at the end.
 
-    Without --errors the status is 1 where the metal deviates by more than the tolerance that the program states and,
-    with --report, where a surface is off by more than --report-tolerance-um or something collides.
+    Every block is checked on a machine without errors: the status is 1 where it leaves more than the tolerance that the
+    program states. So it is with --report, without --errors, where a surface is off by more than --report-tolerance-um
+    or something collides.
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import read_text
@@ -128,48 +129,48 @@ def mill(
     worst = float(abs(file.deviation).max()) * 1000
     click.echo(f"{target}: {len(file)} points, largest deviation {worst:.3f} um")
     faults: list[str] = []
-    if spec.process == "face_hobbing":
-        faults += _off_tolerance(text, spec, worst / 1000, simulated)
-    else:
-        faults += _watch_blocks(text, path, spec, member, milling_machine, simulated)
+    if spec.process != "face_hobbing":
+        faults += _watch_blocks(text, path, spec, member, milling_machine)
+    elif simulated is None:
+        faults += _off_tolerance(text, spec, worst / 1000)
     if report is not None:
-        faults += _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000)
+        found = _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000)
+        faults += found if simulated is None else []
     if simulated is not None:
-        click.echo(f"not compared with a tolerance: the machine has the errors of {errors}")
-    elif faults:
+        click.echo(f"the flanks are not compared with a tolerance: the machine has the errors of {errors}")
+    if faults:
         raise ComputationError(f"{program}: {'; '.join(faults)}")
 
 
-def _off_tolerance(text: str, spec: Member, worst: float, errors: SimulatedMachine | None) -> list[str]:
+def _off_tolerance(text: str, spec: Member, worst: float) -> list[str]:
     """Whether the flanks of a hobbed member deviate by more than the program states; corrected ones are meant to."""
     from gearmath.machine.watch import stated_tolerance
 
     promised = stated_tolerance(text)
     corrected = spec.concave.design is not None or spec.convex.design is not None
-    if errors is not None or promised is None or corrected or worst <= promised:
+    if promised is None or corrected or worst <= promised:
         return []
     return [f"the flanks deviate by up to {worst * 1000:.3f} um, the program states {promised * 1000:g} um"]
 
 
-def _watch_blocks(
-    text: str, path: MachinePath, spec: Member, member: str, machine: MillingMachine, errors: SimulatedMachine | None
-) -> list[str]:
-    """Print what the blocks leave; a sentence for each way in which that is more than the program states."""
+def _watch_blocks(text: str, path: MachinePath, spec: Member, member: str, machine: MillingMachine) -> list[str]:
+    """Print what the blocks leave on a machine without errors; a sentence for each way in which that is more than the
+    program states."""
     from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
     from gearmath.machine.run import runs_of
     from gearmath.machine.watch import off_the_way, stated_tolerance, watch
 
-    runs = runs_of(path, spec, member, machine, errors, tooth_space(spec, member, 7), SHARP_EDGE)
+    runs = runs_of(path, spec, member, machine, None, tooth_space(spec, member, 7), SHARP_EDGE)
     with bar(len({space for run in runs for space in run.spaces}), "space") as progress:
-        found = watch(runs, spec, machine, errors, fast_kernels(), progress)
+        found = watch(runs, spec, machine, None, fast_kernels(), progress)
     deviation, (space, flank, line) = found.worst
     at = f"line {line} of the program (space {space}, {flank} flank)"
     click.echo(
-        f"every block checked on {found.lines} normals across the flanks: {found.lowest * 1000:.3f} to "
+        f"every block checked on {found.lines} normals of the flanks of these settings: {found.lowest * 1000:.3f} to "
         f"{found.highest * 1000:.3f} um, the largest by {at}"
     )
     promised = stated_tolerance(text)
-    if errors is not None or promised is None:
+    if promised is None:
         if found.uncut:
             click.echo(f"  {found.uncut} of these normals are not cut at all")
         return []

@@ -130,7 +130,10 @@ def test_metal_of_a_wrong_machine_is_not_judged_by_the_tolerance_of_the_program(
         "-o", tmp_path / "m.csv",
     )  # fmt: skip
     assert (status, err) == (0, "")
-    assert out.splitlines()[-1] == "not compared with a tolerance: the machine has the errors of simulated_shop.toml"
+    assert (
+        out.splitlines()[-1]
+        == "the flanks are not compared with a tolerance: the machine has the errors of simulated_shop.toml"
+    )
 
 
 def test_blocks_are_counted_without_comments(command, tmp_path):
