@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearmath.bevel.blame import Misfit
-from gearmath.bevel.check_blank import working_depth
-from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.check_blank import transverse_module, working_depth
+from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
 from gearmath.bevel.kernels import kernel
-from gearmath.bevel.method import blade_sections
+from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.newton import FlankPoints
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import SIDES, Member
 
@@ -28,6 +29,8 @@ _OFF_CENTER = 15.0
 _FLAT_BLADE = math.radians(89.9)
 _PLACES = ("toe", "mean point", "heel")
 _BLADE_SLACK = 1e-7
+#: What motions of the settings may change of the form of a flank, over the transverse module.
+_MOTION = 0.2
 
 
 @dataclass(frozen=True)
@@ -73,10 +76,31 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation) -> CutFlan
 
 def check_grid(member: Member, name: str, flank: str) -> None:
     """Refuse a flank that is not there on the whole of the standard grid. Raises Misfit."""
+    grid = blank_grid(member)
     try:
-        solve_flank(member, name, flank, blank_grid(member))
+        points = solve_flank(member, name, flank, grid)
     except InputError as error:
         raise Misfit.of(name, flank, str(error).removeprefix(f"{name} {flank} flank, ")) from error
+    if generation_of(member, flank).motion.any():
+        _check_motion(member, name, flank, grid, points)
+
+
+def _check_motion(member: Member, name: str, flank: str, grid: Grid, points: FlankPoints) -> None:
+    """A motion changes the form of the flank that the settings cut at rest, and not what flank it is."""
+    how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
+    resting = replace(how, motion=np.zeros_like(how.motion))
+    rest = solve_section(resting, section, grid.axial.ravel(), grid.radial.ravel(), points.contact)
+    delta = math.radians(member.blank.pitch_angle)
+    _, _, across, azimuth = kernel("flank_angles")(delta, points.point, points.normal)
+    _, _, _, before = kernel("flank_angles")(delta, rest.point, rest.normal)
+    turn = np.mod(azimuth - before + math.pi, 2 * math.pi) - math.pi
+    change = (turn * grid.radial.ravel() * across)[rest.converged]
+    limit = _MOTION * transverse_module(member)
+    if not np.ptp(change) <= limit:
+        raise InputError(
+            f"{name}.{flank}.motion: it changes the form of the flank by {np.ptp(change):.3g} mm from end to end "
+            f"against settings at rest, which must be at most {limit:.3g} mm, {_MOTION:g} of the module"
+        )
 
 
 def _mean_place(member: Member) -> tuple[np.ndarray, np.ndarray]:
