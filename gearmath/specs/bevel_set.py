@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 import tomlkit
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from derivations import Quantity, cradle, notation
 from gearmath.errors import InputError
@@ -143,6 +143,11 @@ class Settings(Sheet):
     work_rotation_offset: Angle = Field(ge=-360, le=360)
     blade_point_radius: Length = Field(gt=5, le=500)
     blade_pressure_angle: Angle = Field(ge=3, le=45)
+
+    @classmethod
+    def keys(cls) -> list[str]:
+        """The keys of its table in a file."""
+        return [*super().keys(), CRADLE_PER_WORK]
 
     @classmethod
     def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
@@ -305,6 +310,8 @@ class BevelSet(Sheet):
     shaft_angle: Angle = Field(gt=0, lt=180)
     pinion: Member | None = None
     gear: Member | None = None
+    #: The file that it was read from, for sentences.
+    _file: str = PrivateAttr("")
 
     @model_validator(mode="after")
     def _mates(self) -> BevelSet:
@@ -326,13 +333,15 @@ class BevelSet(Sheet):
             raise InputError(f"member = {name!r}: must be pinion or gear")
         members = self.members
         if name not in members:
-            raise InputError(f"{name}: the set {self.title!r} has no {name}, only a {next(iter(members))}")
+            raise InputError(f"{self._file or self.title}: has no {name}, only a {next(iter(members))}")
         return members[name]
 
 
 def load_bevel_set(path: Path) -> BevelSet:
     """Read a gear set. Raises InputError naming file, key, value and limit."""
-    return load(path, BevelSet)
+    gear_set = load(path, BevelSet)
+    gear_set._file = str(path)
+    return gear_set
 
 
 def design_sha256(member: Member) -> str:
@@ -396,7 +405,7 @@ def save_corrected(
     for flank, curvature in (curvatures or {}).items():
         _save_curvature(table[flank], curvature, mm)
     if index_correction is not None:
-        table["index_correction"] = [round(math.degrees(value), 7) for value in index_correction]
+        table["index_correction"] = [round(math.degrees(value), 7) + 0.0 for value in index_correction]
     text = tomlkit.dumps(document)
     corrected = parse(text, BevelSet, str(target))
     try:

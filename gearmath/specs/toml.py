@@ -21,6 +21,11 @@ class Spec(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
     @classmethod
+    def keys(cls) -> list[str]:
+        """The keys of its table in a file."""
+        return list(cls.model_fields)
+
+    @classmethod
     def from_file(cls, values: Mapping[str, Any]) -> Self:
         """The model of the values of a file, where that may say in other words what the model has."""
         return cls.model_validate(values)
@@ -106,7 +111,7 @@ def _keys(model: type[Spec], place: tuple[int | str, ...]) -> list[str]:
         at = _table(at.model_fields[part].annotation) if part in at.model_fields else None
         if at is None:
             return []
-    return list(at.model_fields)
+    return at.keys() if issubclass(at, Spec) else []
 
 
 def _table(annotation: Any) -> type[BaseModel] | None:

@@ -357,3 +357,11 @@ def test_odd_value_of_any_key_is_refused_in_one_sentence_or_taken(odd):
                 assert np.isfinite(vectors).all()
             else:
                 assert re.fullmatch(r"sheet\.toml: [^\n]+", found)
+
+
+def test_misspelt_ratio_by_cradle_is_named_with_the_key_that_is_meant():
+    text = bundled("nasa_tp3096_12x36.toml").read_text("utf-8")
+    text = text.replace("\nratio_of_roll =", "\nratio_of_roll_cradle_per_wrk =", 1)
+    meant = r"pinion\.concave\.ratio_of_roll_cradle_per_wrk: no such key; did you mean ratio_of_roll_cradle_per_work\?"
+    with pytest.raises(InputError, match=meant):
+        parse(text, BevelSet, "s.toml")
