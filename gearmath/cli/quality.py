@@ -15,7 +15,7 @@ from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
 @click.option("--set", "gear_set", required=True, help="The gear set the member belongs to.")
 @click.option(
     "--register/--no-register", "registered", default=True, show_default=True,
-    help="Take out how the work sat (eccentricity, tilt), where the points tell it.",
+    help="Take out the clamping (eccentricity, tilt), where the points tell it.",
 )  # fmt: skip
 @click.option(
     "--rotation/--no-rotation", "rotated", default=True, show_default=True,

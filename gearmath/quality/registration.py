@@ -1,4 +1,4 @@
-"""Registration: how the work sat when it was measured, found in its own points, and taken out of them.
+"""Registration: how the work was clamped when it was measured, found in its own points, and taken out of them.
 
 The unknown seat (16.6), eccentricity and tilt, is fitted by Gauss-Newton on the exact transform: measured points are
 brought back into the work by (18.1) and judged against the exact nominal surface. Left free, and so never taken for
