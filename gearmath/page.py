@@ -22,7 +22,8 @@ table { border-collapse: collapse; margin: .6rem 0 1rem; font-variant-numeric: t
 caption { text-align: left; font-size: .87rem; color: #444; padding-bottom: .25rem }
 th, td { padding: .12rem .7rem .12rem 0; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
 thead th { border-bottom: 1px solid #666; vertical-align: bottom }
-td.number, th.number { text-align: right; white-space: nowrap }
+td.number, th.number { text-align: right }
+td.number { white-space: nowrap }
 table.head { width: 100%; border: 1px solid #1a1a1a }
 table.head th, table.head td { border: 1px solid #aaa; padding: .12rem .5rem }
 table.head tbody th { width: 9rem; font-weight: normal; color: #444 }

@@ -85,12 +85,21 @@ def draw_runout(
         wave = float(np.nanmean(runout.shift)) + size * np.cos(runout.azimuth - direction)
         text = f"{label}: F_r {or_withheld(runout.total)}"
         axes.plot(runout.shift * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
-        text = f"harmonic {size * 1000:.1f} µm towards {np.degrees(direction):.0f}°"
+        text = f"harmonic {size * 1000:.1f} µm at {np.degrees(direction):.0f}°"
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
     axes.set_xlabel("space", fontsize=8)
     axes.set_ylabel("ball, normal to the pitch cone / µm", fontsize=8)
     axes.tick_params(labelsize=7)
-    axes.legend(fontsize=7, frameon=False, loc="lower left", bbox_to_anchor=(0, 1), ncol=2, borderaxespad=0.1)
+    axes.legend(
+        fontsize=7,
+        frameon=False,
+        loc="lower left",
+        bbox_to_anchor=(0, 1),
+        ncol=2,
+        borderaxespad=0.1,
+        handlelength=1.5,
+        columnspacing=1.0,
+    )
 
 
 def _unknown(axes: Axes, values: np.ndarray) -> None:

@@ -40,7 +40,9 @@ def pitch_chart(pitch: Pitch, after: Pitch | None, limits: Limits) -> Figure:
 def runout_chart(runout: Runout) -> Figure:
     """Movement of a ball in every space."""
     figure = Figure(figsize=(_WIDTH, 2.0), layout="constrained")
-    draw_runout(figure.subplots(), runout, names=("measured", ""))
+    axes = figure.subplots()
+    draw_runout(axes, runout, names=("measured", ""))
+    axes.set_ylabel("movement / µm", fontsize=8)  # the caption says of what
     return figure
 
 

@@ -60,7 +60,8 @@ def draw_topography(
     _scale_bar(axes, x, scale)
     zero = "not zeroed" if taken is None else f"zero at the ring, {signed(taken * 1000)} µm taken off there"
     count = f"; {shown.left_out} of {values.size} points left out (×)" if shown.left_out else ""
-    axes.set_xlabel(f"{zero}{count}", fontsize=7)
+    whose = "" if earlier is None else "numbers: after; "
+    axes.set_xlabel(f"{whose}{zero}{count}", fontsize=7)
     axes.set_xlim(-0.75, x.max() + 1.25)
     axes.set_ylim(-1.0, rows - 1 + 1.15)
     axes.set_xticks([])

@@ -30,7 +30,7 @@ def _settings_section(page: Page, measurement: Measurement, correction: Correcti
         factor, unit = reading(name)
         u = standard.get((flank, name), math.nan)
         values = (f"{value * factor:.6f}" for value in (old, new, new - old))
-        rows.append([flank, name, *values, f"{u * factor:.6f}" if math.isfinite(u) else "", unit])
+        rows.append([flank, name.replace("_", " "), *values, f"{u * factor:.6f}" if math.isfinite(u) else "", unit])
     page.table("Settings that change", ["flank", "setting", "old", "new", "change", "u", "unit"], rows)
     if correction.index is not None:
         size = math.degrees(np.ptp(correction.index)) * 3600

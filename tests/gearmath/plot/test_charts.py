@@ -10,18 +10,20 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from gearmath.bevel.flank import blank_grid
 from gearmath.machine.mill import nominal_flank
 from gearmath.plot import evaluation_figure, uncertainty_figure
 from gearmath.plot.pitch import pitch_limits
-from gearmath.plot.sheet import pitch_chart, topography_chart
+from gearmath.plot.sheet import pitch_chart, runout_chart, tooth_chart, topography_chart
 from gearmath.plot.style import round_length, signed
 from gearmath.plot.tooth import _SHADES, draw_tooth, tooth_flanks
 from gearmath.plot.topography import draw_topography, um_per_row
 from gearmath.quality.evaluation import evaluate_member
 from gearmath.quality.figures import Figure as Named
 from gearmath.quality.pitch import Pitch
+from gearmath.quality.spaces import Runout
 from gearmath.quality.topography import Topography
 from gearmath.quality.uncertainty import Uncertain
 from gearmath.specs.bevel_set import FLANKS
@@ -248,6 +250,33 @@ def test_a_file_name_with_dollars_is_a_name_and_no_formula(gear_set):
     for figure in (evaluation_figure("a$^b$.csv", found), uncertainty_figure("a$^b$.csv", figures())):
         FigureCanvasAgg(figure).draw()
         assert figure.get_suptitle().startswith("a$^b$.csv")
+
+
+def test_every_word_of_every_chart_of_the_sheet_lies_within_its_picture(gear_set):
+    """Of a member of 36 teeth and long numbers."""
+    spec = gear_set.gear
+    file = join([nominal_flank(spec, "gear", name, blank_grid(spec)) for name in FLANKS])
+    flanks = tooth_flanks(file, {name: flank(-88.8, name) for name in FLANKS}, spec.teeth)
+    wave = 0.1234 * np.sin(2 * np.pi * np.arange(36) / 36)
+    pitch, runout = Pitch("concave", 0 * wave, wave), Runout(wave, 2 * np.pi * np.arange(36) / 36, np.eye(36))
+    figures = [
+        topography_chart(flank(-88.8), 100.0, 0.1234), pitch_chart(pitch, pitch, pitch_limits([pitch])),
+        runout_chart(runout), tooth_chart(flanks, "concave", 50.0),
+    ]  # fmt: skip
+    for figure in figures:
+        FigureCanvasAgg(figure).draw()
+        beyond = {  # labels of ticks outside of the axes are not drawn
+            tick.label1
+            for axis in (axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis))
+            for tick in axis.get_major_ticks()
+            if not axis.get_view_interval()[0] <= tick.get_loc() <= axis.get_view_interval()[1]
+        }
+        words = [text for text in figure.findobj(Text) if text.get_text() and text not in beyond]
+        assert len(words) > 5
+        for text in words:
+            box = text.get_window_extent()
+            assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1, text
+            assert figure.bbox.y0 <= box.y0 < box.y1 <= figure.bbox.y1, text
 
 
 def test_numbers_have_signs_and_scale_bars_round_lengths():
