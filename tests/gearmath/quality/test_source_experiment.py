@@ -140,7 +140,8 @@ def test_loop_goes_down_to_what_settings_cannot_express_and_the_noise(first_cut,
     assert once <= np.abs(residual).max() + 0.002
     assert twice <= np.abs(residual).max() + 3 * SIGMA
     corrected = sum(len(found.values) for found in floor.identified.values())
-    assert rms(standing_free(member, name, states[1])) <= np.hypot(rms(residual), SIGMA * np.sqrt(corrected / len(residual))) * 1.05
+    limit = np.hypot(rms(residual), SIGMA * np.sqrt(corrected / len(residual))) * 1.05
+    assert rms(standing_free(member, name, states[1])) <= limit
     once, twice = (max(cumulative_pitch(each, member.teeth, flank) for flank in FLANKS) for each in states)
     assert once <= 0.003
     mean, deviation = pitch_left_by_noise(member, state)
