@@ -60,7 +60,9 @@ def test_table_and_json_have_the_same_figures(command, measured):
     assert head.split() == ["flank", "figure", "value", "u", "from", "to", "unit", "method"]
     found = values(command, measured)
     figures = found["figures"]
-    assert len(rows) == len(figures) == 2 + 1 + 2 * (6 + 10 + 1 + 12 + 2) + 2 + 2 * 7
+    settings = sum(figure["unit"] in ("mm", "deg", "1") for figure in figures)
+    assert 2 <= settings < 2 * 7  # the few that are corrected
+    assert len(rows) == len(figures) == 2 + 1 + 2 * (6 + 10 + 1 + 12 + 2) + 2 + settings
     assert found["remarks"] == []
     for line, flank in ((concave, "concave"), (convex, "convex")):
         assert line.startswith(f"{flank} flank: errors of measurement will leave ")
@@ -84,13 +86,13 @@ def test_corrected_settings_are_those_that_compensate_writes(command, measured, 
         for sigma in (0.3, 0.6)
     )
     names = [key for key, one in sharp.items() if one["unit"] in ("mm", "deg", "1")]
-    assert len(names) == 14
+    assert 2 <= len(names) < 14  # the few that are corrected
     spec = load_bevel_set(bundled(SET)).pinion
     file = read_flank_csv(measured)
     found = evaluate_member(file, spec, "pinion")
     judged = independent(np.full(len(file), 0.3e-3)).carried(judged_by_measured(file, spec, found))
     noise = noise_of(spec, "pinion", found.file, judged)
-    correction = correct(spec, "pinion", found.file, noise=noise)
+    correction = correct(spec, "pinion", found.file, few=True, noise=noise)
     for flank, name in names:
         vector = correction.settings[flank][SETTINGS.index(name)]
         value = np.degrees(vector) if sharp[flank, name]["unit"] == "deg" else vector
@@ -158,14 +160,14 @@ def test_compensation_shows_uncertainties_where_the_points_have_them(command, me
     known = json.loads(command(*arguments, "--json", "--sigma-um", 0.5)[1])
     whole = {(one["flank"], one["figure"]): one["u"] for one in values(command, measured, "--sigma-um", 0.5)["figures"]}
     for flank, settings in known["u"].items():
-        assert len(settings) == 7
+        assert 1 <= len(settings) < 7
         for name, u in settings.items():
             assert u == pytest.approx(whole[flank, name], rel=1e-3)  # an uncertainty has two or three digits
-    known = json.loads(command(*arguments, "--json", "--sigma-um", 0.5, "--no-register")[1])
+    known = json.loads(command(*arguments, "--json", "--sigma-um", 0.5, "--no-register", "--no-rotation")[1])
     for flank in FLANKS:
         # of 45 variances, what settings take up and what they leave make the whole, but for what damping does to both
         assert known["caused_rms_um"][flank] ** 2 + known["expected_u_um"][flank] ** 2 == pytest.approx(0.25, rel=0.05)
-    status, out, _ = command(*arguments, "--noise", 0.5)
+    status, out, _ = command(*arguments, "--noise", 0.5, "--verbose")
     assert status == 0
     head = next(line.split() for line in out.splitlines() if line.startswith("flank "))
     assert head == ["flank", "setting", "old", "new", "u", "unit"]
