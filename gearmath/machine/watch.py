@@ -106,6 +106,8 @@ def watch(
 ) -> Watch:  # fmt: skip
     """What the passes of every space leave on the flanks of that space, the ``runs`` with rounded blades.
 
+    The flanks are those that the settings cut, indexed as they are corrected, whatever they are corrected for.
+
     Rapid blocks that end as low as the tool cuts take metal away like the others, in every space.
 
     ``progress`` is called for every space.
@@ -113,9 +115,10 @@ def watch(
     flanks = watched_flanks(member, runs)
     numbers = np.concatenate([run.line for run in runs])
     rows: list[tuple[float, float, int, int, int, str, int]] = []
+    turns = tooth_angles(member.teeth, member.index_correction)
     for space in sorted({number for run in runs for number in run.spaces}):
         own = [replace(run, cutting=(run.cutting & (run.space == space)) | _rapid_in_metal(run)) for run in runs]
-        angle = 2 * np.pi * space / member.teeth
+        angle = turns[space]
         for one in flanks:
             lines = (turned(one.point, angle), turned(one.normal, angle), one.start)
             left = expose(own, machine, errors, *lines, evaluator)
