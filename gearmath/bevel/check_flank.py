@@ -30,7 +30,7 @@ _FLAT_BLADE = math.radians(89.9)
 _PLACES = ("toe", "mean point", "heel")
 _BLADE_SLACK = 1e-7
 #: What motions of the settings may change of the form of a flank, over the transverse module.
-_MOTION = 0.2
+_MOTION = 0.1
 
 
 @dataclass(frozen=True)

@@ -176,8 +176,8 @@ REFUSED = {
         r"gear\.concave\.motion\.sliding_base = \[0\.5\]: the cradle stands still in a Formate cut",
     ),
     "motion in degrees where radians are meant": (
-        UNIVERSAL, {"pinion.convex.motion.work_rotation_offset": [0.97, 63.9]},
-        r"pinion\.convex\.motion: it changes the form of the flank by [\d.]+ mm from end to end .* at most 0\.785 mm",
+        FORMATE, {"pinion.concave.motion": {"work_rotation_offset": [0.97, 63.9]}},
+        r"pinion\.concave\.motion: it changes the form of the flank by [\d.]+ mm from end to end .* at most 0\.392 mm",
     ),
     "blade offset of a face mill": (
         NASA, {"gear.convex.blade_offset_angle": 4.0}, r"gear\.convex\.blade_offset_angle = 4: belongs to face_hobbing",
