@@ -301,6 +301,7 @@ def corrected(tmp_path: Path, **changes: float) -> Path:
 
 def test_corrected_set_passes_with_what_a_correction_changes(tmp_path: Path) -> None:
     load_pair(corrected(tmp_path, radial_distance=0.2, cradle_angle=math.radians(-0.2), ratio_of_roll=0.005))
+    load_pair(corrected(tmp_path, sliding_base=0.4))
     load_pair(corrected(tmp_path, work_rotation_offset=math.radians(0.5)))
 
 
