@@ -21,8 +21,9 @@ from gearmath.specs.bevel_set import SIDES, Member
 _PRESSURE, _STEEPEST = (5.0, 40.0), 55.0
 #: Spiral angles below this one tell no hand: that of a Zerol gear is told by its heel. [degree]
 _ZEROL = 2.0
-#: The root may lie off that of the blank by these parts of the clearance, at the mean point and at toe and heel.
-_ROOT_AT_MEAN, _ROOT_AT_ENDS = 0.25, 0.75
+#: The root may lie off that of the blank by these parts of the clearance, at toe, mean point and heel; where settings
+#: are corrected, so far that the tip of the mate stays clear of it.
+_ROOT, _CORRECTED_ROOT = (0.75, 0.25, 0.75), (1.0, 1.0, 1.0)
 #: The mean point is cut near the middle of the roll: largest cradle rotation from where cradle_angle puts it. [degree]
 _OFF_CENTER = 15.0
 #: The tip plane of the cutter as a blade: nearly square to its axis, so that it shows where the root is deepest.
@@ -30,7 +31,7 @@ _FLAT_BLADE = math.radians(89.9)
 _PLACES = ("toe", "mean point", "heel")
 _BLADE_SLACK = 1e-7
 #: What motions of the settings may change of the form of a flank, over the transverse module.
-_MOTION = 0.2
+_MOTION = 0.1
 
 
 @dataclass(frozen=True)
@@ -47,8 +48,11 @@ class CutFlank:
     root: np.ndarray
 
 
-def cut_flank(member: Member, name: str, flank: str, how: Generation) -> CutFlank:
-    """The flank that is generated like this. Raises Misfit where it cannot be the flank that the blank describes."""
+def cut_flank(member: Member, name: str, flank: str, how: Generation, corrected: bool = False) -> CutFlank:
+    """The flank that is generated like this. Raises Misfit where it cannot be the flank that the blank describes.
+
+    The root of ``corrected`` settings may lie farther from that of the blank.
+    """
     spec = member.flank(flank)
     section = blade_sections(spec, SIDES[flank])["main"]
     mean = solve_section(how, section, *_mean_place(member))
@@ -65,7 +69,7 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation) -> CutFlan
             f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must "
             f"be at most {_OFF_CENTER:g}",
         )  # fmt: skip
-    root = _root(member, name, flank, how, mean.contact)
+    root = _root(member, name, flank, how, mean.contact, np.array(_CORRECTED_ROOT if corrected else _ROOT))
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 0.5, 1.0]), np.ones(3))
     tips = solve_section(how, section, axial, radial)
     _check_tips(name, flank, section, tips.contact[:, 0], tips.converged, spec.blade_profile_height)
@@ -143,9 +147,9 @@ def _check_hand(member: Member, name: str, flank: str, spiral: float, tip_azimut
     )  # fmt: skip
 
 
-def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarray) -> np.ndarray:
-    """Points (3,3) that the tip of the blade leaves: they have to lie on the root of the blank, to a part of the
-    clearance."""
+def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Points (3,3) that the tip of the blade leaves: they have to lie on the root of the blank, to a ``share`` (3,) of
+    the clearance."""
     blank = member.blank
     across, delta = np.array([0.0, 0.5, 1.0]), math.radians(blank.pitch_angle)
     place, out = (math.cos(delta), math.sin(delta)), (-math.sin(delta), math.cos(delta))
@@ -161,7 +165,6 @@ def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarr
         raise Misfit.of(name, flank, f"the tip of the blade does not reach the root at the {_PLACES[k]}")
     at = np.stack([found.point[:, 2], np.hypot(found.point[:, 0], found.point[:, 1])], axis=1)
     off = at @ out - root
-    share = np.array([_ROOT_AT_ENDS, _ROOT_AT_MEAN, _ROOT_AT_ENDS])
     beyond = ~(np.abs(off) <= share * blank.clearance)
     if beyond.any():
         k = int(np.argmax(np.abs(off) / share))

@@ -88,7 +88,7 @@ def _check_corrected(member: Member, name: str, flank: str, nominal: CutFlank) -
     spec = member.flank(flank).model_copy(update={"design": None})
     corrected = member.model_copy(update={flank: spec})
     try:
-        found = cut_flank(corrected, name, flank, cut_generation_of(member, flank))
+        found = cut_flank(corrected, name, flank, cut_generation_of(member, flank), True)
         _check_change(member, name, flank, nominal, found)
     except Misfit as misfit:
         raise InputError(f"{misfit}; the setting changed most is {most_changed(member, name, flank)}") from misfit

@@ -176,8 +176,8 @@ REFUSED = {
         r"gear\.concave\.motion\.sliding_base = \[0\.5\]: the cradle stands still in a Formate cut",
     ),
     "motion in degrees where radians are meant": (
-        UNIVERSAL, {"pinion.convex.motion.work_rotation_offset": [0.97, 63.9]},
-        r"pinion\.convex\.motion: it changes the form of the flank by [\d.]+ mm from end to end .* at most 0\.785 mm",
+        FORMATE, {"pinion.concave.motion": {"work_rotation_offset": [0.97, 63.9]}},
+        r"pinion\.concave\.motion: it changes the form of the flank by [\d.]+ mm from end to end .* at most 0\.392 mm",
     ),
     "blade offset of a face mill": (
         NASA, {"gear.convex.blade_offset_angle": 4.0}, r"gear\.convex\.blade_offset_angle = 4: belongs to face_hobbing",
@@ -301,6 +301,7 @@ def corrected(tmp_path: Path, **changes: float) -> Path:
 
 def test_corrected_set_passes_with_what_a_correction_changes(tmp_path: Path) -> None:
     load_pair(corrected(tmp_path, radial_distance=0.2, cradle_angle=math.radians(-0.2), ratio_of_roll=0.005))
+    load_pair(corrected(tmp_path, sliding_base=0.4))
     load_pair(corrected(tmp_path, work_rotation_offset=math.radians(0.5)))
 
 
