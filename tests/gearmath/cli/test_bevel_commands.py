@@ -60,7 +60,7 @@ def test_points_stand_at_the_places_of_a_list(command, tmp_path):
     places.write_text("z_w,r_w\n" + "".join(f"{z:.9f},{r:.9f}\n" for z, r in place), "utf-8")
     assert command(*arguments, "--places", places, "--grid", "2x3")[0] == 0
     file = read_flank_csv(target)
-    assert (file.header["grid"], file.header["margins"]) == ("2x3", "places")
+    assert (file.header["grid"], file.header["margins"]) == ("2x3", "own")
     np.testing.assert_allclose(file.point, grid.point, atol=1e-8)
     status, out, _ = command(*arguments, "--places", places)
     assert (status, "6 points" in out) == (0, True)
@@ -99,7 +99,7 @@ FLANK = ("flank", "{set}", "--member", "gear", "--flank", "concave", "-o", "{tar
         (FLANK[:-2], "Missing option '-o'"),
         ((*FLANK[:-1], "{folder}/absent/f.csv"), r"f\.csv: cannot be written: No such file or directory"),
         ((*FLANK[:-1], "{folder}"), "is a directory"),
-        (FLANK[:2] + FLANK[4:], "Missing option '--member'"),
+        (FLANK[:2] + FLANK[4:], "--member is missing: the set has both"),
     ],
 )
 def test_bad_arguments_are_one_line_and_write_nothing(refused, tmp_path, arguments, sentence):
