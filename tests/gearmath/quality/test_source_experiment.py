@@ -10,10 +10,10 @@ from gearmath.machine.executor import execute
 from gearmath.machine.measuring import measure_member
 from gearmath.machine.metal import metal
 from gearmath.machine.probing import teeth_around
+from gearmath.quality.analysis import LOSS_PART
 from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
 from gearmath.quality.evaluation import evaluate_member
-from gearmath.quality.rotation import common_rotation
 from gearmath.quality.target import flank_target
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, load_bevel_set, save_corrected
 from gearmath.specs.simulated_machine import Probe, load_simulated_machine
@@ -75,8 +75,11 @@ def profile(file):
 
 
 def standing_free(member, name, file):
-    """The profile without the rotation that both flanks have in common: a correction leaves open how the work stood."""
-    return profile(common_rotation(file, member, name).file)
+    """The profile but for a rotation of the work, by least squares: the correction leaves open how it stood."""
+    targets = [flank_target(member, name, flank, file, tooth=0) for flank in FLANKS]
+    deviation = np.concatenate([target.deviation for target in targets])
+    column = np.concatenate([predicted(target, target.settings)[1][:, 9] for target in targets])
+    return deviation - column * (column @ deviation) / (column @ column)
 
 
 def rms(values):
@@ -132,7 +135,7 @@ def test_loop_goes_down_to_what_settings_cannot_express_and_the_noise(first_cut,
         # the seat is told in spite of drift and of errors of the index that look like it
         clamp = SHOP.measuring_clamp(name)
         assert judged.registration.eccentricity == pytest.approx(clamp.eccentricity, abs=2e-3)
-        found = correct(gear_set.member(name), name, judged.file, few=True)
+        found = correct(gear_set.member(name), name, judged.file, few=True, noise=SIGMA)
         source = tmp_path / f"{k}.toml"
         save_corrected(bundled("crown_gear_7x43.toml"), source, name, found.settings, found.index, found.motions)
         state = cut(load_bevel_set(source), name, vertical)
@@ -141,7 +144,8 @@ def test_loop_goes_down_to_what_settings_cannot_express_and_the_noise(first_cut,
     assert once <= np.abs(residual).max() + 0.002
     assert twice <= np.abs(residual).max() + 3 * SIGMA
     corrected = sum(len(found.values) for found in floor.identified.values())
-    limit = np.hypot(rms(residual), SIGMA * np.sqrt(corrected / len(residual))) * 1.05
+    few_lose = 1 + LOSS_PART  # by their choice, against all settings, which left the residual
+    limit = np.hypot(rms(residual) * few_lose, SIGMA * np.sqrt(corrected / len(residual))) * 1.05
     assert rms(standing_free(member, name, states[1])) <= limit
     once, twice = (max(cumulative_pitch(each, member.teeth, flank) for flank in FLANKS) for each in states)
     assert once <= 0.003
