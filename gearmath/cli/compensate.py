@@ -267,10 +267,8 @@ def _say_analysis(flanks: str, analysis: Analysis) -> None:
 def _say_result(correction: Correction) -> None:
     for group, found in correction.identified.items():
         kept = "expected to remain" if found.converged else "not converged, left so far"
-        click.echo(
-            f"{' and '.join(group)}: RMS {found.rms_before * 1000:.3f} um, {kept} {found.rms_after * 1000:.3f} um "
-            f"({found.iterations} iterations)"
-        )
+        before, after = correction.measured_rms(group) * 1000, found.rms_after * 1000
+        click.echo(f"{' and '.join(group)}: RMS {before:.3f} um, {kept} {after:.3f} um ({found.iterations} iterations)")
     for flank, moved in correction.root.items():
         click.echo(f"{flank}: root line {moved[0] * 1000:+.1f} um at the toe, {moved[1] * 1000:+.1f} um at the heel")
 
@@ -307,7 +305,7 @@ def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any
         "alike": [list(pair) for pair in analysis.alike],
         "weak_directions": [analysis.direction(k) for k in analysis.weak],
         "without_effect": list(analysis.unseen),
-        "rms_um": found.rms_before * 1000,
+        "rms_um": correction.measured_rms(group) * 1000,
         "linear_estimate_rms_um": analysis.best_rms * 1000,
         "reachable_rms_um": correction.reachable[group] * 1000,
         "remaining_rms_um": found.rms_after * 1000,

@@ -29,6 +29,12 @@ _WORSE = 5e-5
 _TURNS, _AT_REST = 6, 1e-7
 #: Trials of the noise, each at most half of the one before.
 _NOISE_TRIALS = 6
+#: A rotation that is left open moves the points by at most so many times the largest deviation measured.
+_ROTATION_PART = 3.0
+#: A change can be taken back where its opposite does the opposite, but for this part of what it does, and so much. [mm]
+_BENT, _BENT_LEAST = 0.1, 2e-4
+#: Else the noise is raised by this factor, from at least this noise on, so often at most. [mm]
+_TAMING, _LEAST_NOISE, _TAMING_TRIALS = 3.0, 1e-4, 12
 #: A point that was left out must be predicted this well: the variance of the prediction against that of one point.
 _LEVERAGE = 4.0
 #: How far a correction may move the root line at toe and heel [mm]. Peers hold 0.025 mm when they design; a machine
@@ -67,6 +73,10 @@ class Correction:
     curvatures: dict[str, float]
     rms: dict[str, tuple[float, float]]
 
+    def measured_rms(self, group: Sequence[str]) -> float:
+        """RMS [mm] of what was measured on the flanks of a group."""
+        return float(np.sqrt(np.mean([self.rms[flank][0] ** 2 for flank in group])))
+
 
 def correct(
     member: Member, name: str, measured: FlankFile, free: Sequence[str] | None = None, *, objective: str = "points",
@@ -101,22 +111,24 @@ def correct(
         "objective": objective, "root_limit": root_limit, "bounds": bounds, "run": run
     })  # fmt: skip
     identified, rotation = fit.solve(fit.chosen(noise) if few else dict.fromkeys(groups, names), noise)
-    targets = fit.turned(rotation.shift)
+    as_measured, targets = fit.without_rotation(), fit.turned(rotation.shift)
     progress(1)
     found = Correction({}, identified, {}, _index(member, measured), {}, {}, {}, {}, {}, rotation, {}, {})
     for group in groups:
-        mine = [targets[flank] for flank in group]
+        mine, measured_there = ([each[flank] for flank in group] for each in (targets, as_measured))
+        before = [target.deviation for target in measured_there]
         found.left_out.update({f: t.grid_points - len(t.deviation) for f, t in zip(group, mine, strict=True)})
         found.analysis[group] = analyse(mine, names, bounds, run)
         best = identify(mine, names, root_limit=root_limit, bounds=bounds, run=run)
         held_back = bool(identified[group].active) and not _as_good(identified[group], best)
-        if few and (held_back or _made_worse(group, mine, identified[group], noise or 0.0)):
+        if few and (held_back or _made_worse(group, before, identified[group], noise or 0.0)):
             identified[group] = _identify(mine, names, noise, fit.how)  # all of them may do what the few do not
         result = identified[group]
         found.reachable[group] = min(best.rms_after, result.rms_after)
-        _refuse_worse(name, group, mine, result, noise or 0.0)
+        _refuse_worse(name, group, before, result, noise or 0.0)
         for k, (flank, target) in enumerate(zip(group, mine, strict=True)):
             _settle(found, member, flank, target, result, k)
+            found.rms[flank] = _rms(before, result)[k]
     progress(1)
     return found
 
@@ -165,6 +177,11 @@ class _Fit:
             for (flank, target), part in zip(self.targets.items(), parts, strict=True)
         }
 
+    def without_rotation(self) -> dict[str, FlankTarget]:
+        """The targets as measured, turned so that least is left if no setting is changed."""
+        measured = np.concatenate([target.deviation for target in self.targets.values()])
+        return self.turned(self.columns @ (np.linalg.pinv(self.columns) @ measured))
+
     def solve(
         self, names: dict[tuple[str, ...], tuple[str, ...]], noise: float | None
     ) -> tuple[dict[tuple[str, ...], Identification], UnknownRotation]:
@@ -177,8 +194,8 @@ class _Fit:
                 for group in self.groups
             }
             step, gain = step_of(self.columns, list(found.values()))
-            rotation = UnknownRotation(rotation.angles + step, self.columns, gain)
-            if np.abs(self.columns @ step).max(initial=0.0) <= _AT_REST:
+            before, rotation = rotation, self._limited(rotation.angles + step, gain)
+            if np.abs(rotation.shift - before.shift).max(initial=0.0) <= _AT_REST:
                 break
         return found, rotation
 
@@ -192,15 +209,57 @@ class _Fit:
         weights = np.repeat(levels, [jacobian.shape[1] for jacobian in jacobians])
         measured = np.concatenate([one.deviation for one in self.analysis])
         angles, gain = rotation_step(self.columns, jacobians, -measured, np.zeros(len(weights)), weights)
-        return UnknownRotation(angles, self.columns, gain)
+        return self._limited(angles, gain)
+
+    def _limited(self, angles: np.ndarray, gain: np.ndarray) -> UnknownRotation:
+        """A rotation that moves no point by much more than was measured: weak settings would turn the work for nothing.
+
+        Errors that shift a flank as a whole change its form by about as much.
+        """
+        measured = np.concatenate([target.deviation for target in self.targets.values()])
+        moved = float(np.abs(self.columns @ angles).max(initial=0.0))
+        most = _ROTATION_PART * float(np.abs(measured).max())
+        if moved <= most:
+            return UnknownRotation(angles, self.columns, gain)
+        return UnknownRotation(angles * most / moved, self.columns, np.zeros_like(gain))
 
 
 def _identify(
     targets: Sequence[FlankTarget], names: Sequence[str], noise: float | None, how: dict[str, Any]
 ) -> Identification:
-    """The identification at the given noise, or at the noise that it leaves itself: at first what no setting shows."""
+    """The identification at the given noise, or at the noise that it leaves itself: at first what no setting shows.
+
+    What is identified is taken back by the opposite change. Where the change is so large that the opposite one does not
+    take it back, weak directions are moved less, as if there were more noise.
+    """
     if not names:
         return nothing_identified(targets, how["run"])
+    found = _at_its_noise(targets, names, noise, how)
+    level = max(found.noise, _LEAST_NOISE)
+    for _ in range(_TAMING_TRIALS):
+        if how["bounds"] == "design" or _can_be_taken_back(targets, found, how["run"]):
+            break
+        level *= _TAMING
+        found = identify(targets, names, noise=level, **how)
+    return found
+
+
+def _can_be_taken_back(targets: Sequence[FlankTarget], found: Identification, run: Run) -> bool:
+    """Whether a change and its opposite move the exact flanks alike: t(x + e) + t(x - e) = 2 t(x)."""
+    for k, target in enumerate(targets):
+        change = found.change(k)
+        there, here, back = (located(target, target.vector + part * change, run) for part in (1.0, 0.0, -1.0))
+        if there[2].any() or back[2].any():
+            return False
+        bent, moved = there[0] + back[0] - 2 * here[0], there[0] - here[0]
+        if np.sqrt(np.mean(bent**2)) > _BENT * np.sqrt(np.mean(moved**2)) + _BENT_LEAST:
+            return False
+    return True
+
+
+def _at_its_noise(
+    targets: Sequence[FlankTarget], names: Sequence[str], noise: float | None, how: dict[str, Any]
+) -> Identification:
     if noise is not None:
         return identify(targets, names, noise=noise, **how)
     level = analyse(targets, names, how["bounds"], how["run"]).noise
@@ -230,31 +289,31 @@ def _check_determined(name: str, group: Sequence[str], targets: Sequence[FlankTa
         )
 
 
-def _rms(targets: Sequence[FlankTarget], result: Identification) -> list[tuple[float, float]]:
-    """RMS [mm] of every flank as it was measured, and as it is expected to remain."""
-    pieces = np.split(result.residual, np.cumsum([len(target.deviation) for target in targets])[:-1])
+def _rms(measured: Sequence[np.ndarray], result: Identification) -> list[tuple[float, float]]:
+    """RMS [mm] of the deviations of every flank as they were measured, and as they are expected to remain."""
+    pieces = np.split(result.residual, np.cumsum([len(one) for one in measured])[:-1])
     return [
-        (float(np.sqrt(np.mean(target.deviation**2))), float(np.sqrt(np.mean(piece**2))))
-        for target, piece in zip(targets, pieces, strict=True)
+        (float(np.sqrt(np.mean(one**2))), float(np.sqrt(np.mean(piece**2))))
+        for one, piece in zip(measured, pieces, strict=True)
     ]
 
 
 def _made_worse(
-    group: Sequence[str], targets: Sequence[FlankTarget], result: Identification, noise: float
+    group: Sequence[str], measured: Sequence[np.ndarray], result: Identification, noise: float
 ) -> list[str]:
     """The flanks that a correction makes worse, by more than the noise of a point."""
-    pairs = zip(group, _rms(targets, result), strict=True)
+    pairs = zip(group, _rms(measured, result), strict=True)
     return [flank for flank, (before, after) in pairs if after > before + max(_WORSE, noise)]
 
 
 def _refuse_worse(
-    name: str, group: Sequence[str], targets: Sequence[FlankTarget], result: Identification, noise: float
+    name: str, group: Sequence[str], measured: Sequence[np.ndarray], result: Identification, noise: float
 ) -> None:
     """Raise ComputationError where a correction makes one of its flanks worse."""
-    if worse := _made_worse(group, targets, result, noise):
+    if worse := _made_worse(group, measured, result, noise):
         figures = ", ".join(
             f"{flank} {before * 1000:.3f} to {after * 1000:.3f} um"
-            for flank, (before, after) in zip(group, _rms(targets, result), strict=True)
+            for flank, (before, after) in zip(group, _rms(measured, result), strict=True)
         )
         names = ", ".join(variable.label for variable in result.variables) or "no setting"
         raise ComputationError(
@@ -273,9 +332,7 @@ def _settle(found: Correction, member: Member, flank: str, target: FlankTarget, 
     if moved.any() or spec.nominal_motion != spec.motion:
         found.motions[flank] = spec.nominal_motion.matrix - moved
     deviation, _, _ = located(target, target.vector + change)
-    left = target.deviation - deviation
-    found.expected[flank] = float(np.abs(left).max())
-    found.rms[flank] = float(np.sqrt(np.mean(target.deviation**2))), float(np.sqrt(np.mean(left**2)))
+    found.expected[flank] = float(np.abs(target.deviation - deviation).max())
     if target.root is not None:
         found.root[flank] = -target.root.sunk(target.vector, target.vector + change)[0]
 

@@ -41,7 +41,7 @@ def _limits_section(page: Page, correction: Correction, caused: Mapping[str, flo
     page.subheading("What is not corrected, and why")
     rows = []
     for group, result in correction.identified.items():
-        values = (result.rms_before, correction.reachable[group], result.rms_after)
+        values = (correction.measured_rms(group), correction.reachable[group], result.rms_after)
         rows.append([" and ".join(group), *map(micro, values)])
     head = ["flanks", "RMS measured", "best that settings reach", "expected"]
     page.table("RMS of the flanks / µm", head, rows)

@@ -58,7 +58,7 @@ REFUSED = {
     "one tooth more": (
         NASA, {"pinion.teeth": 13}, r"pinion\.blank\.pitch_angle = 18\.4333: 13 and 36 teeth .* 19\.855",
     ),
-    "teeth of both doubled": (NASA, {"pinion.teeth": 24, "gear.teeth": 72}, r"mean_addendum = 4\.5706, .*teeth = 24"),
+    "teeth of both doubled": (NASA, {"pinion.teeth": 24, "gear.teeth": 72}, r"mean_addendum = 4\.57006, .*teeth = 24"),
     "pinion and gear exchanged": (
         NASA, {"pinion.teeth": 36, "gear.teeth": 12}, r"pinion\.teeth = 36: .* at most gear\.teeth = 12",
     ),
@@ -72,12 +72,12 @@ REFUSED = {
     ),
     "face as thin as a saw": (FORMATE, {"gear.blank.face_width": 2.54}, r"gear\.blank\.face_width = 2\.54: "),
     "cone distance of one member": (
-        NASA, {"gear.blank.mean_cone_distance": 83.0}, r"pinion\.blank\.mean_cone_distance = 81\.05: the gear has 83",
+        NASA, {"gear.blank.mean_cone_distance": 83.0}, r"pinion\.blank\.mean_cone_distance = 81\.0514: the gear has 83",
     ),
     "face widths apart": (NASA, {"gear.blank.face_width": 20.0}, r"pinion\.blank\.face_width = 25\.4: the gear has 20"),
     "dedendum without room for the mate": (
         NASA, {"pinion.blank.mean_dedendum": 1.5, "pinion.blank.clearance": 0.3},
-        r"pinion\.blank\.mean_dedendum = 1\.5: must be the mean_addendum of the gear, 1\.4544, and the own clearance",
+        r"pinion\.blank\.mean_dedendum = 1\.5: must be the mean_addendum of the gear, 1\.4545, and the own clearance",
     ),
     "clearance in inches": (NASA, {"gear.blank.clearance": 0.929 * INCH}, r"gear\.blank\.clearance = 0\.0365748: must"),
     "no clearance": (NASA, {"gear.blank.clearance": 0.0}, r"gear\.blank\.clearance = 0: must lie between"),
