@@ -239,13 +239,13 @@ def _near(member: Member) -> float:
 
 def _likeliest_cause(part: Part, frame: Frame, gear_set: BevelSet, name: str) -> str:
     """What would make most of the points fit: the fewest other options."""
-    other_flank, other_name = FLANKS[1 - FLANKS.index(part.flank)], "gear" if name == "pinion" else "pinion"
+    other_flank, others = FLANKS[1 - FLANKS.index(part.flank)], [each for each in gear_set.members if each != name]
     mirror = np.array([-1, 1, 1]) if frame.axis[1] != "x" else np.array([1, -1, 1])
     choices: list[list[tuple[str, object]]] = [
         [("", part.flank), (f"--flank {other_flank}", other_flank)],
         [("", 1.0), ("--unit inch", _MM_PER_INCH), ("--unit mm", 1 / _MM_PER_INCH)],
         [("", frame.axis), *((f"--axis {axis}", axis) for axis in AXES if axis != frame.axis)],
-        [("", name), (f"--member {other_name}", other_name)],
+        [("", name), *((f"--member {other}", other) for other in others)],
         [("", 1), ("the mirror image: the file is of the other hand", mirror)],
     ]
 

@@ -329,3 +329,13 @@ def test_two_files_of_one_flank_are_refused(refused, tmp_path):
         r"b\.txt: is taken for the concave flank of tooth 0, as is \S*a\.txt", "points", tmp_path / "a.txt",
         tmp_path / "b.txt", "--set", SETS[0], "--member", "pinion", "--flank", "concave", "-o", tmp_path / "m.csv",
     )  # fmt: skip
+
+
+def test_a_set_without_the_mate_gives_the_same_hints(gear_set):
+    """The likely cause is sought among the members that there are."""
+    alone = gear_set.model_copy(update={"gear": None})
+    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    part = Part("p.txt", "concave", 0, around(point, 1.0))
+    assert "most would fit with --unit inch" in refusal(alone, replace(part, point=part.point / 25.4))
+    assert "most would fit with --flank concave" in refusal(alone, replace(part, flank="convex"))
+    assert "most would fit with --axis -z" in refusal(alone, replace(part, point=part.point * [1, -1, -1]))
