@@ -28,6 +28,8 @@ _CLEARANCE = (0.04, 0.35)
 #: Working depth over mean transverse module, for normal depth factors of 1.2 to 2.6 and spiral angles up to 50 degrees.
 _DEPTH = (0.75, 2.6)
 
+#: More teeth no member of a set may have.
+_MOST_TEETH = 400
 _MATES = (("pinion", "gear"), ("gear", "pinion"))
 
 
@@ -111,16 +113,44 @@ def check_cones(pinion: Member, gear: Member, shaft_angle: float) -> None:
             f"pinion.teeth = {pinion.teeth}: the pinion is the member with fewer teeth, it must be at most gear.teeth "
             f"= {gear.teeth}"
         )
-    values = {
-        "shaft_angle": math.radians(shaft_angle), "pinion_teeth": pinion.teeth, "wheel_teeth": gear.teeth,
-        # sizes are not asked for
-        "wheel_outer_pitch_diameter": 2.0, "face_width": 0.0, "mean_spiral_angle": 0.0,
-    }  # fmt: skip
-    cones = evaluate(iso23509.pitch_cones, values)
-    wanted = [math.degrees(cones[f"{name}_{notation.pitch_angle.name}"]) for name in ("pinion", "wheel")]
+    wanted = _pitch_angles(pinion.teeth, gear.teeth, shaft_angle)
     for name, member, angle in zip(("pinion", "gear"), (pinion, gear), wanted, strict=True):
         if not abs(member.blank.pitch_angle - angle) <= _PRINTED_ANGLE:
             raise InputError(
                 f"{name}.blank.pitch_angle = {member.blank.pitch_angle:g}: {pinion.teeth} and {gear.teeth} teeth at "
                 f"shaft_angle = {shaft_angle:g} need {angle:.5g} within {_PRINTED_ANGLE:g} degree"
             )
+
+
+def check_mate(member: Member, name: str, shaft_angle: float) -> None:
+    """Refuse a member without its mate whose pitch cone rolls on that of no whole number of teeth (11.1).
+
+    Raises InputError naming member, key, value and the nearest that would do.
+    """
+    own, given = ("pinion", "gear").index(name), member.blank.pitch_angle
+
+    def angle(mate: int) -> float:
+        pair = (member.teeth, mate) if own == 0 else (mate, member.teeth)
+        return _pitch_angles(*pair, shaft_angle)[own]
+
+    low, high = (member.teeth, _MOST_TEETH) if own == 0 else (1, member.teeth)
+    while high - low > 1:  # the more teeth the mate has, the smaller is the own pitch angle
+        middle = (low + high) // 2
+        low, high = (middle, high) if angle(middle) >= given else (low, middle)
+    nearest = min((low, high), key=lambda mate: abs(angle(mate) - given))
+    if not abs(angle(nearest) - given) <= _PRINTED_ANGLE:
+        raise InputError(
+            f"{name}.blank.pitch_angle = {given:g}: fits no mate, {member.teeth} teeth at shaft_angle = "
+            f"{shaft_angle:g} and a mate of {nearest} need {angle(nearest):.5g} within {_PRINTED_ANGLE:g} degree"
+        )
+
+
+def _pitch_angles(pinion_teeth: int, gear_teeth: int, shaft_angle: float) -> list[float]:
+    """Pitch angles [degree] of pinion and gear."""
+    values = {
+        "shaft_angle": math.radians(shaft_angle), "pinion_teeth": pinion_teeth, "wheel_teeth": gear_teeth,
+        # sizes are not asked for
+        "wheel_outer_pitch_diameter": 2.0, "face_width": 0.0, "mean_spiral_angle": 0.0,
+    }  # fmt: skip
+    cones = evaluate(iso23509.pitch_cones, values)
+    return [math.degrees(cones[f"{name}_{notation.pitch_angle.name}"]) for name in ("pinion", "wheel")]

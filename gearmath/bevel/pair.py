@@ -14,7 +14,7 @@ from statistics import median
 
 from gearmath.bevel.blame import Misfit, farthest, most_changed
 from gearmath.bevel.check_blade import check_blades, check_methods, check_offset
-from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, transverse_module
+from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, check_mate, transverse_module
 from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
 from gearmath.bevel.check_mates import Cut, check_mates, check_space
 from gearmath.bevel.method import cut_generation_of, generation_of
@@ -51,6 +51,9 @@ def check_pair(pair: BevelSet) -> None:
     pinion, gear = pair.pinion, pair.gear
     if pinion is not None and gear is not None:
         check_cones(pinion, gear, pair.shaft_angle)
+    else:
+        for name, member in members.items():
+            check_mate(member, name, pair.shaft_angle)
     for name, member in members.items():
         check_blank(member, name)
     if pinion is not None and gear is not None:

@@ -166,7 +166,10 @@ def _reference_turn(one: Laid, lattice: Lattice | None, bad: np.ndarray, member:
     if lattice is not None and len(lattice.row) == len(one.kept):
         row, col = lattice.rows // 2, lattice.columns // 2
         at = (lattice.row == row) & (lattice.col == col)
-        place = np.array([across[lattice.col == col].mean(), up[lattice.row == row].mean()])
+        lines = (across[lattice.col == col], up[lattice.row == row])  # a part of a grid may lack its middle
+        place = np.array([line.mean() if len(line) else middle for line, middle in zip(lines, place, strict=True)])
+    # a surface says nothing of what lies beyond its points
+    place = np.clip(place, (across.min(), up.min()), (across.max(), up.max()))
     if at.any() and not off[at].any():
         return float(one.deviation[at][0] / one.lever[at][0])
     nearest = int(np.argmin(np.hypot(across - place[0], up - place[1])))

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 import tomlkit
-from pydantic import Field, PrivateAttr, model_validator
+from pydantic import Field, model_validator
 
 from derivations import Quantity, cradle, notation
 from gearmath.errors import InputError
@@ -50,6 +50,9 @@ STRAIGHT = 20_000.0
 _ANGULAR = {component.name for component in notation.settings.components if component.unit == "rad"}
 #: Cradle rotation by work rotation, in place of the ratio of roll.
 CRADLE_PER_WORK = "ratio_of_roll_cradle_per_work"
+_FILE = "_file"
+#: A corrected machine may stand steeper than the face of a uniform tooth by so much. [degree]
+_ROOT_BEYOND = 1.0
 _RATIO, _ADVANCE, _BEYOND = "ratio_of_roll", "machine_center_to_crossing_point", "pitch_apex_beyond_crossing_point"
 
 
@@ -279,11 +282,11 @@ class Member(Sheet):
     def _check_cutter(self, name: str) -> None:
         """Whether the cutter of a flank can stand in the tooth at all: what fails here has no real contact."""
         spec, blank = self.flank(name), self.blank
-        highest = blank.face_angle + abs(spec.cutter_tilt)
+        highest = blank.face_angle + abs(spec.cutter_tilt) + _ROOT_BEYOND
         if spec.machine_root_angle > highest:
             raise ValueError(
                 f"{name}.machine_root_angle = {spec.machine_root_angle:g}: beyond the blank, it must be at most "
-                f"face_angle + |cutter_tilt| = {highest:g}"
+                f"face_angle + |cutter_tilt| + {_ROOT_BEYOND:g} = {highest:g}"
             )
         S, r, R = spec.radial_distance, spec.blade_point_radius, blank.mean_cone_distance
         slack = abs(spec.blank_offset) + abs(spec.machine_center_to_crossing_point) + spec.blade_profile_height
@@ -310,8 +313,6 @@ class BevelSet(Sheet):
     shaft_angle: Angle = Field(gt=0, lt=180)
     pinion: Member | None = None
     gear: Member | None = None
-    #: The file that it was read from, for sentences.
-    _file: str = PrivateAttr("")
 
     @model_validator(mode="after")
     def _mates(self) -> BevelSet:
@@ -333,14 +334,14 @@ class BevelSet(Sheet):
             raise InputError(f"member = {name!r}: must be pinion or gear")
         members = self.members
         if name not in members:
-            raise InputError(f"{self._file or self.title}: has no {name}, only a {next(iter(members))}")
+            raise InputError(f"{self.__dict__.get(_FILE, self.title)}: has no {name}, only a {next(iter(members))}")
         return members[name]
 
 
 def load_bevel_set(path: Path) -> BevelSet:
     """Read a gear set. Raises InputError naming file, key, value and limit."""
     gear_set = load(path, BevelSet)
-    gear_set._file = str(path)
+    gear_set.__dict__[_FILE] = str(path)  # for sentences; no field, so that sets are equal whatever their file
     return gear_set
 
 

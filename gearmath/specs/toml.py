@@ -51,7 +51,7 @@ def parse(text: str, model: type[SpecT], name: str) -> SpecT:
     """Check TOML text against ``model``; ``name`` is the file's name in the messages."""
     try:
         values = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # no TOML, or numbers and nesting beyond all measure
         raise InputError(f"{name}: is no TOML: {error}") from error
     return _checked(values, model, model.from_file, name)
 

@@ -339,3 +339,15 @@ def test_a_set_without_the_mate_gives_the_same_hints(gear_set):
     assert "most would fit with --unit inch" in refusal(alone, replace(part, point=part.point / 25.4))
     assert "most would fit with --flank concave" in refusal(alone, replace(part, flank="convex"))
     assert "most would fit with --axis -z" in refusal(alone, replace(part, point=part.point * [1, -1, -1]))
+
+
+@pytest.mark.parametrize("count", [5, 8, 9, 10, 13, 25])
+def test_a_few_points_of_one_end_are_a_file_or_one_sentence(gear_set, count):
+    """A row or a little more: the reference point lies beyond them, and nothing is said of it."""
+    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    part = Part("p.txt", "concave", 0, around(point[:count], 1.0))
+    try:
+        file = foreign_file([part], Frame(), gear_set, "pinion", "each").file
+    except InputError:
+        return
+    assert np.abs(file.deviation).max() < 0.05

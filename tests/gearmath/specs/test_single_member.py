@@ -80,3 +80,18 @@ def test_correction_by_the_mate_says_that_there_is_none(alone, refused, tmp_path
 def test_hands_are_compared_only_where_there_are_two():
     other = re.sub(r'hand = "left"', 'hand = "right"', ALONE["pinion"])
     assert parse(other, BevelSet, "set.toml").member("pinion").hand == "right"
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "sentence"),
+    [
+        ("shaft_angle = 90.0", "shaft_angle = 80.0", "pinion.blank.pitch_angle = 18.4333: fits no mate, 12 teeth"),
+        ("pitch_angle = 18.4333333", "pitch_angle = 18.3333333", "of 36 need 18.435 within 0.02 degree"),
+    ],
+)
+def test_member_that_rolls_on_no_whole_number_of_teeth_is_refused(refused, tmp_path, key, value, sentence):
+    text = ALONE["pinion"]
+    assert key in text
+    path = tmp_path / "alone.toml"
+    path.write_text(text.replace(key, value, 1), "utf-8")
+    refused(re.escape(sentence), "flank", path, "--flank", "concave", "-o", tmp_path / "f.csv")
