@@ -1,7 +1,7 @@
 # make demo    the whole idea on a bundled gear set, into gearmath-demo/
 # make test    every check, every test, every notebook
 # make bench   speed, as ratios within one run
-# make golden  own up to a change of the generated C: rewrites tests/golden
+# make golden  rewrites tests/golden after a wanted change of the generated C
 # make clean   removes what these have written, apart from .venv
 #
 # Each builds .venv by itself. Another Python: make demo PYTHON=/path/to/python3.12 - other processes: make test JOBS=4

@@ -1,4 +1,4 @@
-"""Two kinds of bad news: input that a person can mend, and work that failed."""
+"""Two kinds of errors: input that a person can correct, and work that failed."""
 
 
 class InputError(ValueError):

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--register/--no-register", "registered", default=True, show_default=True,
-    help="Take out how the work sat (eccentricity, tilt), where the points tell it.",
+    help="Take out the clamping (eccentricity, tilt), where the points tell it.",
 )  # fmt: skip
 @click.option(
     "--rotation/--no-rotation", "rotated", default=True, show_default=True,

@@ -28,7 +28,7 @@ def evaluate(
     measured: Path, gear_set: str, registered: bool, rotated: bool, sigma_um: float | None, picture: Path | None,
     as_json: bool,
 ) -> None:  # fmt: skip
-    """Pitch, profile and topography of a measured member; how it sat, runout, tooth thickness, drift and grade.
+    """Pitch, profile and topography of a measured member; clamping, rotation, runout, tooth thickness, drift and grade.
 
     What was left out is said first. A maximum or a grade over data with a gap is withheld, with the reason; all other
     figures are given. In JSON it is null, and 'withheld' beside it says why.

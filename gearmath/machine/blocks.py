@@ -39,7 +39,7 @@ _UP, _ACROSS = (0.25, 0.5, 0.75, 1.0, 1 + _BEYOND), (-_BEYOND, 0.0, 1.0, 1 + _BE
 _DEEP = 0.3
 #: Where along a block each row of flank points is looked at: its middle, where most is left, among them.
 _FRACTIONS = np.array([-0.3, -0.07, *np.linspace(0.0, 1.0, 9), 1.07, 1.3])
-#: Blocks from this roll on [rad] are held against one in so many points of the flanks, at these parts of the block.
+#: Blocks from this roll on [rad] are compared with one in so many points of the flanks, at these parts of the block.
 _LONG, _SOME, _INNER = math.radians(0.7), 15, np.linspace(0.1, 0.9, 9)
 #: A point that the exact path comes this near to, or nearer, is still one of the flank. [mm]
 _UNTOUCHED = 1e-5

@@ -1,6 +1,6 @@
 """Reads NC programs back: words, logic and comments, as a tree of statements.
 
-It understands the dialect that this house writes and refuses everything else with line and column. It shares no code
+It understands the dialect that this package writes and refuses everything else with line and column. It shares no code
 with the writers: what both get wrong, they must get wrong twice. ``gearmath.machine.executor`` runs what is read here.
 """
 

@@ -169,7 +169,7 @@ def off_the_way(
 def distances_off_the_way(
     run: Run, lines: WatchedFlank, member: Member, machine: MillingMachine, evaluator: Evaluator = lambda k: k
 ) -> np.ndarray:
-    """How far the tool stands off its way (n,) [mm] on one flank at every row of a run.
+    """How far the tool is off its path (n,) [mm] on one flank at every row of a run.
 
     Where it touches no line, as where it plunges, that is how far its X and Y are off the path.
     """

@@ -1,4 +1,4 @@
-"""A measured member judged as a whole: what was left out, how it sat, and the figures of flanks, pitch and spaces."""
+"""A measured member judged as a whole: what was left out, its clamping, and the figures of flanks, pitch and spaces."""
 
 from __future__ import annotations
 

@@ -153,7 +153,7 @@ def _pairs(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _seat(found: Registration, seat: ca.MX) -> list[_Part]:
-    """How the work sat: eccentricity along x_w and y_w, tilt about them as a rise over 100 mm."""
+    """The clamping of the work: eccentricity along x_w and y_w, tilt about them as a rise over 100 mm."""
     names = [("eccentricity_x", "um", 1), ("eccentricity_y", "um", 1)]
     if found.tilt_found:
         names += [("tilt_x", "um/100mm", 100), ("tilt_y", "um/100mm", 100)]

@@ -30,7 +30,7 @@ _LEAST_SPARE = 3
 
 @dataclass(frozen=True)
 class Registration:
-    """How the work sat, and the file without it.
+    """The clamping of the work, and the file without it.
 
     ``seat`` (4,): eccentricity along x_w and y_w [mm], tilt about x_w and y_w [rad], at the pitch apex; ``covariance``
     (4,4) of it, NaN where ``tilt_found`` is False. ``noise`` [mm] is the standard deviation of one point that the fit

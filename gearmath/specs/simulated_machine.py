@@ -17,7 +17,7 @@ _UNITS = {component.name: component.unit for component in notation.settings.comp
 
 
 class SettingErrors(Spec):
-    """By how much the machine really stands off its settings (mm, degrees), for every pass of a member."""
+    """By how much the machine is really off its settings (mm, degrees), for every pass of a member."""
 
     radial_distance: float = Field(default=0.0, ge=-1, le=1)
     cradle_angle: float = Field(default=0.0, ge=-1, le=1)
