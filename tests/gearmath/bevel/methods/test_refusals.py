@@ -18,7 +18,7 @@ REFUSALS = {
     ),
     "machine root angle beyond the blank": (
         MILLED, ("gear", "concave"), {"machine_root_angle": 80.0},
-        r"gear.*concave\.machine_root_angle = 80: beyond the blank, it must be at most face_angle .* = 73\.27",
+        r"gear.*concave\.machine_root_angle = 80: beyond the blank, it must be at most face_angle .* \+ 1 = 74\.27",
     ),
     "root angle of the blank above its pitch angle": (
         MILLED, ("pinion", "blank"), {"root_angle": 22.0}, r"pinion\.blank: root_angle 22\.0 <= pitch_angle",

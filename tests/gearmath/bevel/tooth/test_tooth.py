@@ -125,10 +125,10 @@ def test_nasa_space_and_tooth_make_up_the_pitch_with_a_workable_backlash(nasa: B
     pitches = [2 * math.pi * mean_pitch_radius(m) / m.teeth for m in (nasa.pinion, nasa.gear)]
     assert pitches[0] == pytest.approx(pitches[1], abs=2e-3)  # the published pitch angles are rounded to 1e-4 deg
     backlash = mean_backlash(nasa.pinion, nasa.gear)
-    # by the recomputed mean points of NASA TP-3096: what the gear's space has more than the pinion's tooth
-    space = math.atan2(3.6898787234, 76.8028878818) - math.atan2(-3.7387827695, 76.8005227546)
-    tooth = math.atan2(3.6484194437, 25.3670231786) - math.atan2(-3.5993645803, 25.3740301095)
-    assert backlash == pytest.approx(76.8914741176 * space - 25.6280477091 * tooth, abs=2e-4)
+    # by the mean points of test_nasa_cr191009.py: what the gear's space has more than the pinion's tooth
+    space = math.atan2(3.6909486632, 76.8041959969) - math.atan2(-3.7379045021, 76.8019250715)
+    tooth = math.atan2(3.6476767625, 25.3676223671) - math.atan2(-3.6026122209, 25.3740614705)
+    assert backlash == pytest.approx(76.8928321 * space - 25.6285352 * tooth, abs=2e-4)
     # normal backlash at this size, 5 diametral pitch, is 0.10 to 0.15 mm in practice: the sets bound space and tooth
     assert 0.05 < backlash * math.cos(math.radians(35)) < 0.25
 
