@@ -39,19 +39,19 @@ def test_touches_on_an_artefact_that_the_probe_file_does_not_have(refused, tmp_p
 @pytest.mark.parametrize(
     ("key", "value", "sentence"),
     [
-        ("margins", "0.1,0.2", r"margins = 0\.1,0\.2: must be alike along the tooth and up the profile"),
-        ("member_teeth", "13", r"member_teeth = 13: the pinion of the set has 12"),
-        ("settings_sha256", "0" * 64, r"settings_sha256 = 000000000000\.\.\.: .*other nominal settings"),
-        ("grid", "4x9", r"row = 4: the header allows 0 to 3"),
-        ("reference_point", "5,0", r"reference_point = 5,0: must lie in the grid 5x9"),
-        ("unit", "inch", r"unit = 'inch': must be mm"),
+        ("margins", "0.1,0.2", r": .*the measured point lies .* mm beside the nominal normal"),  # another grid
+        ("member_teeth", "13", r": member_teeth = 13: the pinion of the set has 12"),
+        ("settings_sha256", "0" * 64, r": settings_sha256 = 000000000000\.\.\.: .*other nominal settings"),
+        ("grid", "4x9", r", line \d+: row = 4: the header allows 0 to 3"),
+        ("reference_point", "5,0", r": reference_point = 5,0: must lie in the grid 5x9"),
+        ("unit", "inch", r".*: unit = 'inch': must be mm"),
     ],
 )
 def test_header_that_does_not_fit_the_set(refused, gear_set, tmp_path, key, value, sentence):
     file = measured(gear_set)
     path = tmp_path / "m.csv"
     write_flank_csv(path, replace(file, header=file.header | {key: value}))
-    refused(rf"m\.csv: {sentence}", "evaluate", path, "--set", SET)
+    refused(rf"m\.csv{sentence}", "evaluate", path, "--set", SET)
 
 
 def test_flank_of_which_every_point_is_excluded(gear_set):

@@ -145,7 +145,7 @@ def test_solid_is_closed_and_a_space_is_open(command, tmp_path):
     ("arguments", "sentence"),
     [
         (("tooth", SET, "--member", "gear"), "Missing option '-o'"),
-        (("tooth", SET, "-o", "{target}"), "Missing option '--member'"),
+        (("tooth", SET, "-o", "{target}"), "--member is missing: the set has both"),
         (("tooth", SET, "--member", "gear", "--columns", "2", "-o", "{target}"), "2 is not in the range 3<=x<=400"),
         (("tooth", "absent.toml", "--member", "gear", "-o", "{target}"), r"absent\.toml: cannot be read"),
         (("tooth", SET, "--member", "gear", "-o", "{folder}/absent/t.stl"), r"t\.stl: cannot be written"),

@@ -142,7 +142,7 @@ def test_command_names_what_is_missing_and_writes_nothing(command, refused, tmp_
     program.write_text(';\nN10 WRITE(UERR,"P_T","run,point,member,flank,tooth,row,col,X,Y,Z,A,B,triggered")\nM30\n')
     calibration.write_text(calibration_program(MACHINE, PROBE, "CAL"))
     refused(r"--set is missing: .*PP\.MPF probes a member", "probe", program, *out)
-    refused(r"--member is missing: .*PP\.MPF probes a member", "probe", program, "--set", NASA, *out)
+    refused(r"--member is missing: the set has both", "probe", program, "--set", NASA, *out)
     refused(
         r"--measured .*m\.csv: .*CAL\.MPF touches ring and spheres", "probe", calibration, "--measured", "m.csv", *out
     )
