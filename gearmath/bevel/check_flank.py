@@ -14,6 +14,7 @@ from gearmath.bevel.generation import Generation, Section, solve_curve, solve_se
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.newton import FlankPoints
+from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import SIDES, Member
 
@@ -97,7 +98,7 @@ def _check_motion(member: Member, name: str, flank: str, grid: Grid, points: Fla
     delta = math.radians(member.blank.pitch_angle)
     _, _, across, azimuth = kernel("flank_angles")(delta, points.point, points.normal)
     _, _, _, before = kernel("flank_angles")(delta, rest.point, rest.normal)
-    turn = np.mod(azimuth - before + math.pi, 2 * math.pi) - math.pi
+    turn = half_turn(azimuth - before)
     change = (turn * grid.radial.ravel() * across)[rest.converged]
     limit = _MOTION * transverse_module(member)
     if not np.ptp(change) <= limit:

@@ -10,6 +10,7 @@ from gearmath.bevel.blame import Misfit
 from gearmath.bevel.check_blank import transverse_module, working_depth
 from gearmath.bevel.check_flank import CutFlank
 from gearmath.bevel.tooth import mean_pitch_radius
+from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, Member
 
@@ -87,7 +88,7 @@ def _hint(member: Member, turn: float, pitch: float, least: float) -> str:
 
 def _check_top_land(member: Member, name: str, concave: CutFlank, convex: CutFlank, pitch: float) -> None:
     turns = concave.across * (convex.tip_azimuth - concave.tip_azimuth)
-    land = pitch - (np.mod(turns + math.pi, 2 * math.pi) - math.pi)
+    land = pitch - half_turn(turns)
     if not (land > 0).all():
         k = int(np.argmin(land))
         raise InputError(
@@ -100,7 +101,7 @@ def _check_top_land(member: Member, name: str, concave: CutFlank, convex: CutFla
 def _check_root_width(member: Member, name: str, concave: CutFlank, convex: CutFlank, cosine: float) -> None:
     """The space is open down to its root, and wide enough there for a cutter of a stated point width."""
     azimuths = [np.arctan2(flank.root[:, 1], flank.root[:, 0]) for flank in (concave, convex)]
-    turn = np.mod(concave.across * (azimuths[1] - azimuths[0]) + math.pi, 2 * math.pi) - math.pi
+    turn = half_turn(concave.across * (azimuths[1] - azimuths[0]))
     width = np.hypot(concave.root[:, 0], concave.root[:, 1]) * turn * cosine
     k = int(np.argmin(width))
     if not width[k] > 0:

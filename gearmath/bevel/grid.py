@@ -33,8 +33,7 @@ def listed_grid(member: Member, axial: np.ndarray, radial: np.ndarray, shape: tu
     rows, columns = shape
     if len(axial) != rows * columns:
         raise InputError(f"holds {len(axial)} places, a grid of {rows}x{columns} has {rows * columns}")
-    points = np.stack([radial, 0 * radial, axial], axis=1)
-    along, down = (np.ravel(value) for value in kernel("root_place")(points, np.radians(member.blank.pitch_angle)))
+    along, down = _on_cone(member, axial, radial)
     blank = member.blank
     beyond = np.abs(along - blank.mean_cone_distance) - blank.face_width / 2
     if (beyond > _SLACK).any():

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from gearmath.bevel.tooth import ToothSpace
-from gearmath.bevel.turning import turned
+from gearmath.bevel.turning import half_turn, turned
 from gearmath.files import write_bytes
 from gearmath.specs.bevel_set import Member
 
@@ -77,7 +77,7 @@ def _ring(space: ToothSpace, teeth: int) -> np.ndarray:
 def _between(first: np.ndarray, last: np.ndarray, fractions: np.ndarray) -> np.ndarray:
     """Points (columns, n, 3) between two (columns, 3), by angle, radius and height about z_w."""
     a, b = (_cylindrical(points) for points in (first, last))
-    turn = (b[:, 0] - a[:, 0] + math.pi) % (2 * math.pi) - math.pi
+    turn = half_turn(b[:, 0] - a[:, 0])
     angle = a[:, 0, None] + turn[:, None] * fractions
     radius, z = (a[:, k, None] + (b[:, k] - a[:, k])[:, None] * fractions for k in (1, 2))
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=2)

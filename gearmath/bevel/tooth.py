@@ -15,6 +15,7 @@ import numpy as np
 from gearmath.bevel.generation import Section, SurfacePoints, solve_curve, solve_section
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
@@ -62,13 +63,13 @@ class ToothSpace:
     def width(self, row: int) -> np.ndarray:
         """Angle (columns,) [rad] between the flanks, from the one that lies lower about z_w to the other."""
         low, high = self.ordered
-        return _wrap(_angle(high.point[row]) - _angle(low.point[row]))
+        return half_turn(_angle(high.point[row]) - _angle(low.point[row]))
 
     @property
     def ordered(self) -> tuple[FlankSurface, FlankSurface]:
         """The flanks in the order of their angle about z_w, across the space."""
         middle = self.concave.point.shape[1] // 2
-        turn = _wrap(_angle(self.convex.point[0, middle]) - _angle(self.concave.point[0, middle]))
+        turn = half_turn(_angle(self.convex.point[0, middle]) - _angle(self.concave.point[0, middle]))
         return (self.concave, self.convex) if turn > 0 else (self.convex, self.concave)
 
     @property
@@ -161,7 +162,7 @@ def tooth_thickness(member: Member, axial: float, radius: float) -> float:
         if not points.converged.all():
             raise InputError(f"{flank} flank: no point at z = {axial:.3f}, radius {radius:.3f} mm")
         angles.append(float(_angle(points.point)[0]))
-    space = abs(float(_wrap(np.array(angles[1] - angles[0]))))
+    space = abs(float(half_turn(np.array(angles[1] - angles[0]))))
     return radius * (2 * math.pi / member.teeth - space)
 
 
@@ -195,7 +196,3 @@ def _check(points: SurfacePoints, name: str, flank: str, part: str, row: int, co
 
 def _angle(points: np.ndarray) -> np.ndarray:
     return np.arctan2(points[..., 1], points[..., 0])
-
-
-def _wrap(angle: np.ndarray) -> np.ndarray:
-    return (angle + math.pi) % (2 * math.pi) - math.pi

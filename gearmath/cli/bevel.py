@@ -48,8 +48,7 @@ def flank(
 
     source = find(gear_set)
     pair = load_pair(source)
-    member = member_of(pair, member)
-    spec = pair.member(member)
+    member, spec = member_of(pair, member)
     given = {"": margin, "-root": root, "-tip": tip, "-toe": toe, "-heel": heel}
     if places is not None:
         for name, value in given.items():
@@ -85,8 +84,7 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
 
     source = find(gear_set)
     bevel_set = load_pair(source)
-    member = member_of(bevel_set, member)
-    spec = bevel_set.member(member)
+    member, spec = member_of(bevel_set, member)
     with about(source):
         surface = tooth_space(spec, member, columns)
     triangles = space_triangles(surface) if space else member_triangles(spec, surface)

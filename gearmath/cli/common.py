@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearmath.lowering import Kernel
-    from gearmath.specs.bevel_set import BevelSet
+    from gearmath.specs.bevel_set import BevelSet, Member
 
 #: The gear set of a verb whose first argument is another file.
 SET_OPTION = click.option(
@@ -41,6 +41,10 @@ TOUCH_CSV = (
     "Touches, mm and degrees: run, point, member, flank, tooth, row, col, X, Y, Z, A, B, triggered; docs/files.md."
 )
 CALIBRATION_CSV = "Touches, mm and degrees: run, point, target, X, Y, Z, A, B, triggered; docs/files.md."
+REGISTER = click.option(
+    "--register/--no-register", "registered", default=True, show_default=True,
+    help="Take out the clamping (eccentricity, tilt), where the points tell it.",
+)  # fmt: skip
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
@@ -61,8 +65,8 @@ def SET(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_set
 
 
-def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> str:
-    """The member that is meant: as ``given`` by --member, as ``stated`` by a file, or the only one of the set.
+def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> tuple[str, Member]:
+    """Name and data of a member: ``given`` by --member, ``stated`` by a file, or the only one of the set.
 
     Raises InputError where none of these tells it.
     """
@@ -70,7 +74,7 @@ def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> s
     name = given or stated or (members[0] if len(members) == 1 else None)
     if name is None:
         raise InputError("--member is missing: the set has both, so it must be pinion or gear")
-    return name
+    return name, pair.member(name)
 
 
 def plot(what: str) -> Any:

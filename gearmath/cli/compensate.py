@@ -12,6 +12,7 @@ from gearmath.cli.common import (
     FLANK_CSV,
     JSON,
     MEMBER,
+    REGISTER,
     SET,
     SET_OPTION,
     about,
@@ -58,10 +59,7 @@ if TYPE_CHECKING:
     metavar="CSV",
     help="Correct here what the mate shows there: its measured flank CSV, moved through the ease-off.",
 )
-@click.option(
-    "--register/--no-register", "registered", default=True, show_default=True,
-    help="Take out the clamping (eccentricity, tilt), where the points tell it.",
-)  # fmt: skip
+@REGISTER
 @click.option(
     "--rotation/--no-rotation", "rotated", default=True, show_default=True,
     help="Leave open how the work stood about its axis: what turns both flanks alike is no error of a setting.",
@@ -108,8 +106,7 @@ def compensate(
     source = find(gear_set)
     pair = load_pair(source)
     file = read_flank_csv(measured)
-    member = member_of(pair, member, file.member)
-    spec = pair.member(member)
+    member, spec = member_of(pair, member, file.member)
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured), bar(STAGES + correcting.STAGES, "stage", as_json) as progress:
         evaluation = evaluate_member(file, spec, member, registered, progress, rotated)
@@ -333,11 +330,10 @@ def stock(measured: Path, gear_set: str, member: str | None, advance: bool, leas
     from gearmath.specs.toml import find
 
     pair, file = load_pair(find(gear_set)), read_flank_csv(measured)
-    member = member_of(pair, member, file.member)
-    spec = pair.member(member)
+    member, spec = member_of(pair, member, file.member)
     with about(measured):
         found = share_stock(spec, member, file, advance, least / 1000)
-    remarks = [f"not whole: {one}" for one in missing_points(file, spec.teeth)]
+    remarks = list(missing_points(file, spec.teeth))
     if as_json:
         echo_json({
             "turn_deg": math.degrees(found.turn), "advance_mm": found.advance, "remarks": remarks,

@@ -58,14 +58,14 @@ def cut(
     from gearmath.specs.toml import find
 
     bevel_set = load_pair(find(gear_set))
-    member = member_of(bevel_set, member)
-    wanted = _spaces(spaces, bevel_set.member(member).teeth)
+    member, spec = member_of(bevel_set, member)
+    wanted = _spaces(spaces, spec.teeth)
     job = Job(wanted, tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
     milling_machine = load_milling_machine(find(machine))
-    with bar(pass_count(bevel_set.member(member), member, job), "pass") as progress:
+    with bar(pass_count(spec, member, job), "pass") as progress:
         text = cutting_program(bevel_set, member, milling_machine, target.stem, job, progress)
     write_text(target, text)
-    click.echo(f"{target}: {len(wanted)} of {bevel_set.member(member).teeth} spaces, {block_count(text)} blocks")
+    click.echo(f"{target}: {len(wanted)} of {spec.teeth} spaces, {block_count(text)} blocks")
 
 
 @click.command(epilog=FLANK_CSV)
@@ -111,8 +111,7 @@ def mill(
     from gearmath.specs.toml import find
 
     pair, text = load_pair(find(gear_set)), read_text(program)
-    member = member_of(pair, member, stated_member(text))
-    spec = pair.member(member)
+    member, spec = member_of(pair, member, stated_member(text))
     milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
     path = execute(text, str(program))

@@ -66,8 +66,8 @@ def points(
     sides, teeth = _for_each(texts, sides, "--flank"), _for_each(texts, teeth, "--tooth")
     _check_lengths(apex_offset, tip_radius)
     loaded = load_pair(find(gear_set))
-    member = member_of(loaded, member)
-    _check_parts(texts, sides, teeth, loaded.member(member).teeth)
+    member, spec = member_of(loaded, member)
+    _check_parts(texts, sides, teeth, spec.teeth)
     read = [read_point_text(path, unit) for path in texts]
     parts = [
         Part(str(path), side, tooth, text.point, text.normal)

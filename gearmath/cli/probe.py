@@ -76,8 +76,8 @@ def probe(
     from gearmath.specs.toml import find
 
     bevel_set = load_pair(find(gear_set))
-    member = member_of(bevel_set, member)
-    count = bevel_set.member(member).teeth
+    member, spec = member_of(bevel_set, member)
+    count = spec.teeth
     teeth, around = _teeth(topography, count), teeth_around(count) if registration else ()
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     simulated = load_simulated_machine(find(errors)) if errors else None
@@ -86,7 +86,7 @@ def probe(
     points = text.count("R205=$")
     with bar(points * (1 + repeat) + text.count("\n"), "step") as progress:
         found = approaches(
-            text, str(target), bevel_set.member(member), member, milling_machine, known, fixture, head.spindle_radius,
+            text, str(target), spec, member, milling_machine, known, fixture, head.spindle_radius,
             progress,
         )  # fmt: skip
     clear = clearances(found, target, "the program is not written")

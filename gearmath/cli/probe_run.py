@@ -75,8 +75,8 @@ def probe(
         if gear_set is None:
             raise InputError(f"--set is missing: {program} probes a member")
         pair = load_pair(find(gear_set))
-        name = member_of(pair, member, stated_member(text))
-        there = at_member = _member_machine(pair.member(name), name, measured, milling_machine, known, shop)
+        name, spec = member_of(pair, member, stated_member(text))
+        there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
         count = touch_count(text, str(program))
         _check_clear(text, program, at_member, milling_machine, shop, 2 * count + text.count("\n"))
     blocks = 2 * count if count is not None else text.count("MEAS=1")

@@ -6,17 +6,14 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, SET_OPTION, about, bar, echo_json, plot, save_plot
+from gearmath.cli.common import FLANK_CSV, JSON, REGISTER, SET_OPTION, about, bar, echo_json, plot, save_plot
 from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
 
 
 @click.command(epilog=FLANK_CSV)
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
 @SET_OPTION
-@click.option(
-    "--register/--no-register", "registered", default=True, show_default=True,
-    help="Take out the clamping (eccentricity, tilt), where the points tell it.",
-)  # fmt: skip
+@REGISTER
 @click.option(
     "--rotation/--no-rotation", "rotated", default=True, show_default=True,
     help="Take out the rotation of the work that both flanks have in common.",

@@ -15,6 +15,7 @@ from gearmath.cli.common import (
     JSON,
     MACHINE,
     MEMBER,
+    REGISTER,
     SET_OPTION,
     about,
     bar,
@@ -53,7 +54,7 @@ _FEW_DRAWS = 2000
 @click.argument("measured", type=click.Path(path_type=Path), metavar="M.csv")
 @SET_OPTION
 @MEMBER
-@click.option("--register/--no-register", "registered", default=True, show_default=True, help="As in 'evaluate'.")
+@REGISTER
 @click.option("--rotation/--no-rotation", "rotated", default=True, show_default=True, help="As in 'evaluate'.")
 @SIGMA
 @MODEL
@@ -83,8 +84,7 @@ def uncertainty(
 
     file = read_flank_csv(measured)
     pair = load_pair(find(gear_set))
-    member = member_of(pair, member, file.member)
-    spec = pair.member(member)
+    member, spec = member_of(pair, member, file.member)
     with about(measured):
         evaluation = evaluate_member(file, spec, member, registered, rotated=rotated)
         figures = figures_of(file, spec, evaluation)
@@ -93,7 +93,7 @@ def uncertainty(
         found = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, progress)
     _, settings, effects, remarks = uncertain_correction(spec, file, evaluation, covariance)
     found += settings
-    remarks = [*(f"not whole: {one}" for one in missing_points(file, spec.teeth)), *remarks]
+    remarks = [*missing_points(file, spec.teeth), *remarks]
     if picture:
         from gearmath.plot import uncertainty_figure
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from derivations import single_blades
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.turning import half_turn
 from gearmath.lowering import Kernel, lower
 from gearmath.machine.blades import Blades, Edge, crossing
 from gearmath.machine.milling import Evaluator, Removal
@@ -126,7 +127,7 @@ def _passes(
     before, after = (_in_chunks(seen, len(node), nodes[node + k, :5], point[line], *machine) for k in (0, 1))
     pitch = 2 * math.pi / blades.groups
     off = nodes[node, 5] - before[2]
-    turned = np.remainder(after[2] - before[2] + math.pi, 2 * math.pi) - math.pi
+    turned = half_turn(after[2] - before[2])
     change = nodes[node + 1, 5] - nodes[node, 5] - turned
     low, count = np.minimum(off, off + change) / pitch, np.abs(change) / pitch
     found = []

@@ -28,9 +28,11 @@ MARGIN = 0.1
 _SPACES = 12
 
 
-def flank_header(member: Member, name: str, grid: Grid, margin: float | Margins | None = MARGIN) -> dict[str, str]:
-    """The header of a flank file of a member; without margins its places are listed."""
-    rows, columns = grid.shape
+def flank_header(
+    member: Member, name: str, shape: tuple[int, int], margin: float | Margins | None = MARGIN
+) -> dict[str, str]:
+    """The header of a flank file of a member and of a grid of this shape; without margins it has own places."""
+    rows, columns = shape
     return {
         "member": name,
         "member_teeth": str(member.teeth),
@@ -52,7 +54,7 @@ def nominal_flank(
     points = solve_flank(member, name, flank, grid)
     row, col = (index.ravel() for index in np.indices(grid.shape))
     angle = 2 * math.pi * tooth / member.teeth
-    header = flank_header(member, name, grid, margin)
+    header = flank_header(member, name, grid.shape, margin)
     return flank_file(header, name, flank, tooth, row, col, turned(points.point, angle), turned(points.normal, angle))
 
 

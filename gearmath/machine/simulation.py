@@ -15,6 +15,7 @@ import numpy as np
 
 from derivations import Quantity, notation, sweep
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.turning import half_turn
 from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel, lower
 from gearmath.specs.milling_machine import AXES
@@ -77,7 +78,7 @@ def with_setting_errors(
     theta = _theta(axes, settings, pivot_offset, motion)
     really, meant = (_positions(x, motion, theta, pivot_offset) for x in (settings + errors, settings))
     shift = really - meant
-    shift[:, 3::2] = (shift[:, 3::2] + math.pi) % (2 * math.pi) - math.pi
+    shift[:, 3::2] = half_turn(shift[:, 3::2])
     return axes + shift[:, : axes.shape[1]]
 
 

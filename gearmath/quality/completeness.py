@@ -33,7 +33,8 @@ def missing_points(file: FlankFile, teeth: int) -> tuple[str, ...]:
     A grid of which no more than a fifth is missing is not named here: ``nominal.completed`` names its points.
     """
     places = _places(file.flank, file.tooth, file.row, file.col)
-    return tuple(_missing(places, teeth, grid_shape(file), reference_point(file), MOST_MISSING))
+    missing = _missing(places, teeth, grid_shape(file), reference_point(file), MOST_MISSING)
+    return tuple(f"not whole: {one}" for one in missing)
 
 
 def missing_touches(touches: Touches, teeth: int, shape: tuple[int, int]) -> tuple[str, ...]:

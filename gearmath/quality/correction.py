@@ -101,7 +101,7 @@ def correct(
     """
     check_belongs(member, name, measured)
     names = tuple(free) if free is not None else free_settings(member, higher_order)
-    groups = [FLANKS] if member.cutting == "completing" else [(flank,) for flank in FLANKS]
+    groups: list[tuple[str, ...]] = [FLANKS] if member.cutting == "completing" else [(flank,) for flank in FLANKS]
     targets = {flank: flank_target(member, name, flank, measured, excluded=excluded) for flank in FLANKS}
     for group in groups:
         _check_determined(name, group, [targets[flank] for flank in group], names)
@@ -114,11 +114,11 @@ def correct(
     as_measured, targets = fit.without_rotation(), fit.turned(rotation.shift)
     progress(1)
     found = Correction({}, identified, {}, _index(member, measured), {}, {}, {}, {}, {}, rotation, {}, {})
-    for group in groups:
+    for group, analysis in zip(groups, fit.analysis, strict=True):
         mine, measured_there = ([each[flank] for flank in group] for each in (targets, as_measured))
         before = [target.deviation for target in measured_there]
         found.left_out.update({f: t.grid_points - len(t.deviation) for f, t in zip(group, mine, strict=True)})
-        found.analysis[group] = analyse(mine, names, bounds, run)
+        found.analysis[group] = replace(analysis, deviation=np.concatenate([target.deviation for target in mine]))
         best = identify(mine, names, root_limit=root_limit, bounds=bounds, run=run)
         held_back = bool(identified[group].active) and not _as_good(identified[group], best)
         if few and (held_back or _made_worse(group, before, identified[group], noise or 0.0)):

@@ -150,7 +150,7 @@ def evaluate_member(
     whole = outliers.without(complete)
     measured, drifts = without_drift(whole, member.teeth)
     as_measured = _flanks(measured, member)
-    left_out = (*outliers.reasons, *absent, *(f"not whole: {one}" for one in missing_points(file, member.teeth)))
+    left_out = (*outliers.reasons, *absent, *missing_points(file, member.teeth))
     seat, remarks = None, (*left_out, *outliers.kept, *_silent(as_measured))
     if registered:
         try:

@@ -12,13 +12,14 @@ import numpy as np
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.grid import blank_fractions
 from gearmath.bevel.kernels import kernel
-from gearmath.bevel.turning import turned
+from gearmath.bevel.turning import half_turn, turned
 from gearmath.errors import InputError
+from gearmath.machine.mill import flank_header
 from gearmath.quality.lattice import Lattice, find_lattice
 from gearmath.quality.nominal import SAME_POINT
 from gearmath.quality.outliers import flag_outliers
 from gearmath.quality.points import LEAST_FIT, Frame, Laid, Part, Phase, axial_hint, check_normals, lay, turn_of
-from gearmath.specs.bevel_set import BevelSet, Member, design_sha256
+from gearmath.specs.bevel_set import BevelSet, Member
 from gearmath.specs.flank_csv import OWN, FlankFile, flank_file, join
 
 #: Where points form no grid, deviations are interpolated on this one: its rows, columns and margins, widest first.
@@ -83,16 +84,15 @@ def foreign_file(
         remarks += [f"{one.part.name}: {each}" for each in said if each]
         progress(1)
     remarks = [each for each in remarks if each]
-    header = _header(member, name, files, frame)
     zeroed = phase == "each" or (phase == "common" and len({part.flank for part in parts}) == 1)
-    header |= {"phase_zeroed": "true" if zeroed else "false"}
+    header = _header(member, name, files, frame, zeroed)
     return Foreign(join([replace(file, header=header) for file in files]), tuple(turns), tuple(remarks))
 
 
 def _common(parts: Sequence[Part], turns: Sequence[float], member: Member) -> float:
     """The median turning. Raises InputError where a part is not of its tooth."""
     pitch = 2 * math.pi / member.teeth
-    apart = np.array([(turn - turns[0] + math.pi) % (2 * math.pi) - math.pi for turn in turns])
+    apart = half_turn(np.array(turns) - turns[0])
     for part, angle in zip(parts, apart, strict=True):
         if abs(angle) > _SAME_TOOTH * pitch:
             teeth = round(angle / pitch)
@@ -253,19 +253,12 @@ def _on_grid(
     return row, col, nominal.point, nominal.normal, deviation, [words, *lost]
 
 
-def _header(member: Member, name: str, files: Sequence[FlankFile], frame: Frame) -> dict[str, str]:
+def _header(member: Member, name: str, files: Sequence[FlankFile], frame: Frame, zeroed: bool) -> dict[str, str]:
     rows, columns = (int(max(getattr(file, index).max() for file in files)) + 1 for index in ("row", "col"))
-    return {
-        "member": name,
-        "member_teeth": str(member.teeth),
-        "frame": "w",
-        "unit": "mm",
-        "grid": f"{rows}x{columns}",
+    return flank_header(member, name, (rows, columns)) | {
         "margins": _margins(member, name, files, rows, columns),
-        "reference_point": f"{rows // 2},{columns // 2}",
-        "phase_zeroed": "false",
+        "phase_zeroed": "true" if zeroed else "false",
         "tip_radius_mm": f"{frame.tip_radius:g}",
-        "settings_sha256": design_sha256(member),
     }
 
 

@@ -16,6 +16,7 @@ from gearmath.quality.pitch import reference_point
 from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
+from gearmath.specs.ratio import INCH
 
 #: A measured point may lie this far beside its nominal normal. [mm]
 SAME_POINT = 0.01
@@ -25,7 +26,6 @@ SAME_DEVIATION = 0.001
 SAME_NORMAL = math.cos(math.radians(1.0))
 #: Part of a grid that may be missing.
 MOST_MISSING = 0.2
-_MM_PER_INCH = 25.4
 
 
 @dataclass(frozen=True)
@@ -81,6 +81,27 @@ def distance_from_flank(
         k = int(np.argmax(~(residual <= TOLERANCE)))
         raise ComputationError(f"{flank} flank: the nominal surface does not reach the point at {point[k].round(3)} mm")
     return np.sum((at - surface.point) * surface.normal, axis=1)
+
+
+def deviations_of(
+    file: FlankFile, member: Member, rows: NominalRows, point: np.ndarray, expected: np.ndarray
+) -> np.ndarray:
+    """Deviations (n,) [mm] of points (n,3) against the exact nominal surface, roughly ``expected`` (n,).
+
+    NaN where the file has none.
+    """
+    deviation = np.full(len(file), np.nan)
+    for flank in FLANKS:
+        here = (file.flank == flank) & np.isfinite(file.deviation)
+        deviation[here] = distance_from_flank(
+            member, flank, point[here], rows.turn[here], rows.normal[here], expected[here]
+        )
+    return deviation
+
+
+def with_deviations(file: FlankFile, rows: NominalRows, deviation: np.ndarray) -> FlankFile:
+    """The file with other deviations (n,) [mm] at its nominal points; there themselves where one is NaN."""
+    return replace(file, point=rows.point + np.nan_to_num(deviation)[:, None] * rows.normal, deviation=deviation)
 
 
 def at_one_place(file: FlankFile, member: Member, name: str) -> FlankFile:
@@ -177,7 +198,7 @@ def _shown(vector: np.ndarray) -> str:
 def _likeliest_cause(file: FlankFile, rows: NominalRows) -> str:
     """What would make most of the points fit."""
     fits = {
-        "the numbers are inches: convert the file to mm": file.point * _MM_PER_INCH,
+        "the numbers are inches: convert the file to mm": file.point * INCH,
         "the file is of the other hand": file.point * [1, -1, 1],
         "x and y are exchanged": file.point[:, [1, 0, 2]],
     }

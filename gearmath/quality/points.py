@@ -18,9 +18,10 @@ import numpy as np
 from gearmath.bevel.flank import Grid, nominal_points
 from gearmath.bevel.grid import blank_fractions
 from gearmath.bevel.newton import TOLERANCE
-from gearmath.bevel.turning import turned
+from gearmath.bevel.turning import half_turn, turned
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
+from gearmath.specs.ratio import INCH
 
 Phase = Literal["common", "each", "kept"]
 AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
@@ -35,7 +36,6 @@ _STEPS, _STILL = 30, 1e-10
 _TURNING_STEPS = 20
 #: Normals of a file agree with those of the flank within this. [rad]
 _NORMAL_WITHIN = math.radians(15)
-_MM_PER_INCH = 25.4
 #: Another apex offset is worth a word where it takes the median deviation from this [mm] to this part of it, and is
 #: demanded where that is larger than the form of a flank is [mm].
 _WORTH_A_HINT, _MUCH_LESS, _LARGEST_FORM = 0.02, 5.0, 0.1
@@ -114,7 +114,7 @@ def turn_of(part: Part, frame: Frame, gear_set: BevelSet, name: str) -> float:
             f"{part.name}: {int(fits.sum())} of {len(fits)} points lie within {_near(member):.2f} mm of the {name}'s "
             f"{part.flank} flank, however it is turned; {_likeliest_cause(part, frame, gear_set, name)}"
         )
-    return _half_turn(turn - 2 * math.pi * part.tooth / member.teeth)
+    return half_turn(turn - 2 * math.pi * part.tooth / member.teeth)
 
 
 def lay(part: Part, frame: Frame, member: Member, turn: float) -> Laid:
@@ -220,7 +220,7 @@ def _turn(member: Member, flank: str, point: np.ndarray, tip_radius: float) -> t
     p, s, n = point[there], surface[there], normal[there]
     each = np.arctan2(p[:, 1], p[:, 0]) - np.arctan2(s[:, 1], s[:, 0])
     start = math.atan2(np.median(np.sin(each)), np.median(np.cos(each)))
-    turn = start + float(np.median(_half_turns(each - start)))
+    turn = start + float(np.median(half_turn(each - start)))
     arm = lever(s, n)
     for _ in range(_TURNING_STEPS):
         off = np.sum((turned(p, -turn) - s) * n, axis=1) - tip_radius
@@ -243,7 +243,7 @@ def _likeliest_cause(part: Part, frame: Frame, gear_set: BevelSet, name: str) ->
     mirror = np.array([-1, 1, 1]) if frame.axis[1] != "x" else np.array([1, -1, 1])
     choices: list[list[tuple[str, object]]] = [
         [("", part.flank), (f"--flank {other_flank}", other_flank)],
-        [("", 1.0), ("--unit inch", _MM_PER_INCH), ("--unit mm", 1 / _MM_PER_INCH)],
+        [("", 1.0), ("--unit inch", INCH), ("--unit mm", 1 / INCH)],
         [("", frame.axis), *((f"--axis {axis}", axis) for axis in AXES if axis != frame.axis)],
         [("", name), *((f"--member {other}", other) for other in others)],
         [("", 1), ("the mirror image: the file is of the other hand", mirror)],
@@ -289,11 +289,3 @@ def _likely_offset(part: Part, frame: Frame, member: Member) -> float | None:
     middle = int(best[len(best) // 2])
     turn = turns[middle][0] - 2 * math.pi * part.tooth / member.teeth
     return _axial_fit(part, replace(frame, apex_offset=float(tried[middle])), member, turn)[0]
-
-
-def _half_turn(angle: float) -> float:
-    return (angle + math.pi) % (2 * math.pi) - math.pi
-
-
-def _half_turns(angle: np.ndarray) -> np.ndarray:
-    return (angle + np.pi) % (2 * np.pi) - np.pi

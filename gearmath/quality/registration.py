@@ -10,7 +10,7 @@ every tooth free; both flanks of a space turned together; the same without tilt.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,9 +18,9 @@ import numpy as np
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
 from gearmath.quality.axial import Axial, axial_shift
-from gearmath.quality.nominal import NominalRows, check_points, distance_from_flank, nominal_rows
+from gearmath.quality.nominal import NominalRows, check_points, deviations_of, nominal_rows, with_deviations
 from gearmath.quality.seat_model import SEAT, SeatModel, check_teeth, seat_model, sizes
-from gearmath.specs.bevel_set import FLANKS, Member
+from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
 
 _ITERATIONS, _CONVERGED = 12, 1e-9
@@ -131,7 +131,7 @@ def register(file: FlankFile, member: Member, name: str, untold: np.ndarray | No
     covariance, gain, found = np.full((4, 4), np.nan), np.zeros((4, len(file))), list(model.found)
     covariance[np.ix_(found, found)] = noise**2 * np.linalg.inv(model.columns.T @ model.columns)
     gain[np.ix_(found, used)] = np.linalg.pinv(model.columns)
-    registered = replace(file, point=rows.point + np.nan_to_num(deviation)[:, None] * rows.normal, deviation=deviation)
+    registered = with_deviations(file, rows, deviation)
     singular_values = np.linalg.svd(model.columns * sizes(member)[found], compute_uv=False)
     return Registration(
         registered, seat, covariance, len(found) == 4, model.name, noise, spare, singular_values,
@@ -160,20 +160,14 @@ def _fit(
 
 def _without(file: FlankFile, rows: NominalRows, columns: np.ndarray, seat: np.ndarray, member: Member) -> np.ndarray:
     """The deviations (n,) [mm] of the work itself: points brought back by (18.1), against the exact nominal surface."""
-    touched = rows.point + np.nan_to_num(file.deviation)[:, None] * rows.normal
+    touched = with_deviations(file, rows, file.deviation).point
     (x, y), (about_x, about_y) = seat[:2], seat[2:]
     (back, _) = kernel("unseated")(
         touched, rows.normal, math.hypot(x, y), math.atan2(y, x), math.hypot(about_x, about_y),
         math.atan2(about_y, about_x),
     )  # fmt: skip
     expected = np.nan_to_num(file.deviation) - columns[:, SEAT] @ seat
-    deviation = np.full(len(file), np.nan)
-    for flank in FLANKS:
-        here = (file.flank == flank) & np.isfinite(file.deviation)
-        deviation[here] = distance_from_flank(
-            member, flank, back[here], rows.turn[here], rows.normal[here], expected[here]
-        )
-    return deviation
+    return deviations_of(file, member, rows, back, expected)
 
 
 def stated_noise(file: FlankFile) -> float:

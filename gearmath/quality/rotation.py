@@ -18,7 +18,7 @@ import numpy as np
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
-from gearmath.quality.nominal import NominalRows, distance_from_flank, nominal_rows
+from gearmath.quality.nominal import NominalRows, deviations_of, nominal_rows, with_deviations
 from gearmath.quality.pitch import reference_point
 from gearmath.quality.robust import limit_of
 from gearmath.quality.tooth_shifts import LEAST_BETWEEN_TEETH
@@ -90,8 +90,7 @@ def common_rotation(file: FlankFile, member: Member, name: str, noise: float = m
         angle += step
     else:
         raise ComputationError(f"no rotation of the {file.member} explains its points: after {_ITERATIONS} steps")
-    point = rows.point + np.nan_to_num(deviation)[:, None] * rows.normal
-    turned_back = replace(file, header=_header(file), point=point, deviation=deviation)
+    turned_back = replace(with_deviations(file, rows, deviation), header=_header(file))
     return Rotation(
         turned_back, angle, noise * float(np.linalg.norm(gain)), radius, place, int(used.sum()) // 2,
         np.nan_to_num(file.deviation - deviation), gain, column,
@@ -131,15 +130,9 @@ def _alike(tooth: np.ndarray, arc: np.ndarray) -> np.ndarray:
 
 def _without(file: FlankFile, member: Member, rows: NominalRows, column: np.ndarray, angle: float) -> np.ndarray:
     """The deviations (n,) [mm] of the points turned back, against the exact nominal surface."""
-    back = turned(rows.point + np.nan_to_num(file.deviation)[:, None] * rows.normal, -angle)
+    back = turned(with_deviations(file, rows, file.deviation).point, -angle)
     expected = np.nan_to_num(file.deviation) - column * angle
-    deviation = np.full(len(file), np.nan)
-    for flank in FLANKS:
-        here = (file.flank == flank) & np.isfinite(file.deviation)
-        deviation[here] = distance_from_flank(
-            member, flank, back[here], rows.turn[here], rows.normal[here], expected[here]
-        )
-    return deviation
+    return deviations_of(file, member, rows, back, expected)
 
 
 def _header(file: FlankFile) -> dict[str, str]:

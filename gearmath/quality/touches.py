@@ -51,7 +51,7 @@ def measured_member(
     (radius,) = kernel("effective_radius")(machine_normal[:, :3], calibration.tip_radius, lobing(calibration))
     contact, deviation = kernel("touched_point")(tip, radius, point, normal)
     _check_place(contact - point, touches)
-    header = {**flank_header(member, name, grid), "tip_radius_mm": f"{calibration.tip_radius:g}"}
+    header = {**flank_header(member, name, grid.shape), "tip_radius_mm": f"{calibration.tip_radius:g}"}
     return _averaged(header, touches, contact, normal, deviation)
 
 

@@ -17,9 +17,8 @@ from pathlib import Path
 import numpy as np
 
 from gearmath.errors import InputError
+from gearmath.specs.sheet import UNITS
 
-#: Length of the units a file may be in. [mm]
-UNITS = {"mm": 1.0, "inch": 25.4}
 #: More points than any flank is measured at, and a larger coordinate than any machine has. [in the file's unit]
 MOST_POINTS, _LARGEST = 5000, 1e5
 

@@ -18,10 +18,11 @@ from typing import Annotated, Any, Self, get_args
 from pydantic import ValidationError
 from pydantic_core import InitErrorDetails
 
+from gearmath.specs.ratio import INCH
 from gearmath.specs.toml import Spec
 
 #: Length of each unit that a file may have. [mm]
-UNITS = {"mm": 1.0, "inch": 25.4}
+UNITS = {"mm": 1.0, "inch": INCH}
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,7 @@ def measured(tmp_path):
             if extra is not None:
                 deviation = deviation + extra(row, col)
             point = target.nominal.point + deviation[:, None] * target.nominal.normal
-            header = flank_header(member, name, blank_grid(member))
+            header = flank_header(member, name, (5, 9))
             files.append(flank_file(header, name, flank, 0, row, col, point, target.nominal.normal, deviation))
         path = tmp_path / f"{name}.csv"
         write_flank_csv(path, join(files))

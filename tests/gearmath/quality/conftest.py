@@ -139,7 +139,7 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
     ) -> FlankFile:  # fmt: skip
         grid_ = blank_grid(member, *grid)
         row, col = (each.ravel() for each in np.indices(grid))
-        header, files = flank_header(member, name, grid_), []
+        header, files = flank_header(member, name, grid_.shape), []
         nominals = {flank: solve_flank(member, name, flank, grid_) for flank in FLANKS}
         for i in teeth:
             for flank in FLANKS:

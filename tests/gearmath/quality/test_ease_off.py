@@ -47,7 +47,7 @@ def measured(header, member, name, change):
 
 @pytest.fixture
 def header():
-    return lambda member, name: flank_header(member, name, blank_grid(member), 0.1)
+    return lambda member, name: flank_header(member, name, (5, 9), 0.1)
 
 
 def azimuth(member, flank, change, axial, radial, start):

@@ -48,7 +48,7 @@ def measured(name, errors, rotation=0.0, sigma=0.0, seed=0, extra=None) -> Flank
         at = target.nominal
         point = at.point + deviation[:, None] * at.normal
         files.append(
-            flank_file(flank_header(member, name, grid), name, flank, 0, row, col, point, at.normal, deviation)
+            flank_file(flank_header(member, name, grid.shape), name, flank, 0, row, col, point, at.normal, deviation)
         )
     file = join(files)
     return replace(file, uncertainty=np.full(len(file), sigma or np.nan))

@@ -171,7 +171,7 @@ def nominal(member, name, deviation, teeth):
             turn = np.array([[np.cos(a), np.sin(a), 0], [-np.sin(a), np.cos(a), 0], [0, 0, 1]])
             R, n = points.point @ turn, points.normal @ turn
             d = deviation(R, n)
-            header = flank_header(member, name, grid)
+            header = flank_header(member, name, grid.shape)
             files.append(flank_file(header, name, flank, tooth, row, col, R + d[:, None] * n, n, d))
     return join(files)
 

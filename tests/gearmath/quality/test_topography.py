@@ -120,9 +120,8 @@ def test_grid_that_is_no_grid_is_refused(plane, text):
 
 
 def test_header_of_a_member_names_its_grid(gear_set):
-    from gearmath.bevel.flank import blank_grid
 
-    header = flank_header(gear_set.pinion, "pinion", blank_grid(gear_set.pinion, 7, 11, 0.05), 0.05)
+    header = flank_header(gear_set.pinion, "pinion", (7, 11), 0.05)
     assert (header["grid"], header["reference_point"], header["margins"]) == ("7x11", "3,5", "0.05,0.05")
 
 
