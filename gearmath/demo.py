@@ -26,6 +26,7 @@ from gearmath.gearbox.simulation import Simulation, simulate
 from gearmath.gearbox.train import GearboxPlan, plan
 from gearmath.lowering import lower
 from gearmath.machine.cutting import Job, cutting_program
+from gearmath.machine.control import Setup
 from gearmath.machine.executor import execute
 from gearmath.machine.mill import mill_member
 from gearmath.plot import member_figure, save
@@ -159,7 +160,7 @@ def _cut_and_measure(gear_set: Path, name: str, shop: SimulatedMachine, program:
     bevel_set, machine = load_pair(gear_set), load_milling_machine(bundled(MILLING_MACHINE))
     member = bevel_set.member(name)
     write_text(program, cutting_program(bevel_set, name, machine, program.stem, Job(range(member.teeth))))
-    path = execute(program.read_text("utf-8"), program.name)
+    path = execute(program.read_text("utf-8"), program.name, Setup.of(machine))
     perfect_probe = shop.model_copy(update={"probe": Probe()})
     true, seen = (mill_member(path, member, name, machine, errors) for errors in (perfect_probe, shop))
     return true, seen

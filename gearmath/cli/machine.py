@@ -99,6 +99,7 @@ def mill(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import read_text
+    from gearmath.machine.control import Setup
     from gearmath.machine.executor import execute
     from gearmath.machine.measuring import measure_member
     from gearmath.machine.metal import metal
@@ -114,7 +115,7 @@ def mill(
     member, spec = member_of(pair, member, stated_member(text))
     milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
-    path = execute(text, str(program))
+    path = execute(text, str(program), Setup.of(milling_machine))
     if measured and simulated is None:
         raise InputError("--measured needs --errors: the file that says how the member sits and what the probe does")
     with bar(2 * spec.teeth, "flank") as progress, about(program):

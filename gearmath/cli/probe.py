@@ -67,12 +67,13 @@ def probe(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
+    from gearmath.machine.collision import obstacles
     from gearmath.machine.probe_check import approaches
     from gearmath.machine.probing import probing_program, teeth_around
     from gearmath.machine.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.simulated_machine import CutterHead, Fixture, load_simulated_machine
+    from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
 
     bevel_set = load_pair(find(gear_set))
@@ -81,7 +82,7 @@ def probe(
     teeth, around = _teeth(topography, count), teeth_around(count) if registration else ()
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     simulated = load_simulated_machine(find(errors)) if errors else None
-    fixture, head = (simulated.fixture, simulated.cutter_head) if simulated else (Fixture(), CutterHead())
+    head, fixture = obstacles(milling_machine, simulated)
     text = probing_program(bevel_set, member, milling_machine, known, target.stem, teeth, pitch, repeat, around)
     points = text.count("R205=$")
     with bar(points * (1 + repeat) + text.count("\n"), "step") as progress:

@@ -55,6 +55,7 @@ def probe(
     from gearmath.bevel.pair import load_pair
     from gearmath.files import read_text, write_text
     from gearmath.machine.artefacts import Artefacts
+    from gearmath.machine.control import Setup
     from gearmath.machine.probe_run import run_touches, touch_count, touches_artefacts
     from gearmath.machine.watch import stated_member
     from gearmath.specs.calibration import load_calibration
@@ -65,6 +66,7 @@ def probe(
     text = read_text(program)
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     shop = load_simulated_machine(find(errors)) if errors else None
+    setup = Setup.of(milling_machine, known.length)
     there: Probe
     count: int | None
     if touches_artefacts(text):
@@ -77,11 +79,11 @@ def probe(
         pair = load_pair(find(gear_set))
         name, spec = member_of(pair, member, stated_member(text))
         there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
-        count = touch_count(text, str(program))
+        count = touch_count(text, str(program), setup)
         _check_clear(text, program, at_member, milling_machine, shop, 2 * count + text.count("\n"))
     blocks = 2 * count if count is not None else text.count("MEAS=1")
     with bar(blocks, "block") as progress:
-        raw = run_touches(text, str(program), there, shop, count, run, progress)
+        raw = run_touches(text, str(program), there, shop, count, run, progress, setup)
     write_text(target, raw)
     click.echo(f"{target}: {len(raw.splitlines()) - 1} touches of run {run}")
 
@@ -90,10 +92,10 @@ def _check_clear(
     text: str, program: Path, there: ProbeMachine, machine: MillingMachine, shop: SimulatedMachine | None, steps: int
 ) -> None:  # fmt: skip
     """Raise InputError where the program moves the probe into a nominal member, or touches what it does not have."""
+    from gearmath.machine.collision import obstacles
     from gearmath.machine.probe_check import approaches
-    from gearmath.specs.simulated_machine import CutterHead, Fixture
 
-    fixture, head = (shop.fixture, shop.cutter_head) if shop else (Fixture(), CutterHead())
+    head, fixture = obstacles(machine, shop)
     with bar(steps, "step") as progress:
         found = approaches(
             text, str(program), there.member, there.name, machine, there.calibration, fixture, head.spindle_radius,

@@ -41,7 +41,7 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     centers = sphere_positions(machine, calibration, sphere)
     anywhere = _above_all(machine, calibration, sphere)
     _check_travel(centers, anywhere, sphere, calibration, machine)
-    blocks = Blocks(program_name, machine.axes.A.modulo)
+    blocks = Blocks(program_name, machine, calibration.length)
     header = (
         f"gearmath {__version__} calibration program of the rotary axes",
         f"machine: {machine.name}",
@@ -51,7 +51,7 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     )
 
     def body() -> Iterator[str]:
-        yield from blocks.start(machine.work_offset, CALIBRATION_COLUMNS)
+        yield from blocks.start(CALIBRATION_COLUMNS)
         above = f"G0 {blocks.length('Z', anywhere)}"
         yield above
         for center in centers:
@@ -64,7 +64,7 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
                 blocks, calibration, center[:3], sphere.diameter, directions, level, WORK_SPHERE
             )  # fmt: skip
             yield above
-        yield "M30"
+        yield from blocks.end()
 
     return blocks.text(header, body())
 

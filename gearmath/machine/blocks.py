@@ -174,7 +174,7 @@ class Pass:
 
 def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     for grid in _curves(member):
-        yield _row(member, flank, grid)
+        yield flank_row(member, flank, grid)
 
 
 def flank_curve(
@@ -184,7 +184,7 @@ def flank_curve(
     share = np.linspace(0.0, 1.0, _COLUMNS)
     place = (share if across is None else np.full(_COLUMNS, across), share if up is None else np.full(_COLUMNS, up))
     axial, radial = kernel("flank_place")(member.blank.vector, *place)
-    return _row(member, flank, Grid(axial[None], radial[None]))
+    return flank_row(member, flank, Grid(axial[None], radial[None]))
 
 
 def foot_curves(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -209,7 +209,7 @@ def _curves(member: Member) -> Iterator[Grid]:
         yield Grid(axial[None], radial[None])
 
 
-def _row(member: Member, flank: str, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+def flank_row(member: Member, flank: str, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Cradle rotations (n,), rising, and lines (n,9) of the points of one row that lie on the blade."""
     spec, side = member.flank(flank), SIDES[flank]
     section = blade_sections(spec.model_copy(update={"design": None}), side)["main"]
@@ -228,10 +228,11 @@ def _row(member: Member, flank: str, grid: Grid) -> tuple[np.ndarray, np.ndarray
 
 def roll_nodes(
     member: Member, cut: Cut, tolerance: float = DEFAULT_TOLERANCE, pivot_height: float = 0.0,
-    pivot_offset: np.ndarray | None = None,
+    pivot_offset: np.ndarray | None = None, rounding: float = ROUNDING,
 ) -> np.ndarray:  # fmt: skip
     """Cradle rotations (n,) [rad] of the block ends: the fewest blocks that keep the flanks within the tolerance [mm].
 
+    Of that, ``rounding`` [mm] is left for the increments of the control, but never more than half.
     Raises InputError for a tolerance out of range.
     """
     low, high = TOLERANCES
@@ -243,7 +244,7 @@ def roll_nodes(
     member = on_one_machine(member, cut)
     start, end = roll_range(member, cut)
     exact = Pass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)
-    budget = _BETWEEN * (tolerance - ROUNDING)
+    budget = _BETWEEN * (tolerance - min(rounding, tolerance / 2))
     nodes, width = [start], _LONGEST / 10
     while nodes[-1] < end:
         width = _longest(exact, nodes[-1], width, budget)

@@ -52,11 +52,11 @@ def calibration_program(machine: MillingMachine, calibration: Calibration, progr
     """
     if calibration.ring is None and calibration.sphere is None:
         raise InputError("the calibration file has neither ring nor sphere: there is nothing to touch")
-    blocks = Blocks(program_name, machine.axes.A.modulo)
+    blocks = Blocks(program_name, machine, calibration.length)
     header = (f"gearmath {__version__} calibration program", f"machine: {machine.name}", f"probe: {calibration.name}")
 
     def body() -> Iterator[str]:
-        yield from blocks.start(machine.work_offset, CALIBRATION_COLUMNS)
+        yield from blocks.start(CALIBRATION_COLUMNS)
         level, top = _level(machine, calibration), blocks.length("Z", float(machine.travel[2, 1]))
         yield f"G0 {top}"
         yield f"G0 {' '.join(blocks.axes(np.zeros(5))[3:])}"
@@ -72,7 +72,7 @@ def calibration_program(machine: MillingMachine, calibration: Calibration, progr
             diameter = calibration.sphere.diameter
             yield from touch_sphere(blocks, calibration, center, diameter, sphere_directions(), level, SPHERE)
             yield f"G0 {top}"
-        yield "M30"
+        yield from blocks.end()
 
     return blocks.text(header, body())
 

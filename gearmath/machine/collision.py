@@ -18,7 +18,8 @@ from gearmath.machine.executor import MachinePath
 from gearmath.machine.run import Run
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
-from gearmath.specs.simulated_machine import CutterHead, Fixture
+from gearmath.specs.obstacles import CutterHead, Fixture
+from gearmath.specs.simulated_machine import SimulatedMachine
 
 #: Blades may come this close under the root, at the ends of the teeth, before it counts. [mm]
 _UNDER_ROOT = 0.5
@@ -67,19 +68,26 @@ def work_profiles(member: Member, fixture: Fixture) -> dict[str, np.ndarray]:
     }
 
 
+def obstacles(machine: MillingMachine, errors: SimulatedMachine | None = None) -> tuple[CutterHead, Fixture]:
+    """What stands about tool and work: of the machine, unless the shop's file says otherwise."""
+    if errors is None:
+        return machine.cutter_head, machine.fixture
+    return errors.cutter_head or machine.cutter_head, errors.fixture or machine.fixture
+
+
 def collisions(
     path: MachinePath, runs: list[Run], member: Member, machine: MillingMachine, head: CutterHead | None = None,
     fixture: Fixture | None = None,
 ) -> list[Collision]:  # fmt: skip
     """Every pair that meets on the way, rapid blocks included; poses are tried every 5 mm of a block."""
-    around = {name: rings(profile) for name, profile in work_profiles(member, fixture or Fixture()).items()}
+    around = {name: rings(profile) for name, profile in work_profiles(member, fixture or machine.fixture).items()}
     found: dict[tuple[str, str], tuple[set[int], float]] = {}
     for run in runs:
         # A turns what is the same all around: blocks that differ in A only are one
         blocks = np.hstack([run.axes[:-1], run.axes[1:]])[:, [0, 1, 2, 4, 5, 6, 7, 9]]
         _, first, which = np.unique(np.round(blocks, 6), axis=0, return_index=True, return_inverse=True)
         for k, row in enumerate(first):
-            meets = _of_block(blocks[row], run.cutter, machine, head or CutterHead(), around)
+            meets = _of_block(blocks[row], run.cutter, machine, head or machine.cutter_head, around)
             for pair, depth in meets.items():
                 lines, deepest = found.get(pair, (set(), 0.0))
                 lines |= set(run.line[1:][which.ravel() == k].tolist())
@@ -106,15 +114,24 @@ def _of_block(
     return meets
 
 
+def widest(cutter: Cutter, head: CutterHead) -> float:
+    """The largest radius [mm] of cutter, head and spindle."""
+    return max(_head_radius(cutter, head), head.spindle_radius)
+
+
+def _head_radius(cutter: Cutter, head: CutterHead) -> float:
+    outer = cutter.bodies[0].outer
+    return outer.point_radius + cutter.height * math.tan(outer.pressure_angle) + head.beyond_tip
+
+
 def _depths(cutter: Cutter, head: CutterHead, height: np.ndarray, radius: np.ndarray) -> dict[str, np.ndarray]:
     """How deep points at ``height`` and ``radius`` lie in each part of the cutter; negative outside of it."""
     body = cutter.bodies[0]
     outer = body.outer.point_radius + height * math.tan(body.outer.pressure_angle)
     inner = body.inner.point_radius - height * math.tan(body.inner.pressure_angle)
-    widest = body.outer.point_radius + cutter.height * math.tan(body.outer.pressure_angle) + head.beyond_tip
     top = cutter.height + head.height
     blades = np.minimum.reduce([height, cutter.height - height, outer - radius, radius - inner])
-    disc = np.minimum.reduce([height - cutter.height, top - height, widest - radius])
+    disc = np.minimum.reduce([height - cutter.height, top - height, _head_radius(cutter, head) - radius])
     return {"blades": blades, "head": disc, "spindle": np.minimum(height - top, head.spindle_radius - radius)}
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from gearmath.machine.nc_expression import AXES, CUTTER_AXIS, Node, refuse
 from gearmath.machine.nc_tree import Block, Word
 from gearmath.machine.reader import GROUP_OF_CODE
+from gearmath.specs.milling_machine import MillingMachine
 
 #: Moves the probe from one position of X Y Z A B to another, (5,) mm and rad: where it triggers, or None.
 Probe = Callable[[np.ndarray, np.ndarray], np.ndarray | None]
@@ -30,13 +31,57 @@ _NEEDED_FOR_MOTION = {
 _NOT_WITH_MOTION = (
     "spindle", "SPOS", "tool change", "coolant", "program stop", "program end", "T", "D", "S", "compressor", "dwell",
 )  # fmt: skip
+_VALUED = ("F", "S", "D", "SPOS", "ADIS", "ADISPOS", "MEAS", "CTOL", "OTOL")
 _ALL = AXES + CUTTER_AXIS
+#: The tool that is a probe, by the name that probing programs give it.
+PROBE_TOOL = "PROBE"
 #: What may turn without end.
 _TURNING = "A" + CUTTER_AXIS
 _HALF_RESOLUTION_DEG = 5e-7
 _LARGEST_COORDINATE = 1e6
 #: Radius [mm] at which one degree is one millimetre: what F means for a rotary axis of FGROUP.
 _DEGREE_IS_MM = 180.0 / math.pi
+
+
+@dataclass(frozen=True)
+class Setup:
+    """How the control stands before a program starts: what its tables hold, and where the axes are.
+
+    ``zero`` are the machine coordinates of the point that positions here count from, ``offset`` what the work offset
+    and all frames hold, X Y Z A B in mm and degrees: on a control that is set up right they are the same. Lengths are
+    those of the tool table [mm]. ``position`` are the axes where they are known, by machine coordinates, and
+    ``tool`` is what is in the spindle.
+    """
+
+    zero: tuple[float, ...] = (0.0,) * 5
+    offset: tuple[float, ...] = (0.0,) * 5
+    tool_length: float = 0.0
+    probe_length: float = 0.0
+    turned: tuple[float, float, float] = (0.0,) * 3
+    mirrored: tuple[float, float, float] = (0.0,) * 3
+    scaled: tuple[float, float, float] = (1.0,) * 3
+    """What all frames together do beside shifting, about and along X Y Z."""
+    metric: bool = True
+    increments: tuple[float, float] = (1e9, 1e9)
+    position: tuple[float, ...] | None = None
+    tool: str | None = None
+    changed_at: tuple[float, ...] | None = None
+    """Where the axes stand after a tool change, if that is known."""
+    spindle_tool: Callable[[str], str] = lambda wanted: wanted
+    """What is in the spindle after a tool change."""
+
+    @staticmethod
+    def of(machine: MillingMachine, probe_length: float = 0.0) -> Setup:
+        """The tables as the machine file wants them."""
+        tip = machine.z_reference == "tip"
+        values = machine.work_offset_values
+        return Setup(values, values, machine.tool_length if tip else 0.0, probe_length if tip else 0.0)
+
+    def length(self, tool: str | None) -> float:
+        """Length 1 of a tool in the table [mm]."""
+        if tool is None:
+            return 0.0
+        return self.probe_length if tool == PROBE_TOOL else self.tool_length
 
 
 class Row(NamedTuple):
@@ -68,6 +113,7 @@ class Control:
 
     name: str
     probe: Probe | None = None
+    setup: Setup = Setup()
     modal: dict[str, str] = field(default_factory=dict)
     position: dict[str, float] = field(default_factory=dict)
     shift: dict[str, float] = field(default_factory=dict)
@@ -79,8 +125,37 @@ class Control:
     selected: str | None = None
     tool: str | None = None
     edge: bool = False
+    fetched: str | None = None
+    """What is in the spindle; ``tool`` is what the program asked for."""
     ended: bool = False
     latch: Latch | None = None
+
+    def __post_init__(self) -> None:
+        self.tool = self.fetched = self.setup.tool
+        self._stand(self.setup.position)
+
+    def _stand(self, position: tuple[float, ...] | None) -> None:
+        """The axes at machine coordinates, or wherever they are."""
+        self.position.clear()
+        if position is not None:
+            self.position |= {a: p - z for a, p, z in zip(AXES, position, self.setup.zero, strict=True)}
+
+    @property
+    def length(self) -> float:
+        """What the tool table adds to Z now [mm]."""
+        return self.setup.length(self.tool) if self.edge else 0.0
+
+    @property
+    def frame(self) -> dict[str, float]:
+        """What all frames together add to a programmed position of each axis, by machine coordinates."""
+        return {axis: by + self.shift.get(axis, 0.0) for axis, by in zip(AXES, self.setup.offset, strict=True)}
+
+    def frame_part(self, axis: str, part: str) -> float:
+        """One part of all frames together: TR shift, RT rotation, MI mirroring, SC scale."""
+        if part == "TR":
+            return self.frame[axis]
+        values = {"RT": self.setup.turned, "MI": self.setup.mirrored, "SC": self.setup.scaled}[part]
+        return values["XYZ".index(axis)]
 
     @property
     def spindle_on(self) -> bool:
@@ -120,7 +195,7 @@ class Control:
 
     def _switch(self, key: str, word: Word, block: Block, number: Number) -> None:
         """Put one word in force."""
-        value = number(word.value, word.column) if key in ("F", "S", "D", "SPOS", "ADIS", "ADISPOS", "MEAS") else 0.0
+        value = number(word.value, word.column) if key in _VALUED else 0.0
         if key in ("F", "S") and value <= 0.0:
             self._refuse(block, key, f"{word.text}: must be greater than 0")
         if key == "F":
@@ -128,9 +203,9 @@ class Control:
         elif key == "S":
             self.speed_known = True
         elif key == "D":
-            if value != 1.0:
-                self._refuse(block, key, f"{word.text}: only the cutting edge D1 is understood")
-            self.edge = True
+            if value not in (0.0, 1.0):
+                self._refuse(block, key, f"{word.text}: only the cutting edge D1, and D0 for none, are understood")
+            self.edge = value == 1.0
         elif key == "SPOS":
             self.modal["spindle"] = "SPOS"
             self.position.pop(CUTTER_AXIS, None)
@@ -138,6 +213,10 @@ class Control:
             self._refuse(block, key, f"{word.text}: only MEAS=1, the rising edge of probe 1, is understood")
         elif key == "dwell" and "F" not in block.words:
             self._refuse(block, key, "G4 without a time F")
+        elif (key in ("OVR", "OVRRAP") or key.startswith("ACC ")) and number(word.value, word.column) != 100.0:
+            self._refuse(block, key, f"{word.text}: only 100 percent is understood")
+        elif key in ("CTOL", "OTOL") and value <= 0.0:
+            self._refuse(block, key, f"{word.text}: must be greater than 0")
         elif key.startswith("FGREF"):
             self.feed_radius[key[-1]] = number(word.value, word.column)
         elif key == "work offset" and self.modal.get(key, word.text) != word.text:
@@ -153,9 +232,9 @@ class Control:
             self._refuse(block, "tool change", "M6 without a tool: T is missing")
         if self.spindle_on:
             self._refuse(block, "tool change", "M6 with the spindle on")
-        self.tool = self.selected
+        self.tool, self.fetched = self.selected, self.setup.spindle_tool(self.selected)
         self.modal.pop("spindle", None)
-        self.position.clear()
+        self._stand(self.setup.changed_at)
 
     def _move(self, block: Block, number: Number) -> Row | None:
         """The motion of one block; None while the position of an axis is still unknown."""
@@ -167,7 +246,8 @@ class Control:
         for group, example in _NEEDED_FOR_MOTION.items():
             if group not in self.modal:
                 refuse(name, line, column, f"motion before the {group} is stated ({example})")
-        if self.tool is None or self.tool != self.selected or not self.edge:
+        raised = "frame suppression" in words and not self.edge and [a for a in _ALL if a in words] == ["Z"]
+        if not raised and (self.tool is None or self.tool != self.selected or not self.edge):
             refuse(name, line, column, 'motion without a tool: T="..." D1 and M6 must come first')
         if "motion" not in self.modal:
             refuse(name, line, column, "axis words without G0 or G1")
@@ -182,6 +262,8 @@ class Control:
             self._measure(block, before)
         if any(axis not in self.position for axis in AXES):
             return None
+        if self.tool is None:
+            return None
         position, cutter = tuple(self.position[axis] for axis in AXES), self.position.get(CUTTER_AXIS, math.nan)
         return Row(position, rapid, self.tool, line, seconds, self.spindle_on, "MEAS" in words, cutter)
 
@@ -195,12 +277,20 @@ class Control:
         elif word.way in ("", "AC"):
             if axis in _TURNING:
                 self._count(block, axis, True)
-            target = value + (0.0 if "frame suppression" in block.words else self.shift.get(axis, 0.0))
+            target = value + self._from_zero(axis, "frame suppression" in block.words)
         else:
-            return self._turned(axis, block, value, now, rapid)
+            return self._turned(axis, block, value, now, rapid) + self._from_zero(axis, False)
         if not abs(target) <= _LARGEST_COORDINATE:
             self._refuse(block, axis, f"{word.text} leads to {target:g}: no axis is that long")
         return target
+
+    def _from_zero(self, axis: str, suppressed: bool) -> float:
+        """What is added to a programmed position of an axis: frames, and for Z the length of the tool."""
+        if axis not in AXES:
+            return 0.0
+        zero = self.setup.zero[AXES.index(axis)]
+        length = self.length if axis == "Z" else 0.0
+        return length - zero + (0.0 if suppressed else self.frame[axis])
 
     def _turned(self, axis: str, block: Block, value: float, now: float | None, rapid: bool) -> float:
         """The position to which DC, ACP or ACN turn a modulo axis."""
@@ -269,8 +359,10 @@ class Control:
         if touched is not None:
             stopped = [*touched[:3].tolist(), *np.degrees(touched[3:]).tolist()]
             self.position |= dict(zip(AXES, stopped, strict=True))
-        machine = {axis: self.position[axis] for axis in AXES if axis in block.words}
+        zero = dict(zip(AXES, self.setup.zero, strict=True))
+        machine = {axis: self.position[axis] + zero[axis] for axis in AXES if axis in block.words}
         if "A" in machine and not self.counting.get("A"):
             machine["A"] %= 360.0
-        work = {axis: value - self.shift.get(axis, 0.0) for axis, value in machine.items()}
+        frame = self.frame | {"Z": self.frame["Z"] + self.length}
+        work = {axis: value - frame[axis] for axis, value in machine.items()}
         self.latch = Latch(machine, work, touched is not None)

@@ -15,13 +15,18 @@ import numpy as np
 
 from gearmath import __version__
 from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.tooth import tooth_space
 from gearmath.errors import InputError
-from gearmath.machine.blocks import TOLERANCES, roll_nodes
+from gearmath.machine.blocks import ROUNDING, TOLERANCES, roll_nodes
+from gearmath.machine.clear_space import room_of
+from gearmath.machine.collision import widest
+from gearmath.machine.cutter import cutter_of
 from gearmath.machine.feeds import block_seconds
-from gearmath.machine.hobbing import hobbing_pass
+from gearmath.machine.hobbing import C_ROUNDING, hobbing_pass
 from gearmath.machine.passes import Pass
 from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
 from gearmath.machine.program import write_program
+from gearmath.machine.rounding import ControlShare, control_share
 from gearmath.machine.words import plain
 from gearmath.specs.bevel_set import BevelSet, Member, settings_sha256
 from gearmath.specs.milling_machine import MillingMachine
@@ -100,8 +105,12 @@ def cutting_program(
     whose spaces are not all cut, or whose machine has no axis C.
     """
     member = bevel_set.member(name)
-    passes = []
-    for one in _passes(member, name, machine, job):
+    head, space = machine.cutter_head, None if member.cutting == "completing" else tooth_space(member, name, 7)
+    room = room_of(member, machine, machine.fixture)
+    radius = max(widest(cutter_of(member, cut.flanks, space, 0.0), head) for cut in Cut.of(member, name))
+    share = control_share(member, name, machine)
+    passes: list[Pass] = []
+    for one in _passes(member, name, machine, job, share):
         passes.append(one)
         progress(1)
     header = (
@@ -109,7 +118,7 @@ def cutting_program(
         f"set: {plain(bevel_set.title)}",
         f"member: {name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}",
         f"settings sha256: {settings_sha256(member)}",
-        f"flank tolerance: {job.tolerance * 1000:g} um along the tooth normal",
+        *_tolerance_notes(member, job, machine, share),
         *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
         f"feed: {job.feed:g} mm/min at the tooth",
         *_hobbing_notes(member),
@@ -118,7 +127,8 @@ def cutting_program(
         f"cutting time: {sum(one.seconds.sum() + one.dwell for one in passes):.1f} s",
     )
     return write_program(
-        program_name, header, passes, machine, job.spindle_rpm, CLEARANCE, PLUNGE_FEED, coolant=not job.dry_run
+        program_name, header, passes, machine, job.spindle_rpm, CLEARANCE, room, radius, PLUNGE_FEED,
+        coolant=not job.dry_run,
     )  # fmt: skip
 
 
@@ -128,7 +138,32 @@ def pass_count(member: Member, name: str, job: Job) -> int:
     return len(job.stages) * (1 if hobbed else len(Cut.of(member, name)) * len(job.spaces))
 
 
-def _passes(member: Member, name: str, machine: MillingMachine, job: Job) -> Iterator[Pass]:
+def _tolerance_notes(member: Member, job: Job, machine: MillingMachine, share: ControlShare) -> tuple[str, ...]:
+    """What the header says of the flanks: how far they may deviate with the increments of this control."""
+    wanted = job.tolerance * 1000
+    if member.process == "face_hobbing":
+        blocks, rounding = wanted, max(share.rounding - ROUNDING - C_ROUNDING, 0.0) * 1000
+    else:
+        rounding = share.rounding * 1000
+        blocks = wanted - min(rounding, wanted / 2)
+    control = machine.control
+    total = max(wanted, blocks + rounding)
+    return (
+        f"flank tolerance: {_upwards(total)} um along the tooth normal, by straight blocks and rounding",
+        f"of which rounding to {control.increments_per_mm} increments per mm and {control.increments_per_degree} per "
+        f"degree: up to {_upwards(share.rounding * 1000)} um",
+        f"path mode {control.path_mode}" + (
+            f" adds up to {_upwards(share.path_mode * 1000)} um" if control.path_mode == "G642" else ": exact stop"
+        ),
+    )  # fmt: skip
+
+
+def _upwards(um: float) -> str:
+    """A limit in um, rounded up."""
+    return f"{math.ceil(um * 1e4 - 1e-6) / 1e4:g}"
+
+
+def _passes(member: Member, name: str, machine: MillingMachine, job: Job, share: ControlShare) -> Iterator[Pass]:
     """All passes in their order: tool by tool, roughing before finishing, space by space."""
     if member.process == "face_hobbing":
         yield from _hobbing_passes(member, name, machine, job)
@@ -136,15 +171,17 @@ def _passes(member: Member, name: str, machine: MillingMachine, job: Job) -> Ite
     angles = tooth_angles(member.teeth, member.index_correction)
     if not all(0 <= space < member.teeth for space in job.spaces):
         raise InputError(f"{name}: spaces = {list(job.spaces)}: must be numbers from 0 to {member.teeth - 1}")
+    stands = None
     for cut in Cut.of(member, name):
         _check_motions(member, name, cut)
         for stage, stock, tolerance in job.stages:
-            theta, first = _first_pass(member, cut, machine, replace(job, tolerance=tolerance))
+            theta, first = _first_pass(member, cut, machine, replace(job, tolerance=tolerance), share)
             first.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
             for space in job.spaces:
                 label = f"space {space} {' and '.join(cut.flanks)}" + (f" {stage}" if len(job.stages) > 1 else "")
                 indexed = first.axes + np.array([0, 0, 0, angles[space], 0])
-                axes = within_travel(indexed, theta, machine, f"{name}, {label}")
+                axes = within_travel(indexed, theta, machine, f"{name}, {label}", stands)
+                stands = axes[-1]
                 yield replace(first, label=label, tooth=int(space), axes=axes)
 
 
@@ -180,7 +217,9 @@ def _hobbing_notes(member: Member) -> tuple[str, ...]:
     )
 
 
-def _first_pass(member: Member, cut: Cut, machine: MillingMachine, job: Job) -> tuple[np.ndarray, Pass]:
+def _first_pass(
+    member: Member, cut: Cut, machine: MillingMachine, job: Job, share: ControlShare
+) -> tuple[np.ndarray, Pass]:
     """Cradle rotations and the pass through space 0: rolled, or for Formate plunged at cradle rotation zero."""
     flank = member.flank(cut.flanks[0])
     tooth = _middle_of_tooth(member, cut)
@@ -190,7 +229,7 @@ def _first_pass(member: Member, cut: Cut, machine: MillingMachine, job: Job) -> 
         axes[0, 2] += _PLUNGE_DEPTHS * _depth(member) + _PLUNGE_MARGIN
         dwell = _SPARK_OUT_TURNS * 60.0 / job.spindle_rpm if job.spindle_rpm > 0 else 0.0
     else:
-        theta = roll_nodes(member, cut, job.tolerance, machine.pivot_height, machine.pivot)
+        theta = roll_nodes(member, cut, job.tolerance, machine.pivot_height, machine.pivot, share.rounding)
         axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
         dwell = 0.0
     return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gearmath.machine.control import Control, Probe, Row
+from gearmath.machine.control import Control, Probe, Row, Setup
 from gearmath.machine.nc_expression import AXES, Node, Value, Variable, refuse
 from gearmath.machine.nc_tree import Block, Branch, Command, Definition, Loop, Statement
 from gearmath.machine.nc_values import evaluate, indices, number
@@ -20,6 +20,8 @@ Host = Callable[[Mapping[int, float]], Mapping[int, float]]
 #: Blocks and turns of loops that a program may run through.
 STEP_LIMIT = 1_000_000
 _LAST_PARAMETER = 999
+#: What $AA_IM shows where the program is run from an unknown position: clear of everything.
+_UP_AND_AWAY = 1e5
 _ALARMS = (65000, 69999)
 
 
@@ -58,11 +60,16 @@ class Run:
     """Number and line of the first alarm that the program set, or None."""
 
 
-def execute(text: str, name: str) -> MachinePath:
+#: Tables without offsets and tool lengths.
+AS_WRITTEN = Setup()
+
+
+def execute(text: str, name: str, setup: Setup = AS_WRITTEN) -> MachinePath:
     """The path of a program. Raises InputError with ``name``, line and column for what it must not do."""
-    done = run_program(text, name)
+    done = run_program(text, name, setup=setup)
     if done.alarm is not None:
-        refuse(name, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]}")
+        why = f": {done.messages[-1]}" if done.messages else ""
+        refuse(name, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]}{why}")
     return done.path
 
 
@@ -73,14 +80,16 @@ def run_program(
     host: Host | None = None,
     parameters: Mapping[int, float] | None = None,
     step_limit: int = STEP_LIMIT,
+    setup: Setup = AS_WRITTEN,
 ) -> Run:
     """Run a program as the control would, with a ``probe`` for its MEAS blocks and a ``host`` that answers.
 
-    ``parameters`` are the R parameters at the start; others are 0. Raises InputError with ``name``, line and column
-    for what a program must not do, and for one that takes more than ``step_limit`` steps.
+    ``parameters`` are the R parameters at the start; others are 0. ``setup`` is how the control stands.
+    Raises InputError with ``name``, line and column for what a program must not do, and for one that takes more than
+    ``step_limit`` steps.
     """
     program = read_program(text, name)
-    runner = _Runner(Control(name, probe), host, dict(parameters or {}), step_limit)
+    runner = _Runner(Control(name, probe, setup), host, dict(parameters or {}), step_limit)
     try:
         runner.all(program.body)
     except _Stopped:
@@ -142,10 +151,26 @@ class _Runner:
         where = f"[{','.join(map(str, index))}]" if index else ""
         refuse(self.control.name, line, variable.column, f"the variable {variable.name}{where} is not defined")
 
-    def _system(self, variable: Variable, line: int) -> float:
-        latch, name = self.control.latch, variable.name
+    def _system(self, variable: Variable, line: int) -> Value:
+        latch, name, control = self.control.latch, variable.name, self.control
+        setup = control.setup
         if name == "$A_PROBE":
             return 0.0
+        if name == "$AA_IM":
+            if setup.position is None:
+                return _UP_AND_AWAY
+            return control.position[variable.axis] + setup.zero[AXES.index(variable.axis)]
+        tables: dict[str, Callable[[], Value]] = {
+            "$P_ACTFRAME": lambda: control.frame_part(*variable.axis.split(",")),
+            "$P_TOOLL": lambda: control.length,
+            "$P_TOOLNO": lambda: 0.0 if control.fetched is None else 1.0,
+            "$TC_TP2": lambda: control.fetched or "",
+            "$MN_SCALING_SYSTEM_IS_METRIC": lambda: float(setup.metric),
+            "$MN_INT_INCR_PER_MM": lambda: setup.increments[0],
+            "$MN_INT_INCR_PER_DEG": lambda: setup.increments[1],
+        }
+        if name in tables:
+            return tables[name]()
         if latch is None or not latch.synchronised:
             refuse(self.control.name, line, variable.column, f"{name} without a MEAS block and STOPRE before it")
         if name == "$AC_MEA":

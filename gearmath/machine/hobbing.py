@@ -30,7 +30,7 @@ _MOST_TURN = math.radians(170.0)
 #: Part of the tolerance that straight blocks may take; the decimals take ROUNDING, the scallops the rest.
 _CHORD_SHARE = 0.1
 #: What six decimals of C may do at the blade. [mm]
-_C_ROUNDING = math.radians(0.5e-6) * 250.0
+C_ROUNDING = math.radians(0.5e-6) * 250.0
 #: The approach of a blade to its contact is measured this far before and behind it. [rad]
 _BESIDE = 2e-3
 #: Most that the cutter goes down, and past the tooth, in a turn of the work: a blade cuts each space once. [mm]
@@ -146,7 +146,7 @@ def hobbing_pass(
     _check(name, machine, tolerance, feed, rpm)
     drive, spec, limits = _Drive.of(member, machine), member.flank(cut.flanks[0]), machine.limits(6)
     pivot, per_turn = (machine.pivot_height, machine.pivot), drive.seconds_per_turn(limits, rpm)
-    start, end, turns = _roll(member, cut, drive, (1 - _CHORD_SHARE) * tolerance - ROUNDING - _C_ROUNDING)
+    start, end, turns = _roll(member, cut, drive, (1 - _CHORD_SHARE) * tolerance - ROUNDING - C_ROUNDING)
     if end > start:
         way = _way_past(spec, np.linspace(start, end, 200), tooth, pivot)
         turns = max(turns, way / min(feed * per_turn / 60.0, _ROLL_PER_TURN))
@@ -189,7 +189,7 @@ def _check(name: str, machine: MillingMachine, tolerance: float, feed: float, rp
     if not low <= tolerance <= high:
         raise InputError(
             f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "
-            f"decimals alone may take {(ROUNDING + _C_ROUNDING) * 1000:.3f} um"
+            f"decimals alone may take {(ROUNDING + C_ROUNDING) * 1000:.3f} um"
         )
 
 

@@ -37,9 +37,14 @@ FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
     "ROUND": (1, lambda x: math.floor(x + 0.5)),
     "TRUNC": (1, math.trunc),
 }
-#: System variables, and what stands in their brackets.
-SYSTEM = {"$AA_MM": "axis", "$AA_MW": "axis", "$AC_MEA": "1", "$A_PROBE": "1"}
+#: System variables, and what stands in their brackets, where they have any.
+SYSTEM = {
+    "$AA_MM": "axis", "$AA_MW": "axis", "$AC_MEA": "1", "$A_PROBE": "1", "$AA_IM": "axis", "$P_ACTFRAME": "axis,part",
+    "$P_TOOLL": "1", "$P_TOOLNO": "", "$TC_TP2": "$P_TOOLNO", "$MN_SCALING_SYSTEM_IS_METRIC": "",
+    "$MN_INT_INCR_PER_MM": "", "$MN_INT_INCR_PER_DEG": "",
+}  # fmt: skip
 AXES = "XYZAB"
+_INSIDE = {"axis": re.compile(rf"[{AXES}]"), "axis,part": re.compile(rf"[{AXES}],TR|[XYZ],(?:RT|MI|SC)")}
 #: The cutter's spindle, once SPOS has made an axis of it.
 CUTTER_AXIS = "C"
 
@@ -201,13 +206,7 @@ class Scanner:
     def variable(self, name: str, at: int, depth: int = 0) -> Variable:
         """A variable whose name is read, with what stands in its brackets."""
         if name in SYSTEM:
-            self.need("[")
-            axis = self.text[self.at : self.at + 1]
-            if axis not in (AXES if SYSTEM[name] == "axis" else "1") or not axis:
-                self.refuse(f"{name} of {shown(self._rest())} is not understood")
-            self.at += 1
-            self.need("]")
-            return Variable(name, (), at + 1, axis)
+            return self._system(name, at)
         if name.startswith("$"):
             self.refuse(f"the system variable {shown(name)} is not understood", at)
         if re.fullmatch(r"R[0-9]{1,4}", name):
@@ -225,6 +224,18 @@ class Scanner:
         if name == "R" and len(index) != 1:
             self.refuse("R needs one number, as in R1 or R[1]", at)
         return Variable(name, tuple(index), at + 1)
+
+    def _system(self, name: str, at: int) -> Variable:
+        """A system variable whose name is read, with what stands in its brackets."""
+        inside = SYSTEM[name]
+        if not inside:
+            return Variable(name, (), at + 1)
+        self.need("[")
+        found = self.match(_INSIDE.get(inside) or re.compile(re.escape(inside)))
+        if found is None:
+            self.refuse(f"{name} of {shown(self._rest())} is not understood")
+        self.need("]")
+        return Variable(name, (), at + 1, found[0] if inside in _INSIDE else "")
 
     def _rest(self) -> str:
         return self.text[self.at :].split(" ")[0] or "the end of the line"

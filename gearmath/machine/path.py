@@ -175,17 +175,23 @@ def axis_positions(
     return axes
 
 
-def within_travel(axes: np.ndarray, theta: np.ndarray, machine: MillingMachine, what: str) -> np.ndarray:
-    """The positions (n,5) or (n,6), A and C by whole turns where a counting axis needs it to stay within its travel.
+def within_travel(
+    axes: np.ndarray, theta: np.ndarray, machine: MillingMachine, what: str, now: np.ndarray | None = None
+) -> np.ndarray:
+    """The positions (n,5) or (n,6), a counting A or C by whole turns within its travel, nearest to where it stands.
 
-    Raises InputError naming ``what``, the cradle angle, axis, value and limit of the first position out of travel.
+    ``now`` are the positions (5,) or (6,) before; zero where they are not known. Raises InputError naming ``what``, the
+    cradle angle, axis, value and limit of the first position out of travel.
     """
     limits = machine.limits(axes.shape[1])
     low, high = limits.travel.T
     for turning in (3, 5):
         if axes.shape[1] > turning and math.isfinite(low[turning]):
-            turns = math.ceil((low[turning] - axes[:, turning].min()) / (2 * math.pi) - 1e-12)
-            axes = axes + 2 * math.pi * turns * np.eye(axes.shape[1])[turning]
+            stands = 0.0 if now is None else float(now[turning])
+            axes = (
+                axes
+                + whole_turns(axes[:, turning], low[turning], high[turning], stands) * np.eye(axes.shape[1])[turning]
+            )
     outside = np.argwhere((axes < low) | (axes > high))
     if outside.size:
         point, axis = outside[0]
@@ -196,3 +202,14 @@ def within_travel(axes: np.ndarray, theta: np.ndarray, machine: MillingMachine, 
             f"{high[axis] * scale:g} {unit}"
         )
     return axes
+
+
+def whole_turns(positions: np.ndarray, low: float, high: float, now: float) -> float:
+    """The whole turns [rad] that take a counting axis through ``positions`` (n,) [rad] within its travel.
+
+    Of those that do, it is the one that starts nearest to ``now``; where none does, the one that begins in the travel.
+    """
+    turn = 2 * math.pi
+    least = math.ceil((low - positions.min()) / turn - 1e-12)
+    most = max(math.floor((high - positions.max()) / turn + 1e-12), least)
+    return turn * min(max(round((now - positions[0]) / turn), least), most)

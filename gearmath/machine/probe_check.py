@@ -21,7 +21,7 @@ import numpy as np
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
 from gearmath.machine.collision import rings, work_profiles
-from gearmath.machine.control import Probe
+from gearmath.machine.control import Probe, Setup
 from gearmath.machine.executor import run_program
 from gearmath.machine.nc_expression import refuse
 from gearmath.machine.probe_machine import BODY_ERROR
@@ -30,7 +30,7 @@ from gearmath.machine.probing import probe_height
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
-from gearmath.specs.simulated_machine import CutterHead, Fixture
+from gearmath.specs.obstacles import CutterHead, Fixture
 
 #: Steps of the tip along a block [mm], and of A and B [rad]; stylus and spindle are looked at less often.
 _STEP, _TURN = 0.25, math.radians(1.0)
@@ -98,6 +98,7 @@ class _Watch:
         spindle_radius: float,
     ) -> None:  # fmt: skip
         self.body, self.calibration, self.spindle_radius = SpaceBody(member, name), calibration, spindle_radius
+        self.setup = Setup.of(machine, calibration.length)
         self._place = probe_height(machine, calibration), calibration.tip_offset, machine.pivot
         profiles = work_profiles(member, fixture)
         self._profiles = {part: _corners(profile) for part, profile in profiles.items() if part != "teeth"}
@@ -113,7 +114,7 @@ class _Watch:
             progress(1)
             return probe(start, end)
 
-        done = run_program(text, program, moved)
+        done = run_program(text, program, moved, setup=self.setup)
         if done.alarm is not None:
             refuse(program, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]} on the nominal member")
         path = done.path

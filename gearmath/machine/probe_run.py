@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from gearmath.errors import ComputationError, InputError
-from gearmath.machine.control import Probe
-from gearmath.machine.executor import run_program
+from gearmath.machine.control import Probe, Setup
+from gearmath.machine.executor import AS_WRITTEN, run_program
 from gearmath.machine.probe_check import is_touch
 from gearmath.machine.probe_errors import ErringProbe
 from gearmath.specs.simulated_machine import SimulatedMachine
@@ -23,7 +23,7 @@ def touches_artefacts(text: str) -> bool:
     return ",".join(CALIBRATION_COLUMNS) in text
 
 
-def touch_count(text: str, program: str) -> int:
+def touch_count(text: str, program: str, setup: Setup = AS_WRITTEN) -> int:
     """How many touches a probing program makes, where every one of them triggers."""
     count = 0
 
@@ -34,13 +34,13 @@ def touch_count(text: str, program: str) -> int:
         count += 1
         return end
 
-    run_program(text, program, trigger)
+    run_program(text, program, trigger, setup=setup)
     return count
 
 
 def run_touches(
     text: str, program: str, probe: Probe, shop: SimulatedMachine | None = None, touches: int | None = None,
-    run: int = 1, progress: Callable[[int], object] = lambda blocks: None,
+    run: int = 1, progress: Callable[[int], object] = lambda blocks: None, setup: Setup = AS_WRITTEN,
 ) -> str:  # fmt: skip
     """What a program writes into its file of touches, moving ``probe``, with the errors of a shop.
 
@@ -54,7 +54,7 @@ def run_touches(
         progress(1)
         return there(start, end)
 
-    done = run_program(text, program, moved, parameters={_RUN_PARAMETER: run - 1})
+    done = run_program(text, program, moved, parameters={_RUN_PARAMETER: run - 1}, setup=setup)
     if done.alarm is not None:
         number, line = done.alarm
         why = f" ({done.messages[-1]})" if done.messages else ""

@@ -7,7 +7,10 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.machine import words
+from gearmath.machine import start, words
+from gearmath.machine.clear_space import Room
+from gearmath.machine.words import Positions
+from gearmath.specs.milling_machine import AXES, MillingMachine
 from gearmath.specs.touch_csv import COLUMNS
 
 #: Alarms of these programs.
@@ -20,8 +23,9 @@ _STILL = "A=IC(0) B=IC(0)"
 class Blocks:
     """Writes the blocks of one program, without their numbers."""
 
-    def __init__(self, name: str, modulo: bool) -> None:
-        self.name, self.modulo = name, modulo
+    def __init__(self, name: str, machine: MillingMachine, length: float) -> None:
+        self.name, self.machine, self.probe_length = name, machine, length
+        self.positions = Positions.of(machine, length)
         if len(name + _RESULT) > words.MAX_NAME_CHARACTERS:
             most = words.MAX_NAME_CHARACTERS - len(_RESULT)
             raise InputError(
@@ -40,30 +44,42 @@ class Blocks:
 
     def axes(self, position: np.ndarray) -> tuple[str, ...]:
         """The words of one position X Y Z A B (5,) in mm and rad."""
-        return words.axis_words(words.printed(position[None], self.modulo)[0], self.modulo)
+        return self.positions.words(position[None])[0]
 
     def length(self, axis: str, value: float) -> str:
-        """The word of one linear axis."""
-        return f"{axis}{words.fixed(value)}"
+        """The word of one linear axis [mm]."""
+        return self.positions.z(value) if axis == "Z" else self.positions.word(axis, value)
 
-    def start(self, work_offset: str, columns: Sequence[str] = COLUMNS) -> Iterator[str]:
-        """Head: the probe is fetched and held, the run is numbered, the result file gets its column line."""
+    def start(self, columns: Sequence[str] = COLUMNS, room: Room | None = None) -> Iterator[str]:
+        """Head: Z home, the probe is fetched and held, the run is numbered, the result file gets its column line.
+
+        Under the ``room`` of a work the probe must not stand.
+        """
+        machine = self.machine
         yield "DEF INT UERR"
-        yield f"G17 G40 G90 G710 G94 {work_offset}"
-        yield f'T="{_TOOL}" D1'
-        yield "M6"
+        yield from start.head(machine)
+        yield from start.checks(machine)
+        if room is not None:
+            yield from start.enough_height(machine, room, self.probe_length, machine.cutter_head.spindle_radius)
+        yield "M5 M9"
+        yield from start.retract(machine)
+        yield from start.fetch(machine, _TOOL, self.probe_length)
         yield "SPOS=0"
         yield "R102=R102+1 R101=0 R103=0"
         yield "STOPRE"
         yield "IF $A_PROBE[1]<>0"
-        yield from self._stop("the probe is deflected before its first touch", DEFLECTED)
+        yield from start.stop("the probe is deflected before its first touch", DEFLECTED)
         yield from self.write(f'"{",".join(columns)}"')
+
+    def end(self) -> Iterator[str]:
+        """Z home, end."""
+        yield from start.end(self.machine)
 
     def write(self, text: str) -> Iterator[str]:
         """One line of the result file."""
         yield f'WRITE(UERR,"{self.result_file}",{text})'
         yield "IF UERR<>0"
-        yield from self._stop("the result file cannot be written", NOT_WRITTEN)
+        yield from start.stop("the result file cannot be written", NOT_WRITTEN)
 
     def guarded(self, z: str, feed: float, level: float) -> Iterator[str]:
         """Down into the space; who touches something there is lost, and goes back up."""
@@ -71,22 +87,27 @@ class Blocks:
         yield "STOPRE"
         yield "IF $AC_MEA[1]<>0"
         yield f"G0 {self.length('Z', level)}"
-        yield from self._stop("touched something on the way in", TOUCHED_TOO_EARLY)
+        yield from start.stop("touched something on the way in", TOUCHED_TOO_EARLY)
 
     def touch(
         self, end: str, back: str, feed: float, retract_feed: float, level: float, up: bool = True
     ) -> Iterator[str]:
-        """The touch: positions into R200 to R204, result into R205; away, and up if so; alarm if there is none."""
+        """The touch: positions into R200 to R204, result into R205; away, and up if so; alarm if there is none.
+
+        Positions count from the zero of the machine file, as its work offset has it.
+        """
+        zero = self.machine.work_offset_values
+        from_zero = [f"{-value:+.5f}" if value else "" for value in zero]
         yield f"MEAS=1 G1 {end} {_STILL} F{feed:.3f}"
         yield "STOPRE"
-        yield "R200=$AA_MM[X] R201=$AA_MM[Y] R202=$AA_MM[Z] R203=$AA_MM[A] R204=$AA_MM[B] R205=$AC_MEA[1]"
+        yield " ".join(f"R{200 + k}=$AA_MM[{axis}]{from_zero[k]}" for k, axis in enumerate(AXES)) + " R205=$AC_MEA[1]"
         yield f"G1 {back} F{retract_feed:.3f}"
         if up:
             yield f"G0 {self.length('Z', level)}"
         yield "IF R205==0"
         if not up:
             yield f"G0 {self.length('Z', level)}"
-        yield from self._stop("touched nothing", NOTHING_TOUCHED)
+        yield from start.stop("touched nothing", NOTHING_TOUCHED)
 
     def hand_over(self, place: str) -> Iterator[str]:
         """Offer the point, called ``place``: to the result file, and to a host if there is one."""
@@ -98,11 +119,4 @@ class Blocks:
         yield "G4 F0.05"
         yield "STOPRE"
         yield "ENDWHILE"
-        yield "ENDIF"
-
-    def _stop(self, why: str, alarm: int) -> Iterator[str]:
-        """The end of the program within an IF. How the control reacts to SETAL is a setting: M30 stops it for sure."""
-        yield f'MSG("{why}")'
-        yield f"SETAL({alarm})"
-        yield "M30"
         yield "ENDIF"

@@ -17,6 +17,8 @@ from gearmath import __version__
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.machine.clear_space import Room, check_home, room_of
+from gearmath.machine.path import whole_turns
 from gearmath.machine.probe_words import Blocks
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member, design_sha256
 from gearmath.specs.calibration import Calibration
@@ -156,15 +158,12 @@ def _turned(targets: Targets, tooth: int, teeth: int) -> Targets:
     return Targets(targets.flank, np.full(len(targets), tooth), targets.row, targets.col, *positions)
 
 
-def clear_heights(member: Member, machine: MillingMachine, calibration: Calibration) -> tuple[float, float]:
-    """Z [mm] at which the tip clears the member at every A: with B at the root angle, and with any B."""
+def clear_height(member: Member, machine: MillingMachine, calibration: Calibration) -> float:
+    """Z [mm] at which the tip clears the member at every A, with B at the root angle."""
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 1.0]), np.ones(2))
     tips = np.stack([radial, np.zeros(2), axial], axis=1)
     here = tip_positions(tips, np.zeros(2), math.radians(member.blank.root_angle), machine, calibration)
-    farthest = float(np.linalg.norm(tips, axis=1).max() + np.linalg.norm(machine.pivot))
-    margin = calibration.tip_radius + CLEARANCE
-    anywhere = probe_height(machine, calibration) + farthest - calibration.offset[2]
-    return float(here[:, 2].max()) + margin, anywhere + margin
+    return float(here[:, 2].max()) + calibration.tip_radius + CLEARANCE
 
 
 def probing_program(
@@ -184,8 +183,10 @@ def probing_program(
     """
     member = bevel_set.member(name)
     targets = probe_targets(member, name, machine, calibration, topography, pitch, around=around)
-    level, anywhere = clear_heights(member, machine, calibration)
-    targets = _within_travel(targets, name, machine, (level, anywhere))
+    level = clear_height(member, machine, calibration)
+    targets = _within_travel(targets, name, machine, level)
+    room = room_of(member, machine, machine.fixture)
+    check_home(room, machine, calibration.length + calibration.tip_radius - calibration.offset[2], program_name)
     header = (
         f"gearmath {__version__} probing program",
         f"set: {bevel_set.title}",
@@ -197,29 +198,27 @@ def probing_program(
         "R102 counts the runs, R101 the points offered, R103 those that a host has acknowledged",
         "R104 = 1, set before the start: a host reads R200 to R205 of every point, and the program waits for it",
     )
-    return write_touches(program_name, header, targets, name, machine, (level, anywhere), repeat)
+    return write_touches(program_name, header, targets, name, machine, calibration, level, room, repeat)
 
 
 def write_touches(
     program_name: str, header: Sequence[str], targets: Targets, name: str, machine: MillingMachine,
-    heights: tuple[float, float], repeat: int = 1,
+    calibration: Calibration, level: float, room: Room, repeat: int = 1,
 ) -> str:  # fmt: skip
-    """The text of a probing program: its touches as they stand, sideways at the ``heights`` of :func:`clear_heights`.
+    """The text of a probing program: its touches as they stand, sideways at the ``level`` of :func:`clear_height`.
+
+    The probe comes from the home of Z, which clears the ``room`` of the work.
 
     Raises InputError for a name that the control refuses.
     """
-    blocks = Blocks(program_name, machine.axes.A.modulo)
-    return blocks.text(header, _body(blocks, targets, name, machine, heights, repeat))
+    blocks = Blocks(program_name, machine, calibration.length)
+    return blocks.text(header, _body(blocks, targets, name, level, room, repeat))
 
 
-def _body(
-    blocks: Blocks, targets: Targets, name: str, machine: MillingMachine, heights: tuple[float, float], repeat: int
-) -> Iterator[str]:
-    level, anywhere = heights
+def _body(blocks: Blocks, targets: Targets, name: str, level: float, room: Room, repeat: int) -> Iterator[str]:
     if repeat > 1:
         yield f"DEF INT {_COUNTER}"
-    yield from blocks.start(machine.work_offset)
-    yield f"G0 {blocks.length('Z', anywhere)}"
+    yield from blocks.start(room=room)
     x, y, _, a, b = blocks.axes(targets.start[0])
     yield f"G0 {x} {y} {a} {b}"
     yield f"G0 {blocks.length('Z', level)}"
@@ -238,20 +237,19 @@ def _body(
         if repeat > 1:
             yield "ENDFOR"
             yield f"G0 {blocks.length('Z', level)}"
-    yield f"G0 {blocks.length('Z', anywhere)}"
-    yield "M30"
+    yield from blocks.end()
 
 
-def _within_travel(targets: Targets, name: str, machine: MillingMachine, heights: tuple[float, float]) -> Targets:
+def _within_travel(targets: Targets, name: str, machine: MillingMachine, level: float) -> Targets:
     """The targets, A by whole turns where a counting axis needs it. Raises InputError naming point, axis and limit."""
     low, high = machine.travel.T
     if math.isfinite(low[3]):
-        turns = np.ceil((low[3] - targets.start[:, 3]) / (2 * math.pi) - 1e-12)
-        shift = 2 * math.pi * turns[:, None] * np.array([0, 0, 0, 1, 0])
+        turns = np.array([whole_turns(one, low[3], high[3], 0.0) for one in targets.start[:, 3:4]])
+        shift = turns[:, None] * np.array([0, 0, 0, 1, 0])
         positions = (getattr(targets, part) + shift for part in ("start", "touch", "end"))
         targets = Targets(targets.flank, targets.tooth, targets.row, targets.col, *positions)
-    raised = np.repeat(targets.start[:1], 2, axis=0)
-    raised[:, 2] = heights
+    raised = targets.start[:1].copy()
+    raised[:, 2] = level
     for what, axes in (("the start", targets.start), ("the end", targets.end), ("the height above", raised)):
         outside = np.argwhere((axes < low) | (axes > high))
         if outside.size:

@@ -1,8 +1,8 @@
-"""Writes NC programs for SINUMERIK 840D sl: every pass of the cutter as G1 blocks in inverse-time feed (G93).
+"""Writes cutting programs for SINUMERIK 840D sl: every pass of the cutter as G1 blocks in inverse-time feed (G93).
 
-Millimetres with five decimals, degrees with six; a modulo axis A goes the short way (DC), a counting one is written
-as it counts. Where a pass has a sixth column, the cutter's spindle stands still at SPOS=0 first, and then runs as axis
-C. That C may follow SPOS without M70, and that its sense is that of M3, depends on the machine [unconfirmed].
+A modulo axis A goes the short way (DC), a counting one is written as it counts. Where a pass has a sixth column, the
+cutter's spindle stands still at SPOS=0 first, and then runs as axis C. That C may follow SPOS without M70, and that its
+sense is that of M3, depends on the machine [unconfirmed].
 
 The reader of these programs is ``gearmath.machine.reader``; it shares no code with this module, so that each checks
 the other.
@@ -11,26 +11,24 @@ the other.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from gearmath.errors import InputError
+from gearmath.machine import start
+from gearmath.machine.clear_space import Room, check_home
 from gearmath.machine.limits import check_pass, check_process
 from gearmath.machine.passes import Pass
-from gearmath.machine.words import (
-    axis_words,
-    check_name,
-    comment,
-    cutter_positions,
-    cutter_word,
-    feed_number,
-    fixed,
-    numbered,
-    printed,
-)
+from gearmath.machine.words import Positions, check_name, comment, feed_number, numbered
 from gearmath.specs.milling_machine import MillingMachine
 
 __all__ = ["Pass", "write_program"]
+
+#: R parameters that say which sections of a program are cut, from 1; 0 for all.
+FIRST, LAST = "R90", "R91"
+#: Alarm for sections that the program does not have.
+NO_SUCH_SECTION = 65016
 
 
 def write_program(
@@ -40,68 +38,129 @@ def write_program(
     machine: MillingMachine,
     spindle_rpm: float,
     clearance: float,
+    room: Room,
+    tool_radius: float,
     plunge_feed_mm_min: float = 200.0,
     coolant: bool = True,
 ) -> str:
     """The text of the program ``name`` (without .MPF); ``header`` lines become comments.
 
-    All positioning happens ``clearance`` mm above the highest point of all passes. Raises InputError, naming pass,
-    axis, value and limit, where the machine cannot do it or the text would break a rule of the control.
+    Before anything else moves, Z retracts to its home, which must clear the ``room`` of the work; ``tool_radius`` [mm]
+    is the widest radius of cutter, head and spindle. Between the passes of
+    a tool all positioning happens ``clearance`` mm above the highest point of all passes. Every pass is a section of
+    its own, with a label, a message and its modal head: R90 and R91 say which of them are cut. Raises InputError,
+    naming pass, axis, value and limit, where the machine cannot do it or the text would break a rule of the control.
     """
     check_name(name)
     check_process(name, machine, spindle_rpm, clearance, plunge_feed_mm_min)
+    check_home(room, machine, machine.tool_length, name)
     if not passes:
         raise InputError(f"{name}: there is no pass to write")
     retract = max(float(one.axes[:, 2:3].max(initial=-np.inf)) for one in passes if one.axes.ndim == 2) + clearance
     for one in passes:
         check_pass(name, one, machine, retract)
-    body = _body(name, passes, machine, spindle_rpm, fixed(retract), plunge_feed_mm_min, coolant)
-    return numbered([comment(name, text) for text in (name, *header)], body)
+    job = _Job(name, machine, Positions.of(machine, machine.tool_length), spindle_rpm, retract, plunge_feed_mm_min)
+    return numbered([comment(name, text) for text in (name, *header)], _body(job, passes, room, tool_radius, coolant))
 
 
-def _body(
-    name: str, passes: Sequence[Pass], machine: MillingMachine, rpm: float, retract: str, plunge: float, coolant: bool
-) -> Iterator[str]:
+@dataclass(frozen=True)
+class _Job:
+    """What all sections of a program have in common: mm, mm/min and turns per minute."""
+
+    name: str
+    machine: MillingMachine
+    positions: Positions
+    rpm: float
+    retract: float
+    plunge: float
+
+    @property
+    def up(self) -> str:
+        """The word of Z above all passes."""
+        return self.positions.z(self.retract)
+
+
+def _body(job: _Job, passes: Sequence[Pass], room: Room, tool_radius: float, coolant: bool) -> Iterator[str]:
     """Blocks without their numbers, and comments."""
-    yield f"G17 G40 G90 G710 G94 {machine.work_offset}"
-    if machine.control.words:
-        yield " ".join(machine.control.words)
-    tool = None
-    for one in passes:
-        if one.tool != tool:
-            if tool is not None:
-                yield "M5 M9"
-            tool = one.tool
-            yield f'T="{tool}" D1'
-            yield "M6"
-            yield "SPOS=0" if one.axes.shape[1] == 6 else f"S{rpm:.3f} {machine.cutter_direction}"
-            if coolant:
-                yield "M8"
-        yield comment(name, f"{one.label}, tooth {one.tooth}")
-        yield from _pass_blocks(one, machine, retract, plunge)
-    yield "M5 M9"
-    yield "M30"
+    machine = job.machine
+    yield from start.head(machine)
+    yield from start.checks(machine)
+    yield from start.enough_height(machine, room, machine.tool_length, tool_radius)
+    yield from _chosen(len(passes))
+    yield from start.retract(machine)
+    for first, last in _by_tool(passes):
+        one = passes[first]
+        yield _if_chosen(first + 1, last)
+        yield "M5 M9"
+        yield from start.retract(machine)
+        yield from start.fetch(machine, one.tool, machine.tool_length)
+        yield "SPOS=0" if one.axes.shape[1] == 6 else f"S{job.rpm:.3f} {machine.cutter_direction}"
+        yield from start.dwell(machine.control.spindle_start_seconds)
+        if coolant:
+            yield "M8"
+        yield "ENDIF"
+        for k in range(first, last):
+            yield from _section(job, passes[k], k + 1, len(passes))
+    yield f"{FIRST}=0 {LAST}=0"
+    yield from start.end(machine)
 
 
-def _words(one: Pass, machine: MillingMachine) -> list[tuple[str, ...]]:
-    modulo = machine.axes.A.modulo
-    points: list[tuple[str, ...]] = [axis_words(point, modulo) for point in printed(one.axes[:, :5], modulo)]
-    if machine.axes.C is None or one.axes.shape[1] == 5:
-        return points
-    turning = machine.axes.C.modulo
-    cutter = [cutter_word(value, turning) for value in cutter_positions(one.axes[:, 5], turning).tolist()]
-    return [(*words, word) for words, word in zip(points, cutter, strict=True)]
+def _by_tool(passes: Sequence[Pass]) -> Iterator[tuple[int, int]]:
+    """First pass, and the one behind the last, of every row of passes with one tool."""
+    first = 0
+    for k in range(1, len(passes) + 1):
+        if k == len(passes) or passes[k].tool != passes[first].tool:
+            yield first, k
+            first = k
 
 
-def _pass_blocks(one: Pass, machine: MillingMachine, retract: str, plunge: float) -> Iterator[str]:
-    """Approach above the first point, plunge, the cut, retract. The last block leaves G93 and renews F for G94."""
-    points = _words(one, machine)
-    x, y, z, *turned = points[0]
-    yield f"G0 Z{retract}"
+def _chosen(count: int) -> Iterator[str]:
+    """Stops for sections that there are not; waits for the operator where not all of them are to be cut."""
+    wrong = (
+        f"({FIRST}<0)",
+        f"({LAST}<0)",
+        f"({FIRST}>{count})",
+        f"({LAST}>{count})",
+        f"(({LAST}>0) AND ({FIRST}>{LAST}))",
+    )
+    yield f"IF {' OR '.join(wrong)}"
+    yield from start.stop(f"{FIRST} and {LAST}: first and last section must be 1 to {count}, or 0", NO_SUCH_SECTION)
+    yield f"IF ({FIRST}>0) OR ({LAST}>0)"
+    yield f'MSG("only sections "<<{FIRST}<<" to "<<{LAST}<<" of {count} (0: open): NC start goes on")'
+    yield "M0"
+    yield "ENDIF"
+
+
+def _if_chosen(first: int, last: int) -> str:
+    """The condition that one of the sections from ``first`` to ``last`` is to be cut."""
+    return f"IF ({FIRST}<={last}) AND (({LAST}==0) OR ({LAST}>={first}))"
+
+
+def _section(job: _Job, one: Pass, number: int, count: int) -> Iterator[str]:
+    """One pass by itself: label, message, modal head, approach above its first point, plunge, the cut, retract.
+
+    The last block leaves G93 and renews F for G94.
+    """
+    machine = job.machine
+    (x, y, z, *turned), *points = _words(one, job.positions)
+    yield comment(job.name, f"section {number}: {one.label}, tooth {one.tooth}")
+    yield f"SECTION_{number}:"
+    yield _if_chosen(number, number)
+    yield f'MSG("section {number} of {count}: {one.label}")'
+    yield start.modal(machine)
     yield f"G0 {x} {y} {' '.join(turned)}"
-    yield f"G94 G1 {z} F{plunge:.3f}"
-    for words, seconds in zip(points[1:], one.seconds.tolist(), strict=True):
+    yield f"G0 {job.up}"
+    yield f"G94 G1 {z} F{job.plunge:.3f}"
+    for words, seconds in zip(points, one.seconds.tolist(), strict=True):
         yield f"G93 G1 {' '.join(words)} F{feed_number(60.0 / seconds)}"
     if one.dwell > 0.0:
         yield f"G4 F{feed_number(one.dwell)}"
-    yield f"G94 G0 Z{retract} F{plunge:.3f}"
+    yield f"G94 G0 {job.up} F{job.plunge:.3f}"
+    yield "ENDIF"
+
+
+def _words(one: Pass, positions: Positions) -> list[tuple[str, ...]]:
+    points = positions.words(one.axes[:, :5])
+    if one.axes.shape[1] == 5:
+        return points
+    return [(*words, word) for words, word in zip(points, positions.cutter_words(one.axes[:, 5]), strict=True)]

@@ -30,6 +30,8 @@ GROUP_OF_CODE = {
         "acceleration": "BRISK SOFT",
         "feed forward": "FFWON FFWOF",
         "compressor": "COMPCAD COMPOF",
+        "transformation": "TRAFOOF",
+        "diameter programming": "DIAMOF",
         "buffer": "FIFOCTRL",
         "spindle": "M3 M4 M5",
         "tool change": "M6",
@@ -46,9 +48,11 @@ _NUMBERED = re.compile(rf"N([0-9]{{1,9}}){_BLANK}")
 _CODE = re.compile(rf"(?:[GM]0?[0-9]{{1,3}}|[A-Z]{{4,8}}){_BLANK}")
 _CONSTANT = re.compile(rf"([A-Z])(-?{NUMBER})")
 _TOOL = re.compile(rf'T="([A-Za-z0-9_]{{1,31}})"{_BLANK}')
-_ADDRESS = re.compile(rf"([{AXES}{CUTTER_AXIS}FS]|SPOS|MEAS|ADIS|ADISPOS)=")
+_ADDRESS = re.compile(rf"([{AXES}{CUTTER_AXIS}FS]|SPOS|MEAS|ADIS|ADISPOS|CTOL|OTOL|OVR|OVRRAP)=")
+_NOT_ASSIGNED = ("SPOS", "MEAS", "ADIS", "ADISPOS", "FGREF", "CTOL", "OTOL", "OVR", "OVRRAP", "ACC")
+_LABEL = re.compile(r"[A-Z_]{2}[A-Z0-9_]{0,29}:[ \t]*$")
 _WAY = re.compile(r"(DC|IC|AC|ACP|ACN)\(")
-_GROUP_RADIUS = re.compile(rf"FGREF\[([{AXES}])\]=")
+_GROUP_RADIUS = re.compile(rf"(FGREF|ACC)\[([{AXES}])\]=")
 _WORD = re.compile(r"[A-Z]+(?![A-Za-z0-9_.])")
 _TARGET = re.compile(r"R[0-9]{1,4}(?=[ \t]*=[^=])|(?:R(?=\[)|[A-Z_][A-Z0-9_]{1,30})(?=\[|[ \t]*=[^=])")
 _DEEPEST = 8
@@ -150,7 +154,7 @@ class _AtLine(Scanner):
         words: dict[str, Word] = {}
         if (number := self.match(_NUMBERED)) is not None:
             words["N"] = Word(number[0], Constant(float(number[1])), number.start() + 1)
-            if self.done:
+            if self.done or self.match(_LABEL) is not None:
                 return Block(self.line, words)
         at = self.at
         if (found := self.match(_WORD)) is not None:
@@ -256,7 +260,7 @@ class _AtLine(Scanner):
     def _assignment(self) -> Assignment | None:
         at = self.at
         name = self.match(_TARGET)
-        if name is None or name[0] in ("SPOS", "MEAS", "ADIS", "ADISPOS", "FGREF"):
+        if name is None or name[0] in _NOT_ASSIGNED:
             self.at = at
             return None
         target = self.variable(name[0], at)
@@ -288,7 +292,7 @@ class _AtLine(Scanner):
         elif (tool := self.match(_TOOL)) is not None:
             return "T", Word(tool[1], Constant(0.0), column)
         elif (radius := self.match(_GROUP_RADIUS)) is not None:
-            return f"FGREF {radius[1]}", Word(radius[0], self._value(), column)
+            return f"{radius[1]} {radius[2]}", Word(radius[0], self._value(), column)
         elif (address := self.match(_ADDRESS)) is not None:
             return address[1], self._addressed(address[1], at)
         self.at = at

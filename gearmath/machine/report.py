@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-from gearmath.machine.collision import Collision, collisions
+from gearmath.machine.collision import Collision, collisions, obstacles
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.milling import Evaluator
 from gearmath.machine.run import runs_of
@@ -56,6 +56,5 @@ def milling_report(
     states = surface_states(
         path, member, name, machine, errors, None, tolerance, columns, runs, evaluator, progress, space
     )  # fmt: skip
-    shop = errors or SimulatedMachine(title="no errors", seed=0)
-    met = collisions(path, runs, member, machine, shop.cutter_head, shop.fixture)
+    met = collisions(path, runs, member, machine, *obstacles(machine, errors))
     return MillingReport(name, tolerance, tuple(states), tuple(met), timing(path, machine))

@@ -1,6 +1,6 @@
 """Words of NC programs as all writers print them: positions, feeds, comments, names, block numbers.
 
-Millimetres with five decimals, degrees with six.
+Positions have as many decimals as the control has increments, since it rounds to these whatever is written.
 """
 
 from __future__ import annotations
@@ -8,16 +8,17 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.specs.milling_machine import CUTTER_AXIS, UNITS_PER_INTERNAL
+from gearmath.specs.milling_machine import CUTTER_AXIS, UNITS_PER_INTERNAL, MillingMachine
 
 #: A block may be no longer than this, comment and line end included.
 MAX_BLOCK_CHARACTERS = 250
 MAX_NAME_CHARACTERS = 24
-_MM_DECIMALS, _DEG_DECIMALS, _FEED_DIGITS = 5, 6, 9
+_FEED_DIGITS = 9
 _PROGRAM_NAME = re.compile(r"(?:[A-Za-z]{2}|_[A-Za-z])[A-Za-z0-9_]*")
 _RESERVED_NAME = re.compile(r"CON|PRN|AUX|NUL|(?:COM|LPT)[1-9]", re.IGNORECASE)
 
@@ -38,40 +39,66 @@ def block_count(text: str) -> int:
     return sum(line.startswith("N") for line in text.splitlines())
 
 
-def printed(axes: np.ndarray, modulo: bool) -> np.ndarray:
-    """Positions as they stand in the text: (n, 5) mm and degrees, rounded, a modulo A in 0 <= A < 360, no -0."""
-    values = axes * UNITS_PER_INTERNAL
-    values[:, :3] = np.round(values[:, :3], _MM_DECIMALS)
-    values[:, 3] = np.round(values[:, 3] % 360.0 if modulo else values[:, 3], _DEG_DECIMALS)
-    if modulo:
-        values[:, 3] %= 360.0
-    values[:, 4] = np.round(values[:, 4], _DEG_DECIMALS)
-    return values + 0.0
+@dataclass(frozen=True)
+class Positions:
+    """How positions stand in the text of programs for one machine, with one tool.
 
+    ``length`` [mm] is what the tool table adds to Z while D1 is active: the programmed Z is less by it.
+    """
 
-def cutter_positions(angle: np.ndarray, modulo: bool) -> np.ndarray:
-    """Positions of C as they stand in the text: (n,) degrees, rounded, a modulo C in 0 <= C < 360, no -0."""
-    values = angle * UNITS_PER_INTERNAL[-1]
-    values = np.round(values % 360.0 if modulo else values, _DEG_DECIMALS)
-    return (values % 360.0 if modulo else values) + 0.0
+    modulo: bool
+    turning_cutter: bool
+    mm: int
+    degrees: int
+    length: float = 0.0
 
+    @staticmethod
+    def of(machine: MillingMachine, tool_length: float) -> Positions:
+        """For a tool whose tip is ``tool_length`` mm from the gauge line."""
+        cutter = machine.axes.C
+        length = tool_length if machine.z_reference == "tip" else 0.0
+        return Positions(machine.axes.A.modulo, cutter is not None and cutter.modulo, *machine.control.decimals, length)
 
-def cutter_word(value: float, modulo: bool) -> str:
-    """A position of C in degrees as a word."""
-    text = f"{value:.{_DEG_DECIMALS}f}"
-    return f"{CUTTER_AXIS}=DC({text})" if modulo else f"{CUTTER_AXIS}{text}"
+    def printed(self, axes: np.ndarray) -> np.ndarray:
+        """Positions X Y Z A B (n, 5) as they stand there: mm and degrees, rounded, a modulo A below 360, no -0."""
+        values = axes * UNITS_PER_INTERNAL
+        values[:, 2] -= self.length
+        values[:, :3] = np.round(values[:, :3], self.mm)
+        values[:, 3] = self._turn(values[:, 3], self.modulo)
+        values[:, 4] = np.round(values[:, 4], self.degrees)
+        return values + 0.0
 
+    def words(self, axes: np.ndarray) -> list[tuple[str, ...]]:
+        """The words of positions X Y Z A B (n, 5) in mm and rad."""
+        return [
+            (self._mm("X", x), self._mm("Y", y), self._mm("Z", z), self._turned("A", a, self.modulo),
+             f"B{b:.{self.degrees}f}")
+            for x, y, z, a, b in self.printed(axes).tolist()
+        ]  # fmt: skip
 
-def axis_words(point: np.ndarray, modulo: bool) -> tuple[str, str, str, str, str]:
-    x, y, z, a, b = point.tolist()
-    mm, deg = _MM_DECIMALS, _DEG_DECIMALS
-    turned = f"A=DC({a:.{deg}f})" if modulo else f"A{a:.{deg}f}"
-    return f"X{x:.{mm}f}", f"Y{y:.{mm}f}", f"Z{z:.{mm}f}", turned, f"B{b:.{deg}f}"
+    def cutter_words(self, angle: np.ndarray) -> list[str]:
+        """The words of positions of C (n,) rad."""
+        values = self._turn(angle * UNITS_PER_INTERNAL[-1], self.turning_cutter) + 0.0
+        return [self._turned(CUTTER_AXIS, value, self.turning_cutter) for value in values.tolist()]
 
+    def z(self, value: float) -> str:
+        """The word of a Z in mm."""
+        return self.word("Z", value - self.length)
 
-def fixed(value: float) -> str:
-    """A length in mm, without negative zero."""
-    return f"{round(value, _MM_DECIMALS) + 0.0:.{_MM_DECIMALS}f}"
+    def word(self, axis: str, value: float) -> str:
+        """The word of a linear axis as the control sees it [mm]."""
+        return self._mm(axis, round(value, self.mm) + 0.0)
+
+    def _mm(self, axis: str, value: float) -> str:
+        return f"{axis}{value:.{self.mm}f}"
+
+    def _turn(self, values: np.ndarray, modulo: bool) -> np.ndarray:
+        values = np.round(values % 360.0 if modulo else values, self.degrees)
+        return values % 360.0 if modulo else values
+
+    def _turned(self, axis: str, value: float, modulo: bool) -> str:
+        text = f"{value:.{self.degrees}f}"
+        return f"{axis}=DC({text})" if modulo else f"{axis}{text}"
 
 
 def feed_number(value: float) -> str:

@@ -11,6 +11,8 @@ import tomlkit
 from pydantic import AfterValidator, Field, model_validator
 
 from gearmath.files import read_text, write_text
+from gearmath.specs.control import Control
+from gearmath.specs.obstacles import CutterHead, Fixture
 from gearmath.specs.toml import Spec, load, parse
 
 #: Order of the axes in every array of positions.
@@ -70,20 +72,6 @@ class Axes(Spec):
     C: TurningAxis | None = None
 
 
-class Control(Spec):
-    """Options of the control that the head of a program sets; what is left out stays as the control has it."""
-
-    path_mode: Literal["G60", "G64", "G642"] | None = None
-    jerk: Literal["BRISK", "SOFT"] | None = None
-    feed_forward: bool | None = None
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """The words of the head."""
-        forward = {None: None, True: "FFWON", False: "FFWOF"}[self.feed_forward]
-        return tuple(word for word in (self.path_mode, self.jerk, forward) if word is not None)
-
-
 @dataclass(frozen=True)
 class AxisLimits:
     """Names and limits of k axes: ``scale`` (k,) makes the unit of the file of mm or rad; the rest is in mm, rad, s."""
@@ -101,21 +89,47 @@ class MillingMachine(Spec):
 
     name: str
     gauge_line_height: float
-    """R_d [mm]: gauge line of the spindle over the B axis at Z = 0."""
+    """R_d [mm]: the reading of Z at which the gauge line of the spindle stands level with the B axis, Z counting up."""
     tool_length: float = Field(gt=0)
     """C_t [mm]: gauge line to the blade tips."""
     pivot_offset: Annotated[tuple[_Number, _Number, _Number], Field(strict=False)] = (0.0, 0.0, 0.0)
     """e [mm] of equation (5.1): B axis to pitch apex along x_w, y_w, z_w at A = 0; at B = 0 these are Z, Y, -X."""
+    z_reference: Literal["gauge_line", "tip"] = "gauge_line"
+    """What Z of a program says: where the gauge line is, or with the length of the tool table where the tip is."""
     work_offset: Literal["G54", "G55", "G56", "G57"]
+    work_offset_values: Annotated[tuple[_Number, _Number, _Number, _Number, _Number], Field(strict=False)] = (0.0,) * 5
+    """What the control must hold for it, X Y Z A B: machine coordinates of the zero that this file counts from."""
+    home_z: float | None = None
+    """The Z to which programs retract before anything else moves; the top of the travel if left out."""
     cutter_direction: Literal["M3", "M4"] = "M3"
     spindle_speed_rpm: _Speeds
     axes: Axes
     control: Control = Control()
+    cutter_head: CutterHead = CutterHead()
+    fixture: Fixture = Fixture()
+
+    @model_validator(mode="after")
+    def _tool_over_the_table(self) -> MillingMachine:
+        low, high = self.axes.Z.travel
+        if self.pivot_height >= high:
+            raise ValueError(
+                f"gauge_line_height {self.gauge_line_height:g} and tool_length {self.tool_length:g}: the tip of the "
+                f"tool would be below the B axis over the whole travel of Z, {low:g} to {high:g}; gauge_line_height is "
+                "the reading of Z at which the gauge line is level with the B axis"
+            )
+        if not low <= self.home <= high:
+            raise ValueError(f"home_z {self.home:g} must lie within the travel of Z, {low:g} to {high:g}")
+        return self
 
     @property
     def pivot(self) -> np.ndarray:
         """e of equation (5.1), (3,) mm."""
         return np.array(self.pivot_offset)
+
+    @property
+    def home(self) -> float:
+        """The Z of ``home_z`` [mm]."""
+        return self.axes.Z.travel[1] if self.home_z is None else self.home_z
 
     @property
     def pivot_height(self) -> float:

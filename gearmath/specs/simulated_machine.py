@@ -11,6 +11,7 @@ from pydantic import Field
 
 from derivations import notation
 from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS
+from gearmath.specs.obstacles import CutterHead, Fixture
 from gearmath.specs.toml import Spec, load
 
 _UNITS = {component.name: component.unit for component in notation.settings.components}
@@ -112,26 +113,6 @@ class Measuring(Spec):
     drift: Drift = Drift()
 
 
-class CutterHead(Spec):
-    """The head above the blades: a cylinder of a radius beyond the outer blade's tip (mm), then the spindle (mm)."""
-
-    beyond_tip: float = Field(default=0.0, ge=-50, le=100)
-    height: float = Field(default=60.0, gt=0, le=500)
-    spindle_radius: float = Field(default=60.0, gt=0, le=500)
-
-
-class Fixture(Spec):
-    """What holds the work (mm): the shank behind the back cone, and the fixture behind the shank.
-
-    ``shank_radius`` 0 takes 60 % of the heel's root radius.
-    """
-
-    shank_radius: float = Field(default=0.0, ge=0, le=1000)
-    shank_length: float = Field(default=60.0, gt=0, le=1000)
-    radius: float = Field(default=40.0, gt=0, le=1000)
-    length: float = Field(default=100.0, gt=0, le=2000)
-
-
 class Probe(Spec):
     """Standard deviation of one touch, how many touches of a point are averaged, and the lobes of the pre-travel.
 
@@ -160,8 +141,9 @@ class SimulatedMachine(Spec):
     axes: AxisErrors = AxisErrors()
     mounting: Mounting = Mounting()
     measuring: Measuring = Measuring()
-    cutter_head: CutterHead = CutterHead()
-    fixture: Fixture = Fixture()
+    cutter_head: CutterHead | None = None
+    fixture: Fixture | None = None
+    """Where they are given, they stand for those of the machine file."""
     probe: Probe = Probe()
 
     def setting_errors(self, member: str) -> np.ndarray:

@@ -1,0 +1,58 @@
+"""How much room the work and what holds it take, however A and B turn them: where a tool may move freely."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.kernels import kernel
+from gearmath.errors import InputError
+from gearmath.machine.collision import rings, work_profiles
+from gearmath.specs.bevel_set import Member
+from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.obstacles import Fixture
+
+#: Room [mm] that is kept about everything that does not touch.
+MARGIN = 5.0
+#: Steps of B in which the work is turned. [rad]
+_STEP = math.radians(1.0)
+
+
+@dataclass(frozen=True)
+class Room:
+    """What work and fixture fill for any A and B of the travel, seen from the B axis [mm], ``MARGIN`` included.
+
+    They reach up to ``top``, to X = ``front`` and from there to the rear, and in Y to ``half`` on both sides.
+    """
+
+    top: float
+    front: float
+    half: float
+
+
+def room_of(member: Member, machine: MillingMachine, fixture: Fixture) -> Room:
+    """The room of one member on its fixture."""
+    around = np.concatenate([rings(profile) for profile in work_profiles(member, fixture).values()])
+    low, high = machine.travel[4]
+    swivels = np.linspace(low, high, 2 + int((high - low) / _STEP))
+    # between two steps a point moves on by its distance from the axis at most
+    missed = float(np.linalg.norm(around + machine.pivot, axis=1).max()) * (swivels[1] - swivels[0]) / 2
+    highest = np.full(3, -np.inf)
+    for B in swivels:
+        (place,) = kernel("seen_from_tool")(np.array([0.0, 0.0, 0.0, 0.0, B]), around, 0.0, machine.pivot)
+        place[:, 1] = np.abs(place[:, 1])
+        highest = np.maximum(highest, place.max(axis=0))
+    front, half, top = highest + missed + MARGIN
+    return Room(float(top), float(front), float(half))
+
+
+def check_home(room: Room, machine: MillingMachine, tip: float, name: str) -> None:
+    """Raises InputError where a tool ``tip`` mm below the gauge line does not clear the room at the home of Z."""
+    needed = machine.gauge_line_height + tip + room.top
+    if machine.home < needed:
+        raise InputError(
+            f"{name}: home of Z = {machine.home:g} mm: the tool clears the work at every B from Z {needed:.1f} mm on: "
+            f"{machine.name} needs a higher home_z, a shorter tool, or less travel of B"
+        )

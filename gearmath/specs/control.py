@@ -1,0 +1,66 @@
+"""What the control's own data decide about a program: increments, path mode, acceleration, the time a spindle needs."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import AfterValidator, Field
+
+from gearmath.specs.toml import Spec
+
+
+def _power_of_ten(value: int) -> int:
+    if 10 ** round(math.log10(value)) != value:
+        raise ValueError("must be a power of ten, such as 1000")
+    return value
+
+
+_Increments = Annotated[int, Field(ge=100, le=1_000_000), AfterValidator(_power_of_ten)]
+
+
+class Control(Spec):
+    """The table ``[control]``; what is left out has the value that a new control has, or a safe one.
+
+    Positions are written in whole increments, since the control rounds to them whatever is written.
+    """
+
+    increments_per_mm: _Increments = 1000
+    """MD10200 $MN_INT_INCR_PER_MM."""
+    increments_per_degree: _Increments = 1000
+    """MD10210 $MN_INT_INCR_PER_DEG."""
+    path_mode: Literal["G60", "G642"] = "G642"
+    """Exact stop at every block, or continuous within the two tolerances below."""
+    contour_tolerance_um: float = Field(default=0.05, ge=0.01, le=100)
+    """CTOL: how far G642 may take X Y Z off the programmed path."""
+    orientation_tolerance_arcsec: float = Field(default=0.1, ge=0.01, le=100)
+    """OTOL: how far it may take A and B off."""
+    jerk: Literal["BRISK", "SOFT"] = "SOFT"
+    feed_forward: bool = True
+    spindle_start_seconds: float = Field(default=3.0, ge=0.0, le=60.0)
+    """How long the program waits after M3 or M4, so that the cutter is at speed before it meets metal."""
+
+    @property
+    def decimals(self) -> tuple[int, int]:
+        """Decimals of a position in mm and in degrees."""
+        return round(math.log10(self.increments_per_mm)), round(math.log10(self.increments_per_degree))
+
+    @property
+    def half_increments(self) -> np.ndarray:
+        """What rounding may do to X Y Z A B (5,), mm and rad."""
+        return np.array([0.5 / self.increments_per_mm] * 3 + [math.radians(0.5 / self.increments_per_degree)] * 2)
+
+    @property
+    def path_tolerance(self) -> tuple[float, float]:
+        """How far the path mode may leave the programmed path: in X Y Z together [mm], in A and in B [rad]."""
+        if self.path_mode == "G60":
+            return 0.0, 0.0
+        return self.contour_tolerance_um / 1000, math.radians(self.orientation_tolerance_arcsec / 3600)
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The words of the head: path mode, tolerances, acceleration, feed forward."""
+        degrees = self.orientation_tolerance_arcsec / 3600
+        within = f" CTOL={self.contour_tolerance_um / 1000:.6f} OTOL={degrees:.7f}" if self.path_mode == "G642" else ""
+        return self.path_mode + within, self.jerk, "FFWON" if self.feed_forward else "FFWOF"
