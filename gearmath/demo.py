@@ -25,8 +25,8 @@ from gearmath.files import write_text
 from gearmath.gearbox.simulation import Simulation, simulate
 from gearmath.gearbox.train import GearboxPlan, plan
 from gearmath.lowering import lower
-from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.control import Setup
+from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
 from gearmath.machine.mill import mill_member
 from gearmath.plot import member_figure, save

@@ -67,7 +67,7 @@ def probe(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
-    from gearmath.machine.collision import obstacles
+    from gearmath.machine.bodies import obstacles
     from gearmath.machine.probe_check import approaches
     from gearmath.machine.probing import probing_program, teeth_around
     from gearmath.machine.words import block_count

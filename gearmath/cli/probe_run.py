@@ -92,7 +92,7 @@ def _check_clear(
     text: str, program: Path, there: ProbeMachine, machine: MillingMachine, shop: SimulatedMachine | None, steps: int
 ) -> None:  # fmt: skip
     """Raise InputError where the program moves the probe into a nominal member, or touches what it does not have."""
-    from gearmath.machine.collision import obstacles
+    from gearmath.machine.bodies import obstacles
     from gearmath.machine.probe_check import approaches
 
     head, fixture = obstacles(machine, shop)

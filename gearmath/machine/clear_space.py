@@ -9,7 +9,7 @@ import numpy as np
 
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
-from gearmath.machine.collision import rings, work_profiles
+from gearmath.machine.bodies import rings, work_profiles
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.obstacles import Fixture
@@ -34,17 +34,17 @@ class Room:
 
 def room_of(member: Member, machine: MillingMachine, fixture: Fixture) -> Room:
     """The room of one member on its fixture."""
-    around = np.concatenate([rings(profile) for profile in work_profiles(member, fixture).values()])
+    profiles = work_profiles(member, fixture).values()
+    # the machine's X and Z of a point depend on its x_w alone beside z_w, and Y on its y_w: a ring is farthest at these
+    around = np.concatenate([rings(profile, azimuths=4) for profile in profiles])
     low, high = machine.travel[4]
     swivels = np.linspace(low, high, 2 + int((high - low) / _STEP))
     # between two steps a point moves on by its distance from the axis at most
     missed = float(np.linalg.norm(around + machine.pivot, axis=1).max()) * (swivels[1] - swivels[0]) / 2
-    highest = np.full(3, -np.inf)
-    for B in swivels:
-        (place,) = kernel("seen_from_tool")(np.array([0.0, 0.0, 0.0, 0.0, B]), around, 0.0, machine.pivot)
-        place[:, 1] = np.abs(place[:, 1])
-        highest = np.maximum(highest, place.max(axis=0))
-    front, half, top = highest + missed + MARGIN
+    positions = np.repeat(swivels, len(around))[:, None] * np.array([0.0, 0.0, 0.0, 0.0, 1.0])
+    (places,) = kernel("seen_from_tool")(positions, np.tile(around, (len(swivels), 1)), 0.0, machine.pivot)
+    places[:, 1] = np.abs(places[:, 1])
+    front, half, top = places.max(axis=0) + missed + MARGIN
     return Room(float(top), float(front), float(half))
 
 

@@ -6,27 +6,22 @@ The blades may be between the teeth, everything else must be clear of everything
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearmath.bevel.kernels import kernel
+from gearmath.machine.bodies import head_radius, rings, work_profiles
 from gearmath.machine.cutter import Cutter
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.run import Run
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.obstacles import CutterHead, Fixture
-from gearmath.specs.simulated_machine import SimulatedMachine
 
-#: Blades may come this close under the root, at the ends of the teeth, before it counts. [mm]
-_UNDER_ROOT = 0.5
-_SHANK_SHARE = 0.6
-#: Spacing of the points of a profile and of the poses along a block. [mm]
-_SPACING, _STEP = 2.0, 5.0
-_AZIMUTHS = 120
+#: Spacing of the poses along a block. [mm]
+_STEP = 5.0
 
 
 @dataclass(frozen=True)
@@ -37,42 +32,6 @@ class Collision:
     work: str
     lines: tuple[int, ...]
     depth: float
-
-
-def work_profiles(member: Member, fixture: Fixture) -> dict[str, np.ndarray]:
-    """Points (n,2) of z_w and radius on what stands about the work axis, by name.
-
-    ``teeth`` is the face cone; ``hub`` the faces under the root at toe and heel, square to the pitch cone for a whole
-    depth and then square to the axis; ``shank`` begins at the back face, and ``fixture`` stands behind the shank.
-    """
-    corners = {
-        (end, edge): np.array([float(value) for value in kernel("flank_place")(member.blank.vector, end, edge)])
-        for end in (0.0, 1.0) for edge in (0.0, 1.0)
-    }  # fmt: skip
-    delta = math.radians(member.blank.pitch_angle)
-    inward = np.array([math.sin(delta), -math.cos(delta)])  # along the end faces, away from the tip
-    below = member.blank.clearance + _UNDER_ROOT
-    toe, heel = (corners[end, 0.0] + below * inward for end in (0.0, 1.0))
-    shank = fixture.shank_radius or _SHANK_SHARE * heel[1]
-    rim = member.blank.mean_addendum + member.blank.mean_dedendum
-    toe_rim, back = (start + rim * inward if start[1] + rim * inward[1] > shank else start for start in (toe, heel))
-    end = back[0] + fixture.shank_length
-    toe_end, heel_end = (np.array([corner[0], min(shank, corner[1])]) for corner in (toe_rim, back))
-    return {
-        "teeth": _polyline(corners[0.0, 1.0], corners[1.0, 1.0]),
-        "hub": np.concatenate([_polyline(toe, toe_rim, toe_end), _polyline(heel, back, heel_end)]),
-        "shank": _polyline(np.array([back[0], shank]), np.array([end, shank])),
-        "fixture": _polyline(
-            np.array([end, shank]), np.array([end, fixture.radius]), np.array([end + fixture.length, fixture.radius])
-        ),
-    }
-
-
-def obstacles(machine: MillingMachine, errors: SimulatedMachine | None = None) -> tuple[CutterHead, Fixture]:
-    """What stands about tool and work: of the machine, unless the shop's file says otherwise."""
-    if errors is None:
-        return machine.cutter_head, machine.fixture
-    return errors.cutter_head or machine.cutter_head, errors.fixture or machine.fixture
 
 
 def collisions(
@@ -114,16 +73,6 @@ def _of_block(
     return meets
 
 
-def widest(cutter: Cutter, head: CutterHead) -> float:
-    """The largest radius [mm] of cutter, head and spindle."""
-    return max(_head_radius(cutter, head), head.spindle_radius)
-
-
-def _head_radius(cutter: Cutter, head: CutterHead) -> float:
-    outer = cutter.bodies[0].outer
-    return outer.point_radius + cutter.height * math.tan(outer.pressure_angle) + head.beyond_tip
-
-
 def _depths(cutter: Cutter, head: CutterHead, height: np.ndarray, radius: np.ndarray) -> dict[str, np.ndarray]:
     """How deep points at ``height`` and ``radius`` lie in each part of the cutter; negative outside of it."""
     body = cutter.bodies[0]
@@ -131,22 +80,5 @@ def _depths(cutter: Cutter, head: CutterHead, height: np.ndarray, radius: np.nda
     inner = body.inner.point_radius - height * math.tan(body.inner.pressure_angle)
     top = cutter.height + head.height
     blades = np.minimum.reduce([height, cutter.height - height, outer - radius, radius - inner])
-    disc = np.minimum.reduce([height - cutter.height, top - height, _head_radius(cutter, head) - radius])
+    disc = np.minimum.reduce([height - cutter.height, top - height, head_radius(cutter, head) - radius])
     return {"blades": blades, "head": disc, "spindle": np.minimum(height - top, head.spindle_radius - radius)}
-
-
-def _polyline(*corners: np.ndarray) -> np.ndarray:
-    """Points (n,2) along straight lines between corners."""
-    parts = [
-        a + np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(b - a) / _SPACING))[:, None] * (b - a)
-        for a, b in itertools.pairwise(corners)
-    ]
-    return np.concatenate(parts)
-
-
-def rings(profile: np.ndarray) -> np.ndarray:
-    """Points (n,3) all around z_w."""
-    angle = np.linspace(0.0, 2 * math.pi, _AZIMUTHS, endpoint=False)
-    z, r = (np.repeat(values, _AZIMUTHS) for values in profile.T)
-    around = np.tile(angle, len(profile))
-    return np.column_stack([r * np.cos(around), r * np.sin(around), z])

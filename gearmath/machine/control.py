@@ -265,7 +265,7 @@ class Control:
         if self.tool is None:
             return None
         position, cutter = tuple(self.position[axis] for axis in AXES), self.position.get(CUTTER_AXIS, math.nan)
-        return Row(position, rapid, self.tool, line, seconds, self.spindle_on, "MEAS" in words, cutter)
+        return Row(position, rapid, self.tool or "", line, seconds, self.spindle_on, "MEAS" in words, cutter)
 
     def _target(self, axis: str, block: Block, value: float, rapid: bool) -> float:
         """Where an axis word takes its axis, in machine coordinates, A counted on."""

@@ -18,8 +18,8 @@ from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.tooth import tooth_space
 from gearmath.errors import InputError
 from gearmath.machine.blocks import ROUNDING, TOLERANCES, roll_nodes
+from gearmath.machine.bodies import widest
 from gearmath.machine.clear_space import room_of
-from gearmath.machine.collision import widest
 from gearmath.machine.cutter import cutter_of
 from gearmath.machine.feeds import block_seconds
 from gearmath.machine.hobbing import C_ROUNDING, hobbing_pass

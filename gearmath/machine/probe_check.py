@@ -20,7 +20,7 @@ import numpy as np
 
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
-from gearmath.machine.collision import rings, work_profiles
+from gearmath.machine.bodies import rings, work_profiles
 from gearmath.machine.control import Probe, Setup
 from gearmath.machine.executor import run_program
 from gearmath.machine.nc_expression import refuse

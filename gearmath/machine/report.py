@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-from gearmath.machine.collision import Collision, collisions, obstacles
+from gearmath.machine.bodies import obstacles
+from gearmath.machine.collision import Collision, collisions
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.milling import Evaluator
 from gearmath.machine.run import runs_of

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.tooth import tooth_space
-from gearmath.machine.collision import collisions, work_profiles
+from gearmath.machine.bodies import work_profiles
+from gearmath.machine.collision import collisions
 from gearmath.machine.run import runs_of
 from gearmath.machine.timing import timing
 from gearmath.specs.bevel_set import MEMBERS

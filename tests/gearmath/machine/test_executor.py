@@ -114,7 +114,7 @@ def test_crlf_reads_as_lf():
         (['T="B" D1', "G0 X1"], "line 7, column 4", 'motion without a tool: T="..." D1 and M6 must come first'),
         (["M5", "M6", "M3", "G93 G1 X1 F1"], "line 9, column 8", "cutting move from an unknown position of X Y Z A B"),
         (["G55"], "line 6, column 1", "G55 after G54: one work offset is understood"),
-        (["D2"], "line 6, column 1", "D2: only the cutting edge D1 is understood"),
+        (["D2"], "line 6, column 1", "D2: only the cutting edge D1, and D0 for none, are understood"),
         (["M30", "G0 X1"], "line 7, column 1", "there is a block after M30"),
     ],
 )

@@ -15,14 +15,25 @@ from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.probing import probing_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.calibration import load_calibration
-from gearmath.specs.milling_machine import Control, load_milling_machine
+from gearmath.specs.control import Control
+from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 PROBE = load_calibration(bundled("probe.toml"))
 COUNTING = MACHINE.model_copy(update={"axes": MACHINE.axes.model_copy(update={
     "A": MACHINE.axes.A.model_copy(update={"modulo": False, "travel": (-360.0, 720.0)})})})  # fmt: skip
-CONTROLLED = MACHINE.model_copy(update={"control": Control(path_mode="G642", jerk="SOFT", feed_forward=True)})
+CONTROLLED = MACHINE.model_copy(
+    update={
+        "control": Control(
+            path_mode="G60",
+            jerk="BRISK",
+            feed_forward=False,
+            increments_per_mm=100_000,
+            increments_per_degree=1_000_000,
+        )
+    }
+)
 NASA, FORMATE, UNIVERSAL, HOBBED = (
     load_bevel_set(bundled(f"{name}.toml"))
     for name in ("nasa_tp3096_12x36", "crown_gear_formate_14x39", "crown_gear_universal_14x39",
@@ -110,15 +121,17 @@ def _line_faults(line, modulo):
         yield "an exponent"
     if re.search(r"-0\.0+(?!\d)", code):
         yield "minus zero"
-    if re.search(r"\([^()]*[A-Z]{3,}[^()]*\)", code) and not re.search(r"MSG|WRITE|SETAL|SPCO", code):
+    if re.search(r"\([^()]*[A-Z]{3,}[^()]*\)", code) and not re.search(r"MSG|WRITE|SETAL|SPCO|IF", code):
         yield "a comment in parentheses"
+    if re.search(r"SUPA|IF|ACC\[", code):
+        code = re.sub(r"\[[^]]*\]", "[]", code)
     for axis, digits in re.findall(r"(?<![A-Z_$\[])([XYZABC])(?:=(?:DC|AC)\()?-?\d+(\.\d+)?(?![0-9])", code):
         if len(digits) - 1 != DECIMALS[axis]:
             yield f"{axis} without its {DECIMALS[axis]} decimals"
     words = code.split()
     codes = {word for word in words if re.fullmatch(r"[GM]\d+", word)}
     known = {"G0", "G1", "G4", "G17", "G40", "G54", "G64", "G642", "G90", "G93", "G94", "G710", "M3", "M4", "M5", "M6",
-             "M8", "M9", "M30"}  # fmt: skip
+             "M8", "M9", "M30", "M0", "G60"}  # fmt: skip
     yield from (f"{word} is not of the dialect" for word in sorted(codes - known))
     if "G93" in codes and not any(re.fullmatch(r"F\d+\.\d+", word) for word in words):
         yield "G93 without F"

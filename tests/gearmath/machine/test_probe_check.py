@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gearmath.errors import InputError
-from gearmath.machine.collision import work_profiles
+from gearmath.machine.bodies import work_profiles
 from gearmath.machine.probe_check import approaches
 from gearmath.machine.probe_machine import ProbeMachine
 from gearmath.machine.probing import probing_program, tip_positions

@@ -7,14 +7,18 @@ import numpy as np
 import pytest
 
 from gearmath.errors import InputError
-from gearmath.machine.executor import execute
+from gearmath.machine.clear_space import Room
+from gearmath.machine.control import Setup
+from gearmath.machine.executor import execute, run_program
 from gearmath.machine.feeds import block_seconds
 from gearmath.machine.program import Pass, write_program
-from gearmath.specs.milling_machine import Control, load_milling_machine
+from gearmath.specs.control import Control
+from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 TOOLS = ("PINION_CONCAVE", "PINION_CONVEX")
+ROOM = Room(top=100.0, front=120.0, half=110.0)
 TOOTH = np.array([20.0, 10.0, 70.0])
 
 
@@ -40,6 +44,8 @@ def written(passes=None, **changes):
         "machine": MACHINE,
         "spindle_rpm": 80.0,
         "clearance": 20.0,
+        "room": ROOM,
+        "tool_radius": 90.0,
     } | changes
     return write_program(**arguments)
 
@@ -71,7 +77,8 @@ def test_reader_finds_the_positions_and_times_to_the_printed_resolution():
     np.testing.assert_allclose(path.seconds[cut], np.concatenate([one.seconds for one in passes]), rtol=1e-8)
     assert path.tools == TOOLS
     assert (path.tool[cut] == np.repeat([0, 1], 12 * 24)).all()
-    assert path.spindle_on.all()
+    assert path.spindle_on[path.axes[:, 2] < MACHINE.home].all()
+    assert not path.spindle_on[-1]
 
 
 def test_the_plunge_starts_straight_above_the_first_point_and_the_retract_goes_straight_up():
@@ -103,7 +110,9 @@ def test_lint():
     number = r"-?\d+\.\d+"
     words = {
         "N": r"N\d+",
-        "code": r"(?:G(?:0|1|17|40|54|64|90|710|93|94)|M(?:3|5|6|8|9|30)|SOFT|FFWON)",
+        "code": r"(?:G(?:0|1|4|17|40|54|642|90|710|93|94)|M(?:0|3|5|6|8|9|30)|SOFT|FFWON)",
+        "safety": r"SUPA|TRAFOOF|COMPOF|DIAMOF|TRANS|D0|STOPRE|SECTION_\d+:|FGROUP\(X,Y,Z\)|R9[01]=0",
+        "percent": r"(?:OVR|OVRRAP|ACC\[[XYZAB]\])=100|(?:CTOL|OTOL)=0\.\d+",
         "mm": r"[XYZ]-?\d+\.\d{5}",
         "A": r"A=DC\(\d+\.\d{6}\)",
         "B": r"B-?\d+\.\d{6}",
@@ -120,6 +129,9 @@ def test_lint():
     for line in text.split("\n")[:-1]:
         assert len(line) < 250
         if line.startswith(";"):
+            continue
+        if re.match(r"N\d+ (?:IF |ENDIF$|MSG\(\"[ -~]*\"\)$|SETAL\(650\d\d\)$)", line):
+            numbers.append(int(line.split(" ")[0].removeprefix("N")))
             continue
         tokens = line.split(" ")
         assert all(word.fullmatch(token) for token in tokens), line
@@ -145,13 +157,17 @@ def test_small_negative_and_nearly_whole_turns_are_printed_as_zero():
 def test_header_and_program_start():
     lines = written().split("\n")
     assert lines[:3] == ["; PINION_12X36", "; made from a test", "; settings 0123456789abcdef"]
-    assert lines[3:8] == [
-        "N10 G17 G40 G90 G710 G94 G54",
-        'N20 T="PINION_CONCAVE" D1',
-        "N30 M6",
-        "N40 S80.000 M3",
-        "N50 M8",
-    ]
+    assert lines[3] == "N10 G17 G40 G90 G94 G710 G54 G642 CTOL=0.000050 OTOL=0.0000278 SOFT FFWON"
+    blocks = [line.partition(" ")[2] for line in lines[4:]]
+    assert blocks[:3] == ["TRAFOOF", "COMPOF", "DIAMOF"]
+    moves = [block for block in blocks if re.match(r"(?:G94 )?G[01] ", block)]
+    assert moves[:3] == ["G0 SUPA Z900.00000"] * 3  # up before the tool change, before, and after it
+    assert moves[3].startswith("G0 X")
+    assert moves[4].startswith("G0 Z")
+    fetched = blocks.index('T="PINION_CONCAVE" D1')
+    assert blocks[fetched + 1] == "M6"
+    spindle = blocks.index("S80.000 M3")
+    assert blocks[spindle + 1 : spindle + 3] == ["G4 F3.0", "M8"]
 
 
 def test_a_counting_axis_is_written_as_it_counts():
@@ -166,18 +182,81 @@ def test_a_counting_axis_is_written_as_it_counts():
 
 
 def test_direction_of_the_cutter_and_options_of_the_control_come_from_the_machine_file():
-    control = Control(path_mode="G64", jerk="SOFT", feed_forward=True)
+    control = Control(path_mode="G60", jerk="BRISK", feed_forward=True)
     text = written(machine=MACHINE.model_copy(update={"cutter_direction": "M4", "control": control}))
-    assert text.split("\n")[4] == "N20 G64 SOFT FFWON"
+    head = text.split("\n")[3]
+    assert head == "N10 G17 G40 G90 G94 G710 G54 G60 BRISK FFWON"
+    assert text.count(head.partition(" ")[2]) == 1 + 24  # and once more in every section
     assert " M3\n" not in text
     assert text.count("S80.000 M4\n") == 2
-    assert written(machine=MACHINE.model_copy(update={"control": Control(feed_forward=False)})).count("FFWOF") == 1
-    assert execute(text, "P.MPF").spindle_on.all()
+    assert "FFWON" not in written(machine=MACHINE.model_copy(update={"control": Control(feed_forward=False)}))
+    path = execute(text, "P.MPF")
+    assert path.spindle_on[path.axes[:, 2] < MACHINE.home].all()
+
+
+def test_increments_of_the_control_decide_the_decimals():
+    coarse = MACHINE.model_copy(update={"control": Control()})
+    path = execute(written(machine=coarse), "P.MPF")
+    np.testing.assert_allclose(path.axes[:, :3], np.round(path.axes[:, :3], 3), rtol=0, atol=1e-12)
+    degrees = np.degrees(path.axes[:, 3:])
+    np.testing.assert_allclose(degrees, np.round(degrees, 3), rtol=0, atol=1e-9)
+
+
+def test_with_the_tool_length_in_the_table_z_is_that_of_the_tip():
+    """The control adds the length of 150 mm to the programmed Z: the machine moves as it does without."""
+    tip = MACHINE.model_copy(update={"z_reference": "tip"})
+    text = written(machine=tip)
+    assert execute(text, "P.MPF", Setup.of(tip)).axes == pytest.approx(execute(written(), "P.MPF").axes, abs=1e-9)
+    with pytest.raises(InputError, match="alarm 65014: length 1 of PINION_CONCAVE in the tool table must be 150"):
+        execute(text, "P.MPF")
+    with pytest.raises(InputError, match="alarm 65014: length 1 of PINION_CONCAVE in the tool table must be 0"):
+        execute(written(), "P.MPF", Setup.of(tip))
+
+
+def test_a_work_offset_moves_the_whole_program():
+    """Machine coordinates are those of the file and the offset; SUPA, which takes off all offsets, goes there too."""
+    values = (-250.0, 12.5, -700.0, 5.0, 0.25)
+    shifted = MACHINE.model_copy(update={"work_offset_values": values})
+    text = written(machine=shifted)
+    assert "G0 SUPA Z200.00000" in text
+    assert execute(text, "P.MPF", Setup.of(shifted)).axes == pytest.approx(execute(written(), "P.MPF").axes, abs=1e-9)
+    with pytest.raises(InputError, match=r"alarm 65012: G54 with all frames must be X-250 Y12\.5 Z-700 A5 B0\.25"):
+        execute(text, "P.MPF")
+
+
+def test_home_of_z_must_clear_the_work_at_every_b():
+    with pytest.raises(
+        InputError, match=r"home of Z = 900 mm: the tool clears the work at every B from Z 901\.0 mm on"
+    ):
+        written(room=replace(ROOM, top=401.0))
+
+
+@pytest.mark.parametrize(("first", "last", "sections"), [(0, 0, 24), (3, 5, 3), (20, 0, 5), (0, 13, 13), (24, 24, 1)])
+def test_sections_can_be_cut_by_themselves(first, last, sections):
+    """After an abort the program goes on at any section, with its own tool, and asks before it does."""
+    whole, run = execute(written(), "P.MPF"), run_program(written(), "P.MPF", parameters={90: first, 91: last})
+    cut = cutting_rows(run.path)
+    assert cut.sum() == 24 * sections
+    begin = 24 * max(first - 1, 0)
+    expected = whole.axes[cutting_rows(whole)][begin : begin + 24 * sections]
+    expected[:, 3] += 2 * np.pi * np.round((run.path.axes[cut][0, 3] - expected[0, 3]) / (2 * np.pi))
+    assert run.path.axes[cut] == pytest.approx(expected, abs=1e-9)
+    assert run.messages[-1].startswith(f"section {last or 24} of 24: ")
+    assert (run.messages[0].startswith("only sections")) == ((first, last) != (0, 0))
+    assert (run.parameters[90], run.parameters[91]) == (0, 0)
+
+
+@pytest.mark.parametrize(("first", "last"), [(-1, 0), (25, 0), (0, 25), (5, 3)])
+def test_sections_that_there_are_not_stop_the_program_before_it_moves(first, last):
+    run = run_program(written(), "P.MPF", parameters={90: first, 91: last})
+    assert run.alarm is not None
+    assert run.alarm[0] == 65016
+    assert len(run.path.axes) == 0
 
 
 def test_a_dwell_stands_between_the_cut_and_the_retract():
     lines = written(changed(dwell=0.75)).split("\n")
-    (row,) = (k for k, line in enumerate(lines) if " G4 " in line)
+    _, row = (k for k, line in enumerate(lines) if " G4 " in line)  # the first waits for the spindle
     assert lines[row].endswith("G4 F0.750000000")
     assert "G93 G1" in lines[row - 1]
     assert "G94 G0 Z" in lines[row + 1]

@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from gearmath.errors import InputError
+from gearmath.machine.clear_space import Room
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute, run_program
 from gearmath.machine.nc_expression import Constant, Operation, Variable
@@ -25,6 +26,7 @@ from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
+PROBE = load_calibration(bundled("probe.toml"))
 
 
 def body(text):
@@ -101,7 +103,10 @@ def test_unknown_words_are_refused_with_line_and_column(word):
         ("R1=1+", "line 1, column 6", "'the end of the line' is no number, variable or function"),
         ("R1=SIN(1,2)", "line 1, column 4", "SIN takes 1 numbers, not 2"),
         ("R1=(1", "line 1, column 6", "')' is missing"),
-        ("R1=$AA_IM[X]", "line 1, column 4", "the system variable '$AA_IM' is not understood"),
+        ("R1=$AA_IW[X]", "line 1, column 4", "the system variable '$AA_IW' is not understood"),
+        ("R1=$AA_IM[C]", "line 1, column 11", "$AA_IM of 'C]' is not understood"),
+        ("R1=$P_ACTFRAME[A,RT]", "line 1, column 16", "$P_ACTFRAME of 'A,RT]' is not understood"),
+        ("R1=$P_TOOLL[2]", "line 1, column 13", "$P_TOOLL of '2]' is not understood"),
         ("R1=$AA_MM[C]", "line 1, column 11", "$AA_MM of 'C]' is not understood"),
         ("IF R1==1 AND R2==2\nENDIF", "line 1, column 16", "'==2' after IF: nothing else may stand in its block"),
         ("DEF BOOL UX", "line 1, column 5", "DEF knows INT and REAL only"),
@@ -120,11 +125,28 @@ def test_refusals_name_line_column_and_reason(text, where, sentence):
     assert refused(text) == f"P.MPF, {where}: {sentence}"
 
 
+def blocks_of(body):
+    """All blocks, those in branches too."""
+    for part in body:
+        if isinstance(part, Block):
+            yield part
+        elif isinstance(part, Branch):
+            yield from blocks_of(part.then)
+
+
+def but_for_the_room(text):
+    """The text without the line that says where the tool must not stand at the start: the reader knows no member."""
+    return [line for line in text.split("\n") if "$AA_IM[Z]" not in line and "raise Z by hand" not in line]
+
+
+ROOM = Room(0.0, 0.0, 0.0)
+
+
 def written_again(text):
     """What the writer makes of what the reader understood: positions, times, names and comments, in its own words."""
     program, path = read_program(text, "P.MPF"), execute(text, "P.MPF")
-    blocks = {block.line: block.words for block in program.body}
-    header = [comment for line, comment in program.comments.items() if line < min(blocks)]
+    blocks = {block.line: block.words for block in blocks_of(program.body)}
+    header = [comment for line, comment in program.comments.items() if line < program.body[0].line]
     begins = np.flatnonzero(~path.rapid & np.roll(path.rapid, 1))
     passes = []
     turning = np.isfinite(path.cutter).any()
@@ -133,6 +155,7 @@ def written_again(text):
         end = begin + int(np.argmax(path.rapid[begin:]))
         line = path.line[begin]
         label, _, tooth = program.comments[max(k for k in program.comments if k < line)].rpartition(", tooth ")
+        label = label.partition(": ")[2]
         dwell = blocks[line + end - begin].get("dwell") and blocks[line + end - begin]["F"].value.value
         passes.append(
             Pass(
@@ -145,7 +168,7 @@ def written_again(text):
     assert len(speeds) == (0 if turning else 1)  # the cutter's axis has no S
     rpm = max(speeds, default=100.0)
     return write_program(
-        header[0], header[1:], passes, FASTER, rpm, path.axes[begins[0] - 1, 2] - highest,
+        header[0], header[1:], passes, FASTER, rpm, path.axes[begins[0] - 1, 2] - highest, ROOM, 0.0,
         blocks[path.line[begins[0]]]["F"].value.value,
         any(words.get("coolant", NO).text == "M8" for words in blocks.values()),
     )  # fmt: skip
@@ -165,8 +188,7 @@ NO = Word("", Constant(0.0), 0)
 @pytest.mark.parametrize("options", [{}, {"roughing_stock": 0.3, "finishing_stock": 0.1}, {"dry_run": True}])
 def test_writer_reader_writer_gives_the_same_text(gear_set, member, options):
     text = cutting_program(gear_set, member, MACHINE, "CUT", Job((0, 7), 1e-3, **options))
-    again = written_again(text)
-    assert again == text
+    assert but_for_the_room(written_again(text)) == but_for_the_room(text)
 
 
 @pytest.mark.parametrize("options", [{}, {"roughing_stock": 0.3, "finishing_stock": 0.1}, {"dry_run": True}])
@@ -174,7 +196,7 @@ def test_writer_reader_writer_gives_the_same_text_on_six_axes(options):
     hobbed = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
     text = cutting_program(hobbed, "pinion", MACHINE, "CUT", Job(range(14), 5e-3, **options))
     assert " C=DC(" in text
-    assert written_again(text) == text
+    assert but_for_the_room(written_again(text)) == but_for_the_room(text)
 
 
 def probed_again(text, name, repeat=1):
@@ -203,10 +225,11 @@ def probed_again(text, name, repeat=1):
     feed = 60 * ways_mm / path.seconds[measuring]
     np.testing.assert_allclose(feed.reshape(ways.shape)[:, 0], APPROACH_FEED, rtol=1e-9)
     np.testing.assert_allclose(feed.reshape(ways.shape)[:, 1:], MEASURING_FEED, rtol=1e-9)
-    (level,), anywhere = set(path.axes[ways[:, 0] - 1, 2].tolist()), float(path.axes[-1, 2])
+    (level,) = set(path.axes[ways[:, 0] - 1, 2].tolist())
+    assert path.axes[0, 2] == path.axes[-1, 2] == MACHINE.home
     once = slice(None, None, repeat)
     targets = Targets(flank[once], tooth[once].astype(int), row[once], col[once], start, end, end)
-    return write_touches(header[0], header[1:], targets, name, MACHINE, (level, anywhere), repeat)
+    return write_touches(header[0], header[1:], targets, name, MACHINE, PROBE, level, ROOM, repeat)
 
 
 @pytest.mark.parametrize(
@@ -214,8 +237,9 @@ def probed_again(text, name, repeat=1):
     [("pinion", {}), ("gear", {"topography": (3,), "around": (0, 9)}), ("pinion", {"topography": (), "repeat": 3})],
 )
 def test_writer_reader_writer_gives_the_same_text_for_probing(gear_set, member, options):
-    text = probing_program(gear_set, member, MACHINE, load_calibration(bundled("probe.toml")), "PROBE", **options)
-    assert probed_again(text, member, options.get("repeat", 1)) == text
+    text = probing_program(gear_set, member, MACHINE, PROBE, "PROBE", **options)
+    again = probed_again(text, member, options.get("repeat", 1))
+    assert but_for_the_room(again) == but_for_the_room(text)
 
 
 @settings(max_examples=50, deadline=None)
@@ -225,7 +249,7 @@ def test_writer_reader_writer_gives_the_same_text_for_any_pass(seed, count, dwel
     start = generator.uniform([-300, -300, 0, -9, 0], [300, 300, 400, 9, 1.5])
     axes = start + np.cumsum(generator.normal(0, 0.2, (count, 5)), axis=0) * [1, 1, 1, 0.5, 0.2]
     one = Pass("TOOL_1", "any, pass", 3, axes, generator.uniform(0.5, 50, count - 1), dwell)
-    text = write_program("ANY", ["made up"], [one, replace(one, tooth=4)], FASTER, 80.0, 20.0)
+    text = write_program("ANY", ["made up"], [one, replace(one, tooth=4)], FASTER, 80.0, 20.0, ROOM, 0.0)
     assert written_again(text) == text
 
 
