@@ -13,6 +13,7 @@ from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from gearmath.machine.executor import MachinePath
+    from gearmath.machine.run import Run
     from gearmath.specs.bevel_set import Member
     from gearmath.specs.milling_machine import MillingMachine
     from gearmath.specs.simulated_machine import SimulatedMachine
@@ -94,17 +95,21 @@ def mill(
     tooth 0 in full, the corners of the grid on eight teeth around, and tooth 0 again at the end.
 
     Every block is checked on a machine without errors: the status is 1 where it leaves more than the tolerance that the
-    program states. So it is with --report, without --errors, where a surface is off by more than --report-tolerance-um
+    program states, and where the machine must not run it: travel, speed, acceleration, spindle, modes left as they
+    were, spaces left out, collisions, rapid motion in the work or near it. So it is with --report, without --errors, where a surface is off by more than --report-tolerance-um
     or something collides.
     """
     from gearmath.bevel.pair import load_pair
+    from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
     from gearmath.files import read_text
     from gearmath.machine.control import Setup
     from gearmath.machine.executor import execute
+    from gearmath.machine.judge import faults_of
     from gearmath.machine.measuring import measure_member
     from gearmath.machine.metal import metal
     from gearmath.machine.mill import mill_member
     from gearmath.machine.probing import teeth_around
+    from gearmath.machine.run import runs_of
     from gearmath.machine.watch import stated_member
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
@@ -126,13 +131,20 @@ def mill(
         else:
             file = mill_member(path, spec, member, milling_machine, simulated, progress)
     write_flank_csv(target, file)
-    worst = float(abs(file.deviation).max()) * 1000
+    worst, hobbed = float(abs(file.deviation).max()) * 1000, spec.process == "face_hobbing"
     click.echo(f"{target}: {len(file)} points, largest deviation {worst:.3f} um")
     faults: list[str] = []
-    if spec.process != "face_hobbing":
-        faults += _watch_blocks(text, path, spec, member, milling_machine)
+    with about(program), bar(1, "check") as progress:
+        runs = runs_of(
+            path, spec, member, milling_machine, None, None if hobbed else tooth_space(spec, member, 7), SHARP_EDGE
+        )
+        judged = faults_of(text, path, runs, spec, member, milling_machine)
+        progress(1)
+    if not hobbed:
+        faults += _watch_blocks(text, runs, spec, milling_machine)
     elif simulated is None:
         faults += _off_tolerance(text, spec, worst / 1000)
+    faults += [str(fault) for fault in judged]
     if report is not None:
         found = _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000)
         faults += found if simulated is None else []
@@ -153,14 +165,11 @@ def _off_tolerance(text: str, spec: Member, worst: float) -> list[str]:
     return [f"the flanks deviate by up to {worst * 1000:.3f} um, the program states {promised * 1000:g} um"]
 
 
-def _watch_blocks(text: str, path: MachinePath, spec: Member, member: str, machine: MillingMachine) -> list[str]:
+def _watch_blocks(text: str, runs: list[Run], spec: Member, machine: MillingMachine) -> list[str]:
     """Print what the blocks leave on a machine without errors; a sentence for each way in which that is more than the
     program states."""
-    from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-    from gearmath.machine.run import runs_of
     from gearmath.machine.watch import off_the_way, stated_tolerance, watch
 
-    runs = runs_of(path, spec, member, machine, None, tooth_space(spec, member, 7), SHARP_EDGE)
     with bar(len({space for run in runs for space in run.spaces}), "space") as progress:
         found = watch(runs, spec, machine, None, fast_kernels(), progress)
     deviation, (space, flank, line) = found.worst

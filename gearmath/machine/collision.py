@@ -22,6 +22,8 @@ from gearmath.specs.obstacles import CutterHead, Fixture
 
 #: Spacing of the poses along a block. [mm]
 _STEP = 5.0
+#: The same for rapid blocks [mm, rad], how far the blades must stay off the work there [mm], and what is far [mm].
+_RAPID_STEP, _RAPID_TURN, RAPID_CLEARANCE, _FAR = 1.5, 0.01, 3.0, 20.0
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,51 @@ def collisions(
                 lines |= set(run.line[1:][which.ravel() == k].tolist())
                 found[pair] = lines, max(depth, deepest)
     return [Collision(*pair, tuple(sorted(lines)), depth) for pair, (lines, depth) in sorted(found.items())]
+
+
+def rapid_approaches(runs: list[Run], member: Member, machine: MillingMachine) -> list[Collision]:
+    """Rapid blocks on which the blades come nearer to the face cone than ``RAPID_CLEARANCE``, at any height.
+
+    Straight up out of the cut they may, since nothing stands in the way that the cut has left.
+    """
+    ring = rings(work_profiles(member, machine.fixture)["teeth"])
+    found = []
+    for run in runs:
+        ends = np.flatnonzero(~run.cutting[1:]) + 1
+        steps = run.axes[ends] - run.axes[ends - 1]
+        retract = run.cutting[ends - 1] & (steps[:, 2] >= 0.0) & ~np.delete(steps, 2, axis=1).any(axis=1)
+        for k in ends[~retract]:
+            depth = _blade_depth(run.axes[k - 1], run.axes[k], run.cutter, machine, ring)
+            if depth > -RAPID_CLEARANCE:
+                found.append(Collision("blades", "teeth", (int(run.line[k]),), depth))
+    return found
+
+
+def _blade_depth(
+    first: np.ndarray, last: np.ndarray, cutter: Cutter, machine: MillingMachine, ring: np.ndarray
+) -> float:
+    """How deep the blades get into the face cone between two positions, negative for what stays between. [mm]"""
+    ends = np.array([first, last])
+    ends[:, 3] = 0.0  # the face cone is the same all around
+    center, axis = kernel("tool_pose")(ends, machine.pivot_height, machine.pivot)
+    highest = -np.einsum("pqk,pk->pq", ring[None] - center[:, None], axis)
+    if float(highest.max()) < -_FAR:
+        return -_FAR  # above all of the work at both ends
+    poses = ends[0] + np.linspace(0.0, 1.0, _poses(ends))[:, None] * (ends[1] - ends[0])
+    center, axis = kernel("tool_pose")(poses, machine.pivot_height, machine.pivot)
+    from_center = ring[None] - center[:, None]
+    height = -np.einsum("pqk,pk->pq", from_center, axis)
+    radius = np.sqrt(np.maximum(np.einsum("pqk,pqk->pq", from_center, from_center) - height**2, 0.0))
+    body = cutter.bodies[0]
+    outer = body.outer.point_radius + height * math.tan(body.outer.pressure_angle)
+    inner = body.inner.point_radius - height * math.tan(body.inner.pressure_angle)
+    return float(np.minimum.reduce([height, outer - radius, radius - inner]).max())
+
+
+def _poses(ends: np.ndarray) -> int:
+    """How many poses follow a block: no point of the work moves more than a step between two of them."""
+    reach, turn = float(np.abs(np.diff(ends, axis=0))[0, :3].max()), float(abs(ends[1, 4] - ends[0, 4]))
+    return 2 + int(reach / _RAPID_STEP + turn / _RAPID_TURN)
 
 
 def _of_block(

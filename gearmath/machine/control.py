@@ -31,6 +31,13 @@ _NEEDED_FOR_MOTION = {
 _NOT_WITH_MOTION = (
     "spindle", "SPOS", "tool change", "coolant", "program stop", "program end", "T", "D", "S", "compressor", "dwell",
 )  # fmt: skip
+#: What a program must say before its first motion, or else it depends on what ran before.
+STATED = {
+    "stop mode": "path mode (G60 or G642)", "acceleration": "SOFT or BRISK", "feed forward": "FFWON or FFWOF",
+    "transformation": "TRAFOOF", "compressor": "COMPOF", "diameter programming": "DIAMOF", "frames": "TRANS",
+    "path axes": "FGROUP", "OVR": "OVR", "OVRRAP": "OVRRAP", "CTOL": "CTOL", "OTOL": "OTOL",
+    **{f"ACC {axis}": f"ACC[{axis}]" for axis in AXES},
+}  # fmt: skip
 _VALUED = ("F", "S", "D", "SPOS", "ADIS", "ADISPOS", "MEAS", "CTOL", "OTOL")
 _ALL = AXES + CUTTER_AXIS
 #: The tool that is a probe, by the name that probing programs give it.
@@ -61,6 +68,8 @@ class Setup:
     mirrored: tuple[float, float, float] = (0.0,) * 3
     scaled: tuple[float, float, float] = (1.0,) * 3
     """What all frames together do beside shifting, about and along X Y Z."""
+    work_offset: str | None = None
+    """The one that the machine file counts from, if it matters."""
     metric: bool = True
     increments: tuple[float, float] = (1e9, 1e9)
     position: tuple[float, ...] | None = None
@@ -75,7 +84,10 @@ class Setup:
         """The tables as the machine file wants them."""
         tip = machine.z_reference == "tip"
         values = machine.work_offset_values
-        return Setup(values, values, machine.tool_length if tip else 0.0, probe_length if tip else 0.0)
+        return Setup(
+            values, values, machine.tool_length if tip else 0.0, probe_length if tip else 0.0,
+            work_offset=machine.work_offset,
+        )  # fmt: skip
 
     def length(self, tool: str | None) -> float:
         """Length 1 of a tool in the table [mm]."""
@@ -85,14 +97,17 @@ class Setup:
 
 
 class Row(NamedTuple):
-    """One motion block that ends at a known position of five axes, and of C or NaN; degrees, A and C counted on."""
+    """One motion block that ends at a known position of five axes, and of C or NaN; degrees, A and C counted on.
+
+    ``rpm`` is the speed of the spindle, negative with M4, 0 where it stands or is an axis.
+    """
 
     position: tuple[float, ...]
     rapid: bool
     tool: str
     line: int
     seconds: float
-    spindle_on: bool
+    rpm: float
     measuring: bool
     cutter: float
 
@@ -121,7 +136,9 @@ class Control:
     feed_axes: str = ""
     feed_radius: dict[str, float] = field(default_factory=lambda: {"A": _DEGREE_IS_MM, "B": _DEGREE_IS_MM})
     counting: dict[str, bool] = field(default_factory=dict)
-    speed_known: bool = False
+    speed: float | None = None
+    unstated: tuple[str, ...] | None = None
+    """What had not been said of ``STATED`` when the axes first moved."""
     selected: str | None = None
     tool: str | None = None
     edge: bool = False
@@ -161,6 +178,13 @@ class Control:
     def spindle_on(self) -> bool:
         return self.modal.get("spindle") in ("M3", "M4")
 
+    @property
+    def rpm(self) -> float:
+        """Speed of the spindle, negative with M4."""
+        if not self.spindle_on or self.speed is None:
+            return 0.0
+        return self.speed if self.modal["spindle"] == "M3" else -self.speed
+
     def run(self, block: Block, number: Number) -> Row | None:
         """Let one block act; the row of the path if it moves to a position that is known."""
         words = block.words
@@ -174,7 +198,7 @@ class Control:
             self._switch(key, word, block, number)
         if "tool change" in words:
             self._change_tool(block)
-        if "spindle" in words and self.spindle_on and not self.speed_known:
+        if "spindle" in words and self.spindle_on and self.speed is None:
             self._refuse(block, "spindle", f"{words['spindle'].text} without a spindle speed S")
         if self.modal.get("compressor") == "COMPCAD" and self.modal.get("feed mode") == "G93":
             self._refuse(
@@ -201,7 +225,7 @@ class Control:
         if key == "F":
             self.feed = self.feed if "dwell" in block.words else value
         elif key == "S":
-            self.speed_known = True
+            self.speed = value
         elif key == "D":
             if value not in (0.0, 1.0):
                 self._refuse(block, key, f"{word.text}: only the cutting edge D1, and D0 for none, are understood")
@@ -213,10 +237,14 @@ class Control:
             self._refuse(block, key, f"{word.text}: only MEAS=1, the rising edge of probe 1, is understood")
         elif key == "dwell" and "F" not in block.words:
             self._refuse(block, key, "G4 without a time F")
-        elif (key in ("OVR", "OVRRAP") or key.startswith("ACC ")) and number(word.value, word.column) != 100.0:
-            self._refuse(block, key, f"{word.text}: only 100 percent is understood")
-        elif key in ("CTOL", "OTOL") and value <= 0.0:
-            self._refuse(block, key, f"{word.text}: must be greater than 0")
+        elif key in ("OVR", "OVRRAP") or key.startswith("ACC "):
+            if number(word.value, word.column) != 100.0:
+                self._refuse(block, key, f"{word.text}: only 100 percent is understood")
+            self.modal[key] = word.text
+        elif key in ("CTOL", "OTOL"):
+            if value <= 0.0:
+                self._refuse(block, key, f"{word.text}: must be greater than 0")
+            self.modal[key] = word.text
         elif key.startswith("FGREF"):
             self.feed_radius[key[-1]] = number(word.value, word.column)
         elif key == "work offset" and self.modal.get(key, word.text) != word.text:
@@ -251,6 +279,11 @@ class Control:
             refuse(name, line, column, 'motion without a tool: T="..." D1 and M6 must come first')
         if "motion" not in self.modal:
             refuse(name, line, column, "axis words without G0 or G1")
+        if self.setup.work_offset not in (None, self.modal["work offset"]):
+            what = f"{self.modal['work offset']} is active, the machine file counts from {self.setup.work_offset}"
+            refuse(name, line, column, what)
+        if self.unstated is None:
+            self.unstated = tuple(words for group, words in STATED.items() if group not in self.modal)
         if CUTTER_AXIS in words and self.modal.get("spindle") != "SPOS":
             self._refuse(block, CUTTER_AXIS, f"{words[CUTTER_AXIS].text}: C is an axis only after SPOS")
         before, rapid = dict(self.position), self.modal["motion"] == "G0"
@@ -265,7 +298,7 @@ class Control:
         if self.tool is None:
             return None
         position, cutter = tuple(self.position[axis] for axis in AXES), self.position.get(CUTTER_AXIS, math.nan)
-        return Row(position, rapid, self.tool or "", line, seconds, self.spindle_on, "MEAS" in words, cutter)
+        return Row(position, rapid, self.tool or "", line, seconds, self.rpm, "MEAS" in words, cutter)
 
     def _target(self, axis: str, block: Block, value: float, rapid: bool) -> float:
         """Where an axis word takes its axis, in machine coordinates, A counted on."""

@@ -43,6 +43,8 @@ DRY_LIFT = 60.0
 _MOST_STOCK = 5.0
 #: A roughing pass may deviate by this part of its stock.
 _ROUGH_SHARE = 0.05
+#: Tooth spaces that a line of the header lists.
+_LISTED = 30
 #: A plunge starts this many tooth depths above the bottom, and a bit [mm]; at the bottom the cutter turns this often.
 _PLUNGE_DEPTHS, _PLUNGE_MARGIN, _SPARK_OUT_TURNS = 2.0, 5.0, 1.5
 #: Turning, in face hobbing, it starts nearer: it goes down slowly.
@@ -121,6 +123,7 @@ def cutting_program(
         *_tolerance_notes(member, job, machine, share),
         *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
         f"feed: {job.feed:g} mm/min at the tooth",
+        *_space_notes(job),
         *_hobbing_notes(member),
         *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
         f"machine: {plain(machine.name)}",
@@ -156,6 +159,13 @@ def _tolerance_notes(member: Member, job: Job, machine: MillingMachine, share: C
             f" adds up to {_upwards(share.path_mode * 1000)} um" if control.path_mode == "G642" else ": exact stop"
         ),
     )  # fmt: skip
+
+
+def _space_notes(job: Job) -> Iterator[str]:
+    """The spaces of the program, in lines of thirty: what virtual milling looks for."""
+    spaces = list(job.spaces)
+    for k in range(0, len(spaces), _LISTED):
+        yield "spaces: " + ",".join(str(space) for space in spaces[k : k + _LISTED])
 
 
 def _upwards(um: float) -> str:

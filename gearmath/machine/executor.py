@@ -40,12 +40,19 @@ class MachinePath:
     """Line number in the text, from 1, (n,)."""
     seconds: np.ndarray
     """Duration, (n,) s; 0 for a rapid block, whose speed is the machine's and not the program's."""
-    spindle_on: np.ndarray
-    """Whether the spindle turns, (n,)."""
+    rpm: np.ndarray
+    """Speed of the spindle, (n,) turns per minute: negative with M4, 0 where it stands or is an axis."""
     measuring: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
     """Whether the block is a MEAS block, which ends where the probe triggers, (n,)."""
     cutter: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Position of the cutter's axis C at the ends, (n,) rad, counted on; NaN while the spindle is no axis."""
+    unstated: tuple[str, ...] = ()
+    """What the program leaves as it was when its first motion begins, in words of the program."""
+
+    @property
+    def spindle_on(self) -> np.ndarray:
+        """Whether the spindle turns, (n,)."""
+        return self.rpm != 0.0
 
 
 @dataclass(frozen=True)
@@ -98,7 +105,8 @@ def run_program(
         if not runner.control.ended:
             refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
     files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
-    return Run(_path(runner.rows), files, tuple(runner.messages), runner.parameters, runner.alarm)
+    path = _path(runner.rows, runner.control.unstated or ())
+    return Run(path, files, tuple(runner.messages), runner.parameters, runner.alarm)
 
 
 class _Stopped(Exception):
@@ -253,8 +261,10 @@ class _Runner:
         elif command.name == "TRANS":
             if any(axis not in "XYZ" for axis, _ in command.words):
                 refuse(control.name, line, column, "TRANS of a rotary axis is not understood")
+            control.modal["frames"] = "TRANS"
             control.shift = {axis: self._number(node, line, column) for axis, node in command.words}
         elif command.name == "FGROUP":
+            control.modal["path axes"] = "FGROUP"
             control.feed_axes = "".join(axis for axis, _ in command.words)
         elif command.name in ("SPCON", "SPCOF"):
             self._arguments(command, 0)
@@ -294,7 +304,7 @@ def _whole(value: float) -> float:
     return float(math.floor(value + 0.5))
 
 
-def _path(rows: list[Row]) -> MachinePath:
+def _path(rows: list[Row], unstated: tuple[str, ...]) -> MachinePath:
     """The rows as arrays, in mm and rad."""
     positions = np.array([row.position for row in rows]).reshape(-1, len(AXES))
     positions[:, 3:] = np.radians(positions[:, 3:])
@@ -306,7 +316,8 @@ def _path(rows: list[Row]) -> MachinePath:
         tools=tools,
         line=np.array([row.line for row in rows], dtype=int),
         seconds=np.array([row.seconds for row in rows]),
-        spindle_on=np.array([row.spindle_on for row in rows], dtype=bool),
+        rpm=np.array([row.rpm for row in rows]),
         measuring=np.array([row.measuring for row in rows], dtype=bool),
         cutter=np.radians(np.array([row.cutter for row in rows])),
+        unstated=unstated,
     )

@@ -77,7 +77,7 @@ def test_time_and_speeds_of_a_path_by_hand(vertical, job):
     here = replace(
         path, axes=np.array([[0.0] * 5, [10.0, 0, 0, 0, 0], [10.0, 0, 100, 0, 0]]), rapid=np.array([True, False, True]),
         tool=np.zeros(3, int), line=np.array([3, 4, 5]), seconds=np.array([0.0, 2.0, 0.0]),
-        spindle_on=np.ones(3, bool), measuring=np.zeros(3, bool),
+        rpm=np.full(3, 100.0), measuring=np.zeros(3, bool),
     )  # fmt: skip
     found = timing(here, vertical)
     assert found.feed_seconds == 2.0
