@@ -10,6 +10,8 @@ Forward, for a machine point p_m (tool downwards along Z) and the same point in 
 
     p_m = M(B) (Rz(-A) p_w + e),   columns of M(B): (-sin B, 0, cos B), (0, 1, 0), (-cos B, 0, -sin B)   (5.4)
 
+Z counts up. R_d is the reading of Z at which the gauge line of the spindle is level with the B axis, and C_t the length
+of the tool from there: its tip is Z - R_d - C_t above the B axis. A gauge line 650 mm above it at Z = 0 is R_d = -650.
 e leads from the B axis to the pitch apex, in the axes of the work at A = 0; the conventions' machine has e = 0.
 V_c ∥ V_p is singular: A is then undefined, and the pose must be refused. Everywhere else two poses do the same,
 

@@ -109,7 +109,11 @@ axes = Quantity(
     components=(X, Y, Z, A, B),
 )  # fmt: skip
 pivot_height = _length(
-    "pivot_height", "(R_d + C_t)", 0.0, 400.0, "R_d + C_t: height of the blade tips over the B axis at Z = 0"
+    "pivot_height",
+    "(R_d + C_t)",
+    0.0,
+    400.0,
+    "R_d + C_t: reading of Z with the blade tips level with the B axis",
 )
 pivot_offset = Quantity(
     "pivot_offset", "B axis to pitch apex, in the axes of the work at A = 0; zero where none is given", "mm",
@@ -268,7 +272,7 @@ sphere_w = _vector(
     "sphere_w", r"\mathbf{s}", "mm", 100.0, 200.0, "centre of a sphere that the work carries, work frame w"
 )
 axis_place = Quantity(
-    "axis_place", "X and Z of the axis B beside where the zero of X and the height of the gauge line have it", "mm",
+    "axis_place", "X and Z of the axis B beside where the zero of X and R_d have it", "mm",
     r"\mathbf{b}", (-5.0, 5.0), shape=(2,),
 )  # fmt: skip
 swivel_zero = _angle("swivel_zero", r"\beta_B", -0.02, 0.02, "how far B stands beyond what the control reads")

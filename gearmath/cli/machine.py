@@ -96,8 +96,8 @@ def mill(
 
     Every block is checked on a machine without errors: the status is 1 where it leaves more than the tolerance that the
     program states, and where the machine must not run it: travel, speed, acceleration, spindle, modes left as they
-    were, spaces left out, collisions, rapid motion in the work or near it. So it is with --report, without --errors, where a surface is off by more than --report-tolerance-um
-    or something collides.
+    were, spaces left out, collisions, rapid motion in the work or near it. So it is with --report, without --errors,
+    where a surface is off by more than --report-tolerance-um or something collides.
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.tooth import SHARP_EDGE, tooth_space

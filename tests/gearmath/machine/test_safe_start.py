@@ -7,6 +7,7 @@ motion is followed in steps of 3 mm and 1 degree.
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from functools import cache
@@ -71,7 +72,7 @@ def work_points(member):
     profile = [(corners[0][0], 0.0), *corners, tuple(root), (root[0], shank), (end, shank), (end, fixture.radius),
                (end + fixture.length, fixture.radius)]  # fmt: skip
     dense = np.concatenate([
-        np.linspace(a, b, 2 + int(math.dist(a, b) / 4.0)) for a, b in zip(profile, profile[1:], strict=False)
+        np.linspace(a, b, 2 + int(math.dist(a, b) / 4.0)) for a, b in itertools.pairwise(profile)
     ])  # fmt: skip
     angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     z, r = (np.repeat(column, len(angle)) for column in dense.T)
@@ -121,8 +122,9 @@ def random_setup(random, machine, tool_names):
     change = np.array([*random.uniform(-300, 300, 2), random.uniform(800, 900), 0.0, random.uniform(-10, 100)])
     right = Setup.of(machine, PROBE.length)
     tool_length = random.choice([right.tool_length] * 3 + [0.0, 150.0, 300.0])
+    raised = tuple((zero + np.eye(5)[2] * 150.0).tolist())
     return Setup(
-        zero=right.zero, offset=right.offset if random.random() < 0.8 else tuple((zero + [0, 0, 150.0, 0, 0]).tolist()),
+        zero=right.zero, offset=right.offset if random.random() < 0.8 else raised,
         tool_length=float(tool_length), probe_length=right.probe_length, position=tuple((place + zero).tolist()),
         turned=(0.0, 0.0, 0.0) if random.random() < 0.9 else (0.0, 0.0, 3.0),
         tool=str(random.choice([*tool_names, "DRILL"])), changed_at=tuple((change + zero).tolist()),

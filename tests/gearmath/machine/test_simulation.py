@@ -292,7 +292,7 @@ def test_ball_screw_ripple_does_not_hide_between_the_ends_of_blocks(gear_set, pr
     share = np.concatenate([np.arange(1, n + 1) / n for n in parts])[:, None]
     axes = coarse.axes[own - 1] * (1 - share) + coarse.axes[own] * share
     axes[0] = coarse.axes[0]
-    others = {name: getattr(coarse, name)[own] for name in ("rapid", "tool", "line", "seconds", "spindle_on")}
+    others = {name: getattr(coarse, name)[own] for name in ("rapid", "tool", "line", "seconds", "rpm")}
     fine = replace(coarse, axes=axes, **others)
     member = gear_set.gear
     none, one, other = (

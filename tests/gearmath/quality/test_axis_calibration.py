@@ -143,7 +143,7 @@ def test_commands_make_a_machine_file_of_the_touches(tmp_path, command, refused)
     np.testing.assert_allclose(machine.pivot_offset, TRUTH[:3], rtol=0, atol=1e-6)
     assert machine.gauge_line_height == pytest.approx(349.944, abs=1e-6)
     assert machine.axes == MACHINE.axes
-    assert "# R_d: spindle gauge line over the B axis at Z = 0" in new.read_text()
+    assert "# R_d: the reading of Z at which the gauge line is level with the B axis" in new.read_text()
     refused(
         "--lobing needs touches on the sphere of the table", "calibrate", raw, "--lobing", "-o", tmp_path / "x.toml"
     )

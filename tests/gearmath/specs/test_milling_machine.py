@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.toml import bundled, parse
@@ -30,9 +31,34 @@ def test_a_counting_work_axis_has_a_travel():
 
 
 def test_control_options_become_words_in_the_order_of_the_dialect():
-    text = TEXT + '\n[control]\npath_mode = "G642"\njerk = "BRISK"\nfeed_forward = false\n'
-    assert parse(text, MillingMachine, "m").control.words == ("G642", "BRISK", "FFWOF")
-    assert parse(TEXT, MillingMachine, "m").control.words == ()
+    text = (
+        TEXT.replace('"G642"', '"G60"')
+        .replace('"SOFT"', '"BRISK"')
+        .replace("feed_forward = true", "feed_forward = false")
+    )
+    assert parse(text, MillingMachine, "m").control.words == ("G60", "BRISK", "FFWOF")
+    assert parse(TEXT, MillingMachine, "m").control.words == ("G642 CTOL=0.000050 OTOL=0.0000278", "SOFT", "FFWON")
+
+
+def test_without_a_control_table_the_increments_are_those_of_a_new_control():
+    control = parse(TEXT[: TEXT.index("[control]")], MillingMachine, "m").control
+    assert (control.increments_per_mm, control.increments_per_degree, control.decimals) == (1000, 1000, (3, 3))
+    assert control.path_mode == "G642"
+
+
+def test_gauge_line_above_the_b_axis_at_z_zero_is_a_negative_height():
+    """The sentence of the file, worked by hand: gauge line 650 mm above the B axis at Z = 0, a tool of 150 mm.
+
+    The tip is level with the B axis where Z has gone down by 650 - 150 mm.
+    """
+    text = TEXT.replace("[-100.0, 900.0]", "[-700.0, 0.0]").replace("home_z = 900.0", "home_z = 0.0")
+    machine = parse(text.replace("gauge_line_height = 350.0", "gauge_line_height = -650.0"), MillingMachine, "m")
+    tip_on_the_b_axis = [0.0, 0.0, -500.0, 0.0, 0.0]
+    center, _ = kernel("tool_pose")(np.array([tip_on_the_b_axis]), machine.pivot_height, machine.pivot)
+    np.testing.assert_allclose(center, [[0.0, 0.0, 0.0]], atol=1e-12)
+    wrong = r"gauge_line_height 650 and tool_length 150: the tip of the tool would be below the B axis over the whole"
+    with pytest.raises(InputError, match=wrong):
+        parse(text.replace("gauge_line_height = 350.0", "gauge_line_height = 650.0"), MillingMachine, "m")
 
 
 @pytest.mark.parametrize(
@@ -52,6 +78,14 @@ def test_control_options_become_words_in_the_order_of_the_dialect():
         ("pivot_offset = [0.0, 0.0, 0.0]", "pivot_offset = [0.0, 0.0]", r"pivot_offset.2: the key is missing"),
         ("[20.0, 3000.0]", "[-20.0, 3000.0]", r"spindle_speed_rpm.0 = -20.0: should be greater than 0"),
         ('"G54"', '"G53"', r"work_offset = 'G53': should be 'G54', 'G55', 'G56' or 'G57'"),
+        (
+            "increments_per_mm = 100000",
+            "increments_per_mm = 2500",
+            r"control.increments_per_mm = 2500: must be a power",
+        ),
+        ('"G642"', '"G64"', r"control.path_mode = 'G64': should be 'G60' or 'G642'"),
+        ("home_z = 900.0", "home_z = 901.0", r"home_z 901 must lie within the travel of Z, -100 to 900"),
+        ('"gauge_line"', '"table"', r"z_reference = 'table': should be 'gauge_line' or 'tip'"),
         ("= 3600.0", "= -1.0", r"axes.B.max_speed_per_min = -1.0: should be greater than 0"),
     ],
 )

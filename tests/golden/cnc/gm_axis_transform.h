@@ -17,7 +17,7 @@
  *     [10] blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis
  *     [11] blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
  * in theta [rad] -1 ... 1: cradle rotation (roll position)
- * in pivot_height [mm] 0 ... 400: R_d + C_t: height of the blade tips over the B axis at Z = 0
+ * in pivot_height [mm] 0 ... 400: R_d + C_t: reading of Z with the blade tips level with the B axis
  * in pivot_offset[3] [mm] -100 ... 100: B axis to pitch apex, in the axes of the work at A = 0; zero where none
  *     is given
  * out axes[5] [mixed]: axis positions X, Y, Z, A, B of the vertical machine

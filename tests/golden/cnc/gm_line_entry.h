@@ -9,7 +9,7 @@
  *     [2] Z [mm] -500 ... 900: position of axis Z
  *     [3] A [rad] -10 ... 10: position of the work axis A, right-handed about the work axis
  *     [4] B [rad] -0.2 ... 1.7: position of the swivel axis B, left-handed about Y
- * in pivot_height [mm] 0 ... 400: R_d + C_t: height of the blade tips over the B axis at Z = 0
+ * in pivot_height [mm] 0 ... 400: R_d + C_t: reading of Z with the blade tips level with the B axis
  * in line_point[3] [mm] -200 ... 200: point at distance zero of a line, work frame w
  * in line_direction[3] [1] -1 ... 1: unit direction of a line, work frame w
  * in blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis

@@ -9,7 +9,7 @@
  *     [2] Z [mm] -500 ... 900: position of axis Z
  *     [3] A [rad] -10 ... 10: position of the work axis A, right-handed about the work axis
  *     [4] B [rad] -0.2 ... 1.7: position of the swivel axis B, left-handed about Y
- * in pivot_height [mm] 0 ... 400: R_d + C_t: height of the blade tips over the B axis at Z = 0
+ * in pivot_height [mm] 0 ... 400: R_d + C_t: reading of Z with the blade tips level with the B axis
  * in pivot_offset[3] [mm] -100 ... 100: B axis to pitch apex, in the axes of the work at A = 0; zero where none
  *     is given
  * out cutter_center_w[3] [mm] -500 ... 500: cutter centre in the tip plane, work frame w
