@@ -151,10 +151,10 @@ class Scanner:
 
         Only operators that bind as tightly as ``level``, or tighter, belong to it.
         """
-        if (alone := self.match(_ALONE)) is not None:
-            return Constant(self.number(alone[0], alone.start()))
         if depth > _DEEPEST:
             self.refuse(f"an expression is nested more than {_DEEPEST} deep")
+        if (alone := self.match(_ALONE)) is not None:
+            return Constant(self.number(alone[0], alone.start()))
         left = self._unary(depth)
         while True:
             start = self.at

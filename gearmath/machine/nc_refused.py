@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from gearmath.machine.nc_expression import shown
+
 _JUMP = "jumps are not read: write IF, WHILE or FOR"
 _ARC = "arcs are not read: write G1 blocks"
 _RELATIVE = "the program is read with G90 only: write X=IC(...)"
@@ -42,6 +44,7 @@ _HINTS: dict[str, str] = {
     **dict.fromkeys(("TRAORI", "TRACYL", "TRANSMIT"), "the axes are read as machine axes, without a transformation"),
     **dict.fromkeys(("EGDEF", "EGON", "EGONSYN", "EGONSYNE", "EGOFS", "EGOFC", "EGDEL"), "write G1 blocks"),
     "LIMS": "write S",
+    "PROC": "it stands in the first line only",
     "O": "the name of a program is the name of its file",
     "(": "a comment begins with ;",
     "#": "a variable is written R1",
@@ -55,14 +58,15 @@ _ADDRESSES = {"O", "T", "PO", "PL", "CR", "TURN", "LIMS"}
 
 def instead(text: str) -> str | None:
     """What to write instead of the word with which ``text`` begins, as a sentence; None where nothing is known."""
+    if (address := re.match(r"([A-QS-Z])[0-9]+[ \t]*=(?!=)", text)) is not None:
+        what = f"{address[1]} with a number before = means another axis or spindle"
+        return f"{shown(text.split('=')[0].strip() + '=')} is not understood: {what}"
     if (code := _WITH_NUMBER.match(text)) is not None:
         return _sentence(f"{code[1]}{int(code[2][:9])}")
     if text.startswith(("SPOS(", "SPOS[")):
         return "SPOS is read as SPOS=90 only: write that"
-    if re.match(r"[SMDFTH][0-9]+[ \t]*=", text):
-        return f"{text[0]} with a number before = is not read: write {text[0]} alone"
-    if re.match(r"L[0-9]|CYCLE[0-9]", text):
-        return f"{text.split('(')[0].split(' ')[0][:40]!a} is not understood: {_CALL}"
+    if (call := re.match(r"(?:L|CYCLE)[0-9]+", text)) is not None:
+        return f"{shown(call[0])} is not understood: {_CALL}"
     word = _WORD.match(text)
     found = word[0] if word else text[:1]
     after = text[len(found) : len(found) + 1]

@@ -61,7 +61,7 @@ _NUMBERED = re.compile(r"[N:]([0-9]+)(?![0-9.=_])")
 _LABEL = re.compile(r"([A-Z_]{2}[A-Z0-9_]*):(?!=)")
 _CODE = re.compile(rf"[GM]0{{0,2}}([0-9]{{1,3}})(?=[ \tA-Z]|$)|[A-Z]{{3,8}}{_BLANK}")
 _CONSTANT = re.compile(rf"([A-Z])[ \t]*([+-]?)({NUMBER})(?=[ \tA-Z]|$)")
-_TOOL = re.compile(rf'T[ \t]*=[ \t]*"([A-Za-z0-9_]{{1,31}})"{_BLANK}')
+_TOOL = re.compile(r'T[ \t]*=[ \t]*"([A-Za-z0-9_]{1,31})"(?=[ \tA-Z]|$)')
 _ADDRESS = re.compile(rf"([{AXES}{CUTTER_AXIS}FSD]|SPOS|MEAS|ADIS|ADISPOS)[ \t]*=(?!=)[ \t]*")
 _WAY = re.compile(r"(DC|IC|AC|ACP|ACN)\(")
 _GROUP_RADIUS = re.compile(rf"FGREF\[([{AXES}])\][ \t]*=[ \t]*")
@@ -264,10 +264,10 @@ class _AtLine(Scanner):
         return tuple(words.items())
 
     def _axes(self) -> tuple[tuple[str, Node], ...]:
-        axes = self.match(re.compile(rf"(?:[{AXES}](?:,[{AXES}])*)?\)"))
+        axes = self.match(re.compile(rf"[ \t]*(?:[{AXES}][ \t]*(?:,[ \t]*[{AXES}][ \t]*)*)?\)"))
         if axes is None:
             self.refuse("FGROUP takes axes with commas between them")
-        return tuple((axis, Constant(0.0)) for axis in axes[0][:-1].split(",") if axis)
+        return tuple((axis, Constant(0.0)) for axis in axes[0] if axis in AXES)
 
     def _block(self, words: dict[str, Word]) -> Block:
         assignments: list[Assignment] = []
