@@ -11,7 +11,7 @@ from pathlib import Path
 
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
-from gearmath.machine.nc_expression import refuse
+from gearmath.machine.nc_expression import refuse, shown
 
 #: Characters of a block with its comment and its line end [unconfirmed; 242 on old software].
 LONGEST_BLOCK = 512
@@ -20,6 +20,8 @@ LONGEST_TEXT = 200
 #: Characters of a program's name.
 LONGEST_PROGRAM_NAME = 24
 _PROGRAM_NAME = re.compile(r"(?:[A-Z]{2}|_[A-Z])[A-Z0-9_]*")
+_FILE_NAME = re.compile(r"[A-Z0-9_]+")
+_AROUND = re.compile(r"^_N_|(?:_|\.)(?:MPF|SPF)$")
 _RESERVED = re.compile(r"CON|PRN|AUX|NUL|COM[1-9]|LPT[1-9]")
 _HEADER = re.compile(r"%_N_([A-Z0-9_]+)_(?:MPF|SPF)[ \t]*")
 _NO_TEXT = re.compile(r"\r(?!\n)|[^\t\n\r\x20-\x7e\x80-\U0010ffff]")
@@ -131,4 +133,12 @@ def check_program_name(word: str, name: str, line: int, column: int) -> None:
         refuse(name, line, column, what)
     if _PROGRAM_NAME.fullmatch(word) is None or _RESERVED.fullmatch(word):
         what = f"{word!a} is no program name: two letters, or _ and a letter, then letters, digits and _"
+        refuse(name, line, column, what)
+
+
+def check_file_name(text: str, name: str, line: int, column: int) -> None:
+    """Refuse what cannot be a file on the control, given with or without its folder and its _N_ and _MPF."""
+    last = _AROUND.sub("", text.upper().rpartition("/")[2])
+    if len(last) > LONGEST_PROGRAM_NAME or _FILE_NAME.fullmatch(last) is None:
+        what = f"{shown(last)} is no name of a file: 1 to {LONGEST_PROGRAM_NAME} letters, digits and _"
         refuse(name, line, column, what)

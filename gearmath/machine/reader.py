@@ -24,7 +24,7 @@ from gearmath.machine.nc_expression import (
 )
 from gearmath.machine.nc_refused import instead
 from gearmath.machine.nc_structure import Keyword, structured
-from gearmath.machine.nc_text import check_program_name, divided
+from gearmath.machine.nc_text import check_file_name, check_program_name, divided
 from gearmath.machine.nc_tree import Assignment, Block, Command, Definition, Program, Statement, Word
 
 #: The codes that are understood, by group. One code of a group at a time, in a block and in force.
@@ -208,8 +208,7 @@ class _AtLine(Scanner):
             what = f"the text of MSG has {len(texts[0] or '')} characters; the control shows {_LONGEST_MESSAGE}"
             self.refuse(what, at)
         if word == "WRITE" and texts[1:2] and texts[1] is not None:
-            last = re.sub(r"^_N_|(?:_|\.)(?:MPF|SPF)$", "", texts[1].upper().rpartition("/")[2])
-            check_program_name(last, self.name, self.line, self.text.index('"', at) + 2)
+            check_file_name(texts[1], self.name, self.line, self.text.index('"', at) + 2)
 
     def _counting(self) -> tuple:
         self.blanks()

@@ -144,11 +144,11 @@ def test_blocks_are_counted_without_comments(command, tmp_path):
     assert numbers[-1] == 10 * len(numbers)
 
 
-@pytest.mark.parametrize("word", ["M17", "RET", "UPROG", "CALL"])
+@pytest.mark.parametrize("word", ["UPROG", "CALL", "L100"])
 def test_subprograms_are_refused_with_line_and_column(refused, tmp_path, pinion_program, word):
     program = tmp_path / "SUB.MPF"
     program.write_text(pinion_program.read_text("ascii").replace("M30", word), "ascii")
-    refused(rf"SUB\.MPF, line \d+, column \d+: the word '{word}' is not understood", "mill", SET, "--member", "pinion",
+    refused(rf"SUB\.MPF, line \d+, column \d+: .*{word}'? is not understood", "mill", SET, "--member", "pinion",
             "--program", program, "-o", tmp_path / "m.csv")  # fmt: skip
     assert not (tmp_path / "m.csv").exists()
 
