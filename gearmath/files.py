@@ -38,13 +38,7 @@ def read_text(path: Path, most: int = LARGEST) -> str:
 
     Raises InputError naming the file if it is missing, is no text, or has more than ``most`` bytes.
     """
-    try:
-        with path.open("rb") as stream:
-            content = stream.read(most + 1)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
-    if len(content) > most:
-        raise InputError(f"{path}: is larger than {most / 1e6:g} MB, which is the limit")
+    content = read_bytes(path, most)
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -52,3 +46,15 @@ def read_text(path: Path, most: int = LARGEST) -> str:
     if "\0" in text:
         raise InputError(f"{path}: is no text file: it holds a zero byte")
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def read_bytes(path: Path, most: int = LARGEST) -> bytes:
+    """The bytes of a file. Raises InputError naming it if it cannot be read or has more than ``most`` bytes."""
+    try:
+        with path.open("rb") as stream:
+            content = stream.read(most + 1)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+    if len(content) > most:
+        raise InputError(f"{path}: is larger than {most / 1e6:g} MB, which is the limit")
+    return content

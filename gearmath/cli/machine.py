@@ -101,13 +101,13 @@ def mill(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-    from gearmath.files import read_text
     from gearmath.machine.control import Setup
     from gearmath.machine.executor import execute
     from gearmath.machine.judge import faults_of
     from gearmath.machine.measuring import measure_member
     from gearmath.machine.metal import metal
     from gearmath.machine.mill import mill_member
+    from gearmath.machine.nc_text import program_text, skip_blocks
     from gearmath.machine.probing import teeth_around
     from gearmath.machine.run import runs_of
     from gearmath.machine.watch import stated_member
@@ -116,11 +116,13 @@ def mill(
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
 
-    pair, text = load_pair(find(gear_set)), read_text(program)
+    pair, text = load_pair(find(gear_set)), program_text(program)
     member, spec = member_of(pair, member, stated_member(text))
     milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
     path = execute(text, str(program), Setup.of(milling_machine))
+    if skipped := skip_blocks(text):
+        click.echo(f"{program}: {skipped} blocks begin with / and are judged as not skipped")
     if measured and simulated is None:
         raise InputError("--measured needs --errors: the file that says how the member sits and what the probe does")
     with bar(2 * spec.teeth, "flank") as progress, about(program):

@@ -53,9 +53,10 @@ def probe(
     and 'gearmath calibrate' read what is written here.
     """
     from gearmath.bevel.pair import load_pair
-    from gearmath.files import read_text, write_text
+    from gearmath.files import write_text
     from gearmath.machine.artefacts import Artefacts
     from gearmath.machine.control import Setup
+    from gearmath.machine.nc_text import program_text
     from gearmath.machine.probe_run import run_touches, touch_count, touches_artefacts
     from gearmath.machine.watch import stated_member
     from gearmath.specs.calibration import load_calibration
@@ -63,7 +64,7 @@ def probe(
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
 
-    text = read_text(program)
+    text = program_text(program)
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     shop = load_simulated_machine(find(errors)) if errors else None
     setup = Setup.of(milling_machine, known.length)

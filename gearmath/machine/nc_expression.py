@@ -16,15 +16,25 @@ from gearmath.errors import InputError
 
 Value = float | str | bool
 
-# Nine digits before the point and twelve behind it: no number is too large for a double.
-NUMBER = r"[0-9]{1,9}(?:\.[0-9]{1,12})?(?![0-9A-Za-z_.])"
-_NUMBER = re.compile(NUMBER)
-_NAME = re.compile(r"\$?[A-Z_][A-Z0-9_]{0,30}(?![A-Za-z0-9_.])")
-_TEXT = re.compile(r'"([ !#-~]*)"')
-_LEVELS = (
-    ("==", "<>", "<=", ">=", "<", ">"), ("<<",), ("OR",), ("XOR",), ("AND",), ("+", "-"), ("*", "/", "DIV", "MOD"),
-)  # fmt: skip
+#: A number as the control reads it; what may follow, whoever uses it must say.
+NUMBER = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:EX[+-]?[0-9]{1,3})?"
+_NUMBER = re.compile(rf"\+?({NUMBER})(?![0-9A-Z_.])")
+#: A number that is the whole expression, as most are.
+_ALONE = re.compile(rf"{NUMBER}(?=[),]|$)")
+_E_EXPONENT = re.compile(r"[+-]?([0-9]*\.?[0-9]*)E([+-]?[0-9]+)")
+_NAME = re.compile(r"\$?[A-Z_][A-Z0-9_]*(?![A-Z0-9_.])")
+_TEXT = re.compile(r'"([^"]*)"')
+#: R parameters hold no larger number, and no more decimals; addresses round what they have no places for.
+LARGEST = 99999999.0
+DECIMALS = 8
+_MOST_DECIMALS = 12
+#: Characters of the name of a variable or label.
+LONGEST_NAME = 31
+_LEVELS = ("== <> <= >= < >", "<<", "OR", "XOR", "AND", "+ -", "* / DIV MOD")
+_LEVEL = {sign: level for level, signs in enumerate(_LEVELS) for sign in signs.split()}
+_OPERATOR = re.compile(r"==|<>|<=|>=|<<|[<>+*/-]|(?:OR|XOR|AND|DIV|MOD)(?![A-Z0-9_])")
 _DEEPEST = 20
+_NOT = re.compile(r"NOT(?![A-Z0-9_])")
 FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
     "SIN": (1, lambda x: math.sin(math.radians(x))),
     "COS": (1, lambda x: math.cos(math.radians(x))),
@@ -120,61 +130,72 @@ class Scanner:
         if not self.take(sign):
             self.refuse(f"{sign!r} is missing")
 
-    def expression(self, depth: int = 0, level: int = 0, words: bool = False) -> Node:
-        """An expression. ``words`` ends it at the first blank outside parentheses: more words of the block follow."""
+    def number(self, text: str, at: int) -> float:
+        """The value of what NUMBER has matched at ``at``, within the range of the control."""
+        if len(text) <= DECIMALS + text.find(".") + 1 and text.find(".") <= DECIMALS and "E" not in text:
+            return float(text)  # at most eight digits before the point and behind it, as most are
+        mantissa, _, exponent = text.partition("EX")
+        self.check_decimals(mantissa, at, _MOST_DECIMALS)
+        value = float(f"{mantissa}E{exponent or 0}")
+        if value > LARGEST:
+            self.refuse(f"the number {shown(text)} is too large; the control takes at most {LARGEST:.0f}", at)
+        return value
+
+    def check_decimals(self, mantissa: str, at: int, most: int) -> None:
+        decimals = len(mantissa.partition(".")[2])
+        if decimals > most:
+            self.refuse(f"the number {shown(mantissa)} has {decimals} decimals; the most here is {most}", at)
+
+    def refuse_exponent(self) -> None:
+        """Refuse a number with the exponent of other languages."""
+        if (found := _E_EXPONENT.match(self.text, self.at)) is not None and found[1] not in ("", "."):
+            self.refuse(f"{shown(found[0])} is not understood: an exponent is written {found[1]}EX{found[2]}")
+
+    def expression(self, depth: int = 0, level: int = 0) -> Node:
+        """An expression: it goes on over blanks as long as operators follow, with which no word begins.
+
+        Only operators that bind as tightly as ``level``, or tighter, belong to it.
+        """
         if depth > _DEEPEST:
             self.refuse(f"an expression is nested more than {_DEEPEST} deep")
-        if level == len(_LEVELS):
-            return self._unary(depth, words)
-        left = self.expression(depth, level + 1, words)
+        if (alone := self.match(_ALONE)) is not None:
+            return Constant(self.number(alone[0], alone.start()))
+        left = self._unary(depth)
         while True:
             start = self.at
-            if not words:
-                self.blanks()
-            at = self.at
-            sign = self._operator(level)
-            if sign is None:
+            self.blanks()
+            sign = self.match(_OPERATOR)
+            if sign is None or (binds := _LEVEL[sign[0]]) < level:
                 self.at = start
                 return left
-            if not words:
-                self.blanks()
-            left = Operation(sign, (left, self.expression(depth + 1 if level < 1 else depth, level + 1, words)), at + 1)
-            if level == 0:
+            self.blanks()
+            right = self.expression(depth + 1 if binds == 0 else depth, binds + 1)
+            left = Operation(sign[0], (left, right), sign.start() + 1)
+            if binds == 0:
                 return left
 
-    def _operator(self, level: int) -> str | None:
-        for sign in _LEVELS[level]:
-            if not self.text.startswith(sign, self.at):
-                continue
-            after = self.text[self.at + len(sign) : self.at + len(sign) + 1]
-            if (sign.isalpha() and (after.isalnum() or after == "_")) or (sign == "<" and after == "<"):
-                continue
-            self.at += len(sign)
-            return sign
-        return None
-
-    def _unary(self, depth: int, words: bool) -> Node:
+    def _unary(self, depth: int) -> Node:
         at = self.at
         if self.take("-"):
-            return Operation("negative", (self._primary(depth + 1, words),), at + 1)
-        if re.match(r"NOT(?![A-Za-z0-9_])", self.text[self.at :]):
-            self.at += 3
+            return Operation("negative", (self._primary(depth + 1),), at + 1)
+        if self.match(_NOT) is not None:
             self.blanks()
-            return Operation("NOT", (self._primary(depth + 1, words),), at + 1)
-        return self._primary(depth, words)
+            return Operation("NOT", (self._primary(depth + 1),), at + 1)
+        return self._primary(depth)
 
-    def _primary(self, depth: int, words: bool) -> Node:
+    def _primary(self, depth: int) -> Node:
         if self.take("("):
             self.blanks()
             inner = self.expression(depth + 1)
             self.need(")")
             return inner
+        at = self.at
         if (number := self.match(_NUMBER)) is not None:
-            return Constant(float(number[0]))
+            return Constant(self.number(number[1], at))
         if (text := self.match(_TEXT)) is not None:
             return Constant(text[1])
-        at = self.at
         if (name := self.match(_NAME)) is None:
+            self.refuse_exponent()
             self.refuse(f"{shown(self._rest())} is no number, variable or function")
         if name[0] in FUNCTIONS:
             self.need("(")
@@ -209,8 +230,11 @@ class Scanner:
             return self._system(name, at)
         if name.startswith("$"):
             self.refuse(f"the system variable {shown(name)} is not understood", at)
-        if re.fullmatch(r"R[0-9]{1,4}", name):
-            return Variable("R", (Constant(float(name[1:])),), at + 1)
+        if name[0] == "R" and name[1:].isdecimal():
+            return Variable("R", (Constant(self.number(name[1:], at)),), at + 1)
+        self.check_length(name, at)
+        if self.text.startswith("(", self.at):
+            self.refuse(f"{name} is no function that is understood", at)
         index: list[Node] = []
         if self.take("["):
             while True:
@@ -236,6 +260,11 @@ class Scanner:
             self.refuse(f"{name} of {shown(self._rest())} is not understood")
         self.need("]")
         return Variable(name, (), at + 1, found[0] if inside in _INSIDE else "")
+
+    def check_length(self, name: str, at: int) -> None:
+        if len(name) > LONGEST_NAME:
+            what = f"the name {shown(name)} has {len(name)} characters; the control allows {LONGEST_NAME}"
+            self.refuse(what, at)
 
     def _rest(self) -> str:
         return self.text[self.at :].split(" ")[0] or "the end of the line"

@@ -6,10 +6,9 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from gearmath.machine.nc_expression import FUNCTIONS, Constant, Node, Value, Variable, refuse
+from gearmath.machine.nc_expression import FUNCTIONS, LARGEST, Constant, Node, Operation, Value, Variable, refuse
+from gearmath.machine.nc_text import LONGEST_TEXT
 
-#: R parameters hold no larger number.
-LARGEST = 99999999.0
 _EQUAL = 1e-12
 
 
@@ -21,11 +20,23 @@ class Variables(Protocol):
 
 def evaluate(node: Node, variables: Variables, name: str, line: int) -> Value:
     """The value of an expression. Raises InputError where an operand is of the wrong kind or there is no result."""
+    # a long sum is deep on its left only: down there in a loop, for Python has a limit of its own
+    waiting: list[Operation] = []
+    while isinstance(node, Operation):
+        waiting.append(node)
+        node = node.operands[0]
     if isinstance(node, Constant):
-        return node.value
-    if isinstance(node, Variable):
-        return variables.read(node, indices(node, variables, name, line), line)
-    operands = [evaluate(operand, variables, name, line) for operand in node.operands]
+        value = node.value
+    else:
+        value = variables.read(node, indices(node, variables, name, line), line)
+    while waiting:
+        operation = waiting.pop()
+        others = [evaluate(operand, variables, name, line) for operand in operation.operands[1:]]
+        value = _result(operation, [value, *others], name, line)
+    return value
+
+
+def _result(node: Operation, operands: list[Value], name: str, line: int) -> Value:
     kinds = {_kind(operand) for operand in operands}
     wanted = _WANTED.get(node.name, {"number"})
     if not (kinds <= wanted and (len(kinds) == 1 or node.name == "<<")):
@@ -36,6 +47,9 @@ def evaluate(node: Node, variables: Variables, name: str, line: int) -> Value:
         refuse(name, line, node.column, f"{node.name} has no result for {', '.join(map(str, operands))}")
     if isinstance(result, float) and not abs(result) <= LARGEST:
         refuse(name, line, node.column, f"{node.name} gives {result:g}: a number may be at most {LARGEST:.0f} in size")
+    if isinstance(result, str) and len(result) > LONGEST_TEXT:
+        what = f"the text has {len(result)} characters; the control holds at most {LONGEST_TEXT}"
+        refuse(name, line, node.column, what)
     return result
 
 

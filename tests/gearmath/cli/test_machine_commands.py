@@ -144,11 +144,11 @@ def test_blocks_are_counted_without_comments(command, tmp_path):
     assert numbers[-1] == 10 * len(numbers)
 
 
-@pytest.mark.parametrize("word", ["M17", "RET", "UPROG", "CALL"])
+@pytest.mark.parametrize("word", ["UPROG", "CALL", "L100"])
 def test_subprograms_are_refused_with_line_and_column(refused, tmp_path, pinion_program, word):
     program = tmp_path / "SUB.MPF"
     program.write_text(pinion_program.read_text("ascii").replace("M30", word), "ascii")
-    refused(rf"SUB\.MPF, line \d+, column \d+: the word '{word}' is not understood", "mill", SET, "--member", "pinion",
+    refused(rf"SUB\.MPF, line \d+, column \d+: .*{word}'? is not understood", "mill", SET, "--member", "pinion",
             "--program", program, "-o", tmp_path / "m.csv")  # fmt: skip
     assert not (tmp_path / "m.csv").exists()
 
@@ -164,7 +164,7 @@ def test_bad_milling_is_one_line_and_writes_nothing(refused, tmp_path, pinion_pr
     target.parent.mkdir()
     text = pinion_program.read_text("ascii")
     programs = {
-        "line 1, column 1: the word '%' is not understood": "%\n" + text,
+        "line 1, column 1: a line with % is read only as %_N_NAME_MPF": "%\n" + text,
         "the text ends without M30": text[: len(text) // 2].rsplit("\n", 1)[0],
         r"the program does not cut the concave flank of the pinion": "M30\n",
         r'cuts with T="HOB"; the pinion is cut with PINION_CONCAVE and PINION_CONVEX': text.replace(
@@ -182,7 +182,7 @@ def test_bad_milling_is_one_line_and_writes_nothing(refused, tmp_path, pinion_pr
     refused(r"vertical_5axis\.toml: ", *good, pinion_program, "--errors", "vertical_5axis.toml")
     broken = tmp_path / "PINION.MPF"
     broken.write_bytes(b"\xff" + text.encode())
-    refused(r"PINION\.MPF: is no text file: byte 0 is not UTF-8", *good, broken)
+    refused(r"PINION\.MPF, line 1, column 1: the character '.xff' may stand in comments and texts only", *good, broken)
     assert list(target.parent.iterdir()) == []
 
 

@@ -270,7 +270,7 @@ def test_files_are_written_line_by_line():
         (["R1=1/0"], "line 6, column 5", "/ has no result for 1.0, 0.0"),
         (["R1=SQRT(-1)"], "line 6, column 4", "SQRT has no result for -1.0"),
         (["R1=99999999*10"], "line 6, column 12", "* gives 1e+09: a number may be at most 99999999 in size"),
-        (["R1=R2 AND R3"], "line 6, column 7", "the word 'AND' is not understood"),
+        (["R1=R2 AND R3"], "line 6, column 7", "AND is applied to number"),
         (["IF R1 AND R2", "ENDIF"], "line 6, column 7", "AND is applied to number"),
         (["IF R1", "ENDIF"], "line 6, column 1", "a condition is needed here, such as R1==2"),
         (['R1="a"'], "line 6, column 1", "a number is needed here, not a text"),
