@@ -50,10 +50,18 @@ def cut(
     gear_set: str, member: str | None, machine: str, spaces: str, tolerance_um: float, feed: float, rpm: float,
     roughing_stock: float, finishing_stock: float, dry_run: bool, target: Path,
 ) -> None:  # fmt: skip
-    """The cutting program of a member."""
+    """The cutting program of a member.
+
+    Before it is written it is run: it must keep the limits of the machine, and collide with nothing.
+    """
     from gearmath.bevel.pair import load_pair
+    from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
     from gearmath.files import write_text
+    from gearmath.machine.control import Setup
     from gearmath.machine.cutting import Job, cutting_program, pass_count
+    from gearmath.machine.executor import execute
+    from gearmath.machine.judge import faults_of
+    from gearmath.machine.run import runs_of
     from gearmath.machine.words import block_count
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -65,6 +73,11 @@ def cut(
     milling_machine = load_milling_machine(find(machine))
     with bar(pass_count(spec, member, job), "pass") as progress:
         text = cutting_program(bevel_set, member, milling_machine, target.stem, job, progress)
+    path = execute(text, str(target), Setup.of(milling_machine))
+    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
+    runs = runs_of(path, spec, member, milling_machine, None, space, SHARP_EDGE)
+    if faults := faults_of(text, path, runs, spec, member, milling_machine):
+        raise InputError(f"{target}: {'; '.join(map(str, faults))}: the program is not written")
     write_text(target, text)
     click.echo(f"{target}: {len(wanted)} of {spec.teeth} spaces, {block_count(text)} blocks")
 
