@@ -57,7 +57,7 @@ def ease_off(pinion: Member, gear: Member, shaft_angle: float, flank: str, grid:
     Positive = gap; zero at the middle of the grid, as the rotation of the pinion is left open. NaN where a point of the
     gear does not meet the pinion, or meets it where its settings cut nothing. ``shaft_angle`` in degrees.
     """
-    mating, residual = nominal_points(gear, FLANKS[1 - FLANKS.index(flank)], grid)
+    mating, _ = nominal_points(gear, FLANKS[1 - FLANKS.index(flank)], grid)
     at = conjugate_places(gear, pinion, shaft_angle, mating.point, mating.normal)
     how, section = generation_of(pinion, flank), blade_sections(pinion.flank(flank), SIDES[flank])["main"]
     meets = np.isfinite(at.axial) & np.isfinite(at.radial)
@@ -95,4 +95,5 @@ def parts(E: np.ndarray) -> Parts:
     y, x = np.meshgrid(*(np.linspace(-1, 1, count) for count in E.shape), indexing="ij")
     terms = np.stack([x, y, x * x, x * y, y * y, np.ones_like(x)], axis=-1).reshape(-1, 6)
     found, *_ = np.linalg.lstsq(terms, E.ravel(), rcond=None)
-    return Parts(*(float(part) for part in found[:5]), float(np.abs(terms @ found - E.ravel()).max()))
+    slope, profile, crowning, twist, across = (float(part) for part in found[:5])
+    return Parts(slope, profile, crowning, twist, across, float(np.abs(terms @ found - E.ravel()).max()))

@@ -15,6 +15,7 @@ from statistics import median
 from gearmath.bevel.blame import Misfit, farthest, most_changed
 from gearmath.bevel.check_blade import check_blades, check_methods, check_offset
 from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, check_mate, transverse_module
+from gearmath.bevel.check_ease_off import check_ease_off
 from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
 from gearmath.bevel.check_mates import Cut, check_mates, check_space
 from gearmath.bevel.method import cut_generation_of, generation_of
@@ -64,6 +65,8 @@ def check_pair(pair: BevelSet) -> None:
     cut: dict[str, Cut] = {name: {} for name in members}
     try:
         _check_cut(members, cut)
+        if pinion is not None and gear is not None:
+            check_ease_off(pinion, gear, pair.shaft_angle)
     except Misfit as misfit:
         suspect = farthest(members, misfit.where, _spiral(cut, misfit.where))
         raise InputError(f"{misfit}; the setting farthest from the crown gear's is {suspect}") from misfit

@@ -221,7 +221,7 @@ REFUSED = {
     ),
     "hobbing blades turned the wrong way": (
         HOBBED, {f"gear.{flank}.blade_offset_angle": 0.0 for flank in FLANKS},
-        r"gear\.concave\.blade_offset_angle = 0: the blade must stand square to its path, 15\.\d+ within 8 degrees",
+        r"gear\.concave\.blade_offset_angle = 0: the blade must stand square to its path, 15\.\d+ within 0.8 degrees",
     ),
     "mates cut by different processes": (
         HOBBED, {"pinion.process": "face_milling", "pinion.blade_groups": None, "pinion.indexing_sign": None},
