@@ -68,7 +68,7 @@ REFUSED = {
     ),
     "face width of the cone distance": (
         NASA, {"pinion.blank.face_width": 80.0, "gear.blank.face_width": 80.0},
-        r"pinion\.blank\.face_width = 80: must lie between 8\.53\d and 40\.5\d mm",
+        r"pinion\.blank\.face_width = 80: must lie between 8\.53\d and 34\.3\d mm",
     ),
     "face as thin as a saw": (FORMATE, {"gear.blank.face_width": 2.54}, r"gear\.blank\.face_width = 2\.54: "),
     "cone distance of one member": (
@@ -157,6 +157,23 @@ REFUSED = {
     "Toprem that leaves metal": (
         NASA, {"pinion.convex.toprem_angle": 30.0, "pinion.convex.toprem_height": 0.6},
         r"pinion\.convex\.toprem_angle = 30: must be less than blade_pressure_angle = 24\.3374",
+    ),
+    "edge that reaches above the clearance": (
+        NASA, {"pinion.convex.blade_edge_radius": 2.0},
+        r"pinion\.convex\.blade_edge_radius = 2: it rounds the blade up to 1\.18 mm, .* at most 1\.62 mm",
+    ),
+    "edges wider than the root of a flank cut alone": (
+        NASA, {f"pinion.{flank}.blade_edge_radius": 1.35 for flank in FLANKS}
+        | {"pinion.convex.work_rotation_offset": 26.0},
+        r"pinion\.concave\.blade_edge_radius = 1\.35: the rounded edges of both flanks take 1\.\d+ mm of the root",
+    ),
+    "Toprem that digs under the flank": (
+        NASA, {"pinion.convex.toprem_angle": 0.5, "pinion.convex.toprem_height": 1.0},
+        r"pinion\.convex\.toprem_angle = 0\.5: must be at least 12\.34",
+    ),
+    "Toprem up to the pitch cone": (
+        NASA, {"pinion.convex.toprem_angle": 20.0, "pinion.convex.toprem_height": 2.5},
+        r"pinion\.convex\.toprem_height = 2\.5: must be at most 1\.9\d? mm, 2\.5 of the clearance",
     ),
     "Toprem higher than the blade": (
         NASA, {"pinion.convex.toprem_angle": 20.0, "pinion.convex.toprem_height": 9.5,
