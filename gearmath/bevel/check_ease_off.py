@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearmath.bevel.blame import Misfit
 from gearmath.bevel.check_blank import transverse_module
 from gearmath.bevel.ease_off import Parts, ease_off, parts
 from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.misfit import Misfit
 from gearmath.specs.bevel_set import FLANKS, Member
 
 #: Part, +1 for the mean of both flanks or -1 for half their difference (concave less convex), what it is, and limits:

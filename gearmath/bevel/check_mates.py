@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from gearmath.bevel.blame import Misfit
 from gearmath.bevel.check_blade import tip_taken
 from gearmath.bevel.check_blank import transverse_module, working_depth
 from gearmath.bevel.check_flank import CutFlank
+from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError

@@ -9,10 +9,10 @@ import tomllib
 import numpy as np
 import pytest
 
-from gearmath.bevel.blame import Misfit
 from gearmath.bevel.check_ease_off import check_ease_off
 from gearmath.bevel.ease_off import ease_off, parts
 from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
