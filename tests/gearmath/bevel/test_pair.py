@@ -226,7 +226,8 @@ REFUSED = {
         FORMATE, scaled(FORMATE, "pinion.convex", FLANK_LENGTHS, INCH), r"pinion\.?convex\.",
     ),
     "cutter of another job": (
-        FORMATE, {"pinion.convex.blade_point_radius": 152.4}, r"pinion convex flank: .*blade_point_radius = 152\.4: 11\d\.\d+ would fit",
+        FORMATE, {"pinion.convex.blade_point_radius": 152.4},
+        r"pinion convex flank: .*blade_point_radius = 152\.4: 11\d\.\d+ would fit",
     ),
     # 6. face hobbing
     "indexing left out": (
