@@ -92,7 +92,9 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
         yield f"{flank} flank: tooth 0 measured again at the end: {closure:+.2f} um, taken out evenly"
     runout, thickness, tolerance = values["runout"], values["thickness"], values["tolerance"]
     if runout is not None:
-        yield from _runout(runout, values["runout_as_measured"] if values["registration"] else None)
+        yield from _runout(
+            runout, values["runout_as_measured"] if (values["registration"] or {}).get("taken_out") else None
+        )
     if thickness is not None:
         arc, chord = (
             f"{name} {thickness[f'{name}_mm']:.4f} mm {thickness[f'{name}_deviation_um']:+.2f} um"
@@ -145,8 +147,9 @@ def _seat(seat: dict[str, Any] | None) -> Iterator[str]:
     if seat is None:
         return
     size, direction = _with(seat, "eccentricity_um"), seat["eccentricity_direction_deg"]
-    yield f"clamping taken out: eccentricity {size} um towards {direction:.1f} deg"
-    if seat["tilt_um_per_100mm"] is not None:
+    if seat["taken_out"]:
+        yield f"clamping taken out: eccentricity {size} um towards {direction:.1f} deg"
+    if seat["taken_out"] and seat["tilt_um_per_100mm"] is not None:
         size, direction = _with(seat, "tilt_um_per_100mm"), seat["tilt_direction_deg"]
         yield f"clamping taken out: tilt {size} um per 100 mm about {direction:.1f} deg"
     if seat["axial"]["axial_um"] is None:

@@ -92,6 +92,7 @@ class Evaluation:
 
     ``flanks`` and ``runout`` are those of ``file``, without clamping and the rotation that both flanks have in common;
     ``as_measured`` are those before either was taken out.
+    ``registration`` is what was found of the clamping, whether or not it was taken out (``is_significant``).
     ``left_out`` are sentences on the points that were left out, and ``remarks`` all sentences: these, teeth that are
     far off and were kept, what was not found and why.
     """
@@ -109,6 +110,11 @@ class Evaluation:
     verdict: Verdict | None
     left_out: tuple[str, ...]
     remarks: tuple[str, ...]
+
+    @property
+    def taken_out(self) -> Registration | None:
+        """The clamping that was taken out, None where it is not known or no more than noise."""
+        return self.registration if self.registration is not None and self.registration.is_significant else None
 
     def as_dict(self) -> dict[str, Any]:
         """All figures for people and programs: µm, mm and degrees."""
@@ -138,9 +144,9 @@ def evaluate_member(
     """Judge a measured file of a member, of this machine or of another measuring centre.
 
     Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
-    the clamping where the points tell it; if ``rotated``, so is the rotation that both flanks have in common. Raises
-    InputError if the file is not of this member, or not in mm on its flanks, or if neither a tooth in full nor pitch
-    was measured.
+    the clamping where the points tell it beyond their noise; if ``rotated``, so is the rotation that both flanks have
+    in common. Raises InputError if the file is not of this member, or not in mm on its flanks, or if neither a tooth in
+    full nor pitch was measured.
     """
     check_belongs(member, name, file)
     check_points(file, nominal_rows(file, member, name))
@@ -155,11 +161,12 @@ def evaluate_member(
     if registered:
         try:
             seat = register(measured, member, name, untold_drift(whole, member.teeth))
-            remarks += seat.remarks
+            remarks += (*seat.remarks, *([seat.remark] if seat.remark else []))
         except InputError as error:
             remarks += (f"not registered: {error}",)
     progress(1)
-    judged, turn = measured if seat is None else seat.file, None
+    taken = seat if seat is not None and seat.is_significant else None
+    judged, turn = measured if taken is None else taken.file, None
     noise = stated_noise(file) if seat is None else seat.noise
     if rotated:
         try:
@@ -171,7 +178,7 @@ def evaluate_member(
     flanks = as_measured if judged is measured else _flanks(judged, member)
     angle = math.radians(member.blank.pitch_angle)
     before = evaluate_runout(measured, member.teeth, angle, noise)
-    runout = before if seat is None else evaluate_runout(judged, member.teeth, angle, noise, seat)
+    runout = before if judged is measured else evaluate_runout(judged, member.teeth, angle, noise, taken)
     each_zeroed = file.header["phase_zeroed"].lower() == "true"
     if each_zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
