@@ -95,6 +95,7 @@ def compensate(
     what, and which limit binds.
     """
     from gearmath.bevel.pair import check_pair, load_pair
+    from gearmath.cli.uncertainty import noise_of_points
     from gearmath.quality import correction as correcting
     from gearmath.quality.correction import ROOT_LIMIT, correct
     from gearmath.quality.evaluation import STAGES, evaluate_member
@@ -112,7 +113,7 @@ def compensate(
         evaluation = evaluate_member(file, spec, member, registered, progress, rotated)
         correction = correct(
             spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
-            few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=None if noise is None else noise / 1000,
+            few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=noise_of_points(file, spec, evaluation, noise),
             added=moved, bounds=bounds, progress=progress,
         )  # fmt: skip
     if thickness:
@@ -122,7 +123,7 @@ def compensate(
         source, target, member, correction.settings, correction.index, correction.motions, correction.curvatures,
         check=check_pair,
     )  # fmt: skip
-    values = _values(spec, correction) | {"remarks": list(evaluation.remarks)}
+    values = _values(spec, correction) | {"remarks": [*evaluation.remarks, *correction.remarks]}
     values |= _uncertainty(spec, file, evaluation, correction, noise, root_limit or ROOT_LIMIT)
     if as_json:
         echo_json(values)
@@ -139,7 +140,7 @@ def compensate(
             _say_analysis(" and ".join(group), analysis)
         _say_changes(values)
         _say_result(correction)
-    for remark in evaluation.remarks:
+    for remark in (*evaluation.remarks, *correction.remarks):
         if remark not in evaluation.left_out:
             click.echo(remark)
     click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
