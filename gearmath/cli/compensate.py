@@ -111,10 +111,11 @@ def compensate(
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured), bar(STAGES + correcting.STAGES, "stage", as_json) as progress:
         evaluation = evaluate_member(file, spec, member, registered, progress, rotated)
+        level = noise_of_points(file, spec, evaluation, noise)
         correction = correct(
             spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
-            few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=noise_of_points(file, spec, evaluation, noise),
-            added=moved, bounds=bounds, progress=progress,
+            few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=level, added=moved, bounds=bounds,
+            progress=progress,
         )  # fmt: skip
     if thickness:
         by = cast("By", thickness_by)

@@ -127,8 +127,8 @@ def _number(value: float, unit: str) -> str:
 def uncertain_correction(
     member: Member, file: FlankFile, found: Evaluation, covariance: Covariance, sigma_um: float | None
 ) -> tuple[Correction | None, list[Uncertain], dict[str, Effect], list[str]]:
-    """The correction of an evaluated member as ``compensate`` writes it, its settings with uncertainties, what errors of measurement
-    do to each flank, and, where there is no correction, why.
+    """The correction of an evaluated member as ``compensate`` writes it, its settings with uncertainties, what errors
+    of measurement do to each flank, and remarks: where there is no correction, why.
     """
     from gearmath.quality.correction import correct
     from gearmath.quality.judging import judged_by_measured

@@ -30,7 +30,7 @@ ALIKE = 0.999
 WEAK = 0.01
 #: Settings are chosen until no more is lost than this part of what all of them leave, or what no probe shows [mm], or
 #: until the others together take away no more than this many times what as many of them take away of noise.
-LOSS_PART, LOSS, _LOSS_NOISE = 0.1, 1.5e-4, 3.0
+LOSS_PART, LOSS, _LOSS_NOISE = 0.1, 1e-4, 3.0
 #: A probe resolves no less than this: the noise of a deviation is never taken for less when settings are chosen. [mm]
 PROBE = 1e-4
 #: So many choices of one number of settings are all tried; where there are more, settings are taken one by one.
@@ -209,9 +209,9 @@ def fewest(
     for number in range(len(keys) + 1):
         if math.comb(len(keys), number) > _MOST_CHOICES:
             break
-        able = [each for each in combinations(keys, number) if enough(each, squares(each))]
+        able = [each for each in map(list, combinations(keys, number)) if enough(each, squares(each))]
         if able:
-            return ordered(list(min(able, key=change)))
+            return ordered(min(able, key=change))
     while not enough(taken, squares(taken)):
         taken.append(min((key for key in keys if key not in taken), key=lambda key: squares([*taken, key])))
     for key in taken[:-1]:

@@ -187,8 +187,9 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
     if not found:
         return None
     before = np.radians(member.index_correction) if member.index_correction else np.zeros(member.teeth)
-    turn = index_correction(found)
-    return before + turn - turn.mean()  # the settings put the teeth right on average, not tooth 0
+    turn, (teeth, counts) = index_correction(found), np.unique(measured.tooth, return_counts=True)
+    # the settings put right where the others stand, not the tooth that was measured in full
+    return before + turn - np.delete(turn, teeth[np.argmax(counts)] % member.teeth).mean()
 
 
 def setting_changes(member: Member, correction: Correction) -> list[tuple[str, str, float, float]]:

@@ -1,12 +1,13 @@
 """Where the tooth that is measured in full stands among the others: its own index is no error of a setting.
 
 Settings are corrected from one tooth. Every flank of it may be indexed otherwise than those of the other teeth, and
-that is an error of the indexing. How far it is turned against the mean of all teeth of its flank is told by the places
-that other teeth have too: each tooth τ_k turned, the form at each place p the same,
+that is an error of the indexing. How far it is turned against the mean of the others of its flank is told by the places
+that they have too: each of n teeth turned by τ_k, the form at each place p the same,
 
     d_pk = g_p + c_pk τ_k + noise,   Σ τ_k = 0        c: what a turning about z_w makes of a point (18.2)
 
-Where it is turned by more than three standard uncertainties its points are turned back, onto the mean.
+and against the others it is turned by τ n/(n - 1). Where that is more than three standard uncertainties its points are
+turned back, onto the mean of the others.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ _LEAST_SPARE, _COEFFICIENTS, _UNKNOWN = 3, 10, 1e-3
 
 @dataclass(frozen=True)
 class OwnIndex:
-    """How far one flank of a tooth is turned against the mean of all that were measured [rad], and how sure that is."""
+    """How far one flank of a tooth is turned against the mean of the others [rad], how sure that is, and where [mm]."""
 
     angle: float
     uncertainty: float
@@ -48,13 +49,14 @@ class OwnIndex:
 
 
 def teeth_as_indexed_on_average(member: Member, name: str, file: FlankFile) -> tuple[FlankFile, tuple[str, ...]]:
-    """The file with the tooth measured in full of each flank where it stands on average; sentences on what was done.
+    """The file with the tooth measured in full of each flank where the others stand on average, and what was done.
 
     A flank of which no other teeth were measured stays as it is, and a sentence says so.
     """
     rows = nominal_rows(file, member, name)
     slope = kernel("motion_sensitivity")(rows.point, rows.normal)[0][:, _TURNING]
     remarks: list[str] = []
+    alone: list[str] = []
     for flank in FLANKS:
         teeth, counts = np.unique(file.tooth[file.flank == flank], return_counts=True)
         if not len(teeth):
@@ -62,16 +64,19 @@ def teeth_as_indexed_on_average(member: Member, name: str, file: FlankFile) -> t
         tooth = int(teeth[np.argmax(counts)])
         found = own_index(file, rows, slope, flank, tooth)
         if found is None:
-            remarks.append(
-                f"{flank} flank: too few other teeth were measured to tell the index of tooth {tooth} from its settings"
-            )
+            alone.append(flank)
         elif found.is_significant:
             file = _turned_back(file, member, rows, slope, (file.flank == flank) & (file.tooth == tooth), found.angle)
             arc, u = found.angle * found.radius * 1000, found.uncertainty * found.radius * 1000
             remarks.append(
                 f"{flank} flank: tooth {tooth} is indexed by an arc of {arc:+.2f} um (u = {u:.2f}) against the mean of "
-                "all teeth; the settings are corrected as if it stood there"
+                "the others, which is no error of a setting; the settings are corrected as if it stood there"
             )
+    if alone:
+        remarks.append(
+            f"{' and '.join(alone)} flank: fewer than {_LEAST_TEETH + 1} teeth have readings at a common place: an "
+            "indexing error of the tooth measured in full would count as an error of the settings"
+        )
     return file, tuple(remarks)
 
 
@@ -97,7 +102,10 @@ def own_index(file: FlankFile, rows: NominalRows, slope: np.ndarray, flank: str,
     pick = np.append(np.zeros(n), np.eye(len(teeth))[at, :-1] - np.eye(len(teeth))[at, -1])
     noise = np.sqrt(left @ left / spare) if spare >= _LEAST_SPARE else _noise(file, flank, tooth)
     size = float(noise * np.sqrt(pick @ np.linalg.pinv(columns.T @ columns) @ pick))
-    return OwnIndex(float(pick @ solved), size, float(np.hypot(*rows.point[known][use, :2].T).mean()))
+    to_others = len(teeth) / (len(teeth) - 1)
+    return OwnIndex(
+        to_others * float(pick @ solved), to_others * size, float(np.hypot(*rows.point[known][use, :2].T).mean())
+    )
 
 
 def _noise(file: FlankFile, flank: str, tooth: int) -> float:
