@@ -20,7 +20,7 @@ import numpy as np
 from gearmath.errors import ComputationError
 from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands
 from gearmath.quality.identification import RANK
-from gearmath.quality.variables import FREE, Bounds, Variable, variables_of
+from gearmath.quality.variables import FREE, Bounds, Variable, reading, variables_of
 
 #: What names a block of columns.
 Key = TypeVar("Key", bound=Hashable)
@@ -160,6 +160,17 @@ class Analysis:
         names, left = fewest(columns, self.deviation)
         nothing = float(np.sqrt(np.mean(self.deviation**2)))
         return Choice(names, left, (left[-1] if left else nothing) - self.best_rms)
+
+
+def weak_words(analysis: Analysis, k: int) -> str:
+    """Direction k in words: settings changed together by so much, and how little that moves the flank."""
+    bounds = {variable.label: variable for variable in analysis.variables}
+    changes = []
+    for label, part in analysis.direction(k).items():
+        factor, unit = reading(bounds[label].name)
+        changes.append(f"{label} {part * bounds[label].bound * factor:+.4g} {unit}")
+    rms = analysis.singular_values[k] / math.sqrt(len(analysis.deviation)) * 1000
+    return f"{', '.join(changes)} together move the flank by only {rms:.2g} um (RMS)"
 
 
 def fewest(

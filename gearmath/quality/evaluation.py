@@ -32,6 +32,9 @@ from gearmath.quality.topography import (
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
 
+#: What a maximum that is withheld is called.
+_NAMES = {"max_deviation": "largest deviation", "F_p": "F_p", "max_f_pt": "largest f_pt"}
+
 
 @dataclass(frozen=True)
 class FlankFigures:
@@ -116,6 +119,22 @@ class Evaluation:
         """The clamping that was taken out, None where it is not known or no more than noise."""
         return self.registration if self.registration is not None and self.registration.is_significant else None
 
+    @property
+    def withheld(self) -> tuple[str, ...]:
+        """Sentences on figures that there are not over data with a gap, those with the same reason together."""
+        reasons: dict[str, list[str]] = {}
+        for flank, figures in self.flanks.items():
+            for name, why in figures.withheld.items():
+                reasons.setdefault(why, []).append(f"{_NAMES[name]} of the {flank} flank")
+        if self.runout is not None and self.runout.withheld is not None:
+            reasons.setdefault(self.runout.withheld, []).append("F_r")
+        if self.thickness is not None and self.thickness.withheld is not None:
+            reasons.setdefault(self.thickness.withheld, []).append("range of the thickness")
+        if self.verdict is not None:
+            for name, why in self.verdict.withheld.items():
+                reasons.setdefault(why, []).append(f"grade of {name}")
+        return tuple(f"withheld: {', '.join(names)}: {why}" for why, names in reasons.items())
+
     def as_dict(self) -> dict[str, Any]:
         """All figures for people and programs: µm, mm and degrees."""
         return {
@@ -173,7 +192,7 @@ def evaluate_member(
             turn = common_rotation(judged, member, name, noise)
             judged = turn.file
         except InputError as error:
-            remarks += (f"rotation left in: {error}",)
+            remarks += (f"rotation of the work not taken out: {error}",)
     progress(1)
     flanks = as_measured if judged is measured else _flanks(judged, member)
     angle = math.radians(member.blank.pitch_angle)

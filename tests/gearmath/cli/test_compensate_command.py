@@ -86,7 +86,12 @@ def test_tables_are_shown_when_asked_and_standard_settings_leave_nothing(command
     base = ("compensate", source, "--member", "pinion", "--measured", csv, "-o", new, "--settings", "standard")
     short, full = command(*base)[1], command(*base, "--verbose")[1]
     assert full.startswith("\n".join(short.splitlines()[:2]))
-    for table in ("by a linear estimate without bounds", "singular values [um]:", "weak direction", "root line"):
+    for table in (
+        "by a linear estimate without bounds",
+        "singular values [um]:",
+        "together move the flank by only",
+        "root line",
+    ):
         assert table in full
         assert table not in short
     assert worst_after(new, "pinion", **ERRORS) < 2e-5
@@ -100,7 +105,8 @@ def test_motions_are_corrected_when_asked_and_kept_in_the_file(command, measured
     base = ("compensate", UNIVERSAL, "--member", "pinion", "--no-rotation", "--settings", "standard", "--measured", csv)
     assert command(*base, "-o", rest)[0] == 0
     values = json.loads(command(*base, "--higher-order", "-o", moving, "--json")[1])
-    assert worst_after(moving, "pinion", **errors) < 0.1 * worst_after(rest, "pinion", **errors)
+    assert worst_after(moving, "pinion", **errors) < 0.5 * worst_after(rest, "pinion", **errors)
+    assert worst_after(moving, "pinion", **errors) < 1e-4  # what errors and changes do together, to second order
     changed = {change["setting"]: change for change in values["changes"] if change["flank"] == "concave"}
     assert changed["work_rotation_offset.2"]["unit"] == "deg/rad^2"
     assert changed["sliding_base.1"]["unit"] == "mm/rad"

@@ -113,14 +113,14 @@ def test_ordinary_file_gives_the_eccentricity_at_its_height_and_says_what_it_doe
     assert not found.tilt_found
     assert off_by(found, SEAT * [1, 1, 0, 0], member)[0] < TENTH
     assert np.isnan(found.covariance[2:]).all()
-    assert any(remark.startswith("tilt is not told by teeth measured at one place") for remark in found.remarks)
+    assert any(remark.startswith("tilt cannot be found where teeth") for remark in found.remarks)
     assert found.as_dict()["tilt_um_per_100mm"] is None
 
 
 def test_one_place_of_a_flat_gear_is_refused_with_the_reason(clamped, gear_set):
     """The radial part of a gear's normals is small, so that a tilt there looks like much eccentricity."""
     file = clamped(gear_set.gear, "gear", SEAT, around(gear_set.gear, 12), [22])
-    with pytest.raises(InputError, match=r"10 um per 100 mm passes for 1\d\.\d um of eccentricity: measure three or"):
+    with pytest.raises(InputError, match=r"10 um per 100 mm looks like 1\d\.\d um of eccentricity: measure three or"):
         register(file, gear_set.gear, "gear")
 
 
