@@ -51,7 +51,9 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     )
 
     def body() -> Iterator[str]:
-        yield from blocks.start(machine.work_offset, CALIBRATION_COLUMNS)
+        yield from blocks.start(
+            machine.work_offset, f"{axis_touches(machine, calibration)} touches", CALIBRATION_COLUMNS
+        )
         above = f"G0 {blocks.length('Z', anywhere)}"
         yield above
         for center in centers:

@@ -8,7 +8,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.machine import words
-from gearmath.specs.touch_csv import COLUMNS
+from gearmath.specs.touch_csv import COLUMNS, PLANNED
 
 #: Alarms of these programs.
 DEFLECTED, NOTHING_TOUCHED, TOUCHED_TOO_EARLY, NOT_WRITTEN = 65000, 65001, 65002, 65003
@@ -46,8 +46,8 @@ class Blocks:
         """The word of one linear axis."""
         return f"{axis}{words.fixed(value)}"
 
-    def start(self, work_offset: str, columns: Sequence[str] = COLUMNS) -> Iterator[str]:
-        """Head: the probe is fetched and held, the run is numbered, the result file gets its column line."""
+    def start(self, work_offset: str, plan: str, columns: Sequence[str] = COLUMNS) -> Iterator[str]:
+        """Head: the probe is fetched, the run is numbered, the result file gets its plan and its column line."""
         yield "DEF INT UERR"
         yield f"G17 G40 G90 G710 G94 {work_offset}"
         yield f'T="{_TOOL}" D1'
@@ -57,6 +57,7 @@ class Blocks:
         yield "STOPRE"
         yield "IF $A_PROBE[1]<>0"
         yield from self._stop("the probe is deflected before its first touch", DEFLECTED)
+        yield from self.write(f'"# {PLANNED}: {plan}"')
         yield from self.write(f'"{",".join(columns)}"')
 
     def write(self, text: str) -> Iterator[str]:

@@ -218,7 +218,7 @@ def _body(
     level, anywhere = heights
     if repeat > 1:
         yield f"DEF INT {_COUNTER}"
-    yield from blocks.start(machine.work_offset)
+    yield from blocks.start(machine.work_offset, _plan(targets, repeat))
     yield f"G0 {blocks.length('Z', anywhere)}"
     x, y, _, a, b = blocks.axes(targets.start[0])
     yield f"G0 {x} {y} {a} {b}"
@@ -240,6 +240,12 @@ def _body(
             yield f"G0 {blocks.length('Z', level)}"
     yield f"G0 {blocks.length('Z', anywhere)}"
     yield "M30"
+
+
+def _plan(targets: Targets, repeat: int) -> str:
+    """What the run makes, for the head of the result file: one that was aborted is told from a shorter one."""
+    flanks = " and ".join(flank for flank in FLANKS if (targets.flank == flank).any())
+    return f"{len(targets) * repeat} touches, {len(set(targets.tooth.tolist()))} teeth, {flanks}"
 
 
 def _within_travel(targets: Targets, name: str, machine: MillingMachine, heights: tuple[float, float]) -> Targets:

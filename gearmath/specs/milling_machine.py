@@ -101,7 +101,7 @@ class MillingMachine(Spec):
 
     name: str
     gauge_line_height: float
-    """R_d [mm]: gauge line of the spindle over the B axis at Z = 0."""
+    """R_d [mm]: reading of Z at which the gauge line of the spindle is level with the B axis."""
     tool_length: float = Field(gt=0)
     """C_t [mm]: gauge line to the blade tips."""
     pivot_offset: Annotated[tuple[_Number, _Number, _Number], Field(strict=False)] = (0.0, 0.0, 0.0)
