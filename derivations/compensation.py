@@ -195,7 +195,7 @@ def prove_shift_along_a_line_is_that_of_the_flank_cut_anew() -> None:
         line = [n + mpmath.mpf(k - 1) / 4 for k, n in enumerate(normal)]
         stand = _settings_at(settings, motion, theta)
         claimed = curved_sensitivity().function(*at, *stand, *rest, *normal, *line)
-        which = [*range(len(settings)), given.index(rest[2])]
+        which = [*range(len(settings)), len(settings) + len(motion) + 2]
         found = shifts(lambda *of: itemgetter(0, 1, 2, 6)(family(*of)), given, which, at, point, line)
         assert is_close(found, claimed, mpmath.mpf(10) ** -12)
         flat, side = [*rest[:2], mpmath.mpf(0), *rest[3:]], rest[-1:]
