@@ -100,8 +100,8 @@ def compensate(
     from gearmath.quality.correction import ROOT_LIMIT, correct
     from gearmath.quality.evaluation import STAGES, evaluate_member
     from gearmath.quality.thickness import with_thickness
-    from gearmath.specs.bevel_set import save_corrected
     from gearmath.specs.flank_csv import read_flank_csv
+    from gearmath.specs.set_text import save_corrected
     from gearmath.specs.toml import find
 
     source = find(gear_set)

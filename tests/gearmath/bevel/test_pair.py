@@ -16,7 +16,8 @@ from gearmath.bevel.check_flank import cut_flank
 from gearmath.bevel.method import generation_of
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import InputError
-from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet, load_bevel_set, save_corrected
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet, load_bevel_set
+from gearmath.specs.set_text import save_corrected
 from gearmath.specs.toml import bundled, checked
 
 NASA, FORMATE, HOBBED = "nasa_tp3096_12x36", "crown_gear_formate_14x39", "crown_gear_hobbed_14x39"
