@@ -10,7 +10,7 @@ from derivations.expression import Expression, Quantity
 CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
-    "sweep", "probing", "registration", "spacing", "compensation", "touch_errors", "single_blades",
+    "sweep", "probing", "registration", "spacing", "compensation", "ease_off", "touch_errors", "single_blades",
     "axis_calibration", "tip_calibration",
 )  # fmt: skip
 
@@ -28,6 +28,7 @@ def expressions() -> Iterator[Expression]:
         cradle,
         cutter,
         deviation,
+        ease_off,
         flank,
         gearbox,
         generation,
@@ -73,7 +74,7 @@ def expressions() -> Iterator[Expression]:
     yield from (tip_calibration.face_calibration(), axis_calibration.carried_sphere())
     yield from (compensation.straight_sensitivity(), compensation.curved_sensitivity())
     yield from (compensation.coefficient_sensitivity(), compensation.curved_height(), compensation.root_place())
-    yield compensation.conjugate_place()
+    yield from (compensation.conjugate_place(), ease_off.conjugate_azimuth(), ease_off.ease_off())
     yield touch_errors.touch_error()
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (

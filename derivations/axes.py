@@ -31,13 +31,14 @@ from __future__ import annotations
 
 from functools import cache
 
+import mpmath
 import sympy as sp
 
 from derivations import cradle, generation
 from derivations import notation as q
 from derivations.expression import Expression
 from derivations.frames import I, J, Rz
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero
 
 #: |V_c × V_p| below which a pose counts as singular.
 SINGULAR_SINE = sp.Rational(1, 20)
@@ -193,13 +194,21 @@ def _directions() -> tuple[sp.Symbol, sp.Symbol, sp.Matrix]:
     return phi, dA, sp.Matrix([-sp.sin(phi) * sp.cos(dA), sp.sin(phi) * sp.sin(dA), sp.cos(phi)])
 
 
-def prove_angles_describe_the_cutter_axis() -> None:
-    """(5.2) V_c·(V_p × j) and V_c·j are minus the x and the y component of V_c in frame W: so dA is its azimuth."""
-    V_c = sp.Matrix(sp.symbols("c_i c_j c_k", real=True))
-    in_w = cradle.frame_w() * V_c
-    assert is_zero(in_w[0] + V_c.dot(cradle.work_axis().cross(sp.Matrix(J))))
-    assert is_zero(in_w[1] - V_c.dot(J))
-    assert is_zero(in_w[2] - V_c.dot(cradle.work_axis()))
+def prove_positions_put_the_cutter_where_the_cradle_machine_has_it() -> None:
+    """(5.1-5.4) With tilt, swivel, all offsets and e: centre and axis of the cutter in the work, by either machine.
+
+    The forward transform (5.4) of the axis positions, against (2.2), (2.3) and (2.5), which know of no axes.
+    """
+    height, offset = mpmath.mpf("-0.75"), [mpmath.mpf(value) for value in ("0.5", "-0.25", "2")]
+    for swing, tilt in ((1, "0.25"), (-1, "-0.125")):
+        settings = [75, swing, tilt, "0.875", "3.5", "0.25", 1, "0.375", "3", "0.5", 80, "0.25"]
+        settings = [mpmath.mpf(value) for value in settings]
+        with mpmath.workdps(DIGITS):
+            theta = mpmath.mpf("0.1875")
+            positions = axis_transform().function(*settings, theta, height, *offset)
+            found = tool_pose().function(*positions, height, *offset)
+            assert is_close(found, cradle_tool_pose().function(*settings, theta))
+            assert abs(positions[4]) < mpmath.pi / 2
 
 
 def prove_both_machines_put_the_cutter_in_the_same_pose() -> None:

@@ -20,11 +20,13 @@ from __future__ import annotations
 
 from functools import cache
 
+import mpmath
 import sympy as sp
 
 from derivations import notation as q
 from derivations.expression import Expression
-from derivations.proof import is_zero
+from derivations.frames import Rz, rotation
+from derivations.proof import DIGITS, is_close, is_zero, numbers
 
 
 def cone_distance() -> sp.Expr:
@@ -113,18 +115,20 @@ def prove_pitch_points_lie_on_the_pitch_cone() -> None:
 
 
 def prove_a_normal_square_to_the_trace_gives_back_its_angles() -> None:
-    """(8.4) n square to cos β g + sin β e that makes the angle α with the cone, on either side of the space."""
-    delta = q.pitch_angle.symbol
-    turn, r, z = (sp.Symbol(name, positive=True) for name in ("varphi", "r", "z"))
-    alpha, beta = (sp.Symbol(name, real=True) for name in ("alpha", "beta"))
-    point = sp.Matrix([r * sp.cos(turn), r * sp.sin(turn), z])
-    g, p, e = (part.applyfunc(sp.simplify) for part in _directions(point))
-    for side in (1, -1):
-        n = sp.sin(alpha) * p + side * sp.cos(alpha) * (sp.cos(beta) * e - sp.sin(beta) * g)
-        assert is_zero(n.dot(n) - 1)
-        assert is_zero(n.dot(sp.cos(beta) * g + sp.sin(beta) * e))
-        assert is_zero(n.dot(p) - sp.sin(alpha))
-        assert is_zero(n.dot(g) * sp.cos(beta) + n.dot(e) * sp.sin(beta))
-    along = sp.Matrix([sp.sin(delta) * sp.cos(turn), sp.sin(delta) * sp.sin(turn), sp.cos(delta)])
-    assert is_zero(g - along)
-    assert is_zero(g.cross(p) - e)
+    """(8.4) A flank about the trace cos β g + sin β e, turned about it from upright by α, on either side of the space.
+
+    The cone line is the direction from the apex to the point; e is along the circle, p square to both.
+    """
+    delta, azimuth = sp.Rational(3, 8), sp.Rational(7, 4)
+    g = Rz(azimuth) * sp.Matrix([sp.sin(delta), 0, sp.cos(delta)])
+    e = Rz(azimuth) * sp.Matrix([0, 1, 0])
+    for alpha, beta in ((sp.Rational(3, 8), sp.Rational(5, 8)), (-sp.Rational(1, 8), -sp.Rational(1, 4))):
+        trace = sp.cos(beta) * g + sp.sin(beta) * e
+        upright = g.cross(e).cross(trace)  # within the pitch cone's tangent plane
+        for side in (1, -1):
+            n = rotation(trace, -side * alpha) * (side * upright)
+            with mpmath.workdps(DIGITS):
+                found = flank_angles().function(*numbers([delta, *(70 * g), *n]))
+                assert is_close(found[:2], numbers([alpha, beta]))
+                assert is_close([abs(found[2]), found[3]], numbers([sp.cos(alpha) * sp.cos(beta), azimuth]))
+                assert found[2] * side > 0

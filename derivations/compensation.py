@@ -25,7 +25,9 @@ much metal left on the mate does, at that place.
 from __future__ import annotations
 
 from functools import cache
+from operator import itemgetter
 
+import mpmath
 import sympy as sp
 
 from derivations import cradle, flank, generation
@@ -33,7 +35,7 @@ from derivations import notation as q
 from derivations.expression import Expression, Quantity
 from derivations.frames import J, K, Rz, rotation
 from derivations.generation import Profile
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero, numbers, shifts
 
 
 def _rates(profile: Profile, *besides: sp.Symbol) -> tuple[list[sp.Matrix], sp.Expr]:
@@ -176,27 +178,47 @@ def prove_rates_are_those_of_the_family_of_face_milling() -> None:
         assert is_zero(Rz(-phi) * rate.subs(still) - point.diff(setting)), setting.name
 
 
-def prove_shift_along_a_line_is_that_of_the_implicit_function() -> None:
-    """(20.1) For a surface F(r, x) = 0: dt/dx = -F_x/(F_r·d); with n = F_r/|F_r| and n·R_x = -F_x/|F_r| the same."""
-    a, b, c, x, size = sp.symbols("a b c x size", positive=True)
-    d = sp.Matrix(sp.symbols("d1:4", real=True))
-    gradient = sp.Matrix([a, b, c])  # F_r
-    implicit = -x / gradient.dot(d)  # x stands for F_x
-    n = gradient / size
-    # a point that stays on the surface at fixed parameters moves by R_x with F_r·R_x + F_x = 0
-    normal_part = -x / size
-    assert sp.simplify(implicit - normal_part / n.dot(d)) == 0
+def prove_shift_along_a_line_is_that_of_the_flank_cut_anew() -> None:
+    """(20.1) Every setting, and the curvature, moved, and the moving flank solved anew on a line aslant to the normal.
+
+    With motion, indexing and blade offset; (20.1) has the settings as they stand at θ. A straight blade is κ = 0.
+    """
+    settings = [mpmath.mpf(x) for x in (75, 1, "0.125", "0.875", "3.5", "0.25", 1, "0.375", 3, "0.5", 80, "0.25")]
+    motion = [mpmath.mpf(k % 7 - 3) / 2**10 for k in range(q.motion.size)]
+    rest = [mpmath.mpf(x) for x in ("0.375", "0.25", "0.00390625", 1, 1)]
+    given, family = [*settings, *motion, *rest], generation.curved_generation().function
+    with mpmath.workdps(DIGITS):
+        u, theta = mpmath.mpf(2), mpmath.mpf("0.125")
+        at = u, mpmath.findroot(lambda beta: family(u, beta, theta, *given)[6], mpmath.mpf(-1)), theta
+        value = family(*at, *given)
+        point, normal = value[:3], value[3:6]
+        line = [n + mpmath.mpf(k - 1) / 4 for k, n in enumerate(normal)]
+        stand = _settings_at(settings, motion, theta)
+        claimed = curved_sensitivity().function(*at, *stand, *rest, *normal, *line)
+        which = [*range(len(settings)), len(settings) + len(motion) + 2]
+        found = shifts(lambda *of: itemgetter(0, 1, 2, 6)(family(*of)), given, which, at, point, line)
+        assert is_close(found, claimed, mpmath.mpf(10) ** -12)
+        flat, side = [*rest[:2], mpmath.mpf(0), *rest[3:]], rest[-1:]
+        straight = straight_sensitivity().function(*at, *stand, *rest[:2], *side, *normal, *line)
+        assert is_close(straight, curved_sensitivity().function(*at, *stand, *flat, *normal, *line)[: len(settings)])
+
+
+def _settings_at(settings: list[mpmath.mpf], motion: list[mpmath.mpf], theta: mpmath.mpf) -> list[mpmath.mpf]:
+    """Settings as they stand at θ (10.1), term by term."""
+    rows, columns = q.motion.shape
+    moved = [sum(motion[k * columns + j] * theta ** (j + 1) for j in range(columns)) for k in range(rows)]
+    return [x + by for x, by in zip(settings, moved + [mpmath.mpf(0)] * (len(settings) - rows), strict=True)]
 
 
 def prove_motion_enters_through_the_moved_setting_alone() -> None:
-    """(20.2) ∂x_k(θ)/∂m_kj = θ^j and ∂x_k(θ)/∂x_k = 1, for every setting and power."""
+    """(20.2) What moves by g_k with each setting x_k(θ) of (10.1), differentiated by each coefficient of the motion."""
     moving, rows = generation.moving_settings(), q.motion.symbol
-    for k, (setting, value) in enumerate(moving.items()):
-        assert value.diff(setting) == 1
+    moved = sum(rate * value for rate, value in zip(q.setting_rates.symbols, moving.values(), strict=False))
+    claimed = coefficient_sensitivity()["motion_rates"]
+    assert all(value.diff(setting) == 1 for setting, value in moving.items())
+    for k in range(rows.rows):
         for j in range(rows.cols):
-            assert sp.expand(value.diff(rows[k, j]) - q.theta.symbol ** (j + 1)) == 0
-            others = [other for other in moving if other is not setting]
-            assert all(moving[other].diff(rows[k, j]) == 0 for other in others)
+            assert sp.expand(moved.diff(rows[k, j]) - claimed[k, j]) == 0
 
 
 def prove_curvature_moves_the_blade_by_the_sagitta() -> None:
@@ -219,15 +241,23 @@ def prove_depth_and_cone_distance_are_a_rotation_of_the_axial_plane() -> None:
     assert is_zero(D.subs(on_cone).subs(sp.Abs(sp.sin(delta)), sp.sin(delta)).replace(sp.Abs, lambda value: value))
 
 
-def prove_meeting_angle_satisfies_the_equation_of_meshing() -> None:
-    """(20.5) n·v = 0 for v = ω × G, both turned by ψ, in the general form M_x cos ψ - M_y sin ψ = C."""
-    mx, my, c, psi = sp.symbols("M_x M_y C psi", real=True)
-    m, mu = sp.symbols("m mu", positive=True)
-    polar = {mx: m * sp.cos(mu), my: m * sp.sin(mu)}
-    x_part = (Rz(psi) * sp.Matrix([mx, my, 0]))[0].subs(polar)
+def prove_point_meets_the_mate_without_moving_into_it() -> None:
+    """(20.5, 20.6) Turned by ψ, neither member's motion has a part along the normal more than the other's.
+
+    The mate turns about its axis once while the member turns z_m/z times the other way; its place is read in its own
+    axes, which are turned about y by Σ.
+    """
+    sigma, ratio = sp.Rational(3, 2), sp.Rational(3, 2)
+    G, n = sp.Matrix([30, 8, 75]), sp.Matrix([sp.Rational(1, 4), -sp.Rational(7, 8), sp.Rational(3, 8)])
     for branch in (1, -1):
-        solved = x_part.subs(psi, branch * sp.acos(c / m) - mu)
-        assert sp.simplify(sp.expand_trig(solved) - c) == 0
+        with mpmath.workdps(DIGITS):
+            psi, axial, radial = conjugate_place().function(*numbers([*G, *n, sigma, ratio]), branch)
+        turn = Rz(sp.Float(psi, DIGITS))
+        at, along = turn * G, turn * n
+        of_mate, of_member = _mate_axis().subs(q.shaft_angle.symbol, sigma).cross(at), -ratio * sp.Matrix(K).cross(at)
+        assert is_close(numbers([(of_mate - of_member).dot(along)]), [0])
+        own = rotation(sp.Matrix(J), -sigma) * at
+        assert is_close(numbers([own[2], sp.sqrt(own[0] ** 2 + own[1] ** 2)]), [axial, radial])
 
 
 def prove_relative_rotation_lies_along_the_pitch_line() -> None:
@@ -237,18 +267,6 @@ def prove_relative_rotation_lies_along_the_pitch_line() -> None:
     ratio = sp.sin(sigma - delta) / sp.sin(delta)
     omega = sp.Matrix([sp.sin(sigma), 0, sp.cos(sigma)]) + ratio * sp.Matrix(K)
     assert is_zero(omega.cross(along))
-
-
-def prove_place_on_the_mate_is_that_in_its_own_frame() -> None:
-    """(20.6) In axes turned by Ry(Σ), the third coordinate is z_m and the rest has the length r_m."""
-    sigma = sp.Symbol("Sigma", real=True)
-    r = sp.Matrix(sp.symbols("x y z", real=True))
-    own = rotation(sp.Matrix(J), -sigma) * r
-    axis = sp.Matrix([sp.sin(sigma), 0, sp.cos(sigma)])
-    axial = axis.dot(r)
-    off = r - axial * axis
-    assert is_zero(own[2] - axial)
-    assert is_zero(own[0] ** 2 + own[1] ** 2 - off.dot(off))
 
 
 def prove_height_of_a_curved_blade_is_that_of_its_foot_where_it_touches() -> None:

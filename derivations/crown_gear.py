@@ -31,13 +31,14 @@ from __future__ import annotations
 
 from functools import cache
 
+import mpmath
 import sympy as sp
 
 from derivations import cradle, lengthwise
 from derivations import notation as q
 from derivations.expression import Expression
 from derivations.frames import J, K
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero, numbers
 
 _SOURCE = "imaginary crown gear; ISO 23509 crown gear for the epicycloid"
 _turn = q.cradle_angle.symbol
@@ -207,14 +208,29 @@ def prove_swivel_gives_the_tilted_axis_and_its_mirror_image() -> None:
     assert is_zero(mirrored - sp.Matrix([wanted[0], -wanted[1], wanted[2]]))
 
 
-def prove_blade_direction_is_square_to_the_cutter_axis() -> None:
-    """(14.4) e is a unit vector square to V_c, and -s cos α e - sin α V_c, the normal of (1.2), is n."""
-    V_c, n, cosine = tilted_axis(), flank_normal().subs(q.side.symbol, 1), sp.Symbol("c", positive=True)
-    sine = -n.dot(V_c)
-    e = -(n + sine * V_c) / cosine
-    assert is_zero(e.dot(V_c))
-    assert is_zero(e.dot(e) * cosine**2 - (1 - sine**2))
-    assert is_zero(-cosine * e - sine * V_c - n)
+def prove_settings_bring_the_blade_to_the_mean_point_with_its_normal() -> None:
+    """(14.3-14.5) The cutter of chapters 1 and 2 at these settings has M on its cone, and there the normal n.
+
+    M is seen from the cutter: along its axis, and across it. The other hand is the mirror image, in y.
+    """
+    r, tilt = 76, sp.Float("0.125", DIGITS)
+    tooth = [sp.Float(value, DIGITS) for value in ("0.625", "0.375", r, 81, "0.375", "0.3125", 4, tilt, "1.75")]
+    for hand in (1, -1):
+        mirror = sp.diag(1, hand, 1)
+        for side in (1, -1):
+            rule = crown_gear_flank()
+            inputs = dict(zip([each.symbol for each in rule.inputs], (hand, side, *tooth), strict=True))
+            with mpmath.workdps(DIGITS):
+                found = rule.function(hand, side, *(mpmath.mpf(str(value)) for value in tooth))
+            S, swing, swivel, X_b, _, blade, u = (sp.Float(value, DIGITS) for value in found)
+            stands = {q.theta.symbol: 0, q.cradle_angle.symbol: swing, q.cutter_swivel.symbol: swivel}
+            V_c = cradle.cutter_axis().subs(stands | {q.cutter_tilt.symbol: tilt})
+            center = sp.Matrix([S * sp.cos(swing), S * sp.sin(swing), -X_b])
+            from_center = mirror * mean_point().subs(inputs) - center
+            across = from_center - from_center.dot(V_c) * V_c
+            assert is_close(numbers([from_center.dot(V_c), across.dot(across)]), numbers([-u, r**2]))
+            n = -side * sp.cos(blade) * across / r - sp.sin(blade) * V_c  # of (1.2)
+            assert is_close(numbers(n), numbers(mirror * flank_normal().subs(inputs)))
 
 
 def prove_the_wall_follows_the_motion_of_the_blade() -> None:

@@ -22,15 +22,16 @@ positive = barrelled), and twist: how much more f_α is at the heel than at the 
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 
+import mpmath
 import sympy as sp
 
-from derivations import axes, cutter, flank
+from derivations import axes, cradle, cutter, flank, meshing
 from derivations import notation as q
 from derivations.expression import Expression
 from derivations.frames import Rz
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero, numbers, shifts
 
 #: Distance reported where the line never meets the blade: farther away than any tooth space is wide. [mm]
 NOWHERE = sp.Integer(1000)
@@ -201,15 +202,28 @@ def prove_turning_explains_its_own_deviation() -> None:
     assert sp.simplify(value - eps) == 0
 
 
-def prove_sensitivity_needs_no_shift_of_the_contact_point() -> None:
-    """(6.2) On the flank n·∂R/∂u = n·∂R/∂β = 0 and n·∂R/∂θ = f = 0, so that their shifts do not change δ.
+def prove_sensitivity_is_the_shift_of_the_flank_cut_anew() -> None:
+    """(6.2) Every setting moved, and the envelope solved anew on the normal, where u, β, θ shift as they may."""
+    settings = [mpmath.mpf(x) for x in (75, 1, "0.125", "0.875", "3.5", "0.25", 1, "0.375", 3, "0.5", 80, "0.25")]
+    u, theta = mpmath.mpf(2), mpmath.mpf("0.125")
 
-    Then dδ = n·(R_u du + R_β dβ + R_θ dθ + R_x dx) = n·R_x dx, whatever du, dβ, dθ the setting causes.
-    """
-    flank.prove_normal_is_perpendicular_to_the_surface()
-    from derivations import meshing
+    def flank_of(*given: mpmath.mpf) -> list[mpmath.mpf]:
+        return [*flank.flank_family().function(*given)[:3], *meshing.meshing().function(*given)]
 
-    meshing.prove_meshing_is_the_normal_part_of_the_surface_velocity()
+    for side in map(mpmath.mpf, (1, -1)):
+        with mpmath.workdps(DIGITS):
+            beta = mpmath.findroot(partial(_meshes, u, theta, settings, side), mpmath.mpf(-1))
+            at = u, beta, theta
+            family = flank.flank_family().function(*at, *settings, side)
+            found = shifts(flank_of, [*settings, side], range(len(settings)), at, family[:3], family[3:])
+            assert is_close(found, setting_sensitivity().function(*at, *settings, side), mpmath.mpf(10) ** -12)
+
+
+def _meshes(
+    u: mpmath.mpf, theta: mpmath.mpf, settings: list[mpmath.mpf], side: mpmath.mpf, beta: mpmath.mpf
+) -> mpmath.mpf:
+    """f of (4.2)."""
+    return meshing.meshing().function(u, beta, theta, *settings, side)[0]
 
 
 def prove_advance_of_the_work_shifts_the_flank_along_its_axis() -> None:
@@ -226,14 +240,33 @@ def prove_turning_the_work_gives_the_lever_arm_of_the_normal() -> None:
     assert is_zero(turning + sp.Matrix([-R[1], R[0], 0]).dot(n))
 
 
-def prove_line_entry_solves_the_cone_and_enters_the_cutter() -> None:
-    """(6.4) The root satisfies the quadratic, and there the line passes into the cutter: s d(x²+y²-ρ²)/dt < 0."""
-    q_a, q_b, q_c = sp.symbols("q_a q_b q_c", real=True)
+def prove_line_that_is_laid_through_the_blade_enters_there() -> None:
+    """(6.4) A line from the metal that is laid through a place of the blade of chapters 1 and 2, or of its tip plane.
+
+    What is cut is known from the cradle machine; the entry is found from the axis positions of the other.
+    """
+    settings = [mpmath.mpf(x) for x in (75, 1, "0.125", "0.875", "3.5", "0.25", 1, "0.375", 3, "0.5", 80, "0.25")]
+    theta, height, offset = mpmath.mpf("0.125"), mpmath.mpf(3), [mpmath.mpf(x) for x in ("0.5", "-0.25", 2)]
+    radius, alpha = (settings[q.settings.symbols.index(each.symbol)] for each in (
+        q.blade_point_radius, q.blade_pressure_angle))  # fmt: skip
+    at = dict(zip(q.settings.symbols, settings, strict=True)) | {q.theta.symbol: theta}
+    chain = [numbers(cradle.machine_to_work(cradle.cutter_to_machine(sp.eye(3)[:, k])).subs(at)) for k in range(3)]
+    center = numbers(cradle.machine_to_work(cradle.apex_to_cutter()).subs(at))
     for side in (1, -1):
-        root = sp.sqrt(q_b**2 - q_a * q_c)
-        t = q_c / (side * root - q_b)
-        assert sp.simplify(q_a * t**2 + 2 * q_b * t + q_c) == 0
-        assert sp.simplify(q_a * t + q_b + side * root) == 0  # half the slope is -s times a square root
+        outwards = [-side * mpmath.cos(alpha), 0, -mpmath.sin(alpha)]  # of the metal, at β = 0
+        on_blade = ([radius + side * 2 * mpmath.tan(alpha), 0, -2], [*(2 * n for n in outwards[:1]), 1, -1])
+        at_tip = ([radius - side, 0, 0], [-side * mpmath.mpf("0.6"), 0, -mpmath.mpf("0.8")])
+        for place, along in (on_blade, at_tip):
+            with mpmath.workdps(DIGITS):
+                length = mpmath.norm(along)
+                place_w, d = (
+                    [start[k] + sum(chain[j][k] * v[j] for j in range(3)) for k in range(3)]
+                    for start, v in ((center, place), ([0, 0, 0], [component / length for component in along]))
+                )
+                positions = axes.axis_transform().function(*settings, theta, height, *offset)
+                begin = [x - 2 * c for x, c in zip(place_w, d, strict=True)]
+                found = line_entry().function(*positions, height, *begin, *d, radius, alpha, side, *offset)
+                assert is_close(found, [2], mpmath.mpf(10) ** -12)
 
 
 def prove_deviation_of_a_probe_on_the_flank_is_zero() -> None:

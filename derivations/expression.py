@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, cached_property
 from typing import Literal
 
 import mpmath
@@ -142,10 +142,14 @@ class Expression:
         flat: list[float] = []
         for argument in arguments:
             flat.extend(argument if isinstance(argument, Iterable) else (argument,))
-        symbols = [symbol for quantity in self.inputs for symbol in quantity.symbols]
-        function = sp.lambdify(symbols, [value for _, value in self.scalars()], "mpmath", cse=True)
         with mpmath.workdps(digits):
-            return function(*(mpmath.mpf(float(value)) for value in flat))
+            return self.function(*(mpmath.mpf(float(value)) for value in flat))
+
+    @cached_property
+    def function(self) -> Callable[..., list[mpmath.mpf]]:
+        """Every scalar output of the elements of the inputs, in the working precision of mpmath."""
+        symbols = [symbol for quantity in self.inputs for symbol in quantity.symbols]
+        return sp.lambdify(symbols, [value for _, value in self.scalars()], "mpmath", cse=True)
 
     def exact(self, *arguments: Fraction | int) -> tuple[Fraction, ...]:
         """Every output at one point of rational numbers, exactly; all inputs and outputs scalars.

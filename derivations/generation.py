@@ -28,16 +28,18 @@ The spine's (3.1, 3.2, 4.2) are the case m = 0, ι = 0. A Formate flank has no r
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 
+import mpmath
 import sympy as sp
 
 from derivations import cradle, cutter, flank, meshing
 from derivations import notation as q
 from derivations.expression import Expression, Quantity
 from derivations.frames import K, Rz
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero
 
 
 @dataclass(frozen=True)
@@ -310,11 +312,38 @@ def prove_touching_blade_meets_the_arc_with_its_slope() -> None:
     assert is_zero(round_.radius.diff(u) - side * sp.tan(angle) * round_.height.diff(u))
 
 
-def prove_derivatives_before_turning_are_those_of_the_family() -> None:
-    """(10.6) Rz(-φ_w) g_a = ∂R/∂a for a moving point p(a) and angle φ(a), whatever they are."""
-    a = sp.Symbol("a", real=True)
-    p = sp.Matrix([sp.Function(f"p{k}")(a) for k in range(3)])
-    phi = sp.Function("phi")(a)
-    turned = (Rz(-phi) * p).diff(a)
-    claimed = Rz(-phi) * (p.diff(a) - phi.diff(a) * sp.Matrix(K).cross(p))
-    assert sp.simplify(turned - claimed) == sp.zeros(3, 1)
+def prove_normal_and_residual_are_those_of_the_turned_surface() -> None:
+    """(10.6) With every motion, indexing and offset: R of (10.5) alone, differentiated by numbers as it turns.
+
+    n is square to R_u and R_β, on the side that -s R_u × R_β has (+s of an arc, r > 0), and f = n · R_θ.
+    """
+    settings = [75, 1, "0.125", "0.875", "3.5", "0.25", 1, "0.375", 3, "0.5", 80, "0.25"]
+    motion = [mpmath.mpf(k % 7 - 3) / 2**9 for k in range(q.motion.size)]
+    for make, first, extra, turn in (
+        (straight_generation, "1.5", [], -1), (curved_generation, "1.5", ["0.00390625", 1], -1),
+        (arc_generation, "0.5", [90, 3, 12], 1),
+    ):  # fmt: skip
+        for side in (1, -1):
+            rest = [*map(mpmath.mpf, settings), *motion, mpmath.mpf("0.375"), mpmath.mpf("0.25")]
+            rest += [*map(mpmath.mpf, extra), mpmath.mpf(side)]
+            with mpmath.workdps(DIGITS):
+                at = [mpmath.mpf(first), mpmath.mpf("-0.625"), mpmath.mpf("0.1875")]
+                value = make().function(*at, *rest)
+                along_u, along_beta, along_theta = (
+                    sp.Matrix([_slope(make, at, rest, parameter, axis) for axis in range(3)]) for parameter in range(3)
+                )
+                n, cross = sp.Matrix(value[3:6]), along_u.cross(along_beta)
+                assert is_close(list(turn * side * cross / cross.norm()), list(n), mpmath.mpf(10) ** -15)
+                assert is_close([n.dot(along_theta)], [value[6]], mpmath.mpf(10) ** -13)
+
+
+def _slope(
+    make: Callable[[], Expression], at: list[mpmath.mpf], rest: list[mpmath.mpf], parameter: int, axis: int
+) -> mpmath.mpf:
+    """Slope of one coordinate of the point, by central difference."""
+    step = mpmath.mpf(10) ** -12
+    ends = []
+    for sign in (1, -1):
+        moved = [value + sign * step * (k == parameter) for k, value in enumerate(at)]
+        ends.append(make().function(*moved, *rest)[axis])
+    return (ends[0] - ends[1]) / (2 * step)

@@ -28,7 +28,7 @@ import sympy as sp
 from derivations import blank
 from derivations import notation as q
 from derivations.expression import Expression, Quantity
-from derivations.proof import is_zero
+from derivations.proof import is_close, is_zero, numbers
 
 _SOURCE = "ISO 23509, method 0; relations derived here from the geometry of the pitch cones"
 _HALF = sp.Rational(1, 2)
@@ -327,16 +327,24 @@ def prove_data_types_agree() -> None:
 
 
 def prove_standard_taper_runs_to_the_pitch_apex() -> None:
-    """(11.6-11.9) With the standard taper the root cone of the wheel and the root line of the pinion meet the apex."""
-    R_m = q.mean_cone_distance.symbol
-    standard = {q.depth_taper.symbol: 1}
-    for angle, depth in (
-        (taper_angles()["wheel_dedendum_angle"].subs(standard), q.wheel_mean_dedendum.symbol),
-        (taper_angles()["wheel_addendum_angle"].subs(standard), q.pinion_mean_dedendum.symbol),
-    ):
-        assert sp.simplify(depth - R_m * sp.tan(angle)) == 0
-    root = wheel_apexes()[1].subs(q.wheel_dedendum_angle.symbol, sp.atan(q.wheel_mean_dedendum.symbol / R_m))
-    assert sp.simplify(root) == 0
+    """(11.6-11.9) With the standard taper the root cone of the wheel has its apex in the pitch apex.
+
+    That of the pinion, found over the face cone of the wheel, is c (1 - cos θ_a2) off: c is measured across the root
+    cone, the dedendum across the pitch cone.
+    """
+    R_m, standard = q.mean_cone_distance.symbol, {q.depth_taper.symbol: 1}
+    angles, apexes = taper_angles(), cone_apexes()
+    for shaft in (sp.Rational(3, 2), sp.Rational(5, 4)):
+        depths = {
+            R_m: 80, q.pinion_mean_dedendum.symbol: 3, q.wheel_mean_dedendum.symbol: 5, q.clearance.symbol: 1,
+            q.wheel_mean_addendum.symbol: 2, q.shaft_angle.symbol: shaft, q.wheel_pitch_angle.symbol: sp.Rational(7, 8),
+        }  # fmt: skip
+        names = (q.wheel_addendum_angle, q.wheel_dedendum_angle)
+        tapered = {each.symbol: angles[each.name].subs(standard).subs(depths) for each in names}
+        wheel, pinion = (apexes[name].subs(tapered).subs(depths) for name in ("wheel_root_apex", "pinion_root_apex"))
+        up = tapered[q.wheel_addendum_angle.symbol]
+        off_root_line = pinion * sp.sin(shaft - sp.Rational(7, 8) - up)
+        assert is_close(numbers([wheel, off_root_line]), numbers([0, sp.cos(up) - 1]))
 
 
 def prove_face_and_root_cones_are_parallel_and_the_clearance_is_constant() -> None:

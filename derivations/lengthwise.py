@@ -16,12 +16,13 @@ from __future__ import annotations
 
 from functools import cache
 
+import mpmath
 import sympy as sp
 
 from derivations import iso23509
 from derivations import notation as q
 from derivations.expression import Expression
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero
 
 _SOURCE = "ISO 23509, inner and outer spiral angles; AGMA 929, lengthwise curvature"
 
@@ -157,13 +158,21 @@ def prove_milled_trace_is_the_circle_of_the_cutter() -> None:
     assert sp.simplify(milled_sine().subs(q.cone_distance.symbol, R_m) - sp.sin(beta)) == 0
 
 
-def prove_hobbed_trace_is_square_to_the_line_from_the_instant_center() -> None:
-    """(12.3) At the place R (cos φ, sin φ), cutter centre on x: tan β is the ratio of the radial to the other part."""
-    R, base, phi = q.cone_distance.symbol, q.epicycloid_base_radius.symbol, sp.Symbol("phi", real=True)
-    line = sp.Matrix([R * sp.cos(phi) - base, R * sp.sin(phi)])
-    radial = line.dot(sp.Matrix([sp.cos(phi), sp.sin(phi)]))
-    other = line.dot(sp.Matrix([-sp.sin(phi), sp.cos(phi)]))
-    assert is_zero(radial / other - (R - base * sp.cos(phi)) / (base * sp.sin(phi)))
+def prove_hobbed_spiral_angle_is_that_of_the_rolling_blade() -> None:
+    """(12.3) The velocity of a blade against the crown gear, at places that are given by φ instead of R.
+
+    The cutter turns about C = (ρ_P0, 0), the crown gear about the apex against it by the rolling ratio; r_c0 = |P - C|.
+    """
+    center, ratio = mpmath.mpf(90), mpmath.mpf("0.1875")
+    for R, phi in ((70, "0.75"), (80, "1.0"), (100, "0.875")):
+        with mpmath.workdps(DIGITS):
+            cosine, sine = mpmath.cos(mpmath.mpf(phi)), mpmath.sin(mpmath.mpf(phi))
+            x, y = R * cosine, R * sine
+            velocity = -y - ratio * y, (x - center) + ratio * x
+            radial, around = (velocity[0] * u + velocity[1] * v for u, v in ((cosine, sine), (-sine, cosine)))
+            radius = mpmath.hypot(x - center, y)
+            found = hobbed_spiral_angle().function(mpmath.mpf(R), radius, center, center / (1 + ratio))
+            assert is_close(found, [mpmath.atan(around / -radial)])
 
 
 def prove_hobbed_trace_has_the_mean_spiral_angle_at_the_mean_point() -> None:

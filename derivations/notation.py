@@ -673,6 +673,11 @@ curved_height = Quantity("curved_height", "height of a point of a curved blade a
 cone_place = _length("cone_place", "L", -500.0, 500.0, "cone distance of a point, along the pitch cone")
 cone_depth = _length("cone_depth", "D", -500.0, 500.0, "depth of a point below the pitch cone")
 mate_ratio = _factor("mate_ratio", "z_m/z", 0.1, 10.0, "teeth of the mate over teeth of the member")
-meeting_angle = Quantity("meeting_angle", "rotation at which a point of a flank meets the mate", "rad", r"\psi")
+meeting_angle = _angle("meeting_angle", r"\psi", -6.3, 6.3, "rotation at which a point of a flank meets the mate")
 mate_axial = _length("mate_axial", "z_m", -500.0, 500.0, "coordinate of that point along the axis of the mate")
 mate_radial = _length("mate_radial", "r_m", 0.0, 500.0, "distance of that point from the axis of the mate")
+
+# --- ease-off ---------------------------------------------------------------------------------------------------
+conjugate_azimuth = Quantity("conjugate_azimuth", "azimuth of the conjugate point on the member", "rad", r"\chi")
+gap_turn = _angle("gap_turn", r"\Delta\chi", -0.3, 0.3, "turn of a flank about its axis up to the conjugate one")
+ease_off = Quantity("ease_off", "gap between a flank and the conjugate one along its normal", "mm", "E", scale=1.0)

@@ -30,13 +30,14 @@ from __future__ import annotations
 
 from functools import cache
 
+import mpmath
 import sympy as sp
 
 from derivations import axes, cradle, generation
 from derivations import notation as q
 from derivations.expression import Expression
 from derivations.frames import I, J, K, Rz
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero
 
 
 def turned(C: sp.Expr) -> sp.Matrix:
@@ -190,19 +191,33 @@ def prove_straight_edge_is_the_blade_of_the_family() -> None:
 
 
 def prove_next_group_cuts_the_next_space() -> None:
-    """(17.2, 17.3) R(β) with the blade of group g, 2π g/N_b on, is R(β + 2π g/N_b) turned by 2π g/z about z_w.
+    """(17.2, 17.3) On six axes, group g is the blade of (10.5) at β + 2π g/N_b, in the space that is g pitches on.
 
-    So the space comes round again with g = z, at a cutter angle that differs by 2π z/N_b: a whole turn of the work.
+    A comes from (5.2) with the indexing of (10.2), C from (5.8): with tilt, offsets, either sign of the indexing.
     """
-    beta, roll = sp.symbols("beta_ roll", real=True)
-    groups, teeth, g = sp.symbols("N_b z g", positive=True)
-    p = sp.Matrix([sp.Function(f"p{k}")(beta + 2 * sp.pi * g / groups) for k in range(3)])
+    settings = [mpmath.mpf(x) for x in (75, 1, "0.125", "0.875", "3.5", "0.25", 1, "0.375", 3, "0.5", 80, "0.25")]
+    groups, teeth, theta, beta, eta, u = 5, 12, *map(mpmath.mpf, ("0.125", "-0.75", "0.25", 2))
+    height, offset = mpmath.mpf(3), [mpmath.mpf(x) for x in ("0.5", "-0.25", 2)]
     for sign in (1, -1):
-        ratio = sign * groups / teeth
-        cut = Rz(-(roll + ratio * beta)) * p
-        of_family = Rz(-(roll + ratio * (beta + 2 * sp.pi * g / groups))) * p
-        assert sp.simplify(cut - Rz(sign * 2 * sp.pi * g / teeth) * of_family) == sp.zeros(3, 1)
-        assert sp.simplify(ratio * 2 * sp.pi * teeth / groups - sign * 2 * sp.pi) == 0
+        for g in (0, 1, 3):
+            with mpmath.workdps(DIGITS):
+                ratio, behind = mpmath.mpf(sign * groups) / teeth, 2 * mpmath.pi * g / groups
+                X, Y, Z, A, B = axes.axis_transform().function(*settings, theta, height, *offset)
+                (psi,) = axes.cutter_phase().function(*settings, theta)
+                edge = [settings[10], 0, mpmath.tan(settings[11]), 1]
+                pose = (X, Y, Z, A - ratio * beta, B, beta + psi + behind)
+                cut = straight_edge_point().function(u, *pose, height, *offset, eta, settings[10], *edge)
+                still = [mpmath.mpf(0)] * q.motion.size
+                family = generation.straight_generation().function(
+                    u, beta + behind, theta, *settings, *still, ratio, eta, 1
+                )
+                x, y, z = family[:3]
+                pitches = sign * 2 * mpmath.pi * g / teeth
+                on = (
+                    x * mpmath.cos(pitches) - y * mpmath.sin(pitches),
+                    x * mpmath.sin(pitches) + y * mpmath.cos(pitches),
+                )
+                assert is_close(cut, [*on, z])
 
 
 def prove_azimuth_is_that_of_the_blade_that_reaches_the_point() -> None:

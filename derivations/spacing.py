@@ -35,13 +35,14 @@ from __future__ import annotations
 
 from functools import cache
 
+import mpmath
 import sympy as sp
 
 from derivations import blank
 from derivations import notation as q
 from derivations.expression import Expression
 from derivations.frames import Rz
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero, numbers
 
 #: Tolerances for m_mn = 4 and d_T = 170 that others computed, to 0.1 µm: grade, f_pt, F_p, F_r.
 PUBLISHED_TOLERANCES = ((4, "6.7", "24.4", "19.6"), (6, "13.4", "48.9", "39.1"), (7, "19.0", "69.2", "55.3"))
@@ -239,27 +240,43 @@ def prove_allowance_is_the_arc_that_turns_the_flank() -> None:
 
 
 def prove_arc_and_chord_are_those_of_the_circle() -> None:
-    """(19.3) Flanks at azimuth 0 and γ: the next space begins at 2π/z, and the distance there is the chord."""
-    r, gamma, half = sp.symbols("r gamma half", positive=True)
-    end, next_ = (r * sp.Matrix([sp.cos(a), sp.sin(a)]) for a in (gamma, gamma + 2 * half))
-    s, chord = 2 * r * half, 2 * r * sp.sin(half)  # the pitch is γ and twice the half
-    assert is_zero((end - next_).dot(end - next_) - chord**2)
-    assert is_zero(chord.diff(half) - sp.cos(half) * s.diff(half))
-    given = dict(zip(q.point_w.symbols, (r, 0, 5), strict=True))
-    given |= dict(zip(q.opposite_w.symbols, (r * sp.cos(sp.pi / 6), r * sp.sin(sp.pi / 6), 5), strict=True))
-    value = _arc()[0].subs(given).subs(q.teeth.symbol, 9)
-    assert sp.simplify(value - r * (2 * sp.pi / 9 - sp.pi / 6)) == 0
+    """(19.3) Flanks at azimuth 0 and γ, nine teeth: the next space begins at 40°; distance there, and its growth.
+
+    A tooth thicker by a little at either end has a longer arc and chord: their ratio, by a difference of numbers.
+    """
+    with mpmath.workdps(DIGITS):
+        r, step = mpmath.mpf(30), mpmath.mpf(10) ** -15
+
+        def tooth(gamma: mpmath.mpf) -> tuple[mpmath.mpf, mpmath.mpf]:
+            (x, y), (v, w) = ((r * mpmath.cos(a), r * mpmath.sin(a)) for a in (gamma, 2 * mpmath.pi / 9))
+            return r * (2 * mpmath.pi / 9 - gamma), mpmath.hypot(x - v, y - w)
+
+        gamma = mpmath.pi / 6
+        other = r * mpmath.cos(gamma), r * mpmath.sin(gamma), mpmath.mpf(5)
+        found = tooth_at_points().function(r, mpmath.mpf(0), mpmath.mpf(5), *other, mpmath.mpf(9), mpmath.mpf(1))
+        assert is_close(found[:2], tooth(gamma))
+        low, high = tooth(gamma + step), tooth(gamma - step)
+        assert is_close(found[2:], [(high[1] - low[1]) / (high[0] - low[0])], mpmath.mpf(10) ** -20)
 
 
 def prove_spiral_angle_does_not_depend_on_the_pressure_angle() -> None:
-    """(19.4) A flank through the trace cos β g + sin β e_t with any pressure angle has that β, on every pitch cone."""
-    alpha, beta, delta = sp.symbols("alpha beta delta", positive=True)
-    generatrix = sp.Matrix([sp.sin(delta), 0, sp.cos(delta)])
-    around, out = sp.Matrix([0, 1, 0]), sp.Matrix([sp.cos(delta), 0, -sp.sin(delta)])
-    trace = sp.cos(beta) * generatrix + sp.sin(beta) * around
-    n = sp.cos(alpha) * (sp.cos(beta) * around - sp.sin(beta) * generatrix) + sp.sin(alpha) * out
-    assert is_zero(n.dot(trace))
-    assert is_zero(n.dot(generatrix) * sp.cos(beta) + n.dot(around) * sp.sin(beta))
+    """(19.4) Normals of flanks through the trace cos β g + sin β e_t: square to it, with any other direction across.
+
+    Both flanks, both hands, at any azimuth of the point.
+    """
+    delta, azimuth, R = sp.Rational(3, 8), sp.Rational(7, 4), sp.Integer(60)
+    generatrix, around = Rz(azimuth) * sp.Matrix([sp.sin(delta), 0, sp.cos(delta)]), Rz(azimuth) * sp.Matrix([0, 1, 0])
+    for beta in (sp.Rational(5, 8), -sp.Rational(1, 4)):
+        trace = sp.cos(beta) * generatrix + sp.sin(beta) * around
+        for across in (sp.Matrix([5, 1, -2]), sp.Matrix([-2, 3, 7])):
+            n = numbers(trace.cross(across))
+            with mpmath.workdps(DIGITS):
+                n = [component / mpmath.norm(n) for component in n]
+                given = [*numbers([delta, R]), 17, *numbers(R * generatrix), *n]
+                found, module = mean_module().function(*given)
+                assert is_close([found], numbers([abs(beta)]))
+                # pitch along the circle, square to the trace
+                assert is_close([17 * module * mpmath.pi], numbers([2 * sp.pi * R * sp.sin(delta) * sp.cos(beta)]))
 
 
 def prove_module_is_that_of_the_published_sample() -> None:

@@ -35,13 +35,14 @@ from __future__ import annotations
 
 from functools import cache
 
+import mpmath
 import sympy as sp
 
 from derivations import cutter
 from derivations import notation as q
 from derivations.expression import Expression, Quantity
 from derivations.frames import Rx, Rz
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero
 
 #: Distance reported where the line never meets the cutter: farther away than any tooth space is wide. [mm]
 NOWHERE = sp.Integer(1000)
@@ -227,14 +228,35 @@ def prove_coefficients_are_those_of_the_cone() -> None:
         assert sp.expand(a * t**2 + 2 * b * t + g - squared + blade**2) == 0
 
 
-def prove_interval_ends_are_the_roots_and_are_passed_inwards_and_outwards() -> None:
-    """(16.3) Both forms solve the quadratic; it falls at t_in and rises at t_out, whatever the sign of a."""
-    a, b, g = sp.symbols("a b g", real=True)
-    root = sp.sqrt(b**2 - a * g)
-    for forms, slope in (((g / (root - b), -(root + b) / a), -1), (((root - b) / a, -g / (root + b)), 1)):
-        for t in forms:
-            assert sp.simplify(a * t**2 + 2 * b * t + g) == 0
-            assert sp.simplify(a * t + b - slope * root) == 0
+def prove_a_line_is_in_the_cone_between_its_ends_and_nowhere_else() -> None:
+    """(16.3) Lines of many directions, their places told by (16.1): within the blade's cone of chapter 1 and h >= 0.
+
+    A little within either end is inside, a little beyond it outside; where there is no interval, all is outside.
+    """
+    radius, alpha, near = mpmath.mpf(80), mpmath.mpf("0.35"), mpmath.mpf(10) ** -9
+    frame, met = [0, 0, 0, 0, 0, 1], set()
+    for k in range(30):
+        with mpmath.workdps(DIGITS):
+            polar, azimuth = mpmath.mpf(7 * k % 19 + 1) / 8, mpmath.mpf(5 * k % 23) / 4
+            d = [mpmath.sin(polar) * mpmath.cos(azimuth), mpmath.sin(polar) * mpmath.sin(azimuth), mpmath.cos(polar)]
+            line = [mpmath.mpf(3 * k % 17 - 8) * 12 + 1, mpmath.mpf(11 * k % 13 - 6) * 12, mpmath.mpf(k % 9 - 6), *d]
+            for side in (1, -1):
+
+                def inside(t: mpmath.mpf, line: list[mpmath.mpf] = line, side: int = side) -> bool:
+                    h, rho = place_in_cutter().function(*frame, *line, t)
+                    return h >= 0 and rho <= radius + side * h * mpmath.tan(alpha)
+
+                lower, upper = line_in_cone().function(*frame, *line, radius, mpmath.tan(alpha), side)
+                ends = [end for end in (lower, upper) if abs(end) < _FAR / 2]
+                met.add((side, len(ends), lower < upper))
+                if lower >= upper:
+                    assert not any(inside(mpmath.mpf(j)) for j in range(-300, 301, 50))
+                    continue
+                for end, inward in ((lower, 1), (upper, -1)):
+                    if end in ends:
+                        assert inside(end + inward * near)
+                        assert not inside(end - inward * near)
+    assert met >= {(1, 2, True), (-1, 2, True), (1, 1, True)}
 
 
 def prove_edge_joins_tip_plane_and_blade() -> None:
@@ -252,23 +274,38 @@ def prove_edge_joins_tip_plane_and_blade() -> None:
     assert is_zero(sp.Matrix([0, -a - height]).dot(sp.Matrix([0, -a - height])) - (r + a) ** 2)
 
 
-def prove_curved_blade_is_the_arc_of_the_blade_section() -> None:
-    """(16.5) n·v + κ|v|²/2 vanishes on the arc of (1.4) with κ = 1/r, all along it."""
-    side, angle = q.side.symbol, q.arc_angle.symbol
-    alpha, reference = q.blade_pressure_angle.symbol, q.reference_height.symbol
-    center_radius, center_height, r = cutter.spheric_blade()["blade_arc"]
-    rho, h = center_radius + side * r * sp.cos(angle), center_height - r * sp.sin(angle)
-    for sign in (1, -1):
-        v = sp.Matrix([side * (rho - cutter.radius(reference)), h - reference]).subs(side, sign)
-        value = sp.cos(alpha) * v[0] - sp.sin(alpha) * v[1] + v.dot(v) / (2 * r)
-        assert is_zero(value)
+def prove_excess_is_zero_on_the_sections_of_the_blade_and_has_their_sign() -> None:
+    """(16.5) Places of the arc (1.4) and of the edge (1.6) that touches it, and others along the normals there.
+
+    At the edge E is the distance; at the blade the distance to first order in κ times it.
+    """
+    radius, alpha, r, reference, rounded = map(mpmath.mpf, (80, "0.375", 500, 2, "0.75"))
+    for side in (1, -1):
+        with mpmath.workdps(DIGITS):
+            arc = cutter.spheric_blade().function(radius, alpha, r, reference, side)
+            *edge, joint = cutter.edge_round_of_arc().function(*arc, rounded, side)
+            own = [radius, alpha, 1 / r, reference, edge[0], rounded, joint]
+            other = [radius - side * 40, alpha, 0, 0, 0 if side == 1 else 1000, 0, 0]  # far away, without an edge
+            for (center, height, size), angles in (
+                (arc, (joint - k / mpmath.mpf(1000) for k in range(1, 15, 3))),
+                (edge, (joint + k * (mpmath.pi / 2 - joint) / 5 for k in range(1, 5))),
+            ):
+                for angle in angles:
+                    for off in (0, mpmath.mpf(1) / 8, -mpmath.mpf(1) / 8):
+                        rho = center + side * (size + off) * mpmath.cos(angle)
+                        h = height - (size + off) * mpmath.sin(angle)
+                        outer, inner = (own, other)[::side]
+                        (excess,) = cutter_excess().function(h, rho, *outer, *inner)
+                        exact = off if size == rounded else off + off**2 / (2 * r)
+                        assert is_close([excess], [exact])
 
 
 def prove_distance_from_the_axis_is_convex_along_a_line() -> None:
-    """(16.5) ρ = √(α t² + 2 β t + γ) has the second derivative (α γ - β²)/ρ³, not negative as α γ >= β² (Cauchy).
+    """(16.5) About an upright axis ρ of (16.1) has the second derivative (x d_y - y d_x)²/ρ³, which is not negative.
 
     The parts of E that belong to the outer blade do not fall with ρ and are convex in (ρ, h): so they are convex in t.
     """
-    t, a, b, g = sp.symbols("t alpha_ beta_ gamma_", real=True)
-    rho = sp.sqrt(a * t**2 + 2 * b * t + g)
-    assert sp.simplify(rho.diff(t, 2) - (a * g - b**2) / rho**3) == 0
+    t, (x, y, _), (along, over, _) = q.line_place.symbol, q.line_point.symbols, q.line_direction.symbols
+    upright = dict.fromkeys(q.cutter_center_w.symbols, 0) | dict(zip(q.cutter_axis_w.symbols, (0, 0, 1), strict=True))
+    rho = sp.simplify(place_in_cutter()["axis_distance"].subs(upright))
+    assert sp.simplify(rho.diff(t, 2) - (x * over - y * along) ** 2 / rho**3) == 0

@@ -30,12 +30,13 @@ from __future__ import annotations
 
 from functools import cache
 
+import mpmath
 import sympy as sp
 
-from derivations import iso23509, lengthwise
+from derivations import cutter, iso23509, lengthwise
 from derivations import notation as q
 from derivations.expression import Expression
-from derivations.proof import is_zero
+from derivations.proof import DIGITS, is_close, is_zero
 
 _ISO = "ISO 23509, tooth thickness; relations derived here"
 _AGMA = "AGMA 929, slot width, top land and cutter edge radius; relations derived here"
@@ -319,18 +320,31 @@ def prove_top_land_is_what_two_involutes_leave() -> None:
     assert sp.simplify((slope - s / r + tangents().subs(angles)).subs(r, positive)) == 0
 
 
-def prove_interference_height_is_that_of_the_rack_that_cuts_the_point() -> None:
-    """(13.11) The rack's straight flank touches an involute at ϱ sin α - r sin² α above the pitch line.
+def prove_interference_height_is_that_of_the_point_that_the_tip_of_the_mate_reaches() -> None:
+    """(13.11) Both gears drawn, brought together by Δc: the tip of the mate on the line that both base circles touch.
 
-    The line of action touches the base circle, of radius r cos α, and passes the pole; the involute's point lies on it
-    at ϱ from the point of tangency. The rack's tip lies h_f below the pitch line.
+    The point of the flank as far from its base circle is cut by the rack at the pole distance r; the straight flank of
+    the rack, at right angles to the line of action, touches it there. Below it, by the height, lies the rack's tip.
     """
-    r, rho, alpha = sp.symbols("r rho alpha", positive=True)
-    tangency = r * sp.cos(alpha) * sp.Matrix([-sp.sin(alpha), sp.cos(alpha)])
-    action = sp.Matrix([sp.cos(alpha), sp.sin(alpha)])
-    assert is_zero(tangency.dot(action))
-    assert is_zero(tangency + r * sp.sin(alpha) * action - sp.Matrix([0, r]))
-    assert is_zero((tangency + rho * action)[1] - r - (rho * sp.sin(alpha) - r * sp.sin(alpha) ** 2))
+    r, mate, addendum, dedendum, closer, alpha = map(mpmath.mpf, (40, 70, "2.5", 5, "0.125", "0.375"))
+    with mpmath.workdps(DIGITS):
+        cosine, sine = mpmath.cos(alpha), mpmath.sin(alpha)
+        distance = r + mate - closer
+        working = mpmath.acos((r + mate) * cosine / distance)
+        tangency = [r * cosine * part for part in (-mpmath.sin(working), mpmath.cos(working))]
+        along = mpmath.cos(working), mpmath.sin(working)
+
+        def beyond_the_tip(way: mpmath.mpf) -> mpmath.mpf:
+            x, y = (start + way * step for start, step in zip(tangency, along, strict=True))
+            return x**2 + (y - distance) ** 2 - (mate + addendum) ** 2
+
+        reached = mpmath.findroot(beyond_the_tip, r * sine)
+        # the point on the line of action of rack and gear, from its tangency at the height r cos² α of the gear
+        height = r * cosine**2 + reached * sine - (r - dedendum)
+        found = running_interference().function(r, mate, addendum, dedendum, closer, alpha)
+        assert is_close(found[:1], [height])
+        edge = cutter.edge_round().function(mpmath.mpf(80), alpha, found[1], 1)
+        assert is_close(edge[3:], [height])  # there the round of the edge ends
 
 
 def prove_round_of_the_edge_takes_its_share_of_tip_and_flank() -> None:

@@ -90,9 +90,12 @@ def prove_squareness_is_an_error_of_x_that_grows_with_z() -> None:
 
 
 def prove_growth_leaves_a_cone_about_the_apex_alone() -> None:
-    """(22.2) Limit case: a surface ruled through the apex has R·n = 0, so that warmth does not change it."""
-    slope = _gradient()
-    assert is_zero(sp.Matrix([slope[5] - q.point_w.symbol.dot(q.normal_w.symbol)]))
+    """(22.2) Limit cases: warmth changes nothing of a surface ruled through the apex; a sphere grows by ε R."""
+    growth = _gradient()[5]
     along, t = sp.Matrix(sp.symbols("d_0:3", real=True)), sp.Symbol("t", real=True)
     normal = along.cross(sp.Matrix(sp.symbols("e_0:3", real=True)))  # tangents: the ruling d, and any other
-    assert is_zero(sp.Matrix([(t * along).dot(normal)]))
+    polar, azimuth, radius = sp.symbols("polar azimuth radius", real=True)
+    m = sp.Matrix([sp.sin(polar) * sp.cos(azimuth), sp.sin(polar) * sp.sin(azimuth), sp.cos(polar)])
+    for point, n, change in ((t * along, normal, 0), (radius * m, m, radius)):
+        there = dict(zip((*q.point_w.symbols, *q.normal_w.symbols), (*point, *n), strict=True))
+        assert is_zero(sp.Matrix([growth.subs(there, simultaneous=True) - change]))

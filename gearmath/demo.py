@@ -33,10 +33,11 @@ from gearmath.plot import member_figure, save
 from gearmath.quality.correction import correct
 from gearmath.quality.pitch import Pitch, evaluate_pitch
 from gearmath.quality.topography import Topography, evaluate_topography
-from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES, save_corrected
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
 from gearmath.specs.hobbing import load_hobbing_machine
 from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.set_text import save_corrected
 from gearmath.specs.simulated_machine import Probe, SimulatedMachine, load_simulated_machine
 from gearmath.specs.toml import bundled
 

@@ -12,25 +12,17 @@ from statistics import median
 
 from derivations import crown_gear
 from gearmath.bevel.blank import evaluate
+from gearmath.bevel.repair import Repair, Wanted, repairs
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member, Settings
 
 #: Spiral angle where none of the flanks of the set tells it. [rad]
 _SPIRAL = math.radians(35)
 #: Arm of the blade's angle and of the roll, in mean cone distances.
 _BLADE_ARM, _ROLL_ARM = 0.2, 0.3
-
-
-class Misfit(Exception):
-    """Settings that do not cut what the file says. ``where`` names the flanks (member, flank) that may be to blame."""
-
-    def __init__(self, what: str, *where: tuple[str, str]) -> None:
-        super().__init__(what)
-        self.where = where
-
-    @classmethod
-    def of(cls, member: str, flank: str, what: str) -> Misfit:
-        """The misfit of one flank."""
-        return cls(f"{member} {flank} flank: {what}", (member, flank))
+_SIGN = "indexing_sign"
+#: A setting explains what is wrong if this part of it is left, and no more than this for each flank; settings that
+#: leave no more than this above the best one are as good, and the one that is changed least is named.
+_EXPLAINED, _FITS, _AS_GOOD = 0.3, 2.5, 0.3
 
 
 @dataclass(frozen=True)
@@ -54,6 +46,52 @@ def farthest(members: dict[str, Member], where: Iterable[tuple[str, str]], spira
     its ``spiral`` angle [rad] from those that can be solved.
     """
     return max((_worst(members, name, flank, spiral) for name, flank in where), key=lambda suspect: suspect.apart)
+
+
+def likely(
+    members: dict[str, Member], where: Iterable[tuple[str, str]], spiral: float | None, pressure: float | None
+) -> str:
+    """What to say of the settings of some flanks (member, flank): which of them alone explains that they do not fit.
+
+    ``spiral`` and ``pressure`` [rad] are the angles that the others have. Where nothing is wrong at the mean point and
+    the root, nothing is said; where no single setting explains it, which is farthest from the crown gear's value.
+    """
+    flanks, angle = list(where), _SPIRAL if spiral is None else spiral
+    suspect = farthest(members, flanks, spiral)
+    if suspect.key.endswith(_SIGN):
+        return f"; the likely cause is {suspect}"
+    tried = []
+    for name, flank in flanks:
+        member = members[name]
+        hand = 1 if member.hand == "right" else -1
+        alpha = pressure
+        if alpha is None:
+            alpha = math.radians(median(member.flank(each).nominal.blade_pressure_angle for each in FLANKS))
+        expected = _crown_gear(members, member, flank, angle, member.indexing_sign)
+        trials = repairs(member, flank, expected, Wanted(hand * angle, alpha))
+        tried += [(name, flank, member, one) for one in trials]
+    befores = {(name, flank): one.before for name, flank, _, one in tried}
+    total = sum(befores.values())
+    if befores and max(befores.values()) <= 1:
+        return ""
+    left = [total - one.before + one.after for *_, one in tried]
+    if tried and min(left) <= min(_EXPLAINED * total, _FITS * len(flanks)):
+        good = [k for k, value in enumerate(left) if value <= min(left) + _AS_GOOD]
+        name, flank, _, best = tried[min(good, key=lambda k: _moved(tried[k][2], tried[k][1], tried[k][3]))]
+        table = name if best.key == _SIGN else f"{name}.{flank}"
+        return (
+            f"; the setting that alone explains it is {table}.{best.key} = {best.value:.6g}: {best.other:.6g} would fit"
+        )
+    return f"; no single setting explains it, the one farthest from the crown gear's is {suspect}"
+
+
+def _moved(member: Member, flank: str, repair: Repair) -> float:
+    """How far [mm] a repair moves the cutter against the work."""
+    if repair.key == _SIGN:
+        return member.blank.mean_cone_distance
+    spec = member.flank(flank).nominal
+    (one,) = _suspects(member, "", spec, {repair.key: repair.other}, "")
+    return one.apart
 
 
 def _worst(members: dict[str, Member], name: str, flank: str, spiral: float | None) -> Suspect:

@@ -10,8 +10,14 @@ from gearmath.bevel.method import blade_sections
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
-#: How far a hobbing blade may be turned from square to its path: built-up cutters come in steps. [degree]
-_SQUARE = 8.0
+#: How far a hobbing blade may be turned from square to its path [degree]: it is so by the definition of ISO 23509, and
+#: one blade group more or less turns it by some 1.3.
+_SQUARE = 0.8
+#: Height of the rounded edge over the clearance: beyond it the tip of the mate runs into the fillet. By AGMA 929 the
+#: wheel of ISO 23509 sample 1 has room for 1.25.
+_ROUND = 1.25
+#: A Toprem relieves by so little of the pressure angle, and so near to the root: height over the clearance. [degree]
+_TOPREM_ANGLE, _TOPREM = 12.0, 2.5
 
 
 def check_blades(member: Member, name: str) -> None:
@@ -19,6 +25,7 @@ def check_blades(member: Member, name: str) -> None:
     for flank in FLANKS:
         _check_method(member, f"{name}.{flank}", member.flank(flank))
         _check_sections(f"{name}.{flank}", member.flank(flank), SIDES[flank])
+        _check_foot(f"{name}.{flank}", member.flank(flank), member.blank.clearance)
     if member.cutting == "completing":
         _check_point_width(member, name)
 
@@ -98,6 +105,31 @@ def _check_sections(table: str, spec: Flank, side: int) -> None:
         raise InputError(f"{arc} the rounded edge, blade_edge_radius = {spec.blade_edge_radius:g}, does not touch it")
 
 
+def _check_foot(table: str, spec: Flank, clearance: float) -> None:
+    """Rounded edge and Toprem belong to the root: above the clearance the mate needs the flank itself."""
+    share = 1 - math.sin(math.radians(spec.nominal.blade_pressure_angle))
+    if spec.blade_edge_radius * share > _ROUND * clearance:
+        raise InputError(
+            f"{table}.blade_edge_radius = {spec.blade_edge_radius:g}: it rounds the blade up to "
+            f"{spec.blade_edge_radius * share:.3g} mm, where the tip of the mate needs the flank from "
+            f"{_ROUND * clearance:.3g} mm on, {_ROUND:g} of the clearance; it must be at most "
+            f"{_ROUND * clearance / share:.3g} mm"
+        )
+    if spec.toprem_angle is None:
+        return
+    least = spec.nominal.blade_pressure_angle - _TOPREM_ANGLE
+    if spec.toprem_angle < least:
+        raise InputError(
+            f"{table}.toprem_angle = {spec.toprem_angle:g}: must be at least {least:.4g}, {_TOPREM_ANGLE:g} degrees "
+            f"less than blade_pressure_angle = {spec.nominal.blade_pressure_angle:g}"
+        )
+    if spec.toprem_height > _TOPREM * clearance:
+        raise InputError(
+            f"{table}.toprem_height = {spec.toprem_height:g}: must be at most {_TOPREM * clearance:.3g} mm, "
+            f"{_TOPREM:g} of the clearance, or it relieves the flank that the mate needs"
+        )
+
+
 def _check_point_width(member: Member, name: str) -> None:
     """Both blades of one cutter: between their tips there is some metal, and room for both edge radii."""
     outer, inner = member.concave, member.convex
@@ -109,7 +141,7 @@ def _check_point_width(member: Member, name: str) -> None:
                 f"flanks, and its outer blade must lie outside of the inner one of {which[1].blade_point_radius:g} mm, "
                 f"which cuts the convex flank; the point width would be {width:.4g} mm"
             )
-        flat = sum(_tip_taken(spec, side) for spec, side in ((outer, 1), (inner, -1)))
+        flat = sum(tip_taken(spec, side) for spec, side in ((outer, 1), (inner, -1)))
         if flat > width:
             raise InputError(
                 f"{name}.concave.blade_edge_radius = {outer.blade_edge_radius:g}, convex {inner.blade_edge_radius:g}: "
@@ -125,7 +157,7 @@ def _check_point_width(member: Member, name: str) -> None:
             )
 
 
-def _tip_taken(spec: Flank, side: int) -> float:
+def tip_taken(spec: Flank, side: int) -> float:
     """What the rounded edge takes of the tip of a blade, from its point radius to where the edge is lowest [mm]."""
     edge = blade_sections(spec, side).get("edge")
     if edge is None or edge.arc is None:

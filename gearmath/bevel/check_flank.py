@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmath.bevel.blame import Misfit
 from gearmath.bevel.check_blank import transverse_module, working_depth
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
@@ -24,11 +24,11 @@ _PRESSURE, _STEEPEST = (5.0, 40.0), 55.0
 _ZEROL = 2.0
 #: The root may lie off that of the blank by these parts of the clearance, at toe, mean point and heel; where settings
 #: are corrected, so far that the tip of the mate stays clear of it.
-_ROOT, _CORRECTED_ROOT = (0.75, 0.25, 0.75), (1.0, 1.0, 1.0)
+ROOT, _CORRECTED_ROOT = (0.75, 0.25, 0.75), (1.0, 1.0, 1.0)
 #: The mean point is cut near the middle of the roll: largest cradle rotation from where cradle_angle puts it. [degree]
-_OFF_CENTER = 15.0
+OFF_CENTER = 15.0
 #: The tip plane of the cutter as a blade: nearly square to its axis, so that it shows where the root is deepest.
-_FLAT_BLADE = math.radians(89.9)
+FLAT_BLADE = math.radians(89.9)
 _PLACES = ("toe", "mean point", "heel")
 _BLADE_SLACK = 1e-7
 #: What motions of the settings may change of the form of a flank, over the transverse module.
@@ -56,7 +56,7 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation, corrected:
     """
     spec = member.flank(flank)
     section = blade_sections(spec, SIDES[flank])["main"]
-    mean = solve_section(how, section, *_mean_place(member))
+    mean = solve_section(how, section, *mean_place(member))
     if not mean.converged.all():
         raise Misfit.of(name, flank, "the equation of meshing has no solution at the mean point")
     delta = math.radians(member.blank.pitch_angle)
@@ -64,13 +64,13 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation, corrected:
     pressure, spiral, across, azimuth = found
     _check_angles(name, flank, pressure, spiral)
     swing = math.degrees(float(mean.contact[0, 2]))
-    if not abs(swing) <= _OFF_CENTER:
+    if not abs(swing) <= OFF_CENTER:
         raise Misfit.of(
             name, flank,
             f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must "
-            f"be at most {_OFF_CENTER:g}",
+            f"be at most {OFF_CENTER:g}",
         )  # fmt: skip
-    root = _root(member, name, flank, how, mean.contact, np.array(_CORRECTED_ROOT if corrected else _ROOT))
+    root = _root(member, name, flank, how, mean.contact, np.array(_CORRECTED_ROOT if corrected else ROOT))
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 0.5, 1.0]), np.ones(3))
     tips = solve_section(how, section, axial, radial)
     _check_tips(name, flank, section, tips.contact[:, 0], tips.converged, spec.blade_profile_height)
@@ -108,7 +108,7 @@ def _check_motion(member: Member, name: str, flank: str, grid: Grid, points: Fla
         )
 
 
-def _mean_place(member: Member) -> tuple[np.ndarray, np.ndarray]:
+def mean_place(member: Member) -> tuple[np.ndarray, np.ndarray]:
     """Where the mean point of the pitch cone lies: (z_w,), (r_w,)."""
     blank = member.blank
     up = (blank.mean_dedendum - blank.clearance) / working_depth(blank)
@@ -158,7 +158,7 @@ def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarr
     height = [end @ out for end in ends]
     root = height[0] - blank.clearance
     distance = ends[0] @ place
-    tip = Section(0.0, 1.0, member.flank(flank).nominal.blade_point_radius, _FLAT_BLADE)
+    tip = Section(0.0, 1.0, member.flank(flank).nominal.blade_point_radius, FLAT_BLADE)
     start = np.column_stack([np.zeros(3), np.repeat(mean[:, 1:], 3, axis=0)])
     found = solve_curve(how, tip, np.zeros(3), place, distance, start)
     if not found.converged.all():

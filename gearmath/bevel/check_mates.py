@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 
-from gearmath.bevel.blame import Misfit
+from gearmath.bevel.check_blade import tip_taken
 from gearmath.bevel.check_blank import transverse_module, working_depth
 from gearmath.bevel.check_flank import CutFlank
+from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
-from gearmath.specs.bevel_set import FLANKS, Member
+from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 
 #: Normal thickness and space width at the mean point over the normal module: pi together, and some of it each.
 _LEAST_WIDTH = 0.5
@@ -108,6 +109,13 @@ def _check_root_width(member: Member, name: str, concave: CutFlank, convex: CutF
         raise InputError(
             f"{name}: {_phase(member)}: the flanks cross above the root at the {_PLACES[k]}: a root of {width[k]:.3g} "
             "mm is left between them, which must be above 0"
+        )
+    taken = {flank: tip_taken(member.flank(flank), SIDES[flank]) for flank in FLANKS}
+    if sum(taken.values()) > width[k]:
+        flank = max(FLANKS, key=lambda one: taken[one])
+        raise InputError(
+            f"{name}.{flank}.blade_edge_radius = {member.flank(flank).blade_edge_radius:g}: the rounded edges of both "
+            f"flanks take {sum(taken.values()):.3g} mm of the root, which is {width[k]:.3g} mm wide at the {_PLACES[k]}"
         )
     for flank in FLANKS:
         stated = member.flank(flank).blade_point_width

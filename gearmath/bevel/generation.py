@@ -118,7 +118,8 @@ def solve_conditions(flank: Generation, section: Section, conditions: np.ndarray
     flank = flank.with_blade(section)
     points = _newton(flank, section, conditions, start)
     if not points.converged.all() and not flank.still:
-        points = _better(points, _grown(flank, section, conditions, start))
+        lost = ~points.converged
+        points = _better(points, lost, _grown(flank, section, conditions[lost], start[lost]))
     for _ in range(_REPEATS):
         lost = ~points.converged
         if not lost.any() or lost.all():
@@ -191,9 +192,11 @@ def _nearest(conditions: np.ndarray, lost: np.ndarray) -> np.ndarray:
     return good[[int(np.argmin(row)) for row in apart]]
 
 
-def _better(first: SurfacePoints, second: SurfacePoints) -> SurfacePoints:
-    take = ~first.converged & second.converged
-    return _put(first, take, SurfacePoints(*(getattr(second, name)[take] for name in _FIELDS)))
+def _better(first: SurfacePoints, where: np.ndarray, second: SurfacePoints) -> SurfacePoints:
+    """The points with those of ``second``, found for the points ``where``, that converged."""
+    found = second.converged
+    take = np.flatnonzero(where)[found]
+    return _put(first, take, SurfacePoints(*(getattr(second, name)[found] for name in _FIELDS)))
 
 
 def _put(points: SurfacePoints, where: np.ndarray, new: SurfacePoints) -> SurfacePoints:

@@ -11,6 +11,7 @@ from derivations import (
     compensation,
     cutter,
     deviation,
+    ease_off,
     flank,
     generation,
     meshing,
@@ -71,6 +72,8 @@ _EXPRESSIONS = {
     "curved_height": compensation.curved_height,
     "root_place": compensation.root_place,
     "conjugate_place": compensation.conjugate_place,
+    "conjugate_azimuth": ease_off.conjugate_azimuth,
+    "ease_off": ease_off.ease_off,
     "touch_error": touch_errors.touch_error,
 }
 

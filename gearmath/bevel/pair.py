@@ -12,12 +12,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 
-from gearmath.bevel.blame import Misfit, farthest, most_changed
+from gearmath.bevel.blame import likely, most_changed
 from gearmath.bevel.check_blade import check_blades, check_methods, check_offset
 from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, check_mate, transverse_module
+from gearmath.bevel.check_ease_off import check_ease_off
 from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
 from gearmath.bevel.check_mates import Cut, check_mates, check_space
 from gearmath.bevel.method import cut_generation_of, generation_of
+from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.errors import InputError
 from gearmath.files import read_text
@@ -64,9 +66,11 @@ def check_pair(pair: BevelSet) -> None:
     cut: dict[str, Cut] = {name: {} for name in members}
     try:
         _check_cut(members, cut)
+        if pinion is not None and gear is not None:
+            check_ease_off(pinion, gear, pair.shaft_angle)
     except Misfit as misfit:
-        suspect = farthest(members, misfit.where, _spiral(cut, misfit.where))
-        raise InputError(f"{misfit}; the setting farthest from the crown gear's is {suspect}") from misfit
+        cause = likely(members, misfit.where, _spiral(cut, misfit.where), _pressure(cut, misfit.where))
+        raise InputError(f"{misfit}{cause}") from misfit
 
 
 def _check_cut(members: dict[str, Member], cut: dict[str, Cut]) -> None:
@@ -127,3 +131,14 @@ def _spiral(cut: dict[str, Cut], blamed: Sequence[tuple[str, str]]) -> float | N
     }
     others = [angle for where, angle in found.items() if where not in blamed] or list(found.values())
     return median(others) if others else None
+
+
+def _pressure(cut: dict[str, Cut], blamed: Sequence[tuple[str, str]]) -> float | None:
+    """The middle one of the pressure angles [rad] of all flanks that are found and not to blame."""
+    found = [
+        one.pressure_angle
+        for name, flanks in cut.items()
+        for flank, one in flanks.items()
+        if (name, flank) not in blamed
+    ]
+    return median(found) if found else None

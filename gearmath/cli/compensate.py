@@ -25,7 +25,6 @@ from gearmath.cli.common import (
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
-    from gearmath.quality.analysis import Analysis
     from gearmath.quality.correction import Correction
     from gearmath.quality.evaluation import Evaluation
     from gearmath.quality.thickness import By
@@ -95,12 +94,14 @@ def compensate(
     what, and which limit binds.
     """
     from gearmath.bevel.pair import check_pair, load_pair
+    from gearmath.cli.compensate_text import correction_values, say_analysis, say_changes, say_result, verdict
+    from gearmath.cli.uncertainty import noise_of_points
     from gearmath.quality import correction as correcting
     from gearmath.quality.correction import ROOT_LIMIT, correct
     from gearmath.quality.evaluation import STAGES, evaluate_member
     from gearmath.quality.thickness import with_thickness
-    from gearmath.specs.bevel_set import save_corrected
     from gearmath.specs.flank_csv import read_flank_csv
+    from gearmath.specs.set_text import save_corrected
     from gearmath.specs.toml import find
 
     source = find(gear_set)
@@ -110,10 +111,11 @@ def compensate(
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured), bar(STAGES + correcting.STAGES, "stage", as_json) as progress:
         evaluation = evaluate_member(file, spec, member, registered, progress, rotated)
+        level = noise_of_points(file, spec, evaluation, noise)
         correction = correct(
             spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
-            few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=None if noise is None else noise / 1000,
-            added=moved, bounds=bounds, progress=progress,
+            few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=level, added=moved, bounds=bounds,
+            progress=progress,
         )  # fmt: skip
     if thickness:
         by = cast("By", thickness_by)
@@ -122,7 +124,7 @@ def compensate(
         source, target, member, correction.settings, correction.index, correction.motions, correction.curvatures,
         check=check_pair,
     )  # fmt: skip
-    values = _values(spec, correction) | {"remarks": list(evaluation.remarks)}
+    values = correction_values(spec, correction) | {"remarks": [*evaluation.remarks, *correction.remarks]}
     values |= _uncertainty(spec, file, evaluation, correction, noise, root_limit or ROOT_LIMIT)
     if as_json:
         echo_json(values)
@@ -136,40 +138,12 @@ def compensate(
         click.echo(line)
     if verbose:
         for group, analysis in correction.analysis.items():
-            _say_analysis(" and ".join(group), analysis)
-        _say_changes(values)
-        _say_result(correction)
-    for remark in evaluation.remarks:
+            click.echo("\n".join(say_analysis(" and ".join(group), analysis)))
+        click.echo("\n".join([*say_changes(values), *say_result(correction)]))
+    for remark in (*evaluation.remarks, *correction.remarks):
         if remark not in evaluation.left_out:
             click.echo(remark)
     click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
-
-
-def verdict(member: Member, correction: Correction) -> tuple[str, str]:
-    """What remains of what was measured, by which settings; and which limit binds, or what could be reached."""
-    from gearmath.quality.correction import setting_changes
-    from gearmath.quality.variables import reading
-
-    remains = []
-    for flank, (before, after) in correction.rms.items():
-        changes = [
-            f"{name} {(new - old) * reading(name)[0]:+.4f} {reading(name)[1]}"
-            for where, name, old, new in setting_changes(member, correction) if where == flank
-        ]  # fmt: skip
-        (found,) = (one for group, one in correction.identified.items() if flank in group)
-        kept = "expected to remain" if found.converged else f"left where the fit stopped after {found.iterations} steps"
-        remains.append(f"{flank} {after * 1000:.2f} um {kept} of {before * 1000:.2f} um "
-                       f"({', '.join(changes) or 'nothing is changed'})")  # fmt: skip
-    limits = []
-    for group, found in correction.identified.items():
-        flanks, best = " and ".join(group), correction.reachable[group] * 1000
-        if not found.converged:
-            limits.append(f"{flanks}: not converged, try fewer settings")
-        elif found.active:
-            limits.append(f"{flanks}: held back by the limit of {', '.join(found.active)}, {best:.2f} um at best")
-        else:
-            limits.append(f"{flanks}: no limit binds, all settings that are free would leave {best:.2f} um")
-    return f"RMS: {'; '.join(remains)}", "; ".join(limits)
 
 
 def _uncertainty(
@@ -195,26 +169,6 @@ def _uncertainty(
     return {"u": known, **effects_um(effects)}
 
 
-def _say_changes(values: dict[str, Any]) -> None:
-    from gearmath.cli.uncertainty import effects_text
-
-    head = ["flank", "setting", "old", "new", "unit"]
-    rows = [
-        [change["flank"], change["setting"], f"{change['old']:.6f}", f"{change['new']:.6f}", change["unit"]]
-        for change in values["changes"]
-    ]
-    if "u" in values:
-        head.insert(4, "u")
-        for row in rows:
-            u = values["u"][row[0]].get(row[1])
-            row.insert(4, "" if u is None else f"{u:.6f}")
-    click.echo(table(head, rows) if rows else "nothing to correct")
-    if "no_uncertainties" in values:
-        click.echo(f"no uncertainties of settings: {values['no_uncertainties']}")
-    for line in effects_text(values):
-        click.echo(line)
-
-
 def _free(names: str) -> tuple[str, ...] | None:
     from gearmath.specs.bevel_set import MACHINE_SETTINGS
 
@@ -237,80 +191,6 @@ def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, register
     with about(path):
         judged = evaluate_member(read_flank_csv(path), other, mate, registered)
         return moved_to_mate(pair, mate, judged.file, read_flank_csv(measured))
-
-
-def _say_analysis(flanks: str, analysis: Analysis) -> None:
-    kind = "simple" if analysis.is_simple else "complex"
-    click.echo(
-        f"{flanks}: {kind} target, RMS {analysis.rms * 1000:.3f} um; these {len(analysis.names)} settings would leave "
-        f"{analysis.best_rms * 1000:.3f} um by a linear estimate without bounds"
-    )
-    click.echo("  singular values [um]: " + ", ".join(f"{value * 1000:.3g}" for value in analysis.singular_values))
-    for first, second, cosine in analysis.alike:
-        how = "alike" if cosine > 0 else "opposite ways"
-        click.echo(
-            f"  {first} and {second} move the flank {how} (cosine {cosine:.5f}), and cannot be told from each other"
-        )
-    for k in analysis.weak:
-        named = " ".join(f"{part:+.2f} {name}" for name, part in analysis.direction(k).items())
-        click.echo(f"  weak direction, {analysis.singular_values[k] * 1000:.3g} um: {named} (parts of their bounds)")
-    if analysis.unseen:
-        click.echo(f"  without effect: {', '.join(analysis.unseen)}")
-    choice = analysis.choose()
-    if len(choice.names) < len(analysis.names):
-        click.echo(f"  enough: {', '.join(choice.names)}, with a loss of {choice.loss * 1000:.3f} um")
-
-
-def _say_result(correction: Correction) -> None:
-    for group, found in correction.identified.items():
-        kept = "expected to remain" if found.converged else "not converged, left so far"
-        before, after = correction.measured_rms(group) * 1000, found.rms_after * 1000
-        click.echo(f"{' and '.join(group)}: RMS {before:.3f} um, {kept} {after:.3f} um ({found.iterations} iterations)")
-    for flank, moved in correction.root.items():
-        click.echo(f"{flank}: root line {moved[0] * 1000:+.1f} um at the toe, {moved[1] * 1000:+.1f} um at the heel")
-
-
-def _values(member: Member, correction: Correction) -> dict[str, Any]:
-    from gearmath.quality.correction import setting_changes
-    from gearmath.quality.variables import reading
-
-    changes = []
-    for flank, name, old, new in setting_changes(member, correction):
-        factor, unit = reading(name)
-        changes.append({"flank": flank, "setting": name, "old": old * factor, "new": new * factor, "unit": unit})
-    return {
-        "changes": changes,
-        "rms_um": {flank: [value * 1000 for value in both] for flank, both in correction.rms.items()},
-        "expected_max_um": {flank: value * 1000 for flank, value in correction.expected.items()},
-        "index_correction_deg": [] if correction.index is None else [math.degrees(v) for v in correction.index],
-        "root_line_um": {flank: [value * 1000 for value in moved] for flank, moved in correction.root.items()},
-        "left_out": correction.left_out,
-        "rotation_left_open_deg": [math.degrees(angle) for angle in correction.rotation.angles],
-        "fits": [_fit_values(correction, group) for group in correction.identified],
-    }
-
-
-def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any]:
-    analysis, found = correction.analysis[group], correction.identified[group]
-    choice = analysis.choose()
-    return {
-        "flanks": list(group),
-        "free": list(analysis.names),
-        "settings": list(dict.fromkeys(variable.name for variable in found.variables)),
-        "simple": analysis.is_simple,
-        "singular_values_um": [value * 1000 for value in analysis.singular_values],
-        "alike": [list(pair) for pair in analysis.alike],
-        "weak_directions": [analysis.direction(k) for k in analysis.weak],
-        "without_effect": list(analysis.unseen),
-        "rms_um": correction.measured_rms(group) * 1000,
-        "linear_estimate_rms_um": analysis.best_rms * 1000,
-        "reachable_rms_um": correction.reachable[group] * 1000,
-        "remaining_rms_um": found.rms_after * 1000,
-        "converged": found.converged,
-        "enough": {"settings": list(choice.names), "loss_um": choice.loss * 1000},
-        "held_back_by": list(found.active),
-        "iterations": found.iterations,
-    }
 
 
 @click.command(epilog=FLANK_CSV)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import click
 
 from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET_OPTION, about, bar, echo_json, member_of, output
 from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    from gearmath.specs.point_text import PointText
 
 _T = TypeVar("_T")
 
@@ -69,6 +72,10 @@ def points(
     member, spec = member_of(loaded, member)
     _check_parts(texts, sides, teeth, spec.teeth)
     read = [read_point_text(path, unit) for path in texts]
+    told = [
+        _check_stated(text, {"flank": side, "unit": unit, "member": member, "tooth": str(tooth)})
+        for text, side, tooth in zip(read, sides, teeth, strict=True)
+    ]
     parts = [
         Part(str(path), side, tooth, text.point, text.normal)
         for path, side, tooth, text in zip(texts, sides, teeth, read, strict=True)
@@ -78,6 +85,10 @@ def points(
     write_flank_csv(target, found.file)
     header = found.file.header
     remarks = [f"{text.path}: {remark}" for text in read for remark in text.remarks] + list(found.remarks)
+    remarks[:0] = doubts = [each for each in (*told, *found.doubts) if each]
+    remarks = list(dict.fromkeys(remarks))
+    for doubt in doubts:
+        click.echo(doubt, err=True)
     if as_json:
         turned = [
             {
@@ -95,7 +106,8 @@ def points(
     for path, side, tooth, turn in zip(texts, sides, teeth, found.turns, strict=True):
         click.echo(f"{path}: {side} flank of tooth {tooth}, turned by {math.degrees(turn):.6f} degrees")
     for remark in remarks:
-        click.echo(remark)
+        if remark not in doubts:
+            click.echo(remark)
     zeroed = "set to zero at the reference point" if header["phase_zeroed"] == "true" else "as found, thickness stays"
     if phase == "kept":
         zeroed = "kept as in the files"
@@ -110,6 +122,17 @@ def _for_each(texts: Sequence[Path], given: Sequence[_T], option: str) -> Sequen
     if len(given) != len(texts):
         raise InputError(f"{option}: given {len(given)} times for {len(texts)} files: once, or once for each")
     return given
+
+
+def _check_stated(text: PointText, options: dict[str, str]) -> str:
+    """What to say where a file counts its teeth otherwise. Raises InputError where its text contradicts an option."""
+    for key, (value, line) in text.stated.items():
+        if key == "tooth":
+            if int(value) != int(options[key]):
+                return f"{text.path}, line {line}: says tooth {value}, read as --tooth {options[key]}"
+        elif value != options[key]:
+            raise InputError(f"{text.path}, line {line}: says {value}, the options say --{key} {options[key]}")
+    return ""
 
 
 def _check_lengths(apex_offset: float, tip_radius: float) -> None:

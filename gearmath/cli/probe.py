@@ -150,7 +150,7 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
     """Raw touches of a probe to measured points: corrected contact points and their deviations."""
     from gearmath.bevel.flank import blank_grid
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.completeness import missing_touches
+    from gearmath.quality.completeness import missing_touches, taken_for
     from gearmath.quality.touches import measured_member
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.flank_csv import write_flank_csv
@@ -160,7 +160,8 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
 
     found = read_touch_csv(raw, run)
     member = load_pair(find(gear_set)).member(found.member)
-    missing = missing_touches(found, member.teeth, blank_grid(member).shape)
+    shape = blank_grid(member).shape
+    missing = missing_touches(found, member.teeth, shape)
     _check_whole(raw, run, found.run, missing)
     with about(raw):
         measured = measured_member(
@@ -171,6 +172,8 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
     click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {worst:.3f} um")
     for one in missing:
         click.echo(f"run {found.run} is not whole: {one}")
+    if found.planned is None and not missing:
+        click.echo(f"run {found.run}: {taken_for(found, shape)}", err=True)
 
 
 @click.command(epilog=CALIBRATION_CSV)

@@ -86,7 +86,8 @@ def probe(
     with bar(blocks, "block") as progress:
         raw = run_touches(text, str(program), there, shop, count, run, progress, setup)
     write_text(target, raw)
-    click.echo(f"{target}: {len(raw.splitlines()) - 1} touches of run {run}")
+    rows = [line for line in raw.splitlines() if line[:1].isdigit()]
+    click.echo(f"{target}: {len(rows)} touches of run {run}")
 
 
 def _check_clear(

@@ -24,7 +24,7 @@ def evaluation_text(found: Evaluation, sure: Sequence[Uncertain] = ()) -> str:
         ["flank", *_FIGURES],
         [[flank, *(_cell(row, name) for name in _FIGURES)] for flank, row in flanks.items()],
     )
-    return "\n".join([*_gaps(values), first, "", *_orders(flanks), *_sure(sure), *_lines(values)]).rstrip()
+    return "\n".join([*_gaps(found), first, "", *_orders(flanks), *_sure(sure), *_lines(values)]).rstrip()
 
 
 def _cell(row: dict[str, Any], name: str) -> str:
@@ -32,16 +32,9 @@ def _cell(row: dict[str, Any], name: str) -> str:
     return "" if name not in row else "withheld" if row[name] is None else f"{row[name]:.3f}"
 
 
-def _gaps(values: dict[str, Any]) -> Iterator[str]:
-    """What was left out, and which maxima are withheld for want of it."""
-    lines = [f"left out: {line}" for line in _without_suffix(values["left_out"])]
-    withheld: dict[str, list[str]] = {}
-    reasons = [pair for row in values["flanks"].values() for pair in row["withheld"].items()]
-    reasons += list((values["runout"] or {}).get("withheld", {}).items())
-    reasons += [("range of the thickness", why) for why in (values["thickness"] or {}).get("withheld", {}).values()]
-    for name, why in reasons:
-        withheld.setdefault(why, []).append(name)
-    lines += [f"withheld: {', '.join(names)}: {why}" for why, names in withheld.items()]
+def _gaps(found: Evaluation) -> Iterator[str]:
+    """What was left out, and which figures are withheld for want of it."""
+    lines = [*(f"left out: {line}" for line in _without_suffix(found.left_out)), *found.withheld]
     yield from lines
     if lines:
         yield ""
@@ -92,7 +85,9 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
         yield f"{flank} flank: tooth 0 measured again at the end: {closure:+.2f} um, taken out evenly"
     runout, thickness, tolerance = values["runout"], values["thickness"], values["tolerance"]
     if runout is not None:
-        yield from _runout(runout, values["runout_as_measured"] if values["registration"] else None)
+        yield from _runout(
+            runout, values["runout_as_measured"] if (values["registration"] or {}).get("taken_out") else None
+        )
     if thickness is not None:
         arc, chord = (
             f"{name} {thickness[f'{name}_mm']:.4f} mm {thickness[f'{name}_deviation_um']:+.2f} um"
@@ -145,14 +140,18 @@ def _seat(seat: dict[str, Any] | None) -> Iterator[str]:
     if seat is None:
         return
     size, direction = _with(seat, "eccentricity_um"), seat["eccentricity_direction_deg"]
-    yield f"clamping taken out: eccentricity {size} um towards {direction:.1f} deg"
-    if seat["tilt_um_per_100mm"] is not None:
+    if seat["taken_out"]:
+        yield f"clamping taken out: eccentricity {size} um towards {direction:.1f} deg"
+    if seat["taken_out"] and seat["tilt_um_per_100mm"] is not None:
         size, direction = _with(seat, "tilt_um_per_100mm"), seat["tilt_direction_deg"]
         yield f"clamping taken out: tilt {size} um per 100 mm about {direction:.1f} deg"
     if seat["axial"]["axial_um"] is None:
         return
     size, twin = _with(seat["axial"], "axial_um"), seat["axial"]["confounded_with"]
-    yield f"axial position, left in: {size} um if the mean form were nothing else; {twin} does the same"
+    yield (
+        f"axial position not corrected: {size} um along the axis would explain the mean form best, but an error of "
+        f"{twin} looks the same: check the seat of the work before that setting"
+    )
 
 
 def _chart(flank: str, zeroed: dict[str, Any]) -> str:

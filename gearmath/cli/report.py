@@ -110,7 +110,7 @@ def _measurement(
         figures = figures_of(file, member, found)
         covariance, source = covariance_of(file, member, *sure)
     drawn = uncertain_figures(figures, covariance, _DRAWS, _SEED, progress=_share(progress))
-    correction, settings, effects, remarks = uncertain_correction(member, file, found, covariance)
+    correction, settings, effects, remarks = uncertain_correction(member, file, found, covariance, sure[0])
     progress(_CORRECTING)
     caused = {flank: effect.caused for flank, effect in effects.items()}
     return Measurement(

@@ -91,7 +91,7 @@ def uncertainty(
         covariance, source = covariance_of(file, spec, sigma_um, model, machine, calibration)
     with bar(draws, "draw") as progress, _executor(cluster) as executor:
         found = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, progress)
-    _, settings, effects, remarks = uncertain_correction(spec, file, evaluation, covariance)
+    _, settings, effects, remarks = uncertain_correction(spec, file, evaluation, covariance, sigma_um)
     found += settings
     remarks = [*missing_points(file, spec.teeth), *remarks]
     if picture:
@@ -125,22 +125,38 @@ def _number(value: float, unit: str) -> str:
 
 
 def uncertain_correction(
-    member: Member, file: FlankFile, found: Evaluation, covariance: Covariance
+    member: Member, file: FlankFile, found: Evaluation, covariance: Covariance, sigma_um: float | None
 ) -> tuple[Correction | None, list[Uncertain], dict[str, Effect], list[str]]:
-    """The correction of an evaluated member at its noise, its settings with uncertainties, what errors of measurement
-    do to each flank, and, where there is no correction, why.
+    """The correction of an evaluated member as ``compensate`` writes it, its settings with uncertainties, what errors
+    of measurement do to each flank, and remarks: where there is no correction, why.
     """
     from gearmath.quality.correction import correct
     from gearmath.quality.judging import judged_by_measured
-    from gearmath.quality.setting_uncertainty import noise_of, uncertain_settings
+    from gearmath.quality.setting_uncertainty import uncertain_settings
 
     name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))
     try:
-        correction = correct(member, name, found.file, few=True, noise=noise_of(member, name, found.file, judged))
+        correction = correct(member, name, found.file, few=True, noise=noise_of_points(file, member, found, sigma_um))
         settings, effects = uncertain_settings(member, name, found.file, correction, judged)
     except (InputError, ComputationError) as error:
         return None, [], {}, [f"no corrected settings: {error}"]
-    return correction, settings, effects, []
+    return correction, settings, effects, list(correction.remarks)
+
+
+def noise_of_points(file: FlankFile, member: Member, found: Evaluation, sigma_um: float | None) -> float | None:
+    """Noise [mm] of a judged deviation at which settings are chosen: by the option, or else by u_um of the file.
+
+    None where neither says it: then it is what the settings leave.
+    """
+    from gearmath.quality.judging import judged_by_measured
+    from gearmath.quality.setting_uncertainty import noise_of
+
+    if sigma_um == 0:
+        return 0.0
+    covariance = point_covariance(file, sigma_um)
+    if covariance is None:
+        return None
+    return noise_of(member, found.member, found.file, covariance.carried(judged_by_measured(file, member, found)))
 
 
 def effects_um(effects: dict[str, Effect]) -> dict[str, Any]:
@@ -178,7 +194,9 @@ def covariance_of(
 
     how = load_measurement(find(model or _BUNDLED))
     spindle, probe = load_milling_machine(find(machine)), load_calibration(find(calibration))
-    return touch_covariance(file, member, file.member, how, spindle, probe), f"{model or _BUNDLED}: {how.title}"
+    assumed = "" if model else "assumed, as the file has no u_um (give --sigma-um or --model): "
+    source = f"{assumed}{model or _BUNDLED}, {how.title}"
+    return touch_covariance(file, member, file.member, how, spindle, probe), source
 
 
 def point_covariance(file: FlankFile, sigma_um: float | None) -> Covariance | None:

@@ -9,9 +9,9 @@ import subprocess
 import sys
 import tempfile
 import weakref
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -81,20 +81,37 @@ class CompiledKernel:
 
     def __call__(self, *arguments: np.typing.ArrayLike) -> tuple[np.ndarray, ...]:
         """Evaluate at one or many points: shapes and broadcasting as in :meth:`gearmath.lowering.Kernel.__call__`."""
-        arrays = [np.ascontiguousarray(argument, dtype=float).reshape(np.shape(argument)) for argument in arguments]
-        if len(arrays) != len(self.kernel.inputs):
-            raise TypeError(f"{self.name} takes {len(self.kernel.inputs)} arguments, {len(arrays)} were given")
-        pairs = list(zip(arrays, self.kernel.inputs, strict=True))
-        many = [array.ndim > len(quantity.shape) for array, quantity in pairs]
-        n = max((len(array) for array, is_many in zip(arrays, many, strict=True) if is_many), default=1)
-        values: list[object] = [ctypes.c_long(n)]
-        for (array, quantity), is_many in zip(pairs, many, strict=True):
-            if array.shape != (*((n,) if is_many else ()), *quantity.shape):
-                raise ValueError(f"{self.name}: {quantity.name} has shape {array.shape}, expected {quantity.shape}")
-            values += [_pointer(array), ctypes.c_long(quantity.size if is_many else 0)]
+        arrays = [np.asarray(argument, dtype=float, order="C") for argument in arguments]
+        if len(arrays) != len(self._inputs):
+            raise TypeError(f"{self.name} takes {len(self._inputs)} arguments, {len(arrays)} were given")
+        n, is_many = 1, False
+        for array, (_, shape, _) in zip(arrays, self._inputs, strict=True):
+            if array.ndim > len(shape):
+                n, is_many = (max(n, len(array)) if is_many else len(array)), True
+        values: list[int] = [n]
+        for array, (name, shape, size) in zip(arrays, self._inputs, strict=True):
+            many = array.ndim > len(shape)
+            if array.shape != ((n, *shape) if many else shape):
+                raise ValueError(f"{self.name}: {name} has shape {array.shape}, expected {shape}")
+            values += (array.ctypes.data, size if many else 0)
         outputs = [np.empty((n, *quantity.shape)) for quantity in self.kernel.outputs]
-        getattr(self.library, f"gm_{self.name}_batch")(*values, *map(_pointer, outputs))
-        return tuple(output if any(many) else output[0] for output in outputs)
+        self._batch(*values, *(output.ctypes.data for output in outputs))
+        return tuple(output if is_many else output[0] for output in outputs)
+
+    @cached_property
+    def _inputs(self) -> tuple[tuple[str, tuple[int, ...], int], ...]:
+        """Name, shape and size of every input."""
+        return tuple((quantity.name, tuple(quantity.shape), quantity.size) for quantity in self.kernel.inputs)
+
+    @cached_property
+    def _batch(self) -> Callable[..., object]:
+        """The loop in C: how many points, then every input with its stride, then the outputs."""
+        function = getattr(self.library, f"gm_{self.name}_batch")
+        function.argtypes = [
+            ctypes.c_long, *[ctypes.c_void_p, ctypes.c_long] * len(self._inputs),
+            *[ctypes.c_void_p] * len(self.kernel.outputs),
+        ]  # fmt: skip
+        return function
 
 
 def compile_kernel(kernel: Kernel) -> CompiledKernel:

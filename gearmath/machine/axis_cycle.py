@@ -51,7 +51,7 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     )
 
     def body() -> Iterator[str]:
-        yield from blocks.start(CALIBRATION_COLUMNS)
+        yield from blocks.start(f"{axis_touches(machine, calibration)} touches", CALIBRATION_COLUMNS)
         above = f"G0 {blocks.length('Z', anywhere)}"
         yield above
         for center in centers:

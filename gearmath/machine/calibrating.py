@@ -56,7 +56,8 @@ def calibration_program(machine: MillingMachine, calibration: Calibration, progr
     header = (f"gearmath {__version__} calibration program", f"machine: {machine.name}", f"probe: {calibration.name}")
 
     def body() -> Iterator[str]:
-        yield from blocks.start(CALIBRATION_COLUMNS)
+        planned = f"{sum(calibration_touches(calibration).values())} touches"
+        yield from blocks.start(planned, CALIBRATION_COLUMNS)
         level, top = _level(machine, calibration), blocks.length("Z", float(machine.travel[2, 1]))
         yield f"G0 {top}"
         yield f"G0 {' '.join(blocks.axes(np.zeros(5))[3:])}"

@@ -70,5 +70,5 @@ def run_touches(
 
 def _touches(text: str) -> list[str]:
     """The touches in the text of a file; none where its first line is not the column line of touches."""
-    head, *lines = text.splitlines() or [""]
+    head, *lines = [line for line in text.splitlines() if not line.startswith("#")] or [""]
     return lines if head in (",".join(COLUMNS), ",".join(CALIBRATION_COLUMNS)) else []

@@ -11,7 +11,7 @@ from gearmath.machine import start, words
 from gearmath.machine.clear_space import Room
 from gearmath.machine.words import Positions
 from gearmath.specs.milling_machine import AXES, MillingMachine
-from gearmath.specs.touch_csv import COLUMNS
+from gearmath.specs.touch_csv import COLUMNS, PLANNED
 
 #: Alarms of these programs.
 DEFLECTED, NOTHING_TOUCHED, TOUCHED_TOO_EARLY, NOT_WRITTEN = 65000, 65001, 65002, 65003
@@ -50,8 +50,8 @@ class Blocks:
         """The word of one linear axis [mm]."""
         return self.positions.z(value) if axis == "Z" else self.positions.word(axis, value)
 
-    def start(self, columns: Sequence[str] = COLUMNS, room: Room | None = None) -> Iterator[str]:
-        """Head: Z home, the probe is fetched and held, the run is numbered, the result file gets its column line.
+    def start(self, plan: str, columns: Sequence[str] = COLUMNS, room: Room | None = None) -> Iterator[str]:
+        """Head: Z home, the probe is fetched and held, the run is numbered, the result file gets its plan and columns.
 
         Under the ``room`` of a work the probe must not stand.
         """
@@ -69,6 +69,7 @@ class Blocks:
         yield "STOPRE"
         yield "IF $A_PROBE[1]<>0"
         yield from start.stop("the probe is deflected before its first touch", DEFLECTED)
+        yield from self.write(f'"# {PLANNED}: {plan}"')
         yield from self.write(f'"{",".join(columns)}"')
 
     def end(self) -> Iterator[str]:

@@ -218,7 +218,7 @@ def write_touches(
 def _body(blocks: Blocks, targets: Targets, name: str, level: float, room: Room, repeat: int) -> Iterator[str]:
     if repeat > 1:
         yield f"DEF INT {_COUNTER}"
-    yield from blocks.start(room=room)
+    yield from blocks.start(_plan(targets, repeat), room=room)
     x, y, _, a, b = blocks.axes(targets.start[0])
     yield f"G0 {x} {y} {a} {b}"
     yield f"G0 {blocks.length('Z', level)}"
@@ -238,6 +238,12 @@ def _body(blocks: Blocks, targets: Targets, name: str, level: float, room: Room,
             yield "ENDFOR"
             yield f"G0 {blocks.length('Z', level)}"
     yield from blocks.end()
+
+
+def _plan(targets: Targets, repeat: int) -> str:
+    """What the run makes, for the head of the result file: one that was aborted is told from a shorter one."""
+    flanks = " and ".join(flank for flank in FLANKS if (targets.flank == flank).any())
+    return f"{len(targets) * repeat} touches, {len(set(targets.tooth.tolist()))} teeth, {flanks}"
 
 
 def _within_travel(targets: Targets, name: str, machine: MillingMachine, level: float) -> Targets:

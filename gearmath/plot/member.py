@@ -33,7 +33,7 @@ def member_figure(
 
 def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
     """A measured member: flanks as measured and as registered, pitch polygons, runout; what the clamping was."""
-    registered = evaluation.registration is not None
+    registered = evaluation.taken_out is not None
     before, after = evaluation.as_measured, evaluation.flanks if registered else {}
     first, last = ({k: f.chart for k, f in each.items() if f.chart is not None} for each in (before, after))
     shown = after or before
@@ -45,7 +45,7 @@ def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
     if evaluation.runout_as_measured:
         after_runout = evaluation.runout if registered else None
         drawn.append(partial(draw_runout, before=evaluation.runout_as_measured, after=after_runout))
-    return _together(title + _seat_words(evaluation.registration), drawn)
+    return _together(title + _seat_words(evaluation.taken_out), drawn)
 
 
 def _topographies(

@@ -8,9 +8,11 @@ to first order, and without bounds. The limit is the optimum on the exact surfac
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import combinations
 from typing import TypeVar
 
 import numpy as np
@@ -18,7 +20,7 @@ import numpy as np
 from gearmath.errors import ComputationError
 from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands
 from gearmath.quality.identification import RANK
-from gearmath.quality.variables import FREE, Bounds, Variable, variables_of
+from gearmath.quality.variables import FREE, Bounds, Variable, reading, variables_of
 
 #: What names a block of columns.
 Key = TypeVar("Key", bound=Hashable)
@@ -26,9 +28,13 @@ Key = TypeVar("Key", bound=Hashable)
 ALIKE = 0.999
 #: A direction with less than this part of the largest singular value is weak.
 WEAK = 0.01
-#: Settings are chosen until no more is lost than this part of what all of them leave, or this much [mm], or until the
-#: others together take away no more than this many times what as many of them take away of noise.
-LOSS_PART, LOSS, _LOSS_NOISE = 0.05, 5e-5, 3.0
+#: Settings are chosen until no more is lost than this part of what all of them leave, or what no probe shows [mm], or
+#: until the others together take away no more than this many times what as many of them take away of noise.
+LOSS_PART, LOSS, _LOSS_NOISE = 0.1, 1e-4, 3.0
+#: A probe resolves no less than this: the noise of a deviation is never taken for less when settings are chosen. [mm]
+PROBE = 1e-4
+#: So many choices of one number of settings are all tried; where there are more, settings are taken one by one.
+_MOST_CHOICES = 1100
 #: A setting that belongs to a direction has at least this part of its largest component.
 _NAMED = 0.2
 
@@ -156,15 +162,28 @@ class Analysis:
         return Choice(names, left, (left[-1] if left else nothing) - self.best_rms)
 
 
+def weak_words(analysis: Analysis, k: int) -> str:
+    """Direction k in words: settings changed together by so much, and how little that moves the flank."""
+    bounds = {variable.label: variable for variable in analysis.variables}
+    changes = []
+    for label, part in analysis.direction(k).items():
+        factor, unit = reading(bounds[label].name)
+        changes.append(f"{label} {part * bounds[label].bound * factor:+.4g} {unit}")
+    rms = analysis.singular_values[k] / math.sqrt(len(analysis.deviation)) * 1000
+    return f"{', '.join(changes)} together move the flank by only {rms:.2g} um (RMS)"
+
+
 def fewest(
     columns: Mapping[Key, np.ndarray], deviation: np.ndarray, besides: np.ndarray | None = None,
     noise: float | None = None,
 ) -> tuple[tuple[Key, ...], tuple[float, ...]]:  # fmt: skip
     """The fewest blocks of columns (m,k) that explain deviations (m,) nearly as well as all, and RMS left after each.
 
-    They are taken one by one, each that with which the least is left, and then what is no more needed is given back.
-    ``besides`` (m,q) explains what it can before any is taken. It is enough where little is lost, or where the others
-    gain no more than they would of noise: ``noise`` [mm] of one deviation, or what all of them leave.
+    Of the least number that is enough, the choice with the least change of settings in parts of their bounds. Where
+    there are too many choices to try, they are taken one by one, each that with which the least is left, and then what
+    is no more needed is given back. ``besides`` (m,q) explains what it can before any is taken. It is enough where
+    little is lost, or where the others gain no more than they would of noise: ``noise`` [mm] of one deviation, or what
+    all of them leave, and at least what a probe resolves.
     """
     first = np.zeros((len(deviation), 0)) if besides is None else besides
 
@@ -173,9 +192,14 @@ def fewest(
         left = projection_residual(together, deviation) if together.shape[1] else deviation
         return float(left @ left)
 
+    def change(keys: Sequence[Key]) -> float:
+        together = np.hstack([first, *(columns[key] for key in keys)])
+        solved, *_ = np.linalg.lstsq(together, deviation, rcond=RANK)
+        return float(np.sum(solved[first.shape[1] :] ** 2))
+
     keys, m = list(columns), len(deviation)
     least, size = squares(keys), first.shape[1] + sum(block.shape[1] for block in columns.values())
-    variance = least / max(m - size, 1) if noise is None else noise**2
+    variance = max(least / max(m - size, 1) if noise is None else noise**2, PROBE**2)
     best = np.sqrt(least / m)
     little = m * max(best * (1 + LOSS_PART), best + LOSS) ** 2
 
@@ -183,14 +207,29 @@ def fewest(
         others = sum(columns[key].shape[1] for key in keys if key not in taken)
         return left <= max(little, least + _LOSS_NOISE * others * variance)
 
+    def ordered(taken: list[Key]) -> tuple[tuple[Key, ...], tuple[float, ...]]:
+        """The one first that alone leaves the least, and so on; and what is left after each."""
+        one_by_one: list[Key] = []
+        while len(one_by_one) < len(taken):
+            rest = [key for key in taken if key not in one_by_one]
+            one_by_one.append(min(rest, key=lambda key: squares([*one_by_one, key])))
+        left = (float(np.sqrt(squares(one_by_one[: k + 1]) / m)) for k in range(len(taken)))
+        return tuple(one_by_one), tuple(left)
+
     taken: list[Key] = []
+    for number in range(len(keys) + 1):
+        if math.comb(len(keys), number) > _MOST_CHOICES:
+            break
+        able = [each for each in map(list, combinations(keys, number)) if enough(each, squares(each))]
+        if able:
+            return ordered(min(able, key=change))
     while not enough(taken, squares(taken)):
         taken.append(min((key for key in keys if key not in taken), key=lambda key: squares([*taken, key])))
     for key in taken[:-1]:
         fewer = [other for other in taken if other != key]
         if enough(fewer, squares(fewer)):
             taken = fewer
-    return tuple(taken), tuple(float(np.sqrt(squares(taken[: k + 1]) / m)) for k in range(len(taken)))
+    return ordered(taken)
 
 
 def analyse(

@@ -34,7 +34,7 @@ ROOT_WEIGHT = 100.0
 
 #: Where a design leaves more than this part of the sum of squares after so many steps, it also starts with so much of
 #: the bound of the tilt.
-_GOOD, _HEAT, _TILTED = 0.01, 12, 0.25
+_GOOD, _HEAT, _TILTED = 0.01, 6, 0.25
 #: With noise, what improves the sum of squares by less than this part of its square is no improvement.
 _MATTERS = 1e-6
 

@@ -40,10 +40,11 @@ def missing_points(file: FlankFile, teeth: int) -> tuple[str, ...]:
 def missing_touches(touches: Touches, teeth: int, shape: tuple[int, int]) -> tuple[str, ...]:
     """What a run of touches on a grid of this shape does not have, as probing programs make them.
 
-    Where pitch is measured, tooth 0 is touched again at the end, and every point as often as the first one.
+    Where pitch is measured, tooth 0 is touched again at the end, and every point as often as the first one. A run that
+    says how many touches were planned has as many.
     """
     places = _places(touches.flank, touches.tooth, touches.row, touches.col)
-    found = list(_missing(places, teeth, shape, (shape[0] // 2, shape[1] // 2), 0.0))
+    found = [*_unplanned(touches), *_missing(places, teeth, shape, (shape[0] // 2, shape[1] // 2), 0.0)]
     again = [places.get((flank, teeth), set()) for flank in FLANKS]
     if not found and not _in_full(places, shape) and not (again[0] and again[0] == again[1]):
         found.append(
@@ -54,6 +55,22 @@ def missing_touches(touches: Touches, teeth: int, shape: tuple[int, int]) -> tup
     if last[1] != often:
         found.append(f"the last point was touched {last[1]} times, others {often} times")
     return tuple(found)
+
+
+def taken_for(touches: Touches, shape: tuple[int, int]) -> str:
+    """What a run that does not say what was planned is taken for: it may have been aborted between two parts."""
+    places = _places(touches.flank, touches.tooth, touches.row, touches.col)
+    numbers = {tooth for _, tooth in places}
+    grids = {tooth for (_, tooth), here in places.items() if len(here) == shape[0] * shape[1]}
+    parts = ["the grid of 1 tooth" if len(grids) == 1 else f"the grids of {len(grids)} teeth"] if grids else []
+    parts += [f"single points of {len(numbers - grids)} teeth"] if numbers - grids else ["no pitch"]
+    return f"its file does not say how many touches were planned: taken for a whole run of {', '.join(parts)}"
+
+
+def _unplanned(touches: Touches | CalibrationTouches) -> Iterable[str]:
+    count = len(touches.axes)
+    if touches.planned is not None and count != touches.planned:
+        yield f"it has {count} touches, its program makes {touches.planned}"
 
 
 def missing_calibration(
@@ -69,6 +86,7 @@ def missing_calibration(
     parts = tuple(
         f"{name} was touched {there[name]} of {count} times" for name, count in lacking.items() if there[name]
     )
+    parts = (*_unplanned(touches), *parts)
     return parts, tuple(f"{name} was not touched" for name in lacking if not there[name])
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from gearmath.bevel import ease_off
 from gearmath.bevel.flank import Grid
 from gearmath.bevel.grid import file_grid
 from gearmath.bevel.kernels import kernel
@@ -52,19 +53,14 @@ def conjugate_places(
     Of the two places that (20.5) has for each point, that on the mate's blank. Raises ComputationError if a point has
     none.
     """
-    beyond, mate_beyond = (one.blank.pitch_apex_beyond_crossing_point for one in (member, mate))
-    point = point - [0.0, 0.0, beyond]  # from the crossing point, which the members share
-    given = (point, normal, np.radians(gear_set.shaft_angle), mate.teeth / member.teeth)
+    found = ease_off.conjugate_places(member, mate, gear_set.shaft_angle, point, normal)
     delta, mean = np.radians(mate.blank.pitch_angle), mate.blank.mean_cone_distance
-    center = mean * np.array([np.cos(delta), np.sin(delta)]) - [mate_beyond, 0.0]
-    places = np.stack([np.stack(kernel("conjugate_place")(*given, side)[1:], axis=1) for side in (1, -1)])
-    away = np.linalg.norm(places - center, axis=2)
+    away = np.hypot(found.axial - mean * np.cos(delta), found.radial - mean * np.sin(delta))
     away = np.where(np.isfinite(away), away, np.inf)
-    chosen = np.take_along_axis(places, away.argmin(axis=0)[None, :, None], axis=0)[0]
-    if not (away.min(axis=0) <= _FARTHEST * mate.blank.face_width).all():
-        k = int(away.min(axis=0).argmax())
+    if not (away <= _FARTHEST * mate.blank.face_width).all():
+        k = int(away.argmax())
         raise ComputationError(f"{what}: point {k} does not meet the mate; its errors cannot be moved there")
-    return chosen[:, 0] + mate_beyond, chosen[:, 1]
+    return found.axial, found.radial
 
 
 def _interpolated(mate: Member, known: Grid, deviation: np.ndarray, wanted: Grid) -> np.ndarray:

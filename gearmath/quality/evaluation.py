@@ -32,6 +32,9 @@ from gearmath.quality.topography import (
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
 
+#: What a maximum that is withheld is called.
+_NAMES = {"max_deviation": "largest deviation", "F_p": "F_p", "max_f_pt": "largest f_pt"}
+
 
 @dataclass(frozen=True)
 class FlankFigures:
@@ -92,6 +95,7 @@ class Evaluation:
 
     ``flanks`` and ``runout`` are those of ``file``, without clamping and the rotation that both flanks have in common;
     ``as_measured`` are those before either was taken out.
+    ``registration`` is what was found of the clamping, whether or not it was taken out (``is_significant``).
     ``left_out`` are sentences on the points that were left out, and ``remarks`` all sentences: these, teeth that are
     far off and were kept, what was not found and why.
     """
@@ -109,6 +113,27 @@ class Evaluation:
     verdict: Verdict | None
     left_out: tuple[str, ...]
     remarks: tuple[str, ...]
+
+    @property
+    def taken_out(self) -> Registration | None:
+        """The clamping that was taken out, None where it is not known or no more than noise."""
+        return self.registration if self.registration is not None and self.registration.is_significant else None
+
+    @property
+    def withheld(self) -> tuple[str, ...]:
+        """Sentences on figures that there are not over data with a gap, those with the same reason together."""
+        reasons: dict[str, list[str]] = {}
+        for flank, figures in self.flanks.items():
+            for name, why in figures.withheld.items():
+                reasons.setdefault(why, []).append(f"{_NAMES[name]} of the {flank} flank")
+        if self.runout is not None and self.runout.withheld is not None:
+            reasons.setdefault(self.runout.withheld, []).append("F_r")
+        if self.thickness is not None and self.thickness.withheld is not None:
+            reasons.setdefault(self.thickness.withheld, []).append("range of the thickness")
+        if self.verdict is not None:
+            for name, why in self.verdict.withheld.items():
+                reasons.setdefault(why, []).append(f"grade of {name}")
+        return tuple(f"withheld: {', '.join(names)}: {why}" for why, names in reasons.items())
 
     def as_dict(self) -> dict[str, Any]:
         """All figures for people and programs: µm, mm and degrees."""
@@ -138,9 +163,9 @@ def evaluate_member(
     """Judge a measured file of a member, of this machine or of another measuring centre.
 
     Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
-    the clamping where the points tell it; if ``rotated``, so is the rotation that both flanks have in common. Raises
-    InputError if the file is not of this member, or not in mm on its flanks, or if neither a tooth in full nor pitch
-    was measured.
+    the clamping where the points tell it beyond their noise; if ``rotated``, so is the rotation that both flanks have
+    in common. Raises InputError if the file is not of this member, or not in mm on its flanks, or if neither a tooth in
+    full nor pitch was measured.
     """
     check_belongs(member, name, file)
     check_points(file, nominal_rows(file, member, name))
@@ -155,23 +180,24 @@ def evaluate_member(
     if registered:
         try:
             seat = register(measured, member, name, untold_drift(whole, member.teeth))
-            remarks += seat.remarks
+            remarks += (*seat.remarks, *([seat.remark] if seat.remark else []))
         except InputError as error:
             remarks += (f"not registered: {error}",)
     progress(1)
-    judged, turn = measured if seat is None else seat.file, None
+    taken = seat if seat is not None and seat.is_significant else None
+    judged, turn = measured if taken is None else taken.file, None
     noise = stated_noise(file) if seat is None else seat.noise
     if rotated:
         try:
             turn = common_rotation(judged, member, name, noise)
             judged = turn.file
         except InputError as error:
-            remarks += (f"rotation left in: {error}",)
+            remarks += (f"rotation of the work not taken out: {error}",)
     progress(1)
     flanks = as_measured if judged is measured else _flanks(judged, member)
     angle = math.radians(member.blank.pitch_angle)
     before = evaluate_runout(measured, member.teeth, angle, noise)
-    runout = before if seat is None else evaluate_runout(judged, member.teeth, angle, noise, seat)
+    runout = before if judged is measured else evaluate_runout(judged, member.teeth, angle, noise, taken)
     each_zeroed = file.header["phase_zeroed"].lower() == "true"
     if each_zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)

@@ -16,6 +16,7 @@ from gearmath.bevel.turning import half_turn, turned
 from gearmath.errors import InputError
 from gearmath.machine.mill import flank_header
 from gearmath.quality.lattice import Lattice, find_lattice
+from gearmath.quality.misplaced import check_placed
 from gearmath.quality.nominal import SAME_POINT
 from gearmath.quality.outliers import flag_outliers
 from gearmath.quality.points import LEAST_FIT, Frame, Laid, Part, Phase, axial_hint, check_normals, lay, turn_of
@@ -24,6 +25,8 @@ from gearmath.specs.flank_csv import OWN, FlankFile, flank_file, join
 
 #: Where points form no grid, deviations are interpolated on this one: its rows, columns and margins, widest first.
 _ROWS, _COLUMNS, _MARGINS = 5, 9, (0.1, 0.15, 0.2, 0.25, 0.3)
+#: Fewer points tell neither a rotation nor a surface.
+_LEAST_POINTS = 6
 #: A place of that grid was measured if a point lies this near, in steps of the grid.
 _NEAR_STEPS = 0.8
 #: Turning until the reference points stand still. [rad]
@@ -42,11 +45,15 @@ _EVEN, _DIGITS = SAME_POINT / 2, 6
 
 @dataclass(frozen=True)
 class Foreign:
-    """The flank file, the turning [rad] of every part that was taken out, and what was found, in sentences."""
+    """The flank file, the turning [rad] of every part that was taken out, and what was found, in sentences.
+
+    ``doubts`` are those of the sentences that say that the points may not stand as the options have them.
+    """
 
     file: FlankFile
     turns: tuple[float, ...]
     remarks: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
 
 
 def foreign_file(
@@ -61,6 +68,9 @@ def foreign_file(
     points are not of their flank, or parts not of their tooth.
     """
     member = gear_set.member(name)
+    for part in parts:
+        if len(part.point) < _LEAST_POINTS:
+            raise InputError(f"{part.name}: holds {len(part.point)} points, at least {_LEAST_POINTS} are needed")
     turns = []
     for part in parts:
         turns.append(turn_of(part, frame, gear_set, name))
@@ -75,18 +85,23 @@ def foreign_file(
     if phase != "kept":
         turns, laid = _zeroed(laid, lattices, turns, frame, member, phase == "common")
         lattices = _lattices(laid, member)
-    files, remarks = [], [axial_hint(parts[0], frame, member, turns[0])]
+    doubts = [hint] if (hint := axial_hint(parts[0], frame, member, turns[0])) else []
+    if not doubts:
+        groups = [[k] for k in range(len(parts))] if phase == "each" else [list(range(len(parts)))]
+        told = [check_placed([parts[k] for k in group], [turns[k] for k in group], frame, member) for group in groups]
+        doubts = [one for one in told if one]
+    files, remarks = [], []
     for one, lattice, turn in zip(laid, lattices, turns, strict=True):
         file, found = _file(one, lattice, member, name)
         files.append(file)
-        told = check_normals(one, frame, member, turn)
-        said = (*_left_out(one), *_covered(one, member), *found, told)
+        doubts += [f"{one.part.name}: {each}" for each in (*_left_out(one), *_covered(one, member))]
+        said = (*found, check_normals(one, frame, member, turn))
         remarks += [f"{one.part.name}: {each}" for each in said if each]
         progress(1)
-    remarks = [each for each in remarks if each]
     zeroed = phase == "each" or (phase == "common" and len({part.flank for part in parts}) == 1)
     header = _header(member, name, files, frame, zeroed)
-    return Foreign(join([replace(file, header=header) for file in files]), tuple(turns), tuple(remarks))
+    joined = join([replace(file, header=header) for file in files])
+    return Foreign(joined, tuple(turns), (*doubts, *remarks), tuple(doubts))
 
 
 def _common(parts: Sequence[Part], turns: Sequence[float], member: Member) -> float:

@@ -34,9 +34,10 @@ def judging_of(file: FlankFile, member: Member, found: Evaluation) -> tuple[ca.F
         gain, columns = found.registration.gain, found.registration.columns
         moved = ca.mtimes(ca.DM(gain), change)
         seat = ca.DM(found.registration.seat) + moved
-        change -= ca.mtimes(ca.DM(columns), moved)
         slope[n : n + 4] = gain @ slope[:n]
-        slope[:n] -= columns @ slope[n : n + 4]
+        if found.taken_out is not None:
+            change -= ca.mtimes(ca.DM(columns), moved)
+            slope[:n] -= columns @ slope[n : n + 4]
     if found.rotation is not None:
         turned = ca.mtimes(ca.DM(found.rotation.gain).T, change)
         turn = found.rotation.angle + turned

@@ -26,6 +26,8 @@ from gearmath.specs.flank_csv import FlankFile
 _ITERATIONS, _CONVERGED = 12, 1e-9
 #: Fewer spare observations than this say nothing about the noise.
 _LEAST_SPARE = 3
+#: Eccentricity or tilt of fewer of their standard uncertainties is what noise alone would show.
+_SIGNIFICANT = 3.0
 
 
 @dataclass(frozen=True)
@@ -93,9 +95,32 @@ class Registration:
     def tilt_uncertainty(self) -> float:
         return _along(self.covariance[2:, 2:], self.tilt_direction)
 
+    @property
+    def is_significant(self) -> bool:
+        """Whether eccentricity or tilt exceeds three of its standard uncertainties, or one of them is not known.
+
+        Taking out what is no more than noise would only shift the pitch of every tooth by that noise.
+        """
+        pairs = [(self.eccentricity, self.eccentricity_uncertainty)]
+        pairs += [(self.tilt, self.tilt_uncertainty)] * self.tilt_found
+        return any(not size <= _SIGNIFICANT * u for size, u in pairs)
+
+    @property
+    def remark(self) -> str | None:
+        """Why the clamping stays in the deviations; None where it is to be taken out."""
+        if self.is_significant:
+            return None
+        size, u = self.eccentricity * 1000, self.eccentricity_uncertainty * 1000
+        what, verb = f"eccentricity {size:.2f} um (u = {u:.2f} um)", "is"
+        if self.tilt_found:
+            what += f" and tilt {self.tilt * 1e5:.2f} um per 100 mm (u = {self.tilt_uncertainty * 1e5:.2f})"
+            verb = "are"
+        return f"clamping not taken out: {what} {verb} below {_SIGNIFICANT:.0f} u, no more than the noise of the points"
+
     def as_dict(self) -> dict[str, Any]:
         """Figures for people and programs: µm and degrees, None where the points do not tell."""
         return {
+            "taken_out": self.is_significant,
             "eccentricity_um": self.eccentricity * 1000,
             "u_eccentricity_um": _or_none(self.eccentricity_uncertainty * 1000),
             "eccentricity_direction_deg": math.degrees(self.eccentricity_direction),
@@ -103,7 +128,7 @@ class Registration:
             "u_tilt_um_per_100mm": _or_none(self.tilt_uncertainty * 1e5),
             "tilt_direction_deg": math.degrees(self.tilt_direction) if self.tilt_found else None,
             "noise_um": _or_none(self.noise * 1000),
-            "largest_removed_um": float(np.abs(self.removed).max() * 1000),
+            "largest_removed_um": float(np.abs(self.removed).max() * 1000) if self.is_significant else 0.0,
             "index_model": self.index_model,
             "singular_values": self.singular_values.tolist(),
             "axial": self.axial_position.as_dict(),

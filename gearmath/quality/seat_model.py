@@ -77,13 +77,13 @@ def seat_model(
             f"to heel and root to tip, on {LEAST_TEETH} teeth around"
         )
     feigned = _SMALL_TILT * _feigned(left, float(rows.point[used, 2].mean()))
-    what = f"a tilt of 10 um per 100 mm passes for {feigned * 1000:.1f} um of eccentricity"
+    what = f"a tilt of 10 um per 100 mm looks like {feigned * 1000:.1f} um of eccentricity"
     if feigned > _MOST_FEIGNED:
         raise InputError(
             f"{file.member}: most teeth were measured at one place, and there {what}: measure three or more places, "
             f"toe to heel and root to tip, on {LEAST_TEETH} teeth around"
         )
-    untold = f"tilt is not told by teeth measured at one place; taken as none at the height of that place, where {what}"
+    untold = f"tilt cannot be found where teeth were measured at one place; it is taken as zero, and {what}"
     return SeatModel(left[:, :2], free, (0, 1), _BOTH_FLANKS, (*remarks, untold))
 
 

@@ -125,7 +125,7 @@ def expected_topographies(member: Member, found: Evaluation, correction: Correct
     for group, result in correction.identified.items():
         targets = [flank_target(member, found.member, flank, found.file) for flank in group]
         ends = np.cumsum([len(target.deviation) for target in targets])[:-1]
-        for flank, target, part in zip(group, targets, np.split(-result.residual, ends), strict=True):
+        for flank, target, part in zip(group, targets, np.split(result.residual, ends), strict=True):
             if not found.flanks[flank].topographies:
                 continue  # corrected from fewer points than a topography needs
             deviation = np.full(target.grid_points, np.nan)

@@ -131,7 +131,7 @@ def uncertainty_section(page: Page, one: Measurement) -> None:
 
 def clamping_section(page: Page, found: Evaluation) -> None:
     """What was taken out of the deviations before they were judged."""
-    seat, turn = found.registration, found.rotation
+    seat, turn = found.taken_out, found.rotation
     rows = []
     if seat is not None:
         at, about = np.degrees([seat.eccentricity_direction, seat.tilt_direction])

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from gearmath.page import Page
-from gearmath.quality.analysis import Analysis
+from gearmath.quality.analysis import Analysis, weak_words
 from gearmath.quality.correction import Correction, setting_changes
 from gearmath.quality.identification import Identification
 from gearmath.quality.variables import reading
-from gearmath.report.measurement import Measurement, micro
+from gearmath.report.measurement import Measurement, in_words, micro
 
 
 def settings_sections(page: Page, measurement: Measurement) -> None:
@@ -75,14 +75,9 @@ def _limits(flanks: str, analysis: Analysis, found: Identification, reachable: f
             "from the other."
         )
     if analysis.weak:
-        what = "; ".join(_direction(analysis, k) for k in analysis.weak)
-        yield f"{flanks}: weak directions, which much noise and little flank belong to: {what}."
+        what = "; ".join(weak_words(analysis, k) for k in analysis.weak)
+        yield in_words(f"{flanks}: the measurement hardly tells these changes of settings: {what}.")
     if analysis.unseen:
         yield f"{flanks}: without effect: {', '.join(analysis.unseen)}."
     if found.active:
         yield f"{flanks}: held back by the limit of {', '.join(found.active)}."
-
-
-def _direction(analysis: Analysis, k: int) -> str:
-    parts = " ".join(f"{part:+.2f} {name}" for name, part in analysis.direction(k).items())
-    return f"{parts} (singular value {analysis.singular_values[k] * 1000:.2g} µm)"

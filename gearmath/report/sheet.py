@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from gearmath.page import Page
-from gearmath.quality.evaluation import Evaluation
 from gearmath.quality.topography import Topography
 from gearmath.report import charts
 from gearmath.report.figures import clamping_section, flank_section, spacing_section, uncertainty_section
@@ -17,9 +16,6 @@ _ZERO = (
     "The plane net is the nominal flank; up, and +, is metal left on, in µm. Each flank is turned about the work axis "
     "until its reference point (ring) is zero, so that tooth thickness is not in the charts. One scale for the member."
 )
-
-#: Names of figures that may be withheld, as the sheet writes them.
-_NAMES = {"max_deviation": "largest deviation", "F_p": "F_p", "max_f_pt": "largest f_pt"}
 
 
 #: How often ``inspection_sheet`` tells its progress for each member.
@@ -69,25 +65,10 @@ def _left_out(page: Page, members: Sequence[Measurement]) -> None:
             if not figures.topographies
         ]
         others = [text for text in found.remarks if text not in found.left_out]
-        texts = [*absent, *found.left_out, *_withheld(found), *others, *one.remarks]
+        texts = [*absent, *found.left_out, *found.withheld, *others, *one.remarks]
         sentences += [f"{found.member}: {in_words(text)}." for text in texts]
     if sentences:
         page.first("Left out, withheld, or not known", sentences)
-
-
-def _withheld(found: Evaluation) -> Iterator[str]:
-    """Figures that there are not over data with a gap, together with those that have the same reason."""
-    reasons: dict[str, list[str]] = {}
-    for flank, figures in found.flanks.items():
-        for name, why in figures.withheld.items():
-            reasons.setdefault(why, []).append(f"{_NAMES[name]} of the {flank} flank")
-    if found.runout is not None and found.runout.withheld is not None:
-        reasons.setdefault(found.runout.withheld, []).append("F_r")
-    if found.verdict is not None:
-        for name, why in found.verdict.withheld.items():
-            reasons.setdefault(why, []).append(f"grade of {name}")
-    for why, names in reasons.items():
-        yield f"withheld: {', '.join(names)}: {why}"
 
 
 def _member(

@@ -8,52 +8,37 @@ loaded is in mm and degrees, with work by cradle, and counts from the pitch apex
 from __future__ import annotations
 
 import hashlib
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-import tomlkit
 from pydantic import Field, model_validator
 
-from derivations import Quantity, cradle, notation
+from derivations import cradle, notation
 from gearmath.errors import InputError
-from gearmath.files import read_text, write_text
-from gearmath.specs.sheet import (
-    UNITS,
-    Angle,
-    Length,
-    Sheet,
-    Unit,
-    angle_text,
-    is_number,
-    refusal_of,
-    shown,
-    unit_of,
-)
-from gearmath.specs.toml import Spec, load, parse
+from gearmath.specs.cut import CRADLE_PER_WORK, MACHINE_SETTINGS, SETTINGS, Design, Flank, Motion, Settings, vector_of
+from gearmath.specs.sheet import Angle, Length, Sheet, Unit, is_number, shown
+from gearmath.specs.toml import load
 
 if TYPE_CHECKING:
     from gearmath.lowering import Kernel
+
+#: With what a set is made of, which is read from here.
+__all__ = [
+    "ADVANCE", "BEYOND", "CRADLE_PER_WORK", "FLANKS", "MACHINE_SETTINGS", "MEMBERS", "SETTINGS", "SIDES", "BevelSet",
+    "Blank", "Design", "Flank", "Member", "Motion", "Settings", "design_sha256", "load_bevel_set", "settings_sha256",
+]  # fmt: skip
 
 MEMBERS = ("pinion", "gear")
 FLANKS = ("concave", "convex")
 #: +1 outer blade cuts the concave flank, -1 inner blade the convex flank, for both hands.
 SIDES = {"concave": 1, "convex": -1}
-SETTINGS = tuple(component.name for component in notation.settings.components)
-#: The settings that belong to the machine and not to the blade: a completing cut shares them.
-MACHINE_SETTINGS = tuple(name for name in SETTINGS if not name.startswith("blade_"))
-#: The largest radius of a blade that is no straight one [mm]: its sagitta over 10 mm is 0.6 um.
-STRAIGHT = 20_000.0
-_ANGULAR = {component.name for component in notation.settings.components if component.unit == "rad"}
-#: Cradle rotation by work rotation, in place of the ratio of roll.
-CRADLE_PER_WORK = "ratio_of_roll_cradle_per_work"
 _FILE = "_file"
 #: A corrected machine may stand steeper than the face of a uniform tooth by so much. [degree]
 _ROOT_BEYOND = 1.0
-_RATIO, _ADVANCE, _BEYOND = "ratio_of_roll", "machine_center_to_crossing_point", "pitch_apex_beyond_crossing_point"
+ADVANCE, BEYOND = "machine_center_to_crossing_point", "pitch_apex_beyond_crossing_point"
 
 
 class Blank(Sheet):
@@ -90,137 +75,7 @@ class Blank(Sheet):
     @property
     def vector(self) -> np.ndarray:
         """The blank as the vector of ``notation.blank`` (8,), mm and rad."""
-        return _vector(self, notation.blank.components)
-
-
-_Coefficients = Annotated[tuple[Annotated[float, Field(ge=-1000, le=1000)], ...], Field(strict=False, max_length=7)]
-_Lengths = Annotated[_Coefficients, Unit("mm")]
-_Angles = Annotated[_Coefficients, Unit("degree")]
-
-
-class Motion(Sheet):
-    """Coefficients of θ^1 ... θ^7 of machine settings, mm and degrees per rad^j; ``modified_roll`` is 2C, 6D, ..."""
-
-    radial_distance: _Lengths = ()
-    cradle_angle: _Angles = ()
-    cutter_tilt: _Angles = ()
-    cutter_swivel: _Angles = ()
-    blank_offset: _Lengths = ()
-    sliding_base: _Lengths = ()
-    machine_center_to_crossing_point: _Lengths = ()
-    machine_root_angle: _Angles = ()
-    ratio_of_roll: _Coefficients = ()
-    work_rotation_offset: _Angles = ()
-    modified_roll: Annotated[_Coefficients, Field(max_length=4)] = ()
-
-    @property
-    def matrix(self) -> np.ndarray:
-        """The motion as the matrix of ``notation.motion`` (10,7), mm and rad, without the modified roll."""
-        matrix = np.zeros(notation.motion.shape)
-        for row, name in zip(matrix, MACHINE_SETTINGS, strict=True):
-            values = np.array(getattr(self, name), dtype=float)
-            row[: len(values)] = np.radians(values) if name in _ANGULAR else values
-        return matrix
-
-    @property
-    def roll(self) -> np.ndarray:
-        """2C, 6D, 24E, 120F (4,)."""
-        return np.pad(np.array(self.modified_roll, dtype=float), (0, 4 - len(self.modified_roll)))
-
-
-class Settings(Sheet):
-    """The settings of machine and cutter of one flank (mm, degrees).
-
-    A file may give the ratio of roll, work by cradle, as ``ratio_of_roll_cradle_per_work`` instead.
-    """
-
-    radial_distance: Length = Field(gt=0, le=1000)
-    cradle_angle: Angle = Field(ge=-180, le=180)
-    cutter_tilt: Angle = Field(ge=-45, le=45)
-    cutter_swivel: Angle = Field(ge=-360, le=360)
-    blank_offset: Length = Field(ge=-200, le=200)
-    sliding_base: Length = Field(ge=-200, le=200)
-    machine_center_to_crossing_point: Length = Field(ge=-200, le=200)
-    machine_root_angle: Angle = Field(gt=0, lt=87)
-    ratio_of_roll: float = Field(gt=0.1, le=50)
-    work_rotation_offset: Angle = Field(ge=-360, le=360)
-    blade_point_radius: Length = Field(gt=5, le=500)
-    blade_pressure_angle: Angle = Field(ge=3, le=45)
-
-    @classmethod
-    def keys(cls) -> list[str]:
-        """The keys of its table in a file."""
-        return [*super().keys(), CRADLE_PER_WORK]
-
-    @classmethod
-    def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
-        plain = super().plain(values, mm, where)
-        if CRADLE_PER_WORK in plain:
-            ratio = plain.pop(CRADLE_PER_WORK)
-            if _RATIO in plain:
-                raise refusal_of(
-                    cls, (*where, CRADLE_PER_WORK), ratio, f"{_RATIO} is given too: only one of them may be"
-                )
-            if not is_number(ratio) or not 1 / 50 <= ratio < 1 / 0.1:
-                raise refusal_of(cls, (*where, CRADLE_PER_WORK), ratio, "must be at least 0.02 and less than 10")
-            plain[_RATIO] = 1 / ratio
-        return plain
-
-    @property
-    def vector(self) -> np.ndarray:
-        """The settings as the vector of ``notation.settings`` (12,), mm and rad."""
-        return _vector(self, notation.settings.components)
-
-
-class Design(Settings):
-    """The settings of the nominal flank of a corrected one; ``motion`` where the motion was corrected too.
-
-    ``blade_spheric_radius`` is that of the nominal blade, or "straight", where it was corrected.
-    """
-
-    motion: Motion | None = None
-    blade_spheric_radius: Annotated[Length, Field(ge=-STRAIGHT, le=STRAIGHT)] | Literal["straight"] | None = None
-
-
-class Flank(Settings):
-    """How one flank is cut; ``design``, where given, holds the settings of the nominal flank, the others corrected."""
-
-    blade_profile_height: Length = Field(gt=0, le=60)
-    blade_edge_radius: Length = Field(default=0.0, ge=0, le=10)
-    #: Of a fixed-setting cutter, which has another side (mm); without it the root of the space decides.
-    blade_point_width: Length | None = Field(default=None, gt=0, le=60)
-    blade_spheric_radius: Length | None = Field(default=None, ge=-STRAIGHT, le=STRAIGHT)
-    blade_reference_height: Length = Field(default=0.0, ge=0, le=60)
-    toprem_angle: Angle | None = Field(default=None, ge=0.5, le=45)
-    toprem_height: Length = Field(default=0.0, ge=0, le=10)
-    blade_offset_angle: Angle = Field(default=0.0, ge=-45, le=45)
-    motion: Motion = Motion()
-    design: Design | None = None
-
-    @model_validator(mode="after")
-    def _blade(self) -> Flank:
-        if self.blade_spheric_radius is not None and abs(self.blade_spheric_radius) < 2 * self.blade_profile_height:
-            radius, limit = shown(self.blade_spheric_radius), shown(2 * self.blade_profile_height)
-            raise ValueError(f"blade_spheric_radius = {radius}: must be at least {limit} in size")
-        if (self.toprem_angle is not None) != (self.toprem_height > 0):
-            raise ValueError("toprem_angle and toprem_height belong together")
-        return self
-
-    @property
-    def nominal(self) -> Settings:
-        """The settings whose tooth surface is wanted."""
-        return self.design or self
-
-    @property
-    def nominal_spheric_radius(self) -> float | None:
-        """The radius of the blade whose tooth surface is wanted, None where it is straight."""
-        before = self.design.blade_spheric_radius if isinstance(self.design, Design) else None
-        return self.blade_spheric_radius if before is None else None if before == "straight" else before
-
-    @property
-    def nominal_motion(self) -> Motion:
-        """The motion of the settings whose tooth surface is wanted."""
-        return (self.design.motion if isinstance(self.design, Design) else None) or self.motion
+        return vector_of(self, notation.blank.components)
 
 
 class Member(Sheet):
@@ -244,12 +99,12 @@ class Member(Sheet):
     def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
         plain = super().plain(values, mm, where)
         blank = plain.get("blank")
-        beyond = blank.get(_BEYOND, 0.0) if isinstance(blank, dict) else 0.0
+        beyond = blank.get(BEYOND, 0.0) if isinstance(blank, dict) else 0.0
         if beyond and is_number(beyond):
             flanks = [plain[flank] for flank in FLANKS if isinstance(plain.get(flank), dict)]
             for table in (*flanks, *(flank["design"] for flank in flanks if isinstance(flank.get("design"), dict))):
-                if is_number(table.get(_ADVANCE)):
-                    table[_ADVANCE] = _from_apex(table[_ADVANCE], beyond)
+                if is_number(table.get(ADVANCE)):
+                    table[ADVANCE] = _from_apex(table[ADVANCE], beyond)
         return plain
 
     @model_validator(mode="after")
@@ -372,73 +227,6 @@ def _digest(member: Member, motions: list[Motion], radii: list[float | None], *s
     return hashlib.sha256(repr((sorted(method.items()), blades, *settings)).encode()).hexdigest()
 
 
-def save_corrected(
-    source: Path,
-    target: Path,
-    member: str,
-    settings: dict[str, np.ndarray],
-    index_correction: np.ndarray | None = None,
-    motions: dict[str, np.ndarray] | None = None,
-    curvatures: dict[str, float] | None = None,
-    check: Callable[[BevelSet], object] = lambda _: None,
-) -> None:
-    """Write the set of ``source``, comments kept, with new settings (12,) of each flank, to ``target``.
-
-    A setting that stays is left as it is written. The nominal settings are kept under ``design``.
-    ``index_correction`` (z,) in rad replaces that of the member, and ``motions`` (10,7) of each flank, without the
-    modified roll, its motion, and ``curvatures`` [1/mm] those of its blade. The text is checked as a set, and by
-    ``check`` besides, before anything is written. Raises InputError naming the target.
-    """
-    content = read_text(source)
-    before, document = parse(content, BevelSet, str(source)).member(member), tomlkit.parse(content)
-    table: Any = document[member]
-    mm, beyond = UNITS[document.get("unit", "mm")], table["blank"].get(_BEYOND, 0.0)
-    for flank, vector in settings.items():
-        written = _written(table[flank], vector, mm, beyond)
-        if "design" not in table[flank]:
-            table[flank]["design"] = {key: table[flank][key] for key in written}
-        changed = vector != before.flank(flank).vector
-        for (key, value), new in zip(written.items(), changed, strict=True):
-            if new:
-                table[flank][key] = value
-    for flank, matrix in (motions or {}).items():
-        _save_motion(table[flank], matrix, mm)
-    for flank, curvature in (curvatures or {}).items():
-        _save_curvature(table[flank], curvature, mm)
-    if index_correction is not None:
-        table["index_correction"] = [round(math.degrees(value), 7) + 0.0 for value in index_correction]
-    text = tomlkit.dumps(document)
-    corrected = parse(text, BevelSet, str(target))
-    try:
-        check(corrected)
-    except InputError as error:
-        raise InputError(f"{target}: {error}") from error
-    write_text(target, text)
-
-
-def _written(table: Any, vector: np.ndarray, mm: float, beyond: float) -> dict[str, float | str]:
-    """Settings (12,) by key as the table of a flank has them: its unit, its angles, its ratio, its crossing point.
-
-    Nine decimals of a millimetre, or as many digits of an inch.
-    """
-    written: dict[str, float | str] = {}
-    for name, value in zip(SETTINGS, vector.tolist(), strict=True):
-        if name in _ANGULAR:
-            degrees, old = math.degrees(value), table.get(name)
-            written[name] = angle_text(degrees, old) if isinstance(old, str) else round(degrees, 9)
-        elif name == _RATIO:
-            inverse = CRADLE_PER_WORK in table
-            written[CRADLE_PER_WORK if inverse else _RATIO] = round(1 / value, 11) if inverse else round(value, 9)
-        else:
-            apart = beyond if name == _ADVANCE else 0.0
-            written[name] = round(value / mm - apart, _decimals(mm))
-    return written
-
-
-def _decimals(mm: float) -> int:
-    return 9 if mm == 1 else 11
-
-
 def _from_apex(advance: float, beyond: float) -> float:
     """X_p from the pitch apex out of X_C from the crossing point (2.6)."""
     (value,) = _advance_kernel()(advance, beyond)
@@ -450,54 +238,3 @@ def _advance_kernel() -> Kernel:
     from gearmath.lowering import lower
 
     return lower(cradle.advance_from_apex())
-
-
-def _save_motion(table: Any, matrix: np.ndarray, mm: float) -> None:
-    """A motion (10,7) into the table of a flank; the nominal one goes under ``design``, the modified roll stays."""
-    before = dict(table.get("motion", {}))
-    if "motion" not in table["design"]:
-        table["design"]["motion"] = before
-    motion = {"modified_roll": before["modified_roll"]} if "modified_roll" in before else {}
-    for row, name in zip(matrix, MACHINE_SETTINGS, strict=True):
-        factor = 1 / mm if unit_of(Motion, name) == "mm" else 1.0
-        values = np.trim_zeros(np.round(np.degrees(row) if name in _ANGULAR else row * factor, _decimals(mm)), "b")
-        if len(values):
-            motion[name] = values.tolist()
-    table["motion"] = motion
-
-
-def _save_curvature(table: Any, curvature: float, mm: float) -> None:
-    """The curvature [1/mm] of a blade into the table of a flank; the nominal radius goes under ``design``."""
-    if "blade_spheric_radius" not in table["design"]:
-        table["design"]["blade_spheric_radius"] = table.get("blade_spheric_radius", "straight")
-    table.pop("blade_spheric_radius", None)
-    if abs(curvature) > 1 / STRAIGHT:
-        table["blade_spheric_radius"] = round(1 / curvature / mm, 6 if mm == 1 else 8)
-
-
-def _vector(model: Spec, components: tuple[Quantity, ...]) -> np.ndarray:
-    values = [(getattr(model, component.name), component.unit) for component in components]
-    return np.array([math.radians(value) if unit == "rad" else value for value, unit in values])
-
-
-def set_text(gear_set: BevelSet) -> str:
-    """A gear set as the text of its file, without what has its default value; numbers to nine decimals."""
-    values = gear_set.model_dump(exclude_defaults=True)
-    for name in (name for name in MEMBERS if name in values):
-        if gear_set.member(name).process == "face_hobbing":
-            values[name]["indexing_sign"] = gear_set.member(name).indexing_sign  # it has to be stated, whatever it is
-    for member in (values[name] for name in MEMBERS if name in values):
-        for table in (member[flank] for flank in FLANKS):
-            for settings in (table, *([table["design"]] if "design" in table else [])):
-                settings[_ADVANCE] -= member["blank"].get(_BEYOND, 0.0)
-    head = "# Lengths in mm, angles in degrees.\n"
-    return head + tomlkit.dumps(_plain(values))
-
-
-def _plain(value: Any) -> Any:
-    """Tables, lists and rounded numbers, without a negative zero."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    return round(value, 9) + 0.0 if isinstance(value, float) else value

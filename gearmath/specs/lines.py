@@ -76,19 +76,32 @@ def read_lines(path: Path, keys: tuple[str, ...] = ()) -> tuple[dict[str, str], 
     text = read_text(path, _LARGEST)
     header: dict[str, str] = {}
     at: dict[str, int] = {}
-    lines = []
+    for number, key, value in _comments(text):
+        if key in keys and header.get(key, value) != value:
+            raise InputError(f"{path}, line {number}: {key} = {value!r}: line {at[key]} says {header[key]!r}")
+        header.setdefault(key, value)
+        at.setdefault(key, number)
+    lines = [
+        Line(path, number, tuple(_cells(line)))
+        for number, line in enumerate(text.split("\n"), 1)
+        if line.strip() and not line.startswith("#")
+    ]
+    _check_end(text, lines)
+    return header, lines
+
+
+def comments(path: Path, wanted: str) -> dict[int, str]:
+    """The values of a header key that every run of a file has anew, by line number."""
+    return {number: value for number, key, value in _comments(read_text(path, _LARGEST)) if key == wanted}
+
+
+def _comments(text: str) -> Iterator[tuple[int, str, str]]:
+    """Line number, key and value of the header comments."""
     for number, line in enumerate(text.split("\n"), 1):
         if line.startswith("#"):
             key, colon, value = (part.strip() for part in line[1:].partition(":"))
-            if key in keys and header.get(key, value) != value:
-                raise InputError(f"{path}, line {number}: {key} = {value!r}: line {at[key]} says {header[key]!r}")
             if colon:
-                header.setdefault(key, value)
-                at.setdefault(key, number)
-        elif line.strip():
-            lines.append(Line(path, number, tuple(_cells(line))))
-    _check_end(text, lines)
-    return header, lines
+                yield number, key, value
 
 
 def _cells(line: str) -> Iterator[str]:

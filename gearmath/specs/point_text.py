@@ -41,19 +41,32 @@ _NORMAL = re.compile(r"(?:n|norm|normal|v|vec)[ _.-]*([xyz])|([ijk])|([uvw])")
 _ANNOUNCED = re.compile(
     r"\W*(?:.*\W)?(?:points|punkte|pts|point count)\W*[=:]\s*(\d+)\W*|\W*(\d+)\s+(?:points|punkte)\W*", re.IGNORECASE
 )
+#: What a line of text says of its points, where it says one thing only.
+_STATED = {
+    "flank": re.compile(r"\b(concave|convex)\b", re.IGNORECASE),
+    "unit": re.compile(r"\bunits?\b\W*(mm|millimet\w+|inch|inches|in)\b|\[(mm|inch|in)\]", re.IGNORECASE),
+    "member": re.compile(r"\bmember\b\W*(pinion|gear)\b", re.IGNORECASE),
+    "tooth": re.compile(r"\btooth\b\s*(?:no\b|nr\b|number\b)?\W*(\d{1,3})\b(?!\s*teeth)", re.IGNORECASE),
+}
+#: Digits of the last number of a row behind its decimal mark.
+_DECIMALS = re.compile(r"[.,](\d*)\D*$", re.ASCII)
 #: Rounding of normals, and how near to each other two sets of points of one file would be. [file's unit]
 _UNIT_LENGTH, _NEAR = 0.01, 5.0
 
 
 @dataclass(frozen=True)
 class PointText:
-    """Points (n,3) [mm] in the axes of the file, normals (n,3) or None, line numbers (n,), and what was left aside."""
+    """Points (n,3) [mm] in the axes of the file, normals (n,3) or None, line numbers (n,), and what was left aside.
+
+    ``stated`` is what its lines of text say of ``flank``, ``unit``, ``member`` and ``tooth``, with the line.
+    """
 
     path: Path
     point: np.ndarray
     normal: np.ndarray | None
     line: np.ndarray
     remarks: tuple[str, ...]
+    stated: dict[str, tuple[str, int]]
 
 
 def read_point_text(path: Path, unit: str = "mm") -> PointText:
@@ -63,6 +76,7 @@ def read_point_text(path: Path, unit: str = "mm") -> PointText:
     split, decimal_comma = _separator(lines)
     cells = {number: _cells(line, split, decimal_comma) for number, line in enumerate(lines, 1) if line}
     rows, names, remarks = _rows(path, lines, cells, split)
+    _check_last(path, lines, list(rows))
     values = np.array([_finite(path, number, cells[number], columns) for number, columns in rows.items()])
     texts = sum(cell is None for cell in cells[next(iter(rows))])
     point, normal, left = _columns(path, values, names)
@@ -71,7 +85,33 @@ def read_point_text(path: Path, unit: str = "mm") -> PointText:
     if not same.all():
         remarks.append(f"{int((~same).sum())} points are there twice and count once")
         point, normal = point[same], None if normal is None else normal[same]
-    return PointText(path, point * UNITS[unit], normal, np.array(list(rows))[same], tuple(remarks))
+    stated = _stated(lines[: next(iter(rows)) - 1])
+    return PointText(path, point * UNITS[unit], normal, np.array(list(rows))[same], tuple(remarks), stated)
+
+
+def _stated(above: Sequence[str]) -> dict[str, tuple[str, int]]:
+    """What the lines above the rows say, where all of them say the same."""
+    found = {}
+    for key, pattern in _STATED.items():
+        said: dict[str, int] = {}
+        for number, line in enumerate(above, 1):
+            for groups in pattern.findall(line):
+                word = "".join(groups).lower()
+                said.setdefault({"i": "inch", "m": "mm"}[word[0]] if key == "unit" else word, number)
+        if len(said) == 1:
+            found[key] = next(iter(said.items()))
+    return found
+
+
+def _check_last(path: Path, lines: Sequence[str], rows: Sequence[int]) -> None:
+    """Raise InputError where the last number of a file lacks digits that all others have."""
+    digits = [match[1] if (match := _DECIMALS.search(lines[number - 1])) else "" for number in rows]
+    usual = {len(each) for each in digits[:-1]}
+    if len(digits) > 3 and len(usual) == 1 and len(digits[-1]) < min(usual):  # fewer rows have no usual number
+        raise InputError(
+            f"{path}, line {rows[-1]}: its last number has {len(digits[-1])} decimals, those above have "
+            f"{usual.pop()}: the file is cut off there"
+        )
 
 
 def _text(path: Path) -> str:
@@ -155,11 +195,16 @@ def _rows(
     first = next(iter(rows))
     for number, one in shape.items():
         begins_with_text = not re.match(r"[-+.\d]", lines[number - 1])
-        if number > first and one != columns and not (begins_with_text and len(one) < 3):
-            raise InputError(
-                f"{path}, line {number}: has {len(one)} numbers, the rows above have {len(columns)}: "
-                f"{lines[number - 1][:40]!r}"
-            )
+        if number < first:  # above the rows a line of a few numbers may be a header, a line of three decimals is a row
+            if not (len(one) >= 3 and re.fullmatch(r"([-+.,;\s\d]*\d\.\d[-+.,;\s\d]*)", lines[number - 1])):
+                continue
+        elif one == columns or (begins_with_text and len(one) < 3):
+            continue
+        raise InputError(
+            f"{path}, line {number}: has {len(one)} numbers, the rows {'below' if number < first else 'above'} have "
+            f"{len(columns)}: "
+            f"{lines[number - 1][:40]!r}"
+        )
     for line in lines[: first - 1]:
         announced = _ANNOUNCED.fullmatch(line)
         if announced and len(rows) < int(announced[1] or announced[2]):
@@ -234,6 +279,12 @@ def _placed(path: Path, values: np.ndarray) -> tuple[list[int], list[int] | None
         return at, following
     if unit:
         return following, at
+    length = np.linalg.norm(values[:, following], axis=1)
+    usual = float(np.median(length))
+    if len(values) > 3 and usual > 0 and (np.abs(length / usual - 1) < _UNIT_LENGTH).all():
+        raise InputError(
+            f"{path}: the normals in columns {first + 4} to {first + 6} have length {usual:.4g}: must be 1"
+        )
     if (np.abs(values[:, at] - values[:, following]) < _NEAR).all():
         raise InputError(
             f"{path}: columns {first + 4} to {first + 6} look like points too, nominal or measured: name the measured "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +11,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
-from gearmath.specs.lines import Line, read_lines
+from gearmath.specs.lines import Line, comments, read_lines
 
 COLUMNS = ("run", "point", "member", "flank", "tooth", "row", "col", "X", "Y", "Z", "A", "B", "triggered")
 #: Columns of the touches on ring, its face, the spheres on table and work, and what is touched.
@@ -18,6 +19,9 @@ CALIBRATION_COLUMNS = ("run", "point", "target", "X", "Y", "Z", "A", "B", "trigg
 RING = ("ring_x_low", "ring_x_high", "ring_y_low", "ring_y_high")
 RING_FACE, SPHERE, WORK_SPHERE = "ring_face", "sphere", "work_sphere"
 _NAMES = {"member": MEMBERS, "flank": FLANKS, "target": (*RING, RING_FACE, SPHERE, WORK_SPHERE)}
+#: Key of the header comment before the columns of a run: the touches that its program makes.
+PLANNED = "planned"
+_PLAN = re.compile(r"(\d{1,8}) touches\b.*", re.ASCII)
 _WHOLE = ("run", "point", "tooth", "row", "col", "triggered")
 #: No axis of a machine is longer [mm], or turned further [degrees]; nothing counts further.
 _LARGEST, _LARGEST_COUNT = 1e5, 10_000_000
@@ -27,7 +31,8 @@ _LARGEST, _LARGEST_COUNT = 1e5, 10_000_000
 class Touches:
     """The touches of one run on one member: index arrays (n,), axis positions X Y Z A B (n,5) in mm and rad.
 
-    Touches of one point follow each other. Tooth z is tooth 0, touched again at the end.
+    Touches of one point follow each other. Tooth z is tooth 0, touched again at the end. ``planned`` is how many
+    touches the program makes, None where the file does not say it.
     """
 
     run: int
@@ -37,6 +42,7 @@ class Touches:
     row: np.ndarray
     col: np.ndarray
     axes: np.ndarray
+    planned: int | None = None
 
     def __len__(self) -> int:
         return len(self.tooth)
@@ -49,6 +55,7 @@ class CalibrationTouches:
     run: int
     target: np.ndarray
     axes: np.ndarray
+    planned: int | None = None
 
 
 def read_touch_csv(path: Path, run: int | None = None) -> Touches:
@@ -59,14 +66,15 @@ def read_touch_csv(path: Path, run: int | None = None) -> Touches:
     """
     wanted, records = _records(path, COLUMNS, run)
     _check_points(records)
-    return _collected(wanted, records)
+    return _collected(wanted, records, _planned(path, records))
 
 
 def read_calibration_csv(path: Path, run: int | None = None) -> CalibrationTouches:
     """The touches on ring and sphere of one run, by default the last one. Raises InputError as for touches."""
     wanted, records = _records(path, CALIBRATION_COLUMNS, run)
     _check_points(records)
-    return CalibrationTouches(wanted, np.array([record["target"] for record in records]), _axes(records))
+    targets = np.array([record["target"] for record in records])
+    return CalibrationTouches(wanted, targets, _axes(records), _planned(path, records))
 
 
 def run_lengths(path: Path) -> dict[int, int]:
@@ -77,13 +85,32 @@ def run_lengths(path: Path) -> dict[int, int]:
 
 
 def _records(path: Path, columns: tuple[str, ...], run: int | None) -> tuple[int, list[dict]]:
-    """Number and records of a run."""
+    """Number and records of a run; the last one must not be followed by one that was begun and has no touch."""
     records = _all(path, columns)
+    last = read_lines(path)[1][-1]
+    if run is None and last.cells == columns:
+        raise last.refuse(
+            f"a further run begins here and has no touch; --run {records[-1]['run']} takes the one before"
+        )
     runs = sorted({record["run"] for record in records})
     wanted = runs[-1] if run is None else run
     if wanted not in runs:
         raise InputError(f"{path}: holds no run {wanted}, but {', '.join(map(str, runs))}")
     return wanted, [record for record in records if record["run"] == wanted]
+
+
+def _planned(path: Path, records: list[dict]) -> int | None:
+    """How many touches a run was to have, from the last plan before its first one and after the run before it."""
+    plans = comments(path, PLANNED)
+    first = records[0]["line"].number
+    others = [line.number for line in read_lines(path)[1] if line.number < first and line.cells[0].isdigit()]
+    number = max((number for number in plans if max(others, default=0) < number < first), default=None)
+    if number is None:
+        return None
+    plan = _PLAN.fullmatch(plans[number])
+    if plan is None:
+        raise InputError(f"{path}, line {number}: {PLANNED} = {plans[number]!r}: must begin like '122 touches'")
+    return int(plan[1])
 
 
 def _all(path: Path, columns: tuple[str, ...]) -> list[dict]:
@@ -112,7 +139,7 @@ def _record(line: Line, columns: tuple[str, ...]) -> dict:
     return record
 
 
-def _collected(run: int, records: list[dict]) -> Touches:
+def _collected(run: int, records: list[dict], planned: int | None) -> Touches:
     member = records[0]["member"]
     seen: dict[tuple, int] = {}
     before: tuple = ()
@@ -127,7 +154,8 @@ def _collected(run: int, records: list[dict]) -> Touches:
             )
         seen[place], before = line.number, place
     tooth, row, col = (np.array([record[name] for record in records]) for name in ("tooth", "row", "col"))
-    return Touches(run, member, np.array([record["flank"] for record in records]), tooth, row, col, _axes(records))
+    flank = np.array([record["flank"] for record in records])
+    return Touches(run, member, flank, tooth, row, col, _axes(records), planned)
 
 
 def _check_points(records: list[dict]) -> None:

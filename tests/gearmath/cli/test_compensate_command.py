@@ -71,10 +71,10 @@ def test_corrected_set_cuts_the_nominal_flank_on_the_machine_that_errs(command, 
     csv, new = measured(bundled(source), name, **ERRORS), tmp_path / "new.toml"
     status, out, err = command("compensate", source, "--member", name, "--measured", csv, "-o", new)
     assert (status, err) == (0, "")
-    assert re.match(r"RMS: concave 0\.0\d um expected to remain of \d+\.\d\d um \(\w+ [+-]0\.\d{4} (mm|deg)", out)
+    assert re.match(r"RMS: concave 0\.[01]\d um expected to remain of \d+\.\d\d um \(\w+ [+-]0\.\d{4} (mm|deg)", out)
     assert "no limit binds" in out.splitlines()[1]
     assert worst_after(bundled(source), name, **ERRORS) > 5e-3
-    assert worst_after(new, name, **ERRORS) < 2e-4  # the few lose 0.05 um in the RMS
+    assert worst_after(new, name, **ERRORS) < 4e-4  # the few lose 0.1 um in the RMS, what a probe resolves
     pair, old = load_bevel_set(new), load_bevel_set(bundled(source))
     assert design_sha256(pair.member(name)) == design_sha256(old.member(name))
     assert settings_sha256(pair.member(name)) != settings_sha256(old.member(name))
@@ -86,7 +86,12 @@ def test_tables_are_shown_when_asked_and_standard_settings_leave_nothing(command
     base = ("compensate", source, "--member", "pinion", "--measured", csv, "-o", new, "--settings", "standard")
     short, full = command(*base)[1], command(*base, "--verbose")[1]
     assert full.startswith("\n".join(short.splitlines()[:2]))
-    for table in ("by a linear estimate without bounds", "singular values [um]:", "weak direction", "root line"):
+    for table in (
+        "by a linear estimate without bounds",
+        "singular values [um]:",
+        "together move the flank by only",
+        "root line",
+    ):
         assert table in full
         assert table not in short
     assert worst_after(new, "pinion", **ERRORS) < 2e-5
@@ -97,10 +102,11 @@ def test_motions_are_corrected_when_asked_and_kept_in_the_file(command, measured
     csv = measured(bundled(UNIVERSAL), "pinion", **errors)
     rest, moving = tmp_path / "rest.toml", tmp_path / "moving.toml"
     # the work of these files stands as it was cut: with its rotation left open, a motion of it could be a rotation too
-    base = ("compensate", UNIVERSAL, "--member", "pinion", "--no-rotation", "--measured", csv)
+    base = ("compensate", UNIVERSAL, "--member", "pinion", "--no-rotation", "--settings", "standard", "--measured", csv)
     assert command(*base, "-o", rest)[0] == 0
     values = json.loads(command(*base, "--higher-order", "-o", moving, "--json")[1])
-    assert worst_after(moving, "pinion", **errors) < 0.1 * worst_after(rest, "pinion", **errors)
+    assert worst_after(moving, "pinion", **errors) < 0.5 * worst_after(rest, "pinion", **errors)
+    assert worst_after(moving, "pinion", **errors) < 1e-4  # what errors and changes do together, to second order
     changed = {change["setting"]: change for change in values["changes"] if change["flank"] == "concave"}
     assert changed["work_rotation_offset.2"]["unit"] == "deg/rad^2"
     assert changed["sliding_base.1"]["unit"] == "mm/rad"
@@ -117,7 +123,7 @@ def test_motions_are_corrected_when_asked_and_kept_in_the_file(command, measured
     again = measured(moving, "pinion", **errors)
     status, out, err = command(
         "compensate", moving, "--member", "pinion", "--measured", again, "--no-rotation", "--higher-order",
-        "-o", tmp_path / "2.toml",
+        "--settings", "standard", "-o", tmp_path / "2.toml",
     )  # fmt: skip
     assert (status, err) == (0, ""), out
     assert worst_after(tmp_path / "2.toml", "pinion", **errors) < 1e-4
@@ -148,7 +154,7 @@ def test_curvature_of_a_blade_is_corrected_when_named_and_kept_in_the_file(comma
     assert {change["setting"] for change in values["changes"]} == {"blade_spheric_radius"}
     for flank in FLANKS:
         spec = load_bevel_set(new).pinion.flank(flank)
-        assert spec.blade_spheric_radius == pytest.approx(-5000, rel=1e-3)
+        assert spec.blade_spheric_radius == pytest.approx(-5000, rel=2e-3)  # the opposite of 2 um, to second order
         assert spec.nominal_spheric_radius is None
     assert worst_after(bundled(source), "pinion", **errors) > 2e-3
     assert worst_after(new, "pinion", **errors) < 1e-5

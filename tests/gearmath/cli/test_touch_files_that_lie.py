@@ -50,7 +50,11 @@ def raw(gear_set, vertical):
 
 @pytest.fixture(scope="module")
 def calibration_raw(vertical):
-    return run_touches(calibration_program(vertical, PROBE, "CAL"), "CAL.MPF", Artefacts(vertical, PROBE))
+    """As programs without a plan write it."""
+    text = run_touches(calibration_program(vertical, PROBE, "CAL"), "CAL.MPF", Artefacts(vertical, PROBE))
+    plan, _, rest = text.partition("\n")
+    assert plan == "# planned: 35 touches"  # 6 in the ring, 4 on its face, 25 on the sphere
+    return rest
 
 
 def second_run(text, count):
@@ -79,6 +83,14 @@ TOUCHES_REFUSED = {
     "cut in half": (lambda text: "\n".join(text.split("\n")[: text.count("\n") // 2]) + "\n", "is not whole"),
     "last touch missing": (lambda text: "\n".join(text.split("\n")[:-2]) + "\n", "is not whole"),
     "cut within the last line": (lambda text: text[:-7], r"line \d+: .*(cut off|columns)"),
+    "further run that was aborted before its first touch": (
+        lambda text: text + text.split("\n")[0] + "\n",
+        r"line \d+: a further run begins here and has no touch; --run 1 takes the one before",
+    ),
+    "plan without a number": (
+        lambda text: "# planned: all\n" + text,
+        r"line 1: planned = 'all': must begin like '122 t",
+    ),
     "gap in the points": (
         lambda text: "\n".join(text.split("\n")[:8] + text.split("\n")[9:]),
         r"line 9: point = 9: must be 8",
@@ -157,6 +169,37 @@ def test_run_that_was_aborted_anywhere_is_never_whole(raw, gear_set, tmp_path):
         assert bool(missing) == (count - 1 != 90), count  # the whole grid of one tooth is a measurement, too
     path.write_text(raw)
     assert missing_touches(read_touch_csv(path), 12, (5, 9)) == ()
+
+
+def test_run_that_was_aborted_anywhere_has_fewer_touches_than_planned(command, raw, tmp_path):
+    """After the grid of tooth 0, too, which without the plan is a whole measurement: then it is said."""
+    path, out = tmp_path / "raw.csv", tmp_path / "m.csv"
+    head, *rows = raw.splitlines()
+    plan = "# planned: 122 touches, 13 teeth, concave and convex"
+    aborted = "\n".join([head, *rows[:90]]) + "\n"
+    path.write_text(f"{plan}\n{aborted}")
+    status, _, err = command("touches", path, "--set", SET, "-o", out)
+    assert (status, out.exists()) == (2, False)
+    assert "run 1, the last one, is not whole: it has 90 touches, its program makes 122; --run 1 takes it" in err
+    status, said, _ = command("touches", path, "--set", SET, "--run", 1, "-o", out)
+    assert status == 0
+    assert "run 1 is not whole: it has 90 touches, its program makes 122" in said
+    path.write_text(aborted)
+    status, _, err = command("touches", path, "--set", SET, "-o", out)
+    assert status == 0
+    assert "does not say how many touches were planned: taken for a whole run of the grid of 1 tooth, no pitch" in err
+    path.write_text(f"{plan}\n{raw}")
+    assert command("touches", path, "--set", SET, "-o", out)[::2] == (0, "")
+
+
+def test_each_run_of_a_file_has_its_own_plan(raw, tmp_path):
+    path = tmp_path / "raw.csv"
+    head, *rows = raw.splitlines()
+    second = [head, *("2" + row[1:] for row in rows[:90])]
+    path.write_text("\n".join(["# planned: 122 touches", head, *rows, "# planned: 90 touches", *second]) + "\n")
+    assert [read_touch_csv(path, run).planned for run in (1, 2)] == [122, 90]
+    path.write_text("\n".join(["# planned: 122 touches", head, *rows, *second]) + "\n")
+    assert [read_touch_csv(path, run).planned for run in (1, 2)] == [122, None]
 
 
 def test_kinds_of_touches_are_not_taken_for_each_other(command, raw, calibration_raw, tmp_path):

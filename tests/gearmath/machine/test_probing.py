@@ -65,7 +65,7 @@ def test_every_touch_is_within_a_micrometre_of_where_it_should_be(gear_set, memb
     spec = gear_set.member(member)
     done, _ = probed(gear_set, member, machine, probe)
     touched = done.path.axes[done.path.measuring][1::2]
-    rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[1:]]
+    rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[2:]]
     assert len(touched) == len(rows) == 2 * (45 + spec.teeth - 1 + 5)
     tips, _ = tip_in_work(touched, machine, probe)
     nominal = {flank: solve_flank(spec, member, flank, blank_grid(spec)) for flank in FLANKS}
@@ -98,11 +98,11 @@ def test_tooth_0_is_touched_again_at_the_end_where_it_was_touched_first(gear_set
 def test_repeated_touches_follow_each_other_without_leaving_the_space(gear_set):
     """Three touches a point, each from its start; between them the tip moves along the way of the touch only."""
     done, _ = probed(gear_set, "pinion", topography=(), repeat=3)
-    rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[1:]]
+    rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[2:]]
     assert [row[1] for row in rows] == [str(k) for k in range(1, 3 * 26 + 1)]
     assert all(rows[3 * k][3:7] == rows[3 * k + j][3:7] for k in range(26) for j in (1, 2))
     once, _ = probed(gear_set, "pinion", topography=())
-    single = [line.split(",") for line in once.files["PROBE_T"].splitlines()[1:]]
+    single = [line.split(",") for line in once.files["PROBE_T"].splitlines()[2:]]
     assert [row[2:] for row in rows[::3]] == [row[2:] for row in single]
     measuring = np.flatnonzero(done.path.measuring)
     between = [k for k in measuring if k + 2 in measuring and k + 1 not in measuring]
@@ -202,7 +202,7 @@ def test_host_gets_every_point_once_and_in_order(gear_set):
 
     done, _ = probed(gear_set, "pinion", host=host, parameters={102: 4, 104: 1}, topography=())
     assert [row[0] for row in seen] == list(range(1, 27))
-    rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[1:]]
+    rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[2:]]
     assert [row[0] for row in rows] == ["5"] * 26
     expected = [[float(row[1]), *map(float, row[7:])] for row in rows]
     np.testing.assert_allclose(seen, expected, rtol=0, atol=1e-9)

@@ -210,7 +210,7 @@ def probed_again(text, name, repeat=1):
     program, done = read_program(text, "P.MPF"), run_program(text, "P.MPF", probe)
     path, head = done.path, min(statement.line for statement in program.body)
     header = [comment for line, comment in program.comments.items() if line < head]
-    called = [line.split(",") for line in done.files[f"{header[0]}_T"].splitlines()[1:]]
+    called = [line.split(",") for line in done.files[f"{header[0]}_T"].splitlines()[2:]]
     flank, tooth, row, col = (np.array(column) for column in list(zip(*called, strict=True))[3:7])
     measuring = np.flatnonzero(path.measuring)
     ways = measuring.reshape(-1, 1 + repeat)

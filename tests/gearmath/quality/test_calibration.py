@@ -80,7 +80,7 @@ def test_tip_and_stylus_meet_ring_and_sphere_at_the_touches_only(artefacts, true
         if at_touch:
             moving.append(away[0 if path.measuring[k] else -1])  # where it starts, and where it goes back to
         stylus.append(beside.min() - true.stylus_radius)
-    assert len(done.files["CAL_T"].splitlines()) - 1 == path.measuring.sum() - 30  # guarded ways down: 1, 4, 25
+    assert len(done.files["CAL_T"].splitlines()) - 2 == path.measuring.sum() - 30  # guarded ways down: 1, 4, 25
     assert min(touching) > -1e-6
     assert min(moving) > 0.5
     assert min(stylus) > 0.1

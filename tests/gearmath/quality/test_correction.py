@@ -13,8 +13,9 @@ from gearmath.machine.mill import nominal_flank
 from gearmath.quality.correction import correct, setting_changes
 from gearmath.quality.pitch import evaluate_pitch
 from gearmath.quality.target import flank_target
-from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, load_bevel_set, save_corrected
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, load_bevel_set
 from gearmath.specs.flank_csv import FlankFile, join
+from gearmath.specs.set_text import save_corrected
 from gearmath.specs.simulated_machine import Probe
 from gearmath.specs.toml import bundled
 

@@ -15,7 +15,8 @@ from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
 from gearmath.quality.evaluation import evaluate_member
 from gearmath.quality.target import flank_target
-from gearmath.specs.bevel_set import FLANKS, MEMBERS, load_bevel_set, save_corrected
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, load_bevel_set
+from gearmath.specs.set_text import save_corrected
 from gearmath.specs.simulated_machine import Probe, load_simulated_machine
 from gearmath.specs.toml import bundled
 

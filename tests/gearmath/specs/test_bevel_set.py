@@ -16,9 +16,9 @@ from gearmath.specs.bevel_set import (
     BevelSet,
     design_sha256,
     load_bevel_set,
-    save_corrected,
     settings_sha256,
 )
+from gearmath.specs.set_text import save_corrected
 from gearmath.specs.toml import bundled, parse
 
 SET = bundled("nasa_tp3096_12x36.toml")

@@ -7,7 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from gearmath.quality.correction import check_belongs
+from gearmath.quality.nominal import check_points, nominal_rows
 from gearmath.specs import flank_csv, point_text, touch_csv
+from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.toml import bundled
 
 PAGE = (Path(__file__).parents[3] / "docs" / "files.md").read_text("utf-8")
 LAYOUTS = {
@@ -53,6 +57,13 @@ def test_page_lists_the_header_keys():
 @pytest.mark.parametrize("title", LAYOUTS)
 def test_examples_of_the_page_are_read(title, tmp_path):
     assert LAYOUTS[title][1](example(section(title), tmp_path)) is not None
+
+
+def test_example_of_measured_points_is_of_the_bundled_set_that_it_names(tmp_path):
+    file = flank_csv.read_flank_csv(example(section("Flank CSV"), tmp_path))
+    pinion = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).member("pinion")
+    check_belongs(pinion, "pinion", file)
+    check_points(file, nominal_rows(file, pinion, "pinion"))
 
 
 def test_example_of_a_point_text_is_read_to_the_points_of_the_flank_csv(tmp_path):

@@ -107,6 +107,15 @@ def test_inches_become_millimetres(tmp_path):
         ("", r"holds no row of three numbers, x y z$"),
         ("Part 4711\nno points today\n", r"holds no row of three numbers"),
         (LAYOUTS["blanks"] + "15.0 -3.\n", r"line 4: has 2 numbers, the rows above have 3: '15.0 -3.'$"),
+        (
+            "1.234 2.345 3.456\n1.334 2.345 3.4",
+            r"line 2: its last number has 1 decimals, those above have 3: .* cut off",
+        ),
+        ("1.5 2.5 3.5\n" + "1.5 2.5 3.5 0 0 1\n" * 4, r"line 1: has 3 numbers, the rows below have 6"),
+        (
+            "".join(f"1.5 2.5 {k}.5 0 0 2\n" for k in range(5)),
+            r"the normals in columns 4 to 6 have length 2: must be 1",
+        ),
         (LAYOUTS["blanks"] + "15.0 ***** 80.0\n", r"line 4: has 2 numbers, the rows above have 3"),
         (LAYOUTS["blanks"] + "15.0 nan 80.0\n", r"line 4: nan: must be a number, at most 100000 in size$"),
         (LAYOUTS["blanks"] + "15.0 1e30 80.0\n", r"line 4: 1e\+30: must be a number"),

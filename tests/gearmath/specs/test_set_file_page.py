@@ -1,4 +1,4 @@
-"""docs/set_file.md says what the models of a gear set and of a blank's design data take: keys, units, ranges, defaults.
+"""docs/set_file.md and docs/machine_files.md say what the models of the files take: keys, units, ranges, defaults.
 
 Where a model changes, the failing test prints the rows as they must read; what a key means is written by hand.
 """
@@ -15,7 +15,7 @@ import pytest
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from gearmath.specs import bevel_set, blank_data
+from gearmath.specs import bevel_set, blank_data, calibration, measurement, milling_machine, simulated_machine
 from gearmath.specs.sheet import unit_of
 from gearmath.specs.toml import bundled, parse
 
@@ -121,3 +121,66 @@ def test_example_of_the_page_is_a_set():
     for flank in bevel_set.FLANKS:
         vector = made.member("gear").flank(flank).vector
         assert vector == pytest.approx(ours.flank(flank).vector, abs=2e-6)
+
+
+MACHINE_PAGE = (Path(__file__).parents[3] / "docs" / "machine_files.md").read_text("utf-8")
+MACHINE_FILES: dict[str, type[BaseModel]] = {
+    "Machine": milling_machine.MillingMachine,
+    "Errors of a shop": simulated_machine.SimulatedMachine,
+    "Probe": calibration.Calibration,
+    "Measurement": measurement.Measurement,
+}
+MACHINE_TABLES: dict[str, type[BaseModel]] = MACHINE_FILES | {
+    "`[axes.X]`, `[axes.Y]`, `[axes.Z]`, `[axes.B]`": milling_machine.TravelAxis,
+    "`[axes.A]`, `[axes.C]`": milling_machine.TurningAxis,
+    "`[control]`": milling_machine.Control,
+    "`[pinion]` and `[gear]`": simulated_machine.SettingErrors,
+    "`[work_axis]`": simulated_machine.WorkAxis,
+    "`[axes]`": simulated_machine.AxisErrors,
+    "`[[axes.A_harmonics]]`": simulated_machine.Harmonic,
+    "`[[axes.screws]]`": simulated_machine.Screw,
+    "`[mounting]`, `[measuring.pinion]`, `[measuring.gear]`": simulated_machine.Mounting,
+    "`[measuring.drift]`": simulated_machine.Drift,
+    "`[cutter_head]`": simulated_machine.CutterHead,
+    "`[fixture]`": simulated_machine.Fixture,
+    "`[probe]`": simulated_machine.Probe,
+    "`[ring]`": calibration.Ring,
+    "`[ring.face]`": calibration.Face,
+    "`[sphere]`": calibration.Sphere,
+    "`[work_sphere]`": calibration.WorkSphere,
+}
+#: Tables that hold only tables.
+INSIDE = {milling_machine.Axes, simulated_machine.Measuring}
+
+
+def machine_section(heading):
+    begin = re.search(rf"^#+ {re.escape(heading)}\n", MACHINE_PAGE, re.MULTILINE).end()
+    return re.split(r"^#", MACHINE_PAGE[begin:], maxsplit=1, flags=re.MULTILINE)[0]
+
+
+@pytest.mark.parametrize("heading", MACHINE_TABLES)
+def test_machine_page_has_every_key_with_range_and_default(heading):
+    cells = [line.strip("|\n").split("|") for line in machine_section(heading).splitlines() if line.startswith("| `")]
+    told = {key.strip(" `"): (limits.strip(), default.strip()) for key, _, limits, default, _ in cells}
+    assert told == {
+        key: (limits, default.replace("(0.0, 0.0, 0.0)", "[0.0, 0.0, 0.0]"))
+        for key, (_, limits, default) in rows(MACHINE_TABLES[heading]).items()
+    }
+    assert all(meaning.strip() for *_, meaning in cells)
+
+
+def test_machine_page_is_of_every_table_of_the_files():
+    seen = list(MACHINE_FILES.values())
+    for model in seen:
+        for field in model.model_fields.values():
+            for part in parts(field.annotation):
+                if isinstance(part, type) and issubclass(part, BaseModel) and part not in seen:
+                    seen.append(part)
+    assert set(seen) == set(MACHINE_TABLES.values()) | INSIDE
+    assert all(is_table(field.annotation) for model in INSIDE for field in model.model_fields.values())
+
+
+@pytest.mark.parametrize("heading", MACHINE_FILES)
+def test_examples_of_the_machine_page_are_read(heading):
+    (example,) = re.findall(r"```toml\n(.*?)```", machine_section(heading), re.DOTALL)
+    parse(example, MACHINE_FILES[heading], "example")

@@ -16,16 +16,8 @@ from hypothesis import strategies as st
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.errors import InputError
-from gearmath.specs.bevel_set import (
-    FLANKS,
-    MEMBERS,
-    SETTINGS,
-    BevelSet,
-    design_sha256,
-    load_bevel_set,
-    save_corrected,
-    set_text,
-)
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet, design_sha256, load_bevel_set
+from gearmath.specs.set_text import save_corrected, set_text
 from gearmath.specs.sheet import angle_text, degrees
 from gearmath.specs.toml import bundled, parse
 

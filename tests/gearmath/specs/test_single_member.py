@@ -9,8 +9,9 @@ import pytest
 from gearmath.bevel.flank import blank_grid
 from gearmath.errors import InputError
 from gearmath.machine.mill import nominal_flank
-from gearmath.specs.bevel_set import FLANKS, BevelSet, design_sha256, load_bevel_set, save_corrected, set_text
+from gearmath.specs.bevel_set import FLANKS, BevelSet, design_sha256, load_bevel_set
 from gearmath.specs.flank_csv import join, write_flank_csv
+from gearmath.specs.set_text import save_corrected, set_text
 from gearmath.specs.toml import bundled, parse
 
 SET = bundled("nasa_tp3096_12x36.toml")

@@ -14,7 +14,8 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.tooth import mean_backlash, space_figures, tooth_space
-from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES, BevelSet, load_bevel_set, set_text
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES, BevelSet, load_bevel_set
+from gearmath.specs.set_text import set_text
 from gearmath.specs.toml import bundled, parse
 
 ENTRIES = json.loads((Path(__file__).parent / "bundled_sets.json").read_text())

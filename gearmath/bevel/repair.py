@@ -1,0 +1,149 @@
+"""Which single setting of a flank, given another value, would put right what the flank is found wrong in.
+
+Other values are those of the usual slips (a sign, inches, a place of the decimal point, degrees and radians), that of
+the other flank and that of the crown gear. Every one is tried: the mean point and the root are solved with it, all of
+them in one call. So a setting is not blamed for being unusual, only for what changing it alone would put right.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.check_flank import FLAT_BLADE, OFF_CENTER, ROOT, mean_place
+from gearmath.bevel.generation import Generation
+from gearmath.bevel.generation_kernels import generation_point
+from gearmath.bevel.kernels import kernel
+from gearmath.bevel.method import generation_of
+from gearmath.bevel.newton import TOLERANCE
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member
+
+#: What counts as one: spiral and pressure angle off those wanted. [rad]
+_SPIRAL, _PRESSURE = math.radians(2), math.radians(5)
+#: A point that is not there at all.
+_NONE = 100.0
+_CALLS = 4
+_SLIPS = (-1.0, 25.4, 1 / 25.4, 10.0, 0.1, math.pi / 180, 180 / math.pi, -10.0, -25.4)
+_STEP = {"ratio_of_roll": 1e-3}  # else in mm or degrees
+_PHASE = "work_rotation_offset"  # moves mean point and root around the axis alone
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Spiral angle (signed) and pressure angle that a flank should have at its mean point [rad]."""
+
+    spiral: float
+    pressure: float
+
+
+def misfit(member: Member, flank: str, settings: np.ndarray, index: np.ndarray, wanted: Wanted) -> np.ndarray:
+    """What is wrong (6,n) of a flank with settings (n,12) and indexing N_b/z (n,): beyond 1 it is refused for it."""
+    how, blank, n = generation_of(member, flank), member.blank, len(settings)
+    axial, radial = (np.full(n, value[0]) for value in mean_place(member))
+    conditions = np.zeros((n, 2, 4))
+    conditions[:, 0, 1], conditions[:, 0, 3] = 1.0, axial
+    conditions[:, 1, 2], conditions[:, 1, 3] = 1.0, radial
+    (start,) = kernel("contact_start")(settings, how.side, axial, radial)
+    if not how.rolling:
+        start[:, 2] = 0.0
+    contact, point, normal, solved = _solve(how, settings, index, np.nan_to_num(start), conditions)
+    pressure, spiral, _, _ = kernel("flank_angles")(math.radians(blank.pitch_angle), point, normal)
+    parts = [
+        contact[:, 2] / math.radians(OFF_CENTER), (spiral - wanted.spiral) / _SPIRAL,
+        (pressure - wanted.pressure) / _PRESSURE, *_root_off(member, how, settings, index, contact),
+    ]  # fmt: skip
+    off = np.stack(parts)
+    off = np.where(np.isfinite(off), np.clip(off, -_NONE, _NONE), _NONE)
+    return np.where(solved, off, 2 * _NONE)
+
+
+def _solve(
+    how: Generation, settings: np.ndarray, index: np.ndarray, contact: np.ndarray, conditions: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    for _ in range(_CALLS):
+        contact, point, normal, residual, _ = generation_point(False)(
+            contact, settings, how.motion, index, how.blade_offset_angle, how.side, how.rolling, conditions
+        )
+        contact = np.nan_to_num(contact)
+    return contact, point, normal, residual <= TOLERANCE
+
+
+def _root_off(
+    member: Member, how: Generation, settings: np.ndarray, index: np.ndarray, mean: np.ndarray
+) -> list[np.ndarray]:
+    """How far the tip of the blade leaves the root beside that of the blank, toe to heel, over what it may (3 of n)."""
+    blank, delta = member.blank, math.radians(member.blank.pitch_angle)
+    flat, off = settings.copy(), []
+    flat[:, -1] = FLAT_BLADE
+    for across, share in zip((0.0, 0.5, 1.0), ROOT, strict=True):
+        (axial,), (radial,) = kernel("flank_place")(blank.vector, np.array([across]), np.array([0.0]))
+        distance = axial * math.cos(delta) + radial * math.sin(delta)
+        root = radial * math.cos(delta) - axial * math.sin(delta) - blank.clearance
+        conditions = np.zeros((len(settings), 2, 4))
+        conditions[:, 0, 0] = 1.0
+        conditions[:, 1, 1:] = math.cos(delta), math.sin(delta), distance
+        start = np.column_stack([np.zeros(len(settings)), mean[:, 1:]])
+        _, point, _, solved = _solve(how, flat, index, start, conditions)
+        height = np.hypot(point[:, 0], point[:, 1]) * math.cos(delta) - point[:, 2] * math.sin(delta)
+        off.append(np.where(solved, (height - root) / (share * blank.clearance), np.nan))
+    return off
+
+
+@dataclass(frozen=True)
+class Repair:
+    """A value of a setting (as in the file) that puts a flank right: how wrong it was, and how wrong it is then."""
+
+    key: str
+    value: float
+    other: float
+    before: float
+    after: float
+
+
+def repairs(member: Member, flank: str, expected: Mapping[str, float], wanted: Wanted) -> list[Repair]:
+    """Every trial of every setting of a flank; ``expected`` holds the crown gear's values."""
+    spec, beside = member.flank(flank).nominal, member.flank(FLANKS[1 - FLANKS.index(flank)]).nominal
+    rows, trials = [spec.vector], []
+    for key in SETTINGS:
+        if key == _PHASE:
+            continue
+        value = getattr(spec, key)
+        for other in {value * slip for slip in _SLIPS} | {expected.get(key, value), getattr(beside, key)} - {value}:
+            if math.isfinite(other) and other != value:
+                trials.append((key, value, other))
+                rows.append(spec.model_copy(update={key: other}).vector)
+    for key, value, other in _solved(member, flank, wanted):
+        trials.append((key, value, other))
+        rows.append(spec.model_copy(update={key: other}).vector)
+    index = np.full(len(rows) + 1, member.indexing_sign * (member.blade_groups or 0) / member.teeth)
+    index[-1] *= -1
+    size = np.linalg.norm(misfit(member, flank, np.array([*rows, spec.vector]), index, wanted), axis=0)
+    if member.blade_groups:
+        trials.append(("indexing_sign", member.indexing_sign, -member.indexing_sign))
+    return [
+        Repair(*trial, before=float(size[0]), after=float(after))
+        for trial, after in zip(trials, size[1:], strict=False)
+    ]
+
+
+def _solved(member: Member, flank: str, wanted: Wanted) -> list[tuple[str, float, float]]:
+    """Setting, value, and the value that a linear step gives: it leaves least of what is wrong."""
+    spec, keys = member.flank(flank).nominal, [key for key in SETTINGS if key != _PHASE]
+    steps = {key: _STEP.get(key, 0.05) for key in keys}
+    rows = [spec.vector] + [
+        spec.model_copy(update={key: getattr(spec, key) + step}).vector for key, step in steps.items()
+    ]
+    index = np.full(len(rows), member.indexing_sign * (member.blade_groups or 0) / member.teeth)
+    off = misfit(member, flank, np.array(rows), index, wanted)
+    if not (np.abs(off) < _NONE).all():
+        return []
+    found = []
+    for key, change in zip(keys, (off[:, 1:] - off[:, :1]).T, strict=True):
+        size = float(change @ change)
+        if size > 0:
+            value = getattr(spec, key)
+            found.append((key, value, value - steps[key] * float(change @ off[:, 0]) / size))
+    return found

@@ -1,0 +1,129 @@
+"""What ``gearmath compensate`` says of a correction: two lines for everybody, tables when asked, all of it as JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from gearmath.cli.common import table
+from gearmath.cli.uncertainty import effects_text
+from gearmath.quality.analysis import Analysis, weak_words
+from gearmath.quality.correction import Correction, setting_changes
+from gearmath.quality.variables import reading
+from gearmath.specs.bevel_set import Member
+
+
+def verdict(member: Member, correction: Correction) -> tuple[str, str]:
+    """What remains of what was measured, by which settings; and which limit binds, or what could be reached."""
+
+    remains = []
+    for flank, (before, after) in correction.rms.items():
+        changes = [
+            f"{name} {(new - old) * reading(name)[0]:+.4f} {reading(name)[1]}"
+            for where, name, old, new in setting_changes(member, correction) if where == flank
+        ]  # fmt: skip
+        (found,) = (one for group, one in correction.identified.items() if flank in group)
+        kept = "expected to remain" if found.converged else f"left where the fit stopped after {found.iterations} steps"
+        remains.append(f"{flank} {after * 1000:.2f} um {kept} of {before * 1000:.2f} um "
+                       f"({', '.join(changes) or 'nothing is changed'})")  # fmt: skip
+    limits = []
+    for group, found in correction.identified.items():
+        flanks, best = " and ".join(group), correction.reachable[group] * 1000
+        if not found.converged:
+            limits.append(f"{flanks}: not converged, try fewer settings")
+        elif found.active:
+            limits.append(f"{flanks}: held back by the limit of {', '.join(found.active)}, {best:.2f} um at best")
+        else:
+            limits.append(f"{flanks}: no limit binds, all settings that are free would leave {best:.2f} um")
+    return f"RMS: {'; '.join(remains)}", "; ".join(limits)
+
+
+def say_changes(values: dict[str, Any]) -> Iterator[str]:
+    """The table of settings old and new, with their uncertainties where they are known."""
+
+    head = ["flank", "setting", "old", "new", "unit"]
+    rows = [
+        [change["flank"], change["setting"], f"{change['old']:.6f}", f"{change['new']:.6f}", change["unit"]]
+        for change in values["changes"]
+    ]
+    if "u" in values:
+        head.insert(4, "u")
+        for row in rows:
+            u = values["u"][row[0]].get(row[1])
+            row.insert(4, "" if u is None else f"{u:.6f}")
+    yield table(head, rows) if rows else "nothing to correct"
+    if "no_uncertainties" in values:
+        yield f"no uncertainties of settings: {values['no_uncertainties']}"
+    yield from effects_text(values)
+
+
+def say_analysis(flanks: str, analysis: Analysis) -> Iterator[str]:
+    """What the measurement tells of the settings that are free."""
+    kind = "simple" if analysis.is_simple else "complex"
+    yield (
+        f"{flanks}: {kind} target, RMS {analysis.rms * 1000:.3f} um; these {len(analysis.names)} settings would leave "
+        f"{analysis.best_rms * 1000:.3f} um by a linear estimate without bounds"
+    )
+    yield "  singular values [um]: " + ", ".join(f"{value * 1000:.3g}" for value in analysis.singular_values)
+    for first, second, cosine in analysis.alike:
+        how = "alike" if cosine > 0 else "opposite ways"
+        yield f"  {first} and {second} move the flank {how} (cosine {cosine:.5f}): correct one of the two only"
+    for k in analysis.weak:
+        yield f"  hardly measured: {weak_words(analysis, k)}"
+    if analysis.unseen:
+        yield f"  without effect on the flank: {', '.join(analysis.unseen)}"
+    choice = analysis.choose()
+    if len(choice.names) < len(analysis.names):
+        yield f"  enough: {', '.join(choice.names)}, with a loss of {choice.loss * 1000:.3f} um"
+
+
+def say_result(correction: Correction) -> Iterator[str]:
+    """What remains of every group of flanks, and how far the root lines move."""
+    for group, found in correction.identified.items():
+        kept = "expected to remain" if found.converged else "not converged, left so far"
+        before, after = correction.measured_rms(group) * 1000, found.rms_after * 1000
+        yield f"{' and '.join(group)}: RMS {before:.3f} um, {kept} {after:.3f} um ({found.iterations} iterations)"
+    for flank, moved in correction.root.items():
+        yield f"{flank}: root line {moved[0] * 1000:+.1f} um at the toe, {moved[1] * 1000:+.1f} um at the heel"
+
+
+def correction_values(member: Member, correction: Correction) -> dict[str, Any]:
+
+    changes = []
+    for flank, name, old, new in setting_changes(member, correction):
+        factor, unit = reading(name)
+        changes.append({"flank": flank, "setting": name, "old": old * factor, "new": new * factor, "unit": unit})
+    return {
+        "changes": changes,
+        "rms_um": {flank: [value * 1000 for value in both] for flank, both in correction.rms.items()},
+        "expected_max_um": {flank: value * 1000 for flank, value in correction.expected.items()},
+        "index_correction_deg": [] if correction.index is None else [math.degrees(v) for v in correction.index],
+        "root_line_um": {flank: [value * 1000 for value in moved] for flank, moved in correction.root.items()},
+        "left_out": correction.left_out,
+        "rotation_left_open_deg": [math.degrees(angle) for angle in correction.rotation.angles],
+        "fits": [_fit_values(correction, group) for group in correction.identified],
+    }
+
+
+def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any]:
+    analysis, found = correction.analysis[group], correction.identified[group]
+    choice = analysis.choose()
+    return {
+        "flanks": list(group),
+        "free": list(analysis.names),
+        "settings": list(dict.fromkeys(variable.name for variable in found.variables)),
+        "simple": analysis.is_simple,
+        "singular_values_um": [value * 1000 for value in analysis.singular_values],
+        "alike": [list(pair) for pair in analysis.alike],
+        "weak_directions": [analysis.direction(k) for k in analysis.weak],
+        "without_effect": list(analysis.unseen),
+        "rms_um": correction.measured_rms(group) * 1000,
+        "linear_estimate_rms_um": analysis.best_rms * 1000,
+        "reachable_rms_um": correction.reachable[group] * 1000,
+        "remaining_rms_um": found.rms_after * 1000,
+        "converged": found.converged,
+        "enough": {"settings": list(choice.names), "loss_um": choice.loss * 1000},
+        "held_back_by": list(found.active),
+        "iterations": found.iterations,
+    }

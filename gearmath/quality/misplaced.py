@@ -1,0 +1,116 @@
+"""Whether points of another measuring machine stand as their options say, and what else would explain them.
+
+A flank that was cut right has a form of some micrometres. Where points are farther off than that once they are turned,
+and a tip radius, a shift or a tilt of the axis takes most of that away, it is named. One flank does not tell these from
+its form; both flanks of a tooth do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearmath.bevel.turning import turned
+from gearmath.errors import InputError
+from gearmath.quality.points import Frame, Part, lay
+from gearmath.specs.bevel_set import Member
+
+#: Points that are farther off than this, in RMS, are said to be. [mm]
+LARGEST_RMS = 0.01
+#: A cause is named where it leaves this part of the median distance; with both flanks, beside the best one only what
+#: leaves at most so many times as much. No tip is smaller than the last [mm].
+_LEAVES, _NEARLY_BEST, _LEAST_TIP = 0.3, 3.0, 0.1
+#: No tooth is measured with so much stock on both flanks: the radius of the tip was forgotten. [mm]
+_LARGEST_STOCK = 0.5
+#: Fits of a cause, and least-squares steps within each to least absolute values.
+_FITS, _STEPS = 4, 8
+#: Columns of the motion, shifts [mm] and turns [rad] about x y z, then the radius of the tip [mm].
+_APEX, _TURN, _TIP = 2, 5, 6
+_CAUSES = {"tip": (_TIP,), "apex": (_APEX,), "shift": (0, 1), "tilt": (3, 4)}
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """The motion (7,) that a cause takes out, and half of the points, and all in RMS, that then lie so far off [mm]."""
+
+    motion: np.ndarray
+    median: float
+    rms: float
+
+
+def check_placed(parts: Sequence[Part], turns: Sequence[float], frame: Frame, member: Member) -> str:
+    """What to say of parts that lie farther off their flanks than a form does, and the likeliest causes; or nothing.
+
+    The parts share one turning. Raises InputError where both flanks lie so far out that the radius of the tip is wrong.
+    """
+    before = _fit(parts, turns, frame, member, ())
+    if before.rms <= LARGEST_RMS:
+        return ""
+    fits = {cause: _fit(parts, turns, frame, member, columns) for cause, columns in _CAUSES.items()}
+    if frame.tip_radius + fits["tip"].motion[_TIP] < _LEAST_TIP:
+        del fits["tip"]
+    both = len({part.flank for part in parts}) > 1
+    best = min(one.median for one in fits.values())
+    most = min(_NEARLY_BEST * best, _LEAVES * before.median) if both else _LEAVES * before.median
+    named = sorted((cause for cause in fits if fits[cause].median <= most), key=lambda cause: fits[cause].median)
+    whose = parts[0].name if len(parts) == 1 else f"{parts[0].name} and {len(parts) - 1} more"
+    far = f"{whose}: after turning, points lie {before.rms * 1000:.1f} um RMS off the nominal flank"
+    if both and "tip" in named and abs(fits["tip"].motion[_TIP]) > _LARGEST_STOCK:
+        raise InputError(
+            f"{far}, {fits['tip'].rms * 1000:.1f} um with {_words('tip', fits['tip'], frame)}: are the points contact "
+            "points, or centers of the probe tip?"
+        )
+    if not named:
+        return f"{far}: is it of this set, and does it stand on the axis of the file?"
+    words = " or ".join(_words(cause, fits[cause], frame) for cause in named)
+    why = "how was the work clamped?" if both else "one flank does not tell this from its form, both flanks do"
+    return f"{far}; {words} would leave {fits[named[0]].rms * 1000:.1f} um: {why}"
+
+
+def _words(cause: str, fit: _Fit, frame: Frame) -> str:
+    across, tilt = float(np.hypot(*fit.motion[:2])), float(np.degrees(np.hypot(*fit.motion[3:5])))
+    return {
+        "tip": f"--tip-radius {frame.tip_radius + fit.motion[_TIP]:.2f}",
+        "apex": f"--apex-offset {frame.apex_offset - fit.motion[_APEX]:.2f}",
+        "shift": f"work that stands {across:.2f} mm beside the axis",
+        "tilt": f"work that is tilted by {tilt:.2f} degrees",
+    }[cause]
+
+
+def _fit(
+    parts: Sequence[Part], turns: Sequence[float], frame: Frame, member: Member, columns: tuple[int, ...]
+) -> _Fit:  # fmt: skip
+    """Least absolute distances from the flank, with the rotation about the axis free, too."""
+    free = [_TURN, *columns]
+    motion, medians, rms = np.zeros(_TIP + 1), [], []
+    placed = [frame.placed(part.point) for part in parts]
+    for _ in range(_FITS):
+        tried = Frame(tip_radius=frame.tip_radius + motion[_TIP])
+        terms, off = [], []
+        for part, point, turn in zip(parts, placed, turns, strict=True):
+            laid = lay(replace(part, point=point, normal=None), tried, member, turn)
+            angle = turn + 2 * np.pi * part.tooth / member.teeth
+            foot, normal = turned(laid.foot, angle), turned(laid.normal, angle)
+            # what a motion of the points adds to their distances along the normal
+            terms.append(np.column_stack([normal, np.cross(foot, normal), np.ones(len(foot))]))
+            off.append(laid.deviation)
+        change, left = _least_absolute(np.concatenate(terms)[:, free], np.concatenate(off))
+        medians.append(float(np.median(np.abs(left))))
+        rms.append(float(np.sqrt(np.mean(left**2))))
+        step = np.zeros(_TIP + 1)
+        step[free] = change
+        motion += step
+        placed = [point - step[:3] - np.cross(step[3:6], point) for point in placed]
+    return _Fit(motion, medians[-1], rms[-1])
+
+
+def _least_absolute(terms: np.ndarray, off: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients and what they leave (n,): single bad points do not count."""
+    scale, weight = np.linalg.norm(terms, axis=0), np.ones(len(off))
+    for _ in range(_STEPS):
+        change = np.linalg.lstsq(terms / scale * weight[:, None], off * weight, rcond=None)[0] / scale
+        left = off - terms @ change
+        weight = 1 / np.sqrt(np.maximum(np.abs(left), 1e-6))
+    return change, left
