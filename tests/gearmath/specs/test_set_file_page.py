@@ -163,7 +163,7 @@ def test_machine_page_has_every_key_with_range_and_default(heading):
     cells = [line.strip("|\n").split("|") for line in machine_section(heading).splitlines() if line.startswith("| `")]
     told = {key.strip(" `"): (limits.strip(), default.strip()) for key, _, limits, default, _ in cells}
     assert told == {
-        key: (limits, default.replace("(0.0, 0.0, 0.0)", "[0.0, 0.0, 0.0]"))
+        key: (limits, re.sub(r"\(((?:0\.0, )+0\.0)\)", r"[\1]", default))
         for key, (_, limits, default) in rows(MACHINE_TABLES[heading]).items()
     }
     assert all(meaning.strip() for *_, meaning in cells)
