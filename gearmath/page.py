@@ -44,7 +44,8 @@ figcaption { font-size: .87rem; color: #333; font-weight: 600 }
   body { font-size: 1rem; line-height: 1.3; max-width: none; margin: 0; padding: 0; print-color-adjust: exact }
   h2, h3, caption { break-after: avoid } table, tr, .first { break-inside: avoid } div.wide { overflow: visible }
   div.columns { columns: 2; column-gap: 6mm; font-size: .9rem } div.columns h3:first-child { margin-top: 0 }
-  div.columns table { font-size: .78rem; break-inside: auto } div.columns th, div.columns td { padding: .05rem .3rem .05rem 0 }
+  div.columns table { font-size: .78rem } div.columns div.long table { break-inside: auto }
+  div.columns th, div.columns td { padding: .05rem .3rem .05rem 0 }
   div.columns td:nth-child(-n+2):nth-last-child(-n+5) { white-space: nowrap }
   div.columns p { margin: .3rem 0 }
   h2.new { break-before: page } h2 { margin-top: 1rem } h3 { margin-top: .7rem }
@@ -54,6 +55,10 @@ figcaption { font-size: .87rem; color: #333; font-weight: 600 }
   table { margin: .3rem 0 .6rem }
 }
 """
+
+
+#: A table of more rows than this may go on in the next column or page of paper.
+_LONG = 12
 
 
 class Page:
@@ -106,8 +111,9 @@ class Page:
         right = [len(rows) > 0 and all(_is_number(row[k]) for row in rows) for k in range(len(head))]
         top = f"<thead>{_row('th', head, right)}</thead>"
         cells = "\n".join(_row("td", row, right) for row in rows)
+        wide = "wide long" if len(rows) > _LONG else "wide"
         self._parts.append(
-            f'<div class="wide"><table><caption>{escape(caption)}</caption>\n{top}\n{cells}\n</table></div>'
+            f'<div class="{wide}"><table><caption>{escape(caption)}</caption>\n{top}\n{cells}\n</table></div>'
         )
 
     def drawings(self, drawings: Sequence[tuple[str, str]]) -> None:
