@@ -6,7 +6,8 @@ Whatever text comes from a file is escaped here; no caller writes markup. Drawin
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from html import escape
 
 _STYLE = """
@@ -37,16 +38,28 @@ figure svg { display: block; width: 100%; height: auto; max-width: 34rem }
 figcaption { font-size: .87rem; color: #333; font-weight: 600 }
 @media (min-width: 44rem) { div.charts { grid-template-columns: 1fr 1fr } }
 @media (max-width: 32rem) { body { padding: 0 .6rem } table { font-size: .82rem } th, td { padding-right: .45rem } }
-@page { size: A4; margin: 12mm }
+@page { size: A4; margin: 10mm }
 @media print {
   html { font-size: 9.5pt }
   body { font-size: 1rem; line-height: 1.3; max-width: none; margin: 0; padding: 0; print-color-adjust: exact }
   h2, h3, caption { break-after: avoid } table, tr, .first { break-inside: avoid } div.wide { overflow: visible }
+  div.columns { columns: 2; column-gap: 6mm; font-size: .82rem; line-height: 1.2 }
+  div.columns h3:first-child { margin-top: 0 }
+  div.columns table { font-size: .78rem } div.columns div.long table { break-inside: auto }
+  div.columns th, div.columns td { padding: .05rem .3rem .05rem 0 }
+  div.columns td:nth-child(-n+2):nth-last-child(-n+5) { white-space: nowrap }
+  div.columns p { margin: .3rem 0 }
   h2.new { break-before: page } h2 { margin-top: 1rem } h3 { margin-top: .7rem }
   p + div.charts { break-before: avoid } div.charts { grid-template-columns: 1fr 1fr; gap: .2rem 5mm }
+  div.columns div.charts { grid-template-columns: 1fr }
+  table.head { margin: .2rem 0 } table.head th, table.head td { padding: .02rem .4rem; height: auto }
   table { margin: .3rem 0 .6rem }
 }
 """
+
+
+#: A table of more rows than this may go on in the next column or page of paper.
+_LONG = 12
 
 
 class Page:
@@ -71,6 +84,13 @@ class Page:
         opening = '<p class="warning">' if warning else "<p>"
         self._parts.append(f"{opening}{escape(text)}</p>")
 
+    @contextmanager
+    def columns(self) -> Iterator[None]:
+        """What is written meanwhile stands in two columns on paper."""
+        self._parts.append('<div class="columns">')
+        yield
+        self._parts.append("</div>")
+
     def first(self, heading: str, sentences: Sequence[str]) -> None:
         """What is to be read before anything else, in a frame."""
         items = "\n".join(f"<li>{escape(sentence)}</li>" for sentence in sentences)
@@ -92,8 +112,9 @@ class Page:
         right = [len(rows) > 0 and all(_is_number(row[k]) for row in rows) for k in range(len(head))]
         top = f"<thead>{_row('th', head, right)}</thead>"
         cells = "\n".join(_row("td", row, right) for row in rows)
+        wide = "wide long" if len(rows) > _LONG else "wide"
         self._parts.append(
-            f'<div class="wide"><table><caption>{escape(caption)}</caption>\n{top}\n{cells}\n</table></div>'
+            f'<div class="{wide}"><table><caption>{escape(caption)}</caption>\n{top}\n{cells}\n</table></div>'
         )
 
     def drawings(self, drawings: Sequence[tuple[str, str]]) -> None:

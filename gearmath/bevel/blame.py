@@ -53,8 +53,8 @@ def likely(
 ) -> str:
     """What to say of the settings of some flanks (member, flank): which of them alone explains that they do not fit.
 
-    ``spiral`` and ``pressure`` [rad] are the angles that the others have. Where nothing is wrong at the mean point and
-    the root, nothing is said; where no single setting explains it, which is farthest from the crown gear's value.
+    ``spiral`` and ``pressure`` [rad] are the angles that the others have. Where none does, that is said, and which is
+    farthest from the crown gear's value.
     """
     flanks, angle = list(where), _SPIRAL if spiral is None else spiral
     suspect = farthest(members, flanks, spiral)
@@ -72,17 +72,17 @@ def likely(
         tried += [(name, flank, member, one) for one in trials]
     befores = {(name, flank): one.before for name, flank, _, one in tried}
     total = sum(befores.values())
-    if befores and max(befores.values()) <= 1:
-        return ""
     left = [total - one.before + one.after for *_, one in tried]
-    if tried and min(left) <= min(_EXPLAINED * total, _FITS * len(flanks)):
+    if tried and total > 1 and min(left) <= min(_EXPLAINED * total, _FITS * len(flanks)):
         good = [k for k, value in enumerate(left) if value <= min(left) + _AS_GOOD]
         name, flank, _, best = tried[min(good, key=lambda k: _moved(tried[k][2], tried[k][1], tried[k][3]))]
         table = name if best.key == _SIGN else f"{name}.{flank}"
         return (
             f"; the setting that alone explains it is {table}.{best.key} = {best.value:.6g}: {best.other:.6g} would fit"
         )
-    return f"; no single setting explains it, the one farthest from the crown gear's is {suspect}"
+    # what the mean points and roots do not show, no trial of them can tell
+    none = "no single setting explains it, the one" if total > 1 else "the setting"
+    return f"; {none} farthest from the crown gear's is {suspect}"
 
 
 def _moved(member: Member, flank: str, repair: Repair) -> float:

@@ -191,10 +191,10 @@ def _check_tips(name: str, flank: str, section: Section, u: np.ndarray, converge
     if above.any():
         k = int(np.argmax(above))
         needed = f": it must be at least {u.max():.4g} mm" if section.arc is None else ""
-        raise Misfit.of(
-            name, flank,
-            f"blade_profile_height = {height:g} does not reach the tip of the tooth at the {_PLACES[k]}{needed}",
-        )  # fmt: skip
+        raise InputError(
+            f"{name} {flank} flank: blade_profile_height = {height:g} does not reach the tip of the tooth at the "
+            f"{_PLACES[k]}{needed}"
+        )
     if below.any():
         k = int(np.argmax(below))
         raise Misfit.of(

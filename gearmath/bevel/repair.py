@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from operator import ge, gt, le, lt
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from gearmath.bevel.generation_kernels import generation_point
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import generation_of
 from gearmath.bevel.newton import TOLERANCE
-from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member, Settings
 
 #: What counts as one: spiral and pressure angle off those wanted. [rad]
 _SPIRAL, _PRESSURE = math.radians(2), math.radians(5)
@@ -103,6 +104,17 @@ class Repair:
     after: float
 
 
+def allowed(key: str, value: float) -> bool:
+    """Whether a set file may give a setting this value."""
+    limits = Settings.model_fields[key].metadata
+    return math.isfinite(value) and all(
+        holds(value, getattr(limit, name))
+        for limit in limits
+        for name, holds in (("gt", gt), ("ge", ge), ("lt", lt), ("le", le))
+        if getattr(limit, name, None) is not None
+    )
+
+
 def repairs(member: Member, flank: str, expected: Mapping[str, float], wanted: Wanted) -> list[Repair]:
     """Every trial of every setting of a flank; ``expected`` holds the crown gear's values."""
     spec, beside = member.flank(flank).nominal, member.flank(FLANKS[1 - FLANKS.index(flank)]).nominal
@@ -112,10 +124,12 @@ def repairs(member: Member, flank: str, expected: Mapping[str, float], wanted: W
             continue
         value = getattr(spec, key)
         for other in {value * slip for slip in _SLIPS} | {expected.get(key, value), getattr(beside, key)} - {value}:
-            if math.isfinite(other) and other != value:
+            if allowed(key, other) and other != value:
                 trials.append((key, value, other))
                 rows.append(spec.model_copy(update={key: other}).vector)
     for key, value, other in _solved(member, flank, wanted):
+        if not allowed(key, other):
+            continue
         trials.append((key, value, other))
         rows.append(spec.model_copy(update={key: other}).vector)
     index = np.full(len(rows) + 1, member.indexing_sign * (member.blade_groups or 0) / member.teeth)

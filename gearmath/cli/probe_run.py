@@ -45,9 +45,10 @@ def probe(
 
     The tip of --calibration is moved as the text says, against the flanks of a member or, in a calibration program,
     against ring and spheres; the touches are those that the program writes on the control. With --measured the flanks
-    are as that file says, its noise included: splines between the points of its grids, teeth without a grid as the
-    nearest one that has one, turned to their reference point. With --errors axes, probe and work err as the file says:
-    [axes], [probe], and the clamping and drift of [measuring].
+    are as that file says, and what was noise there is metal here: take what 'gearmath mill' wrote; splines between
+    the points of its grids, teeth without a grid as the nearest one that has one, turned to their reference point.
+    With --errors axes, probe and work err as the file says: [axes], [probe], and the clamping and
+    drift of [measuring].
 
     A program that collides with a nominal member, as 'gearmath nc probe' watches for it, is refused. 'gearmath touches'
     and 'gearmath calibrate' read what is written here.

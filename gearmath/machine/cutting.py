@@ -119,7 +119,7 @@ def cutting_program(
         f"gearmath {__version__} cutting program",
         f"set: {plain(bevel_set.title)}",
         f"member: {name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}",
-        f"settings sha256: {settings_sha256(member)}",
+        f"machine settings sha256: {settings_sha256(member)}",
         *_tolerance_notes(member, job, machine, share),
         *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
         f"feed: {job.feed:g} mm/min at the tooth",

@@ -191,7 +191,7 @@ def probing_program(
         f"gearmath {__version__} probing program",
         f"set: {bevel_set.title}",
         f"member: {name}, {member.teeth} teeth, {member.hand} hand",
-        f"settings sha256: {design_sha256(member)}",
+        f"nominal settings sha256: {design_sha256(member)}",
         f"machine: {machine.name}",
         f"probe: {calibration.name}, tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm",
         f"{len(targets)} points" + (f", each touched {repeat} times" if repeat > 1 else ""),

@@ -18,8 +18,10 @@ from typing import TypeVar
 import numpy as np
 
 from gearmath.errors import ComputationError
-from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands
+from gearmath.quality.flank_target import FlankTarget
 from gearmath.quality.identification import RANK
+from gearmath.quality.on_line import Run, as_it_stands
+from gearmath.quality.problem import Problem
 from gearmath.quality.variables import FREE, Bounds, Variable, reading, variables_of
 
 #: What names a block of columns.

@@ -15,10 +15,11 @@ import numpy as np
 from derivations import Quantity
 from gearmath.errors import ComputationError
 from gearmath.lowering import Kernel
-from gearmath.quality.compensation import FlankTarget, Problem, Run, as_it_stands, located
 from gearmath.quality.deviation_surface import surface_map
+from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.least_squares import FLOOR, compensation_step, enough, next_damping
-from gearmath.quality.on_line import flank_on_line
+from gearmath.quality.on_line import Run, as_it_stands, flank_on_line
+from gearmath.quality.problem import Problem
 from gearmath.quality.variables import FREE, variables_of
 from gearmath.specs.bevel_set import SETTINGS
 

@@ -1,284 +1,29 @@
-"""Compensation: which settings the machine behaved as if it had, and the settings that make up for it.
+"""Compensation: which settings of a machine explain measured deviations, or leave wanted ones.
 
-The deviation that settings x leave at a nominal point, along its outward normal n, is found on the exact surface:
-
-    t(x) = (R(u, β, θ; x) - P)·n   with   e1·(R - P) = e2·(R - P) = 0,  f(u, β, θ; x) = 0
-
-for tangents e1, e2 of the nominal flank, for every cutting method; its gradient is (20.1, 20.2). A bounded
-Levenberg-Marquardt iteration makes t(x) equal to what was measured; the correction takes the difference back.
+A bounded Levenberg-Marquardt iteration makes t(x) of :mod:`gearmath.quality.flank_target` equal to the deviations of
+the targets, on the exact surface.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from gearmath.bevel.generation import Generation
-from gearmath.bevel.kernels import kernel
-from gearmath.bevel.newton import FlankPoints
-from gearmath.errors import ComputationError
 from gearmath.quality.deviation_surface import surface_map
+from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.identification import Identification
 from gearmath.quality.least_squares import Minimum, compensation_step, minimize
-from gearmath.quality.on_line import Kind, Run, as_it_stands, flank_on_line
-from gearmath.quality.root_line import RootLine
-from gearmath.quality.variables import FREE, SIZE, Bounds, Variable, parts, variables_of, whole
-from gearmath.specs.bevel_set import SETTINGS
+from gearmath.quality.on_line import Run, as_it_stands
+from gearmath.quality.problem import Problem
+from gearmath.quality.variables import FREE, Bounds, variables_of
 
-_LINE_TOLERANCE = 1e-9
-#: What a root line and its place between its limits differ by counts so many times its length.
-ROOT_WEIGHT = 100.0
-
-#: Where a design leaves more than this part of the sum of squares after so many steps, it also starts with so much of
-#: the bound of the tilt.
-_GOOD, _HEAT, _TILTED = 0.01, 6, 0.25
+#: Where a design leaves more than this part of the sum of squares after so many steps, it starts tilted too.
+_GOOD, _HEAT = 0.01, 6
 #: With noise, what improves the sum of squares by less than this part of its square is no improvement.
 _MATTERS = 1e-6
-
-
-@dataclass(frozen=True)
-class FlankTarget:
-    """One measured flank: how it was cut, its nominal points (n,) and the deviations measured there (n,) [mm].
-
-    ``how.settings`` and ``how.motion`` are what the machine was set to. ``curvature`` [1/mm] is that of the blade, zero
-    where it is straight; it touches the straight one at ``reference_height`` [mm]. ``place`` (n,2) holds X and Y of
-    (6.3) for the fit of a deviation surface, ``root`` where the root line is to be held, and ``used`` (grid,) which
-    points of the whole grid these are; ``absent`` are the others.
-    """
-
-    how: Generation
-    nominal: FlankPoints
-    deviation: np.ndarray
-    curvature: float = 0.0
-    reference_height: float = 0.0
-    place: np.ndarray | None = None
-    root: RootLine | None = None
-    used: np.ndarray | None = None
-    absent: FlankPoints | None = None
-
-    @property
-    def left_out(self) -> FlankTarget | None:
-        """The points of the grid that were not measured, as a target without deviation; None if there are none."""
-        if self.absent is None or not len(self.absent.point):
-            return None
-        return replace(self, nominal=self.absent, deviation=np.zeros(len(self.absent.point)), used=None, absent=None)
-
-    @property
-    def grid_points(self) -> int:
-        """How many points the whole grid has."""
-        return len(self.deviation) if self.used is None else len(self.used)
-
-    def plus(self, deviation: np.ndarray) -> FlankTarget:
-        """The target with deviations (grid,) [mm] added to what was measured."""
-        return replace(self, deviation=self.deviation + (deviation if self.used is None else deviation[self.used]))
-
-    def repeated(self, times: int) -> FlankTarget:
-        """The target with its points so many times, one whole after the other; nothing is measured there."""
-        nominal = FlankPoints(*(np.tile(a, (times, 1)) for a in vars(self.nominal).values()))
-        return replace(self, nominal=nominal, deviation=np.zeros(times * len(self.deviation)), used=None, absent=None)
-
-    @property
-    def kind(self) -> Kind:
-        """Which of the kernels on a line knows this flank as it is."""
-        return self.kind_of(self.vector)
-
-    def kind_of(self, vectors: np.ndarray, bending: bool = False) -> Kind:
-        """The kernel for whole vectors (...,83), with the gradient by the curvature where it is ``bending``."""
-        if bending or vectors[..., -1].any():
-            return "curved"
-        moved = self.how.index_ratio or not self.how.rolling or vectors[..., len(SETTINGS) : -1].any()
-        return "straight" if moved else "plain"
-
-    @property
-    def settings(self) -> np.ndarray:
-        """The settings (12,) that the machine was set to, mm and rad."""
-        return self.how.settings
-
-    @property
-    def vector(self) -> np.ndarray:
-        """Settings and motion that the machine was set to, and the curvature of the blade, as one vector (83,)."""
-        return whole(self.how.settings, self.how.motion, self.curvature)
-
-    def given(self, vectors: np.ndarray, kind: Kind) -> tuple:
-        """The arguments of ``on_line.INPUTS`` for whole vectors (...,83)."""
-        settings, motion = parts(vectors)
-        if kind == "plain":
-            return settings, self.how.side
-        blade = (vectors[..., -1], self.reference_height) if kind == "curved" else ()
-        cut = (settings, motion, self.how.index_ratio, self.how.blade_offset_angle, *blade)
-        return *cut, self.how.side, float(self.how.rolling)
-
-
-def located(
-    target: FlankTarget, vectors: np.ndarray, run: Run = as_it_stands, moving: bool = True, bending: bool = False
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Deviations (n,) [mm] of settings and motions (83,), their gradient, and which points (n,) were not found.
-
-    ``vectors`` may also be (n,83), one for every point. The gradient is (n,83), or (n,12) by the settings alone if
-    neither ``moving`` nor ``bending``; by the curvature it is zero where the blade is straight and not ``bending``.
-    """
-    nominal, kind = target.nominal, target.kind_of(vectors, bending)
-    contact, deviation, gradient, residual = run(flank_on_line(kind))(
-        nominal.contact, *target.given(vectors, kind), nominal.point, nominal.normal
-    )
-    failed = ~(residual <= _LINE_TOLERANCE)
-    by_settings, by_curvature = gradient[:, : len(SETTINGS)], gradient[:, len(SETTINGS) :]
-    if not moving and not bending:
-        return deviation, by_settings, failed
-    full = np.zeros((len(deviation), SIZE))
-    full[:, : len(SETTINGS)] = by_settings
-    if moving:
-        (motion,) = run(kernel("coefficient_sensitivity"))(contact[:, 2], by_settings)
-        full[:, len(SETTINGS) : -1] = motion.reshape(len(motion), -1)
-    if by_curvature.size:
-        full[:, -1:] = by_curvature
-    return deviation, full, failed
-
-
-def predicted(target: FlankTarget, settings: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray]:
-    """Deviation (n,) [mm] that settings leave at the nominal points, and its gradient by them.
-
-    ``settings`` are (12,), with the motion of the target and a gradient (n,12), or the whole vector (83,) and (n,83).
-    Raises ComputationError if the surface does not cross the normal of one of the points.
-    """
-    vector = settings if len(settings) == SIZE else np.concatenate([settings, target.vector[len(SETTINGS) :]])
-    deviation, gradient, failed = located(target, vector, run, *[len(settings) == SIZE] * 2)
-    if failed.any():
-        raise ComputationError(
-            f"the flank of the changed settings does not cross the normal of point {int(np.argmax(failed))}"
-        )
-    return deviation, gradient
-
-
-@dataclass(frozen=True)
-class Problem:
-    """The least-squares problem of some targets: what the solver calls, in scaled variables."""
-
-    targets: Sequence[FlankTarget]
-    variables: tuple[Variable, ...]
-    weighting: np.ndarray | None
-    root_limit: float | None
-    run: Run = as_it_stands
-    noise: float = 0.0
-
-    @cached_property
-    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Least and largest values of the scaled variables and of the slacks."""
-        low, high = np.array([variable.range for variable in self.variables]).T
-        ones = np.ones(self.slacks)
-        return np.concatenate([low, -ones]), np.concatenate([high, ones])
-
-    @cached_property
-    def measured(self) -> np.ndarray:
-        return np.concatenate([target.deviation for target in self.targets])
-
-    @cached_property
-    def scale(self) -> np.ndarray:
-        return np.array([variable.bound for variable in self.variables])
-
-    @cached_property
-    def index(self) -> np.ndarray:
-        return np.array([variable.index for variable in self.variables])
-
-    @cached_property
-    def moving(self) -> bool:
-        """Whether coefficients of a motion are among the variables."""
-        return bool(((self.index >= len(SETTINGS)) & (self.index < SIZE - 1)).any())
-
-    @cached_property
-    def bending(self) -> bool:
-        """Whether the curvature of a blade is among the variables."""
-        return bool((self.index == SIZE - 1).any())
-
-    @cached_property
-    def _depths(self) -> list[np.ndarray]:
-        """Depths (2,) [mm] of the root lines as they were cut."""
-        return [t.root.depth(t.vector, self.run)[1] for t in self.targets if t.root is not None]
-
-    def deviations(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """Residual (m,) of the points and its Jacobian (m,p); None where a point is not found."""
-        values, jacobians = [], []
-        for k in range(len(self.targets)):
-            deviation, gradient, failed = self.located(v, k)
-            if failed.any():
-                return None
-            values.append(deviation)
-            jacobians.append(self.columns(gradient, k))
-        return np.concatenate(values) - self.measured, np.concatenate(jacobians)
-
-    def located(self, v: np.ndarray, target: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """``located`` of one target for scaled variables (p,)."""
-        return located(
-            self.targets[target], self.targets[target].vector + self.change(v, target), self.run, self.moving,
-            self.bending,
-        )  # fmt: skip
-
-    def change(self, v: np.ndarray, target: int) -> np.ndarray:
-        """Scaled variables (...,p) as whole vectors (...,83) of one target."""
-        vector, mine = np.zeros((*v.shape[:-1], SIZE)), self._mine[target]
-        vector[..., self.index[mine]] = (v * self.scale)[..., mine]
-        return vector
-
-    @cached_property
-    def _mine(self) -> list[np.ndarray]:
-        """Which variables (p,) each target has."""
-        return [np.array([v.target in (None, k) for v in self.variables]) for k in range(len(self.targets))]
-
-    def columns(self, gradient: np.ndarray, target: int) -> np.ndarray:
-        """The columns (n,p) of the variables of a gradient (n,83), or (n,12) by settings alone, of one target."""
-        return gradient[:, self.index] * (self.scale * self._mine[target])
-
-    def root(self, v: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-        """How far the root lines sink at toe and heel (2,) [mm], and their gradients (2,p), of those that have one."""
-        moved: list[tuple[np.ndarray, np.ndarray]] = []
-        for k, target in enumerate(self.targets):
-            if target.root is not None:
-                _, depth, gradient = target.root.depth(target.vector + self.change(v, k), self.run)
-                moved.append((depth - self._depths[len(moved)], self.columns(gradient, k)))
-        return moved
-
-    @property
-    def slacks(self) -> int:
-        """How many places of root lines are watched: each is a variable more, bounded by the limit."""
-        return 2 * sum(t.root is not None for t in self.targets) if self.root_limit is not None else 0
-
-    def __call__(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """What is minimised, and its Jacobian by the variables and then the slacks of the root lines."""
-        p = len(self.variables)
-        found = self.deviations(v[:p])
-        if found is None:
-            return None
-        residual, jacobian = found
-        if self.weighting is not None:
-            residual, jacobian = self.weighting @ residual, self.weighting @ jacobian
-        if self.noise:
-            residual = np.concatenate([residual, self.noise * v[:p]])
-            jacobian = np.concatenate([jacobian, self.noise * np.eye(p)])
-        if not self.slacks:
-            return residual, jacobian
-        try:
-            roots = self.root(v[:p])
-        except ComputationError:
-            return None
-        sunk, gradient = (np.concatenate(arrays) for arrays in zip(*roots, strict=True))
-        apart = ROOT_WEIGHT * (sunk - self.root_limit * v[p:])
-        slopes = np.zeros((len(residual) + self.slacks, p + self.slacks))
-        slopes[: len(residual), :p], slopes[len(residual) :, :p] = jacobian, ROOT_WEIGHT * gradient
-        np.fill_diagonal(slopes[len(residual) :, p:], -ROOT_WEIGHT * self.root_limit)  # type: ignore[operator]
-        return np.concatenate([residual, apart]), slopes
-
-    @property
-    def other_starts(self) -> list[np.ndarray]:
-        """Where a design may start too: tilted to either side, as without tilt the swivel does nothing."""
-        names = [variable.name for variable in self.variables]
-        if "cutter_tilt" not in names:
-            return []
-        to_side = _TILTED * np.eye(len(names) + self.slacks)[names.index("cutter_tilt")]
-        low, high = self.bounds
-        return [v for v in (low * to_side, high * to_side) if self(v) is not None]
 
 
 def identify(

@@ -4,7 +4,7 @@ A flank was cut with settings x and measured: d at its nominal points. Cut with 
 
     d + t(x + c) - t(x)                                                                                      (A)
 
-t of :mod:`gearmath.quality.compensation`, on the exact surface: whatever else is wrong with the machine moves the flank
+t of :mod:`gearmath.quality.flank_target`, on the exact surface: whatever else is wrong with the machine moves the flank
 as before. c makes (A) least within its bounds, and (A) is what is expected to remain. So c is found as the change of
 settings that explains the wanted deviations t(x) - d.
 """
@@ -18,9 +18,10 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.quality.analysis import LOSS, LOSS_PART, Analysis
-from gearmath.quality.compensation import FlankTarget, identify, located
+from gearmath.quality.compensation import identify
 from gearmath.quality.correction_checks import check_determined, made_worse, refuse_worse, rms_of_flanks
 from gearmath.quality.correction_fit import CorrectionFit, changed_settings, without_shift
+from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.identification import Identification
 from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.own_index import teeth_as_indexed_on_average

@@ -8,7 +8,7 @@ import numpy as np
 
 from gearmath.errors import ComputationError, InputError
 from gearmath.quality.analysis import analyse
-from gearmath.quality.compensation import FlankTarget
+from gearmath.quality.flank_target import FlankTarget
 from gearmath.quality.identification import RANK, Identification
 
 #: What a correction may add to the RMS of a flank that is as good as perfect: no probe shows it. [mm]

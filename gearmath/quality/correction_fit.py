@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from gearmath.quality.analysis import Analysis, analyse, fewest
-from gearmath.quality.compensation import FlankTarget, identify, nothing_identified
+from gearmath.quality.compensation import identify, nothing_identified
+from gearmath.quality.flank_target import FlankTarget
 from gearmath.quality.identification import Identification
 from gearmath.quality.unknown_rotation import UnknownRotation, rotation_step, step_of
 

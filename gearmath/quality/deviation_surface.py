@@ -11,7 +11,7 @@ from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from gearmath.quality.compensation import FlankTarget
+    from gearmath.quality.flank_target import FlankTarget
 
 COEFFICIENTS = 10
 

@@ -24,12 +24,13 @@ import numpy as np
 
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
-from gearmath.quality.compensation import ROOT_WEIGHT, FlankTarget, Problem
 from gearmath.quality.correction import ROOT_LIMIT, Correction
 from gearmath.quality.covariance import Covariance, coverage_factor
 from gearmath.quality.figures import Figure
+from gearmath.quality.flank_target import FlankTarget
 from gearmath.quality.identification import RANK, Identification
 from gearmath.quality.on_line import flank_on_line
+from gearmath.quality.problem import ROOT_WEIGHT, Problem
 from gearmath.quality.target import blade_curve, flank_target
 from gearmath.quality.topography import grid_shape
 from gearmath.quality.uncertainty import PROBABILITY, Uncertain

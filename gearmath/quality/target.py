@@ -14,7 +14,7 @@ from gearmath.bevel.method import cut_generation_of
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
-from gearmath.quality.compensation import FlankTarget
+from gearmath.quality.flank_target import FlankTarget
 from gearmath.quality.pitch import reference_point
 from gearmath.quality.root_line import RootLine
 from gearmath.quality.topography import grid_shape, local_coordinates

@@ -13,7 +13,7 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.errors import ComputationError, InputError
-from gearmath.quality.compensation import FlankTarget, predicted
+from gearmath.quality.flank_target import FlankTarget, predicted
 from gearmath.quality.target import target_of
 from gearmath.quality.variables import whole
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member

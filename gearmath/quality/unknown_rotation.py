@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.quality.compensation import FlankTarget, located
+from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.identification import Identification, damped_inverse
 from gearmath.specs.bevel_set import SETTINGS
 from gearmath.specs.flank_csv import COMMON, FlankFile

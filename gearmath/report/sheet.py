@@ -94,10 +94,11 @@ def _member(
         )
         page.drawings(drawings)
     progress(1)
-    flank_section(page, one)
-    clamping_section(page, found)
-    settings_sections(page, one)
-    uncertainty_section(page, one)
+    with page.columns():
+        flank_section(page, one)
+        clamping_section(page, found)
+        settings_sections(page, one)
+        uncertainty_section(page, one)
     progress(1)
 
 
@@ -109,7 +110,10 @@ def _spacing(page: Page, one: Measurement) -> None:
         page.paragraph(
             f"Teeth are counted from 0; gray bars and full lines: measured{dashed}. Both flanks have the same scale."
         )
-        page.drawings([*drawings, *charts.space_charts(one)])
+        page.drawings(drawings)
     else:
         page.paragraph("No two teeth were measured on a flank: there is no pitch.")
-    spacing_section(page, one)
+    with page.columns():
+        if drawings and (runout := charts.space_charts(one)):
+            page.drawings(runout)
+        spacing_section(page, one)

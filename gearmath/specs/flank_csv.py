@@ -49,8 +49,9 @@ _HEADER_VALUES = {
 _PAIRS = ("grid", "margins", "reference_point")
 #: Points of a grid; so many are solved in seconds.
 MOST_POINTS = 10_000
-#: No index is larger, no point farther from the apex [mm], no deviation larger [µm].
-_LARGEST_INDEX, _LARGEST, _LARGEST_UM = 1_000_000, 1e4, 1e4
+#: No index is larger, no point farther from the apex [mm], no deviation larger [µm],
+#: and no machine that measures so badly [µm].
+_LARGEST_INDEX, _LARGEST, _LARGEST_UM, _LARGEST_U_UM = 1_000_000, 1e4, 1e4, 100.0
 
 
 @dataclass(frozen=True)
@@ -109,9 +110,9 @@ def flank_file(
 
 
 def write_flank_csv(path: Path, file: FlankFile) -> None:
-    """Write a flank file in one step."""
+    """Write a flank file in one step, other header comments such as the operator after those of the contract."""
     stream = io.StringIO()
-    for key in HEADER:
+    for key in (*HEADER, *(other for other in file.header if other not in HEADER)):
         stream.write(f"# {key}: {file.header[key]}\n")
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -154,6 +155,8 @@ def _check_header(path: Path, header: dict[str, str]) -> None:
 
 def _record(line: Line, header: dict[str, str]) -> tuple[Line, tuple]:
     line.counted(len(COLUMNS))
+    if line.cells == COLUMNS:
+        raise line.refuse("the column line is there twice: is this more than one file?")
     cells = dict(zip(COLUMNS, line.cells, strict=True))
     member = line.one_of("member", cells["member"], MEMBERS)
     if member != header["member"]:
@@ -164,14 +167,14 @@ def _record(line: Line, header: dict[str, str]) -> tuple[Line, tuple]:
     normal = tuple(line.real(key, cells[key]) for key in ("nx", "ny", "nz"))
     if abs(math.hypot(*normal) - 1) > 1e-6:
         raise line.refuse(f"nx, ny, nz have length {math.hypot(*normal):.7f}, must be 1")
-    deviation = _or_silent(line, "deviation_um", cells, -_LARGEST_UM)
-    uncertainty = _or_silent(line, "u_um", cells, 0.0)
+    deviation = _or_silent(line, "deviation_um", cells, -_LARGEST_UM, _LARGEST_UM)
+    uncertainty = _or_silent(line, "u_um", cells, 0.0, _LARGEST_U_UM)
     return line, (*names, *places, *point, *normal, deviation, uncertainty)
 
 
-def _or_silent(line: Line, key: str, cells: dict[str, str], least: float) -> float:
+def _or_silent(line: Line, key: str, cells: dict[str, str], least: float, most: float) -> float:
     """A number in µm, NaN where the cell is empty."""
-    return line.real(key, cells[key], least, _LARGEST_UM) if cells[key] else math.nan
+    return line.real(key, cells[key], least, most) if cells[key] else math.nan
 
 
 def _collect(header: dict[str, str], records: list[tuple[Line, tuple]]) -> FlankFile:

@@ -41,6 +41,9 @@ _SENTENCES = {
     "finite_number": "must be a finite number",
 }
 
+#: So many characters of a value a message shows.
+_LONGEST = 100
+
 
 def load(path: Path, model: type[SpecT]) -> SpecT:
     """Read a TOML file into ``model``. Raises InputError with file, key, value and limit in one sentence."""
@@ -90,16 +93,27 @@ def _sentence(error: ValidationError, model: type[Spec]) -> str:
     details = error.errors(include_url=False)
     unknown = [detail for detail in details if detail["type"] == "extra_forbidden"]
     first = (unknown or details)[0]
-    key, place = ".".join(str(part) for part in first["loc"]), first["loc"][:-1]
+    key, place = ".".join(_printed(str(part)) for part in first["loc"]), first["loc"][:-1]
     near = difflib.get_close_matches(str(first["loc"][-1]), _keys(model, place), 1, _LIKENESS) if unknown else []
     if near:
         # the key that is meant is missing, then, and no fault of its own
         others = [detail for detail in details if detail is not first and detail["loc"] != (*place, near[0])]
         return f"{key}: no such key; did you mean {near[0]}?" + (f" (and {len(others)} more)" if others else "")
     what = _SENTENCES.get(first["type"], first["msg"].removeprefix("Value error, ").removeprefix("Input "))
-    value = "" if first["type"] == "missing" or isinstance(first["input"], dict) else f" = {first['input']!r}"
+    value = "" if first["type"] == "missing" or isinstance(first["input"], dict) else f" = {_short(first['input'])}"
     more = f" (and {len(details) - 1} more)" if len(details) > 1 else ""
     return f"{key}{value}: {what}{more}" if key else f"{what}{more}"
+
+
+def _printed(key: str) -> str:
+    """A key as it stands, or quoted where it holds what would break the line of a message."""
+    return key if key.isprintable() else repr(key)
+
+
+def _short(value: object) -> str:
+    """A value as it stands, cut off where it is a whole table or a long list."""
+    text = repr(value)
+    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}..."
 
 
 def _keys(model: type[Spec], place: tuple[int | str, ...]) -> list[str]:

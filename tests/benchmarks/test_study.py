@@ -11,8 +11,9 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.quality.batch import compensation_kernel
-from gearmath.quality.compensation import identify, predicted, with_deviations
+from gearmath.quality.compensation import identify, with_deviations
 from gearmath.quality.covariance import independent
+from gearmath.quality.flank_target import predicted
 from gearmath.quality.study import monte_carlo, run
 from gearmath.quality.target import target_of
 from gearmath.specs.bevel_set import load_bevel_set

@@ -8,6 +8,7 @@ by cutter, cradle and work.
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -412,3 +413,12 @@ def mirrored(member: Member) -> Member:
         spec["blade_offset_angle"] *= -1
         spec["work_rotation_offset"] += 180.0 * member.indexing_sign * (member.blade_groups or 0) / member.teeth
     return Member.model_validate(values)
+
+
+@pytest.fixture(scope="session")
+def browser():
+    """How to start a browser without a window."""
+    for name in ("chromium", "chromium-browser", "google-chrome"):
+        if path := shutil.which(name):
+            return [path, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
+    return pytest.skip("needs chromium")

@@ -11,7 +11,7 @@ import pytest
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.method import cut_generation_of
 from gearmath.machine.mill import flank_header
-from gearmath.quality.compensation import predicted
+from gearmath.quality.flank_target import predicted
 from gearmath.quality.target import target_of
 from gearmath.quality.variables import NAMES, whole
 from gearmath.specs.bevel_set import FLANKS, design_sha256, load_bevel_set, settings_sha256

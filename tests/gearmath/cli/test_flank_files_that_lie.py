@@ -150,7 +150,7 @@ REFUSED = {
     ),
     "u negative": (cell(12, "-1"), r"line 21: u_um = -1: must be from 0 to"),
     "u nan": (cell(12, "nan"), r"line 21: u_um = 'nan': must be a finite number"),
-    "u without end": (cell(12, "1e300"), r"line 21: u_um = 1e300: must be from 0 to 10000"),
+    "u without end": (cell(12, "1e300"), r"line 21: u_um = 1e300: must be from 0 to 100"),
     "deviation inf": (cell(11, "inf"), r"line 21: deviation_um = 'inf': must be a finite number"),
     "deviation overflows": (cell(11, "1e999"), r"line 21: deviation_um = '1e999': must be a finite number"),
     "digits of another script": (cell(5, "４５.0"), r"line 21: x = '４５.0': must be a finite number"),

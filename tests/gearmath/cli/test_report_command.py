@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
 from dataclasses import replace
 from html import unescape
 
@@ -125,6 +126,26 @@ def test_drawings_are_in_the_page_and_two_pictures_beside_it(page):
     beside = {path.name: path.read_bytes() for path in page.parent.iterdir() if path != page}
     assert set(beside) == {"report_measured.png", "report_corrected.png"}
     assert all(data.startswith(b"\x89PNG\r\n") for data in beside.values())
+
+
+def test_sheet_of_a_member_prints_on_three_pages_of_a4_with_nothing_cut_off(browser, page, tmp_path):
+    """With every section there is. No table of the printed layout, 190 mm wide, is wider than its column."""
+    options = ["--no-pdf-header-footer", f"--print-to-pdf={tmp_path / 'sheet.pdf'}", page.as_uri()]
+    subprocess.run([*browser, *options], check=True, capture_output=True, timeout=120)
+    assert 2 <= len(re.findall(rb"/MediaBox", (tmp_path / "sheet.pdf").read_bytes())) <= 3
+    text = page.read_text("utf-8").replace("@media print", "@media screen")
+    script = (
+        "<script>addEventListener('load', () => { document.title = JSON.stringify("
+        "[...document.querySelectorAll('div.columns table')].map(t => t.scrollWidth - t.parentNode.clientWidth))})"
+        "</script></body>"
+    )
+    policy = re.search(r'<meta http-equiv="Content-Security-Policy"[^>]*>', text)[0]
+    (tmp_path / "wide.html").write_text(text.replace(policy, "").replace("</body>", script), "utf-8")
+    options = ["--window-size=718,2000", "--virtual-time-budget=5000", "--dump-dom", (tmp_path / "wide.html").as_uri()]
+    dom = subprocess.run([*browser, *options], check=True, capture_output=True, timeout=120, text=True).stdout
+    beyond = json.loads(unescape(re.search(r"<title>(.*?)</title>", dom)[1]))
+    assert len(beyond) >= 7
+    assert max(beyond) <= 0
 
 
 def test_every_point_of_both_flanks_has_its_deviation_with_the_reference_point_at_zero(page, gear_set):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import subprocess
 from html import escape, unescape
 
@@ -32,14 +31,6 @@ addEventListener('load', () => {
     left: Math.min(...boxes.map(box => box.left)), right: Math.max(...boxes.map(box => box.right))});
 });
 """
-
-
-@pytest.fixture(scope="module")
-def browser():
-    for name in ("chromium", "chromium-browser", "google-chrome"):
-        if path := shutil.which(name):
-            return [path, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
-    return pytest.skip("needs chromium")
 
 
 @pytest.fixture(scope="module")

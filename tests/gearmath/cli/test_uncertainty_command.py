@@ -10,10 +10,10 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.machine.mill import nominal_flank
-from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
 from gearmath.quality.covariance import independent
 from gearmath.quality.evaluation import evaluate_member
+from gearmath.quality.flank_target import predicted
 from gearmath.quality.judging import judged_by_measured
 from gearmath.quality.setting_uncertainty import noise_of
 from gearmath.quality.target import target_of

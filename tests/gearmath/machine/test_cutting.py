@@ -78,7 +78,7 @@ def test_head_says_what_the_program_was_made_from_in_plain_ascii(gear_set, verti
     head = [line for line in lines[:14] if line.startswith(";")]
     assert "; set: Kegelr?der 12?36?; M30" in head
     assert "; member: gear, 36 teeth, right hand, completing" in head
-    assert f"; settings sha256: {settings_sha256(gear_set.gear)}" in head
+    assert f"; machine settings sha256: {settings_sha256(gear_set.gear)}" in head
     assert "; flank tolerance: 0.5 um along the tooth normal, by straight blocks and rounding" in head
     assert "; feed: 250 mm/min at the tooth" in head
     assert not re.search(r"\b20\d\d-", "\n".join(head))  # no date: the same settings give the same text

@@ -12,7 +12,7 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.machine.mill import flank_header
-from gearmath.quality.compensation import FlankTarget
+from gearmath.quality.flank_target import FlankTarget
 from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SIDES, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.flank_csv import FlankFile, flank_file, join

@@ -14,7 +14,8 @@ from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections
 from gearmath.errors import InputError
 from gearmath.quality.analysis import analyse, projection_residual
-from gearmath.quality.compensation import identify, predicted
+from gearmath.quality.compensation import identify
+from gearmath.quality.flank_target import predicted
 from gearmath.quality.target import target_of
 from gearmath.quality.variables import FREE, free_settings
 from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, MEMBERS, SETTINGS, load_bevel_set

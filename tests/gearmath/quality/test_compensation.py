@@ -14,7 +14,8 @@ from gearmath.bevel.flank import FlankPoints, blank_grid, solve_places
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
-from gearmath.quality.compensation import FlankTarget, identify, predicted
+from gearmath.quality.compensation import identify
+from gearmath.quality.flank_target import FlankTarget, predicted
 from gearmath.quality.variables import BOUNDS, FREE
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES
 

@@ -13,7 +13,8 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections
 from gearmath.export.host import compile_kernel
-from gearmath.quality.compensation import Problem, identify
+from gearmath.quality.compensation import identify
+from gearmath.quality.problem import Problem
 from gearmath.quality.target import target_of
 from gearmath.quality.variables import FREE, NAMES, variables_of
 from gearmath.specs.bevel_set import FLANKS, load_bevel_set

@@ -10,9 +10,9 @@ from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections, cut_generation_of
 from gearmath.errors import ComputationError, InputError
 from gearmath.machine.mill import flank_header
-from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
 from gearmath.quality.ease_off import conjugate_places, moved_to_mate
+from gearmath.quality.flank_target import predicted
 from gearmath.quality.target import target_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, load_bevel_set
 from gearmath.specs.flank_csv import flank_file, join

@@ -14,7 +14,8 @@ from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections
 from gearmath.export.host import compile_kernel
 from gearmath.quality.batch import identify_many
-from gearmath.quality.compensation import identify, predicted, with_deviations
+from gearmath.quality.compensation import identify, with_deviations
+from gearmath.quality.flank_target import predicted
 from gearmath.quality.identification import spread
 from gearmath.quality.target import target_of
 from gearmath.quality.variables import BOUNDS, NAMES, SIZE, Variable, free_settings, variables_of

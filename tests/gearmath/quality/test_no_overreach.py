@@ -10,10 +10,10 @@ import pytest
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.errors import ComputationError
 from gearmath.machine.mill import flank_header
-from gearmath.quality.compensation import located
 from gearmath.quality.correction import correct, setting_changes
 from gearmath.quality.covariance import independent
 from gearmath.quality.evaluation import evaluate_member
+from gearmath.quality.flank_target import located
 from gearmath.quality.judging import judged_by_measured
 from gearmath.quality.setting_uncertainty import uncertain_settings
 from gearmath.quality.target import target_of

@@ -8,8 +8,8 @@ import pytest
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.turning import turned
 from gearmath.machine.mill import flank_header
-from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
+from gearmath.quality.flank_target import predicted
 from gearmath.quality.target import target_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS
 from gearmath.specs.flank_csv import flank_file, join

@@ -12,8 +12,9 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.errors import ComputationError
 from gearmath.quality.analysis import analyse
 from gearmath.quality.batch import compensation_kernel
-from gearmath.quality.compensation import FlankTarget, identify, located, with_deviations
+from gearmath.quality.compensation import identify, with_deviations
 from gearmath.quality.covariance import Covariance, coverage_factor, independent
+from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.setting_uncertainty import exact_gain, rows_of, setting_uncertainty
 from gearmath.quality.study import monte_carlo, parameter_study, run
 from gearmath.quality.target import flank_target, target_of

@@ -11,9 +11,9 @@ from gearmath.machine.measuring import measure_member
 from gearmath.machine.metal import metal
 from gearmath.machine.probing import teeth_around
 from gearmath.quality.analysis import LOSS_PART
-from gearmath.quality.compensation import predicted
 from gearmath.quality.correction import correct
 from gearmath.quality.evaluation import evaluate_member
+from gearmath.quality.flank_target import predicted
 from gearmath.quality.target import flank_target
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, load_bevel_set
 from gearmath.specs.set_text import save_corrected

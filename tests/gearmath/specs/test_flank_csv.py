@@ -70,6 +70,27 @@ def test_files_of_the_contract_are_written_as_they_were_read(tmp_path):
     )
 
 
+def test_other_header_comments_survive_reading_and_writing(tmp_path):
+    told = "# operator: K. Maier: early shift\n# part_number: 4711-B\n"
+    file = read(tmp_path, TEXT.replace("# frame", told + "# frame"))
+    write_flank_csv(tmp_path / "again.csv", file)
+    text = (tmp_path / "again.csv").read_text()
+    assert text.index("# settings_sha256: 00ff\n" + told) > 0
+    assert read_flank_csv(tmp_path / "again.csv").header == file.header
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (TEXT + TEXT, r"line 24: the column line is there twice: is this more than one file\?$"),
+        (TEXT.replace("12.5,0.5", "12.5,5000"), r"line 12: u_um = 5000: must be from 0 to 100$"),
+    ],
+)
+def test_files_put_together_and_absurd_uncertainties_are_refused(tmp_path, text, sentence):
+    with pytest.raises(InputError, match=sentence):
+        read(tmp_path, text)
+
+
 def test_windows_line_ends_blank_lines_and_foreign_header_keys_are_read(tmp_path):
     text = "# operator: somebody\n\n" + TEXT.replace("\n", "\r\n")
     np.testing.assert_array_equal(read(tmp_path, text).point, read(tmp_path, TEXT).point)

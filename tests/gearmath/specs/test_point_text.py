@@ -108,8 +108,8 @@ def test_inches_become_millimetres(tmp_path):
         ("Part 4711\nno points today\n", r"holds no row of three numbers"),
         (LAYOUTS["blanks"] + "15.0 -3.\n", r"line 4: has 2 numbers, the rows above have 3: '15.0 -3.'$"),
         (
-            "1.234 2.345 3.456\n1.334 2.345 3.4",
-            r"line 2: its last number has 1 decimals, those above have 3: .* cut off",
+            "1.234 2.345 3.456\n" * 3 + "1.334 2.345 3.4",
+            r"line 4: its last number has 1 decimals, those above have 3: .* cut off",
         ),
         ("1.5 2.5 3.5\n" + "1.5 2.5 3.5 0 0 1\n" * 4, r"line 1: has 3 numbers, the rows below have 6"),
         (
