@@ -10,7 +10,7 @@ import pytest
 from gearmath.bevel.pair import check_pair
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, BevelSet
-from gearmath.specs.toml import bundled, checked
+from gearmath.specs.toml import bundled, checked, parse
 
 NASA = "nasa_tp3096_12x36"
 #: What is changed, by how much, and the setting that the sentence must name, with the value that would fit.
@@ -52,3 +52,17 @@ def test_figures_that_no_single_setting_explains_are_said_to_be_so() -> None:
     text = refusal(NASA, {"pinion.concave.radial_distance": 113.8, "pinion.concave.blade_point_radius": 77.0,
                           "pinion.concave.cradle_angle": -20.0, "pinion.concave.sliding_base": 5.0})  # fmt: skip
     assert "no single setting explains it" in text
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ('[pinion]\n"a\\nb" = 1\n', r"pinion\.'a\\nb' = 1: no such key"),
+        (f"pinion = {[{'teeth': 12}] * 50}\n", r"\.\.\.: "),
+    ],
+)
+def test_odd_key_or_long_value_keeps_the_sentence_to_one_short_line(line: str, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence) as caught:
+        parse(f'title = "a"\nsource = "b"\nshaft_angle = 90.0\n{line}'.replace("'teeth': ", "teeth="), BevelSet, "set")
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 300

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -38,14 +40,22 @@ def measured(shape):
 
 
 def deviation_on_the_blank(member, flank):
-    """Deviations (45,) [mm] of the flank that the settings of a member cut: by the solver on the blank."""
+    """Deviations (45,) [mm] of the flank that the settings of a member cut: by the solver on the blank.
+
+    Followed from the nominal settings in small changes, as they may be large.
+    """
     how, at, t = cut_generation_of(member, flank), nominal(flank), np.zeros(45)
-    section = blade_sections(member.flank(flank), how.side)["main"]
-    for _ in range(6):
+    section, first = blade_sections(member.flank(flank), how.side)["main"], PINION.flank(flank).vector
+    contact = at.contact
+    for part in np.minimum(np.arange(1, 45) / 40, 1.0):
+        x = first + part * (how.settings - first)
         on_line = at.point + t[:, None] * at.normal
-        points = solve_section(how, section, on_line[:, 2], np.hypot(on_line[:, 0], on_line[:, 1]))
+        points = solve_section(
+            replace(how, settings=x), replace(section, point_radius=x[10], pressure_angle=x[11]), on_line[:, 2],
+            np.hypot(on_line[:, 0], on_line[:, 1]), start=contact,
+        )  # fmt: skip
         assert points.converged.all()
-        off = np.sum((points.point - on_line) * points.normal, axis=1)
+        contact, off = points.contact, np.sum((points.point - on_line) * points.normal, axis=1)
         t = t + off / np.sum(at.normal * points.normal, axis=1)
     return t
 
