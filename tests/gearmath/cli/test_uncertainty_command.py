@@ -56,7 +56,9 @@ def test_table_and_json_have_the_same_figures(command, measured):
     status, out, err = command(*arguments(measured))
     assert (status, err) == (0, "")
     first, head, *rows, concave, convex = out.splitlines()
-    assert first == "standard uncertainties from measurement.toml: Probing on a vertical machining centre; 1000 draws"
+    source = "measurement.toml: Probing on a vertical machining centre"
+    assumed = "(assumed: the file has no u_um; give --sigma-um or --model)"
+    assert first == f"standard uncertainties from {source} {assumed}; 1000 draws"
     assert head.split() == ["flank", "figure", "value", "u", "from", "to", "unit", "method"]
     found = values(command, measured)
     figures = found["figures"]
