@@ -55,7 +55,9 @@ def values(command, path, *more):
 def test_table_and_json_have_the_same_figures(command, measured):
     status, out, err = command(*arguments(measured))
     assert (status, err) == (0, "")
-    first, head, *rows, concave, convex = out.splitlines()
+    *lines, remark = out.splitlines()
+    assert remark.startswith("convex flank: tooth 0 is indexed by an arc of")
+    first, head, *rows, concave, convex = lines
     source = "measurement.toml: Probing on a vertical machining centre"
     assumed = "(assumed: the file has no u_um; give --sigma-um or --model)"
     assert first == f"standard uncertainties from {source} {assumed}; 1000 draws"
