@@ -67,7 +67,7 @@ def test_table_and_json_have_the_same_figures(command, measured):
     settings = sum(figure["unit"] in ("mm", "deg", "1") for figure in figures)
     assert 2 <= settings < 2 * 7  # the few that are corrected
     assert len(rows) == len(figures) == 2 + 1 + 2 * (6 + 10 + 1 + 12 + 2) + 2 + settings
-    assert found["remarks"] == []
+    assert found["remarks"] == [remark]
     for line, flank in ((concave, "concave"), (convex, "convex")):
         assert line.startswith(f"{flank} flank: errors of measurement will leave ")
         assert float(line.split()[7]) == pytest.approx(found["caused_rms_um"][flank], abs=6e-4)
