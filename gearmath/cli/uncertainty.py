@@ -194,8 +194,8 @@ def covariance_of(
 
     how = load_measurement(find(model or _BUNDLED))
     spindle, probe = load_milling_machine(find(machine)), load_calibration(find(calibration))
-    assumed = "" if model else "assumed, as the file has no u_um (give --sigma-um or --model): "
-    source = f"{assumed}{model or _BUNDLED}, {how.title}"
+    assumed = "" if model else " (assumed: the file has no u_um; give --sigma-um or --model)"
+    source = f"{model or _BUNDLED}: {how.title}{assumed}"
     return touch_covariance(file, member, file.member, how, spindle, probe), source
 
 

@@ -213,6 +213,7 @@ BLAMED = re.compile(r"(?:alone explains it|likely cause|crown gear's) is (pinion
 TWINS = {"sliding_base", "machine_center_to_crossing_point"}
 
 
+@pytest.mark.slow
 def test_of_single_wrong_settings_nine_of_ten_are_named(bases) -> None:
     named = total = 0
     cases = [case for case in drawn(bases) if ONE_SETTING.match(case[1])]

@@ -55,15 +55,19 @@ def values(command, path, *more):
 def test_table_and_json_have_the_same_figures(command, measured):
     status, out, err = command(*arguments(measured))
     assert (status, err) == (0, "")
-    first, head, *rows, concave, convex = out.splitlines()
-    assert first == "standard uncertainties from measurement.toml: Probing on a vertical machining centre; 1000 draws"
+    *lines, remark = out.splitlines()
+    assert remark.startswith("convex flank: tooth 0 is indexed by an arc of")
+    first, head, *rows, concave, convex = lines
+    source = "measurement.toml: Probing on a vertical machining centre"
+    assumed = "(assumed: the file has no u_um; give --sigma-um or --model)"
+    assert first == f"standard uncertainties from {source} {assumed}; 1000 draws"
     assert head.split() == ["flank", "figure", "value", "u", "from", "to", "unit", "method"]
     found = values(command, measured)
     figures = found["figures"]
     settings = sum(figure["unit"] in ("mm", "deg", "1") for figure in figures)
     assert 2 <= settings < 2 * 7  # the few that are corrected
     assert len(rows) == len(figures) == 2 + 1 + 2 * (6 + 10 + 1 + 12 + 2) + 2 + settings
-    assert found["remarks"] == []
+    assert found["remarks"] == [remark]
     for line, flank in ((concave, "concave"), (convex, "convex")):
         assert line.startswith(f"{flank} flank: errors of measurement will leave ")
         assert float(line.split()[7]) == pytest.approx(found["caused_rms_um"][flank], abs=6e-4)
