@@ -33,7 +33,7 @@ SETS = (
 #: Mutations of the whole enumeration that are tried; which, is drawn.
 TRIED = 2400
 #: Tolerance of the programs that cut the accepted ones [mm]: coarse, so that more of them can be cut.
-TOLERANCE = 0.05
+TOLERANCE = 0.005
 #: That many are cut: one takes seconds.
 CUT = 12
 #: Every so many of the single wrong settings are refused for the rate of right blame.

@@ -13,8 +13,9 @@ from gearmath.bevel.method import blade_sections, cut_generation_of
 from gearmath.machine.mill import flank_header
 from gearmath.quality.correction import ROOT_LIMIT, correct
 from gearmath.quality.variables import FREE
-from gearmath.specs.bevel_set import FLANKS, load_bevel_set, save_corrected
+from gearmath.specs.bevel_set import FLANKS, load_bevel_set
 from gearmath.specs.flank_csv import flank_file, join
+from gearmath.specs.set_text import save_corrected
 from gearmath.specs.toml import bundled
 
 SOURCE = bundled("nasa_tp3096_12x36.toml")
