@@ -396,4 +396,4 @@ def test_no_command_reads_a_set_but_through_the_check() -> None:
         reads = {"load_bevel_set"} <= names or {"load", "BevelSet"} <= names or {"parse", "BevelSet"} <= names
         if reads:
             users.add(str(file.relative_to(package)))
-    assert users == {"bevel/pair.py", "specs/bevel_set.py"}
+    assert users == {"bevel/pair.py", "specs/bevel_set.py", "specs/set_text.py"}
