@@ -229,7 +229,7 @@ def as_a_shop_writes(text):
         code, sign, comment = line.partition(";")
         if '"' not in code:
             # beside a longer word with an equals sign the blank stays: both would be read as one name
-            joined = code if re.search(r"[A-Z\]]{2,}=", code) else re.sub(r"(?<=[0-9]) +(?=[A-Z])", "", code)
+            joined = code if re.search(r"[A-Z][A-Z0-9\]]+=", code) else re.sub(r"(?<=[0-9]) +(?=[A-Z])", "", code)
             code = joined.lower()
         lines.append(code + sign + comment)
     return "\ufeff" + "\r\n".join(["%_N_CUT_MPF", ";$PATH=/_N_MPF_DIR", *lines, ""])
