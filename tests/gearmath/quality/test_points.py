@@ -392,7 +392,7 @@ def test_work_that_stands_askew_or_beside_its_axis_is_said_to(gear_set, name):
     member = gear_set.member(name)
     for moved, words, size in (
         (tilted(0.2), r"tilted by (\d\.\d\d) degrees", 0.2),
-        (lambda point: [*point, 0.2, 0, 0], r"stands (\d\.\d\d) mm beside the axis", 0.2),
+        (lambda point: point + np.array([0.2, 0.0, 0.0]), r"stands (\d\.\d\d) mm beside the axis", 0.2),
     ):
         (doubt,) = foreign_file(both_flanks(member, name, moved), PLAIN, gear_set, name).doubts
         assert float(re.search(words, doubt)[1]) == pytest.approx(size, rel=0.25), doubt
