@@ -43,6 +43,11 @@ DRY_LIFT = 60.0
 _MOST_STOCK = 5.0
 #: A roughing pass may deviate by this part of its stock.
 _ROUGH_SHARE = 0.05
+#: What Z of a program says, for the header.
+_Z_REFERENCE = {
+    "gauge_line": "of the gauge line, length 1 in the tool table 0",
+    "tip": "of the blade tips, length 1 in the tool table",
+}
 #: Tooth spaces that a line of the header lists.
 _LISTED = 30
 #: A plunge starts this many tooth depths above the bottom, and a bit [mm]; at the bottom the cutter turns this often.
@@ -127,6 +132,9 @@ def cutting_program(
         *_hobbing_notes(member),
         *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
         f"machine: {plain(machine.name)}",
+        f"Z: {_Z_REFERENCE[machine.z_reference]}; R_d {machine.gauge_line_height:g} is its reading with the gauge line "
+        f"level with the B axis, C_t {machine.tool_length:g} the length of the tool",
+        "R90, R91: first and last section to cut, 0 for all; the program asks before it leaves sections out",
         f"cutting time: {sum(one.seconds.sum() + one.dwell for one in passes):.1f} s",
     )
     return write_program(

@@ -639,9 +639,9 @@ def test_command_line_writes_and_mills(tmp_path, command):
 
 
 def middle_of_roll(text, blocks):
-    """Some blocks from the middle of a program, with head and end: text, and the index of the line in their middle."""
+    """Some blocks from the middle of a program, with a head and an end: text, and the index of the line in their middle."""
     lines = text.split("\n")
-    head = [line for line in lines if line.startswith(("N10 ", "N20 ", "N30 ", "N40 ", "N50 "))]
+    head = ["G17 G40 G90 G94 G710 G54", 'T="GEAR" D1', "M6", "SPOS=0", "M8"]
     cut_lines = [line for line in lines if " G93 " in line]
     chosen = cut_lines[len(cut_lines) * 2 // 3 :][: blocks + 1]
     start = re.sub(r"^N\d+ G93 G1 (.*) F\S+$", r"G0 \1", chosen[0])
