@@ -639,7 +639,7 @@ def test_command_line_writes_and_mills(tmp_path, command):
 
 
 def middle_of_roll(text, blocks):
-    """Some blocks from the middle of a program, with a head and an end: text, and the index of the line in their middle."""
+    """Some blocks from the middle of a program, with head and end, and the index of the line in their middle."""
     lines = text.split("\n")
     head = ["G17 G40 G90 G94 G710 G54", 'T="GEAR" D1', "M6", "SPOS=0", "M8"]
     cut_lines = [line for line in lines if " G93 " in line]
