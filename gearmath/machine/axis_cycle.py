@@ -41,6 +41,10 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     centers = sphere_positions(machine, calibration, sphere)
     anywhere = _above_all(machine, calibration, sphere)
     _check_travel(centers, anywhere, sphere, calibration, machine)
+    if machine.home < anywhere:
+        raise InputError(
+            f"home of Z = {machine.home:g} mm: the tip clears the sphere at every A and B from Z {anywhere:.1f} mm on"
+        )
     blocks = Blocks(program_name, machine, calibration.length)
     header = (
         f"gearmath {__version__} calibration program of the rotary axes",
@@ -53,8 +57,7 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     def body() -> Iterator[str]:
         yield from blocks.start(f"{axis_touches(machine, calibration)} touches", CALIBRATION_COLUMNS)
         above = f"G0 {blocks.length('Z', anywhere)}"
-        yield above
-        for center in centers:
+        for center in centers:  # to the first one from the home of Z
             x, y, _, a, b = blocks.axes(center)
             yield f"; sphere on the work, {a} {b}"
             yield f"G0 {x} {y} {a} {b}"
