@@ -165,7 +165,7 @@ def test_bad_milling_is_one_line_and_writes_nothing(refused, tmp_path, pinion_pr
     text = pinion_program.read_text("ascii")
     programs = {
         "line 1, column 1: a line with % is read only as %_N_NAME_MPF": "%\n" + text,
-        "the text ends without M30": text[: len(text) // 2].rsplit("\n", 1)[0],
+        "the text ends within the IF of line": text[: len(text) // 2].rsplit("\n", 1)[0],
         r"the program does not cut the concave flank of the pinion": "M30\n",
         r'cuts with T="HOB"; the pinion is cut with PINION_CONCAVE and PINION_CONVEX': text.replace(
             "PINION_CONCAVE", "HOB"
