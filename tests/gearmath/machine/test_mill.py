@@ -86,7 +86,8 @@ def test_program_with_the_tool_of_the_other_member_is_refused(gear_set, program,
 def test_program_that_leaves_a_flank_out_is_refused(gear_set, vertical):
     text = cutting_program(gear_set, "pinion", vertical, "PINION")
     first_tool = text[: text.index('T="PINION_CONVEX"')]
-    shortened = first_tool[: first_tool.rindex("\n")] + "\nM30\n"
+    before = first_tool[: first_tool.rindex(" IF (R90")]  # the tool is changed where its sections are wanted
+    shortened = before[: before.rindex("\n")] + "\nM30\n"
     with pytest.raises(InputError, match=r"^the program does not cut the convex flank of the pinion$"):
         mill_member(execute(shortened, "P.MPF"), gear_set.pinion, "pinion", vertical)
     with pytest.raises(InputError, match=r"^the program does not cut the concave flank of the gear$"):
