@@ -26,6 +26,7 @@ from gearmath.machine.milling import entry_along_block
 from gearmath.machine.nc_tree import Block, Branch
 from gearmath.machine.path import Cut, flank_points
 from gearmath.machine.reader import read_program
+from gearmath.machine.rounding import control_share
 from gearmath.machine.run import runs_of
 from gearmath.machine.watch import distances_off_the_way, off_the_way, stated_tolerance, watch, watched_flanks
 
@@ -82,7 +83,8 @@ def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_
     path = execute(text, "CUT")
     runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 7))
     run = runs[index]
-    theta = roll_nodes(spec, cut, TOLERANCE, height)
+    rounding = control_share(spec, member, vertical).rounding
+    theta = roll_nodes(spec, cut, TOLERANCE, height, rounding=rounding)
     lines = text.split("\n")
     cutting = [k for k in run.line.tolist() if " G93 " in lines[k - 1]]
     nodes = np.vstack([run.axes[run.line == k] for k in [cutting[0] - 1, *cutting]])
