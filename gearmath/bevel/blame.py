@@ -22,7 +22,9 @@ _BLADE_ARM, _ROLL_ARM = 0.2, 0.3
 _SIGN = "indexing_sign"
 #: A setting explains what is wrong if this part of it is left, and no more than this for each flank; settings that
 #: leave no more than this above the best one are as good, and the one that is changed least is named.
-_EXPLAINED, _FITS, _AS_GOOD = 0.3, 2.5, 0.3
+_EXPLAINED, _FITS, _AS_GOOD = 0.4, 2.5, 0.3
+#: Of repairs that are as good, a second one is named too where it moves the cutter at most so many times as far.
+_NO_FARTHER = 1.2
 
 
 @dataclass(frozen=True)
@@ -75,11 +77,14 @@ def likely(
     left = [total - one.before + one.after for *_, one in tried]
     if tried and total > 1 and min(left) <= min(_EXPLAINED * total, _FITS * len(flanks)):
         good = [k for k, value in enumerate(left) if value <= min(left) + _AS_GOOD]
-        name, flank, _, best = tried[min(good, key=lambda k: _moved(tried[k][2], tried[k][1], tried[k][3]))]
-        table = name if best.key == _SIGN else f"{name}.{flank}"
-        return (
-            f"; the setting that alone explains it is {table}.{best.key} = {best.value:.6g}: {best.other:.6g} would fit"
-        )
+        moved = {k: _moved(tried[k][2], tried[k][1], tried[k][3]) for k in good}
+        near = [k for k in sorted(good, key=lambda k: moved[k]) if moved[k] <= _NO_FARTHER * min(moved.values())]
+        said = []
+        for k in near[:2]:
+            name, flank, _, one = tried[k]
+            table = name if one.key == _SIGN else f"{name}.{flank}"
+            said.append(f"{table}.{one.key} = {one.value:.6g}: {one.other:.6g} would fit")
+        return f"; the setting that alone explains it is {', or '.join(said)}"
     # what the mean points and roots do not show, no trial of them can tell
     none = "no single setting explains it, the one" if total > 1 else "the setting"
     return f"; {none} farthest from the crown gear's is {suspect}"

@@ -45,7 +45,7 @@ def refusal(name: str, changes: dict[str, float]) -> str:
 def test_setting_that_alone_puts_the_flank_right_is_named_with_the_value_that_would_fit(case: str) -> None:
 
     name, changes, sentence = WRONG[case]
-    assert re.search(rf"the setting that alone explains it is \S*{sentence}", refusal(name, changes))
+    assert re.search(rf"the setting that alone explains it is .*{sentence}", refusal(name, changes))
 
 
 def test_figures_that_no_single_setting_explains_are_said_to_be_so() -> None:
