@@ -16,7 +16,7 @@ def test_program_of_all_36_teeth(benchmark) -> None:
     machine = load_milling_machine(bundled("vertical_5axis.toml"))
     cutting_program(gear_set, "gear", machine, "GEAR")  # derives and lowers, once per process
     text = benchmark(cutting_program, gear_set, "gear", machine, "GEAR", Job(range(36)))
-    assert text.count("; space") == 36
+    assert text.count("; section") == 36
     if benchmark.stats is not None:  # not with --benchmark-disable
         benchmark.extra_info["blocks"] = text.count("G93")
         print(f"\n36 teeth, {text.count('G93')} blocks in {benchmark.stats['min']:.2f} s (goal 2 s)")
