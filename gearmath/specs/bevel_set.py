@@ -36,6 +36,8 @@ FLANKS = ("concave", "convex")
 #: +1 outer blade cuts the concave flank, -1 inner blade the convex flank, for both hands.
 SIDES = {"concave": 1, "convex": -1}
 _FILE = "_file"
+#: Corrections of neighbouring spaces may differ by so much [degree]: no work axis is off by more from one to the next.
+_INDEX_STEP = 0.25
 #: A corrected machine may stand steeper than the face of a uniform tooth by so much. [degree]
 _ROOT_BEYOND = 1.0
 ADVANCE, BEYOND = "machine_center_to_crossing_point", "pitch_apex_beyond_crossing_point"
@@ -113,6 +115,12 @@ class Member(Sheet):
             raise ValueError(f"index_correction has {len(self.index_correction)} values, the member {self.teeth} teeth")
         if any(not abs(value) <= 1 for value in self.index_correction):
             raise ValueError("index_correction must lie between -1 and 1 degree")
+        for tooth, value in enumerate(self.index_correction):
+            if (step := abs(value - self.index_correction[tooth - 1])) > _INDEX_STEP:
+                raise ValueError(
+                    f"index_correction: teeth {(tooth - 1) % self.teeth} and {tooth} differ by {step:g} degrees; "
+                    f"neighbours may differ by {_INDEX_STEP:g}"
+                )
         if (self.process == "face_hobbing") != (self.blade_groups is not None):
             raise ValueError("blade_groups belongs to face_hobbing, and face_hobbing needs it")
         if self.indexing_sign != 1 and self.blade_groups is None:
@@ -132,6 +140,10 @@ class Member(Sheet):
                 differing.append("motion")
             if differing:
                 raise ValueError(f"a completing cut has one {differing[0]} for both flanks, not two")
+            concave, convex = self.concave.nominal, self.convex.nominal
+            differing = [name for name in MACHINE_SETTINGS if getattr(concave, name) != getattr(convex, name)]
+            if differing:
+                raise ValueError(f"design: a completing cut has one {differing[0]} for both flanks, not two")
         return self
 
     def _check_cutter(self, name: str) -> None:

@@ -19,7 +19,7 @@ from gearmath.specs.bevel_set import (
     settings_sha256,
 )
 from gearmath.specs.set_text import save_corrected
-from gearmath.specs.toml import bundled, parse
+from gearmath.specs.toml import bundled, checked, parse
 
 SET = bundled("nasa_tp3096_12x36.toml")
 TEXT = SET.read_text("utf-8")
@@ -94,6 +94,7 @@ def test_vectors_are_in_mm_and_rad_in_the_order_of_the_notation(gear_set):
         ("gear", '"completing"', '"shaping"', "gear.cutting = 'shaping': should be"),
         ("gear", "teeth = 36", "teeth = 36\nindex_correction = [0.0, 0.1]", "gear: index_correction has 2 values"),
         ("pinion", "teeth = 12", f"teeth = 12\nindex_correction = {[0.0] * 11 + [1.5]}", "pinion: .* between -1 and 1"),
+        ("pinion", "teeth = 12", f"teeth = 12\nindex_correction = {[0.2, -0.2] * 6}", "pinion: .* 11 and 0 differ"),
         ("pinion.blank", "root_angle = 16.86666664", "root_angle = 20.0", "pinion.blank: root_angle 20.0 <= pitch_a"),
         ("pinion.blank", "face_angle = 22.3166667", "face_angle = 18.0", "pinion.blank: root_angle .* <= face_angle"),
         ("pinion.blank", "face_width = 25.4", "face_width = 81.06", "pinion.blank: face_width 81.06 must be less than"),
@@ -191,3 +192,12 @@ def test_correction_that_is_no_valid_set_is_refused_before_anything_is_written(g
     with pytest.raises(InputError, match=r"new\.toml: gear: index_correction must lie between -1 and 1"):
         save_corrected(SET, tmp_path / "new.toml", "gear", {}, huge)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_design_of_one_flank_does_not_give_a_completing_cut_a_second_machine():
+    """The design of the concave flank alone, 0.2 mm further out than the settings of both."""
+    values = tomllib.loads(bundled("nasa_tp3096_12x36.toml").read_text("utf-8"))
+    concave = values["gear"]["concave"]
+    concave["design"] = {key: concave[key] for key in SETTINGS} | {"radial_distance": concave["radial_distance"] + 0.2}
+    with pytest.raises(InputError, match="gear: design: a completing cut has one radial_distance for both flanks"):
+        checked(values, BevelSet, "set")
