@@ -35,9 +35,11 @@ _NOT_WITH_MOTION = (
 STATED = {
     "stop mode": "path mode (G60 or G642)", "acceleration": "SOFT or BRISK", "feed forward": "FFWON or FFWOF",
     "transformation": "TRAFOOF", "compressor": "COMPOF", "diameter programming": "DIAMOF", "frames": "TRANS",
-    "path axes": "FGROUP", "OVR": "OVR", "OVRRAP": "OVRRAP", "CTOL": "CTOL", "OTOL": "OTOL",
+    "path axes": "FGROUP", "OVR": "OVR", "OVRRAP": "OVRRAP",
     **{f"ACC {axis}": f"ACC[{axis}]" for axis in AXES},
 }  # fmt: skip
+#: And what with a path mode that rounds corners.
+WITHIN = {"CTOL": "CTOL", "OTOL": "OTOL"}
 _VALUED = ("F", "S", "D", "SPOS", "ADIS", "ADISPOS", "MEAS", "CTOL", "OTOL")
 _ALL = AXES + CUTTER_AXIS
 #: The tool that is a probe, by the name that probing programs give it.
@@ -283,7 +285,8 @@ class Control:
             what = f"{self.modal['work offset']} is active, the machine file counts from {self.setup.work_offset}"
             refuse(name, line, column, what)
         if self.unstated is None:
-            self.unstated = tuple(words for group, words in STATED.items() if group not in self.modal)
+            stated = STATED | (WITHIN if self.modal.get("stop mode") == "G642" else {})
+            self.unstated = tuple(words for group, words in stated.items() if group not in self.modal)
         if CUTTER_AXIS in words and self.modal.get("spindle") != "SPOS":
             self._refuse(block, CUTTER_AXIS, f"{words[CUTTER_AXIS].text}: C is an axis only after SPOS")
         before, rapid = dict(self.position), self.modal["motion"] == "G0"

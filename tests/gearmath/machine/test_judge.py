@@ -54,6 +54,12 @@ def test_right_program_has_no_faults(text, judged):
     assert judged(text) == []
 
 
+def test_exact_stop_needs_no_tolerance_of_the_path_and_g642_does(gear_set, vertical, text, judged):
+    exact = vertical.model_copy(update={"control": vertical.control.model_copy(update={"path_mode": "G60"})})
+    assert judged(cutting_program(gear_set, "gear", exact, "CUT", Job((0, 1), 5e-3)), exact) == []
+    assert "the program moves before it states CTOL" in judged(text.replace("CTOL=0.000050 ", ""))
+
+
 @pytest.mark.parametrize(
     ("pattern", "wrong", "sentence"),
     [
