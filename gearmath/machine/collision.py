@@ -80,19 +80,11 @@ def _blade_depth(
     """How deep the blades get into the face cone between two positions, negative for what stays between. [mm]"""
     ends = np.array([first, last])
     ends[:, 3] = 0.0  # the face cone is the same all around
-    center, axis = kernel("tool_pose")(ends, machine.pivot_height, machine.pivot)
-    highest = -np.einsum("pqk,pk->pq", ring[None] - center[:, None], axis)
-    if float(highest.max()) < -_FAR:
+    height, _ = _seen(ends, ring, machine)
+    if float(height.max()) < -_FAR:
         return -_FAR  # above all of the work at both ends
     poses = ends[0] + np.linspace(0.0, 1.0, _poses(ends))[:, None] * (ends[1] - ends[0])
-    center, axis = kernel("tool_pose")(poses, machine.pivot_height, machine.pivot)
-    from_center = ring[None] - center[:, None]
-    height = -np.einsum("pqk,pk->pq", from_center, axis)
-    radius = np.sqrt(np.maximum(np.einsum("pqk,pqk->pq", from_center, from_center) - height**2, 0.0))
-    body = cutter.bodies[0]
-    outer = body.outer.point_radius + height * math.tan(body.outer.pressure_angle)
-    inner = body.inner.point_radius - height * math.tan(body.inner.pressure_angle)
-    return float(np.minimum.reduce([height, outer - radius, radius - inner]).max())
+    return float(_in_blades(cutter, *_seen(poses, ring, machine)).max())
 
 
 def _poses(ends: np.ndarray) -> int:
@@ -108,24 +100,33 @@ def _of_block(
     first, last = (np.insert(half, 3, 0.0) for half in (block[:4], block[4:]))
     reach = float(np.abs(last - first)[:3].max())
     poses = first + np.linspace(0.0, 1.0, 2 + int(reach / _STEP))[:, None] * (last - first)
-    center, axis = kernel("tool_pose")(poses, machine.pivot_height, machine.pivot)
     meets = {}
     for name, ring in around.items():
-        from_center = ring[None] - center[:, None]
-        height = -np.einsum("pqk,pk->pq", from_center, axis)
-        radius = np.sqrt(np.maximum(np.einsum("pqk,pqk->pq", from_center, from_center) - height**2, 0.0))
-        for part, depth in _depths(cutter, head, height, radius).items():
+        for part, depth in _depths(cutter, head, *_seen(poses, ring, machine)).items():
             if (name, part) != ("teeth", "blades") and float(depth.max()) > 0.0:
                 meets[part, name] = float(depth.max())
     return meets
 
 
-def _depths(cutter: Cutter, head: CutterHead, height: np.ndarray, radius: np.ndarray) -> dict[str, np.ndarray]:
-    """How deep points at ``height`` and ``radius`` lie in each part of the cutter; negative outside of it."""
+def _seen(poses: np.ndarray, points: np.ndarray, machine: MillingMachine) -> tuple[np.ndarray, np.ndarray]:
+    """Height over the tip plane and radius (p,n) about the cutter's axis of points (n,3) of the work at poses (p,5)."""
+    center, axis = kernel("tool_pose")(poses, machine.pivot_height, machine.pivot)
+    from_center = points[None] - center[:, None]
+    height = -np.einsum("pqk,pk->pq", from_center, axis)
+    return height, np.sqrt(np.maximum(np.einsum("pqk,pqk->pq", from_center, from_center) - height**2, 0.0))
+
+
+def _in_blades(cutter: Cutter, height: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """How deep points lie between the cones of the outer and the inner blades, upwards without end."""
     body = cutter.bodies[0]
     outer = body.outer.point_radius + height * math.tan(body.outer.pressure_angle)
     inner = body.inner.point_radius - height * math.tan(body.inner.pressure_angle)
+    return np.minimum.reduce([height, outer - radius, radius - inner])
+
+
+def _depths(cutter: Cutter, head: CutterHead, height: np.ndarray, radius: np.ndarray) -> dict[str, np.ndarray]:
+    """How deep points at ``height`` and ``radius`` lie in each part of the cutter; negative outside of it."""
     top = cutter.height + head.height
-    blades = np.minimum.reduce([height, cutter.height - height, outer - radius, radius - inner])
+    blades = np.minimum(_in_blades(cutter, height, radius), cutter.height - height)
     disc = np.minimum.reduce([height - cutter.height, top - height, head_radius(cutter, head) - radius])
     return {"blades": blades, "head": disc, "spindle": np.minimum(height - top, head.spindle_radius - radius)}
