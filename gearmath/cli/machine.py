@@ -55,13 +55,11 @@ def cut(
     Before it is written it is run: it must keep the limits of the machine, and collide with nothing.
     """
     from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
     from gearmath.files import write_text
     from gearmath.machine.control import Setup
     from gearmath.machine.cutting import Job, cutting_program, pass_count
     from gearmath.machine.executor import execute
     from gearmath.machine.judge import faults_of
-    from gearmath.machine.run import runs_of
     from gearmath.machine.words import block_count
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -74,8 +72,7 @@ def cut(
     with bar(pass_count(spec, member, job), "pass") as progress:
         text = cutting_program(bevel_set, member, milling_machine, target.stem, job, progress)
     path = execute(text, str(target), Setup.of(milling_machine))
-    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
-    runs = runs_of(path, spec, member, milling_machine, None, space, SHARP_EDGE)
+    runs = _right_runs(path, spec, member, milling_machine)
     if faults := faults_of(text, path, runs, spec, member, milling_machine):
         raise InputError(f"{target}: {'; '.join(map(str, faults))}: the program is not written")
     write_text(target, text)
@@ -113,7 +110,6 @@ def mill(
     where a surface is off by more than --report-tolerance-um or something collides.
     """
     from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
     from gearmath.machine.control import Setup
     from gearmath.machine.executor import execute
     from gearmath.machine.judge import faults_of
@@ -122,7 +118,6 @@ def mill(
     from gearmath.machine.mill import mill_member
     from gearmath.machine.nc_text import program_text, skip_blocks
     from gearmath.machine.probing import teeth_around
-    from gearmath.machine.run import runs_of
     from gearmath.machine.watch import stated_member
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
@@ -150,9 +145,7 @@ def mill(
     click.echo(f"{target}: {len(file)} points, largest deviation {worst:.3f} um")
     faults: list[str] = []
     with about(program), bar(1, "check") as progress:
-        runs = runs_of(
-            path, spec, member, milling_machine, None, None if hobbed else tooth_space(spec, member, 7), SHARP_EDGE
-        )
+        runs = _right_runs(path, spec, member, milling_machine)
         judged = faults_of(text, path, runs, spec, member, milling_machine)
         progress(1)
     if not hobbed:
@@ -167,6 +160,15 @@ def mill(
         click.echo(f"the flanks are not compared with a tolerance: the machine has the errors of {errors}")
     if faults:
         raise ComputationError(f"{program}: {'; '.join(faults)}")
+
+
+def _right_runs(path: MachinePath, spec: Member, member: str, machine: MillingMachine) -> list[Run]:
+    """The tools of a program on a machine without errors, with blades as sharp as there are."""
+    from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+    from gearmath.machine.run import runs_of
+
+    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
+    return runs_of(path, spec, member, machine, None, space, SHARP_EDGE)
 
 
 def _off_tolerance(text: str, spec: Member, worst: float) -> list[str]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from gearmath.bevel.method import motion_of
 from gearmath.machine.bodies import obstacles
-from gearmath.machine.collision import collisions, rapid_approaches
+from gearmath.machine.collision import RAPID_CLEARANCE, collisions, rapid_approaches
 from gearmath.machine.cutting import tooth_angles
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.feeds import accelerations
@@ -56,7 +56,9 @@ def faults_of(
         for one in collisions(path, runs, member, machine, *obstacles(machine))
     ]
     found += [
-        Fault(f"moves in rapid {one.depth:.2f} mm into the work or nearer to it than 3 mm", one.lines[0])
+        Fault(
+            f"moves in rapid {one.depth:.2f} mm into the work or nearer to it than {RAPID_CLEARANCE:g} mm", one.lines[0]
+        )
         for one in rapid_approaches(runs, member, machine)
     ]
     return found
