@@ -16,12 +16,12 @@ import numpy as np
 from gearmath.bevel.method import motion_of
 from gearmath.machine.bodies import obstacles
 from gearmath.machine.collision import RAPID_CLEARANCE, collisions, rapid_approaches
-from gearmath.machine.cutting import tooth_angles
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.feeds import accelerations
 from gearmath.machine.path import Cut, axis_positions
 from gearmath.machine.run import Run
 from gearmath.machine.simulation import roll_position
+from gearmath.machine.watch import in_space_0
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 
@@ -151,10 +151,8 @@ def _beside_the_path(runs: list[Run], member: Member, machine: MillingMachine) -
     """Feed blocks that end where the settings have no position, in X Y A B, or in Z below it."""
     reach = float(member.blank.mean_cone_distance + member.blank.face_width / 2)
     for run in runs:
-        rows = np.flatnonzero(run.cutting & (run.space >= 0))
         spec = member.flank(run.cut.flanks[0])
-        axes = run.axes[rows].copy()
-        axes[:, 3] -= tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+        rows, axes = in_space_0(run, member)
         theta = np.zeros(len(rows))
         if member.generation == "generated":
             theta, _ = roll_position()(spec.vector, axes[:, 0], axes[:, 1], machine.pivot, motion_of(spec))

@@ -166,6 +166,14 @@ def off_the_way(
     return worst
 
 
+def in_space_0(run: Run, member: Member) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (m,) of a run that cut in a space, and their positions (m,5) as they are in space 0."""
+    rows = np.flatnonzero(run.cutting & (run.space >= 0))
+    axes = run.axes[rows].copy()
+    axes[:, 3] -= tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+    return rows, axes
+
+
 def distances_off_the_way(
     run: Run, lines: WatchedFlank, member: Member, machine: MillingMachine, evaluator: Evaluator = lambda k: k
 ) -> np.ndarray:
@@ -174,9 +182,7 @@ def distances_off_the_way(
     Where it touches no line, as where it plunges, that is how far its X and Y are off the path.
     """
     spec, off = member.flank(run.cut.flanks[0]), np.zeros(len(run.axes))
-    rows = np.flatnonzero(run.cutting & (run.space >= 0))
-    axes = run.axes[rows].copy()
-    axes[:, 3] -= tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+    rows, axes = in_space_0(run, member)
     theta, aside = roll_position()(spec.vector, axes[:, 0], axes[:, 1], machine.pivot, motion_of(spec))
     steps = np.diff(theta)
     node, line = np.nonzero(np.abs(theta[:, None] - lines.theta) <= np.median(steps[steps > 0]) / 2)
