@@ -40,8 +40,7 @@ from derivations.expression import Expression
 from derivations.frames import I, J, Rz
 from derivations.proof import DIGITS, is_close, is_zero
 
-#: |V_c × V_p| below which a pose counts as singular.
-SINGULAR_SINE = sp.Rational(1, 20)
+SINGULAR_SINE = sp.Rational(q.SINGULAR_SINE)
 
 
 def axis_cross() -> sp.Matrix:

@@ -6,9 +6,15 @@ expressions are valid and where the tests sample them; people's limits belong to
 
 from __future__ import annotations
 
+from fractions import Fraction
 from math import pi
 
-from derivations.expression import Quantity
+from derivations.quantity import Quantity
+
+#: |V_c × V_p| below which a pose of the machine counts as singular.
+SINGULAR_SINE = Fraction(1, 20)
+#: Distance reported where a line never meets the cutter: farther away than any tooth space is wide. [mm]
+NOWHERE = 1000
 
 
 def _length(name: str, latex: str, low: float, high: float, description: str) -> Quantity:

@@ -44,8 +44,7 @@ from derivations.expression import Expression, Quantity
 from derivations.frames import Rx, Rz
 from derivations.proof import DIGITS, is_close, is_zero
 
-#: Distance reported where the line never meets the cutter: farther away than any tooth space is wide. [mm]
-NOWHERE = sp.Integer(1000)
+NOWHERE = sp.Integer(q.NOWHERE)
 #: Stands for infinity in the ends of intervals. [mm]
 _FAR = sp.Integer(10) ** 9
 #: Less climb than this is none.

@@ -15,7 +15,6 @@ import derivations
 from derivations import flank as flank_chapter
 from derivations import gearbox as gearbox_chapter
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.export.cnc import export_cnc
 from gearmath.export.folder import new_folder
@@ -24,7 +23,7 @@ from gearmath.export.teensy import export_teensy
 from gearmath.files import write_text
 from gearmath.gearbox.simulation import Simulation, simulate
 from gearmath.gearbox.train import GearboxPlan, plan
-from gearmath.lowering import lower
+from gearmath.kernels import kernel
 from gearmath.machine.control import Setup
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
@@ -84,7 +83,7 @@ def run_demo(folder: Path, say: Say) -> list[MemberResult]:
 def _run_steps(folder: Path, say: Say) -> list[MemberResult]:
     begin = time.perf_counter()
     with _step(say, "derive in SymPy, lower to CasADi"):
-        kernels = [lower(expression) for expression in derivations.expressions()]
+        kernels = [kernel(name) for name in derivations.index()]
         say(f"  {len(kernels)} expressions, {sum(k.function.n_instructions() for k in kernels)} operations")
     with _step(say, "electronic gearbox: compiled integer rule against exact fractions"):
         _say_gearbox(say, *run_gearbox())
@@ -115,7 +114,7 @@ def _run_steps(folder: Path, say: Say) -> list[MemberResult]:
 def run_gearbox() -> tuple[list[tuple[int, float, int]], GearboxPlan, Simulation]:
     """The table of the source text, the plan of a job, and the compiled step rule over two million reversals."""
     ratio = 3.142
-    desired, delivered = (lower(f()) for f in (gearbox_chapter.desired_position, gearbox_chapter.floor_position))
+    desired, delivered = (kernel(name) for name in ("desired_position", "floor_position"))
     counts = [row[0] for row in gearbox_chapter.PUBLISHED_TABLE]
     rows = [(e, float(desired(e, ratio)[0]), int(delivered(e, ratio)[0])) for e in counts]
     job = plan(load_hobbing_machine(bundled(HOBBING_MACHINE)), HOBBED_TEETH)

@@ -8,101 +8,17 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
 import casadi as ca
-import numpy as np
 import sympy as sp
 from sympy.core.relational import Relational
 
-from derivations.expression import Expression, Quantity
+from derivations.expression import Expression
+from gearmath.kernel import Kernel
 
 
 class LoweringError(TypeError):
     """An expression uses something CasADi has no exact counterpart for."""
-
-
-@dataclass(frozen=True)
-class Kernel:
-    """A :class:`casadi.Function` with the meaning of its arguments: what ``export`` ships and others compose.
-
-    Inputs and outputs of ``function`` have the names and shapes of ``inputs`` and ``outputs``, in this order.
-    """
-
-    function: ca.Function
-    description: str
-    inputs: tuple[Quantity, ...]
-    outputs: tuple[Quantity, ...]
-    source: str = ""
-    requires: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        for kind, quantities, names in (
-            ("input", self.inputs, self.function.name_in()),
-            ("output", self.outputs, self.function.name_out()),
-        ):
-            if [quantity.name for quantity in quantities] != names:
-                raise ValueError(
-                    f"{self.name}: {kind}s {names} of the function do not carry the names of its quantities"
-                )
-
-    def __hash__(self) -> int:
-        """By its name: kernels are looked up wherever they are run, and hardly two of them share it."""
-        return hash(self.name)
-
-    @property
-    def name(self) -> str:
-        return self.function.name()
-
-    def __call__(self, *arguments: np.typing.ArrayLike) -> tuple[np.ndarray, ...]:
-        """Evaluate at one or many points, in one mapped call.
-
-        Each argument has the shape of its quantity, or that shape with one axis of n points in front; what has no
-        such axis is the same for all points. Outputs have the axis in front if any argument has it. Arguments may be
-        left out at the end where their quantities have a default.
-        """
-        arrays = [np.asarray(argument, dtype=float) for argument in arguments]
-        left_out = self.inputs[len(arrays) :]
-        if all(quantity.default is not None for quantity in left_out):
-            arrays += [np.full(quantity.shape, quantity.default, dtype=float) for quantity in left_out]
-        if len(arrays) != len(self.inputs):
-            raise TypeError(f"{self.name} takes {len(self.inputs)} arguments, {len(arrays)} were given")
-        many = [array.ndim > len(quantity.shape) for array, quantity in zip(arrays, self.inputs, strict=True)]
-        n = max((len(array) for array, is_many in zip(arrays, many, strict=True) if is_many), default=1)
-        columns = []
-        for array, is_many, quantity in zip(arrays, many, self.inputs, strict=True):
-            if array.shape != (*((n,) if is_many else ()), *quantity.shape):
-                raise ValueError(f"{self.name}: {quantity.name} has shape {array.shape}, expected {quantity.shape}")
-            flat = np.broadcast_to(array.reshape(n if is_many else 1, quantity.size), (n, quantity.size))
-            columns.append(_as_columns(flat, quantity))
-        results = _mapped(self.function, n).call(columns) if n else [np.empty((q.size, 0)) for q in self.outputs]
-        outputs = []
-        for result, quantity in zip(results, self.outputs, strict=True):
-            rows = _as_rows(np.asarray(result), quantity, n)
-            outputs.append(rows if any(many) else rows[0])
-        return tuple(outputs)
-
-    def expand(self) -> Kernel:
-        """The same kernel as one flat graph of scalar operations."""
-        return Kernel(self.function.expand(), self.description, self.inputs, self.outputs, self.source, self.requires)
-
-
-def _as_columns(rows: np.ndarray, quantity: Quantity) -> np.ndarray:
-    if len(quantity.shape) < 2:
-        return np.ascontiguousarray(rows.T)
-    height, width = quantity.shape
-    return rows.reshape(-1, height, width).transpose(1, 0, 2).reshape(height, len(rows) * width)
-
-
-def _as_rows(columns: np.ndarray, quantity: Quantity, n: int) -> np.ndarray:
-    if len(quantity.shape) < 2:
-        return np.ascontiguousarray(columns.T).reshape(n, *quantity.shape)
-    return np.stack(np.hsplit(columns, n)) if n else np.empty((0, *quantity.shape))
-
-
-@functools.lru_cache(maxsize=64)
-def _mapped(function: ca.Function, n: int) -> ca.Function:
-    return function.map(n) if n > 1 else function
 
 
 def _fold(operation: Callable) -> Callable:

@@ -8,8 +8,8 @@ from collections.abc import Generator
 
 import pytest
 
+from gearmath.engine.compiler import find_compiler
 from gearmath.errors import ComputationError
-from gearmath.export.host import find_compiler
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -10,7 +10,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from statistics import median
 
-from derivations import crown_gear
 from gearmath.bevel.blank import evaluate
 from gearmath.bevel.repair import Repair, Wanted, repairs
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member, Settings
@@ -167,8 +166,7 @@ def _crown_gear(
         "mean_cone_distance": blank.mean_cone_distance,
         "index_ratio": indexing_sign * (member.blade_groups or 0) / member.teeth,
     }  # fmt: skip
-    make = crown_gear.crown_gear_space if member.cutting == "completing" else crown_gear.crown_gear_flank
-    found = evaluate(make, values)
+    found = evaluate("crown_gear_space" if member.cutting == "completing" else "crown_gear_flank", values)
     wanted = {
         "radial_distance": found["radial_distance"],
         "cradle_angle": math.degrees(found["cradle_angle"]),

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from functools import cache
 from typing import Any
 
-from derivations import Expression, iso23509, lengthwise, notation, tooth_width
+from derivations import notation
 from gearmath.errors import InputError
-from gearmath.lowering import Kernel, lower
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import Blank
 from gearmath.specs.blank_data import BlankData
 
@@ -108,17 +107,11 @@ class BevelBlank:
     wheel: MemberBlank
 
 
-@cache
-def _kernel(make: Callable[[], Expression]) -> Kernel:
-    return lower(make())
-
-
-def evaluate(make: Callable[[], Expression], values: Mapping[str, Any], **renamed: float) -> Values:
+def evaluate(name: str, values: Mapping[str, Any], **renamed: Any) -> Values:
     """The outputs by name of one expression, its inputs taken by name from ``renamed`` and ``values``."""
-    kernel = _kernel(make)
-    given = {**values, **renamed}
-    outputs = kernel(*(given[quantity.name] for quantity in kernel.inputs))
-    return {quantity.name: float(value) for quantity, value in zip(kernel.outputs, outputs, strict=True)}
+    run, given = kernel(name), {**values, **renamed}
+    outputs = run(*(given[quantity.name] for quantity in run.inputs))
+    return {quantity.name: float(value) for quantity, value in zip(run.outputs, outputs, strict=True)}
 
 
 def blank_of(data: BlankData, name: str = "blank data") -> BevelBlank:
@@ -128,21 +121,21 @@ def blank_of(data: BlankData, name: str = "blank data") -> BevelBlank:
     """
     values = dict(data.values)
     if "wheel_outer_pitch_diameter" not in values:
-        values |= evaluate(iso23509.wheel_size, values)
-    values |= evaluate(iso23509.pitch_cones, values)
+        values |= evaluate("wheel_size", values)
+    values |= evaluate("pitch_cones", values)
     _check_cones(values, name)
     if data.data_type_2 is not None:
-        values |= evaluate(iso23509.crown_gear_factors, values)
-    values |= evaluate(iso23509.mean_depths, values)
+        values |= evaluate("crown_gear_factors", values)
+    values |= evaluate("mean_depths", values)
     values |= _spiral_angles(values, name)
     values |= _tapered(values, name)
     ends = {"cone_distance": values["outer_cone_distance"], "spiral_angle": values["outer_spiral_angle"]}
-    values |= evaluate(tooth_width.tooth_thickness, values, **ends)
+    values |= evaluate("tooth_thickness", values, **ends)
     members = {member: _member(member, values) for member in ("pinion", "wheel")}
     for member, blank in members.items():
         _check_member(member, blank, values, name)
     crown = {"crossing_point_to_crown": members["pinion"].crossing_point_to_crown}
-    values |= evaluate(iso23509.pinion_depth, values, **crown)
+    values |= evaluate("pinion_depth", values, **crown)
     return _filled(BevelBlank, {**values, **members, "process": data.cutter.process})
 
 
@@ -154,18 +147,18 @@ def _filled(record: type, values: Mapping[str, Any]) -> Any:
 def _spiral_angles(values: Values, name: str) -> Values:
     """Spiral angles at heel and toe. Raises InputError where the cutter does not reach them."""
     hobbing = "blade_groups" in values
-    cutter = {} if not hobbing else evaluate(lengthwise.hobbing_cutter, values)
+    cutter = {} if not hobbing else evaluate("hobbing_cutter", values)
     if hobbing and not math.isfinite(cutter["cutter_lead_angle"]):
         raise InputError(
             f"{name}: cutter.cutter_radius = {values['cutter_radius']:g}: {values['blade_groups']:g} blade groups of "
             f"module {values['mean_normal_module']:.4g} do not fit: blade_groups * module must be below the diameter"
         )
-    make = lengthwise.hobbed_spiral_angle if hobbing else lengthwise.milled_spiral_angle
+    spirals = "hobbed_spiral_angle" if hobbing else "milled_spiral_angle"
     for end, steepest in (("outer", math.pi / 2), ("inner", -math.pi / 2)):
         place = {"cone_distance": values[f"{end}_cone_distance"]}
-        angle = evaluate(make, {**values, **cutter}, **place)["spiral_angle"]
+        angle = evaluate(spirals, {**values, **cutter}, **place)["spiral_angle"]
         if not math.isfinite(angle):
-            least = evaluate(lengthwise.milled_radius, values, spiral_angle=steepest, **place)["cutter_radius"]
+            least = evaluate("milled_radius", values, spiral_angle=steepest, **place)["cutter_radius"]
             limit = "a larger radius is needed" if hobbing else f"it must be at least {least:.4g} mm"
             raise InputError(
                 f"{name}: cutter.cutter_radius = {values['cutter_radius']:g}: set to the mean spiral angle, the cutter "
@@ -178,7 +171,7 @@ def _spiral_angles(values: Values, name: str) -> Values:
 def _tapered(values: Values, name: str) -> Values:
     """Taper angles of the wheel, face and root angles and apexes of both members."""
     if "depth_taper" in values:
-        angles = evaluate(iso23509.taper_angles, values)
+        angles = evaluate("taper_angles", values)
         if angles["dedendum_angle_sum"] < 0:
             least = values["mean_cone_distance"] * math.sin(values["mean_spiral_angle"])
             raise InputError(
@@ -188,8 +181,8 @@ def _tapered(values: Values, name: str) -> Values:
     else:
         angles = {key: values[key] for key in ("wheel_addendum_angle", "wheel_dedendum_angle")}
         angles["dedendum_angle_sum"] = sum(angles.values())
-    angles |= evaluate(iso23509.cone_angles, {**values, **angles})
-    return angles | evaluate(iso23509.cone_apexes, {**values, **angles})
+    angles |= evaluate("cone_angles", {**values, **angles})
+    return angles | evaluate("cone_apexes", {**values, **angles})
 
 
 def _member(member: str, values: Values) -> MemberBlank:
@@ -197,10 +190,8 @@ def _member(member: str, values: Values) -> MemberBlank:
     own = values | {
         key.removeprefix(f"{member}_"): value for key, value in values.items() if key.startswith(f"{member}_")
     }
-    kernel = _kernel(iso23509.blank_ends)
-    outputs = kernel([own[quantity.name] for quantity in notation.blank.components])
-    own |= {quantity.name: float(value) for quantity, value in zip(kernel.outputs, outputs, strict=True)}
-    own |= evaluate(tooth_width.chordal_tooth, own)
+    own |= evaluate("blank_ends", own, blank=[own[quantity.name] for quantity in notation.blank.components])
+    own |= evaluate("chordal_tooth", own)
     return _filled(MemberBlank, {**own, "teeth": int(own["teeth"])})
 
 

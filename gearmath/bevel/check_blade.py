@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from derivations import crown_gear
 from gearmath.bevel.blank import evaluate
 from gearmath.bevel.method import blade_sections
 from gearmath.errors import InputError
@@ -49,7 +48,7 @@ def check_offset(member: Member, name: str, spiral: float) -> None:
         return
     blank, flanks = member.blank, [member.flank(flank) for flank in FLANKS]
     hand = 1 if member.hand == "right" else -1
-    square = evaluate(crown_gear.crown_gear_space, {
+    square = evaluate("crown_gear_space", {
         "hand_sign": hand, "mean_spiral_angle": hand * spiral, "mean_cone_distance": blank.mean_cone_distance,
         "cutter_radius": sum(spec.nominal.blade_point_radius for spec in flanks) / len(flanks),
         "pitch_angle": math.radians(blank.pitch_angle), "machine_root_angle": math.radians(blank.root_angle),

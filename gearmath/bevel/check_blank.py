@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from derivations import iso23509, notation
+from derivations import notation
 from gearmath.bevel.blank import evaluate
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import Blank, Member
@@ -69,7 +69,7 @@ def check_blank(member: Member, name: str) -> None:
             f"{table}.clearance = {blank.clearance:g}: must lie between {_CLEARANCE[0] * depth:.3g} and "
             f"{_CLEARANCE[1] * depth:.3g} mm, {_CLEARANCE[0]:g} and {_CLEARANCE[1]:g} of the working depth"
         )
-    ends = evaluate(iso23509.blank_ends, {"blank": blank.vector})
+    ends = evaluate("blank_ends", {"blank": blank.vector})
     for place, word in (("inner", "toe"), ("outer", "heel")):
         for angle, height, least in (("face_angle", "addendum", 0.0), ("root_angle", "dedendum", blank.clearance)):
             if not ends[f"{place}_{height}"] > least:
@@ -154,5 +154,5 @@ def _pitch_angles(pinion_teeth: int, gear_teeth: int, shaft_angle: float) -> lis
         # sizes are not asked for
         "wheel_outer_pitch_diameter": 2.0, "face_width": 0.0, "mean_spiral_angle": 0.0,
     }  # fmt: skip
-    cones = evaluate(iso23509.pitch_cones, values)
+    cones = evaluate("pitch_cones", values)
     return [math.degrees(cones[f"{name}_{notation.pitch_angle.name}"]) for name in ("pinion", "wheel")]

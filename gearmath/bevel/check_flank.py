@@ -10,12 +10,12 @@ import numpy as np
 from gearmath.bevel.check_blank import transverse_module, working_depth
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SIDES, Member
 
 #: Pressure angles of a flank at the mean point, and the steepest spiral angle. [degree]

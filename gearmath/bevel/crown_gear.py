@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from derivations import crown_gear
 from gearmath.bevel.blank import BevelBlank, MemberBlank, blank_of, evaluate
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, BevelSet, Blank, Member
@@ -115,7 +114,7 @@ def _tooth(data: BlankData, pair: BevelBlank, member: MemberBlank, hand: Literal
 def _both_flanks(tooth: Tooth) -> dict[str, dict[str, float]]:
     """Both flanks in one cut, the mean radius of the cutter in the middle of the space."""
     values = tooth.values
-    space = evaluate(crown_gear.crown_gear_space, values)
+    space = evaluate("crown_gear_space", values)
     if not math.isfinite(space["radial_distance"]):
         raise InputError(
             f"cutter_radius = {tooth.cutter_radius:g}: {tooth.blade_groups} blade groups do not fit on it: "
@@ -132,7 +131,7 @@ def _one_flank(tooth: Tooth, method: Method, flank: str) -> dict[str, float]:
         "side": side, "flank_pressure_angle": tooth.pressure_angles[flank], "cutter_tilt": method.tilt,
         "tilt_direction": method.tilt_direction,
     }  # fmt: skip
-    settings = evaluate(crown_gear.crown_gear_flank, {**tooth.values, **given})
+    settings = evaluate("crown_gear_flank", {**tooth.values, **given})
     if not math.isfinite(settings["radial_distance"]):
         raise InputError(f"tilt = {math.degrees(method.tilt):g}: the flank would be square to the cutter's axis")
     radius = tooth.blank.mean_cone_distance * math.sin(math.radians(tooth.blank.pitch_angle))
@@ -151,7 +150,7 @@ def _one_flank(tooth: Tooth, method: Method, flank: str) -> dict[str, float]:
 def _flank(tooth: Tooth, settings: dict[str, float], alpha: float, side: int) -> dict[str, Any]:
     """The flank as its file has it, in mm and degrees."""
     blade = {"cutter_radius": tooth.cutter_radius, "blade_pressure_angle": alpha, "side": side}
-    point_radius = evaluate(crown_gear.blade_in_space, {**settings, **blade})["blade_point_radius"]
+    point_radius = evaluate("blade_in_space", {**settings, **blade})["blade_point_radius"]
     _check_cutter(tooth, settings["radial_distance"], point_radius)
     degrees = {
         "cradle_angle": settings["cradle_angle"], "cutter_tilt": settings.get("cutter_tilt", 0.0),

@@ -13,9 +13,9 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, nominal_points
 from gearmath.bevel.generation import solve_section
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.turning import half_turn
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 
 

@@ -13,15 +13,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gearmath.bevel.generation_kernels import generation_point, generation_sense
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.newton import TOLERANCE, FlankPoints
-from gearmath.lowering import Kernel
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 
 _REPEATS = 10
 #: Where a start from the still machine fails, motion and indexing grow to their full size in this many parts.
 _HOMOTOPY = 8
-#: Points of one call of a mapped kernel, and points among which a neighbour is sought.
-_BLOCK = 20_000
+#: Points among which a neighbour is sought.
 _NEIGHBOURS = 2_000
 
 
@@ -142,35 +141,30 @@ def _start(flank: Generation, section: Section, axial: np.ndarray, radial: np.nd
 
 def turning_sense(flank: Generation, section: Section, contact: np.ndarray) -> np.ndarray:
     """Sense (n,) of points that are found already: it changes its sign at a singular line, where undercut begins."""
-    (sense,) = _in_blocks(generation_sense(section.arc is not None), flank.with_blade(section), section, contact, None)
+    (sense,) = _run(generation_sense(section.arc is not None), flank.with_blade(section), section, contact, None)
     return sense
 
 
 def _newton(flank: Generation, section: Section, conditions: np.ndarray, start: np.ndarray) -> SurfacePoints:
     solve = generation_point(section.arc is not None)
-    points = SurfacePoints(*_in_blocks(solve, flank, section, start, conditions))
+    points = SurfacePoints(*_run(solve, flank, section, start, conditions))
     for _ in range(_REPEATS):
         open_ = ~points.converged & np.isfinite(points.contact).all(axis=1)
         if not open_.any():
             break
-        again = SurfacePoints(*_in_blocks(solve, flank, section, points.contact[open_], conditions[open_]))
+        again = SurfacePoints(*_run(solve, flank, section, points.contact[open_], conditions[open_]))
         if not (again.residual < points.residual[open_]).any():
             break
         points = _put(points, open_, again)
     return points
 
 
-def _in_blocks(
+def _run(
     run: Kernel, flank: Generation, section: Section, contact: np.ndarray, conditions: np.ndarray | None
 ) -> tuple[np.ndarray, ...]:
-    """The kernel for many points, so many at a time: mapped, it copies what they share for each of them."""
     arc = () if section.arc is None else (np.array(section.arc),)
     given = (flank.settings, flank.motion, flank.index_ratio, flank.blade_offset_angle, *arc, flank.side, flank.rolling)
-    if conditions is None:
-        conditions = np.zeros((len(contact), 2, 4))
-    blocks = [slice(first, first + _BLOCK) for first in range(0, max(len(contact), 1), _BLOCK)]
-    parts = [run(contact[block], *given, conditions[block]) for block in blocks]
-    return tuple(np.concatenate(arrays) for arrays in zip(*parts, strict=True))
+    return run(contact, *given, np.zeros((2, 4)) if conditions is None else conditions)
 
 
 def _grown(flank: Generation, section: Section, conditions: np.ndarray, start: np.ndarray) -> SurfacePoints:

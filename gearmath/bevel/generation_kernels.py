@@ -7,9 +7,10 @@ from functools import cache
 
 import casadi as ca
 
-from derivations import Quantity, generation, notation
+from derivations import Quantity, notation
 from gearmath.bevel.newton import contact_guess, newton_step, residual_size
-from gearmath.lowering import Kernel, lower
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 
 NEWTON_STEPS = 6
 _STEP_LIMITS = (3.0, 0.2, 0.2)
@@ -42,7 +43,7 @@ class _Pieces:
 
 @cache
 def _pieces(is_arc: bool) -> _Pieces:
-    source = lower((generation.arc_generation if is_arc else generation.straight_generation)())
+    source = kernel("arc_generation" if is_arc else "straight_generation")
     quantities = (*source.inputs[3:], rolling_flag, _conditions)
     w = ca.SX.sym("w", 3)
     place = [ca.SX.sym(quantity.name, *(quantity.shape or (1,))) for quantity in quantities]

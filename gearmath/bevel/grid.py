@@ -12,8 +12,8 @@ import math
 import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.margins import OWN, Margins

@@ -4,23 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 
-from derivations import cutter, generation
 from gearmath.bevel.generation import Generation, Section
 from gearmath.errors import InputError
-from gearmath.lowering import Kernel, lower
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SIDES, Flank, Member, Motion
 
 _WORK_ROTATION_ROW = 9  # of the motion: the last machine setting
-
-
-@cache
-def _kernel(name: str) -> Kernel:
-    chapter = generation if name == "modified_roll" else cutter
-    return lower(getattr(chapter, name)())
 
 
 def motion_of(spec: Flank, nominal: bool = False) -> np.ndarray:
@@ -28,7 +20,7 @@ def motion_of(spec: Flank, nominal: bool = False) -> np.ndarray:
     moving = spec.nominal_motion if nominal else spec.motion
     motion = moving.matrix
     if moving.modified_roll:
-        (row,) = _kernel("modified_roll")(spec.nominal.ratio_of_roll, moving.roll)
+        (row,) = kernel("modified_roll")(spec.nominal.ratio_of_roll, moving.roll)
         motion[_WORK_ROTATION_ROW] += row
     return motion
 
@@ -81,7 +73,7 @@ def blade_sections(spec: Flank, side: int) -> dict[str, Section]:
     bottom = 0.0
     if spec.toprem_angle is not None:
         bottom, angle = spec.toprem_height, math.radians(spec.toprem_angle)
-        (toprem_radius,) = _kernel("toprem")(radius, alpha, angle, bottom, side)
+        (toprem_radius,) = kernel("toprem")(radius, alpha, angle, bottom, side)
         sections["toprem"] = Section(0.0, bottom, float(toprem_radius), angle)
     sections["main"] = _main(spec, side, bottom)
     if spec.blade_edge_radius == 0.0:
@@ -96,7 +88,7 @@ def _main(spec: Flank, side: int, bottom: float) -> Section:
     radius, alpha = spec.nominal.blade_point_radius, math.radians(spec.nominal.blade_pressure_angle)
     if spec.nominal_spheric_radius is None:
         return Section(bottom, spec.blade_profile_height, radius, alpha)
-    (arc,) = _kernel("spheric_blade")(radius, alpha, spec.nominal_spheric_radius, spec.blade_reference_height, side)
+    (arc,) = kernel("spheric_blade")(radius, alpha, spec.nominal_spheric_radius, spec.blade_reference_height, side)
     ends = [math.asin((arc[1] - height) / arc[2]) for height in (bottom, spec.blade_profile_height)]
     return Section(min(ends), max(ends), radius, alpha, _triple(arc))
 
@@ -104,12 +96,12 @@ def _main(spec: Flank, side: int, bottom: float) -> Section:
 def _rounded(edge_radius: float, side: int, lowest: Section) -> tuple[Section, Section]:
     """The rounded edge, and the lowest section of the blade without what the rounding takes away."""
     if lowest.arc is not None:
-        arc, joint = _kernel("edge_round_of_arc")(np.array(lowest.arc), edge_radius, side)
+        arc, joint = kernel("edge_round_of_arc")(np.array(lowest.arc), edge_radius, side)
         # the normal of a convex arc falls from the tip upwards, that of a concave one rises
         start = float(joint)
         rest = replace(lowest, upper=start) if lowest.arc[2] > 0 else replace(lowest, lower=start)
     else:
-        arc, height = _kernel("edge_round")(lowest.point_radius, lowest.pressure_angle, edge_radius, side)
+        arc, height = kernel("edge_round")(lowest.point_radius, lowest.pressure_angle, edge_radius, side)
         rest, start = replace(lowest, lower=float(height)), lowest.pressure_angle
     if rest.lower >= rest.upper:
         raise ValueError(f"blade_edge_radius = {edge_radius}: nothing is left of the section above it")

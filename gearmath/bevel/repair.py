@@ -17,9 +17,9 @@ import numpy as np
 from gearmath.bevel.check_flank import FLAT_BLADE, OFF_CENTER, ROOT, mean_place
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.generation_kernels import generation_point
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import generation_of
 from gearmath.bevel.newton import TOLERANCE
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member, Settings
 
 #: What counts as one: spiral and pressure angle off those wanted. [rad]

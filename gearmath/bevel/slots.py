@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
-from derivations import lengthwise, tooth_width
 from gearmath.bevel.blank import BevelBlank, MemberBlank, Values, evaluate
 
 #: Half pitches by which the work turns from blade to blade.
@@ -57,7 +56,7 @@ def slots_of(blank: BevelBlank, blade_flat: float = 0.2, mutilation: float = 0.0
     places = [_at(blank, place) for place in PLACES]
     members = {member: _member(blank, member, places, blade_flat, mutilation) for member in ("pinion", "wheel")}
     milled = blank.process == "face_milling"
-    involute = evaluate(lengthwise.involute_curvature, asdict(blank)) if milled else {"involute_cone_distance": None}
+    involute = evaluate("involute_curvature", asdict(blank)) if milled else {"involute_cone_distance": None}
     return Slots(
         normal_pitch=places[0]["normal_pitch"],
         outer_normal_backlash=places[2]["normal_backlash"],
@@ -78,14 +77,14 @@ def _at(blank: BevelBlank, place: str) -> Values:
             pair[f"{member}_{name}"] = getattr(own, name)
         pair[f"{member}_addendum_here"] = getattr(own, f"{place}_addendum")
         pair[f"{member}_dedendum_here"] = getattr(own, f"{place}_dedendum")
-        gear = evaluate(tooth_width.virtual_gear, pair, pitch_angle=own.pitch_angle)
+        gear = evaluate("virtual_gear", pair, pitch_angle=own.pitch_angle)
         pair[f"{member}_virtual_pitch_radius"] = gear["virtual_pitch_radius"]
-    return pair | evaluate(tooth_width.slot_widths, pair)
+    return pair | evaluate("slot_widths", pair)
 
 
 def _member(blank: BevelBlank, member: str, places: list[Values], blade_flat: float, mutilation: float) -> MemberSlots:
     mate = "wheel" if member == "pinion" else "pinion"
-    lands = [evaluate(tooth_width.top_land, place, **_of(place, member))["top_land"] for place in places]
+    lands = [evaluate("top_land", place, **_of(place, member))["top_land"] for place in places]
     widths = _triple(place[f"{member}_slot_width"] for place in places)
     toe = places[0]
     faced = {
@@ -96,8 +95,8 @@ def _member(blank: BevelBlank, member: str, places: list[Values], blade_flat: fl
     flanks = []
     for angle in (blank.pressure_angle_drive, blank.pressure_angle_coast):
         flank = {"flank_pressure_angle": angle}
-        limits = evaluate(tooth_width.running_interference, toe, **_of(toe, member), **faced, **flank)
-        flanks.append(limits | evaluate(tooth_width.edge_radii, {**blade, **flank}))
+        limits = evaluate("running_interference", toe, **_of(toe, member), **faced, **flank)
+        flanks.append(limits | evaluate("edge_radii", {**blade, **flank}))
     least = {name: min(flank[name] for flank in flanks) for name in flanks[0]}
     return MemberSlots(
         slot_width=widths,

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.generation import Section, SurfacePoints, solve_curve, solve_section
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
 #: A blade without edge radius is taken to have this one: no edge that cuts is sharper. [mm]

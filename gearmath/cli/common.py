@@ -112,8 +112,9 @@ def about(file: Path) -> Iterator[None]:
 
 def fast_kernels() -> Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]:
     """What evaluates kernels: machine code, or CasADi's interpreter where there is no C compiler."""
+    from gearmath.engine.compiler import find_compiler
     from gearmath.errors import ComputationError
-    from gearmath.export.host import compile_kernel, find_compiler
+    from gearmath.export.host import compile_kernel
 
     try:
         find_compiler()

@@ -15,7 +15,7 @@ import casadi as ca
 from gearmath.errors import ComputationError
 from gearmath.export import wrapper
 from gearmath.export.header import OPERATIONS, kernel_comment
-from gearmath.lowering import Kernel
+from gearmath.kernel import Kernel
 
 #: What means the same in C with integers as in exact arithmetic. Everything else is double in C, or truncates.
 INTEGER_OPERATIONS = frozenset(

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from derivations import axes, cradle, cutter, deviation, flank, meshing
 from gearmath.bevel.flank import flank_point
 from gearmath.export.c import double_kernel
 from gearmath.export.folder import write_folder
 from gearmath.export.header import comment, plain, versions
-from gearmath.lowering import Kernel, lower
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 from gearmath.quality.least_squares import compensation_step
 from gearmath.quality.on_line import flank_on_line
 from gearmath.specs.bevel_set import SETTINGS
@@ -60,11 +60,10 @@ Compile without `-ffast-math` and without `-fsingle-precision-constant` (the hea
 def cnc_kernels() -> tuple[Kernel, ...]:
     """The kernels of the library, in the order of the chapters, derived and lowered once per process."""
     lowered = (
-        lower(expression())
-        for expression in (
-            cutter.cutter_surface, cradle.cradle_pose, flank.flank_family, meshing.meshing,
-            axes.axis_transform, axes.tool_pose,
-            deviation.point_deviation, deviation.setting_sensitivity, deviation.deviation_surface, deviation.line_entry,
+        kernel(name)
+        for name in (
+            "cutter_surface", "cradle_pose", "flank_family", "meshing", "axis_transform", "tool_pose",
+            "point_deviation", "setting_sensitivity", "deviation_surface", "line_entry",
         )
     )  # fmt: skip
     return (*lowered, flank_point(), flank_on_line(), compensation_step(len(SETTINGS)))
@@ -74,9 +73,9 @@ def cnc_files() -> dict[str, str]:
     """File name to text of the library."""
     kernels = cnc_kernels()
     files: dict[str, str] = {}
-    for kernel in kernels:
-        files |= double_kernel(kernel).files
-    names = [f"gm_{kernel.name}" for kernel in kernels]
+    for one in kernels:
+        files |= double_kernel(one).files
+    names = [f"gm_{one.name}" for one in kernels]
     files["gearmath.h"] = _umbrella(names)
     files["Makefile"] = _MAKEFILE.format(
         objects=" ".join(f"{name}.o" for name in names), headers=" ".join(f"{name}.h" for name in names)

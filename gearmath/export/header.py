@@ -15,7 +15,7 @@ import sympy
 
 from derivations.expression import Quantity
 from gearmath import __version__
-from gearmath.lowering import Kernel
+from gearmath.kernel import Kernel
 
 _WIDTH = 110
 #: name of every operation of a CasADi graph by its number; OP_MUL is "mul".

@@ -3,69 +3,17 @@
 from __future__ import annotations
 
 import ctypes
-import importlib.util
-import shutil
-import subprocess
-import sys
-import tempfile
-import weakref
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cache, cached_property, lru_cache
-from pathlib import Path
 
 import numpy as np
 
-from derivations import gearbox
-from gearmath.errors import ComputationError, InputError
+from gearmath.engine.compiler import compile_library
+from gearmath.errors import InputError
 from gearmath.export.c import double_kernel, integer_kernel
-from gearmath.lowering import Kernel, lower
-
-#: Contraction would make a*b + c differ from the two operations that CasADi evaluates.
-FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
-_SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
-
-
-@cache
-def find_compiler() -> tuple[str, ...]:
-    """The command that compiles C: cc, gcc, or the compiler of the ziglang wheel (said once on standard error).
-
-    Raises ComputationError that says what to install.
-    """
-    for name in ("cc", "gcc"):
-        if path := shutil.which(name):
-            return (path,)
-    if importlib.util.find_spec("ziglang"):
-        print("gearmath: no C compiler (cc, gcc) is installed, the one of the ziglang wheel is taken", file=sys.stderr)
-        return (sys.executable, "-m", "ziglang", "cc")
-    raise ComputationError(
-        "no C compiler was found: install gcc (Debian: apt install gcc) or the zig wheel (pip install gearmath[zig])"
-    )
-
-
-def compile_library(files: Mapping[str, str]) -> ctypes.CDLL:
-    """Compile the texts of ``files`` (name to text) into one shared library and load it.
-
-    Its folder lives as long as the library object. Raises ComputationError with the compiler's first error.
-    """
-    folder = Path(tempfile.mkdtemp(prefix="gearmath-"))
-    try:
-        for name, text in files.items():
-            (folder / name).write_text(text, "utf-8", newline="\n")
-        library = folder / f"libkernels{_SUFFIX}"
-        sources = [name for name in files if name.endswith(".c")]
-        done = subprocess.run(
-            [*find_compiler(), *FLAGS, *sources, "-o", library.name, "-lm"], cwd=folder, capture_output=True, text=True
-        )
-        if done.returncode:
-            lines = [line for line in done.stderr.splitlines() if "error" in line] or ["no message"]
-            raise ComputationError(f"the C compiler {find_compiler()[0]} failed: {lines[0]}")
-        loaded = ctypes.CDLL(str(library))
-    except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        raise
-    weakref.finalize(loaded, shutil.rmtree, folder, ignore_errors=True)
-    return loaded
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 
 
 @dataclass(frozen=True)
@@ -172,7 +120,7 @@ def run_edges(edges: np.ndarray, numerator: int, denominator: int, remainder: in
 
 @cache
 def _step_library() -> ctypes.CDLL:
-    return compile_library(integer_kernel(lower(gearbox.gearbox_step())).files | {"gm_run_edges.c": _RUN_EDGES})
+    return compile_library(integer_kernel(kernel("gearbox_step")).files | {"gm_run_edges.c": _RUN_EDGES})
 
 
 #: The same for the general rule in 64 bits, edges of two axes in the order in which they come.
@@ -224,5 +172,4 @@ def run_axes(
 
 @cache
 def _axes_library() -> ctypes.CDLL:
-    kernel = lower(gearbox.gearbox_edge())
-    return compile_library(integer_kernel(kernel, bits=64).files | {"gm_run_axes.c": _RUN_AXES})
+    return compile_library(integer_kernel(kernel("gearbox_edge"), bits=64).files | {"gm_run_axes.c": _RUN_AXES})

@@ -10,14 +10,13 @@ import re
 from importlib import resources
 from pathlib import Path
 
-from derivations import gearbox
 from gearmath.errors import InputError
 from gearmath.export.c import integer_kernel
 from gearmath.export.folder import write_folder
 from gearmath.export.guide import guide
 from gearmath.export.machine_header import machine_header
 from gearmath.export.wiring import wiring_svg
-from gearmath.lowering import lower
+from gearmath.kernels import kernel
 from gearmath.specs.hobbing import HobbingMachine
 
 _SKETCH = "sketch.ino"
@@ -35,8 +34,8 @@ def teensy_files(machine: HobbingMachine, sketch: str = "gearbox") -> dict[str, 
         )
     files = _firmware()
     files[f"{sketch}.ino"] = files.pop(_SKETCH)
-    files |= integer_kernel(lower(gearbox.gearbox_edge()), bits=64 if machine.wide else 32, inline=True).files
-    files |= integer_kernel(lower(gearbox.encoder_hysteresis()), inline=True).files
+    files |= integer_kernel(kernel("gearbox_edge"), bits=64 if machine.wide else 32, inline=True).files
+    files |= integer_kernel(kernel("encoder_hysteresis"), inline=True).files
     files["gm_machine.h"] = machine_header(machine)
     files["wiring.svg"] = wiring_svg(machine)
     files["README.md"] = guide(machine, sketch)

@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from functools import cache
 
-from derivations import check_dimensions, gearbox, hobbing
+import derivations
 from derivations.expression import Expression
-from gearmath.lowering import Kernel, lower
+from gearmath.kernels import kernel
 
 
 def expression(name: str) -> Expression:
-    """One expression of these chapters, by its name."""
-    for chapter in (gearbox, hobbing, check_dimensions):
-        if hasattr(chapter, name):
-            return getattr(chapter, name)()
-    raise KeyError(f"no chapter of the gearbox has an expression {name!r}")
-
-
-@cache
-def kernel(name: str) -> Kernel:
-    """The same, lowered."""
-    return lower(expression(name))
+    """One expression, by its name."""
+    return derivations.derive(name)
 
 
 def evaluate(name: str, *arguments: float) -> tuple[float, ...]:

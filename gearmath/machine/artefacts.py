@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.machine.probing import probe_height
 from gearmath.specs.calibration import Calibration, Face, Ring, Sphere, WorkSphere
 from gearmath.specs.milling_machine import MillingMachine

@@ -12,8 +12,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearmath import __version__
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.machine.calibrating import touch_sphere
 from gearmath.machine.probe_words import Blocks
 from gearmath.machine.probing import APPROACH, CLEARANCE, probe_height, tip_positions

@@ -10,14 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
-from derivations import single_blades
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import half_turn
-from gearmath.lowering import Kernel, lower
+from gearmath.kernels import kernel
 from gearmath.machine.blades import Blades, Edge, crossing
 from gearmath.machine.milling import Evaluator, Removal
 
@@ -78,11 +75,6 @@ class _Passes:
         return _Passes(*(getattr(self, name)[chosen] for name in _Passes.__dataclass_fields__))
 
 
-@cache
-def _seen() -> Kernel:
-    return lower(single_blades.seen_from_blades())
-
-
 def removal_by_blades(
     axes: np.ndarray, cutter: np.ndarray, cutting: np.ndarray, blades: Blades, machine: tuple, point: np.ndarray,
     normal: np.ndarray, start: np.ndarray, progress: Callable[[int], object] = lambda _: None,
@@ -96,7 +88,7 @@ def removal_by_blades(
     path = _Path.of(axes, cutter, cutting)
     best, block = np.full(len(point), np.inf), np.full(len(point), -1)
     starts = np.broadcast_to(np.asarray(start, dtype=float), (len(point),))
-    nodes, seen = path.nodes, evaluator(_seen())
+    nodes, seen = path.nodes, evaluator(kernel("seen_from_blades"))
     poses = kernel("tool_pose")(nodes[:, :5], *machine)
     crosses = {is_arc: evaluator(crossing(is_arc)) for is_arc in {edge.is_arc for edge in blades.edges}}
     for begin in range(0, len(point), _LINES):

@@ -14,11 +14,12 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
-from derivations import Quantity, notation, single_blades
+from derivations import Quantity, notation
 from gearmath.bevel.generation import Section
 from gearmath.bevel.method import blade_sections
 from gearmath.bevel.newton import newton_step
-from gearmath.lowering import Kernel, lower
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
 NEWTON_STEPS = 6
@@ -146,9 +147,8 @@ def _quantities(is_arc: bool) -> tuple[Quantity, ...]:
     return (guess, first, last, *turned, *given, notation.line_point, notation.line_direction)
 
 
-@cache
 def _point(is_arc: bool) -> Kernel:
-    return lower((single_blades.arc_edge_point if is_arc else single_blades.straight_edge_point)())
+    return kernel("arc_edge_point" if is_arc else "straight_edge_point")
 
 
 @cache

@@ -19,10 +19,10 @@ import numpy as np
 
 from derivations import Quantity, notation
 from gearmath.bevel.flank import Grid
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections
 from gearmath.errors import InputError
-from gearmath.lowering import Kernel
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, below_the_flank, flank_points, roll_range
 from gearmath.specs.bevel_set import MACHINE_SETTINGS, SIDES, Flank, Member
 

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.machine.cutter import Cutter
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine

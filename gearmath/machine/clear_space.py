@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.machine.bodies import rings, work_profiles
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.machine.bodies import head_radius, rings, work_profiles
 from gearmath.machine.cutter import Cutter
 from gearmath.machine.executor import MachinePath

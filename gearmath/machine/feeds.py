@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.specs.milling_machine import MillingMachine
 
 #: No block is shorter than this; F has more digits than a control keeps beyond. [s]

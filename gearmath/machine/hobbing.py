@@ -9,15 +9,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
-from derivations import single_blades
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import motion_of
 from gearmath.errors import InputError
-from gearmath.lowering import Kernel, lower
+from gearmath.kernels import kernel
 from gearmath.machine.blades import Edge, blades_of, crossing
 from gearmath.machine.blocks import ROUNDING, TOLERANCES
 from gearmath.machine.feeds import paced_seconds
@@ -129,11 +126,6 @@ def _distance(
     return found[:, 2]
 
 
-@cache
-def _roll_per_turn() -> Kernel:
-    return lower(single_blades.roll_per_turn())
-
-
 def hobbing_pass(
     member: Member, name: str, cut: Cut, machine: MillingMachine, tolerance: float, feed: float, rpm: float,
     lift: float, plunge_feed: float, tooth: np.ndarray,
@@ -198,7 +190,7 @@ def _roll(member: Member, cut: Cut, drive: _Drive, scallop: float) -> tuple[floa
     if member.generation == "formate":
         return 0.0, 0.0, _FORMATE_TURNS
     curvature = max(float(approach_curvature(member, flank, drive.index_ratio).max()) for flank in FLANKS)
-    (step,) = _roll_per_turn()(scallop, curvature * _PARABOLA_MARGIN)
+    (step,) = kernel("roll_per_turn")(scallop, curvature * _PARABOLA_MARGIN)
     low, high = roll_range(member, cut)
     low, high = low - float(step) / 2, high + float(step) / 2
     return low, high, (high - low) / float(step)

@@ -14,7 +14,7 @@ import numpy as np
 
 from gearmath.bevel.flank import solve_flank
 from gearmath.bevel.grid import file_grid
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.machine.probing import landmarks, lobing
 from gearmath.machine.simulation import mounted
 from gearmath.specs.bevel_set import FLANKS, Member

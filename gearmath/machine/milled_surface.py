@@ -8,8 +8,8 @@ import casadi as ca
 import numpy as np
 
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
 

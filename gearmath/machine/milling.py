@@ -15,9 +15,9 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
-from derivations import Quantity, notation, sweep
-from gearmath.bevel.kernels import kernel
-from gearmath.lowering import Kernel, lower
+from derivations import Quantity, notation
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 from gearmath.machine.cutter import Body, Cutter, one_blade
 
 #: Blocks are looked into where a node comes this close to the smallest distance found at any node. [mm]
@@ -73,18 +73,13 @@ class Removal:
 
 
 @cache
-def _chapter(name: str) -> Kernel:
-    return lower(getattr(sweep, name)())
-
-
-@cache
 def annulus_entry() -> Kernel:
     """Kernel: where a line is first taken away by the sharp annulus at one pose."""
     pose = (notation.cutter_center_w, notation.cutter_axis_w, notation.line_point, notation.line_direction)
     quantities = (*pose, notation.line_start, _annulus)
     *line, start, w = (ca.SX.sym(q.name, max(q.size, 1)) for q in quantities)
-    outer, hole = (_chapter("line_in_cone").function(*line, w[k], w[k + 1], side) for k, side in ((0, 1), (2, -1)))
-    distance = ca.cse(_chapter("first_removed").function(start, *outer, *hole))
+    outer, hole = (kernel("line_in_cone").function(*line, w[k], w[k + 1], side) for k, side in ((0, 1), (2, -1)))
+    distance = ca.cse(kernel("first_removed").function(start, *outer, *hole))
     function = ca.Function(
         "annulus_entry", [*line, start, w], [distance], [q.name for q in quantities], ["line_distance"]
     )
@@ -126,10 +121,10 @@ def _onto_cutter(t: ca.SX, center: ca.SX, axis: ca.SX, point: ca.SX, direction: 
     """From the sharp cones on to the true cutter; NOWHERE where the line passes it by."""
     place = ca.SX.sym("line_place")
     arguments = [ca.SX.sym(f"a{k}", value.numel()) for k, value in enumerate((center, axis, point, direction, *blades))]
-    height, radius = _chapter("place_in_cutter").function(*arguments[:4], place)
-    excess = _chapter("cutter_excess").function(height, radius, *arguments[4:])
+    height, radius = kernel("place_in_cutter").function(*arguments[:4], place)
+    excess = kernel("cutter_excess").function(height, radius, *arguments[4:])
     slope = ca.jacobian(excess, place)
-    nowhere = float(sweep.NOWHERE)
+    nowhere = float(notation.NOWHERE)
     onward = ca.if_else(slope < 0, place - excess / slope, nowhere)
     step = ca.Function("step", [place, *arguments], [ca.if_else(excess > _ON_CUTTER / 10, onward, place)])
     outside = ca.Function("outside", [place, *arguments], [excess])

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from derivations.axes import SINGULAR_SINE
+from derivations.notation import SINGULAR_SINE
 from gearmath.bevel.flank import Grid, blank_grid, solve_places
 from gearmath.bevel.generation import Generation, Section, SurfacePoints, solve_curve, solve_section
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, cut_generation_of, motion_of
 from gearmath.bevel.newton import TOLERANCE, FlankPoints
 from gearmath.bevel.tooth import SHARP_EDGE
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 from gearmath.specs.milling_machine import MillingMachine
 

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
+from gearmath.kernels import kernel
 from gearmath.machine.bodies import rings, work_profiles
 from gearmath.machine.control import Probe, Setup
 from gearmath.machine.executor import run_program

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.machine.control import Probe
 from gearmath.machine.probing import lobing
 from gearmath.machine.simulation import with_axis_errors

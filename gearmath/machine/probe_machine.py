@@ -10,8 +10,8 @@ from collections.abc import Callable
 import numpy as np
 
 from gearmath.bevel.flank import Grid, nominal_points
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
+from gearmath.kernels import kernel
 from gearmath.machine.probe_space import SpaceBody
 from gearmath.machine.probing import probe_height
 from gearmath.machine.simulation import mounted

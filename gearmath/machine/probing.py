@@ -15,8 +15,8 @@ import numpy as np
 
 from gearmath import __version__
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.machine.clear_space import Room, check_home, room_of
 from gearmath.machine.path import whole_turns
 from gearmath.machine.probe_words import Blocks

@@ -13,11 +13,11 @@ from functools import cache
 import casadi as ca
 import numpy as np
 
-from derivations import Quantity, notation, sweep
-from gearmath.bevel.kernels import kernel
+from derivations import Quantity, notation
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import ComputationError
-from gearmath.lowering import Kernel, lower
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 from gearmath.specs.milling_machine import AXES
 from gearmath.specs.simulated_machine import Mounting, SimulatedMachine, WorkAxis
 
@@ -161,9 +161,4 @@ def divisions(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
 def mounted(point: np.ndarray, normal: np.ndarray, seat: Mounting) -> tuple[np.ndarray, ...]:
     """Points and normals (n,3) of the work, in the frame that turns with A: tilted about the apex, then moved."""
     where = (seat.eccentricity, math.radians(seat.eccentricity_direction))
-    return _seated()(point, normal, *where, math.radians(seat.tilt), math.radians(seat.tilt_direction))
-
-
-@cache
-def _seated() -> Kernel:
-    return lower(sweep.seated())
+    return kernel("seated")(point, normal, *where, math.radians(seat.tilt), math.radians(seat.tilt_direction))

@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearmath.bevel.flank import blank_grid
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import motion_of
 from gearmath.bevel.turning import turned
+from gearmath.kernels import kernel
 from gearmath.machine.blocks import flank_curve, foot_curves, on_one_machine
 from gearmath.machine.cutting import tooth_angles
 from gearmath.machine.mill import expose, thickness

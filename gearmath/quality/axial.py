@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from gearmath.bevel.flank import solve_places
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import require_plain
 from gearmath.bevel.newton import TOLERANCE
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.quality.nominal import NominalRows
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member
 from gearmath.specs.flank_csv import FlankFile

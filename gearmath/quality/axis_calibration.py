@@ -8,9 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
-from gearmath.lowering import Kernel
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 from gearmath.machine.probing import lobing, probe_height
 from gearmath.quality.calibration import Fit, least_squares, with_gradient
 from gearmath.specs.calibration import Calibration

@@ -11,9 +11,9 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError, InputError
-from gearmath.lowering import Kernel
+from gearmath.kernel import Kernel
+from gearmath.kernels import kernel
 from gearmath.machine.probing import lobing
 from gearmath.specs.calibration import Calibration, Face, Ring, Sphere
 from gearmath.specs.touch_csv import RING, RING_FACE, SPHERE, CalibrationTouches

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile
 

@@ -12,8 +12,8 @@ import numpy as np
 from gearmath.bevel import ease_off
 from gearmath.bevel.flank import Grid
 from gearmath.bevel.grid import file_grid
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
 from gearmath.quality.correction import check_belongs
 from gearmath.quality.target import flank_target
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member

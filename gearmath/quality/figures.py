@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.quality.evaluation import Evaluation, FlankFigures
 from gearmath.quality.judging import judging_of, nominal_points_of
 from gearmath.quality.pitch import reference_point

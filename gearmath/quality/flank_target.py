@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearmath.bevel.generation import Generation
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.newton import FlankPoints
 from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
 from gearmath.quality.on_line import Kind, Run, as_it_stands, flank_on_line
 from gearmath.quality.root_line import RootLine
 from gearmath.quality.variables import SIZE, parts, whole

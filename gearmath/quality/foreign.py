@@ -11,9 +11,9 @@ import numpy as np
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.grid import blank_fractions
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import half_turn, turned
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.machine.mill import flank_header
 from gearmath.quality.lattice import Lattice, find_lattice
 from gearmath.quality.misplaced import check_placed

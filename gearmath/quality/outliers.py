@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.quality.robust import limit_of, off_the_fit
 from gearmath.quality.tooth_shifts import Shifts, tooth_shifts
 from gearmath.quality.topography import grid_shape, local_coordinates

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
+from gearmath.kernels import kernel
 from gearmath.quality.nominal import NominalRows, deviations_of, nominal_rows, with_deviations
 from gearmath.quality.registration import stated_noise
 from gearmath.quality.topography import evaluate_topography, teeth_in_full

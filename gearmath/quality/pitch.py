@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.quality.drift import without_drift
 from gearmath.specs.flank_csv import FlankFile, join
 

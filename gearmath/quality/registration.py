@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
 from gearmath.quality.axial import Axial, axial_shift
 from gearmath.quality.nominal import NominalRows, check_points, deviations_of, nominal_rows, with_deviations
 from gearmath.quality.seat_model import SEAT, SeatModel, check_teeth, seat_model, sizes

@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
+from gearmath.kernels import kernel
 from gearmath.quality.nominal import NominalRows, deviations_of, nominal_rows, with_deviations
 from gearmath.quality.pitch import reference_point
 from gearmath.quality.robust import limit_of

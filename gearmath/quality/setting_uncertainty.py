@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
 from gearmath.quality.correction import ROOT_LIMIT, Correction
 from gearmath.quality.covariance import Covariance, coverage_factor
 from gearmath.quality.figures import Figure

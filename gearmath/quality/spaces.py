@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.quality.drift import without_drift
 from gearmath.quality.pitch import no_reading, reference_point, reference_rows
 from gearmath.quality.registration import Registration

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError, InputError
+from gearmath.kernels import kernel
 from gearmath.quality.correction import check_belongs
 from gearmath.quality.nominal import check_points, nominal_rows
 from gearmath.specs.bevel_set import FLANKS, Member

@@ -9,11 +9,11 @@ import numpy as np
 from gearmath.bevel.flank import solve_flank
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.grid import file_grid
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import cut_generation_of
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.quality.flank_target import FlankTarget
 from gearmath.quality.pitch import reference_point
 from gearmath.quality.root_line import RootLine

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from gearmath.bevel.flank import Grid, nominal_points
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.newton import TOLERANCE
 from gearmath.errors import ComputationError, InputError
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, Member
 
 GRADES = range(2, 12)

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.quality.robust import limit_of, off_the_fit
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.quality.pitch import reference_point
 from gearmath.specs.flank_csv import FlankFile
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from gearmath.bevel.flank import Grid, solve_flank
 from gearmath.bevel.grid import file_grid
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.machine.probing import probe_height, tip_positions
 from gearmath.quality.covariance import Covariance
 from gearmath.quality.topography import grid_shape

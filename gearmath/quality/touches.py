@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.machine.mill import flank_header
 from gearmath.machine.probing import lobing, probe_height
 from gearmath.specs.bevel_set import FLANKS, Member

@@ -9,21 +9,18 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from derivations import cradle, notation
+from derivations import notation
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.specs.cut import CRADLE_PER_WORK, MACHINE_SETTINGS, SETTINGS, Design, Flank, Motion, Settings, vector_of
 from gearmath.specs.sheet import Angle, Length, Sheet, Unit, is_number, shown
 from gearmath.specs.toml import load
-
-if TYPE_CHECKING:
-    from gearmath.lowering import Kernel
 
 #: With what a set is made of, which is read from here.
 __all__ = [
@@ -241,12 +238,5 @@ def _digest(member: Member, motions: list[Motion], radii: list[float | None], *s
 
 def _from_apex(advance: float, beyond: float) -> float:
     """X_p from the pitch apex out of X_C from the crossing point (2.6)."""
-    (value,) = _advance_kernel()(advance, beyond)
+    (value,) = kernel("advance_from_apex")(advance, beyond)
     return float(value)
-
-
-@cache
-def _advance_kernel() -> Kernel:
-    from gearmath.lowering import lower
-
-    return lower(cradle.advance_from_apex())

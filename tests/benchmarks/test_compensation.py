@@ -16,8 +16,8 @@ import pytest
 from scipy.optimize import fsolve, least_squares
 
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.bevel.kernels import kernel
 from gearmath.export.host import compile_kernel
+from gearmath.kernels import kernel
 from gearmath.quality.compensation import identify, with_deviations
 from gearmath.quality.identification import spread
 from gearmath.quality.on_line import flank_on_line

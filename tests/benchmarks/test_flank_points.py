@@ -14,8 +14,8 @@ import pytest
 from scipy.optimize import fsolve
 
 from gearmath.bevel.flank import blank_grid, flank_point
-from gearmath.bevel.kernels import kernel
 from gearmath.export.host import compile_kernel
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SIDES, load_bevel_set
 from gearmath.specs.toml import bundled
 

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from derivations.gearbox import gearbox_edge, gearbox_step
+from gearmath.engine.compiler import compile_library
 from gearmath.export.c import integer_kernel
-from gearmath.export.host import compile_library
 from gearmath.lowering import lower
 
 N_EDGES = 2_000_000

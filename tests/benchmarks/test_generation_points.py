@@ -17,9 +17,9 @@ from scipy.optimize import fsolve
 from derivations import generation
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.generation_kernels import generation_point
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.export.host import compile_kernel
+from gearmath.kernels import kernel
 from gearmath.lowering import lower
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.toml import bundled

@@ -13,7 +13,8 @@ import sympy as sp
 
 import derivations
 from derivations.expression import Expression, Quantity
-from gearmath.lowering import RULES, Kernel, LoweringError, lower
+from gearmath.kernel import Kernel
+from gearmath.lowering import RULES, LoweringError, lower
 
 DIGITS = 50
 SAMPLES = 100

@@ -17,7 +17,7 @@ import sympy as sp
 from derivations import flank as flank_chapter
 from derivations import meshing as meshing_chapter
 from gearmath.bevel.flank import FlankPoints, solve_places
-from gearmath.bevel.kernels import kernel
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SETTINGS, SIDES
 
 INCH = 25.4

@@ -17,7 +17,8 @@ from derivations.expression import Quantity
 from gearmath.export.c import ExportError, double_kernel, integer_kernel
 from gearmath.export.cnc import cnc_kernels
 from gearmath.export.header import comment, kernel_comment
-from gearmath.lowering import Kernel, lower
+from gearmath.kernel import Kernel
+from gearmath.lowering import lower
 
 
 def whole(name: str) -> Quantity:

@@ -29,8 +29,8 @@ from unicorn.arm_const import (
 )
 
 from derivations.gearbox import encoder_hysteresis, gearbox_edge, gearbox_step
+from gearmath.engine.compiler import compile_library
 from gearmath.export.c import integer_kernel
-from gearmath.export.host import compile_library
 from gearmath.lowering import lower
 
 #: A machine of the tests: the source text's train, and times that differ from each other.

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from derivations.gearbox import gearbox_edge, gearbox_step
+from gearmath.engine.compiler import compile_library
 from gearmath.export.c import integer_kernel
-from gearmath.export.host import compile_library, run_edges
+from gearmath.export.host import run_edges
 from gearmath.gearbox.simulation import FloatRule, deviations, pattern, simulate
 from gearmath.lowering import lower
 

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearmath.export.host import compile_library
+from gearmath.engine.compiler import compile_library
 from gearmath.export.machine_header import machine_header
 from gearmath.gearbox.helix import Helix, JobRatio, helical_ratio, hob_ratio, one_term
 from gearmath.gearbox.job import WIDEST, thread_ratio

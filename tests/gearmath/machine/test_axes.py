@@ -8,8 +8,8 @@ import pytest
 from derivations import notation
 from derivations.axes import cradle_tool_pose
 from derivations.single_blades import cradle_tool_frame, tool_frame
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.lowering import lower
 from gearmath.machine.path import axis_positions
 from gearmath.specs.bevel_set import Motion

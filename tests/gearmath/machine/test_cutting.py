@@ -7,8 +7,8 @@ import re
 import numpy as np
 import pytest
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.machine.cutting import Job, cutting_program, pass_count, tooth_angles
 from gearmath.machine.executor import execute
 from gearmath.machine.mill import mill_member

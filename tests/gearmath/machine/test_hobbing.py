@@ -12,12 +12,12 @@ from scipy.optimize import fsolve
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation_kernels import generation_point
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import generation_of
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.export.host import compile_kernel
+from gearmath.kernels import kernel
 from gearmath.lowering import lower
 from gearmath.machine.blade_milling import removal_by_blades
 from gearmath.machine.blades import blades_of

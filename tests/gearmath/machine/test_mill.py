@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.machine.cutting import cutting_program
 from gearmath.machine.executor import execute
 from gearmath.machine.mill import mill_member

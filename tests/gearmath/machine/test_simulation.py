@@ -11,8 +11,8 @@ import pytest
 
 from derivations.axes import cradle_tool_pose
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
 from gearmath.lowering import lower
 from gearmath.machine.mill import mill_member
 from gearmath.machine.path import axis_positions

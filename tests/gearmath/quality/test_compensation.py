@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from gearmath.bevel.flank import FlankPoints, blank_grid, solve_places
 from gearmath.bevel.generation import Generation
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
 from gearmath.quality.compensation import identify
 from gearmath.quality.flank_target import FlankTarget, predicted
 from gearmath.quality.variables import BOUNDS, FREE

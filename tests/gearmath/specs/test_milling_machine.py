@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gearmath.bevel.kernels import kernel
 from gearmath.errors import InputError
+from gearmath.kernels import kernel
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.toml import bundled, parse
 

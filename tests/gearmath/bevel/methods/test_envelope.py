@@ -9,8 +9,8 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, nominal_points, solve_flank
 from gearmath.bevel.generation import solve_section
-from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES
 
 METHODS = (

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from derivations.gearbox import encoder_hysteresis, gearbox_edge
+from gearmath.engine.compiler import find_compiler
 from gearmath.errors import ComputationError
 from gearmath.export.c import integer_kernel
-from gearmath.export.host import find_compiler
 from gearmath.export.machine_header import machine_header
 from gearmath.lowering import lower
 from gearmath.specs.hobbing import load_hobbing_machine

@@ -8,8 +8,8 @@ from fractions import Fraction
 
 import pytest
 
+from gearmath.engine.compiler import find_compiler
 from gearmath.errors import ComputationError
-from gearmath.export.host import find_compiler
 from gearmath.specs.hobbing import load_hobbing_machine
 from gearmath.specs.toml import bundled
 

@@ -1,0 +1,85 @@
+"""A named quantity: what it is, in which unit, of which shape, and where it is valid.
+
+SymPy is imported only where a symbol is asked for: what runs kept kernels needs quantities, and no SymPy.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    import sympy as sp
+
+IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One named quantity: what it is, in which unit, of which shape, and where it is valid.
+
+    ``domain`` bounds each element; ``values``, where given, lists the only values allowed (a sign, a truth value).
+    ``scale`` is the size against which an error of an *output* is judged. A vector of unlike elements names them
+    in ``components``; then unit, domain and LaTeX are those of the components. ``default`` is the value of every
+    element where a call leaves out this quantity and all that follow it.
+    """
+
+    name: str
+    description: str
+    unit: str
+    latex: str
+    domain: tuple[float, float] = (-math.inf, math.inf)
+    shape: tuple[int, ...] = ()
+    kind: Literal["real", "int"] = "real"
+    values: tuple[int, ...] = ()
+    scale: float = 1.0
+    components: tuple[Quantity, ...] = ()
+    default: float | None = None
+
+    def __post_init__(self) -> None:
+        if not IDENTIFIER.match(self.name):
+            raise ValueError(f"quantity name {self.name!r} is no C identifier")
+        if self.components and self.shape != (len(self.components),):
+            raise ValueError(f"{self.name}: shape {self.shape} does not fit {len(self.components)} components")
+        if not self.description or not self.unit:
+            raise ValueError(f"{self.name}: a quantity needs a description and a unit ('1' where it has none)")
+
+    @property
+    def size(self) -> int:
+        return math.prod(self.shape)
+
+    @property
+    def elements(self) -> tuple[Quantity, ...]:
+        """The scalar quantities this one consists of, itself if it is a scalar; matrices row by row."""
+        if self.components:
+            return self.components
+        if not self.shape:
+            return (self,)
+        indices = [""]
+        for extent in self.shape:
+            indices = [f"{index}_{k}" for index in indices for k in range(extent)]
+        return tuple(
+            Quantity(self.name + index, self.description, self.unit, f"{self.latex}_{{{index[1:].replace('_', '')}}}",
+                     self.domain, kind=self.kind, values=self.values, scale=self.scale)
+            for index in indices
+        )  # fmt: skip
+
+    @property
+    def symbols(self) -> tuple[sp.Symbol, ...]:
+        """One SymPy symbol for every element, real (or integer) by assumption."""
+        import sympy as sp
+
+        kind = {"integer": True} if self.kind == "int" else {"real": True}
+        return tuple(sp.Symbol(element.name, **kind) for element in self.elements)
+
+    @property
+    def symbol(self) -> sp.Symbol | sp.ImmutableDenseMatrix:
+        """The symbol of a scalar, the matrix of symbols of a vector or matrix."""
+        import sympy as sp
+
+        if not self.shape:
+            return self.symbols[0]
+        rows, columns = (*self.shape, 1)[:2]
+        return sp.ImmutableDenseMatrix(rows, columns, self.symbols)

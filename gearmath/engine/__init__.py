@@ -1,0 +1,1 @@
+"""How a CasADi function is run on many points: compiled for this computer and cached, else by the virtual machine."""

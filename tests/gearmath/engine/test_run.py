@@ -1,0 +1,112 @@
+"""The decision how a function runs changes its time, and not one bit of its results."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from gearmath.engine import cache, compiler, run
+
+
+@pytest.fixture
+def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    monkeypatch.setenv("GEARMATH_CACHE", str(tmp_path))
+    cache.folder.cache_clear()
+    yield tmp_path
+    cache.folder.cache_clear()
+
+
+def rolling() -> ca.Function:
+    """Of a point (3,) and a matrix (2,3) that all points share, a vector and a matrix."""
+    x, A = ca.SX.sym("x", 3), ca.SX.sym("A", 2, 3)
+    return ca.Function("rolling", [x, A], [A @ ca.sin(x), ca.atan2(A, ca.repmat(x.T, 2, 1))])
+
+
+def given(n: int) -> list[np.ndarray]:
+    rng = np.random.default_rng(1)
+    return [rng.standard_normal((n, 3)), rng.standard_normal((1, 6))]
+
+
+def test_compiled_kept_and_interpreted_give_the_same_bits(place: Path, host_compiler, monkeypatch) -> None:
+    monkeypatch.setattr(run, "_ASK", 0.0)
+    first = run.Runner(rolling(), (True, False))
+    interpreted = first(given(1001), 1001)
+    assert first._compiled is None
+    assert not list(place.glob("kernel-*"))
+    monkeypatch.setattr(run, "_COMPILE", 0.0)
+    compiled = first(given(1001), 1001)
+    assert first._compiled is not None
+    assert len(list(place.glob("kernel-*"))) == 1
+    monkeypatch.setattr(run, "_COMPILE", np.inf)
+    second = run.Runner(rolling(), (True, False))
+    kept = second(given(1001), 1001)
+    assert second._compiled is not None
+    for one, two, three in zip(interpreted, compiled, kept, strict=True):
+        np.testing.assert_array_equal(one, two)
+        np.testing.assert_array_equal(one, three)
+    np.testing.assert_allclose(
+        compiled[0][7], given(1001)[1].reshape(2, 3, order="F") @ np.sin(given(1001)[0][7]), atol=1e-15
+    )
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3, 7])
+def test_results_do_not_depend_on_the_number_of_threads(threads, place, host_compiler, monkeypatch) -> None:
+    monkeypatch.setattr(run, "_ASK", 0.0)
+    monkeypatch.setattr(run, "_COMPILE", 0.0)
+    monkeypatch.setattr(run, "_SPREAD", 1.0)
+    one = run.Runner(rolling(), (True, False))
+    expected = one(given(1001), 1001)
+    monkeypatch.setattr(run, "_threads", lambda: threads)
+    for got, wanted in zip(one(given(1001), 1001), expected, strict=True):
+        np.testing.assert_array_equal(got, wanted)
+
+
+def test_a_damaged_library_is_compiled_anew(place: Path, host_compiler, monkeypatch) -> None:
+    monkeypatch.setattr(run, "_ASK", 0.0)
+    monkeypatch.setattr(run, "_COMPILE", 0.0)
+    run.Runner(rolling(), (True, False))(given(9), 9)
+    (library,) = place.glob("kernel-*")
+    library.write_bytes(library.read_bytes()[:-100])
+    again = run.Runner(rolling(), (True, False))
+    again(given(9), 9)
+    assert again._compiled is not None
+    assert cache.read(library.name) is not None
+
+
+def test_without_a_compiler_it_is_said_once_and_the_virtual_machine_runs(place, monkeypatch, capsys) -> None:
+    monkeypatch.setattr(compiler.shutil, "which", lambda _: None)
+    monkeypatch.setattr(compiler.importlib.util, "find_spec", lambda _: None)
+    monkeypatch.setattr(run, "_ASK", 0.0)
+    compiler.find_compiler.cache_clear()
+    run._can_compile.cache_clear()
+    try:
+        for _ in range(2):
+            (value, _) = run.Runner(rolling(), (True, False))(given(5), 5)
+        assert value.shape == (5, 2)
+        assert capsys.readouterr().err.count("no C compiler was found") == 1
+    finally:
+        compiler.find_compiler.cache_clear()
+        run._can_compile.cache_clear()
+
+
+def test_a_process_with_kept_kernels_loads_no_sympy(place: Path) -> None:
+    program = (
+        "import sys\nfrom gearmath.kernels import kernel\n"
+        "print(kernel('axis_transform').name, 'sympy' in sys.modules, len(kernel('axis_transform').inputs))"
+    )
+    said = [
+        subprocess.run(
+            [sys.executable, "-c", program], env=os.environ, capture_output=True, text=True, check=True
+        ).stdout
+        for _ in range(2)
+    ]
+    assert said[0].split()[1] == "True"
+    assert said[1].split()[1] == "False"
+    assert said[0].split()[::2] == said[1].split()[::2]
