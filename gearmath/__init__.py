@@ -1,11 +1,69 @@
 """gearmath: gear cutting from first principles to metal.
 
-Nothing is derived or loaded on import; every chapter is derived on first use.
+``import gearmath as gm`` loads nothing: each name below is loaded when it is used, every chapter is derived when it is.
 """
 
-from importlib.metadata import PackageNotFoundError, version
+from __future__ import annotations
 
-try:
-    __version__ = version("gearmath")
-except PackageNotFoundError:  # used from a bare source tree
-    __version__ = "0+unknown"
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from derivations import Expression as Expression
+    from derivations import Quantity as Quantity
+    from gearmath.errors import ComputationError as ComputationError
+    from gearmath.errors import InputError as InputError
+    from gearmath.front.exports import export_c as export_c
+    from gearmath.front.exports import export_cnc as export_cnc
+    from gearmath.front.exports import export_teensy as export_teensy
+    from gearmath.front.gearbox import Job as Job
+    from gearmath.front.gearbox import plan as plan
+    from gearmath.front.machines import Machine as Machine
+    from gearmath.front.machines import load_hobber as load_hobber
+    from gearmath.front.machines import load_machine as load_machine
+    from gearmath.front.machines import load_probe as load_probe
+    from gearmath.front.machines import load_shop as load_shop
+    from gearmath.front.measured import Correction as Correction
+    from gearmath.front.measured import Evaluation as Evaluation
+    from gearmath.front.measured import Measurement as Measurement
+    from gearmath.front.measured import load_measurement as load_measurement
+    from gearmath.front.programs import Program as Program
+    from gearmath.front.sets import FlankSurface as FlankSurface
+    from gearmath.front.sets import GearSet as GearSet
+    from gearmath.front.sets import Member as Member
+    from gearmath.front.sets import Tooth as Tooth
+    from gearmath.front.sets import load_set as load_set
+    from gearmath.kernel import Kernel as Kernel
+    from gearmath.kernels import kernel as kernel
+    from gearmath.lowering import lower as lower
+    from gearmath.version import __version__ as __version__
+
+#: The names of the front door, and the modules that have them.
+_HOMES = {
+    "gearmath.front.sets": ("load_set", "GearSet", "Member", "FlankSurface", "Tooth"),
+    "gearmath.front.machines": ("load_machine", "load_shop", "load_probe", "load_hobber", "Machine"),
+    "gearmath.front.programs": ("Program",),
+    "gearmath.front.measured": ("load_measurement", "Measurement", "Evaluation", "Correction"),
+    "gearmath.front.gearbox": ("plan", "Job"),
+    "gearmath.front.exports": ("export_c", "export_teensy", "export_cnc"),
+    "gearmath.kernels": ("kernel",),
+    "gearmath.kernel": ("Kernel",),
+    "gearmath.lowering": ("lower",),
+    "gearmath.errors": ("InputError", "ComputationError"),
+    "gearmath.version": ("__version__",),
+    "derivations": ("Expression", "Quantity"),
+}
+_HOME = {name: module for module, names in _HOMES.items() for name in names}
+
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    """A name of the front door on first use."""
+    if name in _HOME:
+        return getattr(importlib.import_module(_HOME[name]), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 import click
 
-from gearmath import __version__
 from gearmath.cli.waiting import waiting
 from gearmath.errors import ComputationError, InputError
+from gearmath.version import __version__
 
 #: verb -> (module, its one-line help; kept here so that the list of verbs needs no import)
 VERBS = {

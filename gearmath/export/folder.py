@@ -14,8 +14,8 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from gearmath import __version__
 from gearmath.errors import InputError
+from gearmath.version import __version__
 
 MANIFEST = "manifest.json"
 

@@ -14,8 +14,8 @@ import casadi as ca
 import sympy
 
 from derivations.expression import Quantity
-from gearmath import __version__
 from gearmath.kernel import Kernel
+from gearmath.version import __version__
 
 _WIDTH = 110
 #: name of every operation of a CasADi graph by its number; OP_MUL is "mul".

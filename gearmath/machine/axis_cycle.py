@@ -11,7 +11,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearmath import __version__
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.calibrating import touch_sphere
@@ -20,6 +19,7 @@ from gearmath.machine.probing import APPROACH, CLEARANCE, probe_height, tip_posi
 from gearmath.specs.calibration import Calibration, WorkSphere
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, WORK_SPHERE
+from gearmath.version import __version__
 
 #: Positions of B, as far as the travel allows, and of A from that which has the sphere on top.
 _SWIVELS = np.radians([0.0, 45.0, 90.0])

@@ -8,13 +8,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearmath import __version__
 from gearmath.errors import InputError
 from gearmath.machine.probe_words import Blocks
 from gearmath.machine.probing import APPROACH, APPROACH_FEED, CLEARANCE, MEASURING_FEED
 from gearmath.specs.calibration import Calibration, Face, Ring
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING, RING_FACE, SPHERE
+from gearmath.version import __version__
 
 #: Targets in the ring, low and high, for X and for Y.
 PAIRS = (RING[:2], RING[2:])

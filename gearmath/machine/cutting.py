@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmath import __version__
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.tooth import tooth_space
 from gearmath.errors import InputError
@@ -30,6 +29,7 @@ from gearmath.machine.rounding import ControlShare, control_share
 from gearmath.machine.words import plain
 from gearmath.specs.bevel_set import BevelSet, Member, settings_sha256
 from gearmath.specs.milling_machine import MillingMachine
+from gearmath.version import __version__
 
 #: Speed of the cutter past the tooth while it generates. [mm/min]
 DEFAULT_FEED = 300.0

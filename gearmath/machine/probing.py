@@ -13,7 +13,6 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from gearmath import __version__
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
@@ -24,6 +23,7 @@ from gearmath.specs.bevel_set import FLANKS, BevelSet, Member, design_sha256
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
 from gearmath.specs.simulated_machine import Probe
+from gearmath.version import __version__
 
 #: The tip starts its touch this far from the flank, or half way to the opposite one. [mm]
 APPROACH = 1.5

@@ -1,0 +1,42 @@
+"""C from kernels: of an expression of one's own, of the gearbox, of the post-processor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from derivations.expression import Expression
+from gearmath.export.c import double_kernel, integer_kernel
+from gearmath.export.cnc import export_cnc as _export_cnc
+from gearmath.export.folder import write_folder
+from gearmath.export.teensy import export_teensy as _export_teensy
+from gearmath.kernel import Kernel
+from gearmath.lowering import lower
+from gearmath.specs.hobbing import HobbingMachine
+
+
+def export_c(
+    what: Kernel | Expression | Iterable[Kernel | Expression], folder: str | Path, bits: int = 0
+) -> list[Path]:
+    """Write the C of kernels or expressions into a folder: ``gm_<name>.h`` and ``gm_<name>.c`` of each.
+
+    In double precision, or with ``bits`` = 32 or 64 in whole numbers of that size. Raises ExportError (a
+    ComputationError) naming what cannot become such C, InputError where the folder holds other files.
+    """
+    each = [what] if isinstance(what, Kernel | Expression) else list(what)
+    made = [lower(one) if isinstance(one, Expression) else one for one in each]
+    files: dict[str, str] = {}
+    for one in made:
+        files |= (integer_kernel(one, bits) if bits else double_kernel(one)).files
+    write_folder(Path(folder), files)
+    return [Path(folder) / name for name in files]
+
+
+def export_teensy(machine: HobbingMachine, folder: str | Path) -> list[str]:
+    """Write the whole Teensy sketch of a hobbing machine or lathe; the names of its files. Raises InputError."""
+    return list(_export_teensy(machine, Path(folder)))
+
+
+def export_cnc(folder: str | Path) -> list[str]:
+    """Write the C library for a CNC post-processor; the names of its files. Raises InputError."""
+    return list(_export_cnc(Path(folder)))

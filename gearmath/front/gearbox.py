@@ -1,0 +1,90 @@
+"""The electronic gearbox: plan a job, run its compiled rule."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gearmath.errors import InputError
+from gearmath.front.machines import load_hobber
+from gearmath.front.tables import html_table
+from gearmath.gearbox.job import ThreadPlan, plan_thread
+from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
+from gearmath.gearbox.train import GearboxPlan
+from gearmath.gearbox.train import plan as plan_gear
+from gearmath.specs.hobbing import HobbingMachine
+from gearmath.specs.ratio import pitch as exact_pitch
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Job:
+    """A job of the electronic gearbox; ``plan`` has exact ratio, rates against limits, what to set and measure."""
+
+    plan: GearboxPlan | ThreadPlan
+
+    @property
+    def steps_per_count(self) -> Fraction:
+        """Motor steps for each count of the encoder, exactly."""
+        return self.plan.exact_pulse_ratio
+
+    def simulate(self, pattern: Pattern = "forward", edges: int = 1_000_000, seed: int = 0) -> Simulation:
+        """Run the compiled step rule over so many encoder edges: "forward", "dither" or "reversals"; errors in steps.
+
+        Raises ComputationError where there is no C compiler.
+        """
+        from gearmath.export.host import run_axes
+
+        return simulate_job(run_axes, self.plan.ratio, pattern, edges, seed)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The plan by name, exact numbers as fractions."""
+        return asdict(self.plan)
+
+    def plot(self, pattern: Pattern = "forward", edges: int = 1_000_000) -> Figure:
+        """The error of the exact rule, and of a floating-point one, over time [steps, s]."""
+        from matplotlib.figure import Figure
+
+        from gearmath.export.host import run_axes
+        from gearmath.plot import draw_gearbox_error
+
+        trace = Trace(edges)
+        simulate_job(run_axes, self.plan.ratio, pattern, edges, record=trace.add)
+        figure = Figure(figsize=(8, 4), layout="constrained")
+        done, exact, floating = trace.arrays
+        draw_gearbox_error(figure.subplots(), done / self.plan.edge_rate_hz, exact, floating)
+        return figure
+
+    def _repr_html_(self) -> str:
+        plain = {key: value for key, value in self.to_dict().items() if isinstance(value, int | float | str | Fraction)}
+        return html_table(f"job on the {self.plan.machine}", ["figure", "value"], list(plain.items()))
+
+
+def plan(
+    machine: HobbingMachine | str | Path, teeth: int | None = None, pitch: str | None = None, **options: Any
+) -> Job:
+    """Plan a gear of so many ``teeth`` on a hobbing machine, or a thread of a ``pitch`` ("1.25mm", "8tpi") on a lathe.
+
+    ``options`` of a gear: starts, hob, rpm, helix, shift, pin; of a thread: starts, hand, rpm. Raises InputError naming
+    the limit that the job would break.
+
+    >>> import gearmath as gm
+    >>> gm.plan("hobbing_plewes.toml", teeth=17).plan.teeth
+    17
+    """
+    known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
+    if known.profile == "lathe":
+        if pitch is None or teeth is not None:
+            raise InputError(f"{known.name} is a lathe: pitch is needed, and no teeth")
+        try:
+            wanted = exact_pitch(pitch)
+        except ValueError as error:
+            raise InputError(f"pitch = {pitch!r}: {error}") from None
+        return Job(plan_thread(known, wanted, **options))
+    if teeth is None or pitch is not None:
+        raise InputError(f"{known.name} is a hobbing machine: teeth are needed, and no pitch")
+    return Job(plan_gear(known, teeth, **options))

@@ -1,0 +1,82 @@
+"""NC programs of a member: written, run on the machine model, and what they leave of the metal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gearmath.errors import InputError
+from gearmath.files import write_text
+from gearmath.front.machines import Machine, load_machine
+from gearmath.front.measured import Measurement
+from gearmath.front.sets import Member
+from gearmath.machine.control import Setup
+from gearmath.machine.cutting import Job, cutting_program
+from gearmath.machine.executor import execute
+from gearmath.machine.mill import mill_member
+from gearmath.specs.simulated_machine import SimulatedMachine
+
+if TYPE_CHECKING:
+    from gearmath.machine.executor import MachinePath
+
+
+@dataclass(frozen=True)
+class Program:
+    """The text of a program for a member on a machine, and its name on the control."""
+
+    member: Member
+    machine: Machine
+    name: str
+    text: str
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks the control runs."""
+        from gearmath.machine.words import block_count
+
+        return block_count(self.text)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the program, in one step; the file should be called ``name``.MPF, which the control expects."""
+        write_text(Path(path), self.text)
+        return Path(path)
+
+    def mill(
+        self, shop: SimulatedMachine | None = None, progress: Callable[[int], object] = lambda _: None
+    ) -> Measurement:
+        """The deviations [mm] that the program leaves: both flanks of tooth 0, the reference point of all others.
+
+        ``shop`` makes the machine one with errors. Raises InputError where a flank is left uncut.
+        """
+        file = mill_member(self._path(), self.member.spec, self.member.name, self.machine.spec, shop, progress)
+        return Measurement(self.member, file)
+
+    def faults(self) -> list[str]:
+        """What the machine must not run: travel, speed, collisions, modes left as they were; empty where it may."""
+        from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+        from gearmath.machine.judge import faults_of
+        from gearmath.machine.run import runs_of
+
+        spec, name, machine = self.member.spec, self.member.name, self.machine.spec
+        space = None if spec.process == "face_hobbing" else tooth_space(spec, name, 7)
+        path = self._path()
+        runs = runs_of(path, spec, name, machine, None, space, SHARP_EDGE)
+        return [str(fault) for fault in faults_of(self.text, path, runs, spec, name, machine)]
+
+    def _path(self) -> MachinePath:
+        return execute(self.text, self.name, Setup.of(self.machine.spec))
+
+
+def cutting(
+    member: Member, machine: Machine | None = None, name: str = "GEAR", spaces: Sequence[int] | None = None, **job: Any
+) -> Program:
+    """The cutting program of a member, run before it is returned. Raises InputError naming what is wrong."""
+    machine = load_machine() if machine is None else machine
+    wanted = list(range(member.teeth) if spaces is None else spaces)
+    text = cutting_program(member.gear_set.spec, member.name, machine.spec, name, Job(wanted, **job))
+    program = Program(member, machine, name, text)
+    if found := program.faults():
+        raise InputError(f"{name}: {'; '.join(found)}")
+    return program

@@ -1,0 +1,110 @@
+"""What a new user writes: few lines, one import, and nothing heavy loaded before it is used."""
+
+from __future__ import annotations
+
+import ctypes
+import doctest
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gearmath as gm
+
+
+def test_ten_lines_from_a_set_to_corrected_settings(tmp_path: Path) -> None:
+    pair = gm.load_set("nasa_tp3096_12x36.toml")
+    off = pair.pinion.with_settings(concave={"radial_distance": +0.05})
+    measured = off.deviations()
+    assert measured.plot().get_axes()
+    correction = measured.compensate()
+    assert [(flank, name) for flank, name, _ in correction.changes] == [("concave", "radial_distance")]
+    # the machine that is 0.05 off one way must be set 0.05 the other way
+    assert correction.changes[0][2] == pytest.approx(-0.05, abs=1e-4)
+    assert correction.rms["concave"][1] < 1e-3 * correction.rms["concave"][0]
+
+
+def test_a_change_and_its_opposite_leave_the_flank_as_it_was() -> None:
+    pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion
+    there = pinion.with_settings(concave={"radial_distance": 0.05}, convex={"cradle_angle": -0.01})
+    back = there.with_settings(concave={"radial_distance": -0.05}, convex={"cradle_angle": 0.01})
+    assert abs(there.deviations().deviation).max() > 0.005
+    assert abs(back.deviations().deviation).max() < 1e-9
+    np.testing.assert_array_equal(there.flank("concave").point, pinion.flank("concave").point)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"radial_distanc": 0.1}, "pinion.concave.radial_distanc: is no setting"),
+        ({"radial_distance": 30.0}, "pinion"),
+        ({"blade_pressure_angle": 8.0}, "pinion"),
+    ],
+)
+def test_a_setting_that_cannot_be_is_refused(change: dict[str, float], sentence: str) -> None:
+    with pytest.raises(gm.InputError, match=sentence):
+        gm.load_set("nasa_tp3096_12x36.toml").pinion.with_settings(concave=change)
+
+
+def test_a_set_is_written_and_read_back(tmp_path: Path) -> None:
+    pair = gm.load_set("nasa_tp3096_12x36.toml")
+    again = gm.load_set(pair.save(tmp_path / "set.toml"))
+    np.testing.assert_allclose(again.gear.flank("convex").point, pair.gear.flank("convex").point, atol=1e-7)
+
+
+def test_fifteen_lines_from_an_expression_to_a_called_c_function(tmp_path: Path, host_compiler) -> None:
+    depth = gm.Quantity("depth", "depth of a cut by a round tool", "mm", "h", domain=(0.1, 1))
+    radius = gm.Quantity("radius", "radius of the tool", "mm", "r", domain=(2, 50))
+    width = gm.Quantity("width", "width of the cut", "mm", "b")
+    h, r = depth.symbol, radius.symbol
+    cut = gm.Expression("cut_width", "Width of a cut.", (depth, radius), ((width, 2 * (h * (2 * r - h)) ** 0.5),))
+    files = gm.export_c(cut, tmp_path / "c")
+    assert [path.name for path in files] == ["gm_cut_width.h", "gm_cut_width.c"]
+    library = tmp_path / "cut.so"
+    subprocess.run([*host_compiler, "-shared", "-fPIC", str(files[1]), "-o", str(library), "-lm"], check=True)
+    result = ctypes.c_double()
+    ctypes.CDLL(str(library)).gm_cut_width(ctypes.c_double(0.5), ctypes.c_double(10.0), ctypes.byref(result))
+    assert result.value == pytest.approx(2 * (10.0**2 - 9.5**2) ** 0.5)  # the chord at the distance r - h
+    (lowered,) = gm.lower(cut)(0.5, 10.0)
+    assert lowered == result.value
+
+
+def test_a_program_of_one_space_leaves_what_it_promises() -> None:
+    pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion
+    program = pinion.program(spaces=[0], tolerance=1e-3)
+    assert not program.faults()
+    milled = program.mill()
+    assert abs(milled.deviation).max() < 1e-3
+    assert "table" in milled.evaluate()._repr_html_()
+
+
+def test_importing_loads_nothing_heavy() -> None:
+    program = "import sys, gearmath\nprint([m for m in ('numpy', 'casadi', 'sympy', 'pydantic') if m in sys.modules])"
+    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
+    assert said.strip() == "[]"
+
+
+def test_every_name_is_there_and_says_what_it_is() -> None:
+    for name in gm.__all__:
+        one = getattr(gm, name)
+        assert one.__doc__, name
+    assert set(gm.__all__) <= set(dir(gm))
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        gm.nothing  # noqa: B018
+
+
+def test_the_names_for_type_checkers_are_the_names_at_run_time() -> None:
+    text = Path(gm.__file__).read_text()
+    block = text[text.index("if TYPE_CHECKING:") : text.index("#: The names")]
+    typed = {line.split(" as ")[-1].strip() for line in block.splitlines() if " as " in line}
+    assert typed == set(gm.__all__)
+
+
+@pytest.mark.parametrize("module", ["sets", "machines", "gearbox"])
+def test_the_examples_of_the_front_door_are_true(module: str) -> None:
+    result = doctest.testmod(importlib.import_module(f"gearmath.front.{module}"))
+    assert result.attempted > 0
+    assert result.failed == 0
