@@ -58,11 +58,10 @@ def annex() -> BevelBlank:
 
 @pytest.mark.parametrize(("end", "printed"), [("outer", BETA_E), ("inner", BETA_I)])
 def test_spiral_angles_are_those_of_the_annex(annex: BevelBlank, end: str, printed: float) -> None:
-    from derivations import lengthwise
 
     values = {"mean_cone_distance": C["Rm"], "mean_spiral_angle": math.radians(35.0), "cutter_radius": C["rc0"]}
     distance = {"outer": C["Re"], "inner": C["Re"] - C["b"]}[end]
-    angle = evaluate(lengthwise.milled_spiral_angle, values, cone_distance=distance)["spiral_angle"]
+    angle = evaluate("milled_spiral_angle", values, cone_distance=distance)["spiral_angle"]
     assert math.degrees(angle) == pytest.approx(printed, abs=5e-6 * 1.01)
 
 
@@ -107,7 +106,6 @@ def test_slots_top_lands_and_edge_radii_are_those_of_the_annex(annex: BevelBlank
 
 def test_top_land_is_what_an_involute_drawn_point_by_point_leaves() -> None:
     """Two flanks unrolled from the base circle, in the plane: their distance at the tip radius, as an arc."""
-    from derivations import tooth_width
 
     r, h, s, alphas = 43.0, 4.8, 6.3, (math.radians(18), math.radians(23))
     tip_angles = []
@@ -121,12 +119,11 @@ def test_top_land_is_what_an_involute_drawn_point_by_point_leaves() -> None:
         "virtual_pitch_radius": r, "addendum_here": h, "normal_thickness": s, "pressure_angle_drive": alphas[0],
         "pressure_angle_coast": alphas[1],
     }  # fmt: skip
-    assert evaluate(tooth_width.top_land, values)["top_land"] == pytest.approx(drawn, abs=1e-7)
+    assert evaluate("top_land", values)["top_land"] == pytest.approx(drawn, abs=1e-7)
 
 
 def test_backlash_closed_the_tips_reach_the_profile_at_the_height_of_interference(annex: BevelBlank) -> None:
     """Intermediate figures of the annex: virtual pitch radii at the toe and the limit heights above the root."""
-    from derivations import tooth_width
 
     radii = []
     for member in (annex.pinion, annex.wheel):
@@ -135,7 +132,7 @@ def test_backlash_closed_the_tips_reach_the_profile_at_the_height_of_interferenc
             "pitch_angle": member.pitch_angle,
             "spiral_angle": annex.inner_spiral_angle,
         }
-        radii.append(evaluate(tooth_width.virtual_gear, values)["virtual_pitch_radius"])
+        radii.append(evaluate("virtual_gear", values)["virtual_pitch_radius"])
     assert radii == pytest.approx([35.76936, 277.57864], abs=PRINTED)
     for own, mate, height in ((0, 1, 0.81059), (1, 0, 1.49757)):
         members = (annex.pinion, annex.wheel)
@@ -144,5 +141,5 @@ def test_backlash_closed_the_tips_reach_the_profile_at_the_height_of_interferenc
             "mate_addendum_here": members[mate].inner_addendum, "dedendum_here": members[own].inner_dedendum,
             "clearance_change": slots_of(annex).clearance_change, "flank_pressure_angle": math.radians(20),
         }  # fmt: skip
-        found = evaluate(tooth_width.running_interference, values)["interference_height"]
+        found = evaluate("running_interference", values)["interference_height"]
         assert found == pytest.approx(height, abs=PRINTED)

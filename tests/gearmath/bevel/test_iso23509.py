@@ -19,7 +19,6 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from derivations import lengthwise
 from gearmath.bevel.blank import BevelBlank, blank_of, evaluate
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import Blank
@@ -137,12 +136,12 @@ def test_face_hobbed_wheel_of_sample_3_has_its_printed_spiral_angles() -> None:
         "mean_cone_distance": 82.168, "wheel_pitch_angle": math.radians(63.212), "wheel_teeth": 34.0,
         "mean_spiral_angle": math.radians(21.009), "blade_groups": 13.0, "cutter_radius": 76.0,
     }  # fmt: skip
-    values |= evaluate(lengthwise.hobbing_cutter, values)
+    values |= evaluate("hobbing_cutter", values)
     assert math.degrees(values["cutter_lead_angle"]) == pytest.approx(20.151, abs=1e-3)
     assert values["epicycloid_base_radius"] == pytest.approx(82.820, abs=1e-3)
     # outer and inner end of the wheel, and the two places of it that face the ends of the pinion
     for distance, printed in ((95.168, 31.334), (69.168, 8.159), (96.602, 32.362), (68.235, 7.101)):
-        angle = evaluate(lengthwise.hobbed_spiral_angle, values, cone_distance=distance)["spiral_angle"]
+        angle = evaluate("hobbed_spiral_angle", values, cone_distance=distance)["spiral_angle"]
         assert math.degrees(angle) == pytest.approx(printed, abs=2e-3)
 
 
@@ -153,7 +152,7 @@ def test_hobbed_trace_is_the_path_of_a_rolling_blade() -> None:
         "mean_cone_distance": R_m, "wheel_pitch_angle": math.radians(70), "wheel_teeth": 38.0,
         "mean_spiral_angle": beta, "blade_groups": 13.0, "cutter_radius": r,
     }  # fmt: skip
-    values |= evaluate(lengthwise.hobbing_cutter, values)
+    values |= evaluate("hobbing_cutter", values)
     lead = values["cutter_lead_angle"]
     center = R_m + r * 1j * np.exp(1j * (beta - lead))
     assert abs(center) == pytest.approx(values["cutter_center_distance"], rel=1e-12)
@@ -163,7 +162,7 @@ def test_hobbed_trace_is_the_path_of_a_rolling_blade() -> None:
     drawn = np.abs(np.angle(tangent / path))
     drawn = np.minimum(drawn, np.pi - drawn)
     for k in range(1500, 2501, 250):
-        found = evaluate(lengthwise.hobbed_spiral_angle, values, cone_distance=abs(path[k]))["spiral_angle"]
+        found = evaluate("hobbed_spiral_angle", values, cone_distance=abs(path[k]))["spiral_angle"]
         assert found == pytest.approx(drawn[k], abs=1e-6)
 
 

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from derivations import gearbox
 from derivations.expression import Quantity
+from gearmath.engine import compiler
 from gearmath.engine.compiler import compile_library
 from gearmath.errors import ComputationError, InputError
 from gearmath.export import host
@@ -142,19 +143,19 @@ def test_compiler_error_is_one_sentence() -> None:
 def test_ziglang_serves_where_no_compiler_is_installed_and_says_so(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture
 ) -> None:
-    monkeypatch.setattr(host.shutil, "which", lambda name: None)
-    assert host.find_compiler.__wrapped__() == (sys.executable, "-m", "ziglang", "cc")
+    monkeypatch.setattr(compiler.shutil, "which", lambda name: None)
+    assert compiler.find_compiler.__wrapped__() == (sys.executable, "-m", "ziglang", "cc")
     assert "ziglang" in capfd.readouterr().err
-    monkeypatch.setattr(host.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(compiler.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(ComputationError, match="install gcc"):
-        host.find_compiler.__wrapped__()
+        compiler.find_compiler.__wrapped__()
 
 
 @pytest.mark.slow
 def test_c_compiled_by_zig_equals_casadi_too(
     monkeypatch: pytest.MonkeyPatch, samples: Callable, same_bits: Callable
 ) -> None:
-    monkeypatch.setattr(host, "find_compiler", lambda: (sys.executable, "-m", "ziglang", "cc"))
+    monkeypatch.setattr(compiler, "find_compiler", lambda: (sys.executable, "-m", "ziglang", "cc"))
     kernel = DOUBLE["axis_transform"]
     library = compile_library(host.double_kernel(kernel).files)
     arguments = samples("axis_transform", 1000)
