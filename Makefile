@@ -1,5 +1,7 @@
 # make demo    the whole idea on a bundled gear set, into gearmath-demo/
 # make test    every check, every test, every notebook
+# make quick   the tests that take no long time
+# make docs    the site, into build/site; takes the notebooks as `make notebooks` ran them
 # make bench   speed, as ratios within one run
 # make golden  rewrites tests/golden after a wanted change of the generated C
 # make clean   removes what these have written, apart from .venv
@@ -18,8 +20,12 @@ PYTHON := $(shell for p in python3 python3.14 python3.13 python3.12 python3.11 p
 	$$p -c '$(RECENT)' 2>/dev/null && echo $$p && break; done)
 endif
 
-.PHONY: demo test lint notebooks bench golden clean compiler
+.PHONY: help demo test quick lint notebooks docs bench golden clean compiler
+.DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
+
+help:
+	@sed -n 's/^# make/make/p' $(firstword $(MAKEFILE_LIST))
 
 demo: $(VENV)/.run compiler
 	$(BIN)/gearmath demo
@@ -27,6 +33,9 @@ demo: $(VENV)/.run compiler
 test: $(VENV)/.test compiler lint
 	$(BIN)/pytest -n $(JOBS) --dist loadscope --benchmark-disable --durations 10 tests
 	$(MAKE) --no-print-directory notebooks
+
+quick: $(VENV)/.test compiler
+	$(BIN)/pytest -n $(JOBS) --dist loadscope --benchmark-disable -m 'not slow' -q tests
 
 lint: $(VENV)/.test
 	$(BIN)/ruff check .
@@ -39,6 +48,11 @@ lint: $(VENV)/.test
 notebooks: $(VENV)/.test
 	$(if $(NOTEBOOKS),PYTHONWARNINGS=error MPLBACKEND=agg $(BIN)/pytest -o filterwarnings= --nbval-lax --nbval-current-env \
 		--nbval-cell-timeout 60 -n $(JOBS) --dist loadscope --durations 5 notebooks)
+
+# every warning is an error: a link that leads nowhere, a reference without a target
+docs: $(VENV)/.docs
+	$(BIN)/sphinx-build -q -W --keep-going -b html -d build/doctrees docs build/site
+	@echo "build/site/index.html"
 
 bench: $(VENV)/.test compiler
 	$(BIN)/pytest -p no:xdist --benchmark-only --benchmark-group-by group --capture no tests/benchmarks
@@ -68,6 +82,11 @@ $(VENV)/.test: pyproject.toml | $(VENV)/.made
 	@echo "Installing gearmath and what its tests need into $(VENV), once; this takes a minute or two."
 	@$(INSTALL) '.[test]'
 	@touch $(VENV)/.run $@
+
+$(VENV)/.docs: pyproject.toml | $(VENV)/.made
+	@echo "Installing gearmath and what its site is built with into $(VENV), once; this takes a minute or two."
+	@$(INSTALL) '.[test,docs]'
+	@touch $(VENV)/.run $(VENV)/.test $@
 
 # asked every time: a compiler may have come or gone
 compiler: | $(VENV)/.made

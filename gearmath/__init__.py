@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from derivations import Expression as Expression
     from derivations import Quantity as Quantity
+    from gearmath.engine.kernel import Kernel as Kernel
     from gearmath.errors import ComputationError as ComputationError
     from gearmath.errors import InputError as InputError
     from gearmath.front.exports import export_c as export_c
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from gearmath.front.sets import Member as Member
     from gearmath.front.sets import Tooth as Tooth
     from gearmath.front.sets import load_set as load_set
-    from gearmath.kernel import Kernel as Kernel
     from gearmath.kernels import kernel as kernel
     from gearmath.lowering import lower as lower
     from gearmath.version import __version__ as __version__
@@ -47,7 +47,7 @@ _HOMES = {
     "gearmath.front.gearbox": ("plan", "Job"),
     "gearmath.front.exports": ("export_c", "export_teensy", "export_cnc"),
     "gearmath.kernels": ("kernel",),
-    "gearmath.kernel": ("Kernel",),
+    "gearmath.engine.kernel": ("Kernel",),
     "gearmath.lowering": ("lower",),
     "gearmath.errors": ("InputError", "ComputationError"),
     "gearmath.version": ("__version__",),

@@ -16,7 +16,7 @@ import casadi as ca
 import derivations
 from derivations.quantity import Quantity
 from gearmath.engine import cache as kept
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 
 
 @cache

@@ -14,7 +14,7 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from derivations.expression import Expression
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 
 
 class LoweringError(TypeError):

@@ -20,8 +20,8 @@ from derivations import notation
 from gearmath.bevel.generation import Generation, Section, SurfacePoints, solve_curve, solve_section, turning_sense
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.newton import TOLERANCE, FlankPoints, contact_guess, newton_step, residual_size
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
-from gearmath.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 from gearmath.specs.margins import Margins

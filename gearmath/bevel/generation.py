@@ -14,7 +14,7 @@ import numpy as np
 
 from gearmath.bevel.generation_kernels import generation_point, generation_sense
 from gearmath.bevel.newton import TOLERANCE, FlankPoints
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
 
 _REPEATS = 10

@@ -9,7 +9,7 @@ import casadi as ca
 
 from derivations import Quantity, notation
 from gearmath.bevel.newton import contact_guess, newton_step, residual_size
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
 
 NEWTON_STEPS = 6

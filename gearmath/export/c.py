@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError
 from gearmath.export import wrapper
 from gearmath.export.header import OPERATIONS, kernel_comment
-from gearmath.kernel import Kernel
 
 #: What means the same in C with integers as in exact arithmetic. Everything else is double in C, or truncates.
 INTEGER_OPERATIONS = frozenset(

@@ -14,7 +14,7 @@ import casadi as ca
 import sympy
 
 from derivations.expression import Quantity
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 from gearmath.version import __version__
 
 _WIDTH = 110

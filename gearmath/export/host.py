@@ -10,9 +10,9 @@ from functools import cache, cached_property, lru_cache
 import numpy as np
 
 from gearmath.engine.compiler import compile_library
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
 from gearmath.export.c import double_kernel, integer_kernel
-from gearmath.kernel import Kernel
 from gearmath.kernels import kernel
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from derivations.expression import Quantity
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 
 _WORDS = """\
     auto break case char const continue default do double else enum extern float for goto if inline int long

@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from derivations.expression import Expression
+from gearmath.engine.kernel import Kernel
 from gearmath.export.c import double_kernel, integer_kernel
 from gearmath.export.cnc import export_cnc as _export_cnc
 from gearmath.export.folder import write_folder
 from gearmath.export.teensy import export_teensy as _export_teensy
-from gearmath.kernel import Kernel
 from gearmath.lowering import lower
 from gearmath.specs.hobbing import HobbingMachine
 

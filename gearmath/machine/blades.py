@@ -18,7 +18,7 @@ from derivations import Quantity, notation
 from gearmath.bevel.generation import Section
 from gearmath.bevel.method import blade_sections
 from gearmath.bevel.newton import newton_step
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 

@@ -20,8 +20,8 @@ import numpy as np
 from derivations import Quantity, notation
 from gearmath.bevel.flank import Grid
 from gearmath.bevel.method import blade_sections
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
-from gearmath.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, below_the_flank, flank_points, roll_range
 from gearmath.specs.bevel_set import MACHINE_SETTINGS, SIDES, Flank, Member

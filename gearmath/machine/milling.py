@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity, notation
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.machine.cutter import Body, Cutter, one_blade
 

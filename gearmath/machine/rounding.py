@@ -11,7 +11,7 @@ import numpy as np
 
 from derivations import Quantity, notation
 from gearmath.bevel.flank import blank_grid
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.machine.blocks import flank_row, on_one_machine
 from gearmath.machine.path import Cut, axis_positions

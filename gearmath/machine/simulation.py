@@ -15,8 +15,8 @@ import numpy as np
 
 from derivations import Quantity, notation
 from gearmath.bevel.turning import half_turn
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError
-from gearmath.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.specs.milling_machine import AXES
 from gearmath.specs.simulated_machine import Mounting, SimulatedMachine, WorkAxis

@@ -8,8 +8,8 @@ from functools import cache
 
 import numpy as np
 
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
-from gearmath.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.machine.probing import lobing, probe_height
 from gearmath.quality.calibration import Fit, least_squares, with_gradient

@@ -13,8 +13,8 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError
-from gearmath.kernel import Kernel
 from gearmath.quality.deviation_surface import surface_map
 from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.least_squares import FLOOR, compensation_step, enough, next_damping

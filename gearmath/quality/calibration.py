@@ -11,8 +11,8 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError, InputError
-from gearmath.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.machine.probing import lobing
 from gearmath.specs.calibration import Calibration, Face, Ring, Sphere

@@ -20,7 +20,7 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 
 #: Least damping, against the mean of the diagonal of JᵀJ: the square of the singular value that still counts.
 FLOOR = 1e-13

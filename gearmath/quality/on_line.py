@@ -19,7 +19,7 @@ import numpy as np
 from derivations import Quantity, notation
 from gearmath.bevel.generation_kernels import rolling_flag
 from gearmath.bevel.newton import contact_guess, newton_step, residual_size
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
 
 #: plain: face milling of chapters 2 to 4; straight and curved: the family of chapter 10, by its blade.

@@ -17,8 +17,8 @@ import numpy as np
 from derivations import Quantity, notation
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.newton import contact_guess, newton_step, residual_size
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError
-from gearmath.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.quality.on_line import INPUTS, Run, as_it_stands, family, symbols
 from gearmath.quality.variables import parts

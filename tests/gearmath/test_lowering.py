@@ -13,7 +13,7 @@ import sympy as sp
 
 import derivations
 from derivations.expression import Expression, Quantity
-from gearmath.kernel import Kernel
+from gearmath.engine.kernel import Kernel
 from gearmath.lowering import RULES, LoweringError, lower
 
 DIGITS = 50

@@ -13,9 +13,9 @@ import derivations
 from gearmath.bevel.flank import flank_point
 from gearmath.bevel.generation_kernels import generation_point, generation_sense
 from gearmath.engine.compiler import compile_library
+from gearmath.engine.kernel import Kernel
 from gearmath.engine.run import FLAGS
 from gearmath.engine.vector_c import LANES, NoVectorForm, vector_c
-from gearmath.kernel import Kernel
 from gearmath.kernels import kernel
 
 POINTS = 2 * LANES + 1  # the last vector is not full

@@ -16,12 +16,12 @@ from derivations import gearbox
 from derivations.expression import Quantity
 from gearmath.engine import compiler
 from gearmath.engine.compiler import compile_library
+from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError, InputError
 from gearmath.export import host
 from gearmath.export.c import integer_kernel
 from gearmath.export.cnc import cnc_kernels
 from gearmath.export.host import compile_kernel, run_edges
-from gearmath.kernel import Kernel
 from gearmath.lowering import lower
 
 DOUBLE = {kernel.name: kernel for kernel in cnc_kernels()}

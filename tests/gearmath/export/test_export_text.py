@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 
 from derivations import gearbox
 from derivations.expression import Quantity
+from gearmath.engine.kernel import Kernel
 from gearmath.export.c import ExportError, double_kernel, integer_kernel
 from gearmath.export.cnc import cnc_kernels
 from gearmath.export.header import comment, kernel_comment
-from gearmath.kernel import Kernel
 from gearmath.lowering import lower
 
 

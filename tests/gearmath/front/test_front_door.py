@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import doctest
 import importlib
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -108,3 +109,15 @@ def test_the_examples_of_the_front_door_are_true(module: str) -> None:
     result = doctest.testmod(importlib.import_module(f"gearmath.front.{module}"))
     assert result.attempted > 0
     assert result.failed == 0
+
+
+def test_no_name_is_that_of_a_module_which_would_hide_it() -> None:
+    folder = Path(gm.__file__).parent
+    modules = {path.stem for path in folder.iterdir() if path.suffix == ".py" or (path / "__init__.py").is_file()}
+    assert not modules & set(gm.__all__)
+
+
+def test_the_page_of_the_api_has_the_names_of_the_package() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "api.md").read_text()
+    listed = set(re.findall(r"::\s*gearmath\.(\w+)", page))
+    assert listed == set(gm.__all__) - {"__version__"}

@@ -28,8 +28,8 @@ from unicorn.arm_const import (
 )
 
 from derivations.gearbox import gearbox_step
+from gearmath.engine.kernel import Kernel
 from gearmath.export.c import integer_kernel
-from gearmath.kernel import Kernel
 from gearmath.lowering import lower
 
 CODE, DATA, STACK = 0x0001_0000, 0x2000_0000, 0x3000_0000

@@ -1,0 +1,82 @@
+"""The site, ``make docs``: what exists elsewhere is read from there when it is built; nothing is fetched."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+import gearmath
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent
+sys.path.insert(0, str(HERE))
+
+project = "gearmath"
+author = "The gearmath engineers"
+version = release = gearmath.__version__
+copyright = author
+
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.mathjax", "sphinx_click"]
+exclude_patterns = ["_build"]
+html_theme = "furo"
+html_title = "gearmath"
+html_static_path = ["_static"]
+html_css_files = ["gearmath.css"]
+html_show_sphinx = False
+
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_heading_anchors = 3
+# a notebook without outputs is run now; those of `make notebooks` have theirs
+nb_execution_mode = "auto"
+nb_execution_timeout = 120
+nb_execution_raise_on_error = True
+nb_merge_streams = True
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "description"
+autodoc_default_options = {"members": True, "undoc-members": False}
+
+# MathJax comes with the wheel of jupyter-server-mathjax
+mathjax_path = "mathjax/MathJax.js"
+mathjax2_config = {
+    "jax": ["input/TeX", "output/SVG"],
+    "extensions": ["tex2jax.js"],
+    "TeX": {"extensions": ["AMSmath.js", "AMSsymbols.js"]},
+    "SVG": {"linebreaks": {"automatic": True}},
+    # myst marks the text as not to be searched for math, and what is math by a class
+    "tex2jax": {
+        "inlineMath": [["\\(", "\\)"]],
+        "displayMath": [["\\[", "\\]"]],
+        "processClass": "tex2jax_process|mathjax_process|math|output_area",
+    },
+    "showProcessingMessages": False,
+    "showMathMenu": False,
+}
+
+#: Of MathJax: other inputs, outputs and languages than TeX to SVG.
+_NOT_NEEDED = ("fonts", "localization", "AsciiMath", "MathML", "HTML-CSS", "CommonHTML", "PreviewHTML", "NativeMML",
+               "PlainSource", "Asana-Math", "Gyre-*", "Latin-Modern", "Neo-Euler", "STIX-Web")  # fmt: skip
+
+
+def prepare(app: Sphinx) -> None:
+    """What the site takes from elsewhere: notebooks as they were run, chapters typeset, MathJax."""
+    import jupyter_server_mathjax
+    from chapters import write_chapters
+
+    target = HERE / "notebooks"
+    target.mkdir(exist_ok=True)
+    for source in sorted((ROOT / "notebooks").glob("*.ipynb")):
+        executed = ROOT / "build" / "notebooks" / source.name
+        fresh = executed.is_file() and executed.stat().st_mtime > source.stat().st_mtime
+        shutil.copyfile(executed if fresh else source, target / source.name)
+    write_chapters(HERE / "mathematics")
+    mathjax, place = Path(jupyter_server_mathjax.__file__).parent / "static", HERE / "_static" / "mathjax"
+    if not place.is_dir():
+        shutil.copytree(mathjax, place, ignore=shutil.ignore_patterns(*_NOT_NEEDED))
+
+
+def setup(app: Sphinx) -> None:
+    app.connect("builder-inited", prepare)
