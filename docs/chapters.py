@@ -112,7 +112,9 @@ def _equations(one: derivations.Expression) -> Iterator[str]:
     definitions, reduced = sp.cse([value for _, value in scalars], symbols=shorthands, order="none")
     short = {symbol: value for symbol, value in definitions if value.count_ops() <= _SHORT}
     definitions = [(symbol, _without(value, short)) for symbol, value in definitions if symbol not in short]
-    reduced = [_without(value, short) for value in reduced]
+    numbered = dict(zip((symbol for symbol, _ in definitions), sp.numbered_symbols("k_"), strict=False))
+    definitions = [(numbered[symbol], value.xreplace(numbered)) for symbol, value in definitions]
+    reduced = [_without(value, short).xreplace(numbered) for value in reduced]
     if len(definitions) > _MOST_SHORTHANDS:
         count = sum(int(value.count_ops()) for _, value in scalars)
         yield from (f"*{count} operations: written out it would fill pages; the text above has it in vectors.*", "")

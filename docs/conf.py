@@ -39,13 +39,13 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 autodoc_default_options = {"members": True, "undoc-members": False}
 
-# MathJax comes with the wheel of jupyter-server-mathjax
+# MathJax, with its fonts, comes with the wheel of jupyter-server-mathjax
 mathjax_path = "mathjax/MathJax.js"
 mathjax2_config = {
-    "jax": ["input/TeX", "output/SVG"],
-    "extensions": ["tex2jax.js"],
-    "TeX": {"extensions": ["AMSmath.js", "AMSsymbols.js"]},
-    "SVG": {"linebreaks": {"automatic": True}},
+    "config": ["TeX-AMS-MML_HTMLorMML-full.js"],
+    "HTML-CSS": {"availableFonts": [], "webFont": "STIX-Web", "imageFont": None, "linebreaks": {"automatic": True}},
+    "showProcessingMessages": False,
+    "showMathMenu": False,
     # myst marks the text as not to be searched for math, and what is math by a class
     "tex2jax": {
         "inlineMath": [["\\(", "\\)"]],
@@ -55,10 +55,6 @@ mathjax2_config = {
     "showProcessingMessages": False,
     "showMathMenu": False,
 }
-
-#: Of MathJax: other inputs, outputs and languages than TeX to SVG.
-_NOT_NEEDED = ("fonts", "localization", "AsciiMath", "MathML", "HTML-CSS", "CommonHTML", "PreviewHTML", "NativeMML",
-               "PlainSource", "Asana-Math", "Gyre-*", "Latin-Modern", "Neo-Euler", "STIX-Web")  # fmt: skip
 
 
 def prepare(app: Sphinx) -> None:
@@ -74,8 +70,8 @@ def prepare(app: Sphinx) -> None:
         shutil.copyfile(executed if fresh else source, target / source.name)
     write_chapters(HERE / "mathematics")
     mathjax, place = Path(jupyter_server_mathjax.__file__).parent / "static", HERE / "_static" / "mathjax"
-    if not place.is_dir():
-        shutil.copytree(mathjax, place, ignore=shutil.ignore_patterns(*_NOT_NEEDED))
+    if not (place / "MathJax.js").is_file():
+        shutil.copytree(mathjax, place, dirs_exist_ok=True)
 
 
 def setup(app: Sphinx) -> None:
