@@ -52,8 +52,6 @@ mathjax2_config = {
         "displayMath": [["\\[", "\\]"]],
         "processClass": "tex2jax_process|mathjax_process|math|output_area",
     },
-    "showProcessingMessages": False,
-    "showMathMenu": False,
 }
 
 
