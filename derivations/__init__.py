@@ -104,7 +104,8 @@ def _bevel_blank() -> Iterator[Expression]:
     yield from (tooth_width.tooth_thickness(), tooth_width.chordal_tooth(), tooth_width.slot_widths())
     yield from (tooth_width.virtual_gear(), tooth_width.top_land(), tooth_width.running_interference())
     yield tooth_width.edge_radii()
-    yield from (crown_gear.crown_gear_flank(), crown_gear.crown_gear_space(), crown_gear.blade_in_space())
+    yield from (crown_gear.crown_gear_roll(), crown_gear.crown_gear_flank(), crown_gear.crown_gear_space())
+    yield crown_gear.blade_in_space()
 
 
 def proofs() -> Iterator[Callable[[], None]]:

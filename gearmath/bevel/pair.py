@@ -18,6 +18,7 @@ from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, c
 from gearmath.bevel.check_ease_off import check_ease_off
 from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
 from gearmath.bevel.check_mates import Cut, check_mates, check_space
+from gearmath.bevel.check_motion import check_motions
 from gearmath.bevel.method import cut_generation_of, generation_of
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.tooth import mean_pitch_radius
@@ -63,6 +64,7 @@ def check_pair(pair: BevelSet) -> None:
         check_methods(pinion, gear)
     for name, member in members.items():
         check_blades(member, name)
+        check_motions(member, name)
     cut: dict[str, Cut] = {name: {} for name in members}
     try:
         _check_cut(members, cut)

@@ -8,6 +8,7 @@ loaded is in mm and degrees, with work by cradle, and counts from the pitch apex
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -16,10 +17,20 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from derivations import cradle, notation
+from derivations import cradle, crown_gear, notation
 from gearmath.errors import InputError
-from gearmath.specs.cut import CRADLE_PER_WORK, MACHINE_SETTINGS, SETTINGS, Design, Flank, Motion, Settings, vector_of
-from gearmath.specs.sheet import Angle, Length, Sheet, Unit, is_number, shown
+from gearmath.specs.cut import (
+    CRADLE_PER_WORK,
+    MACHINE_SETTINGS,
+    RATIO,
+    SETTINGS,
+    Design,
+    Flank,
+    Motion,
+    Settings,
+    vector_of,
+)
+from gearmath.specs.sheet import Angle, Length, Sheet, Unit, is_number, refusal_of, shown
 from gearmath.specs.toml import load
 
 if TYPE_CHECKING:
@@ -99,7 +110,12 @@ class Member(Sheet):
 
     @classmethod
     def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
+        if values.get("index_correction") == []:
+            words = "holds no value, so it has no effect; leave it out"
+            raise refusal_of(cls, (*where, "index_correction"), [], words)
         plain = super().plain(values, mm, where)
+        if plain.get("generation") == "formate":
+            _fill_still_roll(plain)
         blank = plain.get("blank")
         beyond = blank.get(BEYOND, 0.0) if isinstance(blank, dict) else 0.0
         if beyond and is_number(beyond):
@@ -239,6 +255,23 @@ def _digest(member: Member, motions: list[Motion], radii: list[float | None], *s
     return hashlib.sha256(repr((sorted(method.items()), blades, *settings)).encode()).hexdigest()
 
 
+def _fill_still_roll(member: dict[str, Any]) -> None:
+    """A Formate flank needs no ratio of roll: where it is left out, it is that of the crown gear (14.2)."""
+    blank = member.get("blank")
+    pitch: Any = blank.get("pitch_angle") if isinstance(blank, dict) else None
+    flanks = [member[flank] for flank in FLANKS if isinstance(member.get(flank), dict)]
+    for table in (*flanks, *(flank["design"] for flank in flanks if isinstance(flank.get("design"), dict))):
+        root: Any = table.get("machine_root_angle")
+        if RATIO not in table and is_number(pitch) and is_number(root) and 0 < float(pitch) < 90:
+            table[RATIO] = _still_roll(float(pitch), float(root))
+
+
+def _still_roll(pitch_angle: float, machine_root_angle: float) -> float:
+    """The ratio of roll of the crown gear (14.2) of angles in degrees."""
+    (value,) = _roll_kernel()(math.radians(pitch_angle), math.radians(machine_root_angle))
+    return float(value)
+
+
 def _from_apex(advance: float, beyond: float) -> float:
     """X_p from the pitch apex out of X_C from the crossing point (2.6)."""
     (value,) = _advance_kernel()(advance, beyond)
@@ -250,3 +283,10 @@ def _advance_kernel() -> Kernel:
     from gearmath.lowering import lower
 
     return lower(cradle.advance_from_apex())
+
+
+@cache
+def _roll_kernel() -> Kernel:
+    from gearmath.lowering import lower
+
+    return lower(crown_gear.crown_gear_roll())

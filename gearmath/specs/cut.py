@@ -44,6 +44,13 @@ class Motion(Sheet):
     work_rotation_offset: _Angles = ()
     modified_roll: Annotated[_Coefficients, Field(max_length=4)] = ()
 
+    @classmethod
+    def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
+        for key, value in values.items():
+            if value == [] and key in cls.model_fields:
+                raise refusal_of(cls, (*where, key), value, "holds no coefficient, so it has no effect; leave it out")
+        return super().plain(values, mm, where)
+
     @property
     def matrix(self) -> np.ndarray:
         """The motion as the matrix of ``notation.motion`` (10,7), mm and rad, without the modified roll."""
