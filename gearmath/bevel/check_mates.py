@@ -181,12 +181,13 @@ def _between(given: float, limit: float) -> tuple[float, float]:
     return min(given, 0.0) - limit, max(given, 0.0) + limit
 
 
-def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[str, float]) -> None:
+def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[str, float], share: float = 1.0) -> None:
     """Refuse flanks that do not touch as mates at the mean point, and a pair with too much or too little backlash.
 
     Both flanks of a pair are judged together: half the sum of what the angles of mates differ by is an error of a
     member, half the difference an opposite error of its flanks. Between perfect mates and the plain crown gear, which
-    leaves as it is what a cut of both flanks at once does to them, any difference may be designed.
+    leaves as it is what a cut of both flanks at once does to them, any difference may be designed. ``share`` is the
+    part of the limits of the angles that may be used.
     """
     for key, limits in _MATING.items():
         apart = [
@@ -195,11 +196,11 @@ def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[st
         ]
         given = {name: _given_by_one_cut(member, cut, name, key) for name, member in members.items()}
         common, opposite = (apart[0] + apart[1]) / 2, (apart[0] - apart[1]) / 2
-        low, high = _between(given["pinion"][0] - given["gear"][0], limits[0])
+        low, high = _between(given["pinion"][0] - given["gear"][0], share * limits[0])
         if not low <= common <= high:
             error = f"mates differ by {common:+.3g} degrees on both, which must lie between {low:.3g} and {high:.3g}"
         else:
-            low, high = _between(given["pinion"][1] + given["gear"][1], limits[1])
+            low, high = _between(given["pinion"][1] + given["gear"][1], share * limits[1])
             if low <= opposite <= high:
                 continue
             error = (
