@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, about, bar, fast_kernels, member_of, output
+from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, NewFile, about, bar, fast_kernels, member_of, output
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import ComputationError, InputError
 
@@ -60,10 +60,11 @@ def cut(
     from gearmath.machine.cutting import Job, cutting_program, pass_count
     from gearmath.machine.executor import execute
     from gearmath.machine.judge import faults_of
-    from gearmath.machine.words import block_count
+    from gearmath.machine.words import block_count, check_name
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
+    check_name(target.stem)
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
     wanted = _spaces(spaces, spec.teeth)
@@ -86,7 +87,7 @@ def cut(
 @click.option("--program", required=True, type=click.Path(path_type=Path), help="NC program to run.")
 @click.option("--errors", help="What is wrong with the machine: a TOML file, or the bundled simulated_shop.toml.")
 @click.option(
-    "--report", type=click.Path(path_type=Path, dir_okay=False),
+    "--report", type=NewFile(),
     help="Also write a JSON file of gouges, uncut stock, collisions, axis speeds and time.",
 )  # fmt: skip
 @click.option("--report-tolerance-um", type=click.FloatRange(0.01, 1000), default=1.0, show_default=True,
