@@ -19,7 +19,7 @@ WRONG = {
         ("evaluate", "m.csv", "--set", NASA, "--plot", "{}/absent/p.png"), r"p\.png: cannot be written: No such file",
     ),
     "name of the program": (
-        ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/1-bad name.MPF"), r"program name '1-bad name': must be letters",
+        ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/1-bad name.MPF"), r"name '1-bad name': must be letters",
     ),
 }  # fmt: skip
 
