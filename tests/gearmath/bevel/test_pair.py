@@ -381,6 +381,18 @@ def test_formate_member_needs_no_ratio_of_roll(tmp_path: Path) -> None:
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-9)
 
 
+def test_formate_member_without_ratio_of_roll_is_corrected_as_any_other(tmp_path: Path) -> None:
+    values = changed(FORMATE, {f"gear.{flank}.ratio_of_roll": None for flank in FLANKS})
+    source, target = tmp_path / "set.toml", tmp_path / "corrected.toml"
+    source.write_text(tomlkit.dumps(values), "utf-8")
+    settings = {flank: load_pair(source).gear.flank(flank).vector + 1e-3 * (np.arange(12) == 0) for flank in FLANKS}
+    save_corrected(source, target, "gear", settings, check=check_pair)
+    gear = load_pair(target).gear
+    assert "ratio_of_roll" not in target.read_text("utf-8").split("[gear]")[1]
+    for flank in FLANKS:
+        np.testing.assert_allclose(gear.flank(flank).vector, settings[flank], rtol=0, atol=1e-8)
+
+
 @pytest.mark.parametrize("name", BUNDLED)
 def test_bundled_pair_passes_with_half_of_what_mates_may_differ_by(name: str, monkeypatch) -> None:
     from gearmath.bevel import check_mates as check
