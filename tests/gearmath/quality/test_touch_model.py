@@ -132,9 +132,9 @@ def test_arc_second_at_100_mm_is_half_a_micrometre():
 @pytest.mark.parametrize(
     ("line", "sentence"),
     [
-        ("repeatability_um = -0.1", r"m\.toml: repeatability_um = -0\.1: .*greater than or equal to 0"),
+        ("repeatability_um = -0.1", r"m\.toml: repeatability_um = -0\.1: .*must be at least 0"),
         ("repeatability_um = nan", r"m\.toml: repeatability_um = nan: must be a finite number"),
-        ("touches = 0", r"m\.toml: touches = 0: .*greater than or equal to 1"),
+        ("touches = 0", r"m\.toml: touches = 0: .*must be at least 1"),
         ("sigma = 1.0", r"m\.toml: sigma = 1\.0: no such key is known here"),
     ],
 )
