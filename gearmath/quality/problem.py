@@ -16,8 +16,6 @@ from gearmath.specs.bevel_set import SETTINGS
 
 #: What a root line and its place between its limits differ by counts so many times its length.
 ROOT_WEIGHT = 100.0
-#: A design also starts with so much of the bound of the tilt.
-_TILTED = 0.25
 
 
 class Trail:
@@ -172,13 +170,3 @@ class Problem:
         slopes[: len(residual), :p], slopes[len(residual) :, :p] = jacobian, ROOT_WEIGHT * gradient
         np.fill_diagonal(slopes[len(residual) :, p:], -ROOT_WEIGHT * self.root_limit)  # type: ignore[operator]
         return np.concatenate([residual, apart]), slopes
-
-    @property
-    def other_starts(self) -> list[np.ndarray]:
-        """Where a design may start too: tilted to either side, as without tilt the swivel does nothing."""
-        names = [variable.name for variable in self.variables]
-        if "cutter_tilt" not in names:
-            return []
-        to_side = _TILTED * np.eye(len(names) + self.slacks)[names.index("cutter_tilt")]
-        low, high = self.bounds
-        return [v for v in (low * to_side, high * to_side) if self(v) is not None]
