@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.quality.completeness import missing_points
+from gearmath.quality.completeness import missing_points, silent_points
 from gearmath.quality.correction import check_belongs
 from gearmath.quality.drift import Drift, untold_drift, without_drift
 from gearmath.quality.nominal import at_one_place, check_points, completed, nominal_rows
@@ -175,7 +175,7 @@ def evaluate_member(
     whole = outliers.without(complete)
     measured, drifts = without_drift(whole, member.teeth)
     as_measured = _flanks(measured, member)
-    left_out = (*outliers.reasons, *absent, *missing_points(file, member.teeth))
+    left_out = (*outliers.reasons, *absent, *silent_points(file), *missing_points(file, member.teeth))
     seat, remarks = None, (*left_out, *outliers.kept, *_silent(as_measured))
     if registered:
         try:
