@@ -24,7 +24,7 @@ def evaluation_text(found: Evaluation, sure: Sequence[Uncertain] = ()) -> str:
         ["flank", *_FIGURES],
         [[flank, *(_cell(row, name) for name in _FIGURES)] for flank, row in flanks.items()],
     )
-    return "\n".join([*_gaps(found), first, "", *_orders(flanks), *_sure(sure), *_lines(values)]).rstrip()
+    return "\n".join([*_gaps(found), first, "", *_orders(flanks), *_sure(sure), *_lines(values, found.first)]).rstrip()
 
 
 def _cell(row: dict[str, Any], name: str) -> str:
@@ -33,8 +33,8 @@ def _cell(row: dict[str, Any], name: str) -> str:
 
 
 def _gaps(found: Evaluation) -> Iterator[str]:
-    """What was left out, and which figures are withheld for want of it."""
-    lines = [*(f"left out: {line}" for line in _without_suffix(found.left_out)), *found.withheld]
+    """Whether the work moved, what was left out, and which figures are withheld for that."""
+    lines = [*found.closing.said, *(f"left out: {line}" for line in _without_suffix(found.left_out)), *found.withheld]
     yield from lines
     if lines:
         yield ""
@@ -74,7 +74,7 @@ def _sure(found: Sequence[Uncertain]) -> Iterator[str]:
         yield ""
 
 
-def _lines(values: dict[str, Any]) -> Iterator[str]:
+def _lines(values: dict[str, Any], said: Sequence[str]) -> Iterator[str]:
     for flank, row in values["flanks"].items():
         if "zeroed_at_reference" in row:
             yield _chart(flank, row["zeroed_at_reference"])
@@ -82,7 +82,8 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
     if values["rotation"] is not None:
         yield _rotation(values["rotation"])
     for flank, closure in values["drift_um"].items():
-        yield f"{flank} flank: tooth 0 measured again at the end: {closure:+.2f} um, taken out evenly"
+        how = "taken out as a step" if values["closing"]["kind"] == "step" else "taken out evenly"
+        yield f"{flank} flank: tooth 0 measured again at the end: {closure:+.2f} um, {how}"
     runout, thickness, tolerance = values["runout"], values["thickness"], values["tolerance"]
     if runout is not None:
         yield from _runout(
@@ -99,7 +100,7 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
         yield "no grade: pitch was not measured"
     else:
         yield from _grades(tolerance)
-    yield from (line for line in values["remarks"] if line not in values["left_out"])
+    yield from (line for line in values["remarks"] if line not in said)
 
 
 def _runout(runout: dict[str, Any], before: dict[str, Any] | None) -> Iterator[str]:

@@ -30,6 +30,13 @@ _NAMED = 6
 _Places = dict[tuple[str, int], set[tuple[int, int]]]
 
 
+def cut_off(file: FlankFile) -> str | None:
+    """That a file holds fewer points than its program plans, in words; None where it does not, or does not say it."""
+    if file.planned is None or len(file) >= file.planned:
+        return None
+    return f"the file holds {len(file)} of {file.planned} points that were planned"
+
+
 def silent_points(file: FlankFile) -> tuple[str, ...]:
     """Sentences on the points that a file has without a deviation: the probe missed them. Many of a flank are counted.
 
@@ -57,7 +64,8 @@ def missing_points(file: FlankFile, teeth: int) -> tuple[str, ...]:
     """
     places = _places(file.flank, file.tooth, file.row, file.col)
     missing = _missing(places, teeth, grid_shape(file), reference_point(file), MOST_MISSING)
-    return tuple(f"not whole: {one}" for one in missing)
+    cut = cut_off(file)
+    return tuple(f"not whole: {one}" for one in (*([cut] if cut else []), *missing))
 
 
 def missing_touches(touches: Touches, teeth: int, shape: tuple[int, int]) -> tuple[str, ...]:

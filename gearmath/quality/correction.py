@@ -78,6 +78,7 @@ def correct(
     higher_order: bool = False, few: bool = False, root_limit: float | None = ROOT_LIMIT,
     noise: float | None = None, added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None,
     bounds: Bounds = "machine", run: Run = as_it_stands, progress: Callable[[int], object] = lambda _: None,
+    indexed: bool = True,
 ) -> Correction:  # fmt: skip
     """The settings that make up for what was measured on a member.
 
@@ -86,7 +87,8 @@ def correct(
     where there is nothing to gain. ``noise`` [mm] is the standard deviation of a measured deviation, by default what
     all of the settings leave: weak directions are not moved for its sake. ``excluded`` (points of the file,) marks
     points that are not to be used; ``added`` gives for each flank deviations [mm] on the grid that are corrected
-    besides, such as those of the mate. ``bounds`` are those of errors of a machine, or of a design.
+    besides, such as those of the mate. ``bounds`` are those of errors of a machine, or of a design. There are no index
+    corrections where the pitch is not known: not ``indexed``.
 
     A tooth that is indexed otherwise than the others is moved to where they are on average: see
     :mod:`gearmath.quality.own_index`.
@@ -114,7 +116,8 @@ def correct(
     wanted, of_work = fit.turned(rotation.shift), replace(rotation, angles=-rotation.angles)
     judged, as_measured = without_shift(targets, of_work.shift), _turned_best(targets, columns)
     progress(1)
-    found = Correction({}, identified, {}, _index(member, measured), {}, {}, {}, {}, {}, of_work, {}, {}, remarks)
+    index = _index(member, measured) if indexed else None
+    found = Correction({}, identified, {}, index, {}, {}, {}, {}, {}, of_work, {}, {}, remarks)
     for group, analysis in zip(groups, fit.analysis, strict=True):
         mine, before = [wanted[flank] for flank in group], [as_measured[flank].deviation for flank in group]
         found.left_out.update({f: t.grid_points - len(t.deviation) for f, t in zip(group, mine, strict=True)})
