@@ -24,8 +24,9 @@ from gearmath.quality.correction_fit import CorrectionFit, changed_settings, wit
 from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.identification import Identification
 from gearmath.quality.on_line import Run, as_it_stands
-from gearmath.quality.own_index import teeth_as_indexed_on_average
+from gearmath.quality.own_index import LEAST_OFF, near_the_median, teeth_as_indexed_on_average
 from gearmath.quality.pitch import evaluate_pitch, index_correction
+from gearmath.quality.representative import representative_tooth
 from gearmath.quality.target import blade_curve, flank_target, nominal_curvature
 from gearmath.quality.unknown_rotation import UnknownRotation, rotation_columns
 from gearmath.quality.variables import NAMES, Bounds, free_settings, parts, whole
@@ -191,9 +192,12 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
     if not found:
         return None
     before = np.radians(member.index_correction) if member.index_correction else np.zeros(member.teeth)
-    turn, (teeth, counts) = index_correction(found), np.unique(measured.tooth, return_counts=True)
+    turn = index_correction(found)
+    full = representative_tooth(measured, found[0].flank)
     # the settings put right where the others stand, not the tooth that was measured in full
-    return before + turn - np.delete(turn, teeth[np.argmax(counts)] % member.teeth).mean()
+    others = np.delete(turn, full % member.teeth)
+    radius = member.blank.mean_cone_distance * np.sin(np.radians(member.blank.pitch_angle))
+    return before + turn - others[near_the_median(others, LEAST_OFF / radius)].mean()
 
 
 def setting_changes(member: Member, correction: Correction) -> list[tuple[str, str, float, float]]:

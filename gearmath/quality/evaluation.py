@@ -14,7 +14,7 @@ from gearmath.quality.closing import Closing, close_run
 from gearmath.quality.completeness import cut_off, missing_points, silent_points
 from gearmath.quality.correction import check_belongs
 from gearmath.quality.drift import Drift, untold_drift, without_drift
-from gearmath.quality.nominal import at_one_place, check_points, completed, nominal_rows
+from gearmath.quality.nominal import at_one_place, check_phase, check_points, completed, nominal_rows
 from gearmath.quality.outliers import find_outliers
 from gearmath.quality.pitch import Pitch, evaluate_pitch
 from gearmath.quality.registration import Registration, register, stated_noise
@@ -176,8 +176,8 @@ def evaluate_member(
 
     Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
     the clamping where the points tell it beyond their noise; if ``rotated``, so is the rotation that both flanks have
-    in common. Raises InputError if the file is not of this member, or not in mm on its flanks, or if neither a tooth in
-    full nor pitch was measured.
+    in common. Raises InputError if the file is not of this member, or not in mm on its flanks, if neither a tooth in
+    full nor pitch was measured, or if its phase is not as its header says.
     """
     check_belongs(member, name, file)
     check_points(file, nominal_rows(file, member, name))
@@ -186,6 +186,7 @@ def evaluate_member(
     outliers = find_outliers(closing.straightened(complete), member.teeth)
     progress(1)
     whole = outliers.without(complete)
+    check_phase(whole)
     measured, drifts = without_drift(whole, member.teeth, closing.course)
     as_measured = _flanks(measured, member)
     left_out = (*outliers.reasons, *absent, *silent_points(file), *missing_points(file, member.teeth))

@@ -21,7 +21,7 @@ from gearmath.quality.nominal import SAME_POINT
 from gearmath.quality.outliers import flag_outliers
 from gearmath.quality.points import LEAST_FIT, Frame, Laid, Part, Phase, axial_hint, check_normals, lay, turn_of
 from gearmath.specs.bevel_set import BevelSet, Member
-from gearmath.specs.flank_csv import OWN, FlankFile, flank_file, join
+from gearmath.specs.flank_csv import OWN, PLANNED, FlankFile, flank_file, join
 
 #: Where points form no grid, deviations are interpolated on this one: its rows, columns and margins, widest first.
 _ROWS, _COLUMNS, _MARGINS = 5, 9, (0.1, 0.15, 0.2, 0.25, 0.3)
@@ -274,6 +274,7 @@ def _header(member: Member, name: str, files: Sequence[FlankFile], frame: Frame,
         "margins": _margins(member, name, files, rows, columns),
         "phase_zeroed": "true" if zeroed else "false",
         "tip_radius_mm": f"{frame.tip_radius:g}",
+        PLANNED: f"{sum(map(len, files))} points",
     }
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from gearmath.bevel.kernels import kernel
 from gearmath.quality.drift import without_drift
 from gearmath.quality.pitch import no_reading, reference_point, reference_rows
-from gearmath.quality.registration import Registration
+from gearmath.quality.registration import Registration, known_um
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile
 
@@ -103,6 +103,8 @@ class Runout:
             "first_harmonic_direction_deg": math.degrees(direction),
         }
         known = {key: value if math.isfinite(value) else None for key, value in values.items()}
+        if known_um(values["u_F_r_um"]) is None:  # nothing says how sure the points are
+            known |= dict.fromkeys(("u_F_r_um", "F_r_of_noise_um", "F_r_of_noise_spread_um"))
         withheld = {} if self.withheld is None else {"F_r": self.withheld}
         return {**known, "mostly_noise": self.mostly_noise, "withheld": withheld}
 
