@@ -20,9 +20,9 @@ from gearmath.specs.bevel_set import Member
 #: Points that are farther off than this, in RMS, are said to be; those of both flanks from the smaller one on, where a
 #: cause explains them. [mm]
 LARGEST_RMS, _LEAST_RMS = 0.01, 0.004
-#: A cause is named where it leaves this part of the RMS, and at most so many times what the best one leaves: the form of
-#: the flanks does not tell those apart. Less than a form does is explained where so much of it is. No tip is smaller than
-#: the last [mm].
+#: A cause is named where it leaves this part of the RMS, with both flanks also at most so many times what the best one
+#: leaves, as the form of the flanks does not tell those apart. Less than a form does is explained where no more than
+#: so much is left of it. No tip is smaller than the last [mm].
 _LEAVES, _NEARLY_BEST, _EXPLAINED, _LEAST_TIP = 0.6, 1.5, 0.4, 0.1
 #: No tooth is measured with so much stock on both flanks: the radius of the tip was forgotten. [mm]
 _LARGEST_STOCK = 0.5
@@ -54,7 +54,7 @@ def check_placed(parts: Sequence[Part], turns: Sequence[float], frame: Frame, me
     if frame.tip_radius + fits["tip"].motion[_TIP] < _LEAST_TIP:
         del fits["tip"]
     best = min(one.rms for one in fits.values())
-    most = min(_NEARLY_BEST * best, _LEAVES * before.rms)
+    most = min(_NEARLY_BEST * best, _LEAVES * before.rms) if both else _LEAVES * before.rms
     named = sorted((cause for cause in fits if fits[cause].rms <= most), key=lambda cause: fits[cause].rms)
     whose = parts[0].name if len(parts) == 1 else f"{parts[0].name} and {len(parts) - 1} more"
     far = f"{whose}: after turning, points lie {before.rms * 1000:.1f} um RMS off the nominal flank"
