@@ -148,10 +148,13 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
 @output("measured flank CSV")
 def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int | None, target: Path) -> None:
     """Raw touches of a probe to measured points: corrected contact points and their deviations."""
+    import numpy as np
+
     from gearmath.bevel.flank import blank_grid
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.completeness import missing_touches, taken_for
-    from gearmath.quality.touches import measured_member
+    from gearmath.quality.completeness import missed_points, missing_touches, taken_for
+    from gearmath.quality.search_lines import check_search_lines
+    from gearmath.quality.touches import check_on_grid, measured_member
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
@@ -160,20 +163,26 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
 
     found = read_touch_csv(raw, run)
     member = load_pair(find(gear_set)).member(found.member)
-    shape = blank_grid(member).shape
-    missing = missing_touches(found, member.teeth, shape)
+    grid = blank_grid(member)
+    missing, missed = missing_touches(found, member.teeth, grid.shape), missed_points(found)
     _check_whole(raw, run, found.run, missing)
+    at = load_milling_machine(find(machine)), load_calibration(find(calibration))
     with about(raw):
-        measured = measured_member(
-            found, member, found.member, load_milling_machine(find(machine)), load_calibration(find(calibration))
-        )
+        check_on_grid(found, member, found.member, grid)
+        doubt = check_search_lines(found, member, found.member, grid, *at)
+        measured = measured_member(found, member, found.member, *at)
     write_flank_csv(target, measured)
-    worst = float(abs(measured.deviation).max()) * 1000
-    click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {worst:.3f} um")
+    if doubt:
+        click.echo(f"{raw}: {doubt}", err=True)
+    for one in missed:
+        click.echo(one)
+    known = measured.deviation[np.isfinite(measured.deviation)]
+    largest = f"{float(abs(known).max()) * 1000:.3f} um" + (" of those that were met" if missed else "")
+    click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {largest}")
     for one in missing:
         click.echo(f"run {found.run} is not whole: {one}")
     if found.planned is None and not missing:
-        click.echo(f"run {found.run}: {taken_for(found, shape)}", err=True)
+        click.echo(f"run {found.run}: {taken_for(found, grid.shape)}", err=True)
 
 
 @click.command(epilog=CALIBRATION_CSV)

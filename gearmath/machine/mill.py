@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from gearmath.machine.milling import Evaluator, Removal, removal
 from gearmath.machine.run import Run, runs_of
 from gearmath.machine.simulation import mounted
 from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
-from gearmath.specs.flank_csv import FlankFile, flank_file, join
+from gearmath.specs.flank_csv import PLANNED, FlankFile, flank_file, join
 from gearmath.specs.margins import OWN, Margins
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
@@ -87,7 +88,9 @@ def mill_member(
     missing = [flank for flank in FLANKS if not any(file.flank[0] == flank for file in files)]
     if missing:
         raise InputError(f"the program does not cut the {missing[0]} flank of the {name}")
-    return _probed(join(files), name, errors)
+    whole = join(files)
+    header = whole.header | {PLANNED: f"{len(whole)} points"}  # a file that is cut off later is told
+    return _probed(replace(whole, header=header), name, errors)
 
 
 def thickness(point: np.ndarray, opposite: np.ndarray, teeth: int) -> np.ndarray:

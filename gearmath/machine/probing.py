@@ -98,7 +98,7 @@ def probe_targets(
     if not all(0 <= tooth < member.teeth for tooth in topography):
         raise InputError(f"{name}: teeth = {list(topography)}: must be numbers from 0 to {member.teeth - 1}")
     grid = blank_grid(member) if grid is None else grid
-    flanks = [_of_one_flank(member, name, flank, grid, machine, calibration) for flank in FLANKS]
+    flanks = [targets_of_space(member, name, flank, grid, machine, calibration) for flank in FLANKS]
     parts = []
     for tooth in range(member.teeth + 1):
         for one in flanks:
@@ -125,10 +125,13 @@ def landmarks(row: np.ndarray, col: np.ndarray, shape: tuple[int, int], corners:
     return middle | (corners & np.isin(row, (0, rows - 1)) & np.isin(col, (0, columns - 1)))
 
 
-def _of_one_flank(
+def targets_of_space(
     member: Member, name: str, flank: str, grid: Grid, machine: MillingMachine, calibration: Calibration
 ) -> Targets:
-    """The touches of the whole grid of one flank of space 0."""
+    """The touches of the whole grid of one flank of space 0.
+
+    Raises InputError naming flank, row and column where the tip has no room between the flanks.
+    """
     (other,) = (each for each in FLANKS if each != flank)
     points, opposite = (solve_flank(member, name, each, grid) for each in (flank, other))
     row, col = (index.ravel() for index in np.indices(grid.shape))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -31,8 +31,9 @@ _LARGEST, _LARGEST_COUNT = 1e5, 10_000_000
 class Touches:
     """The touches of one run on one member: index arrays (n,), axis positions X Y Z A B (n,5) in mm and rad.
 
-    Touches of one point follow each other. Tooth z is tooth 0, touched again at the end. ``planned`` is how many
-    touches the program makes, None where the file does not say it.
+    Touches of one point follow each other. Tooth z is tooth 0, touched again at the end. ``triggered`` (n,) is False
+    where the probe touched nothing on its whole way. ``planned`` is how many touches the program makes, None where the
+    file does not say it.
     """
 
     run: int
@@ -42,10 +43,20 @@ class Touches:
     row: np.ndarray
     col: np.ndarray
     axes: np.ndarray
+    triggered: np.ndarray
     planned: int | None = None
 
     def __len__(self) -> int:
         return len(self.tooth)
+
+    def pick(self, keep: np.ndarray) -> Touches:
+        """The touches that an index array or a mask keeps."""
+        names = ("flank", "tooth", "row", "col", "axes", "triggered")
+        return replace(self, **{name: getattr(self, name)[keep] for name in names})
+
+    def name_of(self, k: int) -> str:
+        """Where touch k is, in words."""
+        return f"{self.flank[k]} flank, tooth {self.tooth[k]}, row {self.row[k]}, col {self.col[k]}"
 
 
 @dataclass(frozen=True)
@@ -62,17 +73,25 @@ def read_touch_csv(path: Path, run: int | None = None) -> Touches:
     """The touches of one run, by default the last one of the file.
 
     The control adds every run to the same file, each with its own column line. Raises InputError naming file, line,
-    column, value and limit: for a point that is missing, twice there or did not trigger, too.
+    column, value and limit: for a point that is missing or twice there, and for a run that touched nothing, too.
     """
     wanted, records = _records(path, COLUMNS, run)
     _check_points(records)
+    if not any(record["triggered"] for record in records):
+        raise InputError(f"{path}: run {wanted}: triggered = 0 in all of its {len(records)} touches: it met no flank")
     return _collected(wanted, records, _planned(path, records))
 
 
 def read_calibration_csv(path: Path, run: int | None = None) -> CalibrationTouches:
-    """The touches on ring and sphere of one run, by default the last one. Raises InputError as for touches."""
+    """The touches on ring and sphere of one run, by default the last one. Raises InputError as for touches.
+
+    A touch that met nothing is refused, too: ring and sphere stand where the file of the probe says.
+    """
     wanted, records = _records(path, CALIBRATION_COLUMNS, run)
     _check_points(records)
+    missed = next((record for record in records if not record["triggered"]), None)
+    if missed is not None:
+        raise missed["line"].refuse("triggered = 0: must be 1: the probe touched nothing")
     targets = np.array([record["target"] for record in records])
     return CalibrationTouches(wanted, targets, _axes(records), _planned(path, records))
 
@@ -155,11 +174,12 @@ def _collected(run: int, records: list[dict], planned: int | None) -> Touches:
         seen[place], before = line.number, place
     tooth, row, col = (np.array([record[name] for record in records]) for name in ("tooth", "row", "col"))
     flank = np.array([record["flank"] for record in records])
-    return Touches(run, member, flank, tooth, row, col, _axes(records), planned)
+    triggered = np.array([record["triggered"] == 1 for record in records])
+    return Touches(run, member, flank, tooth, row, col, _axes(records), triggered, planned)
 
 
 def _check_points(records: list[dict]) -> None:
-    """Points count up from 0 or 1 without a gap, and every one triggered."""
+    """Points count up from 0 or 1 without a gap, and every one triggered or did not."""
     first = records[0]["point"]
     if first > 1:
         raise records[0]["line"].refuse(f"run {records[0]['run']} begins with point = {first}: must be 0 or 1")
@@ -168,8 +188,8 @@ def _check_points(records: list[dict]) -> None:
         if record["point"] != count:
             again = f": run {record['run']} is there twice" if record["point"] == first else ""
             raise line.refuse(f"point = {record['point']}: must be {count}, without a gap{again}")
-        if record["triggered"] != 1:
-            raise line.refuse(f"triggered = {record['triggered']}: must be 1: the probe touched nothing")
+        if record["triggered"] > 1:
+            raise line.refuse(f"triggered = {record['triggered']}: must be 1, or 0 where the probe touched nothing")
 
 
 def _axes(records: list[dict]) -> np.ndarray:

@@ -31,7 +31,8 @@ def touched(gear_set, vertical):
     def make(member: str, shift=lambda axes: 0 * axes) -> FlankFile:
         spec = gear_set.member(member)
         there = probe_targets(spec, member, vertical, PROBE)
-        touches = Touches(1, member, there.flank, there.tooth, there.row, there.col, there.touch + shift(there.touch))
+        touches = Touches(1, member, there.flank, there.tooth, there.row, there.col, there.touch + shift(there.touch),
+                          np.ones(len(there), dtype=bool))  # fmt: skip
         return measured_member(touches, spec, member, vertical, PROBE)
 
     return make
