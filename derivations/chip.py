@@ -57,7 +57,7 @@ def chip() -> Expression:
 
 
 def prove_chip_of_a_plunge_lies_between_two_cones_along_their_axis() -> None:
-    """(25.2) Two straight blades (1.1), f apart along the axis, are f sin α apart: by the distance of a point and a line.
+    """(25.2) Two straight blades (1.1), f apart along the axis, are f sin α apart: the distance of a point and a line.
 
     No normal is used: a point of the one blade, and the line of the other in the plane of the blade.
     """

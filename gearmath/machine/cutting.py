@@ -222,7 +222,7 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job
         one.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
         label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
         axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
-        yield Pass(cut.tool, label, 0, axes, one.seconds)
+        yield Pass(cut.tool, label, 0, axes, one.seconds, theta=one.theta)
 
 
 def _hobbing_notes(member: Member) -> tuple[str, ...]:
@@ -250,7 +250,7 @@ def _first_pass(
         theta = roll_nodes(member, cut, job.tolerance, machine.pivot_height, machine.pivot, share.rounding)
         axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
         dwell = 0.0
-    return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell)
+    return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell, theta)
 
 
 def _middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
