@@ -32,8 +32,8 @@ class Bite:
 class ChipLoad:
     """What a blade takes of one flank in the plunge, and in the roll past its mean point, None where nothing rolls.
 
-    ``blades`` that cut the flank in a turn of the cutter, in face hobbing of the work; where the set does not say, None,
-    and the bites are those of one blade alone: they are to be divided by the number of blades.
+    ``blades`` that cut the flank in a turn of the cutter, in face hobbing of the work. Where the set does not say, it
+    is None, and the bites are those of one blade alone: they are to be divided by the number of blades.
     """
 
     flank: str

@@ -1,0 +1,5 @@
+"""The set-up sheet of a program: a page for the one who clamps, sets tools and starts, with drawings to scale."""
+
+from gearmath.setup_sheet.sheet import setup_sheet
+
+__all__ = ["setup_sheet"]
