@@ -117,13 +117,18 @@ class Page:
             f'<div class="{wide}"><table><caption>{escape(caption)}</caption>\n{top}\n{cells}\n</table></div>'
         )
 
-    def drawings(self, drawings: Sequence[tuple[str, str]]) -> None:
-        """Drawings, (svg, caption) each, side by side where there is room; the caption stands above."""
+    def drawings(self, drawings: Sequence[tuple[str, str]], tall: bool = False) -> None:
+        """Drawings, (svg, caption) each, side by side where there is room; the caption stands above.
+
+        If ``tall``, the others stand below each other beside the first.
+        """
         figures = []
         for svg, caption in drawings:
             self._drawings += 1
             named = f'<svg role="img" aria-label="{escape(caption)}"' + _own_names(svg, f"d{self._drawings}-")[4:]
             figures.append(f"<figure><figcaption>{escape(caption)}</figcaption>{named}</figure>")
+        if tall:
+            figures = [figures[0], "<div>" + "\n".join(figures[1:]) + "</div>"]
         self._parts.append('<div class="charts">' + "\n".join(figures) + "</div>")
 
     @property

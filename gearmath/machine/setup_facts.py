@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import groupby
 from typing import TYPE_CHECKING
 
 from derivations import iso23509
@@ -64,23 +63,18 @@ class BlankSizes:
 
 @dataclass(frozen=True)
 class Sections:
-    """Sections ``first`` to ``last`` of a program, with one tool, and the seconds in the cut of each of them."""
+    """Sections ``first`` to ``last`` of a program: one tool through neighbouring spaces, seconds in the cut of each."""
 
     tool: str
     first: int
     last: int
-    labels: tuple[str, ...]
-    seconds: tuple[float, ...]
+    span: str
+    seconds: float
 
     @property
     def numbers(self) -> str:
         """Their numbers, for R90 and R91."""
         return f"section {self.first}" if self.first == self.last else f"sections {self.first} to {self.last}"
-
-    @property
-    def span(self) -> str:
-        """The label of the first, and of the last."""
-        return " to ".join(dict.fromkeys((self.labels[0], self.labels[-1])))
 
 
 @dataclass(frozen=True)
@@ -115,32 +109,36 @@ class SetupFacts:
     @property
     def not_stated(self) -> tuple[str, ...]:
         """What the files do not say, and what is done about it."""
-        said = []
+        said: dict[str, list[str]] = {}  # what is said, of which tools
         for tool in self.tools:
             for flank, spec in tool.blades.items():
                 if spec.blade_edge_radius == 0.0:
-                    said.append(f"{tool.name}, {flank}: no blade_edge_radius, taken as sharp")
+                    said.setdefault("no blade_edge_radius, taken as sharp", []).append(f"{tool.name} {flank}")
             if not tool.point.stated:
-                said.append(f"{tool.name}: no blade_point_width, {tool.point.width:.3f} mm is taken")
+                taken = f"no blade_point_width, {tool.point.width:.3f} mm is taken"
+                said.setdefault(taken, []).append(tool.name)
             if tool.point.fault is not None:
-                said.append(f"{tool.name}: {tool.point.fault}")
-        flanks = [load.flank for load in self.chips if load.blades is None]
-        if flanks:
-            said.append(f"{' and '.join(flanks)}: no blade_count, the chip is for a whole turn: divide by the blades")
+                said.setdefault(tool.point.fault, []).append(tool.name)
+        for load in self.chips:
+            if load.blades is None:
+                unknown = "no blade_count, the chip is for a whole turn: divide by the blades"
+                said.setdefault(unknown, []).append(load.flank)
+        others = []
         if self.plan.machine.fixture.shank_radius == 0.0:
-            said.append("shank_radius: 60 % of the root radius at the heel is taken")
-        said.append("the back face of the blank: the set does not have it, the collision check takes its own")
-        return tuple(said)
+            others.append("the fixture has no shank_radius, 60 % of the root radius at the heel is taken")
+        others.append("the set does not have the back face of the blank, the collision check takes its own")
+        return (*(f"{', '.join(names)}: {words}" for words, names in said.items()), *others)
 
 
 def _sections(plan: Plan) -> Iterator[Sections]:
-    number = 0
-    for tool, group in groupby(plan.passes, key=lambda one: one.tool):
-        passes = list(group)
-        labels = tuple(one.label for one in passes)
-        seconds = tuple(float(one.seconds.sum() + one.dwell) for one in passes)
-        yield Sections(tool, number + 1, number + len(passes), labels, seconds)
-        number += len(passes)
+    first = 0
+    for k, one in enumerate(plan.passes):
+        after = plan.passes[k + 1] if k + 1 < len(plan.passes) else None
+        if after is not None and after.tool == one.tool and after.tooth == one.tooth + 1:
+            continue
+        span = " to ".join(dict.fromkeys((plan.passes[first].label, one.label)))
+        yield Sections(one.tool, first + 1, k + 1, span, float(one.seconds.sum() + one.dwell))
+        first = k + 1
 
 
 def setup_notes(facts: SetupFacts) -> Iterator[str]:

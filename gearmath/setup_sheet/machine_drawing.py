@@ -57,17 +57,14 @@ def machine_drawing(
     _labels(drawing, ruler, levels)
     where = right + 8.0 / scale
     drawing.dimension("C_t", (where, tips), (where, gauge), f"C_t {tool_length:g}")
-    drawing.dimension("tips above the B axis", (left + 14 / scale, 0.0), (left + 14 / scale, tips), f"{tips:g}")
+    drawing.dimension("tips above the B axis", (left + 14 / scale, 0.0), (left + 14 / scale, tips), f"tips {tips:g}")
     drawing.dimension("R_d", (ruler, zero), (ruler, 0.0), f"R_d {machine.gauge_line_height:g}")
     drawing.dot("B axis", 0.0, 0.0, 6.0, filled=False)
     apex = _places(machine, np.zeros((1, 3)), b)[0]
     drawing.dot("pitch apex", *apex, 2.5)
     px, py = drawing.at(0.0, 0.0)
-    together = float(np.hypot(*apex)) * scale < 6.0
-    drawing.words(px + 9, py + LETTER + 4, "B axis, pitch apex" if together else "B axis")
-    if not together:
-        qx, qy = drawing.at(*apex)
-        drawing.words(qx + 8, qy - 6, "pitch apex")
+    drawing.words(px + 9, py + LETTER + 4, "B axis,")
+    drawing.words(px + 9, py + 2 * LETTER + 6, "pitch apex")
     ax, ay = drawing.at(x, tips)
     drawing.words(ax, ay + LETTER + 2, tip, "middle")
     gx, gy = drawing.at(left, gauge)
@@ -87,8 +84,8 @@ def _labels(drawing: Drawing, ruler: float, levels: Sequence[tuple[float, str]])
 def _tool(drawing: Drawing, tool: Sequence[Ring], x: float, tips: float, gauge: float) -> None:
     """Tool and spindle, upright at X = ``x``."""
     widest = max(part.high_radius for part in tool)
-    top = max(part.high for part in tool)
-    spindle = [part for part in tool if part.high == top][0].high_radius
+    last = max(tool, key=lambda part: part.high)
+    top, spindle = last.high, last.high_radius
     for part in tool:
         low, high = tips + part.low, tips + part.high
         drawing.outline(

@@ -3,260 +3,221 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-
-import numpy as np
+from collections.abc import Iterator
 
 from gearmath import __version__
 from gearmath.machine.bodies import head_radius, work_profiles
-from gearmath.machine.cutter import cutter_of
+from gearmath.machine.chip_load import Bite
+from gearmath.machine.cutter import Cutter, cutter_of
 from gearmath.machine.path import Cut
-from gearmath.machine.setup_facts import R_D, Bite, SetupFacts
+from gearmath.machine.setup_facts import R_D, SetupFacts
 from gearmath.machine.timing import Timing
 from gearmath.machine.tooling import Tool
 from gearmath.page import Page
 from gearmath.setup_sheet.machine_drawing import Ring, machine_drawing
+from gearmath.setup_sheet.point_drawing import point_drawing
+from gearmath.setup_sheet.references import references
 from gearmath.setup_sheet.work_drawing import work_drawing
 from gearmath.specs.bevel_set import settings_sha256
-from gearmath.specs.milling_machine import AXES, UNITS, MillingMachine
+from gearmath.specs.milling_machine import MillingMachine
 
-_Z_MODES = {
-    "gauge_line": "The program states Z of the gauge line. Length 1 of every tool in the tool table must be 0.",
-    "tip": "The program states Z of the blade tips, with D1 active. Length 1 in the tool table must be C_t.",
-}
-#: Labels of the sections are listed up to so many of a tool.
-_LISTED = 12
+_SIDES = {"concave": "outer", "convex": "inner"}
 
 
 def setup_sheet(facts: SetupFacts, program: str, timing: Timing) -> str:
     """The page of one cutting program as HTML; ``program`` is its file name, ``timing`` that of its text."""
     plan = facts.plan
-    member, machine = plan.member, plan.machine
+    member = plan.member
     page = Page(f"Set-up sheet: {plan.name}")
     page.paragraph(plan.title)
+    method = (member.process, member.generation, member.cutting)
     page.head([plan.name], [
         ("Program", [program]),
-        ("Member", [f"{plan.name}, {member.teeth} teeth, {member.hand} hand, {member.process.replace('_', ' ')}, "
-                    f"{member.generation}, {member.cutting.replace('_', ' ')}"]),
+        ("Member", [f"{plan.name}, {member.teeth} teeth, {member.hand} hand, "
+                    + ", ".join(word.replace("_", " ") for word in method)]),
         ("Settings", [f"sha256 {settings_sha256(member)[:16]}"]),
+        ("Machine", [plan.machine.name]),
         ("Made by", [f"gearmath {__version__}"]),
-        ("Machine", [machine.name]), ("Set up by, date", [""]),
+        ("Set up by, date", [""]),
     ])  # fmt: skip
-    page.first("Unconfirmed", [_sentence(text) for text in facts.unconfirmed])
-    page.first("Not stated by the files, or to be watched", [_sentence(text) for text in facts.not_stated])
-    _references(page, facts)
-    _tools(page, facts)
-    _work(page, facts)
-    _cut(page, facts, timing)
-    _tolerances(page, facts)
+    page.first("Unconfirmed", [f"{text}." for text in facts.unconfirmed])
+    page.first("Not stated by the files, or to be watched", [f"{text}." for text in facts.not_stated])
+    page.heading("Machine and references")
+    page.paragraph(f"{R_D}. C_t is the length of the tool from there to its tips; Z counts up.")
+    page.drawings(list(_drawings(facts)), tall=True)
+    page.heading("Before the start", new_sheet=True)
+    references(page, plan.machine, "blade tips")
     _restart(page, facts)
+    with page.columns():
+        _tools(page, facts)
+        _work(page, facts)
+        _cut(page, facts, timing)
+        _tolerances(page, facts)
     return page.html
 
 
-def _references(page: Page, facts: SetupFacts) -> None:
+def _drawings(facts: SetupFacts) -> Iterator[tuple[str, str]]:
+    """Machine, work, and the point of every cutter."""
     plan = facts.plan
-    machine, one = plan.machine, plan.passes[0]
-    page.heading("Machine and references")
-    page.paragraph(
-        f"{R_D}. C_t is the length of the tool from there to its tips. Z counts up. {_Z_MODES[machine.z_reference]}"
+    machine, axes = plan.machine, plan.passes[0].axes[0]
+    cutters = {cut.tool: cutter_of(plan.member, cut.flanks, plan.space) for cut in Cut.of(plan.member, plan.name)}
+    profiles, (first, *_) = work_profiles(plan.member, machine.fixture), cutters.values()
+    x, b = float(axes[0]), float(axes[4])
+    yield (
+        machine_drawing(machine, profiles, _rings(first, machine), machine.tool_length, "blade tips", x, b),
+        f"Machine from the front: X {x:.1f}, Z at its home, B {math.degrees(b):.2f}°; mm",
     )
-    cut = Cut.of(plan.member, plan.name)[0]
-    cutter = cutter_of(plan.member, cut.flanks, plan.space)
-    body = cutter.bodies[0]
-    head, radius = machine.cutter_head, head_radius(cutter, machine.cutter_head)
-    reach = body.outer.point_radius + cutter.height * math.tan(body.outer.pressure_angle)
-    rings = [
-        Ring("tool", cutter.height, cutter.height + head.height, radius, radius),
-        Ring("blade", 0.0, cutter.height, body.outer.point_radius, reach),
-        Ring("holder", cutter.height + head.height, max(machine.tool_length, cutter.height + head.height + 1.0),
-             head.spindle_radius, head.spindle_radius),
+    yield work_drawing(facts.sizes, profiles, machine.fixture), "Blank on its fixture, from the pitch apex; mm"
+    for name, cutter in cutters.items():
+        yield point_drawing(cutter), f"Point of {name}, mm"
+
+
+def _rings(cutter: Cutter, machine: MillingMachine) -> list[Ring]:
+    """Blades, head and spindle as the collision check has them."""
+    outer, head, radius = cutter.bodies[0].outer, machine.cutter_head, head_radius(cutter, machine.cutter_head)
+    reach = outer.point_radius + cutter.height * math.tan(outer.pressure_angle)
+    top = cutter.height + head.height
+    return [
+        Ring("tool", cutter.height, top, radius, radius), Ring("blade", 0.0, cutter.height, outer.point_radius, reach),
+        Ring("holder", top, max(machine.tool_length, top + 1.0), head.spindle_radius, head.spindle_radius),
     ]  # fmt: skip
-    profiles = work_profiles(plan.member, machine.fixture)
-    drawing = machine_drawing(
-        machine, profiles, rings, machine.tool_length, "blade tips", float(one.axes[0, 0]), float(one.axes[0, 4])
-    )
-    work = work_drawing(facts.sizes, profiles, machine.fixture)
-    page.drawings([
-        (drawing, f"Machine from the front, mm: Z at its home, X {one.axes[0, 0]:.1f}, B {math.degrees(one.axes[0, 4]):.2f}°"),
-        (work, "Blank on its fixture, mm: counted from the pitch apex"),
-    ])  # fmt: skip
-    gauge = machine.home - machine.gauge_line_height
-    offsets = " ".join(f"{axis}{value:g}" for axis, value in zip(AXES, machine.work_offset_values, strict=True))
-    page.table("References; what the program reads and stops for is marked", ["what", "value", "unit", "checked"], [
-        ["R_d, gauge_line_height", f"{machine.gauge_line_height:g}", "mm", ""],
-        ["C_t, tool_length", f"{machine.tool_length:g}", "mm", _length_check(machine)],
-        ["gauge line above the B axis at the home of Z", f"{gauge:g}", "mm", "by hand"],
-        ["blade tips above the B axis there", f"{gauge - machine.tool_length:g}", "mm", "by hand"],
-        ["pitch apex from the B axis along x, y, z of the work, A = 0",
-         ", ".join(f"{value:g}" for value in machine.pivot_offset), "mm", "by hand"],
-        [f"{machine.work_offset}: machine coordinates of the zero", offsets, "mm, degrees", "by the program"],
-        ["home of Z", f"{machine.home:g}", "mm", ""],
-        ["increments", f"{machine.control.increments_per_mm} per mm, {machine.control.increments_per_degree} per degree",
-         "", "by the program"],
-        *([f"travel of {axis}", _travel(machine, axis), unit, ""] for axis, unit in zip(AXES, UNITS, strict=True)),
-    ])  # fmt: skip
-    page.paragraph(
-        f"The zero of {machine.work_offset} is on the B axis in X and Y; its Z is 0 where the gauge line reads 0. A turns "
-        "the work clockwise, seen from its back towards the pitch apex; B lowers the back, and at B = 0 the work axis is "
-        "level with the pitch apex towards X+."
-    )
-    page.paragraph(
-        "The program stops with a message before its first motion unless: the basic system is metric; the increments are "
-        f"at least as above; {machine.work_offset} with all frames is as above and does not turn, mirror or scale; the "
-        "tool cannot be under the work when Z goes up; R90 and R91 name sections that there are. After each tool change "
-        "it compares the name of the tool and its length 1."
-    )
-
-
-def _length_check(machine: MillingMachine) -> str:
-    wanted = f"{machine.tool_length:g}" if machine.z_reference == "tip" else "0"
-    return f"table, by the program: length 1 is {wanted}"
-
-
-def _travel(machine: MillingMachine, axis: str) -> str:
-    travel = getattr(machine.axes, axis).travel
-    return "without end" if travel is None else f"{travel[0]:g} to {travel[1]:g}"
 
 
 def _tools(page: Page, facts: SetupFacts) -> None:
-    page.heading("Tools")
-    rows = [row for tool in facts.tools for row in _blade_rows(tool)]
+    page.subheading("Tools")
+    blades = [(tool, flank) for tool in facts.tools for flank in tool.blades]
+    groups = facts.plan.member.blade_groups
+    columns = [dict(_blade(tool, flank, groups)) for tool, flank in blades]
+    keys = list(dict.fromkeys(key for column in columns for key in column))
     page.table(
-        "Blades; lengths in mm, angles in degrees",
-        ["tool", "cuts", "point radius", "pressure angle", "edge radius", "blade height", "blades", "further"], rows,
+        "Cutters; mm and degrees", ["", *(tool.name for tool, _ in blades)],
+        [[key, *(column.get(key, "") for column in columns)] for key in keys],
     )  # fmt: skip
-    widths = [
-        [tool.name, f"{tool.point.width:.3f}", "as stated" if tool.point.stated else "taken here",
-         *("" if limit is None else f"{limit:.3f}" for limit in (tool.point.least, tool.point.most))]
-        for tool in facts.tools
-    ]  # fmt: skip
-    page.table(
-        "Point width, mm. A cutter for one flank: below the least a ridge may stay between the two cuts, above the most "
-        "its other side cuts the other flank",
-        ["tool", "point width", "", "least", "most"], widths,
-    )  # fmt: skip
-    machine = facts.plan.machine
+    if any(tool.point.least is not None for tool in facts.tools):
+        page.paragraph(
+            "Below its least point width a cutter for one flank may leave a ridge between the two cuts, above the most "
+            "its other side cuts the other flank."
+        )
+    machine, plan = facts.plan.machine, facts.plan
     head = machine.cutter_head
     page.paragraph(
-        f"Cutter: {facts.turning}; {facts.plan.job.spindle_rpm:g} 1/min. Length C_t {machine.tool_length:g} mm. Checked "
-        f"for collisions with a head {head.height:g} mm high above the blades, {head.beyond_tip:g} mm beyond them, and a "
-        f"spindle of radius {head.spindle_radius:g} mm above it."
+        f"The cutter turns {facts.turning}, at {plan.job.spindle_rpm:g} 1/min. Collisions are checked with a head "
+        f"{head.height:g} mm high above the blades, {head.beyond_tip:g} mm beyond them, and a spindle of radius "
+        f"{head.spindle_radius:g} mm above it."
     )
 
 
-def _blade_rows(tool: Tool) -> Iterator[list[str]]:
-    for flank, spec in tool.blades.items():
-        further = []
-        if spec.toprem_angle is not None:
-            further.append(f"Toprem {spec.toprem_angle:g}° up to {spec.toprem_height:g}")
-        if spec.blade_spheric_radius is not None:
-            further.append(f"arc of radius {spec.blade_spheric_radius:g}")
-        if spec.blade_offset_angle:
-            further.append(f"offset angle {spec.blade_offset_angle:g}°")
-        edge = f"{spec.blade_edge_radius:g}" if spec.blade_edge_radius else "not stated"
-        count = "not stated" if spec.blade_count is None else str(spec.blade_count)
-        side = {"concave": "concave, outer blade", "convex": "convex, inner blade"}[flank]
-        yield [tool.name, side, f"{spec.blade_point_radius:.4f}", f"{spec.blade_pressure_angle:.4f}", edge,
-               f"{tool.height:g}", count, "; ".join(further)]  # fmt: skip
+def _blade(tool: Tool, flank: str, groups: int | None) -> Iterator[tuple[str, str]]:
+    spec, point = tool.blades[flank], tool.point
+    yield "blade", _SIDES[flank]
+    yield "cuts flank", flank
+    yield "point radius", f"{spec.blade_point_radius:.4f}"
+    yield "pressure angle", f"{spec.blade_pressure_angle:.4f}"
+    yield "edge radius", f"{spec.blade_edge_radius:g}" if spec.blade_edge_radius else "not stated"
+    yield "blade height", f"{tool.height:g}"
+    if spec.toprem_angle is not None:
+        yield "Toprem angle", f"{spec.toprem_angle:g}"
+        yield "Toprem height", f"{spec.toprem_height:g}"
+    if spec.blade_spheric_radius is not None:
+        yield "spheric radius", f"{spec.blade_spheric_radius:g}"
+    if spec.blade_offset_angle:
+        yield "offset angle", f"{spec.blade_offset_angle:g}"
+    yield "blades", str(groups or spec.blade_count or "not stated")
+    yield "point width", f"{point.width:.3f}" + ("" if point.stated else ", taken here")
+    if point.least is not None and point.most is not None:
+        yield "least, most", f"{point.least:.3f}, {point.most:.3f}"
 
 
 def _work(page: Page, facts: SetupFacts) -> None:
     sizes, fixture, blank = facts.sizes, facts.plan.machine.fixture, facts.plan.member.blank
-    page.heading("Blank and clamping")
-    shank = fixture.shank_radius or float(work_profiles(facts.plan.member, fixture)["shank"][0, 1])
-    rows = [
+    shank = float(work_profiles(facts.plan.member, fixture)["shank"][0, 1])
+    page.subheading("Blank and clamping")
+    page.table("To be measured on the blank, and the room that its fixture may take", ["", "", "unit"], [
         ["outside diameter", f"{sizes.outside_diameter:.3f}", "mm"],
         ["face angle", f"{sizes.face_angle:.4f}", "°"],
         ["root angle", f"{sizes.root_angle:.4f}", "°"],
-        ["pitch angle; end faces are square to it", f"{sizes.pitch_angle:.4f}", "°"],
+        ["pitch angle", f"{sizes.pitch_angle:.4f}", "°"],
         ["face width along the pitch cone", f"{blank.face_width:.3f}", "mm"],
-        ["pitch apex to crown, along the axis", f"{sizes.to_crown:.3f}", "mm"],
+        ["pitch apex to crown", f"{sizes.to_crown:.3f}", "mm"],
         ["crossing point to crown", f"{sizes.crossing_to_crown:.3f}", "mm"],
-        ["pitch apex to the tip at the toe", f"{sizes.to_front_crown:.3f}", "mm"],
-        ["pitch apex to the back face, as collisions are checked", f"{sizes.back:.1f}", "mm"],
-        ["shank behind it: radius, length", f"{shank:.1f}, {fixture.shank_length:g}", "mm"],
-        ["fixture behind that: radius, length", f"{fixture.radius:g}, {fixture.length:g}", "mm"],
-    ]
-    page.table("To be measured on the blank, and the room that the fixture may take", ["what", "value", "unit"], rows)
+        ["pitch apex to tip at the toe", f"{sizes.to_front_crown:.3f}", "mm"],
+        ["pitch apex to back face, as checked", f"{sizes.back:.3f}", "mm"],
+        ["radius of the shank behind it", f"{shank:.3f}", "mm"],
+        ["length of the shank", f"{fixture.shank_length:g}", "mm"],
+        ["radius of the fixture behind that", f"{fixture.radius:g}", "mm"],
+        ["length of the fixture", f"{fixture.length:g}", "mm"],
+    ])  # fmt: skip
     page.paragraph(
-        "Clamp the blank so that its pitch apex is where the references say. The set does not have the back face: measure "
-        "from it to the crown, and add the distance to the apex."
+        "All along the axis. Clamp the blank so that its pitch apex is where the references say: the set does not have "
+        "the back face, measure from it to the crown."
     )
 
 
 def _cut(page: Page, facts: SetupFacts, timing: Timing) -> None:
     plan = facts.plan
-    page.heading("Cut")
-    seconds = np.array([second for one in facts.sections for second in one.seconds])
-    stocks = "; ".join(f"{stage}: {stock:g} mm of stock left along the normal" for stage, stock, _ in plan.job.stages)
     total = timing.feed_seconds + timing.rapid_seconds
-    page.table("Speeds and times", ["what", "value", "unit"], [
-        ["feed of the cutter past the tooth, at most", f"{plan.job.feed:g}", "mm/min"],
-        ["spindle speed", f"{plan.job.spindle_rpm:g}", "1/min"],
+    page.subheading("Cut")
+    page.table("Speeds and times", ["", "", "unit"], [
+        ["feed past the tooth, at most", f"{plan.job.feed:g}", "mm/min"],
+        ["spindle", f"{plan.job.spindle_rpm:g}", "1/min"],
         ["tooth spaces", f"{len(plan.job.spaces)} of {plan.member.teeth}", ""],
-        ["cut of one section, mean", f"{seconds.mean():.1f}", "s"],
-        ["in feed, approaches included", f"{timing.feed_seconds:.0f}", "s"],
+        *([f"stock left, {stage}", f"{stock:g}", "mm"] for stage, stock, _ in plan.job.stages),
+        ["in feed, with approaches", f"{timing.feed_seconds:.0f}", "s"],
         ["in rapid motion", f"{timing.rapid_seconds:.0f}", "s"],
-        ["program without tool changes", f"{total / 60:.1f}", "min"],
+        ["a space, all tools", f"{total / len(plan.job.spaces):.1f}", "s"],
+        ["program, without tool changes", f"{total / 60:.1f}", "min"],
     ])  # fmt: skip
-    page.paragraph(f"Stages: {stocks}.")
-    page.table(
-        "Chip load: advance of the work from blade to blade, and the chip square to the flank, mm, at most",
-        ["flank", "for", "plunge, advance", "plunge, chip", "roll, advance", "roll, chip"],
-        [[load.flank, _per(load.blades, plan.member.process), *_bite(load.plunge), *_bite(load.roll)]
-         for load in facts.chips],
-    )  # fmt: skip
-    page.paragraph(
-        "Under the tips the chip of a plunge is as thick as the advance. The roll is taken at the mean point of the "
-        "flank, over the whole roll; where a blade touches the finished flank its chip is 0."
+    rows = [
+        [load.flank, words, *_bite(bite)]
+        for load in facts.chips for words, bite in (("plunge", load.plunge), ("roll", load.roll)) if bite is not None
+    ]  # fmt: skip
+    page.table("Chip load of a blade, mm: advance to the next blade, chip square to the flank, at most",
+               ["flank", "", "advance", "chip"], rows)  # fmt: skip
+    page.paragraph(_chip_words(facts))
+
+
+def _chip_words(facts: SetupFacts) -> str:
+    if facts.plan.member.process == "face_hobbing":
+        per = "A blade cuts a space once in a turn of the work."
+    elif any(load.blades is None for load in facts.chips):
+        per = "The number of blades is not stated: for a whole turn, to be divided by the blades that cut the flank."
+    else:
+        counts = ", ".join(f"{load.flank} {load.blades}" for load in facts.chips)
+        per = f"Blades that cut the flank: {counts}."
+    return (
+        f"{per} Under the tips the chip of a plunge is as thick as the advance; a roll is taken at the mean point, "
+        "over its whole way."
     )
 
 
-def _per(blades: int | None, process: str) -> str:
-    if process == "face_hobbing":
-        return "a blade, once a turn of the work"
-    return "a turn: divide by the blades" if blades is None else f"a blade, of {blades}"
-
-
-def _bite(bite: Bite | None) -> Sequence[str]:
-    return ("", "") if bite is None else (f"{bite.advance:.3f}", f"{bite.chip:.3f}")
+def _bite(bite: Bite) -> tuple[str, str]:
+    return f"{bite.advance:.3f}", f"{bite.chip:.3f}"
 
 
 def _tolerances(page: Page, facts: SetupFacts) -> None:
     plan = facts.plan
     control, share = plan.machine.control, plan.share
-    mode = f"{control.path_mode}" + (
-        f", CTOL {control.contour_tolerance_um:g} µm, OTOL {control.orientation_tolerance_arcsec:g} arcsec"
-        if control.path_mode == "G642" else ", exact stop"
-    )  # fmt: skip
-    page.heading("Tolerance of the flanks")
-    page.table("What may deviate along the tooth normal, µm", ["what", "µm", "by"], [
-        ["asked for", f"{plan.job.tolerance * 1000:g}", "straight blocks and rounding"],
-        ["of which rounding", f"{share.rounding * 1000:.4f}",
-         f"{control.increments_per_mm} increments per mm, {control.increments_per_degree} per degree"],
-        ["path mode, besides", f"{share.path_mode * 1000:.4f}", mode],
-    ])  # fmt: skip
+    rows = [
+        ["straight blocks and rounding", f"{plan.job.tolerance * 1000:g}"],
+        ["of which rounding", f"{share.rounding * 1000:.4f}"],
+        [f"path mode {control.path_mode}, besides", f"{share.path_mode * 1000:.4f}"],
+    ]
+    page.subheading("Tolerance of the flanks")
+    page.table("Along the tooth normal, µm, at most", ["", "µm"], rows)
+    if control.path_mode == "G642":
+        page.paragraph(
+            f"CTOL {control.contour_tolerance_um:g} µm, OTOL {control.orientation_tolerance_arcsec:g} arcsec; "
+            f"{control.increments_per_mm} increments per mm, {control.increments_per_degree} per degree."
+        )
 
 
 def _restart(page: Page, facts: SetupFacts) -> None:
-    page.heading("Start, and start again")
+    page.subheading("Start, and start again at a space")
     page.paragraph(
-        "Each section is one tooth space with one tool, and stands by itself. R90 and R91 are the first and the last that "
-        "are cut, 0 for all; the program shows them, waits for NC start, and sets both to 0 at its end. To go on after a "
-        "stop: RESET, R90 = the section that was cut when it stopped, start the program from its beginning."
+        "Each section is one tooth space with one tool, and stands by itself. R90 and R91 are the first and the last "
+        "that are cut, 0 for all; the program shows them, waits for NC start, and sets both to 0 at its end. After a "
+        "stop: RESET, R90 = the section that was cut when it stopped, and start from the beginning of the program."
     )
-    for one in facts.sections:
-        rows = [
-            [str(one.first + k), label, f"{second:.1f}"]
-            for k, (label, second) in enumerate(zip(one.labels, one.seconds, strict=True))
-        ]
-        short = (
-            rows
-            if len(rows) <= _LISTED
-            else [*rows[: _LISTED - 2], ["...", "and so on, one after the other", ""], rows[-1]]
-        )
-        page.table(f"{one.tool}: {one.numbers}", ["section", "cuts", "s"], short)
-
-
-def _sentence(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}."
+    page.table("Sections, and seconds in the cut of each", ["section", "tool", "cuts", "s"], [
+        [one.numbers.split(" ", 1)[1], one.tool, one.span, f"{one.seconds:.1f}"] for one in facts.sections
+    ])  # fmt: skip

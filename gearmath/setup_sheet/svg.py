@@ -10,6 +10,8 @@ import numpy as np
 #: Width of every drawing, and the height of its letters: 8 pt and more where two drawings stand side by side on A4.
 WIDTH, LETTER = 420.0, 14.0
 _HEAD, _GAP = 7.0, 4.0
+#: A letter is on the average this part of its height wide.
+_LETTER_WIDTH = 0.55
 _COLORS = {"work": "#dfe6ee", "teeth": "#9db6cf", "holder": "#ececec", "tool": "#f0d9b5", "blade": "#d08a2e"}
 
 
@@ -19,13 +21,13 @@ class Drawing:
     def __init__(self, left: float, bottom: float, top: float, scale: float, margins: tuple[float, float]) -> None:
         """The place (left, bottom) [mm] is ``margins[0]`` px from the left end; ``margins[1]`` px are above ``top``."""
         self.scale = scale
-        self._left, self._top = left - margins[0] / scale, top + margins[1] / scale
+        self.left, self._top = left - margins[0] / scale, top + margins[1] / scale
         self.height = (self._top - bottom) * scale + margins[1]
         self._parts: list[str] = []
 
     def at(self, x: float, y: float) -> tuple[float, float]:
         """Pixels of a place."""
-        return (x - self._left) * self.scale, (self._top - y) * self.scale
+        return (x - self.left) * self.scale, (self._top - y) * self.scale
 
     def outline(self, points: np.ndarray | Sequence[tuple[float, float]], kind: str) -> None:
         """A closed area of places [mm]; ``kind`` gives its color."""
@@ -51,20 +53,19 @@ class Drawing:
             f'fill="{fill}" stroke="#b3301a" stroke-width="1.4"/>'
         )
 
-    def words(self, px: float, py: float, text: str, anchor: str = "start", turned: bool = False) -> None:
+    def words(self, px: float, py: float, text: str, anchor: str = "start") -> None:
         """Words at a place in pixels, which is the left or right end, or the middle, of their line."""
-        turn = f' transform="rotate(-90 {px:.2f} {py:.2f})"' if turned else ""
+        if not text:
+            return
         self._parts.append(
-            f'<text x="{px:.2f}" y="{py:.2f}" font-size="{LETTER:g}" text-anchor="{anchor}"{turn} fill="#111" '
+            f'<text x="{px:.2f}" y="{py:.2f}" font-size="{LETTER:g}" text-anchor="{anchor}" fill="#111" '
             f'stroke="#fff" stroke-width="3" paint-order="stroke">{escape(text)}</text>'
         )
 
-    def dimension(
-        self, name: str, one: tuple[float, float], other: tuple[float, float], text: str, beside: float = 0.0
-    ) -> None:
-        """A dimension line, upright or level, between places [mm], with arrows and the text at its middle.
+    def dimension(self, name: str, one: tuple[float, float], other: tuple[float, float], text: str) -> None:
+        """A dimension line, upright or level, between places [mm], with arrows, and the text at its middle.
 
-        ``beside`` moves the text off the line, in pixels to the right of an upright line and above a level one.
+        Where a level line is too short for that, the text stands behind it.
         """
         (x1, y1), (x2, y2) = self.at(*one), self.at(*other)
         upright = abs(x2 - x1) < abs(y2 - y1) or x1 == x2
@@ -80,9 +81,11 @@ class Drawing:
             f'y2="{y2:.2f}" stroke="#b3301a" stroke-width="1"/><path d="{"".join(arrows)}" fill="#b3301a"/></g>'
         )
         if upright:
-            self.words((x1 + x2) / 2 + _GAP + beside, (y1 + y2) / 2 + LETTER / 3, text)
+            self.words((x1 + x2) / 2 + _GAP, (y1 + y2) / 2 + LETTER / 3, text)
+        elif abs(x2 - x1) < LETTER * len(text) * _LETTER_WIDTH + 4 * _HEAD:
+            self.words(max(x1, x2) + _GAP, y1 + LETTER / 3, text)
         else:
-            self.words((x1 + x2) / 2, (y1 + y2) / 2 - _GAP - beside, text, "middle")
+            self.words((x1 + x2) / 2, y1 - _GAP, text, "middle")
 
     @property
     def svg(self) -> str:

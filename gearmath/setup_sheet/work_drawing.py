@@ -41,13 +41,15 @@ def work_drawing(sizes: BlankSizes, profiles: Mapping[str, np.ndarray], fixture:
     )  # fmt: skip
     end = sizes.back + fixture.shank_length + fixture.length
     rows = [
-        ("pitch apex to front crown", 0.0, front), ("pitch apex to crown", 0.0, crown),
-        ("pitch apex to back face", 0.0, sizes.back), ("pitch apex to end of fixture", 0.0, end),
-    ]  # fmt: skip
-    for k, (name, start, stop) in enumerate(rows):
+        ("pitch apex to toe tip", front, f"{front:.3f} tip at the toe"),
+        ("pitch apex to crown", crown, f"{crown:.3f} crown"),
+        ("pitch apex to back face", sizes.back, f"{sizes.back:.1f} back face, as checked"),
+        ("pitch apex to end of fixture", end, f"{end:.1f} end of the fixture"),
+    ]
+    for k, (name, stop, text) in enumerate(rows):
         level = -high - (22.0 + 24.0 * k) / scale
         drawing.line((stop, 0.0), (stop, level - 3 / scale), "2 2")
-        drawing.dimension(name, (start, level), (stop, level), f"{stop:.3f}" if k < 2 else f"{stop:.1f}")
+        drawing.dimension(name, (0.0, level), (stop, level), text)
     drawing.line((0.0, 0.0), (0.0, -high - (25.0 + 24.0 * (len(rows) - 1)) / scale), "2 2")
     drawing.words(
         WIDTH / 2, LETTER + 2, f"face angle {sizes.face_angle:.4f}°, root angle {sizes.root_angle:.4f}°", "middle"
