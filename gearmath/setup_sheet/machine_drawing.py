@@ -61,7 +61,7 @@ def machine_drawing(
     drawing.dimension("R_d", (ruler, zero), (ruler, 0.0), f"R_d {machine.gauge_line_height:g}")
     drawing.dot("B axis", 0.0, 0.0, 6.0, filled=False)
     apex = _places(machine, np.zeros((1, 3)), b)[0]
-    drawing.dot("pitch apex", *apex, 2.5)
+    drawing.dot("pitch apex", float(apex[0]), float(apex[1]), 2.5)
     px, py = drawing.at(0.0, 0.0)
     drawing.words(px + 9, py + LETTER + 4, "B axis,")
     drawing.words(px + 9, py + 2 * LETTER + 6, "pitch apex")
