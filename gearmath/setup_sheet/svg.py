@@ -20,7 +20,7 @@ class Drawing:
 
     def __init__(self, left: float, bottom: float, top: float, scale: float, margins: tuple[float, float]) -> None:
         """The place (left, bottom) [mm] is ``margins[0]`` px from the left end; ``margins[1]`` px are above ``top``."""
-        self.scale = scale
+        self.scale = float(scale)
         self.left, self._top = left - margins[0] / scale, top + margins[1] / scale
         self.height = (self._top - bottom) * scale + margins[1]
         self._parts: list[str] = []

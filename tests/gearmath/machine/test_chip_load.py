@@ -84,7 +84,7 @@ def test_chip_of_a_roll_is_by_what_the_cone_of_the_blade_comes_nearer_in_a_turn(
 
 
 def test_face_hobbing_cuts_a_space_once_in_a_turn_of_the_work(vertical):
-    """The plunge of the program by the turns of A that it takes; the roll by all turns is less than its largest bite."""
+    """The plunge of the program by the turns of A that it takes, and the chip by the 20 degrees of its blades."""
     plan = planned(vertical, "crown_gear_hobbed_14x39.toml", "pinion", spaces=tuple(range(14)))
     (one,) = plan.passes
     down = np.flatnonzero(np.diff(one.theta) == 0.0)
