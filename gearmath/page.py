@@ -43,9 +43,9 @@ figcaption { font-size: .87rem; color: #333; font-weight: 600 }
   html { font-size: 9.5pt }
   body { font-size: 1rem; line-height: 1.3; max-width: none; margin: 0; padding: 0; print-color-adjust: exact }
   h2, h3, caption { break-after: avoid } table, tr, .first { break-inside: avoid } div.wide { overflow: visible }
-  div.columns { columns: 2; column-gap: 6mm; font-size: .82rem; line-height: 1.2 }
+  div.columns { columns: 2; column-gap: 6mm; font-size: .85rem; line-height: 1.2 }
   div.columns h3:first-child { margin-top: 0 }
-  div.columns table { font-size: .75rem } div.columns div.long table { break-inside: auto }
+  div.columns table { font-size: .85rem; line-height: 1.15 } div.columns div.long table { break-inside: auto }
   div.columns th, div.columns td { padding: .05rem .25rem .05rem 0; overflow-wrap: anywhere }
   div.columns td:nth-child(-n+2):nth-last-child(-n+5) { white-space: nowrap }
   div.columns p { margin: .3rem 0 }
