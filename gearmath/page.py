@@ -47,6 +47,7 @@ figcaption { font-size: .87rem; color: #333; font-weight: 600 }
   div.columns h3:first-child { margin-top: 0 }
   div.columns table { font-size: .85rem; line-height: 1.15 } div.columns div.long table { break-inside: auto }
   div.columns th, div.columns td { padding: .05rem .25rem .05rem 0; overflow-wrap: anywhere }
+  div.columns thead th { overflow-wrap: normal }
   div.columns td:nth-child(-n+2):nth-last-child(-n+5) { white-space: nowrap }
   div.columns p { margin: .3rem 0 }
   h2.new { break-before: page } h2 { margin-top: 1rem } h3 { margin-top: .7rem }
