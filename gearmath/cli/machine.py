@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, about, bar, fast_kernels, member_of, output
+from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, SHEET, about, bar, fast_kernels, member_of, output
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import ComputationError, InputError
 
@@ -17,11 +17,6 @@ if TYPE_CHECKING:
     from gearmath.specs.bevel_set import Member
     from gearmath.specs.milling_machine import MillingMachine
     from gearmath.specs.simulated_machine import SimulatedMachine
-
-SHEET = click.option(
-    "--sheet", type=click.Path(path_type=Path, dir_okay=False), metavar="SETUP.html",
-    help="Also write the set-up sheet: a page that prints on A4.",
-)  # fmt: skip
 
 
 @click.group()

@@ -26,8 +26,8 @@ _TURNS = {
     "M3": "M3: clockwise, seen along the spindle towards the work (a right-hand cutter)",
     "M4": "M4: counter-clockwise, seen along the spindle towards the work (a left-hand cutter)",
 }
-_NOT_ON_METAL = "no program of this version has run on metal"
-_VARIABLES = (
+NOT_ON_METAL = "no program of this version has run on metal"
+VARIABLES = (
     "names of the system variables in the start checks ($P_ACTFRAME, $TC_TP2, $P_TOOLL, $MN_INT_INCR_PER_MM and _DEG)"
 )
 _C_AXIS = "whether C needs M70 after SPOS=0, and whether its sense is that of M3"
@@ -104,7 +104,7 @@ class SetupFacts:
     def unconfirmed(self) -> tuple[str, ...]:
         """What nobody has confirmed."""
         turned = (_C_AXIS,) if self.plan.member.process == "face_hobbing" else ()
-        return _NOT_ON_METAL, _VARIABLES, *turned
+        return NOT_ON_METAL, VARIABLES, *turned
 
     @property
     def not_stated(self) -> tuple[str, ...]:

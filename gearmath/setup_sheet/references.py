@@ -11,18 +11,21 @@ _Z_MODES = {
 }
 
 
-def references(page: Page, machine: MillingMachine, tips: str) -> None:
-    """Table and sentences; ``tips`` is the end of the tool."""
+def references(page: Page, machine: MillingMachine, tips: str, length: float, length_name: str, more: str) -> None:
+    """Table and sentences; ``tips`` is the end of the tool, ``length`` [mm] its length, with the name of its key.
+
+    ``more`` says what else the program stops for.
+    """
     above = machine.home - machine.gauge_line_height
     offsets = " ".join(f"{axis}{value:g}" for axis, value in zip(AXES, machine.work_offset_values, strict=True))
     pivot, control = ", ".join(f"{value:g}" for value in machine.pivot_offset), machine.control
-    length = f"{machine.tool_length:g}" if machine.z_reference == "tip" else "0"
+    in_table = f"{length:g}" if machine.z_reference == "tip" else "0"
     page.table("References", ["what", "value", "unit", "checked"], [
         ["R_d, gauge_line_height", f"{machine.gauge_line_height:g}", "mm", "by hand, as below"],
-        ["C_t, tool_length", f"{machine.tool_length:g}", "mm", f"by the program, length 1 = {length}"],
+        [length_name, f"{length:g}", "mm", f"by the program, length 1 = {in_table}"],
         ["home of Z", f"{machine.home:g}", "mm", ""],
         ["gauge line above the B axis there", f"{above:g}", "mm", "by hand"],
-        [f"{tips} above the B axis there", f"{above - machine.tool_length:g}", "mm", "by hand"],
+        [f"{tips} above the B axis there", f"{above - length:g}", "mm", "by hand"],
         ["pitch apex from the B axis, x y z at A = 0", pivot, "mm", "by hand"],
         [f"{machine.work_offset} in machine coordinates", offsets, "mm, °", "by the program"],
         ["increments per mm, per degree", f"{control.increments_per_mm}, {control.increments_per_degree}", "",
@@ -38,8 +41,8 @@ def references(page: Page, machine: MillingMachine, tips: str) -> None:
     page.paragraph(
         "The program stops with a message before its first motion where the basic system is not metric, where the "
         f"increments are fewer or {machine.work_offset}, with all frames, is not as above, where a frame turns, "
-        "mirrors or scales, where the tool may be under the work, and where R90 and R91 name no section; after each "
-        "tool change, where the name of the tool or its length 1 is another one."
+        f"mirrors or scales, and where the tool may be under the work; after a tool change, where the name of the tool "
+        f"or its length 1 is another one; {more}."
     )
 
 

@@ -46,7 +46,8 @@ def setup_sheet(facts: SetupFacts, program: str, timing: Timing) -> str:
     page.paragraph(f"{R_D}. C_t is the length of the tool from there to its tips; Z counts up.")
     page.drawings(list(_drawings(facts)), tall=True)
     page.heading("Before the start", new_sheet=True)
-    references(page, plan.machine, "blade tips")
+    more = "and where R90 and R91 name no section"
+    references(page, plan.machine, "blade tips", plan.machine.tool_length, "C_t, tool_length", more)
     _restart(page, facts)
     with page.columns():
         _tools(page, facts)
