@@ -14,6 +14,8 @@ from gearmath.specs.milling_machine import MillingMachine
 
 #: Height of the drawing, room for words beside it and above it. [px]
 _HEIGHT, _WORDS, _ABOVE = 560.0, 190.0, 10.0
+#: What the end of a cutter is called.
+CUTTER_TIP = "blade tips"
 #: Of the spindle above the gauge line. [mm]
 _SPINDLE = 40.0
 
@@ -56,7 +58,7 @@ def machine_drawing(
     drawing.line((ruler, bottom), (ruler, top))
     _labels(drawing, ruler, levels)
     where = right + 8.0 / scale
-    drawing.dimension("C_t", (where, tips), (where, gauge), f"C_t {tool_length:g}")
+    drawing.dimension("C_t", (where, tips), (where, gauge), f"{_length_name(tip)} {tool_length:g}")
     drawing.dimension("tips above the B axis", (left + 14 / scale, 0.0), (left + 14 / scale, tips), f"tips {tips:g}")
     drawing.dimension("R_d", (ruler, zero), (ruler, 0.0), f"R_d {machine.gauge_line_height:g}")
     drawing.dot("B axis", 0.0, 0.0, 6.0, filled=False)
@@ -70,6 +72,10 @@ def machine_drawing(
     gx, gy = drawing.at(left, gauge)
     drawing.words(gx + 2, gy - 4, "gauge line")
     return drawing.svg
+
+
+def _length_name(tip: str) -> str:
+    return "C_t" if tip == CUTTER_TIP else "length"
 
 
 def _labels(drawing: Drawing, ruler: float, levels: Sequence[tuple[float, str]]) -> None:

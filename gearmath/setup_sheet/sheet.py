@@ -14,7 +14,7 @@ from gearmath.machine.setup_facts import R_D, SetupFacts
 from gearmath.machine.timing import Timing
 from gearmath.machine.tooling import Tool
 from gearmath.page import Page
-from gearmath.setup_sheet.machine_drawing import Ring, machine_drawing
+from gearmath.setup_sheet.machine_drawing import CUTTER_TIP, Ring, machine_drawing
 from gearmath.setup_sheet.point_drawing import point_drawing
 from gearmath.setup_sheet.references import references
 from gearmath.setup_sheet.work_drawing import work_drawing
@@ -47,7 +47,7 @@ def setup_sheet(facts: SetupFacts, program: str, timing: Timing) -> str:
     page.drawings(list(_drawings(facts)), tall=True)
     page.heading("Before the start", new_sheet=True)
     more = "and where R90 and R91 name no section"
-    references(page, plan.machine, "blade tips", plan.machine.tool_length, "C_t, tool_length", more)
+    references(page, plan.machine, CUTTER_TIP, plan.machine.tool_length, "C_t, tool_length", more)
     _restart(page, facts)
     with page.columns():
         _tools(page, facts)
@@ -65,7 +65,7 @@ def _drawings(facts: SetupFacts) -> Iterator[tuple[str, str]]:
     profiles, (first, *_) = work_profiles(plan.member, machine.fixture), cutters.values()
     x, b = float(axes[0]), float(axes[4])
     yield (
-        machine_drawing(machine, profiles, _rings(first, machine), machine.tool_length, "blade tips", x, b),
+        machine_drawing(machine, profiles, _rings(first, machine), machine.tool_length, CUTTER_TIP, x, b),
         f"Machine from the front: X {x:.1f}, Z at its home, B {math.degrees(b):.2f}°; mm",
     )
     yield work_drawing(facts.sizes, profiles, machine.fixture), "Blank on its fixture, from the pitch apex; mm"

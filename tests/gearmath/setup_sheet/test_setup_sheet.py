@@ -151,7 +151,7 @@ def test_sheet_is_written_beside_the_program(command, tmp_path):
 
 
 def test_probing_has_a_sheet_with_the_length_of_its_probe_in_place_of_a_cutter(command, tmp_path):
-    """The bundled probe: 180 mm long; at the home of Z, 900, its tip is 900 - 350 - 180 = 370 mm above the B axis."""
+    """The bundled probe: 200 mm long; at the home of Z, 900, its tip is 900 - 350 - 200 = 350 mm above the B axis."""
     page = tmp_path / "probe.html"
     status, out, err = command(
         "nc", "probe", "nasa_tp3096_12x36.toml", "--member", "pinion", "--topography", "none", "-o",
@@ -160,8 +160,8 @@ def test_probing_has_a_sheet_with_the_length_of_its_probe_in_place_of_a_cutter(c
     assert (status, err) == (0, "")
     assert f"{page}: set-up sheet, prints on A4" in out
     found = cells(page.read_text("utf-8"))
-    assert found["length of the probe"][0] == "180"
-    assert found["center of the tip above the B axis there"][0] == "370"
+    assert found["length of the probe"][0] == "200"
+    assert found["center of the tip above the B axis there"][0] == "350"
     assert found["touches"][0] == re.search(r"(\d+) touches", out)[1]
 
 
