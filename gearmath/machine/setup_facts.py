@@ -134,7 +134,8 @@ def _sections(plan: Plan) -> Iterator[Sections]:
     first = 0
     for k, one in enumerate(plan.passes):
         after = plan.passes[k + 1] if k + 1 < len(plan.passes) else None
-        if after is not None and after.tool == one.tool and after.tooth == one.tooth + 1:
+        ahead = f"space {one.tooth + 1} {one.label.removeprefix(f'space {one.tooth} ')}"  # of the same stage
+        if after is not None and after.tool == one.tool and after.label == ahead:
             continue
         span = " to ".join(dict.fromkeys((plan.passes[first].label, one.label)))
         yield Sections(one.tool, first + 1, k + 1, span, float(one.seconds.sum() + one.dwell))
@@ -162,7 +163,7 @@ def setup_notes(facts: SetupFacts) -> Iterator[str]:
     for load in facts.chips:
         yield f"chip, {load.flank}: {'; '.join(chip_words(load))}"
     for one in facts.sections:
-        yield f"{one.numbers}: {one.tool}, {one.span}"
+        yield f"cut by {one.numbers}: {one.tool}, {one.span}"
     for sentence in facts.not_stated:
         yield f"note: {sentence}"
     for sentence in facts.unconfirmed:
