@@ -11,7 +11,7 @@ CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
     "sweep", "probing", "registration", "spacing", "compensation", "ease_off", "touch_errors", "single_blades",
-    "axis_calibration", "tip_calibration",
+    "axis_calibration", "tip_calibration", "chip",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -24,6 +24,7 @@ def expressions() -> Iterator[Expression]:
         axis_calibration,
         blank,
         check_dimensions,
+        chip,
         compensation,
         cradle,
         cutter,
@@ -75,7 +76,7 @@ def expressions() -> Iterator[Expression]:
     yield from (compensation.straight_sensitivity(), compensation.curved_sensitivity())
     yield from (compensation.coefficient_sensitivity(), compensation.curved_height(), compensation.root_place())
     yield from (compensation.conjugate_place(), ease_off.conjugate_azimuth(), ease_off.ease_off())
-    yield touch_errors.touch_error()
+    yield from (touch_errors.touch_error(), chip.blade_period(), chip.chip())
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (
         gearbox.nearest_position(),

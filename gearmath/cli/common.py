@@ -108,6 +108,13 @@ def save_plot(figure: Figure, path: Path, as_json: bool) -> None:
     click.echo(f"picture: {path}", err=as_json)
 
 
+#: The option --sheet of programs.
+SHEET = click.option(
+    "--sheet", type=click.Path(path_type=Path, dir_okay=False), metavar="SETUP.html",
+    help="Also write the set-up sheet: a page that prints on A4.",
+)  # fmt: skip
+
+
 def output(suffix: str) -> Any:
     """The option -o for one output file."""
     return click.option(

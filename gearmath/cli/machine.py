@@ -7,7 +7,19 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, NewFile, about, bar, fast_kernels, member_of, output
+from gearmath.cli.common import (
+    FLANK_CSV,
+    MACHINE,
+    MEMBER,
+    SET,
+    SHEET,
+    NewFile,
+    about,
+    bar,
+    fast_kernels,
+    member_of,
+    output,
+)
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import ComputationError, InputError
 
@@ -45,10 +57,11 @@ nc.add_command(nc_calibrate)
 @click.option("--roughing-stock", type=float, default=0.0, help="Rough first and leave this much, mm; 0 for none.")
 @click.option("--finishing-stock", type=float, default=0.0, help="Stock that stays on the finished flanks, mm.")
 @click.option("--dry-run", is_flag=True, help="Cut air: everything above the work, without coolant.")
+@SHEET
 @output(".MPF; its name becomes the program name")
 def cut(
     gear_set: str, member: str | None, machine: str, spaces: str, tolerance_um: float, feed: float, rpm: float,
-    roughing_stock: float, finishing_stock: float, dry_run: bool, target: Path,
+    roughing_stock: float, finishing_stock: float, dry_run: bool, sheet: Path | None, target: Path,
 ) -> None:  # fmt: skip
     """The cutting program of a member.
 
@@ -57,9 +70,11 @@ def cut(
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
     from gearmath.machine.control import Setup
-    from gearmath.machine.cutting import Job, cutting_program, pass_count
+    from gearmath.machine.cutting import PLUNGE_FEED, Job, cutting_plan, pass_count, program_of
     from gearmath.machine.executor import execute
     from gearmath.machine.judge import faults_of
+    from gearmath.machine.setup_facts import SetupFacts
+    from gearmath.machine.timing import timing
     from gearmath.machine.words import block_count, check_name
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -71,13 +86,22 @@ def cut(
     job = Job(wanted, tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
     milling_machine = load_milling_machine(find(machine))
     with bar(pass_count(spec, member, job), "pass") as progress:
-        text = cutting_program(bevel_set, member, milling_machine, target.stem, job, progress)
+        plan = cutting_plan(bevel_set, member, milling_machine, job, progress)
+        text = program_of(plan, target.stem)
     path = execute(text, str(target), Setup.of(milling_machine))
     runs = _right_runs(path, spec, member, milling_machine)
     if faults := faults_of(text, path, runs, spec, member, milling_machine):
         raise InputError(f"{target}: {'; '.join(map(str, faults))}: the program is not written")
+    page = None
+    if sheet is not None:
+        from gearmath.setup_sheet import setup_sheet
+
+        page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
     write_text(target, text)
     click.echo(f"{target}: {len(wanted)} of {spec.teeth} spaces, {block_count(text)} blocks")
+    if sheet is not None and page is not None:
+        write_text(sheet, page)
+        click.echo(f"{sheet}: set-up sheet, prints on A4")
 
 
 @click.command(epilog=FLANK_CSV)

@@ -16,6 +16,7 @@ from gearmath.cli.common import (
     MEMBER,
     SET,
     SET_OPTION,
+    SHEET,
     TOUCH_CSV,
     about,
     bar,
@@ -56,10 +57,11 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
 )  # fmt: skip
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Touches of every point.")
 @click.option("--errors", help="Simulated machine whose [fixture] and spindle the probe must clear.")
+@SHEET
 @output(_PROGRAM)
 def probe(
     gear_set: str, member: str | None, machine: str, calibration: str, topography: str, pitch: bool, registration: bool,
-    repeat: int, errors: str | None, target: Path,
+    repeat: int, errors: str | None, sheet: Path | None, target: Path,
 ) -> None:  # fmt: skip
     """Write the probing program of a member; 'gearmath probe' runs it on the machine model.
 
@@ -91,8 +93,19 @@ def probe(
             progress,
         )  # fmt: skip
     clear = clearances(found, target, "the program is not written")
+    page = None
+    if sheet is not None:
+        from gearmath.setup_sheet import ProbingJob, probing_sheet
+
+        job = ProbingJob(
+            bevel_set.title, member, spec, milling_machine, known, fixture, head.spindle_radius, repeat * points, clear
+        )
+        page = probing_sheet(job, target.name)
     write_text(target, text)
     click.echo(f"{target}: {repeat * points} touches, {block_count(text)} blocks; {clear}")
+    if sheet is not None and page is not None:
+        write_text(sheet, page)
+        click.echo(f"{sheet}: set-up sheet, prints on A4")
 
 
 def clearances(found: list[Approach], program: Path, end: str) -> str:

@@ -149,6 +149,11 @@ class Member(Sheet):
         if self.process == "face_hobbing" and self.cutting != "completing":
             raise ValueError("face_hobbing cuts both flanks at once: cutting must be completing")
         for flank in FLANKS:
+            if self.process == "face_hobbing" and self.flank(flank).blade_count is not None:
+                raise ValueError(
+                    f"{flank}.blade_count = {self.flank(flank).blade_count}: belongs to face_milling; in face_hobbing "
+                    "blade_groups says how many blades there are"
+                )
             self._check_cutter(flank)
         if self.cutting == "completing":
             differing = [name for name in MACHINE_SETTINGS if getattr(self.concave, name) != getattr(self.convex, name)]
@@ -245,9 +250,12 @@ def settings_sha256(member: Member) -> str:
 
 
 def _digest(member: Member, motions: list[Motion], radii: list[float | None], *settings: list) -> str:
-    """The digest of settings and motions together with the method and the blades, which no correction changes."""
+    """The digest of settings and motions together with the method and the blades, which no correction changes.
+
+    How many blades there are changes no flank, and no digest.
+    """
     method = member.model_dump(include={"teeth", "process", "generation", "blade_groups", "indexing_sign"})
-    others = {"design", *SETTINGS}
+    others = {"design", "blade_count", *SETTINGS}
     blades = [
         member.flank(flank).model_dump(exclude=others) | {"motion": motion.model_dump(), "blade_spheric_radius": radius}
         for flank, motion, radius in zip(FLANKS, motions, radii, strict=True)
