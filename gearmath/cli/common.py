@@ -110,7 +110,7 @@ def save_plot(figure: Figure, path: Path, as_json: bool) -> None:
 
 #: The option --sheet of programs.
 SHEET = click.option(
-    "--sheet", type=click.Path(path_type=Path, dir_okay=False), metavar="SETUP.html",
+    "--sheet", type=NewFile(), metavar="SETUP.html",
     help="Also write the set-up sheet: a page that prints on A4.",
 )  # fmt: skip
 
