@@ -75,6 +75,7 @@ def probe(
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
+    from gearmath.specs.touch_csv import planned_touches
 
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
@@ -84,8 +85,8 @@ def probe(
     simulated = load_simulated_machine(find(errors)) if errors else None
     head, fixture = obstacles(milling_machine, simulated)
     text = probing_program(bevel_set, member, milling_machine, known, target.stem, teeth, pitch, repeat, around)
-    points = text.count("R205=$")
-    with bar(points * (1 + repeat) + text.count("\n"), "step") as progress:
+    points = planned_touches(text) // repeat
+    with bar(points * (2 + repeat) + text.count("\n"), "step") as progress:
         found = approaches(
             text, str(target), spec, member, milling_machine, known, fixture, head.spindle_radius,
             progress,
@@ -130,13 +131,14 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
+    from gearmath.specs.touch_csv import planned_touches
 
     source = find(calibration)
     make = axis_program if cycle == "axes" else calibration_program
     with about(source):
         text = make(load_milling_machine(find(machine)), load_calibration(source), target.stem)
     write_text(target, text)
-    click.echo(f"{target}: {text.count('R205=$')} touches, {block_count(text)} blocks")
+    click.echo(f"{target}: {planned_touches(text)} touches, {block_count(text)} blocks")
 
 
 @click.command(epilog=f"{TOUCH_CSV} {FLANK_CSV}")

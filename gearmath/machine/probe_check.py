@@ -85,8 +85,8 @@ def approaches(
         for pair, distance in watch.distances(block):
             if pair not in nearest or distance < nearest[pair].distance:
                 nearest[pair] = Approach(*pair, distance, block.line)
-        progress(block.line - done)
-        done = block.line
+        progress(max(block.line - done, 0))
+        done = max(block.line, done)
     return list(nearest.values())
 
 
@@ -193,8 +193,9 @@ class _Watch:
 
 
 def is_touch(start: np.ndarray, end: np.ndarray) -> bool:
-    """Whether a MEAS block between two positions (5,) is a touch, and not the way straight down into a space."""
-    return float(np.abs(end - start)[:2].max()) > _SAME
+    """Whether a MEAS block between two positions (5,) is a touch: neither straight down, nor sideways at one height."""
+    x, y, z, a, b = np.abs(end - start).tolist()
+    return max(x, y) > _SAME and z > _SAME and max(a, b) <= _SAME
 
 
 def _to_segments(place: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:

@@ -21,6 +21,8 @@ RING_FACE, SPHERE, WORK_SPHERE = "ring_face", "sphere", "work_sphere"
 _NAMES = {"member": MEMBERS, "flank": FLANKS, "target": (*RING, RING_FACE, SPHERE, WORK_SPHERE)}
 #: Key of the header comment before the columns of a run: the touches that its program makes.
 PLANNED = "planned"
+#: Key of the one after it, where a run makes some of them only: their numbers.
+HELD = "points"
 _PLAN = re.compile(r"(\d{1,8}) touches\b.*", re.ASCII)
 _WHOLE = ("run", "point", "tooth", "row", "col", "triggered")
 #: No axis of a machine is longer [mm], or turned further [degrees]; nothing counts further.
@@ -75,6 +77,12 @@ def read_calibration_csv(path: Path, run: int | None = None) -> CalibrationTouch
     _check_points(records)
     targets = np.array([record["target"] for record in records])
     return CalibrationTouches(wanted, targets, _axes(records), _planned(path, records))
+
+
+def planned_touches(program: str) -> int:
+    """How many touches the text of a probing or calibration program plans, 0 where it does not say it."""
+    plan = re.search(rf"# {PLANNED}: (\d+) touches", program)
+    return int(plan[1]) if plan else 0
 
 
 def run_lengths(path: Path) -> dict[int, int]:
