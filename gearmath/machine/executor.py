@@ -68,6 +68,8 @@ class Run:
     parameters: dict[int, float]
     alarm: tuple[int, int] | None
     """Number and line of the first alarm that the program set, or None."""
+    said: tuple[str, ...] = ()
+    """What the control showed during each row of the path, empty before the first message."""
 
 
 #: Tables without offsets and tool lengths.
@@ -114,7 +116,7 @@ def run_program(
             refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
     files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
     path = _path(runner.rows, runner.control.unstated or ())
-    return Run(path, files, tuple(runner.messages), runner.parameters, runner.alarm)
+    return Run(path, files, tuple(runner.messages), runner.parameters, runner.alarm, tuple(runner.said))
 
 
 class _Stopped(Exception):
@@ -136,6 +138,7 @@ class _Runner:
         self.files: dict[str, list[str]] = {}
         self._sizes: dict[str, int] = {}
         self.messages: list[str] = []
+        self.said: list[str] = []
         self.alarm: tuple[int, int] | None = None
         self._pending: dict[int, float] = {}
         self._limit = step_limit
@@ -234,6 +237,7 @@ class _Runner:
         row = self.control.run(block, lambda node, column: self._number(node, block.line, column))
         if row is not None:
             self.rows.append(row)
+            self.said.append(self.messages[-1] if self.messages else "")
             self.moved(_internal(row.position))
         if "dwell" in block.words and self.host is not None:
             self._pending.update(self.host(dict(self.parameters)))

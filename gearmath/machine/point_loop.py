@@ -41,6 +41,7 @@ def point_loop(blocks: Blocks, pattern: Pattern, name: str, plan: Plan, level: f
     yield f"IF {_KIND}[{_TOOTH}]>={_WHERE}[{_PLACE},3]"
     yield f"{_POINT}={_POINT}+1"
     yield f"IF ({_POINT}>={FROM}) AND ({_POINT}<={TO})"
+    blocks.place = f'"point "<<{_POINT}<<": "<<'
     yield from _point(blocks, name, plan, level, b)
     yield "ENDIF"
     yield "ENDIF"

@@ -48,21 +48,26 @@ _SAME = 1e-7
 
 @dataclass(frozen=True)
 class Approach:
-    """How near [mm] a part of the probe comes to a part of the work at most, and in which line; negative: in it."""
+    """How near [mm] a part of the probe comes to a part of the work at most, and in which line; negative: in it.
+
+    ``said`` is what the program says there, such as the point that it touches.
+    """
 
     probe: str
     work: str
     distance: float
     line: int
+    said: str = ""
 
 
 @dataclass(frozen=True)
 class _Block:
-    """Poses X Y Z A B (n,5) of one block, whether it ends or begins at a touch, and its line."""
+    """Poses X Y Z A B (n,5) of one block, whether it ends or begins at a touch, its line, and what was said there."""
 
     poses: np.ndarray
     touching: bool
     line: int
+    said: str
 
 
 def approaches(
@@ -84,7 +89,7 @@ def approaches(
     for block in watch.blocks(text, program, probe or watch.probe, progress):
         for pair, distance in watch.distances(block):
             if pair not in nearest or distance < nearest[pair].distance:
-                nearest[pair] = Approach(*pair, distance, block.line)
+                nearest[pair] = Approach(*pair, distance, block.line, block.said)
         progress(max(block.line - done, 0))
         done = max(block.line, done)
     return list(nearest.values())
@@ -116,7 +121,8 @@ class _Watch:
 
         done = run_program(text, program, moved, setup=self.setup)
         if done.alarm is not None:
-            refuse(program, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]} on the nominal member")
+            why = f" ({done.messages[-1]})" if done.messages else ""
+            refuse(program, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]} on the nominal member{why}")
         path = done.path
         found: dict[tuple[bytes, bool], _Block] = {}
         for k in range(1, len(path.axes)):
@@ -130,7 +136,7 @@ class _Watch:
             if key not in found:
                 steps = 2 + int(max(np.linalg.norm(way[:3]) / _STEP, np.abs(way[3:]).max() / _TURN))
                 poses = first + np.linspace(0.0, 1.0, steps)[:, None] * way
-                found[key] = _Block(poses, bool(touching), int(path.line[k]))
+                found[key] = _Block(poses, bool(touching), int(path.line[k]), done.said[k])
         return list(found.values())
 
     def probe(self, start: np.ndarray, end: np.ndarray) -> np.ndarray | None:

@@ -72,6 +72,8 @@ class Blocks:
                 f"program name {name!r}: has {len(name)} characters, {most} are allowed: the result file adds {_RESULT}"
             )
         words.check_name(name)
+        self.place = ""
+        """What messages of a stop begin with, as an expression: the point that is touched."""
 
     @property
     def result_file(self) -> str:
@@ -177,7 +179,7 @@ class Blocks:
         yield "IF $A_PROBE[1]<>0"
         if level is not None:
             yield f"G0 {self.length('Z', level)}"
-        yield from start.stop("the probe is deflected before it is moved", DEFLECTED)
+        yield from self._stop("the probe is deflected before it is moved", DEFLECTED)
 
     def aside(self, to: str) -> Iterator[str]:
         """Sideways over the work, to words of X Y A B; what is touched there stops the program where it is."""
@@ -199,7 +201,10 @@ class Blocks:
         yield "IF $AC_MEA[1]<>0"
         if level is not None:
             yield f"G0 {self.length('Z', level)}"
-        yield from start.stop(f"touched something {where}", TOUCHED_TOO_EARLY)
+        yield from self._stop(f"touched something {where}", TOUCHED_TOO_EARLY)
+
+    def _stop(self, why: str, alarm: int) -> Iterator[str]:
+        yield from start.stop(why, alarm, self.place)
 
     def touch(
         self, end: str, back: str, feed: float, retract_feed: float, level: float, up: bool = True
@@ -220,7 +225,7 @@ class Blocks:
         yield "IF R205==0"
         if not up:
             yield f"G0 {self.length('Z', level)}"
-        yield from start.stop("touched nothing", NOTHING_TOUCHED)
+        yield from self._stop("touched nothing", NOTHING_TOUCHED)
 
     def hand_over(self, place: str) -> Iterator[str]:
         """Offer the point, called ``place``: to the result file, and to a host if there is one."""

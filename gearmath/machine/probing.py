@@ -160,6 +160,7 @@ def probing_program(
     member = bevel_set.member(name)
     targets = probe_targets(member, name, machine, calibration, topography, pitch, around=around)
     level = clear_height(member, machine, calibration)
+    check_travel(Pattern.of(targets, member.teeth, machine).targets(), name, machine, level)
     room = room_of(member, machine, machine.fixture)
     check_home(room, machine, calibration.length + calibration.tip_radius - calibration.offset[2], program_name)
     header = (
@@ -188,10 +189,9 @@ def write_touches(
 
     The probe comes from the home of Z, which clears the ``room`` of the work. Every point can be the first of a run.
 
-    Raises InputError for travel, for touches that fill the result file, and for a name that the control refuses.
+    Raises InputError for touches that fill the result file, and for a name that the control refuses.
     """
     pattern = Pattern.of(targets, teeth, machine)
-    check_travel(pattern.targets(), name, machine, level)
     blocks = Blocks(program_name, machine, calibration.length)
     flanks = " and ".join(flank for flank in FLANKS if (targets.flank == flank).any())
     touches = len(targets) * repeat
