@@ -60,8 +60,8 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     def body() -> Iterator[str]:
         yield from blocks.start(plan, CALIBRATION_COLUMNS)
         for number, center in enumerate(centers, 1):  # to the first one from the home of Z
-            *_, a, b = blocks.axes(center)
-            what = f"sphere on the work, {a} {b}"
+            a, b = np.degrees(center[3:]).round(3)
+            what = f"sphere on the work, A {a:g} B {b:g}"
             yield from blocks.section(plan, number, what, (*_position(blocks, center, sphere, calibration), above))
         yield from blocks.end()
 

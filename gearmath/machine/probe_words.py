@@ -159,6 +159,7 @@ class Blocks:
         yield f'MSG("section {number} of {plan.parts}: {what}")'
         yield start.modal(self.machine)
         yield f"R101={_ENDS}[{number - 1}]"
+        yield from self.ready(None)
         yield from body
         yield "ENDIF"
 

@@ -36,9 +36,7 @@ def test_cheap_probe_sees_what_the_exact_contact_search_sees(gear_set):
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PROBE", topography=(), around=(0, 5))
     heard = []
     found = of(approaches(text, "P", gear_set.pinion, "pinion", MACHINE, PROBE, progress=heard.append))
-    moves = 1 + 3 * 2 * (
-        13 + 2 * 4
-    )  # from home; sideways, down, touch: 13 reference points, 2 * 4 corners
+    moves = 1 + 3 * 2 * (13 + 2 * 4)  # from home; sideways, down, touch: 13 reference points, 2 * 4 corners
     assert moves < sum(heard) <= moves + text.count("\n")
     there = ProbeMachine(gear_set.pinion, "pinion", MACHINE, PROBE)
     exact = of(approaches(text, "P", gear_set.pinion, "pinion", MACHINE, PROBE, probe=there))
