@@ -32,7 +32,7 @@ def point_loop(blocks: Blocks, pattern: Pattern, name: str, plan: Plan, level: f
     yield f"DEF REAL {_A},{_BEFORE},{_TURN}[{teeth}],{_WAY}[{places},7]"
     yield from blocks.start(plan, room=room)
     yield from _tables(blocks, pattern)
-    x, y, _, a, b = blocks.axes(_middle(pattern))
+    x, y, _, a, b = blocks.axes(_above_first(pattern))
     yield f"G0 {x} {y} {a} {b}"
     yield from blocks.lowered(blocks.length("Z", level))
     yield "POINTS:"
@@ -50,9 +50,12 @@ def point_loop(blocks: Blocks, pattern: Pattern, name: str, plan: Plan, level: f
     yield from blocks.end()
 
 
-def _middle(pattern: Pattern) -> np.ndarray:
-    """Where the probe goes down to the height of sideways motion: amid the places of space 0."""
-    return pattern.places.start.mean(axis=0) + pattern.turn[0] * np.array([0, 0, 0, 1, 0])
+def _above_first(pattern: Pattern) -> np.ndarray:
+    """Where the probe goes down to the height of sideways motion: over the end of the first touch of space 0.
+
+    Not over its start, for the way to the first point must not be none.
+    """
+    return pattern.places.end[0] + pattern.turn[0] * np.array([0, 0, 0, 1, 0])
 
 
 def _tables(blocks: Blocks, pattern: Pattern) -> Iterator[str]:

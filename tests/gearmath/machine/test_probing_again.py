@@ -203,8 +203,8 @@ def test_probe_is_looked_at_before_every_motion_of_it(gear_set, pitch_program):
     """Deflected from the n-th motion on, whichever it is: nothing but Z upwards follows."""
     calibrations = calibration_program(MACHINE, PROBE, "CAL"), axis_program(MACHINE, PROBE, "CAL")
     for text, probe in ((pitch_program, touching), *((one, Artefacts(MACHINE, PROBE)) for one in calibrations)):
-        rows = len(run(text, probe).path.axes)
-        for late in (1, *range(4, rows, 1 + rows // 20)):
+        last = int(np.flatnonzero(run(text, probe).path.measuring)[-1])
+        for late in (1, *range(4, last, 1 + last // 20)):
             heard = []
             done = run(text, probe, moved=heard.append, deflected=lambda at, h=heard, n=late: len(h) >= n)
             assert done.alarm is not None
