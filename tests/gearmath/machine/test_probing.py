@@ -274,7 +274,7 @@ def test_lint(gear_set, which):
         r"|IF (?:\$A_PROBE\[1\]<>0|\$AC_MEA\[1\]<>0|R205==0|UERR<>0|R104==1)|ENDIF|ENDWHILE"
         r"|IF (?:[()]|R9[01]|U[A-Z]+(?:\[(?:UTOOTH|UPLACE,[03])\])?|[<>=]+|\d+| AND | OR )+"
         r"|WHILE R103<>R101|SETAL\(650(?:0[0-4]|1[0-6])\)"
-        r'|MSG\((?:"[A-Za-z0-9_., :()\x27]+"|<<|R9[01]|UPOINT|UTOOTH|UWHERE\[UPLACE,[12]\])+\)'
+        r'|MSG\((?:"[A-Za-z0-9_., :()\x27-]+"|<<|R9[01]|UPOINT|UTOOTH|UWHERE\[UPLACE,[12]\])+\)'
         r'|DELETE\(UERR,"[A-Z_]{1,24}"\)|WRITE\(UERR,"[A-Z_]{1,24}",[A-Za-z0-9_,"<#: +*()\[\]]+\)'
     )
     modulo = which != "counting"

@@ -169,6 +169,9 @@ def test_nothing_is_touched_before_the_first_cut_or_the_program_stops(number):
         before = start
         for k in range(first_cut):
             here = rows[k]
+            if k == 2 and kind in ("probing", "again"):
+                # the probe has been fetched, and its length compared: what was in the spindle before is not there now
+                columns = columns_of(spec, kind, 0.0)
             if k > 0 and run.path.tool[k] != run.path.tool[k - 1]:
                 before = None  # the change itself is the machine's
             if before is not None and kind != "calibration":
