@@ -1,7 +1,8 @@
 """The blocks that touch a pattern of points: a table of the touches in space 0, one of the teeth, and two loops.
 
 Every point is complete in itself, so that a run can begin at any of them: message, modal head, sideways at a height
-that clears the whole member at every A, down, touch, up.
+that clears the whole member at every A, down, touch, up. That the control has the memory for the tables, and that MEAS
+stops A in the middle of its way as it does X Y Z, are not confirmed by a manual at hand [unconfirmed].
 """
 
 from __future__ import annotations

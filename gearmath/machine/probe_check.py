@@ -22,7 +22,7 @@ from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import turned
 from gearmath.machine.bodies import rings, work_profiles
 from gearmath.machine.control import Probe, Setup
-from gearmath.machine.executor import run_program
+from gearmath.machine.executor import STEP_LIMIT, run_program
 from gearmath.machine.nc_expression import refuse
 from gearmath.machine.probe_machine import BODY_ERROR
 from gearmath.machine.probe_space import SpaceBody
@@ -31,6 +31,7 @@ from gearmath.specs.bevel_set import Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.obstacles import CutterHead, Fixture
+from gearmath.specs.touch_csv import planned_touches
 
 #: Steps of the tip along a block [mm], and of A and B [rad]; stylus and spindle are looked at less often.
 _STEP, _TURN = 0.25, math.radians(1.0)
@@ -44,6 +45,8 @@ _TOUCH_STEP = 0.05
 #: Blocks are alike that differ by less than one of so many parts of a mm or rad.
 _ALIKE = 1e4
 _SAME = 1e-7
+#: Blocks that a program runs through from one touch to the next are fewer.
+_STEPS_OF_A_TOUCH = 200
 
 
 @dataclass(frozen=True)
@@ -119,7 +122,7 @@ class _Watch:
             progress(1)
             return probe(start, end)
 
-        done = run_program(text, program, moved, setup=self.setup)
+        done = run_program(text, program, moved, step_limit=enough_steps(text), setup=self.setup)
         if done.alarm is not None:
             why = f" ({done.messages[-1]})" if done.messages else ""
             refuse(program, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]} on the nominal member{why}")
@@ -196,6 +199,11 @@ class _Watch:
         below, beside = self.calibration.length - along, radius - self.spindle_radius
         outside = np.hypot(np.maximum(below, 0.0), np.maximum(beside, 0.0))
         return float((outside + np.minimum(np.maximum(below, beside), 0.0)).min())
+
+
+def enough_steps(text: str) -> int:
+    """The steps that a probing program may take: more than usual where it plans very many touches."""
+    return max(STEP_LIMIT, _STEPS_OF_A_TOUCH * planned_touches(text))
 
 
 def is_touch(start: np.ndarray, end: np.ndarray) -> bool:

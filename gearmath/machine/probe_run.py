@@ -9,7 +9,7 @@ import numpy as np
 from gearmath.errors import ComputationError, InputError
 from gearmath.machine.control import Probe, Setup
 from gearmath.machine.executor import AS_WRITTEN, run_program
-from gearmath.machine.probe_check import is_touch
+from gearmath.machine.probe_check import enough_steps, is_touch
 from gearmath.machine.probe_errors import ErringProbe
 from gearmath.specs.simulated_machine import SimulatedMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
@@ -34,7 +34,7 @@ def touch_count(text: str, program: str, setup: Setup = AS_WRITTEN) -> int:
         count += 1
         return end
 
-    run_program(text, program, trigger, setup=setup)
+    run_program(text, program, trigger, step_limit=enough_steps(text), setup=setup)
     return count
 
 
@@ -55,7 +55,7 @@ def run_touches(
         return probe(start, end) if erring is None else erring(start, end)
 
     done = run_program(
-        text, program, moved, parameters={_RUN_PARAMETER: run - 1}, setup=setup,
+        text, program, moved, parameters={_RUN_PARAMETER: run - 1}, step_limit=enough_steps(text), setup=setup,
         moved=erring.follow if erring is not None else lambda position: None,
     )  # fmt: skip
     if done.alarm is not None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from gearmath.errors import InputError
+from gearmath.machine import probe_check
 from gearmath.machine.artefacts import Artefacts
 from gearmath.machine.axis_cycle import axis_program
 from gearmath.machine.calibrating import calibration_program
@@ -17,6 +18,7 @@ from gearmath.machine.control import Setup
 from gearmath.machine.executor import run_program
 from gearmath.machine.probe_errors import ErringProbe
 from gearmath.machine.probe_machine import ProbeMachine
+from gearmath.machine.probe_run import touch_count
 from gearmath.machine.probe_words import DEFLECTED, FILE_SIZE, NOT_WRITTEN, TOUCHED_TOO_EARLY
 from gearmath.machine.probing import probe_targets, probing_program, teeth_around
 from gearmath.machine.words import Positions, block_count
@@ -26,7 +28,7 @@ from gearmath.specs.control import Control
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.simulated_machine import AxisErrors, SimulatedMachine
 from gearmath.specs.toml import bundled
-from gearmath.specs.touch_csv import read_calibration_csv, read_touch_csv
+from gearmath.specs.touch_csv import planned_touches, read_calibration_csv, read_touch_csv
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 PROBE = load_calibration(bundled("probe.toml"))
@@ -101,6 +103,14 @@ def test_full_topography_is_a_few_hundred_blocks(gear_set):
     text = probing_program(gear_set, "gear", MACHINE, PROBE, "PROBE", topography=range(36))
     assert "# planned: 3250 touches" in text
     assert block_count(text) < 500
+
+
+@pytest.mark.parametrize("options", [{"repeat": 3}, {"topography": (), "repeat": 100}, {"topography": range(12)}])
+def test_steps_that_a_plan_allows_are_enough_for_it(gear_set, monkeypatch, options):
+    """Very many touches take more steps than other programs may: so many for each that is planned."""
+    monkeypatch.setattr(probe_check, "STEP_LIMIT", 10)
+    text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PROBE", **options)
+    assert touch_count(text, "PROBE") == planned_touches(text) > 300
 
 
 def test_run_that_was_aborted_is_continued_at_its_point_and_joined(pitch_program, tmp_path):
