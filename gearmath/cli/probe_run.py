@@ -82,8 +82,8 @@ def probe(
         name, spec = member_of(pair, member, stated_member(text))
         there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
         count = touch_count(text, str(program), setup)
-        _check_clear(text, program, at_member, milling_machine, shop, 2 * count + text.count("\n"))
-    blocks = 2 * count if count is not None else text.count("MEAS=1")
+        _check_clear(text, program, at_member, milling_machine, shop, 3 * count + text.count("\n"))
+    blocks = 3 * count if count is not None else text.count("MEAS=1")
     with bar(blocks, "block") as progress:
         raw = run_touches(text, str(program), there, shop, count, run, progress, setup)
     write_text(target, raw)

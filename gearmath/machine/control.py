@@ -16,6 +16,10 @@ from gearmath.specs.milling_machine import MillingMachine
 
 #: Moves the probe from one position of X Y Z A B to another, (5,) mm and rad: where it triggers, or None.
 Probe = Callable[[np.ndarray, np.ndarray], np.ndarray | None]
+#: Whether the probe is deflected at a position of X Y Z A B, (5,) mm and rad.
+Deflected = Callable[[np.ndarray], bool]
+#: Hears of every position of X Y Z A B, (5,) mm and rad, to which the axes move.
+Follower = Callable[[np.ndarray], object]
 Number = Callable[[Node, int], float]
 
 _GROUPS = frozenset(GROUP_OF_CODE.values())
@@ -74,6 +78,8 @@ class Setup:
     """The one that the machine file counts from, if it matters."""
     metric: bool = True
     increments: tuple[float, float] = (1e9, 1e9)
+    result_file_kB: float = 1e6
+    """What a file of WRITE may hold, MD11420 $MN_LEN_PROTOCOL_FILE."""
     position: tuple[float, ...] | None = None
     tool: str | None = None
     changed_at: tuple[float, ...] | None = None
@@ -88,7 +94,7 @@ class Setup:
         values = machine.work_offset_values
         return Setup(
             values, values, machine.tool_length if tip else 0.0, probe_length if tip else 0.0,
-            work_offset=machine.work_offset,
+            work_offset=machine.work_offset, result_file_kB=machine.control.result_file_kB or Setup.result_file_kB,
         )  # fmt: skip
 
     def length(self, tool: str | None) -> float:
