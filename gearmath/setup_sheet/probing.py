@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from gearmath import __version__
 from gearmath.machine.bodies import work_profiles
-from gearmath.machine.probing import APPROACH, APPROACH_FEED, MEASURING_FEED
+from gearmath.machine.probe_words import APPROACH_FEED, MEASURING_FEED
+from gearmath.machine.probing import APPROACH
 from gearmath.machine.setup_facts import NOT_ON_METAL, R_D, VARIABLES, BlankSizes
 from gearmath.page import Page
 from gearmath.setup_sheet.machine_drawing import Ring, machine_drawing
