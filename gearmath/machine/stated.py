@@ -9,8 +9,8 @@ _TOLERANCE = re.compile(r"^; flank tolerance: ([0-9.]+) um", re.MULTILINE)
 _MEMBER = re.compile(r"^; member: (pinion|gear)\b", re.MULTILINE)
 _FINISH = re.compile(r"^; finish: stock ([0-9.]+) mm", re.MULTILINE)
 _SPACES = re.compile(r"^; spaces: ([0-9,]+)", re.MULTILINE)
-_FEED = re.compile(r"^; feed: ([0-9.]+) mm/min at the tooth(?:, ([0-9.]+) mm/min of the plunge)?", re.MULTILINE)
-_SPINDLE = re.compile(r"^; spindle: ([0-9.]+) rpm", re.MULTILINE)
+_FEED = re.compile(r"^; feed: ([0-9.]+) mm/min at the tooth", re.MULTILINE)
+_SPINDLE = re.compile(r"^; spindle: ([0-9.]+) rpm(?:.*plunge: ([0-9.]+) mm/min)?", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Stated:
             float(finish[1]) if finish else 0.0,
             tuple(sorted(listed)),
             float(feed[1]) if feed else None,
-            float(feed[2]) if feed and feed[2] else None,
+            float(spindle[2]) if spindle and spindle[2] else None,
             float(spindle[1]) if spindle else None,
         )
 
