@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -254,6 +255,7 @@ def _first_pass(
     return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell)
 
 
+@lru_cache(maxsize=32)
 def middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
     """The middle of the first flank of a pass (3,)."""
     return flank_points(member, cut.flanks[0], blank_grid(member, 1, 1)).point[0]
