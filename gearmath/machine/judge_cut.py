@@ -47,7 +47,8 @@ def missing(stated: Stated, runs: list[Run], member: Member, name: str) -> Itera
 def beside_the_path(runs: list[Run], member: Member, machine: MillingMachine, stated: Stated) -> Iterator[Fault]:
     """Feed blocks that end where the settings have no position: X Y A B beside their path, or Z below it, or above.
 
-    Above it only between the first and the last block of a pass, by its median: a stock raises all of it.
+    Above it only where it rolls, between the first and the last block of a pass, by its median: a stock raises all of
+    it.
     """
     half = machine.control.half_increments
     rounding = math.sqrt(3) * half[0] + (2 * FROM_AXIS + FROM_CUTTER) * half[3]
@@ -57,7 +58,8 @@ def beside_the_path(runs: list[Run], member: Member, machine: MillingMachine, st
         aside = np.abs(off * np.array([1.0, 1.0, 0.0, 1.0, 1.0])).sum(axis=1)
         below = np.maximum(-off[:, 2], 0.0)
         number = np.cumsum(~run.cutting)[rows]
-        inner = np.append(run.cutting[1:], False)[rows] & run.cutting[rows - 1]
+        rolls = np.append(False, np.diff(run.axes[:, :2], axis=0).any(axis=1)) & run.cutting
+        inner = rolls[rows] & np.append(run.cutting[1:], False)[rows] & run.cutting[rows - 1]
         above = np.zeros(len(rows))
         if member.generation == "generated":
             for one in np.unique(number[inner]):
