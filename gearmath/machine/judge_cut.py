@@ -114,8 +114,9 @@ def metal_left(
     groups = alike(runs, member, machine)
     found = watch(runs, member, machine, None, evaluator, progress, groups)
     tolerance, stock = allowed(stated), stated.stock
-    sines = [[math.sin(math.radians(member.flank(f).blade_pressure_angle)) for f in run.cut.flanks] for run in runs]
-    most = stock * max(max(own) / min(own) for own in sines)
+    flattest = min(member.flank(flank).blade_pressure_angle for run in runs for flank in run.cut.flanks)
+    # the cutter is withdrawn by this along its axis, and leaves as much at the foot of the flanks
+    most = stock / math.sin(math.radians(flattest))
     faults = []
     says = "the program states" if stated.tolerance is not None else "allowed are"
     for value, (number, flank, line), wrong in (
@@ -135,12 +136,12 @@ def metal_left(
         evaluator, progress, space,
     )  # fmt: skip
     deepest = min(states, key=lambda state: state.lowest)
-    least, greatest = stock - tolerance - REPORTED, stock / min(map(min, sines)) + tolerance + REPORTED
+    least, greatest = stock - tolerance - REPORTED, tolerance + REPORTED
     if deepest.lowest < least:
         what = f"gouges the {deepest.surface} of space {deepest.space}: {deepest.lowest * 1000:+.3f} um are left, "
         faults.append(Fault(f"{what}{least * 1000:g} um are allowed", deepest.line, "gouge"))
     fullest = max(states, key=lambda state: state.highest)
-    if fullest.highest > greatest:
+    if stock == 0.0 and fullest.highest > greatest:
         faults.append(Fault(
             f"the {fullest.surface} of space {fullest.space} keeps {fullest.highest * 1000:+.3f} um, "
             f"{greatest * 1000:g} um are allowed"

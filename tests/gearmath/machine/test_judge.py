@@ -148,7 +148,7 @@ def test_fixture_in_the_way_is_said_with_the_line(text, judged, vertical):
 
 @pytest.mark.slow
 def test_hobbed_block_beside_its_path_is_seen_in_every_axis(vertical):
-    """By hand: a hundredth of a mm or degree in the middle of the roll; A and C count, for they turn together."""
+    """By hand: 0.03 mm or degrees in the middle of the roll, where 20 um are stated; A and C count together."""
     bevel_set = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
     spec = bevel_set.gear
     text = cutting_program(bevel_set, "gear", vertical, "CUT", Job(range(39), 2e-2))
@@ -163,7 +163,7 @@ def test_hobbed_block_beside_its_path_is_seen_in_every_axis(vertical):
     k = [j for j, line in enumerate(lines) if " G93 " in line][350]
     for axis in "XYZABC":
         word = re.search(rf"{axis}(?:=DC\()?(-?[\d.]+)", lines[k])
-        wrong = lines[k].replace(word[0], word[0].replace(word[1], f"{float(word[1]) + 0.01:.6f}"))
+        wrong = lines[k].replace(word[0], word[0].replace(word[1], f"{float(word[1]) + 0.03:.6f}"))
         found = said("\n".join([*lines[:k], wrong, *lines[k + 1 :]]))
         assert any(one.startswith(f"line {k + 1} ends 0.0") for one in found), (axis, found)
 
@@ -183,7 +183,7 @@ def test_stock_gouge_and_missing_metal_are_said_without_a_report(gear_set, verti
     stock = cutting_program(gear_set, "gear", vertical, "CUT", Job((0,), 5e-3, finishing_stock=0.1))
     assert left(stock) == []
     said = left(stock.replace("; finish: stock 0.1 mm", "; finish: stock 0 mm"))
-    assert any(re.search(r"leaves \+1\d\d\.\d* um, the program states 5 um", one) for one in said), said
+    assert any(re.search(r"leaves \+[12]\d\d\.\d* um, the program states 5 um", one) for one in said), said
     deeper = re.sub(r"(G1 .*)Z500\.00000", r"\1Z499.90000", text)
     said = left(deeper)
     assert any(re.search(r"gouges the (root|\w+ \w+) of space 0: -1\d\d", one) for one in said), said

@@ -548,7 +548,7 @@ def trial(name, member, witness, spaces, blocks, per_block, rest, random):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "member"), CASES, ids="-".join)
+@pytest.mark.parametrize(("name", "member"), CASES, ids=["-".join(case) for case in CASES])
 def test_no_wrong_word_of_a_whole_program_is_left_unseen(witness, host_compiler, name, member):
     random = np.random.default_rng(CASES.index((name, member)))
     count, unseen = trial(name, member, witness, SPACES, BLOCKS, PER_BLOCK, OTHERS, random)
