@@ -108,10 +108,11 @@ def mill(
     With --measured they are those of a measuring machine, with the clamping, drift and probe of the file of --errors:
     tooth 0 in full, the corners of the grid on eight teeth around, and tooth 0 again at the end.
 
-    Every block is checked on a machine without errors: the status is 1 where it leaves more than the tolerance that the
-    program states, and where the machine must not run it: travel, speed, acceleration, spindle, modes left as they
-    were, spaces left out, collisions, rapid motion in the work or near it. So it is with --report, without --errors,
-    where a surface is off by more than --report-tolerance-um or something collides.
+    Every block is checked on a machine without errors. The status is 1, and the last line says why with figure and
+    limit, where flanks, fillets or root are gouged or keep stock by more than the program states (1 um where it states
+    nothing), where spaces are left out, blocks end off the path of the settings, anything collides, rapid motion comes
+    near the work, or the machine must not run it: travel, speed, acceleration, feed, spindle, modes. With --report,
+    without --errors, it is so too where a surface is off by more than --report-tolerance-um.
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.tooth import tooth_space
