@@ -59,7 +59,7 @@ def probe(
     from gearmath.machine.control import Setup
     from gearmath.machine.nc_text import program_text
     from gearmath.machine.probe_run import run_touches, touch_count, touches_artefacts
-    from gearmath.machine.watch import stated_member
+    from gearmath.machine.stated import stated_member
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine

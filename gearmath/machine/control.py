@@ -120,6 +120,15 @@ class Row(NamedTuple):
     cutter: float
 
 
+class Blind(NamedTuple):
+    """A motion block while the position of an axis was unknown: whether Z alone went, with all offsets off, and the Z
+    after it."""
+
+    line: int
+    raised: bool
+    z: float | None
+
+
 @dataclass
 class Latch:
     """What a MEAS block left behind: machine and work positions by axis, and whether the probe triggered."""
@@ -154,6 +163,11 @@ class Control:
     """What is in the spindle; ``tool`` is what the program asked for."""
     ended: bool = False
     latch: Latch | None = None
+    within: dict[str, float] = field(default_factory=dict)
+    """CTOL and OTOL, mm and degrees."""
+    blind: list[Blind] = field(default_factory=list)
+    path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
+    """Path modes in which feed blocks run, with CTOL and OTOL, and the line of the first."""
 
     def __post_init__(self) -> None:
         self.tool = self.fetched = self.setup.tool
@@ -253,6 +267,7 @@ class Control:
             if value <= 0.0:
                 self._refuse(block, key, f"{word.text}: must be greater than 0")
             self.modal[key] = word.text
+            self.within[key] = value
         elif key.startswith("FGREF"):
             self.feed_radius[key[-1]] = number(word.value, word.column)
         elif key == "work offset" and self.modal.get(key, word.text) != word.text:
@@ -302,6 +317,11 @@ class Control:
         seconds = 0.0 if rapid else self._cutting_seconds(block, before, column, number)
         if "MEAS" in words:
             self._measure(block, before)
+        if any(axis not in before for axis in AXES):
+            self.blind.append(Blind(line, raised and rapid, self.position.get("Z")))
+        if not rapid:
+            mode = self.modal.get("stop mode", ""), self.within.get("CTOL", 0.0), self.within.get("OTOL", 0.0)
+            self.path_modes.setdefault(mode, line)
         if any(axis not in self.position for axis in AXES):
             return None
         if self.tool is None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -168,6 +169,7 @@ def program_of(plan: Plan, program_name: str) -> str:
         *_tolerance_notes(member, job, machine, plan.share),
         *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
         f"feed: {job.feed:g} mm/min at the tooth",
+        f"spindle: {job.spindle_rpm:g} rpm {machine.cutter_direction}, plunge: {PLUNGE_FEED:g} mm/min",
         *_space_notes(job),
         *_hobbing_notes(member),
         *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
@@ -255,7 +257,7 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job
         raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
     (cut,) = Cut.of(member, name)
     _check_motions(member, name, cut)
-    tooth, lift = _middle_of_tooth(member, cut), _HOBBING_DEPTHS * _depth(member)
+    tooth, lift = middle_of_tooth(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
         one = hobbing_pass(
             member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth
@@ -281,7 +283,7 @@ def _first_pass(
 ) -> tuple[np.ndarray, Pass]:
     """Cradle rotations and the pass through space 0: rolled, or for Formate plunged at cradle rotation zero."""
     flank = member.flank(cut.flanks[0])
-    tooth = _middle_of_tooth(member, cut)
+    tooth = middle_of_tooth(member, cut)
     if member.generation == "formate":
         theta = np.zeros(2)
         axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
@@ -294,7 +296,8 @@ def _first_pass(
     return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell, theta)
 
 
-def _middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
+@lru_cache(maxsize=32)
+def middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
     """The middle of the first flank of a pass (3,)."""
     return flank_points(member, cut.flanks[0], blank_grid(member, 1, 1)).point[0]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gearmath.machine.control import Control, Deflected, Follower, Probe, Row, Setup
+from gearmath.machine.control import Blind, Control, Deflected, Follower, Probe, Row, Setup
 from gearmath.machine.nc_expression import AXES, Node, Value, Variable, refuse
 from gearmath.machine.nc_tree import Block, Branch, Command, Definition, Loop, Statement
 from gearmath.machine.nc_values import evaluate, indices, number
@@ -51,6 +51,10 @@ class MachinePath:
     """Position of the cutter's axis C at the ends, (n,) rad, counted on; NaN while the spindle is no axis."""
     unstated: tuple[str, ...] = ()
     """What the program leaves as it was when its first motion begins, in words of the program."""
+    blind: tuple[Blind, ...] = ()
+    """Motion while the position of an axis is unknown: at the start, and after a tool change."""
+    path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
+    """Path mode, CTOL [mm] and OTOL [degrees] of feed blocks, with the line of the first."""
 
     @property
     def spindle_on(self) -> np.ndarray:
@@ -115,7 +119,7 @@ def run_program(
         if not runner.control.ended:
             refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
     files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
-    path = _path(runner.rows, runner.control.unstated or ())
+    path = _path(runner.rows, runner.control)
     return Run(path, files, tuple(runner.messages), runner.parameters, runner.alarm, tuple(runner.said))
 
 
@@ -348,7 +352,7 @@ def _internal(position: tuple[float, ...]) -> np.ndarray:
     return np.array([*position[:3], *map(math.radians, position[3:])])
 
 
-def _path(rows: list[Row], unstated: tuple[str, ...]) -> MachinePath:
+def _path(rows: list[Row], control: Control) -> MachinePath:
     """The rows as arrays, in mm and rad."""
     positions = np.array([row.position for row in rows]).reshape(-1, len(AXES))
     positions[:, 3:] = np.radians(positions[:, 3:])
@@ -363,5 +367,7 @@ def _path(rows: list[Row], unstated: tuple[str, ...]) -> MachinePath:
         rpm=np.array([row.rpm for row in rows]),
         measuring=np.array([row.measuring for row in rows], dtype=bool),
         cutter=np.radians(np.array([row.cutter for row in rows])),
-        unstated=unstated,
+        unstated=control.unstated or (),
+        blind=tuple(control.blind),
+        path_modes=dict(control.path_modes),
     )

@@ -66,15 +66,16 @@ def mill_member(
     machine: MillingMachine,
     errors: SimulatedMachine | None = None,
     progress: Callable[[int], object] = lambda _: None,
+    runs: list[Run] | None = None,
 ) -> FlankFile:
     """What a program leaves on a member: the whole grid of the first space cut, the reference point of the others.
 
     Every point is exposed to all passes of all tools, so that a neighbour's pass that cuts into it is seen. Deviations
     are against the nominal flanks. ``errors`` makes machine, work axis and probe those of a simulated shop; without it
-    they are perfect. Raises InputError if the program cuts with a tool that is not of this member, or leaves a flank
-    uncut.
+    they are perfect. ``runs`` are the tools of the program where they are known. Raises InputError if the program cuts
+    with a tool that is not of this member, or leaves a flank uncut.
     """
-    runs = runs_of(path, member, name, machine, errors, root_of(member, name))
+    runs = runs_of(path, member, name, machine, errors, root_of(member, name)) if runs is None else runs
     grid = blank_grid(member, margin=MARGIN)
     nominals = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
     files = []
