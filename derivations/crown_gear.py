@@ -87,6 +87,18 @@ def _other_hand(angle: sp.Expr) -> sp.Expr:
 
 
 @cache
+def crown_gear_roll() -> Expression:
+    """(14.2) as an Expression."""
+    return Expression(
+        "crown_gear_roll",
+        "Ratio of roll of a member and its crown gear (14.2).",
+        (q.pitch_angle, q.machine_root_angle),
+        ((q.ratio_of_roll, ratio_of_roll()),),
+        source=_SOURCE,
+    )
+
+
+@cache
 def crown_gear_flank() -> Expression:
     """(14.2-14.5) as an Expression."""
     V_c, n, side, r = tilted_axis(), flank_normal(), q.side.symbol, q.cutter_radius.symbol

@@ -687,3 +687,16 @@ mate_radial = _length("mate_radial", "r_m", 0.0, 500.0, "distance of that point 
 conjugate_azimuth = Quantity("conjugate_azimuth", "azimuth of the conjugate point on the member", "rad", r"\chi")
 gap_turn = _angle("gap_turn", r"\Delta\chi", -0.3, 0.3, "turn of a flank about its axis up to the conjugate one")
 ease_off = Quantity("ease_off", "gap between a flank and the conjugate one along its normal", "mm", "E", scale=1.0)
+
+# --- chip -------------------------------------------------------------------------------------------------------
+cutter_rpm = Quantity("cutter_rpm", "turns of the cutter in a minute", "1/min", "n", (1.0, 5000.0))
+blades_per_turn = Quantity(
+    "blades_per_turn", "blades that pass one place of a flank in a turn of the cutter", "1", "N", (0.01, 100.0)
+)  # fmt: skip
+blade_period = Quantity("blade_period", "time from one blade to the next", "s", "T_b", (1e-4, 100.0))
+passing_speed = Quantity(
+    "passing_speed", "speed of the work past the cutter: radial, along the cut, along the cutter axis", "mm/s",
+    r"\mathbf{v}", (-100.0, 100.0), shape=(3,),
+)  # fmt: skip
+blade_advance = Quantity("blade_advance", "advance of the work from one blade to the next", "mm", "f_b", scale=1.0)
+chip_thickness = Quantity("chip_thickness", "thickness of the chip, square to the blade", "mm", "h", scale=1.0)

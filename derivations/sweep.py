@@ -95,7 +95,11 @@ def line_in_cone() -> Expression:
             q.cutter_center_w, q.cutter_axis_w, q.line_point, q.line_direction, q.blade_point_radius, q.blade_slope,
             q.side,
         ),
-        ((q.line_lower, sp.Max(lower, above)), (q.line_upper, sp.Min(upper, below))),
+        (
+            # not evaluated: SymPy would look for seconds for an order that there is not
+            (q.line_lower, sp.Max(lower, above, evaluate=False)),
+            (q.line_upper, sp.Min(upper, below, evaluate=False)),
+        ),
         requires=(discriminant - 1, a**2 - sp.Rational(1, 10**6), h_1**2 - sp.Rational(1, 10**6)),
         source="line against a cone of revolution",
     )  # fmt: skip

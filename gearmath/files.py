@@ -12,6 +12,14 @@ from gearmath.errors import InputError
 LARGEST = 200_000_000
 
 
+def check_place(path: Path) -> None:
+    """Whether a file can be written to its folder. Raises InputError naming the file where it cannot."""
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: cannot be written: No such file or directory")
+    if not os.access(path.parent, os.W_OK):
+        raise InputError(f"{path}: cannot be written: Permission denied")
+
+
 def write_text(path: Path, text: str) -> None:
     """Write ``text`` (UTF-8, LF) to ``path`` in one step. Raises InputError if the place cannot be written."""
     write_bytes(path, text.encode("utf-8"))

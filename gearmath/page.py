@@ -43,10 +43,11 @@ figcaption { font-size: .87rem; color: #333; font-weight: 600 }
   html { font-size: 9.5pt }
   body { font-size: 1rem; line-height: 1.3; max-width: none; margin: 0; padding: 0; print-color-adjust: exact }
   h2, h3, caption { break-after: avoid } table, tr, .first { break-inside: avoid } div.wide { overflow: visible }
-  div.columns { columns: 2; column-gap: 6mm; font-size: .82rem; line-height: 1.2 }
+  div.columns { columns: 2; column-gap: 6mm; font-size: .85rem; line-height: 1.2 }
   div.columns h3:first-child { margin-top: 0 }
-  div.columns table { font-size: .75rem } div.columns div.long table { break-inside: auto }
+  div.columns table { font-size: .85rem; line-height: 1.15 } div.columns div.long table { break-inside: auto }
   div.columns th, div.columns td { padding: .05rem .25rem .05rem 0; overflow-wrap: anywhere }
+  div.columns thead th { overflow-wrap: normal }
   div.columns td:nth-child(-n+2):nth-last-child(-n+5) { white-space: nowrap }
   div.columns p { margin: .3rem 0 }
   h2.new { break-before: page } h2 { margin-top: 1rem } h3 { margin-top: .7rem }
@@ -117,13 +118,18 @@ class Page:
             f'<div class="{wide}"><table><caption>{escape(caption)}</caption>\n{top}\n{cells}\n</table></div>'
         )
 
-    def drawings(self, drawings: Sequence[tuple[str, str]]) -> None:
-        """Drawings, (svg, caption) each, side by side where there is room; the caption stands above."""
+    def drawings(self, drawings: Sequence[tuple[str, str]], tall: bool = False) -> None:
+        """Drawings, (svg, caption) each, side by side where there is room; the caption stands above.
+
+        If ``tall``, the others stand below each other beside the first.
+        """
         figures = []
         for svg, caption in drawings:
             self._drawings += 1
             named = f'<svg role="img" aria-label="{escape(caption)}"' + _own_names(svg, f"d{self._drawings}-")[4:]
             figures.append(f"<figure><figcaption>{escape(caption)}</figcaption>{named}</figure>")
+        if tall:
+            figures = [figures[0], "<div>" + "\n".join(figures[1:]) + "</div>"]
         self._parts.append('<div class="charts">' + "\n".join(figures) + "</div>")
 
     @property

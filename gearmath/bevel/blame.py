@@ -1,29 +1,40 @@
-"""Which setting of a flank is to blame when it cuts no sensible tooth: the one farthest from the crown gear's value.
+"""Which setting is to blame when flanks cut no sensible tooth, or none that fits the mate.
 
-Distances are compared as lengths: an angle counts with the arm at which it moves the cutter against the work.
+A value is advised only where the whole set passes with it. Of the settings that would put a flank right at its mean
+point and root, those that move the cutter least are tried first. Distances are compared as lengths: an angle counts
+with the arm at which it moves the cutter against the work.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from statistics import median
 
 from gearmath.bevel.blank import evaluate
+from gearmath.bevel.check_flank import CutFlank
 from gearmath.bevel.repair import Repair, Wanted, repairs
-from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member, Settings
+from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SETTINGS, SIDES, Member, Settings
 
 #: Spiral angle where none of the flanks of the set tells it. [rad]
 _SPIRAL = math.radians(35)
+#: A smaller spiral angle is as likely wrong itself, and does not tell what the others should be. [rad]
+_TELLING_SPIRAL = math.radians(10)
 #: Arm of the blade's angle and of the roll, in mean cone distances.
 _BLADE_ARM, _ROLL_ARM = 0.2, 0.3
 _SIGN = "indexing_sign"
-#: A setting explains what is wrong if this part of it is left, and no more than this for each flank; settings that
-#: leave no more than this above the best one are as good, and the one that is changed least is named.
-_EXPLAINED, _FITS, _AS_GOOD = 0.4, 2.5, 0.3
-#: Of repairs that are as good, a second one is named too where it moves the cutter at most so many times as far.
+#: What is left wrong counts as equal within this step, and then the repair that moves the cutter least is the better.
+_STEP = 0.5
+#: So many repairs are tried on the whole set, so many of one setting; and so many that pass are said.
+_TRIALS, _VALUES, _SAID = 10, 2, 2
+#: A repair that leaves more than this part of what is wrong explains nothing.
+_EXPLAINED = 0.6
+#: A second repair that passes is said too where it moves the cutter at most so many times as far.
 _NO_FARTHER = 1.2
+
+Members = dict[str, Member]
+Where = tuple[str, str]
 
 
 @dataclass(frozen=True)
@@ -40,53 +51,114 @@ class Suspect:
         return f"{self.key} = {self.value:.6g} ({self.source}: {self.expected:.4g})"
 
 
-def farthest(members: dict[str, Member], where: Iterable[tuple[str, str]], spiral: float | None) -> Suspect:
-    """The setting of some flanks (member, flank) that is farthest from the crown gear's value.
+@dataclass(frozen=True)
+class _Trial:
+    """A repair of one flank, or of ``both``: how far it moves the cutter [mm], how much of what is wrong it leaves."""
 
-    The crown gear takes its cutter from all flanks of the set (the middle ones of point radius and blade angle), and
-    its ``spiral`` angle [rad] from those that can be solved.
-    """
-    return max((_worst(members, name, flank, spiral) for name, flank in where), key=lambda suspect: suspect.apart)
+    name: str
+    flank: str
+    both: bool
+    repair: Repair
+    moved: float
+    left: float
+
+    @property
+    def place(self) -> str:
+        table = self.name if self.repair.key == _SIGN else f"{self.name}.{self.flank}"
+        return f"{table}.{self.repair.key}"
+
+    @property
+    def where(self) -> str:
+        return " on both flanks" if self.both else ""
 
 
 def likely(
-    members: dict[str, Member], where: Iterable[tuple[str, str]], spiral: float | None, pressure: float | None
-) -> str:
-    """What to say of the settings of some flanks (member, flank): which of them alone explains that they do not fit.
+    members: Members, where: Sequence[Where], cut: Mapping[str, Mapping[str, CutFlank]],
+    passes: Callable[[Members], bool],
+) -> str:  # fmt: skip
+    """What to say of the settings of some flanks (member, flank): which of them, changed alone, makes the set pass.
 
-    ``spiral`` and ``pressure`` [rad] are the angles that the others have. Where none does, that is said, and which is
-    farthest from the crown gear's value.
+    ``cut`` are the flanks that were found, ``passes`` is the whole check. Where no single setting does, the one is
+    named that would put the mean point and the root of a flank nearest to right, and no value is advised.
     """
-    flanks, angle = list(where), _SPIRAL if spiral is None else spiral
-    suspect = farthest(members, flanks, spiral)
-    if suspect.key.endswith(_SIGN):
-        return f"; the likely cause is {suspect}"
-    tried = []
-    for name, flank in flanks:
-        member = members[name]
-        hand = 1 if member.hand == "right" else -1
-        alpha = pressure
-        if alpha is None:
-            alpha = math.radians(median(member.flank(each).nominal.blade_pressure_angle for each in FLANKS))
-        expected = _crown_gear(members, member, flank, angle, member.indexing_sign)
-        trials = repairs(member, flank, expected, Wanted(hand * angle, alpha))
-        tried += [(name, flank, member, one) for one in trials]
-    befores = {(name, flank): one.before for name, flank, _, one in tried}
-    total = sum(befores.values())
-    left = [total - one.before + one.after for *_, one in tried]
-    if tried and total > 1 and min(left) <= min(_EXPLAINED * total, _FITS * len(flanks)):
-        good = [k for k, value in enumerate(left) if value <= min(left) + _AS_GOOD]
-        moved = {k: _moved(tried[k][2], tried[k][1], tried[k][3]) for k in good}
-        near = [k for k in sorted(good, key=lambda k: moved[k]) if moved[k] <= _NO_FARTHER * min(moved.values())]
-        said = []
-        for k in near[:2]:
-            name, flank, _, one = tried[k]
-            table = name if one.key == _SIGN else f"{name}.{flank}"
-            said.append(f"{table}.{one.key} = {one.value:.6g}: {one.other:.6g} would fit")
+    found = {(name, flank): one for name, flanks in cut.items() for flank, one in flanks.items()}
+    flanks: dict[Where, list[Repair]] = {}
+    for name, flank in where:
+        member, wanted = members[name], _wanted(members, found, where, name, flank)
+        expected = _crown_gear(members, member, flank, abs(wanted.spiral), member.indexing_sign)
+        flanks[name, flank] = repairs(member, flank, expected, wanted)
+    total = sum(one[0].before for one in flanks.values() if one)
+    trials = sorted(_trials(members, flanks, total), key=lambda one: (round(one.left / _STEP), not one.both, one.moved))
+    good: list[_Trial] = []
+    tried: dict[str, int] = {}
+    for one in trials:
+        if sum(tried.values()) == _TRIALS or len(good) == _SAID:
+            break
+        farther = bool(good) and (one.moved > _NO_FARTHER * good[0].moved or one.both != good[0].both)
+        if farther or tried.get(one.place, 0) == _VALUES or one.place in [other.place for other in good]:
+            continue
+        tried[one.place] = tried.get(one.place, 0) + 1
+        if passes(_changed(members, one)):
+            good.append(one)
+    if good:
+        said = [f"{one.place} = {one.repair.value:.6g}: {one.repair.other:.6g} would fit{one.where}" for one in good]
         return f"; the setting that alone explains it is {', or '.join(said)}"
-    # what the mean points and roots do not show, no trial of them can tell
-    none = "no single setting explains it, the one" if total > 1 else "the setting"
-    return f"; {none} farthest from the crown gear's is {suspect}"
+    if trials and total > 1 and trials[0].left <= _EXPLAINED * total:
+        best = trials[0]
+        return f"; no single setting puts all of it right, most of it hangs on {best.place} = {best.repair.value:.6g}"
+    return "; no single setting puts it right"
+
+
+def _trials(members: Members, flanks: Mapping[Where, list[Repair]], total: float) -> Iterator[_Trial]:
+    """Repairs of single flanks; of both, where they have a setting in common: the value in the middle of what each of
+    them needs, or a slip."""
+    for (name, flank), found in flanks.items():
+        member = members[name]
+        beside = flanks.get((name, FLANKS[1 - FLANKS.index(flank)]), [])
+        for one in found:
+            shared = member.cutting == "completing" and one.key in MACHINE_SETTINGS
+            moved, left = _moved(member, flank, one), total - one.before + one.after
+            yield _Trial(name, flank, shared, one, moved, left)
+            other = next((each for each in beside if (each.key, each.solved) == (one.key, one.solved)), None)
+            if one.solved and not shared and flank == FLANKS[0] and other is not None and one.value == other.value:
+                middle = replace(one, other=(one.other + other.other) / 2)
+                both = left - other.before + other.after
+                yield _Trial(name, flank, True, middle, _moved(member, flank, middle), both)
+
+
+def _wanted(members: Members, found: Mapping[Where, CutFlank], where: Sequence[Where], name: str, flank: str) -> Wanted:
+    """Angles that a flank should have: those of its mate, else of the flanks not to blame, else its blade's."""
+    member = members[name]
+    hand = 1 if member.hand == "right" else -1
+    mate = next((other for other in members if other != name), name), FLANKS[1 - FLANKS.index(flank)]
+    telling = {place: one for place, one in found.items() if abs(one.spiral_angle) > _TELLING_SPIRAL}
+    if mate[0] != name and mate in telling:
+        return Wanted(hand * abs(telling[mate].spiral_angle), telling[mate].pressure_angle)
+    others = [one for place, one in telling.items() if place not in where] or list(telling.values())
+    spiral = median(abs(one.spiral_angle) for one in others) if others else _SPIRAL
+    right = [one.pressure_angle for place, one in found.items() if place not in where]
+    blade = median(member.flank(each).nominal.blade_pressure_angle for each in FLANKS)
+    return Wanted(hand * spiral, median(right) if right else math.radians(blade))
+
+
+def _changed(members: Members, trial: _Trial) -> Members:
+    """The set with a repair."""
+    name, key, other = trial.name, trial.repair.key, trial.repair.other
+    if key == _SIGN:  # one crown gear cuts both members
+        return {each: one.model_copy(update={_SIGN: other}) for each, one in members.items()}
+    return {**members, name: _with(members[name], FLANKS if trial.both else (trial.flank,), key, other)}
+
+
+def _with(member: Member, flanks: Sequence[str], key: str, value: float) -> Member:
+    """A member with another nominal value of a setting of some flanks."""
+    update = {}
+    for flank in flanks:
+        spec = member.flank(flank)
+        if spec.design is None:
+            update[flank] = spec.model_copy(update={key: value})
+        else:
+            update[flank] = spec.model_copy(update={"design": spec.design.model_copy(update={key: value})})
+    return member.model_copy(update=update)
 
 
 def _moved(member: Member, flank: str, repair: Repair) -> float:
@@ -96,22 +168,6 @@ def _moved(member: Member, flank: str, repair: Repair) -> float:
     spec = member.flank(flank).nominal
     (one,) = _suspects(member, "", spec, {repair.key: repair.other}, "")
     return one.apart
-
-
-def _worst(members: dict[str, Member], name: str, flank: str, spiral: float | None) -> Suspect:
-    """The worst setting of one flank; in face hobbing the sign of the indexing, where the other one explains more."""
-    member, angle = members[name], _SPIRAL if spiral is None else spiral
-
-    def worst(sign: int) -> Suspect:
-        expected = _crown_gear(members, member, flank, angle, sign)
-        suspects = _suspects(member, f"{name}.{flank}", member.flank(flank).nominal, expected, "crown gear")
-        return max(suspects, key=lambda suspect: suspect.apart)
-
-    sign = member.indexing_sign
-    found, other = worst(sign), worst(-sign)
-    if other.apart < found.apart / 2:
-        return Suspect(f"{name}.indexing_sign", sign, -sign, found.apart)
-    return found
 
 
 def most_changed(member: Member, name: str, flank: str) -> Suspect:

@@ -25,6 +25,8 @@ def check_blades(member: Member, name: str) -> None:
         _check_method(member, f"{name}.{flank}", member.flank(flank))
         _check_sections(f"{name}.{flank}", member.flank(flank), SIDES[flank])
         _check_foot(f"{name}.{flank}", member.flank(flank), member.blank.clearance)
+        if member.cutting == "fixed_setting":
+            _check_tip(f"{name}.{flank}", member.flank(flank), SIDES[flank])
     if member.cutting == "completing":
         _check_point_width(member, name)
 
@@ -64,14 +66,6 @@ def check_offset(member: Member, name: str, spiral: float) -> None:
 
 
 def _check_method(member: Member, table: str, spec: Flank) -> None:
-    if member.generation == "formate":
-        for key, motion in (("motion", spec.motion), ("design.motion", spec.nominal_motion)):
-            if motion.matrix.any() or motion.roll.any():
-                moving = next(k for k, values in motion.model_dump().items() if any(values))
-                raise InputError(
-                    f"{table}.{key}.{moving} = {list(getattr(motion, moving))}: the cradle stands still in a Formate "
-                    "cut, so nothing can move with it; it must be left out"
-                )
     if member.process == "face_milling" and spec.blade_offset_angle != 0:
         raise InputError(
             f"{table}.blade_offset_angle = {spec.blade_offset_angle:g}: belongs to face_hobbing, in face milling it "
@@ -82,6 +76,11 @@ def _check_method(member: Member, table: str, spec: Flank) -> None:
 def _check_sections(table: str, spec: Flank, side: int) -> None:
     """Rounded edge, Toprem and main section follow each other within the height of the blade."""
     height = spec.blade_profile_height
+    if spec.blade_reference_height and spec.blade_spheric_radius is None and spec.nominal_spheric_radius is None:
+        raise InputError(
+            f"{table}.blade_reference_height = {spec.blade_reference_height:g}: belongs to blade_spheric_radius, on a "
+            "straight blade it has no effect; it must be 0 or left out"
+        )
     for key in ("blade_edge_radius", "toprem_height", "blade_reference_height"):
         if getattr(spec, key) >= height:
             raise InputError(f"{table}.{key} = {getattr(spec, key):g}: must be below blade_profile_height = {height:g}")
@@ -102,6 +101,16 @@ def _check_sections(table: str, spec: Flank, side: int) -> None:
         ) from error
     if not sections["main"].upper > sections["main"].lower:
         raise InputError(f"{arc} the rounded edge, blade_edge_radius = {spec.blade_edge_radius:g}, does not touch it")
+
+
+def _check_tip(table: str, spec: Flank, side: int) -> None:
+    """The tip of a cutter for one flank has room for the rounded edges of both its sides, which are made alike."""
+    taken = 2 * tip_taken(spec, side)
+    if spec.blade_point_width is not None and taken > spec.blade_point_width:
+        raise InputError(
+            f"{table}.blade_edge_radius = {spec.blade_edge_radius:g}: the rounded edges of both sides take {taken:.3g} "
+            f"mm of the tip, blade_point_width = {spec.blade_point_width:g}"
+        )
 
 
 def _check_foot(table: str, spec: Flank, clearance: float) -> None:

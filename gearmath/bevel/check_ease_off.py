@@ -35,8 +35,11 @@ _LIMITS: tuple[tuple[str, int, str, float, float], ...] = (
 _REST = 0.015
 
 
-def check_ease_off(pinion: Member, gear: Member, shaft_angle: float) -> None:
-    """Refuse mates whose flanks do not fit each other from toe to heel and from root to tip. Raises Misfit."""
+def check_ease_off(pinion: Member, gear: Member, shaft_angle: float, share: float = 1.0) -> None:
+    """Refuse mates whose flanks do not fit each other from toe to heel and from root to tip. Raises Misfit.
+
+    ``share`` is the part of the limits that may be used.
+    """
     where = [(name, flank) for name in ("pinion", "gear") for flank in FLANKS]
     grid, module = blank_grid(gear), transverse_module(gear)
     found: list[Parts] = []
@@ -61,7 +64,7 @@ def check_ease_off(pinion: Member, gear: Member, shaft_angle: float) -> None:
         for flank, one in zip(FLANKS, found, strict=True)
     ]
     size, value, low, high, what = max(excess)
-    if not size <= 1:
+    if not size <= share:
         raise Misfit(
             f"pinion and gear do not fit along the flanks: the ease-off has a {what} of {value * module:.3g} mm at the "
             f"edges of the grid, which must lie between {low * module:.3g} and {high * module:.3g} mm, {low:g} and "

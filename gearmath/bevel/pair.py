@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Sequence
 from pathlib import Path
-from statistics import median
 
 from gearmath.bevel.blame import likely, most_changed
 from gearmath.bevel.check_blade import check_blades, check_methods, check_offset
@@ -18,17 +16,18 @@ from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, c
 from gearmath.bevel.check_ease_off import check_ease_off
 from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
 from gearmath.bevel.check_mates import Cut, check_mates, check_space
+from gearmath.bevel.check_motion import check_motions
 from gearmath.bevel.method import cut_generation_of, generation_of
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.tooth import mean_pitch_radius
-from gearmath.errors import InputError
+from gearmath.errors import ComputationError, InputError
 from gearmath.files import read_text
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member, load_bevel_set
 
 #: What corrected settings may change of a flank at the mean point: either angle [degree], the arc over the module.
 _CORRECTED_ANGLE, _CORRECTED_ARC = 2.0, 0.15
-#: A smaller spiral angle is as likely wrong itself, and does not tell what the others should be. [rad]
-_TELLING_SPIRAL = math.radians(10)
+#: A value is advised where mates use no more of their limits than this.
+_WELL = 0.7
 
 
 def load_pair(path: Path) -> BevelSet:
@@ -49,31 +48,48 @@ def load_pair(path: Path) -> BevelSet:
 
 def check_pair(pair: BevelSet) -> None:
     """Refuse a set that is no physical pair. Raises InputError naming member, flank, key, value and limit."""
-    members = pair.members
-    pinion, gear = pair.pinion, pair.gear
-    if pinion is not None and gear is not None:
-        check_cones(pinion, gear, pair.shaft_angle)
-    else:
-        for name, member in members.items():
-            check_mate(member, name, pair.shaft_angle)
-    for name, member in members.items():
-        check_blank(member, name)
-    if pinion is not None and gear is not None:
-        check_blanks(pinion, gear, pair.shaft_angle)
-        check_methods(pinion, gear)
-    for name, member in members.items():
-        check_blades(member, name)
-    cut: dict[str, Cut] = {name: {} for name in members}
+    cut: dict[str, Cut] = {name: {} for name in pair.members}
     try:
-        _check_cut(members, cut)
-        if pinion is not None and gear is not None:
-            check_ease_off(pinion, gear, pair.shaft_angle)
+        _check(pair.members, pair.shaft_angle, cut)
     except Misfit as misfit:
-        cause = likely(members, misfit.where, _spiral(cut, misfit.where), _pressure(cut, misfit.where))
+        cause = likely(pair.members, misfit.where, cut, lambda members: _passes(members, pair.shaft_angle))
         raise InputError(f"{misfit}{cause}") from misfit
 
 
-def _check_cut(members: dict[str, Member], cut: dict[str, Cut]) -> None:
+def _passes(members: dict[str, Member], shaft_angle: float) -> bool:
+    """Whether members are a pair, and not one at the limit of what mates may differ by."""
+    try:
+        _check(members, shaft_angle, {name: {} for name in members}, _WELL)
+    except (Misfit, InputError, ComputationError):
+        return False
+    return True
+
+
+def _check(members: dict[str, Member], shaft_angle: float, cut: dict[str, Cut], share: float = 1.0) -> None:
+    """Refuse what is no pair; ``cut`` is filled with the flanks that are found. Raises InputError or Misfit.
+
+    ``share`` is the part of their limits that mates may use.
+    """
+    pinion, gear = (members.get(name) for name in MEMBERS)
+    if pinion is not None and gear is not None:
+        check_cones(pinion, gear, shaft_angle)
+    else:
+        for name, member in members.items():
+            check_mate(member, name, shaft_angle)
+    for name, member in members.items():
+        check_blank(member, name)
+    if pinion is not None and gear is not None:
+        check_blanks(pinion, gear, shaft_angle)
+        check_methods(pinion, gear)
+    for name, member in members.items():
+        check_blades(member, name)
+        check_motions(member, name)
+    _check_cut(members, cut, share)
+    if pinion is not None and gear is not None:
+        check_ease_off(pinion, gear, shaft_angle, share)
+
+
+def _check_cut(members: dict[str, Member], cut: dict[str, Cut], share: float) -> None:
     """Check what the settings cut; ``cut`` is filled with the flanks that are found."""
     spaces: dict[str, float] = {}
     for name, member in members.items():
@@ -82,7 +98,7 @@ def _check_cut(members: dict[str, Member], cut: dict[str, Cut]) -> None:
         spaces[name] = check_space(member, name, cut[name])
         check_offset(member, name, sum(found.spiral_angle for found in cut[name].values()) / len(FLANKS))
     if len(members) == len(MEMBERS):
-        check_mates(members, cut, spaces)
+        check_mates(members, cut, spaces, share)
     for name, member in members.items():
         for flank in FLANKS:
             check_grid(member, name, flank)
@@ -119,26 +135,3 @@ def _check_change(member: Member, name: str, flank: str, nominal: CutFlank, foun
             f"the corrected settings move it by {arc:.3g} mm at the mean point against those under design, which must "
             f"be at most {limit:.3g} mm",
         )  # fmt: skip
-
-
-def _spiral(cut: dict[str, Cut], blamed: Sequence[tuple[str, str]]) -> float | None:
-    """The middle one of the spiral angles [rad] of all flanks that are found and not to blame, else of all found."""
-    found = {
-        (name, flank): angle
-        for name, flanks in cut.items()
-        for flank, one in flanks.items()
-        if (angle := abs(one.spiral_angle)) > _TELLING_SPIRAL
-    }
-    others = [angle for where, angle in found.items() if where not in blamed] or list(found.values())
-    return median(others) if others else None
-
-
-def _pressure(cut: dict[str, Cut], blamed: Sequence[tuple[str, str]]) -> float | None:
-    """The middle one of the pressure angles [rad] of all flanks that are found and not to blame."""
-    found = [
-        one.pressure_angle
-        for name, flanks in cut.items()
-        for flank, one in flanks.items()
-        if (name, flank) not in blamed
-    ]
-    return median(found) if found else None

@@ -21,6 +21,7 @@ from gearmath.bevel.method import generation_of
 from gearmath.bevel.newton import TOLERANCE
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member, Settings
+from gearmath.specs.cut import RATIO
 
 #: What counts as one: spiral and pressure angle off those wanted. [rad]
 _SPIRAL, _PRESSURE = math.radians(2), math.radians(5)
@@ -95,13 +96,15 @@ def _root_off(
 
 @dataclass(frozen=True)
 class Repair:
-    """A value of a setting (as in the file) that puts a flank right: how wrong it was, and how wrong it is then."""
+    """A value of a setting (as in the file) that puts a flank right: how wrong it was, and how wrong it is then;
+    ``solved`` where it is no usual slip but the value that leaves least."""
 
     key: str
     value: float
     other: float
     before: float
     after: float
+    solved: bool = False
 
 
 def allowed(key: str, value: float) -> bool:
@@ -123,23 +126,26 @@ def repairs(member: Member, flank: str, expected: Mapping[str, float], wanted: W
         if key == _PHASE:
             continue
         value = getattr(spec, key)
-        for other in {value * slip for slip in _SLIPS} | {expected.get(key, value), getattr(beside, key)} - {value}:
+        slips = {value * slip for slip in _SLIPS} | ({1 / value} if key == RATIO else set())
+        for other in slips | {expected.get(key, value), getattr(beside, key)} - {value}:
             if allowed(key, other) and other != value:
                 trials.append((key, value, other))
                 rows.append(spec.model_copy(update={key: other}).vector)
+    slipped = len(trials)
     for key, value, other in _solved(member, flank, wanted):
         if not allowed(key, other):
             continue
         trials.append((key, value, other))
         rows.append(spec.model_copy(update={key: other}).vector)
+    solved = range(slipped, len(trials))
     index = np.full(len(rows) + 1, member.indexing_sign * (member.blade_groups or 0) / member.teeth)
     index[-1] *= -1
     size = np.linalg.norm(misfit(member, flank, np.array([*rows, spec.vector]), index, wanted), axis=0)
     if member.blade_groups:
         trials.append(("indexing_sign", member.indexing_sign, -member.indexing_sign))
     return [
-        Repair(*trial, before=float(size[0]), after=float(after))
-        for trial, after in zip(trials, size[1:], strict=False)
+        Repair(*trial, before=float(size[0]), after=float(after), solved=k in solved)
+        for k, (trial, after) in enumerate(zip(trials, size[1:], strict=False))
     ]
 
 

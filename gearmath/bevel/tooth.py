@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -79,6 +80,7 @@ class ToothSpace:
         return np.hypot(low.point[0, :, 0], low.point[0, :, 1]) * (self.pitch - self.width(0))
 
 
+@lru_cache(maxsize=16)
 def tooth_space(member: Member, name: str, columns: int = DEFAULT_COLUMNS) -> ToothSpace:
     """Space 0 of a member, whatever the method that cuts it.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import JSON, about, table
+from gearmath.cli.common import JSON, NewFile, about, table
 
 if TYPE_CHECKING:
     from gearmath.bevel.blank_table import Row
@@ -19,9 +19,7 @@ if TYPE_CHECKING:
 @click.option(
     "--fragment", "as_set", is_flag=True, help="Print the blanks as a gear set has them ([pinion.blank], ...)."
 )
-@click.option(
-    "-o", "--output", "target", type=click.Path(path_type=Path, dir_okay=False), help="File to write instead (text)."
-)
+@click.option("-o", "--output", "target", type=NewFile(), help="File to write instead (text).")
 def blank(data: str, as_json: bool, as_set: bool, target: Path | None) -> None:
     """The blank of a spiral bevel pair from its design data: ISO 23509 method 0, slot widths to AGMA 929.
 

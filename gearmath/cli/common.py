@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -48,6 +49,20 @@ REGISTER = click.option(
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
+class NewFile(click.Path):
+    """A file to write: that it can be written there is checked before any work is done."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path, dir_okay=False)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        from gearmath.files import check_place
+
+        path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        check_place(path)
+        return path
+
+
 def SET(command: Callable[..., Any]) -> Callable[..., Any]:
     """The gear set of a verb as its argument or, as all verbs have it, by --set; the verb gets ``gear_set``."""
 
@@ -80,7 +95,7 @@ def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> t
 def plot(what: str) -> Any:
     """The option --plot for one picture."""
     return click.option(
-        "--plot", "picture", type=click.Path(path_type=Path, dir_okay=False), metavar="PICTURE.png",
+        "--plot", "picture", type=NewFile(), metavar="PICTURE.png",
         help=f"Picture to write (PNG): {what}.",
     )  # fmt: skip
 
@@ -93,10 +108,17 @@ def save_plot(figure: Figure, path: Path, as_json: bool) -> None:
     click.echo(f"picture: {path}", err=as_json)
 
 
+#: The option --sheet of programs.
+SHEET = click.option(
+    "--sheet", type=NewFile(), metavar="SETUP.html",
+    help="Also write the set-up sheet: a page that prints on A4.",
+)  # fmt: skip
+
+
 def output(suffix: str) -> Any:
     """The option -o for one output file."""
     return click.option(
-        "-o", "--output", "target", type=click.Path(path_type=Path, dir_okay=False), required=True,
+        "-o", "--output", "target", type=NewFile(), required=True,
         help=f"File to write ({suffix}).",
     )  # fmt: skip
 

@@ -115,7 +115,7 @@ def compensate(
         correction = correct(
             spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
             few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=level, added=moved, bounds=bounds,
-            progress=progress,
+            progress=progress, indexed=evaluation.closing.withheld is None,
         )  # fmt: skip
     if thickness:
         by = cast("By", thickness_by)
@@ -129,8 +129,10 @@ def compensate(
     if as_json:
         echo_json(values)
         return
-    for remark in evaluation.left_out:
+    for remark in evaluation.first:
         click.echo(remark)
+    if evaluation.closing.withheld:
+        click.echo(f"no index corrections: {evaluation.closing.withheld}")
     for flank, count in correction.left_out.items():
         if count:
             click.echo(f"{flank}: {count} points of the grid were left out")
@@ -141,7 +143,7 @@ def compensate(
             click.echo("\n".join(say_analysis(" and ".join(group), analysis)))
         click.echo("\n".join([*say_changes(values), *say_result(correction)]))
     for remark in (*evaluation.remarks, *correction.remarks):
-        if remark not in evaluation.left_out:
+        if remark not in evaluation.first:
             click.echo(remark)
     click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
 

@@ -7,14 +7,28 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, about, bar, fast_kernels, member_of, output
+from gearmath.cli.common import (
+    FLANK_CSV,
+    MACHINE,
+    MEMBER,
+    SET,
+    SHEET,
+    NewFile,
+    about,
+    bar,
+    fast_kernels,
+    member_of,
+    output,
+)
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
+    from gearmath.bevel.tooth import ToothSpace
     from gearmath.machine.executor import MachinePath
     from gearmath.machine.run import Run
     from gearmath.specs.bevel_set import Member
+    from gearmath.specs.flank_csv import FlankFile
     from gearmath.specs.milling_machine import MillingMachine
     from gearmath.specs.simulated_machine import SimulatedMachine
 
@@ -45,38 +59,53 @@ nc.add_command(nc_calibrate)
 @click.option("--roughing-stock", type=float, default=0.0, help="Rough first and leave this much, mm; 0 for none.")
 @click.option("--finishing-stock", type=float, default=0.0, help="Stock that stays on the finished flanks, mm.")
 @click.option("--dry-run", is_flag=True, help="Cut air: everything above the work, without coolant.")
+@SHEET
 @output(".MPF; its name becomes the program name")
 def cut(
     gear_set: str, member: str | None, machine: str, spaces: str, tolerance_um: float, feed: float, rpm: float,
-    roughing_stock: float, finishing_stock: float, dry_run: bool, target: Path,
+    roughing_stock: float, finishing_stock: float, dry_run: bool, sheet: Path | None, target: Path,
 ) -> None:  # fmt: skip
     """The cutting program of a member.
 
     Before it is written it is run: it must keep the limits of the machine, and collide with nothing.
     """
     from gearmath.bevel.pair import load_pair
+    from gearmath.bevel.tooth import tooth_space
     from gearmath.files import write_text
     from gearmath.machine.control import Setup
-    from gearmath.machine.cutting import Job, cutting_program, pass_count
+    from gearmath.machine.cutting import PLUNGE_FEED, Job, cutting_plan, pass_count, program_of
     from gearmath.machine.executor import execute
     from gearmath.machine.judge import faults_of
-    from gearmath.machine.words import block_count
+    from gearmath.machine.setup_facts import SetupFacts
+    from gearmath.machine.timing import timing
+    from gearmath.machine.words import block_count, check_name
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
+    check_name(target.stem)
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
     wanted = _spaces(spaces, spec.teeth)
     job = Job(wanted, tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
     milling_machine = load_milling_machine(find(machine))
     with bar(pass_count(spec, member, job), "pass") as progress:
-        text = cutting_program(bevel_set, member, milling_machine, target.stem, job, progress)
+        plan = cutting_plan(bevel_set, member, milling_machine, job, progress)
+        text = program_of(plan, target.stem)
     path = execute(text, str(target), Setup.of(milling_machine))
-    runs = _right_runs(path, spec, member, milling_machine)
+    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
+    runs = _right_runs(path, spec, member, milling_machine, space)
     if faults := faults_of(text, path, runs, spec, member, milling_machine):
         raise InputError(f"{target}: {'; '.join(map(str, faults))}: the program is not written")
+    page = None
+    if sheet is not None:
+        from gearmath.setup_sheet import setup_sheet
+
+        page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
     write_text(target, text)
     click.echo(f"{target}: {len(wanted)} of {spec.teeth} spaces, {block_count(text)} blocks")
+    if sheet is not None and page is not None:
+        write_text(sheet, page)
+        click.echo(f"{sheet}: set-up sheet, prints on A4")
 
 
 @click.command(epilog=FLANK_CSV)
@@ -86,7 +115,7 @@ def cut(
 @click.option("--program", required=True, type=click.Path(path_type=Path), help="NC program to run.")
 @click.option("--errors", help="What is wrong with the machine: a TOML file, or the bundled simulated_shop.toml.")
 @click.option(
-    "--report", type=click.Path(path_type=Path, dir_okay=False),
+    "--report", type=NewFile(),
     help="Also write a JSON file of gouges, uncut stock, collisions, axis speeds and time.",
 )  # fmt: skip
 @click.option("--report-tolerance-um", type=click.FloatRange(0.01, 1000), default=1.0, show_default=True,
@@ -104,21 +133,19 @@ def mill(
     With --measured they are those of a measuring machine, with the clamping, drift and probe of the file of --errors:
     tooth 0 in full, the corners of the grid on eight teeth around, and tooth 0 again at the end.
 
-    Every block is checked on a machine without errors: the status is 1 where it leaves more than the tolerance that the
-    program states, and where the machine must not run it: travel, speed, acceleration, spindle, modes left as they
-    were, spaces left out, collisions, rapid motion in the work or near it. So it is with --report, without --errors,
-    where a surface is off by more than --report-tolerance-um or something collides.
+    Every block is checked on a machine without errors. The status is 1, and the last line says why with figure and
+    limit, where flanks, fillets or root are gouged or keep stock by more than the program states (1 um where it states
+    nothing), where spaces are left out, blocks end off the path of the settings, anything collides, rapid motion comes
+    near the work, or the machine must not run it: travel, speed, acceleration, feed, spindle, modes. With --report,
+    without --errors, it is so too where a surface is off by more than --report-tolerance-um.
     """
     from gearmath.bevel.pair import load_pair
+    from gearmath.bevel.tooth import tooth_space
     from gearmath.machine.control import Setup
     from gearmath.machine.executor import execute
     from gearmath.machine.judge import faults_of
-    from gearmath.machine.measuring import measure_member
-    from gearmath.machine.metal import metal
-    from gearmath.machine.mill import mill_member
     from gearmath.machine.nc_text import program_text, skip_blocks
-    from gearmath.machine.probing import teeth_around
-    from gearmath.machine.watch import stated_member
+    from gearmath.machine.stated import stated_member
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
@@ -133,89 +160,117 @@ def mill(
         click.echo(f"{program}: {skipped} blocks begin with / and are judged as not skipped")
     if measured and simulated is None:
         raise InputError("--measured needs --errors: the file that says how the member sits and what the probe does")
-    with bar(2 * spec.teeth, "flank") as progress, about(program):
-        if measured and simulated is not None:
-            around = teeth_around(spec.teeth)
-            left = metal(path, spec, member, milling_machine, simulated, around=around, progress=progress)
-            file = measure_member(left, spec, member, simulated, run)
-        else:
-            file = mill_member(path, spec, member, milling_machine, simulated, progress)
+    with about(program):
+        space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
+        runs = _right_runs(path, spec, member, milling_machine, space)
+        file = _milled(path, runs, spec, member, milling_machine, simulated, space, run if measured else None)
     write_flank_csv(target, file)
-    worst, hobbed = float(abs(file.deviation).max()) * 1000, spec.process == "face_hobbing"
-    click.echo(f"{target}: {len(file)} points, largest deviation {worst:.3f} um")
-    faults: list[str] = []
-    with about(program), bar(1, "check") as progress:
-        runs = _right_runs(path, spec, member, milling_machine)
-        judged = faults_of(text, path, runs, spec, member, milling_machine)
-        progress(1)
-    if not hobbed:
-        faults += _watch_blocks(text, runs, spec, milling_machine)
-    elif simulated is None:
-        faults += _off_tolerance(text, spec, worst / 1000)
-    faults += [str(fault) for fault in judged]
+    worst = float(abs(file.deviation).max())
+    click.echo(f"{target}: {len(file)} points, largest deviation {worst * 1000:.3f} um")
+    with about(program):
+        if space is not None:
+            faults = _judge_metal(text, runs, spec, member, milling_machine, space)
+        else:
+            faults = _judge_hobbed(text, path, runs, spec, member, milling_machine, worst, simulated is None)
+        faults += map(str, faults_of(text, path, runs, spec, member, milling_machine))
     if report is not None:
-        found = _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000)
+        found = _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000, space)
         faults += found if simulated is None else []
+    if faults:
+        raise ComputationError(f"{program}: {'; '.join(faults)}: refused")
     if simulated is not None:
         click.echo(f"the flanks are not compared with a tolerance: the machine has the errors of {errors}")
-    if faults:
-        raise ComputationError(f"{program}: {'; '.join(faults)}")
+    else:
+        cut = sorted({number for one in runs for number in one.spaces})
+        click.echo(f"{program}: passed: {len(cut)} of {spec.teeth} spaces, nothing collides, {milling_machine.name} "
+                   "keeps its limits")  # fmt: skip
 
 
-def _right_runs(path: MachinePath, spec: Member, member: str, machine: MillingMachine) -> list[Run]:
+def _right_runs(
+    path: MachinePath, spec: Member, member: str, machine: MillingMachine, space: ToothSpace | None
+) -> list[Run]:
     """The tools of a program on a machine without errors, with blades as sharp as there are."""
-    from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+    from gearmath.bevel.tooth import SHARP_EDGE
     from gearmath.machine.run import runs_of
 
-    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
     return runs_of(path, spec, member, machine, None, space, SHARP_EDGE)
 
 
-def _off_tolerance(text: str, spec: Member, worst: float) -> list[str]:
-    """Whether the flanks of a hobbed member deviate by more than the program states; corrected ones are meant to."""
-    from gearmath.machine.watch import stated_tolerance
+def _milled(
+    path: MachinePath, right: list[Run], spec: Member, member: str, machine: MillingMachine,
+    simulated: SimulatedMachine | None, space: ToothSpace | None, measurement: int | None,
+) -> FlankFile:  # fmt: skip
+    """The flanks that a program leaves, or with the number of a ``measurement`` what a measuring machine says of
+    them."""
+    from dataclasses import replace
 
-    promised = stated_tolerance(text)
-    corrected = spec.concave.design is not None or spec.convex.design is not None
-    if promised is None or corrected or worst <= promised:
-        return []
-    return [f"the flanks deviate by up to {worst * 1000:.3f} um, the program states {promised * 1000:g} um"]
+    from gearmath.machine.cutter import cutter_of
+    from gearmath.machine.measuring import measure_member
+    from gearmath.machine.metal import metal
+    from gearmath.machine.mill import mill_member
+    from gearmath.machine.probing import teeth_around
+    from gearmath.machine.run import runs_of
+
+    narrowest = None if spec.cutting == "completing" else space
+    if simulated is not None or space is None:
+        runs = runs_of(path, spec, member, machine, simulated, narrowest)
+    else:  # the same, but for the rounding of the blades' edges
+        runs = [replace(run, cutter=cutter_of(spec, run.cut.flanks, narrowest)) for run in right]
+    with bar(2 * spec.teeth, "flank") as progress:
+        if measurement is None or simulated is None:
+            return mill_member(path, spec, member, machine, simulated, progress, runs)
+        around = teeth_around(spec.teeth)
+        left = metal(path, spec, member, machine, simulated, around=around, progress=progress, runs=runs)
+        return measure_member(left, spec, member, simulated, measurement)
 
 
-def _watch_blocks(text: str, runs: list[Run], spec: Member, machine: MillingMachine) -> list[str]:
-    """Print what the blocks leave on a machine without errors; a sentence for each way in which that is more than the
-    program states."""
-    from gearmath.machine.watch import off_the_way, stated_tolerance, watch
+def _judge_hobbed(
+    text: str, path: MachinePath, runs: list[Run], spec: Member, member: str, machine: MillingMachine, worst: float,
+    right: bool,
+) -> list[str]:  # fmt: skip
+    """Whether the flanks of a hobbed member deviate from those of its settings by more than the program states.
 
-    with bar(len({space for run in runs for space in run.spaces}), "space") as progress:
-        found = watch(runs, spec, machine, None, fast_kernels(), progress)
-    deviation, (space, flank, line) = found.worst
-    at = f"line {line} of the program (space {space}, {flank} flank)"
-    click.echo(
-        f"every block checked on {found.lines} normals of the flanks of these settings: {found.lowest * 1000:.3f} to "
-        f"{found.highest * 1000:.3f} um, the largest by {at}"
-    )
-    promised = stated_tolerance(text)
-    if promised is None:
-        if found.uncut:
-            click.echo(f"  {found.uncut} of these normals are not cut at all")
-        return []
-    faults = []
-    if abs(deviation) > promised:
-        faults.append(f"{at} leaves {deviation * 1000:+.3f} um, the program states {promised * 1000:g} um")
-    if found.uncut:
-        faults.append(f"{found.uncut} of {found.lines} normals on the flanks are not cut at all")
-    if spec.generation == "generated":
-        off, (space, flank, line) = off_the_way(runs, spec, machine, fast_kernels())
-        if off > promised:
-            at = f"line {line} of the program (space {space}, {flank} flank)"
-            faults.append(f"{at} takes the tool {off * 1000:.3f} um off its path")
-    return faults
+    ``worst`` [mm] is how far they do from the design, on a machine without errors where that is ``right``.
+    """
+    from gearmath.machine.judge_cut import as_cut, hobbed
+    from gearmath.machine.mill import mill_member
+    from gearmath.machine.stated import Stated
+
+    made = as_cut(spec)
+    if not right or made != spec:
+        with bar(2 * spec.teeth, "flank") as progress:
+            worst = float(abs(mill_member(path, made, member, machine, None, progress, runs).deviation).max())
+    return [str(fault) for fault in hobbed(worst, Stated.of(text))]
+
+
+def _judge_metal(
+    text: str, runs: list[Run], spec: Member, member: str, machine: MillingMachine, space: ToothSpace
+) -> list[str]:
+    """Print what the blocks leave on a machine without errors; a sentence for each way in which that is wrong."""
+    import math
+
+    from gearmath.bevel.tooth import tooth_space
+    from gearmath.machine.judge_cut import as_cut, metal_left
+    from gearmath.machine.stated import Stated
+
+    made = as_cut(spec)
+    with bar(1, "space") as progress:
+        own = space if made == spec else tooth_space(made, member, 7)
+        left = metal_left(runs, made, member, machine, Stated.of(text), own, fast_kernels(), progress)
+    found = left.watch
+    if math.isfinite(found.lowest):
+        _, (number, flank, line) = found.worst
+        click.echo(
+            f"every block checked on {found.lines} normals of the flanks of these settings: {found.lowest * 1000:.3f} "
+            f"to {found.highest * 1000:.3f} um, the largest by line {line} of the program (space {number}, {flank} "
+            "flank)"
+        )
+    return [str(fault) for fault in left.faults]
 
 
 def _write_report(
     target: Path, path: MachinePath, spec: Member, member: str, machine: MillingMachine,
-    errors: SimulatedMachine | None, tolerance: float,
+    errors: SimulatedMachine | None, tolerance: float, space: ToothSpace | None,
 ) -> list[str]:  # fmt: skip
     """Write and print the report; a sentence for each kind of fault in it."""
     import json
@@ -225,7 +280,7 @@ def _write_report(
 
     with bar(5 * spec.teeth, "surface") as progress:
         found = milling_report(path, spec, member, machine, errors, tolerance, evaluator=fast_kernels(),
-                               progress=progress)  # fmt: skip
+                               progress=progress, space=space)  # fmt: skip
     write_text(target, json.dumps(found.as_dict(), indent=2) + "\n")
     seconds = found.timing.feed_seconds + found.timing.rapid_seconds
     click.echo(f"{target}: {seconds:.0f} s, {len(found.gouges)} surfaces gouged, {len(found.uncut)} with stock, "

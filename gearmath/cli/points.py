@@ -47,11 +47,17 @@ _T = TypeVar("_T")
     "--phase", type=click.Choice(["common", "each", "kept"]), default="common", show_default=True,
     help="Rotation about the axis: found for all files at once, for each by itself, or kept as it is.",
 )  # fmt: skip
+@click.option(
+    "--leave-out", is_flag=True,
+    help="Take files in which points are missing or stand far out from the others; these are left out.  [default: "
+    "refused]",
+)  # fmt: skip
 @JSON
 @output("flank CSV")
 def points(
     texts: Sequence[Path], gear_set: str, member: str | None, sides: Sequence[str], teeth: Sequence[int], unit: str,
-    axis: str, apex_offset: float, tip_radius: float, phase: str, as_json: bool, target: Path,
+    axis: str, apex_offset: float, tip_radius: float, phase: str, leave_out: bool, as_json: bool,
+    target: Path,
 ) -> None:  # fmt: skip
     """Points of another measuring machine, as plain text, to a measured flank file.
 
@@ -77,11 +83,15 @@ def points(
         for text, side, tooth in zip(read, sides, teeth, strict=True)
     ]
     parts = [
-        Part(str(path), side, tooth, text.point, text.normal)
+        Part(str(path), side, tooth, text.point, text.normal, text.line)
         for path, side, tooth, text in zip(texts, sides, teeth, read, strict=True)
     ]
     with bar(2 * len(parts), "file") as progress:
-        found = foreign_file(parts, Frame(axis, apex_offset, tip_radius), loaded, member, phase, progress)  # type: ignore[arg-type]
+        frame = Frame(axis, apex_offset, tip_radius)
+        found = foreign_file(parts, frame, loaded, member, phase, progress, leave_out)  # type: ignore[arg-type]
+    if found.gaps and not leave_out:
+        more = f" (and {len(found.gaps) - 1} more)" if len(found.gaps) > 1 else ""
+        raise InputError(f"{found.gaps[0]}{more}; --leave-out takes the other points")
     write_flank_csv(target, found.file)
     header = found.file.header
     remarks = [f"{text.path}: {remark}" for text in read for remark in text.remarks] + list(found.remarks)

@@ -16,6 +16,7 @@ from gearmath.cli.common import (
     MEMBER,
     SET,
     SET_OPTION,
+    SHEET,
     TOUCH_CSV,
     about,
     bar,
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from gearmath.quality.axis_calibration import AxisCalibration
     from gearmath.quality.calibration import Fit, Tip
     from gearmath.specs.calibration import Calibration
-    from gearmath.specs.touch_csv import CalibrationTouches
+    from gearmath.specs.touch_csv import CalibrationTouches, Touches
 
 _PROGRAM = ".MPF; its name becomes the program name"
 CALIBRATION = click.option(
@@ -56,10 +57,11 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
 )  # fmt: skip
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Touches of every point.")
 @click.option("--errors", help="Simulated machine whose [fixture] and spindle the probe must clear.")
+@SHEET
 @output(_PROGRAM)
 def probe(
     gear_set: str, member: str | None, machine: str, calibration: str, topography: str, pitch: bool, registration: bool,
-    repeat: int, errors: str | None, target: Path,
+    repeat: int, errors: str | None, sheet: Path | None, target: Path,
 ) -> None:  # fmt: skip
     """Write the probing program of a member; 'gearmath probe' runs it on the machine model.
 
@@ -75,6 +77,7 @@ def probe(
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
+    from gearmath.specs.touch_csv import planned_touches
 
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
@@ -84,15 +87,26 @@ def probe(
     simulated = load_simulated_machine(find(errors)) if errors else None
     head, fixture = obstacles(milling_machine, simulated)
     text = probing_program(bevel_set, member, milling_machine, known, target.stem, teeth, pitch, repeat, around)
-    points = text.count("R205=$")
-    with bar(points * (1 + repeat) + text.count("\n"), "step") as progress:
+    points = planned_touches(text) // repeat
+    with bar(points * (2 + repeat) + text.count("\n"), "step") as progress:
         found = approaches(
             text, str(target), spec, member, milling_machine, known, fixture, head.spindle_radius,
             progress,
         )  # fmt: skip
     clear = clearances(found, target, "the program is not written")
+    page = None
+    if sheet is not None:
+        from gearmath.setup_sheet import ProbingJob, probing_sheet
+
+        job = ProbingJob(
+            bevel_set.title, member, spec, milling_machine, known, fixture, head.spindle_radius, repeat * points, clear
+        )
+        page = probing_sheet(job, target.name)
     write_text(target, text)
     click.echo(f"{target}: {repeat * points} touches, {block_count(text)} blocks; {clear}")
+    if sheet is not None and page is not None:
+        write_text(sheet, page)
+        click.echo(f"{sheet}: set-up sheet, prints on A4")
 
 
 def clearances(found: list[Approach], program: Path, end: str) -> str:
@@ -101,7 +115,7 @@ def clearances(found: list[Approach], program: Path, end: str) -> str:
     if worst.distance <= 0.0:
         raise InputError(
             f"{program}, line {worst.line}: the {worst.probe} of the probe meets the {worst.work}, "
-            f"{-worst.distance:.3f} mm deep: {end}"
+            f"{-worst.distance:.3f} mm deep: {end}" + (f" ({worst.said})" if worst.said else "")
         )
     nearest: dict[str, Approach] = {}
     for one in sorted(found, key=lambda one: -one.distance):
@@ -130,13 +144,14 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
+    from gearmath.specs.touch_csv import planned_touches
 
     source = find(calibration)
     make = axis_program if cycle == "axes" else calibration_program
     with about(source):
         text = make(load_milling_machine(find(machine)), load_calibration(source), target.stem)
     write_text(target, text)
-    click.echo(f"{target}: {text.count('R205=$')} touches, {block_count(text)} blocks")
+    click.echo(f"{target}: {planned_touches(text)} touches, {block_count(text)} blocks")
 
 
 @click.command(epilog=f"{TOUCH_CSV} {FLANK_CSV}")
@@ -148,10 +163,13 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
 @output("measured flank CSV")
 def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int | None, target: Path) -> None:
     """Raw touches of a probe to measured points: corrected contact points and their deviations."""
+    import numpy as np
+
     from gearmath.bevel.flank import blank_grid
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.completeness import missing_touches, taken_for
-    from gearmath.quality.touches import measured_member
+    from gearmath.quality.completeness import missed_points, missing_touches, taken_for
+    from gearmath.quality.search_lines import check_search_lines
+    from gearmath.quality.touches import check_on_grid, measured_member
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
@@ -160,20 +178,28 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
 
     found = read_touch_csv(raw, run)
     member = load_pair(find(gear_set)).member(found.member)
-    shape = blank_grid(member).shape
-    missing = missing_touches(found, member.teeth, shape)
-    _check_whole(raw, run, found.run, missing)
+    grid = blank_grid(member)
+    missing, missed = missing_touches(found, member.teeth, grid.shape), missed_points(found)
+    _check_whole(raw, run, found, missing)
+    at = load_milling_machine(find(machine)), load_calibration(find(calibration))
     with about(raw):
-        measured = measured_member(
-            found, member, found.member, load_milling_machine(find(machine)), load_calibration(find(calibration))
-        )
+        check_on_grid(found, member, found.member, grid)
+        doubt = check_search_lines(found, member, found.member, grid, *at)
+        measured = measured_member(found, member, found.member, *at)
     write_flank_csv(target, measured)
-    worst = float(abs(measured.deviation).max()) * 1000
-    click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {worst:.3f} um")
+    if doubt:
+        click.echo(f"{raw}: {doubt}", err=True)
+    for one in missed:
+        click.echo(one)
+    known = measured.deviation[np.isfinite(measured.deviation)]
+    largest = f"{float(abs(known).max()) * 1000:.3f} um" + (" of those that were met" if missed else "")
+    click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {largest}")
+    if found.joined:
+        click.echo(f"run {found.run}: {found.joined}")
     for one in missing:
         click.echo(f"run {found.run} is not whole: {one}")
     if found.planned is None and not missing:
-        click.echo(f"run {found.run}: {taken_for(found, shape)}", err=True)
+        click.echo(f"run {found.run}: {taken_for(found, grid.shape)}", err=True)
 
 
 @click.command(epilog=CALIBRATION_CSV)
@@ -197,13 +223,15 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
     found = read_calibration_csv(raw, run)
     known, spindle = load_calibration(find(calibration)), load_milling_machine(find(machine))
     parts, untouched = missing_calibration(found, known, spindle)
-    _check_whole(raw, run, found.run, parts)
+    _check_whole(raw, run, found, parts)
     if (found.target == WORK_SPHERE).any():
         if lobing:
             raise InputError("--lobing needs touches on the sphere of the table; these are on that of the work")
         lines = _calibrate_axes(raw, found, calibration, machine, target)
     else:
         lines = _calibrate_tip(raw, found, calibration, lobing, target)
+    if found.joined:
+        click.echo(f"run {found.run}: {found.joined}")
     for line in lines:
         click.echo(line)
     for one in (*parts, *untouched):
@@ -211,19 +239,22 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
     click.echo(f"{target}: written")
 
 
-def _check_whole(raw: Path, wanted: int | None, run: int, missing: tuple[str, ...]) -> None:
-    """Raise InputError where the last run is not whole and was not asked for by its number."""
+def _check_whole(
+    raw: Path, wanted: int | None, found: Touches | CalibrationTouches, missing: tuple[str, ...]
+) -> None:  # fmt: skip
+    """Raise InputError where the last run, with those that it continues, is not whole and was not asked for."""
     from gearmath.specs.touch_csv import run_lengths
 
     if wanted is not None:
         return
-    lengths = run_lengths(raw)
+    run, lengths = found.run, run_lengths(raw)
     longest = max(lengths, key=lambda number: lengths[number])
-    if not missing and lengths[run] < lengths[longest]:  # runs of one file are runs of one program
+    if not missing and not found.joined and lengths[run] < lengths[longest]:  # runs of one file are runs of one program
         missing = (f"it has {lengths[run]} touches, run {longest} has {lengths[longest]}",)
     if missing:
         choice = f"--run {run} takes it as it is" + (f", --run {longest} another one" if longest != run else "")
         more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
+        more += f" ({found.joined})" if found.joined else ""
         raise InputError(f"{raw}: run {run}, the last one, is not whole: {missing[0]}{more}; {choice}")
 
 

@@ -59,7 +59,7 @@ def probe(
     from gearmath.machine.control import Setup
     from gearmath.machine.nc_text import program_text
     from gearmath.machine.probe_run import run_touches, touch_count, touches_artefacts
-    from gearmath.machine.watch import stated_member
+    from gearmath.machine.stated import stated_member
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
@@ -82,8 +82,8 @@ def probe(
         name, spec = member_of(pair, member, stated_member(text))
         there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
         count = touch_count(text, str(program), setup)
-        _check_clear(text, program, at_member, milling_machine, shop, 2 * count + text.count("\n"))
-    blocks = 2 * count if count is not None else text.count("MEAS=1")
+        _check_clear(text, program, at_member, milling_machine, shop, 3 * count + text.count("\n"))
+    blocks = 3 * count if count is not None else text.count("MEAS=1")
     with bar(blocks, "block") as progress:
         raw = run_touches(text, str(program), there, shop, count, run, progress, setup)
     write_text(target, raw)

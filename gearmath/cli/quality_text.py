@@ -15,6 +15,9 @@ _ORDERS = (
     "twist_um", "residual_um",
 )  # fmt: skip
 
+#: Less than this is shown as this: no uncertainty is zero.
+_LEAST_SHOWN = 0.01
+
 
 def evaluation_text(found: Evaluation, sure: Sequence[Uncertain] = ()) -> str:
     """The figures of an evaluation as text, with their uncertainties where they are known."""
@@ -24,7 +27,8 @@ def evaluation_text(found: Evaluation, sure: Sequence[Uncertain] = ()) -> str:
         ["flank", *_FIGURES],
         [[flank, *(_cell(row, name) for name in _FIGURES)] for flank, row in flanks.items()],
     )
-    return "\n".join([*_gaps(found), first, "", *_orders(flanks), *_sure(sure), *_lines(values)]).rstrip()
+    lines = [*_gaps(found), first, "", *_orders(flanks), *_sure(sure), *_lines(values)]
+    return "\n".join([*lines, *([] if sure else [_unsure(values)]), *_others(found)]).rstrip()
 
 
 def _cell(row: dict[str, Any], name: str) -> str:
@@ -33,8 +37,8 @@ def _cell(row: dict[str, Any], name: str) -> str:
 
 
 def _gaps(found: Evaluation) -> Iterator[str]:
-    """What was left out, and which figures are withheld for want of it."""
-    lines = [*(f"left out: {line}" for line in _without_suffix(found.left_out)), *found.withheld]
+    """Whether the work moved, what was left out, and which figures are withheld for that."""
+    lines = [*found.closing.said, *(f"left out: {line}" for line in _without_suffix(found.left_out)), *found.withheld]
     yield from lines
     if lines:
         yield ""
@@ -82,7 +86,8 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
     if values["rotation"] is not None:
         yield _rotation(values["rotation"])
     for flank, closure in values["drift_um"].items():
-        yield f"{flank} flank: tooth 0 measured again at the end: {closure:+.2f} um, taken out evenly"
+        how = "taken out as a step" if values["closing"]["kind"] == "step" else "taken out evenly"
+        yield f"{flank} flank: tooth 0 measured again at the end: {closure:+.2f} um, {how}"
     runout, thickness, tolerance = values["runout"], values["thickness"], values["tolerance"]
     if runout is not None:
         yield from _runout(
@@ -99,7 +104,21 @@ def _lines(values: dict[str, Any]) -> Iterator[str]:
         yield "no grade: pitch was not measured"
     else:
         yield from _grades(tolerance)
-    yield from (line for line in values["remarks"] if line not in values["left_out"])
+
+
+def _unsure(values: dict[str, Any]) -> str:
+    """What is said where the file does not know how sure its points are."""
+    seat = values["registration"]
+    left = None if seat is None else seat["noise_um"]
+    how = (
+        "no uncertainty is known" if left is None else f"± is from the {left:.2f} um of noise that the clamping leaves"
+    )
+    return f"the file has no u_um, and --sigma-um is not given: {how}"
+
+
+def _others(found: Evaluation) -> Iterator[str]:
+    """The remarks that were not made first."""
+    yield from (line for line in found.remarks if line not in found.first)
 
 
 def _runout(runout: dict[str, Any], before: dict[str, Any] | None) -> Iterator[str]:
@@ -171,4 +190,4 @@ def _rotation(turn: dict[str, Any]) -> str:
 def _with(values: dict[str, Any], name: str) -> str:
     """A figure with its standard uncertainty, if there is one."""
     uncertainty = values[f"u_{name}"]
-    return f"{values[name]:.2f}" + ("" if uncertainty is None else f" ± {uncertainty:.2f}")
+    return f"{values[name]:.2f}" + ("" if uncertainty is None else f" ± {max(uncertainty, _LEAST_SHOWN):.2f}")

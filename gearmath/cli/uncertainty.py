@@ -75,7 +75,6 @@ def uncertainty(
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
 
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.completeness import missing_points
     from gearmath.quality.evaluation import evaluate_member
     from gearmath.quality.figures import figures_of
     from gearmath.quality.uncertainty import uncertain_figures
@@ -93,7 +92,6 @@ def uncertainty(
         found = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, progress)
     _, settings, effects, remarks = uncertain_correction(spec, file, evaluation, covariance, sigma_um)
     found += settings
-    remarks = [*missing_points(file, spec.teeth), *remarks]
     if picture:
         from gearmath.plot import uncertainty_figure
 
@@ -101,9 +99,11 @@ def uncertainty(
     if as_json:
         echo_json({
             "member": member, "source": source, "draws": draws, "seed": seed, "figures": shown(found),
-            **effects_um(effects), "remarks": remarks,
+            **effects_um(effects), "remarks": [*evaluation.first, *remarks],
         })  # fmt: skip
         return
+    for remark in evaluation.first:
+        click.echo(remark)
     click.echo(f"standard uncertainties from {source}; {draws} draws")
     click.echo(table(
         ["flank", "figure", "value", "u", "from", "to", "unit", "method"],
@@ -136,7 +136,10 @@ def uncertain_correction(
 
     name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))
     try:
-        correction = correct(member, name, found.file, few=True, noise=noise_of_points(file, member, found, sigma_um))
+        correction = correct(
+            member, name, found.file, few=True, noise=noise_of_points(file, member, found, sigma_um),
+            indexed=found.closing.withheld is None,
+        )  # fmt: skip
         settings, effects = uncertain_settings(member, name, found.file, correction, judged)
     except (InputError, ComputationError) as error:
         return None, [], {}, [f"no corrected settings: {error}"]

@@ -67,7 +67,13 @@ def compile_kernel(kernel: Kernel) -> CompiledKernel:
 
     Raises ComputationError where there is no compiler, ExportError where the Kernel cannot become C.
     """
-    return CompiledKernel(kernel, _library(tuple(double_kernel(kernel).files.items())))
+    if id(kernel) not in _COMPILED:
+        _COMPILED[id(kernel)] = CompiledKernel(kernel, _library(tuple(double_kernel(kernel).files.items())))
+    return _COMPILED[id(kernel)]
+
+
+#: By the identity of the kernel, which a compiled one holds.
+_COMPILED: dict[int, CompiledKernel] = {}
 
 
 @lru_cache(maxsize=64)

@@ -14,7 +14,7 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.calibrating import touch_sphere
-from gearmath.machine.probe_words import Blocks
+from gearmath.machine.probe_words import Blocks, Plan
 from gearmath.machine.probing import APPROACH, CLEARANCE, probe_height, tip_positions
 from gearmath.specs.calibration import Calibration, WorkSphere
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
@@ -54,22 +54,29 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
         f"{sphere.radius:g} mm off it, at {sphere.azimuth:g} degrees",
     )
 
+    above = f"G0 {blocks.length('Z', anywhere)}"
+    plan = Plan.of_sections([len(_directions(one, sphere, calibration)) for one in centers])
+
     def body() -> Iterator[str]:
-        yield from blocks.start(f"{axis_touches(machine, calibration)} touches", CALIBRATION_COLUMNS)
-        above = f"G0 {blocks.length('Z', anywhere)}"
-        for center in centers:  # to the first one from the home of Z
-            x, y, _, a, b = blocks.axes(center)
-            yield f"; sphere on the work, {a} {b}"
-            yield f"G0 {x} {y} {a} {b}"
-            level = center[2] + sphere.diameter / 2 + calibration.tip_radius + CLEARANCE
-            directions = _directions(center, sphere, calibration)
-            yield from touch_sphere(
-                blocks, calibration, center[:3], sphere.diameter, directions, level, WORK_SPHERE
-            )  # fmt: skip
-            yield above
+        yield from blocks.start(plan, CALIBRATION_COLUMNS)
+        for number, center in enumerate(centers, 1):  # to the first one from the home of Z
+            a, b = np.degrees(center[3:]).round(3)
+            what = f"sphere on the work, A {a:g} B {b:g}"
+            yield from blocks.section(plan, number, what, (*_position(blocks, center, sphere, calibration), above))
         yield from blocks.end()
 
     return blocks.text(header, body())
+
+
+def _position(blocks: Blocks, center: np.ndarray, sphere: WorkSphere, calibration: Calibration) -> Iterator[str]:
+    """The touches with A and B at one position, from above all that the sphere can reach."""
+    before = center - blocks.machine.one_sided * np.array([0.0, 0.0, 0.0, 1.0, 0.0])
+    if blocks.machine.one_sided:
+        yield f"G0 {' '.join(word for word in blocks.axes(before) if word[0] != 'Z')}"
+    yield f"G0 {' '.join(word for word in blocks.axes(center) if word[0] != 'Z')}"
+    level = center[2] + sphere.diameter / 2 + calibration.tip_radius + CLEARANCE
+    directions = _directions(center, sphere, calibration)
+    yield from touch_sphere(blocks, calibration, center[:3], sphere.diameter, directions, level, WORK_SPHERE)
 
 
 def axis_touches(machine: MillingMachine, calibration: Calibration) -> int:

@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.machine.probe_words import Blocks
-from gearmath.machine.probing import APPROACH, APPROACH_FEED, CLEARANCE, MEASURING_FEED
+from gearmath.machine.probe_words import APPROACH_FEED, MEASURING_FEED, STILL, Blocks, Plan
+from gearmath.machine.probing import APPROACH, CLEARANCE
 from gearmath.specs.calibration import Calibration, Face, Ring
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING, RING_FACE, SPHERE
@@ -55,24 +55,24 @@ def calibration_program(machine: MillingMachine, calibration: Calibration, progr
     blocks = Blocks(program_name, machine, calibration.length)
     header = (f"gearmath {__version__} calibration program", f"machine: {machine.name}", f"probe: {calibration.name}")
 
+    level, top = _level(machine, calibration), blocks.length("Z", float(machine.travel[2, 1]))
+    ring, sphere, sections = calibration.ring, calibration.sphere, []
+    if ring is not None:
+        sections.append(("ring", len(PAIRS) * 2 + 2, _ring(blocks, calibration, ring, level)))
+        if ring.face is not None:
+            sections.append(("face of the ring", len(_SIDES), _face(blocks, calibration, ring, ring.face, level)))
+    if sphere is not None:
+        center, directions = np.array(sphere.center) - calibration.tip_offset, sphere_directions()
+        touches = touch_sphere(blocks, calibration, center, sphere.diameter, directions, level, SPHERE)
+        sections.append(("sphere", len(directions), touches))
+    plan = Plan.of_sections([count for _, count, _ in sections])
+
     def body() -> Iterator[str]:
-        planned = f"{sum(calibration_touches(calibration).values())} touches"
-        yield from blocks.start(planned, CALIBRATION_COLUMNS)
-        level, top = _level(machine, calibration), blocks.length("Z", float(machine.travel[2, 1]))
+        yield from blocks.start(plan, CALIBRATION_COLUMNS)
         yield f"G0 {top}"
         yield f"G0 {' '.join(blocks.axes(np.zeros(5))[3:])}"
-        if calibration.ring is not None:
-            yield from _ring(blocks, calibration, calibration.ring, level)
-            yield f"G0 {top}"
-            if calibration.ring.face is not None:
-                yield from _face(blocks, calibration, calibration.ring, calibration.ring.face, level)
-                yield f"G0 {top}"
-        if calibration.sphere is not None:
-            yield "; sphere"
-            center = np.array(calibration.sphere.center) - calibration.tip_offset
-            diameter = calibration.sphere.diameter
-            yield from touch_sphere(blocks, calibration, center, diameter, sphere_directions(), level, SPHERE)
-            yield f"G0 {top}"
+        for number, (what, _, touches) in enumerate(sections, 1):
+            yield from blocks.section(plan, number, what, (*touches, f"G0 {top}"))
         yield from blocks.end()
 
     return blocks.text(header, body())
@@ -111,9 +111,8 @@ def _ring(blocks: Blocks, calibration: Calibration, ring: Ring, level: float) ->
     """Touches along X, along Y through the middle found, and along X again through the middle of these."""
     x, y, z = np.array(ring.center) - calibration.tip_offset
     reach = ring.diameter / 2 - calibration.tip_radius + calibration.overtravel
-    yield "; ring"
     yield f"G0 {blocks.length('X', x)} {blocks.length('Y', y)}"
-    yield f"G0 {blocks.length('Z', level)}"
+    yield from blocks.lowered(blocks.length("Z", level))
     yield from blocks.guarded(blocks.length("Z", z), APPROACH_FEED, level)
     yield f"R10={_number(x)} R11={_number(y)}"
     for axis, parameter, pair in (("X", 200, PAIRS[0]), ("Y", 201, PAIRS[1]), ("X", 200, PAIRS[0])):
@@ -133,12 +132,14 @@ def _face(blocks: Blocks, calibration: Calibration, ring: Ring, face: Face, leve
     x, y, _ = np.array(ring.center) - calibration.tip_offset
     height = face.seat + face.height + calibration.tip_radius - calibration.tip_offset[2]
     away = (ring.diameter + face.width) / 2
-    yield "; face of the ring"
-    for to_x, to_y in _SIDES:
+    for number, (to_x, to_y) in enumerate(_SIDES):
         place = f"{blocks.length('X', x + to_x * away)} {blocks.length('Y', y + to_y * away)}"
         start = blocks.length("Z", height + APPROACH)
-        yield f"G0 {place}"
-        yield f"G0 {blocks.length('Z', level)}"
+        if number:
+            yield from blocks.aside(f"{place} {STILL}")
+        else:  # from the top of Z
+            yield f"G0 {place}"
+            yield from blocks.lowered(blocks.length("Z", level))
         yield from blocks.guarded(start, APPROACH_FEED, level)
         end = f"X=IC(0) Y=IC(0) {blocks.length('Z', height - calibration.overtravel)}"
         yield from blocks.touch(end, start, MEASURING_FEED, APPROACH_FEED, level)
@@ -149,17 +150,20 @@ def touch_sphere(
     blocks: Blocks, calibration: Calibration, center: np.ndarray, diameter: float, directions: np.ndarray, level: float,
     target: str,
 ) -> Iterator[str]:  # fmt: skip
-    """Touches along the normals of a sphere; down to each of them from above, outside of the sphere.
+    """Touches along the normals of a sphere; from the top of Z, and down to each of them outside of the sphere.
 
     ``center`` (3,) is X Y Z with the tip's centre in that of the sphere; ``level`` is the Z of sideways motion.
     """
     reach = diameter / 2 + calibration.tip_radius
-    yield f"G0 {' '.join(blocks.axes(np.array([*center, 0.0, 0.0]))[:2])}"
-    yield f"G0 {blocks.length('Z', level)}"
+    place = " ".join(blocks.axes(np.array([*center, 0.0, 0.0]))[:2])
+    yield f"G0 {place}"
+    yield from blocks.lowered(blocks.length("Z", level))
     for direction in directions:
         start, end = (center + (reach + off) * direction for off in (APPROACH, -calibration.overtravel))
         x, y, z, *_ = blocks.axes(np.array([*start, 0.0, 0.0]))
-        yield f"G0 {x} {y}"
+        if f"{x} {y}" != place:
+            place = f"{x} {y}"
+            yield from blocks.aside(f"{place} {STILL}")
         yield from blocks.guarded(z, APPROACH_FEED, level)
         way = " ".join(blocks.axes(np.array([*end, 0.0, 0.0]))[:3])
         yield from blocks.touch(way, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level)

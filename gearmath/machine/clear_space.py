@@ -48,9 +48,14 @@ def room_of(member: Member, machine: MillingMachine, fixture: Fixture) -> Room:
     return Room(float(top), float(front), float(half))
 
 
+def clear_height(room: Room, machine: MillingMachine, tip: float) -> float:
+    """The Z [mm] from which on a tool ``tip`` mm below the gauge line clears the room at every B."""
+    return machine.gauge_line_height + tip + room.top
+
+
 def check_home(room: Room, machine: MillingMachine, tip: float, name: str) -> None:
     """Raises InputError where a tool ``tip`` mm below the gauge line does not clear the room at the home of Z."""
-    needed = machine.gauge_line_height + tip + room.top
+    needed = clear_height(room, machine, tip)
     if machine.home < needed:
         raise InputError(
             f"{name}: home of Z = {machine.home:g} mm: the tool clears the work at every B from Z {needed:.1f} mm on: "

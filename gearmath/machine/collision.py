@@ -67,10 +67,14 @@ def rapid_approaches(runs: list[Run], member: Member, machine: MillingMachine) -
         ends = np.flatnonzero(~run.cutting[1:]) + 1
         steps = run.axes[ends] - run.axes[ends - 1]
         retract = run.cutting[ends - 1] & (steps[:, 2] >= 0.0) & ~np.delete(steps, 2, axis=1).any(axis=1)
-        for k in ends[~retract]:
-            depth = _blade_depth(run.axes[k - 1], run.axes[k], run.cutter, machine, ring)
-            if depth > -RAPID_CLEARANCE:
-                found.append(Collision("blades", "teeth", (int(run.line[k]),), depth))
+        ends = ends[~retract]
+        # the face cone is the same all around: blocks that differ in A only are one
+        blocks = np.hstack([run.axes[ends - 1], run.axes[ends]])[:, [0, 1, 2, 4, 5, 6, 7, 9]]
+        _, first, which = np.unique(np.round(blocks, 6), axis=0, return_index=True, return_inverse=True)
+        depths = [_blade_depth(run.axes[k - 1], run.axes[k], run.cutter, machine, ring) for k in ends[first]]
+        for k, kind in zip(ends, which.ravel(), strict=True):
+            if depths[kind] > -RAPID_CLEARANCE:
+                found.append(Collision("blades", "teeth", (int(run.line[k]),), depths[kind]))
     return found
 
 

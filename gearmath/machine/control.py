@@ -16,6 +16,10 @@ from gearmath.specs.milling_machine import MillingMachine
 
 #: Moves the probe from one position of X Y Z A B to another, (5,) mm and rad: where it triggers, or None.
 Probe = Callable[[np.ndarray, np.ndarray], np.ndarray | None]
+#: Whether the probe is deflected at a position of X Y Z A B, (5,) mm and rad.
+Deflected = Callable[[np.ndarray], bool]
+#: Hears of every position of X Y Z A B, (5,) mm and rad, to which the axes move.
+Follower = Callable[[np.ndarray], object]
 Number = Callable[[Node, int], float]
 
 _GROUPS = frozenset(GROUP_OF_CODE.values())
@@ -74,6 +78,8 @@ class Setup:
     """The one that the machine file counts from, if it matters."""
     metric: bool = True
     increments: tuple[float, float] = (1e9, 1e9)
+    result_file_kB: float = 1e6
+    """What a file of WRITE may hold, MD11420 $MN_LEN_PROTOCOL_FILE."""
     position: tuple[float, ...] | None = None
     tool: str | None = None
     changed_at: tuple[float, ...] | None = None
@@ -88,7 +94,7 @@ class Setup:
         values = machine.work_offset_values
         return Setup(
             values, values, machine.tool_length if tip else 0.0, probe_length if tip else 0.0,
-            work_offset=machine.work_offset,
+            work_offset=machine.work_offset, result_file_kB=machine.control.result_file_kB or Setup.result_file_kB,
         )  # fmt: skip
 
     def length(self, tool: str | None) -> float:
@@ -112,6 +118,15 @@ class Row(NamedTuple):
     rpm: float
     measuring: bool
     cutter: float
+
+
+class Blind(NamedTuple):
+    """A motion block while the position of an axis was unknown: whether Z alone went, with all offsets off, and the Z
+    after it."""
+
+    line: int
+    raised: bool
+    z: float | None
 
 
 @dataclass
@@ -148,6 +163,11 @@ class Control:
     """What is in the spindle; ``tool`` is what the program asked for."""
     ended: bool = False
     latch: Latch | None = None
+    within: dict[str, float] = field(default_factory=dict)
+    """CTOL and OTOL, mm and degrees."""
+    blind: list[Blind] = field(default_factory=list)
+    path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
+    """Path modes in which feed blocks run, with CTOL and OTOL, and the line of the first."""
 
     def __post_init__(self) -> None:
         self.tool = self.fetched = self.setup.tool
@@ -247,6 +267,7 @@ class Control:
             if value <= 0.0:
                 self._refuse(block, key, f"{word.text}: must be greater than 0")
             self.modal[key] = word.text
+            self.within[key] = value
         elif key.startswith("FGREF"):
             self.feed_radius[key[-1]] = number(word.value, word.column)
         elif key == "work offset" and self.modal.get(key, word.text) != word.text:
@@ -296,6 +317,11 @@ class Control:
         seconds = 0.0 if rapid else self._cutting_seconds(block, before, column, number)
         if "MEAS" in words:
             self._measure(block, before)
+        if any(axis not in before for axis in AXES):
+            self.blind.append(Blind(line, raised and rapid, self.position.get("Z")))
+        if not rapid:
+            mode = self.modal.get("stop mode", ""), self.within.get("CTOL", 0.0), self.within.get("OTOL", 0.0)
+            self.path_modes.setdefault(mode, line)
         if any(axis not in self.position for axis in AXES):
             return None
         if self.tool is None:

@@ -10,15 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
 from gearmath.bevel.flank import blank_grid
-from gearmath.bevel.tooth import tooth_space
+from gearmath.bevel.tooth import ToothSpace, tooth_space
 from gearmath.errors import InputError
 from gearmath.machine.blocks import ROUNDING, TOLERANCES, roll_nodes
 from gearmath.machine.bodies import widest
-from gearmath.machine.clear_space import room_of
+from gearmath.machine.clear_space import Room, room_of
 from gearmath.machine.cutter import cutter_of
 from gearmath.machine.feeds import block_seconds
 from gearmath.machine.hobbing import C_ROUNDING, hobbing_pass
@@ -26,6 +27,7 @@ from gearmath.machine.passes import Pass
 from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
 from gearmath.machine.program import write_program
 from gearmath.machine.rounding import ControlShare, control_share
+from gearmath.machine.setup_facts import SetupFacts, setup_notes
 from gearmath.machine.words import plain
 from gearmath.specs.bevel_set import BevelSet, Member, settings_sha256
 from gearmath.specs.milling_machine import MillingMachine
@@ -102,11 +104,36 @@ def tooth_angles(teeth: int, correction: Sequence[float] = ()) -> np.ndarray:
     return 2 * math.pi * np.arange(teeth) / teeth + np.radians(correction if len(correction) else np.zeros(teeth))
 
 
-def cutting_program(
-    bevel_set: BevelSet, name: str, machine: MillingMachine, program_name: str, job: Job = _ONE_SPACE,
+@dataclass(frozen=True)
+class Plan:
+    """A job on one member, planned: all that its program and its set-up sheet say.
+
+    ``tool_radius`` [mm] is the widest of cutter, head and spindle, ``space`` the tooth space where each flank has a
+    cutter of its own.
+    """
+
+    title: str
+    name: str
+    member: Member
+    machine: MillingMachine
+    job: Job
+    passes: tuple[Pass, ...]
+    share: ControlShare
+    space: ToothSpace | None
+    room: Room
+    tool_radius: float
+
+    @property
+    def seconds(self) -> float:
+        """Time in the cut [s]; approaches and rapid motion are not in it."""
+        return float(sum(one.seconds.sum() + one.dwell for one in self.passes))
+
+
+def cutting_plan(
+    bevel_set: BevelSet, name: str, machine: MillingMachine, job: Job = _ONE_SPACE,
     progress: Callable[[int], object] = lambda passes: None,
-) -> str:  # fmt: skip
-    """The text of the program of a job on one member; ``progress`` hears of the passes that are planned.
+) -> Plan:  # fmt: skip
+    """All passes of a job on one member; ``progress`` hears of those that are planned.
 
     Raises InputError for singular poses, travel and speed limits, a tolerance out of range, and a face hobbed member
     whose spaces are not all cut, or whose machine has no axis C.
@@ -120,26 +147,42 @@ def cutting_program(
     for one in _passes(member, name, machine, job, share):
         passes.append(one)
         progress(1)
+    return Plan(bevel_set.title, name, member, machine, job, tuple(passes), share, space, room, radius)
+
+
+def cutting_program(
+    bevel_set: BevelSet, name: str, machine: MillingMachine, program_name: str, job: Job = _ONE_SPACE,
+    progress: Callable[[int], object] = lambda passes: None,
+) -> str:  # fmt: skip
+    """The text of the program of a job on one member. Raises InputError as ``cutting_plan`` does."""
+    return program_of(cutting_plan(bevel_set, name, machine, job, progress), program_name)
+
+
+def program_of(plan: Plan, program_name: str) -> str:
+    """The text of a planned program. Raises InputError as the writer does."""
+    name, member, machine, job = plan.name, plan.member, plan.machine, plan.job
     header = (
         f"gearmath {__version__} cutting program",
-        f"set: {plain(bevel_set.title)}",
+        f"set: {plain(plan.title)}",
         f"member: {name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}",
         f"machine settings sha256: {settings_sha256(member)}",
-        *_tolerance_notes(member, job, machine, share),
+        *_tolerance_notes(member, job, machine, plan.share),
         *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
         f"feed: {job.feed:g} mm/min at the tooth",
+        f"spindle: {job.spindle_rpm:g} rpm {machine.cutter_direction}, plunge: {PLUNGE_FEED:g} mm/min",
         *_space_notes(job),
         *_hobbing_notes(member),
         *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
         f"machine: {plain(machine.name)}",
         f"Z: {_Z_REFERENCE[machine.z_reference]}; R_d {machine.gauge_line_height:g} is its reading with the gauge line "
         f"level with the B axis, C_t {machine.tool_length:g} the length of the tool",
+        *map(plain, setup_notes(SetupFacts.of(plan, PLUNGE_FEED))),
         "R90, R91: first and last section to cut, 0 for all; the program asks before it leaves sections out",
-        f"cutting time: {sum(one.seconds.sum() + one.dwell for one in passes):.1f} s",
+        f"cutting time: {plan.seconds:.1f} s",
     )
     return write_program(
-        program_name, header, passes, machine, job.spindle_rpm, CLEARANCE, room, radius, PLUNGE_FEED,
-        coolant=not job.dry_run,
+        program_name, header, plan.passes, machine, job.spindle_rpm, CLEARANCE, plan.room, plan.tool_radius,
+        PLUNGE_FEED, coolant=not job.dry_run,
     )  # fmt: skip
 
 
@@ -214,7 +257,7 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job
         raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
     (cut,) = Cut.of(member, name)
     _check_motions(member, name, cut)
-    tooth, lift = _middle_of_tooth(member, cut), _HOBBING_DEPTHS * _depth(member)
+    tooth, lift = middle_of_tooth(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
         one = hobbing_pass(
             member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth
@@ -222,7 +265,7 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job
         one.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
         label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
         axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
-        yield Pass(cut.tool, label, 0, axes, one.seconds)
+        yield Pass(cut.tool, label, 0, axes, one.seconds, theta=one.theta)
 
 
 def _hobbing_notes(member: Member) -> tuple[str, ...]:
@@ -240,7 +283,7 @@ def _first_pass(
 ) -> tuple[np.ndarray, Pass]:
     """Cradle rotations and the pass through space 0: rolled, or for Formate plunged at cradle rotation zero."""
     flank = member.flank(cut.flanks[0])
-    tooth = _middle_of_tooth(member, cut)
+    tooth = middle_of_tooth(member, cut)
     if member.generation == "formate":
         theta = np.zeros(2)
         axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
@@ -250,10 +293,11 @@ def _first_pass(
         theta = roll_nodes(member, cut, job.tolerance, machine.pivot_height, machine.pivot, share.rounding)
         axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
         dwell = 0.0
-    return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell)
+    return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell, theta)
 
 
-def _middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
+@lru_cache(maxsize=32)
+def middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
     """The middle of the first flank of a pass (3,)."""
     return flank_points(member, cut.flanks[0], blank_grid(member, 1, 1)).point[0]
 

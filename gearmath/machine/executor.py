@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gearmath.machine.control import Control, Probe, Row, Setup
+from gearmath.machine.control import Blind, Control, Deflected, Follower, Probe, Row, Setup
 from gearmath.machine.nc_expression import AXES, Node, Value, Variable, refuse
 from gearmath.machine.nc_tree import Block, Branch, Command, Definition, Loop, Statement
 from gearmath.machine.nc_values import evaluate, indices, number
@@ -23,6 +23,9 @@ _LAST_PARAMETER = 999
 #: What $AA_IM shows where the program is run from an unknown position: clear of everything.
 _UP_AND_AWAY = 1e5
 _ALARMS = (65000, 69999)
+#: What WRITE and DELETE report [unconfirmed].
+_NO_SUCH_FILE, _FILE_FULL = 3.0, 10.0
+_KILOBYTE = 1000
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,10 @@ class MachinePath:
     """Position of the cutter's axis C at the ends, (n,) rad, counted on; NaN while the spindle is no axis."""
     unstated: tuple[str, ...] = ()
     """What the program leaves as it was when its first motion begins, in words of the program."""
+    blind: tuple[Blind, ...] = ()
+    """Motion while the position of an axis is unknown: at the start, and after a tool change."""
+    path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
+    """Path mode, CTOL [mm] and OTOL [degrees] of feed blocks, with the line of the first."""
 
     @property
     def spindle_on(self) -> np.ndarray:
@@ -65,6 +72,8 @@ class Run:
     parameters: dict[int, float]
     alarm: tuple[int, int] | None
     """Number and line of the first alarm that the program set, or None."""
+    said: tuple[str, ...] = ()
+    """What the control showed during each row of the path, empty before the first message."""
 
 
 #: Tables without offsets and tool lengths.
@@ -88,15 +97,20 @@ def run_program(
     parameters: Mapping[int, float] | None = None,
     step_limit: int = STEP_LIMIT,
     setup: Setup = AS_WRITTEN,
+    files: Mapping[str, str] | None = None,
+    deflected: Deflected = lambda position: False,
+    moved: Follower = lambda position: None,
 ) -> Run:
     """Run a program as the control would, with a ``probe`` for its MEAS blocks and a ``host`` that answers.
 
-    ``parameters`` are the R parameters at the start; others are 0. ``setup`` is how the control stands.
+    ``parameters`` are the R parameters at the start; others are 0. ``setup`` is how the control stands, ``files`` are
+    the texts of those that WRITE adds to. ``deflected`` says what $A_PROBE shows; ``moved`` hears of every motion.
     Raises InputError with ``name``, line and column for what a program must not do, and for one that takes more than
     ``step_limit`` steps.
     """
     program = read_program(text, name)
-    runner = _Runner(Control(name, probe, setup), host, dict(parameters or {}), step_limit)
+    runner = _Runner(Control(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved)
+    runner.holds(files or {})
     try:
         runner.all(program.body)
     except _Stopped:
@@ -105,8 +119,8 @@ def run_program(
         if not runner.control.ended:
             refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
     files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
-    path = _path(runner.rows, runner.control.unstated or ())
-    return Run(path, files, tuple(runner.messages), runner.parameters, runner.alarm)
+    path = _path(runner.rows, runner.control)
+    return Run(path, files, tuple(runner.messages), runner.parameters, runner.alarm, tuple(runner.said))
 
 
 class _Stopped(Exception):
@@ -116,16 +130,27 @@ class _Stopped(Exception):
 class _Runner:
     """Statements in the order in which they act."""
 
-    def __init__(self, control: Control, host: Host | None, parameters: dict[int, float], step_limit: int) -> None:
+    def __init__(
+        self, control: Control, host: Host | None, parameters: dict[int, float], step_limit: int, deflected: Deflected,
+        moved: Follower,
+    ) -> None:  # fmt: skip
         self.control, self.host, self.parameters, self.steps_left = control, host, parameters, step_limit
+        self.deflected, self.moved = deflected, moved
         self.variables: dict[tuple[str, tuple[int, ...]], float] = {}
         self.integer: dict[str, bool] = {}
         self.rows: list[Row] = []
         self.files: dict[str, list[str]] = {}
+        self._sizes: dict[str, int] = {}
         self.messages: list[str] = []
+        self.said: list[str] = []
         self.alarm: tuple[int, int] | None = None
         self._pending: dict[int, float] = {}
         self._limit = step_limit
+
+    def holds(self, files: Mapping[str, str]) -> None:
+        """The files that are there before the program begins."""
+        self.files = {file: content.splitlines() for file, content in files.items()}
+        self._sizes = {file: len(content) for file, content in files.items()}
 
     def all(self, body: tuple[Statement, ...]) -> None:
         for statement in body:
@@ -163,7 +188,7 @@ class _Runner:
         latch, name, control = self.control.latch, variable.name, self.control
         setup = control.setup
         if name == "$A_PROBE":
-            return 0.0
+            return float(bool(self.rows) and self.deflected(_internal(self.rows[-1].position)))
         if name == "$AA_IM":
             if setup.position is None:
                 return _UP_AND_AWAY
@@ -176,6 +201,7 @@ class _Runner:
             "$MN_SCALING_SYSTEM_IS_METRIC": lambda: float(setup.metric),
             "$MN_INT_INCR_PER_MM": lambda: setup.increments[0],
             "$MN_INT_INCR_PER_DEG": lambda: setup.increments[1],
+            "$MN_LEN_PROTOCOL_FILE": lambda: setup.result_file_kB,
         }
         if name in tables:
             return tables[name]()
@@ -215,6 +241,8 @@ class _Runner:
         row = self.control.run(block, lambda node, column: self._number(node, block.line, column))
         if row is not None:
             self.rows.append(row)
+            self.said.append(self.messages[-1] if self.messages else "")
+            self.moved(_internal(row.position))
         if "dwell" in block.words and self.host is not None:
             self._pending.update(self.host(dict(self.parameters)))
 
@@ -278,7 +306,7 @@ class _Runner:
         return [evaluate(node, self, self.control.name, command.line) for node in command.arguments]
 
     def _say(self, command: Command) -> None:
-        """MSG, SETAL and WRITE."""
+        """MSG, SETAL, DELETE and WRITE."""
         name, line, column = self.control.name, command.line, command.column
         if command.name == "MSG":
             self.messages += [str(value) for value in self._arguments(command, 0, 1)]
@@ -289,13 +317,28 @@ class _Runner:
                 refuse(name, line, column, f"SETAL({alarm}): alarms of users go from {_ALARMS[0]} to {_ALARMS[1]}")
             self.alarm = self.alarm or (int(alarm), line)
             return
-        _, file, text = self._arguments(command, 3)
+        self._file(command)
+
+    def _file(self, command: Command) -> None:
+        """WRITE adds a line to a file, DELETE removes one; both report into a variable."""
+        name, line, column = self.control.name, command.line, command.column
+        _, file, *texts = self._arguments(command, 2 if command.name == "DELETE" else 3)
         error = command.arguments[0]
         if not (isinstance(error, Variable) and self.integer.get(error.name)):
-            refuse(name, line, column, "the first argument of WRITE must be a variable of DEF INT")
-        if not (isinstance(file, str) and isinstance(text, str)):
-            refuse(name, line, column, "WRITE takes the name of a file and a text")
+            refuse(name, line, column, f"the first argument of {command.name} must be a variable of DEF INT")
+        if not (isinstance(file, str) and all(isinstance(text, str) for text in texts)):
+            refuse(name, line, column, f"{command.name} takes the name of a file{' and a text' if texts else ''}")
+        if command.name == "DELETE":
+            self._assign(error, 0.0 if self.files.pop(file, None) is not None else _NO_SUCH_FILE, line)
+            self._sizes.pop(file, None)
+            return
+        (text,) = map(str, texts)
+        size = self._sizes.get(file, 0) + len(text) + 1
+        if size > _KILOBYTE * self.control.setup.result_file_kB:
+            self._assign(error, _FILE_FULL, line)
+            return
         self._assign(error, 0.0, line)
+        self._sizes[file] = size
         self.files.setdefault(file, []).append(text)
 
 
@@ -304,7 +347,12 @@ def _whole(value: float) -> float:
     return float(math.floor(value + 0.5))
 
 
-def _path(rows: list[Row], unstated: tuple[str, ...]) -> MachinePath:
+def _internal(position: tuple[float, ...]) -> np.ndarray:
+    """A position X Y Z A B in mm and rad."""
+    return np.array([*position[:3], *map(math.radians, position[3:])])
+
+
+def _path(rows: list[Row], control: Control) -> MachinePath:
     """The rows as arrays, in mm and rad."""
     positions = np.array([row.position for row in rows]).reshape(-1, len(AXES))
     positions[:, 3:] = np.radians(positions[:, 3:])
@@ -319,5 +367,7 @@ def _path(rows: list[Row], unstated: tuple[str, ...]) -> MachinePath:
         rpm=np.array([row.rpm for row in rows]),
         measuring=np.array([row.measuring for row in rows], dtype=bool),
         cutter=np.radians(np.array([row.cutter for row in rows])),
-        unstated=unstated,
+        unstated=control.unstated or (),
+        blind=tuple(control.blind),
+        path_modes=dict(control.path_modes),
     )

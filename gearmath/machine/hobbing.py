@@ -61,8 +61,7 @@ class _Drive:
     @staticmethod
     def of(member: Member, machine: MillingMachine) -> _Drive:
         """M3 turns clockwise as seen along the spindle towards the work: right-handed about the tool axis, as C."""
-        ratio = member.indexing_sign * (member.blade_groups or 1) / member.teeth
-        return _Drive(1 if machine.cutter_direction == "M3" else -1, ratio)
+        return _Drive(1 if machine.cutter_direction == "M3" else -1, index_ratio(member))
 
     def seconds_per_turn(self, limits: AxisLimits, rpm: float) -> float:
         """Shortest time [s] of a turn of the work, at a speed of the cutter that A and C can follow."""
@@ -72,6 +71,11 @@ class _Drive:
     def beta(self, turns: np.ndarray) -> np.ndarray:
         """Cutter angle after turns of the work (17.3)."""
         return self.sense * 2 * math.pi * turns / abs(self.index_ratio)
+
+
+def index_ratio(member: Member) -> float:
+    """The turn of the work for one of the cutter."""
+    return member.indexing_sign * (member.blade_groups or 1) / member.teeth
 
 
 def spindle_phase(flank: Flank, theta: np.ndarray) -> np.ndarray:

@@ -21,14 +21,16 @@ from gearmath.specs.simulated_machine import SimulatedMachine
 def metal(
     path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None = None,
     whole: Sequence[int] = (0,), around: Sequence[int] = (), progress: Callable[[int], object] = lambda _: None,
+    runs: list[Run] | None = None,
 ) -> FlankFile:  # fmt: skip
     """What a program leaves, without noise: the grid of the teeth ``whole``, the reference point of every tooth.
 
     Of the teeth ``around``, the corners of the grid too: eight of them let a registration find tilt and eccentricity.
-    Points are exposed to the passes of their own space and of both neighbours. Raises InputError where the program
+    Points are exposed to the passes of their own space and of both neighbours. ``runs`` are the tools of the program
+    where they are known. Raises InputError where the program
     leaves a flank uncut, or cuts with a tool that is not of this member.
     """
-    runs = runs_of(path, member, name, machine, errors, root_of(member, name))
+    runs = runs_of(path, member, name, machine, errors, root_of(member, name)) if runs is None else runs
     grid = blank_grid(member, margin=MARGIN)
     nominal = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
     row, col = (index.ravel() for index in np.indices(grid.shape))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import zlib
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from gearmath.machine.milling import Evaluator, Removal, removal
 from gearmath.machine.run import Run, runs_of
 from gearmath.machine.simulation import mounted
 from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
-from gearmath.specs.flank_csv import FlankFile, flank_file, join
+from gearmath.specs.flank_csv import PLANNED, FlankFile, flank_file, join
 from gearmath.specs.margins import OWN, Margins
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
@@ -65,15 +66,16 @@ def mill_member(
     machine: MillingMachine,
     errors: SimulatedMachine | None = None,
     progress: Callable[[int], object] = lambda _: None,
+    runs: list[Run] | None = None,
 ) -> FlankFile:
     """What a program leaves on a member: the whole grid of the first space cut, the reference point of the others.
 
     Every point is exposed to all passes of all tools, so that a neighbour's pass that cuts into it is seen. Deviations
     are against the nominal flanks. ``errors`` makes machine, work axis and probe those of a simulated shop; without it
-    they are perfect. Raises InputError if the program cuts with a tool that is not of this member, or leaves a flank
-    uncut.
+    they are perfect. ``runs`` are the tools of the program where they are known. Raises InputError if the program cuts
+    with a tool that is not of this member, or leaves a flank uncut.
     """
-    runs = runs_of(path, member, name, machine, errors, root_of(member, name))
+    runs = runs_of(path, member, name, machine, errors, root_of(member, name)) if runs is None else runs
     grid = blank_grid(member, margin=MARGIN)
     nominals = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
     files = []
@@ -87,7 +89,9 @@ def mill_member(
     missing = [flank for flank in FLANKS if not any(file.flank[0] == flank for file in files)]
     if missing:
         raise InputError(f"the program does not cut the {missing[0]} flank of the {name}")
-    return _probed(join(files), name, errors)
+    whole = join(files)
+    header = whole.header | {PLANNED: f"{len(whole)} points"}  # a file that is cut off later is told
+    return _probed(replace(whole, header=header), name, errors)
 
 
 def thickness(point: np.ndarray, opposite: np.ndarray, teeth: int) -> np.ndarray:

@@ -51,7 +51,7 @@ FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
 SYSTEM = {
     "$AA_MM": "axis", "$AA_MW": "axis", "$AC_MEA": "1", "$A_PROBE": "1", "$AA_IM": "axis", "$P_ACTFRAME": "axis,part",
     "$P_TOOLL": "1", "$P_TOOLNO": "", "$TC_TP2": "$P_TOOLNO", "$MN_SCALING_SYSTEM_IS_METRIC": "",
-    "$MN_INT_INCR_PER_MM": "", "$MN_INT_INCR_PER_DEG": "",
+    "$MN_INT_INCR_PER_MM": "", "$MN_INT_INCR_PER_DEG": "", "$MN_LEN_PROTOCOL_FILE": "",
 }  # fmt: skip
 AXES = "XYZAB"
 _INSIDE = {"axis": re.compile(rf"[{AXES}]"), "axis,part": re.compile(rf"[{AXES}],TR|[XYZ],(?:RT|MI|SC)")}

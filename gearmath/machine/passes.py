@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -20,3 +20,5 @@ class Pass:
     """Duration of each block, (n-1,) s."""
     dwell: float = 0.0
     """Time that the cutter turns at the last position, s."""
+    theta: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Cradle rotation at each position, (n,) rad; where it stands still the cutter plunges. Empty where not known."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -138,6 +139,7 @@ def _touching(section: Section, u: np.ndarray, side: int) -> np.ndarray:
     return np.column_stack(kernel("touching_blade")(u, np.array(section.arc), side))
 
 
+@lru_cache(maxsize=32)
 def roll_range(member: Member, cut: Cut) -> tuple[float, float]:
     """Cradle rotations [rad] between which the cutter generates the flanks of a pass, their fillets and the root."""
     theta = [whole_flank(member, flank).contact[:, 2] for flank in cut.flanks]

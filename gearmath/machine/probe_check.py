@@ -22,7 +22,7 @@ from gearmath.bevel.turning import turned
 from gearmath.kernels import kernel
 from gearmath.machine.bodies import rings, work_profiles
 from gearmath.machine.control import Probe, Setup
-from gearmath.machine.executor import run_program
+from gearmath.machine.executor import STEP_LIMIT, run_program
 from gearmath.machine.nc_expression import refuse
 from gearmath.machine.probe_machine import BODY_ERROR
 from gearmath.machine.probe_space import SpaceBody
@@ -31,6 +31,7 @@ from gearmath.specs.bevel_set import Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.obstacles import CutterHead, Fixture
+from gearmath.specs.touch_csv import planned_touches
 
 #: Steps of the tip along a block [mm], and of A and B [rad]; stylus and spindle are looked at less often.
 _STEP, _TURN = 0.25, math.radians(1.0)
@@ -44,25 +45,32 @@ _TOUCH_STEP = 0.05
 #: Blocks are alike that differ by less than one of so many parts of a mm or rad.
 _ALIKE = 1e4
 _SAME = 1e-7
+#: Blocks that a program runs through from one touch to the next are fewer.
+_STEPS_OF_A_TOUCH = 200
 
 
 @dataclass(frozen=True)
 class Approach:
-    """How near [mm] a part of the probe comes to a part of the work at most, and in which line; negative: in it."""
+    """How near [mm] a part of the probe comes to a part of the work at most, and in which line; negative: in it.
+
+    ``said`` is what the program says there, such as the point that it touches.
+    """
 
     probe: str
     work: str
     distance: float
     line: int
+    said: str = ""
 
 
 @dataclass(frozen=True)
 class _Block:
-    """Poses X Y Z A B (n,5) of one block, whether it ends or begins at a touch, and its line."""
+    """Poses X Y Z A B (n,5) of one block, whether it ends or begins at a touch, its line, and what was said there."""
 
     poses: np.ndarray
     touching: bool
     line: int
+    said: str
 
 
 def approaches(
@@ -84,9 +92,9 @@ def approaches(
     for block in watch.blocks(text, program, probe or watch.probe, progress):
         for pair, distance in watch.distances(block):
             if pair not in nearest or distance < nearest[pair].distance:
-                nearest[pair] = Approach(*pair, distance, block.line)
-        progress(block.line - done)
-        done = block.line
+                nearest[pair] = Approach(*pair, distance, block.line, block.said)
+        progress(max(block.line - done, 0))
+        done = max(block.line, done)
     return list(nearest.values())
 
 
@@ -114,9 +122,10 @@ class _Watch:
             progress(1)
             return probe(start, end)
 
-        done = run_program(text, program, moved, setup=self.setup)
+        done = run_program(text, program, moved, step_limit=enough_steps(text), setup=self.setup)
         if done.alarm is not None:
-            refuse(program, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]} on the nominal member")
+            why = f" ({done.messages[-1]})" if done.messages else ""
+            refuse(program, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]} on the nominal member{why}")
         path = done.path
         found: dict[tuple[bytes, bool], _Block] = {}
         for k in range(1, len(path.axes)):
@@ -130,7 +139,7 @@ class _Watch:
             if key not in found:
                 steps = 2 + int(max(np.linalg.norm(way[:3]) / _STEP, np.abs(way[3:]).max() / _TURN))
                 poses = first + np.linspace(0.0, 1.0, steps)[:, None] * way
-                found[key] = _Block(poses, bool(touching), int(path.line[k]))
+                found[key] = _Block(poses, bool(touching), int(path.line[k]), done.said[k])
         return list(found.values())
 
     def probe(self, start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
@@ -192,9 +201,15 @@ class _Watch:
         return float((outside + np.minimum(np.maximum(below, beside), 0.0)).min())
 
 
+def enough_steps(text: str) -> int:
+    """The steps that a probing program may take: more than usual where it plans very many touches."""
+    return max(STEP_LIMIT, _STEPS_OF_A_TOUCH * planned_touches(text))
+
+
 def is_touch(start: np.ndarray, end: np.ndarray) -> bool:
-    """Whether a MEAS block between two positions (5,) is a touch, and not the way straight down into a space."""
-    return float(np.abs(end - start)[:2].max()) > _SAME
+    """Whether a MEAS block between two positions (5,) is a touch: neither straight down, nor sideways at one height."""
+    x, y, z, a, b = np.abs(end - start).tolist()
+    return max(x, y) > _SAME and z > _SAME and max(a, b) <= _SAME
 
 
 def _to_segments(place: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:

@@ -5,6 +5,7 @@ What the probe comes near on its way is :mod:`gearmath.machine.probe_check`'s.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -25,6 +26,8 @@ _STEP, _NEAR = 0.1, 0.15
 #: What a tip may dig in anywhere but on a flank before it counts as a touch: the body is no better than this. [mm]
 BODY_ERROR = 0.02
 _ROUNDS, _CONVERGED = 60, 1e-10
+#: A and B stand still within this [rad]; where they turn, the way is looked over in steps of mm and rad.
+_STILL, _TURNING_STEP, _TURN = 1e-9, 0.5, math.radians(0.5)
 
 #: Metal left on a flank of a tooth at a place (z_w, r_w) [mm].
 Stock = Callable[[str, int, np.ndarray], float]
@@ -51,10 +54,10 @@ class ProbeMachine:
         self._height, self._pivot = probe_height(machine, calibration), machine.pivot
 
     def __call__(self, start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
-        """Where the probe triggers between two positions X Y Z A B (5,), A and B standing still; None if nowhere."""
-        (first, last), _ = self._tip(np.stack([start, end]))
-        # the member's axes are the rows of _tilted, in the frame that turns with A
-        first, last = (self._tilted @ (point - self._moved) for point in (first, last))
+        """Where the probe triggers between two positions X Y Z A B (5,); None if nowhere."""
+        if np.abs(end - start)[3:].max() > _STILL:
+            return self._met(start, end)
+        first, last = self._in_member(np.stack([start, end]))
         tooth = self.body.tooth_of(last)
         first, last = (turned(point, -tooth * self.body.pitch) for point in (first, last))
         share = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(last - first) / _STEP))
@@ -69,6 +72,21 @@ class ProbeMachine:
             return None
         self.touches.append(turned(first + touched * (last - first), tooth * self.body.pitch))
         return start + touched * (end - start)
+
+    def _met(self, start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+        """Where the tip meets the body on a way on which A or B turns, to a step of that way."""
+        way = end - start
+        steps = 2 + int(max(np.linalg.norm(way[:3]) / _TURNING_STEP, np.abs(way[3:]).max() / _TURN))
+        poses = start + np.linspace(0.0, 1.0, steps)[:, None] * way
+        tips = self._in_member(poses)
+        tips = turned(tips, -self.body.spaces_of(tips) * self.body.pitch)
+        met = np.flatnonzero(self.body.clearance(tips) - self.calibration.tip_radius < -self._deepest)
+        return poses[met[0]] if len(met) else None
+
+    def _in_member(self, axes: np.ndarray) -> np.ndarray:
+        """Centre of the tip (n,3) in the member: its axes are the rows of _tilted, in the frame that turns with A."""
+        tip, _ = self._tip(axes)
+        return (tip - self._moved) @ self._tilted.T
 
     def _tip(self, axes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Centre of the tip and direction of the stylus (n,3) in the work."""

@@ -9,7 +9,7 @@ import numpy as np
 from gearmath.errors import ComputationError, InputError
 from gearmath.machine.control import Probe, Setup
 from gearmath.machine.executor import AS_WRITTEN, run_program
-from gearmath.machine.probe_check import is_touch
+from gearmath.machine.probe_check import enough_steps, is_touch
 from gearmath.machine.probe_errors import ErringProbe
 from gearmath.specs.simulated_machine import SimulatedMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
@@ -34,7 +34,7 @@ def touch_count(text: str, program: str, setup: Setup = AS_WRITTEN) -> int:
         count += 1
         return end
 
-    run_program(text, program, trigger, setup=setup)
+    run_program(text, program, trigger, step_limit=enough_steps(text), setup=setup)
     return count
 
 
@@ -48,13 +48,16 @@ def run_touches(
     gives to its run, and each has its own noise. ``progress`` hears of every MEAS block. Raises InputError with line
     and column for a text that cannot be run or that writes no touches, ComputationError where it sets an alarm.
     """
-    there = probe if shop is None else ErringProbe(probe, shop, touches, run)
+    erring = None if shop is None else ErringProbe(probe, shop, touches, run)
 
     def moved(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
         progress(1)
-        return there(start, end)
+        return probe(start, end) if erring is None else erring(start, end)
 
-    done = run_program(text, program, moved, parameters={_RUN_PARAMETER: run - 1}, setup=setup)
+    done = run_program(
+        text, program, moved, parameters={_RUN_PARAMETER: run - 1}, step_limit=enough_steps(text), setup=setup,
+        moved=erring.follow if erring is not None else lambda position: None,
+    )  # fmt: skip
     if done.alarm is not None:
         number, line = done.alarm
         why = f" ({done.messages[-1]})" if done.messages else ""

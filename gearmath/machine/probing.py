@@ -8,8 +8,8 @@ space it moves at a height that clears the whole member at every position of A.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import fields
 
 import numpy as np
 
@@ -17,11 +17,12 @@ from gearmath.bevel.flank import Grid, blank_grid, solve_flank
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.clear_space import Room, check_home, room_of
-from gearmath.machine.path import whole_turns
-from gearmath.machine.probe_words import Blocks
+from gearmath.machine.pattern import Pattern, Targets, check_travel
+from gearmath.machine.point_loop import point_loop
+from gearmath.machine.probe_words import Blocks, Plan
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member, design_sha256
 from gearmath.specs.calibration import Calibration
-from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
+from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import Probe
 from gearmath.version import __version__
 
@@ -33,28 +34,6 @@ _LEAST_APPROACH = 0.1
 _AROUND = 8
 #: Height of all sideways motion above the highest point of the member. [mm]
 CLEARANCE = 5.0
-MEASURING_FEED, APPROACH_FEED = 100.0, 800.0
-#: Counts the touches of one point.
-_COUNTER = "UTOUCH"
-
-
-@dataclass(frozen=True)
-class Targets:
-    """n touches in their order: where they are, and positions X Y Z A B (n,5) in mm and rad, A and B standing still."""
-
-    flank: np.ndarray
-    tooth: np.ndarray
-    row: np.ndarray
-    col: np.ndarray
-    start: np.ndarray
-    touch: np.ndarray
-    end: np.ndarray
-
-    def __len__(self) -> int:
-        return len(self.tooth)
-
-    def pick(self, keep: np.ndarray) -> Targets:
-        return Targets(*(getattr(self, part.name)[keep] for part in fields(self)))
 
 
 def probe_height(machine: MillingMachine, calibration: Calibration) -> float:
@@ -98,7 +77,7 @@ def probe_targets(
     if not all(0 <= tooth < member.teeth for tooth in topography):
         raise InputError(f"{name}: teeth = {list(topography)}: must be numbers from 0 to {member.teeth - 1}")
     grid = blank_grid(member) if grid is None else grid
-    flanks = [_of_one_flank(member, name, flank, grid, machine, calibration) for flank in FLANKS]
+    flanks = [targets_of_space(member, name, flank, grid, machine, calibration) for flank in FLANKS]
     parts = []
     for tooth in range(member.teeth + 1):
         for one in flanks:
@@ -106,7 +85,11 @@ def probe_targets(
             if whole or pitch:
                 again = tooth == member.teeth and 0 in topography
                 keep = landmarks(one.row, one.col, grid.shape, corners=again or tooth in around)
-                parts.append(_turned(one.pick(keep | whole), tooth, member.teeth))
+                # tooth z stands as tooth 0 does
+                angle = 2 * math.pi * (tooth % member.teeth) / member.teeth
+                part = one.pick(keep | whole)
+                part.tooth[:] = tooth
+                parts.append(part.turned_by(np.full(len(part), angle)))
     if not parts:
         raise InputError(f"{name}: there is nothing to probe: neither a tooth for topography, nor pitch")
     joined = (np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Targets))
@@ -125,10 +108,13 @@ def landmarks(row: np.ndarray, col: np.ndarray, shape: tuple[int, int], corners:
     return middle | (corners & np.isin(row, (0, rows - 1)) & np.isin(col, (0, columns - 1)))
 
 
-def _of_one_flank(
+def targets_of_space(
     member: Member, name: str, flank: str, grid: Grid, machine: MillingMachine, calibration: Calibration
 ) -> Targets:
-    """The touches of the whole grid of one flank of space 0."""
+    """The touches of the whole grid of one flank of space 0.
+
+    Raises InputError naming flank, row and column where the tip has no room between the flanks.
+    """
     (other,) = (each for each in FLANKS if each != flank)
     points, opposite = (solve_flank(member, name, each, grid) for each in (flank, other))
     row, col = (index.ravel() for index in np.indices(grid.shape))
@@ -149,13 +135,6 @@ def _of_one_flank(
         positions.append(tip_positions(tip, A, math.radians(member.blank.root_angle), machine, calibration))
     n = len(row)
     return Targets(np.full(n, flank), np.zeros(n, dtype=int), row, col, *positions)
-
-
-def _turned(targets: Targets, tooth: int, teeth: int) -> Targets:
-    """The same touches in another space: only A is different, and for tooth z that of tooth 0."""
-    turn = 2 * math.pi * (tooth % teeth) / teeth * np.array([0, 0, 0, 1, 0])
-    positions = (getattr(targets, name) + turn for name in ("start", "touch", "end"))
-    return Targets(targets.flank, np.full(len(targets), tooth), targets.row, targets.col, *positions)
 
 
 def clear_height(member: Member, machine: MillingMachine, calibration: Calibration) -> float:
@@ -184,7 +163,7 @@ def probing_program(
     member = bevel_set.member(name)
     targets = probe_targets(member, name, machine, calibration, topography, pitch, around=around)
     level = clear_height(member, machine, calibration)
-    targets = _within_travel(targets, name, machine, level)
+    check_travel(Pattern.of(targets, member.teeth, machine).targets(), name, machine, level)
     room = room_of(member, machine, machine.fixture)
     check_home(room, machine, calibration.length + calibration.tip_radius - calibration.offset[2], program_name)
     header = (
@@ -195,75 +174,30 @@ def probing_program(
         f"machine: {machine.name}",
         f"probe: {calibration.name}, tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm",
         f"{len(targets)} points" + (f", each touched {repeat} times" if repeat > 1 else ""),
+        "R90, R91: first and last point to touch, 0 for all; the program asks before it leaves points out",
+        "a run from point 1 on deletes the touches of the last run, one that begins later adds to them",
         "R102 counts the runs, R101 the points offered, R103 those that a host has acknowledged",
         "R104 = 1, set before the start: a host reads R200 to R205 of every point, and the program waits for it",
     )
-    return write_touches(program_name, header, targets, name, machine, calibration, level, room, repeat)
+    return write_touches(
+        program_name, header, targets, name, member.teeth, machine, calibration, level, room, repeat
+    )  # fmt: skip
 
 
 def write_touches(
-    program_name: str, header: Sequence[str], targets: Targets, name: str, machine: MillingMachine,
+    program_name: str, header: Sequence[str], targets: Targets, name: str, teeth: int, machine: MillingMachine,
     calibration: Calibration, level: float, room: Room, repeat: int = 1,
 ) -> str:  # fmt: skip
-    """The text of a probing program: its touches as they stand, sideways at the ``level`` of :func:`clear_height`.
+    """The text of a probing program: its touches in two loops, sideways at the ``level`` of :func:`clear_height`.
 
-    The probe comes from the home of Z, which clears the ``room`` of the work.
+    The probe comes from the home of Z, which clears the ``room`` of the work. Every point can be the first of a run.
 
-    Raises InputError for a name that the control refuses.
+    Raises InputError for touches that fill the result file, and for a name that the control refuses.
     """
+    pattern = Pattern.of(targets, teeth, machine)
     blocks = Blocks(program_name, machine, calibration.length)
-    return blocks.text(header, _body(blocks, targets, name, level, room, repeat))
-
-
-def _body(blocks: Blocks, targets: Targets, name: str, level: float, room: Room, repeat: int) -> Iterator[str]:
-    if repeat > 1:
-        yield f"DEF INT {_COUNTER}"
-    yield from blocks.start(_plan(targets, repeat), room=room)
-    x, y, _, a, b = blocks.axes(targets.start[0])
-    yield f"G0 {x} {y} {a} {b}"
-    yield f"G0 {blocks.length('Z', level)}"
-    for k in range(len(targets)):
-        flank, place = targets.flank[k], (int(targets.tooth[k]), int(targets.row[k]), int(targets.col[k]))
-        yield f"; {flank}, tooth {place[0]}, row {place[1]}, col {place[2]}"
-        x, y, z, a, b = blocks.axes(targets.start[k])
-        yield f"G0 {x} {y} {a} {b}"
-        yield from blocks.guarded(z, APPROACH_FEED, level)
-        end = " ".join(blocks.axes(targets.end[k])[:3])
-        called = f"{name},{flank},{place[0]},{place[1]},{place[2]}"
-        if repeat > 1:
-            yield f"FOR {_COUNTER}=1 TO {repeat}"
-        yield from blocks.touch(end, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level, up=repeat == 1)
-        yield from blocks.hand_over(called)
-        if repeat > 1:
-            yield "ENDFOR"
-            yield f"G0 {blocks.length('Z', level)}"
-    yield from blocks.end()
-
-
-def _plan(targets: Targets, repeat: int) -> str:
-    """What the run makes, for the head of the result file: one that was aborted is told from a shorter one."""
     flanks = " and ".join(flank for flank in FLANKS if (targets.flank == flank).any())
-    return f"{len(targets) * repeat} touches, {len(set(targets.tooth.tolist()))} teeth, {flanks}"
-
-
-def _within_travel(targets: Targets, name: str, machine: MillingMachine, level: float) -> Targets:
-    """The targets, A by whole turns where a counting axis needs it. Raises InputError naming point, axis and limit."""
-    low, high = machine.travel.T
-    if math.isfinite(low[3]):
-        turns = np.array([whole_turns(one, low[3], high[3], 0.0) for one in targets.start[:, 3:4]])
-        shift = turns[:, None] * np.array([0, 0, 0, 1, 0])
-        positions = (getattr(targets, part) + shift for part in ("start", "touch", "end"))
-        targets = Targets(targets.flank, targets.tooth, targets.row, targets.col, *positions)
-    raised = targets.start[:1].copy()
-    raised[:, 2] = level
-    for what, axes in (("the start", targets.start), ("the end", targets.end), ("the height above", raised)):
-        outside = np.argwhere((axes < low) | (axes > high))
-        if outside.size:
-            k, axis = outside[0]
-            scale = UNITS_PER_INTERNAL[axis]
-            place = f"{targets.flank[k]} flank, tooth {targets.tooth[k]}, row {targets.row[k]}, col {targets.col[k]}"
-            raise InputError(
-                f"{name} {place}, {what} of the touch: axis {AXES[axis]} = {axes[k, axis] * scale:.5f} {UNITS[axis]}: "
-                f"{machine.name} travels {low[axis] * scale:g} to {high[axis] * scale:g} {UNITS[axis]}"
-            )
-    return targets
+    touches = len(targets) * repeat
+    said = f"{touches} touches, {len(set(targets.tooth.tolist()))} teeth, {flanks}"
+    plan = Plan(touches, said, len(targets), "point", repeat)
+    return blocks.text(header, point_loop(blocks, pattern, name, plan, level, room))

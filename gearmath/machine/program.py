@@ -17,6 +17,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.machine import start
+from gearmath.machine.chosen import FIRST, LAST, asked, if_chosen
 from gearmath.machine.clear_space import Room, check_home
 from gearmath.machine.limits import check_pass, check_process
 from gearmath.machine.passes import Pass
@@ -24,11 +25,6 @@ from gearmath.machine.words import Positions, check_name, comment, feed_number, 
 from gearmath.specs.milling_machine import MillingMachine
 
 __all__ = ["Pass", "write_program"]
-
-#: R parameters that say which sections of a program are cut, from 1; 0 for all.
-FIRST, LAST = "R90", "R91"
-#: Alarm for sections that the program does not have.
-NO_SUCH_SECTION = 65016
 
 
 def write_program(
@@ -86,11 +82,11 @@ def _body(job: _Job, passes: Sequence[Pass], room: Room, tool_radius: float, coo
     yield from start.head(machine)
     yield from start.checks(machine)
     yield from start.enough_height(machine, room, machine.tool_length, tool_radius)
-    yield from _chosen(len(passes))
+    yield from asked(len(passes), "section")
     yield from start.retract(machine)
     for first, last in _by_tool(passes):
         one = passes[first]
-        yield _if_chosen(first + 1, last)
+        yield if_chosen(first + 1, last)
         yield "M5 M9"
         yield from start.retract(machine)
         yield from start.fetch(machine, one.tool, machine.tool_length)
@@ -114,28 +110,6 @@ def _by_tool(passes: Sequence[Pass]) -> Iterator[tuple[int, int]]:
             first = k
 
 
-def _chosen(count: int) -> Iterator[str]:
-    """Stops for sections that there are not; waits for the operator where not all of them are to be cut."""
-    wrong = (
-        f"({FIRST}<0)",
-        f"({LAST}<0)",
-        f"({FIRST}>{count})",
-        f"({LAST}>{count})",
-        f"(({LAST}>0) AND ({FIRST}>{LAST}))",
-    )
-    yield f"IF {' OR '.join(wrong)}"
-    yield from start.stop(f"{FIRST} and {LAST}: first and last section must be 1 to {count}, or 0", NO_SUCH_SECTION)
-    yield f"IF ({FIRST}>0) OR ({LAST}>0)"
-    yield f'MSG("only sections "<<{FIRST}<<" to "<<{LAST}<<" of {count} (0: open): NC start goes on")'
-    yield "M0"
-    yield "ENDIF"
-
-
-def _if_chosen(first: int, last: int) -> str:
-    """The condition that one of the sections from ``first`` to ``last`` is to be cut."""
-    return f"IF ({FIRST}<={last}) AND (({LAST}==0) OR ({LAST}>={first}))"
-
-
 def _section(job: _Job, one: Pass, number: int, count: int) -> Iterator[str]:
     """One pass by itself: label, message, modal head, approach above its first point, plunge, the cut, retract.
 
@@ -145,7 +119,7 @@ def _section(job: _Job, one: Pass, number: int, count: int) -> Iterator[str]:
     (x, y, z, *turned), *points = _words(one, job.positions)
     yield comment(job.name, f"section {number}: {one.label}, tooth {one.tooth}")
     yield f"SECTION_{number}:"
-    yield _if_chosen(number, number)
+    yield if_chosen(number, number)
     yield f'MSG("section {number} of {count}: {one.label}")'
     yield start.modal(machine)
     yield f"G0 {x} {y} {' '.join(turned)}"

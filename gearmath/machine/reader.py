@@ -55,7 +55,7 @@ GROUP_OF_CODE = {
     }.items()
     for code in codes.split()
 }
-_COMMANDS = {"STOPRE", "MSG", "SETAL", "WRITE", "TRANS", "FGROUP", "SPCON", "SPCOF"}
+_COMMANDS = {"STOPRE", "MSG", "SETAL", "WRITE", "DELETE", "TRANS", "FGROUP", "SPCON", "SPCOF"}
 _TYPES = ("INT", "REAL")
 _BLANK = r"(?=[ \t]|$)"
 _SKIP = re.compile(r"/[0-9]?(?![0-9])")
@@ -209,7 +209,7 @@ class _AtLine(Scanner):
         if word == "MSG" and texts[:1] and len(texts[0] or "") > _LONGEST_MESSAGE:
             what = f"the text of MSG has {len(texts[0] or '')} characters; the control shows {_LONGEST_MESSAGE}"
             self.refuse(what, at)
-        if word == "WRITE" and texts[1:2] and texts[1] is not None:
+        if word in ("WRITE", "DELETE") and texts[1:2] and texts[1] is not None:
             check_file_name(texts[1], self.name, self.line, self.text.index('"', at) + 2)
 
     def _counting(self) -> tuple:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
-from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
 from gearmath.machine.bodies import obstacles
 from gearmath.machine.collision import Collision, collisions
 from gearmath.machine.executor import MachinePath
@@ -46,13 +46,12 @@ class MillingReport:
 def milling_report(
     path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None = None,
     tolerance: float = DEFAULT_TOLERANCE, columns: int = DEFAULT_COLUMNS, evaluator: Evaluator = lambda k: k,
-    progress: Callable[[int], object] = lambda _: None,
+    progress: Callable[[int], object] = lambda _: None, space: ToothSpace | None = None,
 ) -> MillingReport:  # fmt: skip
-    """The report of a whole program. ``progress`` is called for every surface of every space, five to a space.
-
-    Raises InputError if a tool is not of this member.
+    """The report of a whole program. ``progress`` is called for every surface of every space, five to a space;
+    ``space`` is the nominal space where it is known. Raises InputError if a tool is not of this member.
     """
-    space = tooth_space(member, name, columns)
+    space = space or tooth_space(member, name, columns)
     runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
     states = surface_states(
         path, member, name, machine, errors, None, tolerance, columns, runs, evaluator, progress, space

@@ -19,6 +19,7 @@ from gearmath.machine.simulation import (
     index_errors,
     pitch_divisions,
     with_axis_errors,
+    with_backlash,
     with_running_index_errors,
     with_setting_errors,
 )
@@ -80,7 +81,8 @@ def runs_of(
             motion = motion_of(member.flank(cut.flanks[0]))
             axes = with_setting_errors(axes, settings, setting_errors, machine.pivot, motion)
             turned = np.where(indexed >= 0, index_errors(errors.work_axis, member.teeth, errors.seed)[indexed], 0.0)
-            axes = with_axis_errors(axes + turned[:, None] * np.array([0, 0, 0, 1, 0]), errors)
+            axes = with_backlash(axes, errors) + turned[:, None] * np.array([0, 0, 0, 1, 0])
+            axes = with_axis_errors(axes, errors)
         cutter = cutter_of(member, cut.flanks, space, edge_radius)
         runs.append(Run(cut, cutter, axes, cutting, indexed, line))
     return runs
@@ -113,7 +115,8 @@ def _hobbing_run(
         six, own = _divided(np.column_stack([axes, turned]), np.where(cutting[1:], parts, 1))
         six = with_running_index_errors(six, settings, index, *given)
         six = with_setting_errors(six, settings, errors.setting_errors(name), *given)
-        axes, turned, cutting, lines = with_axis_errors(six[:, :5], errors), six[:, 5], cutting[own], lines[own]
+        axes = with_axis_errors(with_backlash(six[:, :5], errors), errors)
+        turned, cutting, lines = six[:, 5], cutting[own], lines[own]
     cutter = cutter_of(member, cut.flanks, None, edge_radius)
     spaces = np.full(len(cutting), -1)
     return Run(cut, cutter, axes, cutting, spaces, lines, blades_of(member, edge_radius), turned)

@@ -146,6 +146,35 @@ def with_axis_errors(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
     return real
 
 
+class Backlash:
+    """Axes A and B that lag behind: told to turn back, they stand until the play is taken up.
+
+    They are within half of the play of where they are told to stand, and move no more than that asks for; at first
+    they stand as if they had come forwards.
+    """
+
+    def __init__(self, errors: SimulatedMachine) -> None:
+        self._half = errors.axes.backlash / 2
+        self._real: np.ndarray | None = None
+
+    def __call__(self, position: np.ndarray) -> np.ndarray:
+        """How far A and B (2,) [rad] stand off once they have been told to go to a position X Y Z A B (5,)."""
+        told = position[3:5]
+        real = told - self._half if self._real is None else np.clip(self._real, told - self._half, told + self._half)
+        self._real = real
+        return real - told
+
+
+def with_backlash(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
+    """Where A and B really stand at the ends of blocks (n,5), one after the other."""
+    if not errors.axes.backlash.any():
+        return axes
+    play, real = Backlash(errors), axes.copy()
+    for k, position in enumerate(axes):
+        real[k, 3:5] += play(position)
+    return real
+
+
 def divisions(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
     """Parts (n-1,) into which blocks between positions (n,5) must fall for periodic axis errors to be followed."""
     wrong = errors.axes
@@ -153,6 +182,10 @@ def divisions(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
     way = np.abs(np.diff(axes, axis=0))
     for harmonic in wrong.A_harmonics:
         periods = np.maximum(periods, harmonic.order * way[:, 3] / (2 * math.pi))
+    if wrong.backlash.any():
+        # where an axis turns back it stands within a block
+        turns = np.sign(np.diff(axes[:, 3:], axis=0))
+        periods = np.maximum(periods, (turns != np.vstack([np.zeros((1, 2)), turns[:-1]])).any(axis=1))
     for screw in wrong.screws:
         periods = np.maximum(periods, way[:, AXES.index(screw.axis)] / screw.lead)
     return np.maximum(np.ceil(_PARTS_OF_A_PERIOD * periods), 1).astype(int)

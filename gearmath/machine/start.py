@@ -20,9 +20,12 @@ NOT_METRIC, INCREMENTS, OFFSET, TOOL_NAME, TOOL_LENGTH, TOO_LOW = 65010, 65011, 
 _SAME, _SAME_LENGTH = 0.0005, 1.0
 
 
-def stop(why: str, alarm: int) -> Iterator[str]:
-    """The end of the program within an IF. How the control reacts to SETAL is a setting: M30 stops it for sure."""
-    yield f'MSG("{why}")'
+def stop(why: str, alarm: int, place: str = "") -> Iterator[str]:
+    """The end of the program within an IF. How the control reacts to SETAL is a setting: M30 stops it for sure.
+
+    ``place`` is an expression that the message begins with.
+    """
+    yield f'MSG({place}"{why}")'
     yield f"SETAL({alarm})"
     yield "M30"
     yield "ENDIF"

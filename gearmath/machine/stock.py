@@ -50,8 +50,8 @@ class SurfaceState:
     """One surface of one space as the program leaves it: extremes [mm], faults, and where and by which line.
 
     ``lowest`` and ``highest`` leave out what no pass comes near, which ``uncut`` counts with what stays above the
-    tolerance. ``line`` is the line of the program that cuts deepest, ``row`` and ``col`` the point at which it does;
-    ``highest_row`` and ``highest_col`` are the point at which most is left.
+    tolerance, and ``unmet`` without that. ``line`` is the line of the program that cuts deepest, ``row`` and ``col``
+    the point at which it does; ``highest_row`` and ``highest_col`` are the point at which most is left.
     """
 
     surface: str
@@ -61,6 +61,7 @@ class SurfaceState:
     highest: float
     gouged: int
     uncut: int
+    unmet: int
     row: int
     col: int
     line: int
@@ -87,20 +88,23 @@ def nominal_surfaces(member: Member, space: ToothSpace) -> list[Surface]:
 
 
 def surface_states(
-    path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None = None,
+    path: MachinePath | None, member: Member, name: str, machine: MillingMachine,
+    errors: SimulatedMachine | None = None,
     spaces: Sequence[int] | None = None, tolerance: float = DEFAULT_TOLERANCE, columns: int = DEFAULT_COLUMNS,
     runs: list[Run] | None = None, evaluator: Evaluator = lambda k: k,
     progress: Callable[[int], object] = lambda _: None, space: ToothSpace | None = None,
 ) -> list[SurfaceState]:  # fmt: skip
     """Every surface of ``spaces`` (all that the program cuts, by default), exposed to every pass of every tool.
 
-    ``runs`` replaces the tools of the program, ``space`` the nominal space. ``progress`` is called with the number of
-    surfaces done. Raises InputError if a tool is not of this member.
+    ``runs`` replaces the tools of the program, whose ``path`` is then not needed; ``space`` the nominal space.
+    ``progress`` is called with the number of surfaces done. Raises InputError if a tool is not of this member.
     """
     space = space or tooth_space(member, name, columns)
     *surfaces, root = nominal_surfaces(member, space)
     surfaces.append(generated_root(root, member, name, space, evaluator))
     if runs is None:
+        if path is None:
+            raise ValueError("either path or runs must be given")
         runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
     if spaces is None:
         spaces = sorted({number for run in runs for number in run.spaces})
@@ -172,7 +176,7 @@ def _state(
         surface=surface.name, space=space, points=len(distance),
         lowest=float(np.min(distance[met], initial=math.inf)), highest=float(np.max(distance[met], initial=-math.inf)),
         gouged=int((distance[met] < -tolerance).sum()), uncut=int((~met).sum() + (distance[met] > tolerance).sum()),
-        row=int(surface.row[deepest]), col=int(surface.col[deepest]),
+        unmet=int((~met).sum()), row=int(surface.row[deepest]), col=int(surface.col[deepest]),
         line=int(lines[block[deepest]]) if block[deepest] >= 0 else 0,
         highest_row=int(surface.row[fullest]), highest_col=int(surface.col[fullest]),
     )  # fmt: skip

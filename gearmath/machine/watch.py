@@ -8,8 +8,7 @@ way although its neighbours cut the flank clean.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,9 +34,6 @@ _PER_BLOCK = 2.0
 _UP, _ACROSS = (1.0,), (0.0, 1.0)
 #: X and Y so far off the path are wrong wherever the flank is. [mm]
 _FAR_ASIDE = 0.05
-_TOLERANCE = re.compile(r"^; flank tolerance: ([0-9.]+) um", re.MULTILINE)
-_MEMBER = re.compile(r"^; member: (pinion|gear)\b", re.MULTILINE)
-_FINISHED = re.compile(r"^; finish: stock 0 mm", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -53,7 +49,10 @@ class WatchedFlank:
 
 @dataclass(frozen=True)
 class Watch:
-    """What all blocks leave: number of lines, extremes [mm] with space, flank and line of the text; ``uncut`` lines."""
+    """What all blocks leave: number of lines, extremes [mm] with space, flank and line of the text; ``uncut`` lines.
+
+    Where nothing is cut ``lowest`` is infinite, and ``highest`` minus infinite.
+    """
 
     lines: int
     lowest: float
@@ -103,6 +102,7 @@ def _lines(member: Member, run: Run, flank: str, blocks: int) -> tuple[np.ndarra
 def watch(
     runs: list[Run], member: Member, machine: MillingMachine, errors: SimulatedMachine | None = None,
     evaluator: Evaluator = lambda k: k, progress: Callable[[int], object] = lambda _: None,
+    groups: Mapping[int, list[int]] | None = None,
 ) -> Watch:  # fmt: skip
     """What the passes of every space leave on the flanks of that space, the ``runs`` with rounded blades.
 
@@ -110,13 +110,16 @@ def watch(
 
     Rapid blocks that end as low as the tool cuts take metal away like the others, in every space.
 
-    ``progress`` is called for every space.
+    ``progress`` is called for every space exposed. ``groups`` are spaces known to be cut alike, by the one that is
+    exposed for all of them; where rapid motion takes metal away, it is every space.
     """
     flanks = watched_flanks(member, runs)
     numbers = np.concatenate([run.line for run in runs])
     rows: list[tuple[float, float, int, int, int, str, int]] = []
     turns = tooth_angles(member.teeth, member.index_correction)
-    for space in sorted({number for run in runs for number in run.spaces}):
+    every = {space: [space] for space in sorted({number for run in runs for number in run.spaces})}
+    exposed = every if groups is None or any(_rapid_in_metal(run).any() for run in runs) else groups
+    for space, like in exposed.items():
         own = [replace(run, cutting=(run.cutting & (run.space == space)) | _rapid_in_metal(run)) for run in runs]
         angle = turns[space]
         for one in flanks:
@@ -126,13 +129,14 @@ def watch(
             low = int(np.argmin(np.where(met, left.distance, np.inf)))
             high = int(np.argmax(np.where(met, left.distance, -np.inf)))
             rows.append((
-                float(left.distance[low]), float(left.distance[high]), int(numbers[left.block[low]]),
-                int(numbers[left.block[high]]), int((~met).sum()), one.flank, space,
+                float(left.distance[low]) if met.any() else np.inf,
+                float(left.distance[high]) if met.any() else -np.inf, int(numbers[left.block[low]]),
+                int(numbers[left.block[high]]), int((~met).sum()) * len(like), one.flank, space,
             ))  # fmt: skip
         progress(1)
     deep, full = min(rows, key=lambda row: row[0]), max(rows, key=lambda row: row[1])
     return Watch(
-        lines=len(rows) // max(len(flanks), 1) * sum(len(one.point) for one in flanks),
+        lines=len(every) * sum(len(one.point) for one in flanks),
         lowest=deep[0], lowest_at=(deep[6], deep[5], deep[2]), highest=full[1], highest_at=(full[6], full[5], full[3]),
         uncut=sum(row[4] for row in rows),
     )  # fmt: skip
@@ -198,15 +202,3 @@ def distances_off_the_way(
         found.append(entry(raised[node], axis[node], *given, body.annulus)[0])
     np.maximum.at(off, rows[node], np.minimum(np.abs(found[0] - found[1]), REACH))
     return off
-
-
-def stated_tolerance(text: str) -> float | None:
-    """The tolerance [mm] that a cutting program promises in its head; None if it leaves stock, or says nothing."""
-    found = _TOLERANCE.search(text)
-    return float(found[1]) / 1000 if found and _FINISHED.search(text) else None
-
-
-def stated_member(text: str) -> str | None:
-    """The member that a program says in its head it is for; None if it says nothing."""
-    found = _MEMBER.search(text)
-    return found[1] if found else None

@@ -70,8 +70,8 @@ def draw_pitch(axes: Axes, before: Sequence[Pitch], after: Sequence[Pitch] = ())
     axes.axhline(0, color=NOMINAL, linewidth=0.6)
     axes.set_xlabel("tooth", fontsize=8)
     axes.set_ylabel("cumulative pitch deviation / µm", fontsize=8)
-    axes.tick_params(labelsize=7)
-    axes.legend(fontsize=7, frameon=False)
+    axes.tick_params(labelsize=8)
+    axes.legend(fontsize=8, frameon=False)
 
 
 def draw_runout(
@@ -89,16 +89,17 @@ def draw_runout(
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
     axes.set_xlabel("space", fontsize=8)
     axes.set_ylabel("ball, normal to the pitch cone / µm", fontsize=8)
-    axes.tick_params(labelsize=7)
+    axes.tick_params(labelsize=8)
     axes.legend(
-        fontsize=7,
+        fontsize=8,
         frameon=False,
         loc="lower left",
         bbox_to_anchor=(0, 1),
-        ncol=2,
+        ncol=1 if after is None else 2,
         borderaxespad=0.1,
         handlelength=1.5,
         columnspacing=1.0,
+        labelspacing=0.2,
     )
 
 
@@ -113,7 +114,7 @@ def _teeth(axes: Axes, count: int) -> None:
     axes.axhline(0, color=INK, linewidth=0.6)
     axes.set_xlim(-0.7, count - 0.3)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=13))
-    axes.tick_params(labelsize=7)
+    axes.tick_params(labelsize=8)
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(axis="y", color="#dddddd", linewidth=0.5)
     axes.set_axisbelow(True)

@@ -13,15 +13,15 @@ from gearmath.quality.pitch import Pitch
 from gearmath.quality.spaces import Runout
 from gearmath.quality.topography import Topography
 
-#: Width of a chart [inch]: what its letters are to be read at.
-_WIDTH = 4.0
+#: Width of a chart [inch], half of A4 between its margins: letters of 8 pt are 8 pt on paper.
+_WIDTH = 3.64
 
 Limits = tuple[tuple[float, float], tuple[float, float]]
 
 
 def topography_chart(shown: Topography, scale: float, taken: float | None) -> Figure:
     """One flank with its numbers, at a given scale."""
-    figure = Figure(figsize=(_WIDTH, 2.95), layout="constrained")
+    figure = Figure(figsize=(_WIDTH, 2.9), layout="constrained")
     draw_topography(figure.subplots(), shown, scale=scale, taken=taken)
     return figure
 
@@ -39,7 +39,7 @@ def pitch_chart(pitch: Pitch, after: Pitch | None, limits: Limits) -> Figure:
 
 def runout_chart(runout: Runout) -> Figure:
     """Movement of a ball in every space."""
-    figure = Figure(figsize=(_WIDTH, 2.0), layout="constrained")
+    figure = Figure(figsize=(_WIDTH, 2.15), layout="constrained")
     axes = figure.subplots()
     draw_runout(axes, runout, names=("measured", ""))
     axes.set_ylabel("movement / µm", fontsize=8)  # the caption says of what

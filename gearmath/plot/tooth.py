@@ -109,7 +109,7 @@ def _words(axes: Axes, nominal: np.ndarray, lifted: np.ndarray, deviation: np.nd
             if np.isfinite(deviation[row, column]):
                 axes.annotate(
                     signed(deviation[row, column]), lifted[row, column], (0, 4 if row else -4), zorder=7, bbox=box,
-                    textcoords="offset points", fontsize=7, ha="center", va="bottom" if row else "top",
+                    textcoords="offset points", fontsize=8, ha="center", va="bottom" if row else "top",
                 )  # fmt: skip
 
 

@@ -15,7 +15,7 @@ _SLANT = 0.22
 #: The largest deviation is as high as this part of the distance of two rows; less than so many µm are not enlarged.
 _REACH, _LEAST_UM = 0.85, 1.0
 #: More numbers than this side by side cannot be read.
-_MOST_NUMBERS = 11
+_MOST_NUMBERS = 9
 
 
 def reference_of(topography: Topography) -> tuple[int, int]:
@@ -61,9 +61,9 @@ def draw_topography(
     zero = "not zeroed" if taken is None else f"zero at the ring, {signed(taken * 1000)} µm taken off there"
     count = f"; {shown.left_out} of {values.size} points left out (×)" if shown.left_out else ""
     whose = "" if earlier is None else "numbers: after; "
-    axes.set_xlabel(f"{whose}{zero}{count}", fontsize=7)
-    axes.set_xlim(-0.75, x.max() + 1.25)
-    axes.set_ylim(-1.0, rows - 1 + 1.15)
+    axes.set_xlabel(f"{whose}{zero}{count}", fontsize=8, wrap=True)
+    axes.set_xlim(-0.65, x.max() + 0.65)
+    axes.set_ylim(-1.4, rows - 1 + 1.2)
     axes.set_xticks([])
     axes.set_yticks([])
     axes.spines[:].set_visible(False)
@@ -86,7 +86,6 @@ def _numbers(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray) -> No
     """Numbers at the points: below where the deviation goes up, else above."""
     rows, columns = values.shape
     step = -(-columns // _MOST_NUMBERS)
-    size = 7.0 if columns // step <= 9 else 5.8
     for row in range(rows):
         for column in range(0, columns, step):
             value = values[row, column]
@@ -94,27 +93,27 @@ def _numbers(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray) -> No
             below = not text.startswith("\N{MINUS SIGN}")
             number = axes.annotate(
                 text, (x[row, column], y[row, column]), (0, -2.5 if below else 2.5), textcoords="offset points",
-                ha="center", va="top" if below else "bottom", fontsize=size, zorder=5, gid=f"node {row},{column}",
+                ha="center", va="top" if below else "bottom", fontsize=8, zorder=5, gid=f"node {row},{column}",
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
             )  # fmt: skip
             number.set_in_layout(False)  # well within the axes; asking every number takes most of the time
     if step > 1:
-        axes.set_title(f"numbers at one column in {step}", fontsize=7)
+        axes.set_title(f"numbers at one column in {step}", fontsize=8)
 
 
 def _edges(axes: Axes, x: np.ndarray, y: np.ndarray) -> None:
     middle = x.shape[1] // 2
     for text, at, ha, va in (
-        ("root", (x[0, middle], y[0, 0] - 0.6), "center", "top"),
+        ("root", (x[0, middle], y[0, 0] - 0.85), "center", "top"),
         ("tip", (x[-1, middle], y[-1, 0] + 0.75), "center", "bottom"),
-        ("toe", (x[:, 0].mean() - 0.55, y.mean()), "right", "center"),
-        ("heel", (x[:, -1].mean() + 0.55, y.mean()), "left", "center"),
+        ("toe", (x[0, 0] - 0.4, y[0, 0] - 0.85), "left", "top"),
+        ("heel", (x[0, -1] - 0.2, y[0, 0] - 0.85), "right", "top"),
     ):
         axes.text(*at, text, ha=ha, va=va, fontsize=8, style="italic")
 
 
 def _scale_bar(axes: Axes, x: np.ndarray, scale: float) -> None:
     """A bar in the lower right corner, beside the heel of the root."""
-    length, at = round_length(scale), x[0, -1] + 0.95
+    length, at = round_length(scale), x[0, -1] + 0.85
     axes.plot([at, at], [-0.6, -0.6 + length / scale], color=INK, linewidth=1.4, marker="_", gid="scale bar")
-    axes.text(at + 0.12, -0.6 + length / scale / 2, f"{length:g} µm", fontsize=7, va="center")
+    axes.text(at, -0.85, f"{length:g} µm", fontsize=8, ha="center", va="top")

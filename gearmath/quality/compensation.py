@@ -6,22 +6,19 @@ the targets, on the exact surface.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from gearmath.quality.deviation_surface import surface_map
 from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.identification import Identification
-from gearmath.quality.least_squares import Minimum, compensation_step, minimize
+from gearmath.quality.least_squares import compensation_step, minimize
 from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.problem import Problem
 from gearmath.quality.variables import FREE, Bounds, variables_of
 
-#: Where a design leaves more than this part of the sum of squares after so many steps, it starts tilted too.
-_GOOD, _HEAT = 0.01, 6
 #: With noise, what improves the sum of squares by less than this part of its square is no improvement.
 _MATTERS = 1e-6
 
@@ -50,8 +47,7 @@ def identify(
     problem = Problem(targets, variables, weighting, root_limit, run, noise)
     lower, upper = problem.bounds
     step, p = run(compensation_step(len(lower))), len(variables)
-    solve = partial(minimize, problem, lower, upper, step, _MATTERS * noise**2)
-    found = solve() if bounds == "machine" else _best_start(problem, solve)
+    found = minimize(problem, lower, upper, step, _MATTERS * noise**2)
     v, slack = found.variables[:p], found.variables[p:]
     residual, jacobian = problem.deviations(v)  # type: ignore[misc]
     rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (problem.measured, residual))
@@ -72,16 +68,6 @@ def nothing_identified(targets: Sequence[FlankTarget], run: Run = as_it_stands) 
     left = np.concatenate([located(target, target.vector, run, moving=False)[0] for target in targets]) - measured
     before, after = (float(np.sqrt(np.mean(values**2))) for values in (measured, left))
     return Identification((), np.zeros(0), before, after, 0, True, np.zeros((len(measured), 0)), left)
-
-
-def _best_start(problem: Problem, solve: Callable[..., Minimum]) -> Minimum:
-    """The minimum of a design: the start that is ahead after some steps is followed to the end."""
-    first = solve(most=_HEAT)
-    heats = [first]
-    if first.cost > _GOOD * float(problem.measured @ problem.measured):
-        heats += [solve(start=v, most=_HEAT) for v in problem.other_starts]
-    ahead = min(heats, key=lambda one: one.cost)
-    return ahead if ahead.converged else solve(start=ahead.variables)
 
 
 def with_deviations(targets: Sequence[FlankTarget], deviations: np.ndarray) -> list[FlankTarget]:

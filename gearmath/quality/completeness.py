@@ -23,8 +23,38 @@ from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.touch_csv import WORK_SPHERE, CalibrationTouches, Touches
 
+#: So many points of a flank without a deviation are named.
+_NAMED = 6
+
 #: Places (row, col) by flank and tooth.
 _Places = dict[tuple[str, int], set[tuple[int, int]]]
+
+
+def cut_off(file: FlankFile) -> str | None:
+    """That a file holds fewer points than its program plans, in words; None where it does not, or does not say it."""
+    if file.planned is None or len(file) >= file.planned:
+        return None
+    return f"the file holds {len(file)} of {file.planned} points that were planned"
+
+
+def silent_points(file: FlankFile) -> tuple[str, ...]:
+    """Sentences on the points that a file has without a deviation: the probe missed them. Many of a flank are counted.
+
+    Of a nominal file, where all are silent, nothing is said.
+    """
+    silent = np.isnan(file.deviation)
+    if silent.all():
+        return ()
+    found = []
+    for flank in FLANKS:
+        here = np.flatnonzero(silent & (file.flank == flank))
+        found += [
+            f"{flank} flank, tooth {file.tooth[k]}, row {file.row[k]}, col {file.col[k]}: no deviation; left out"
+            for k in here[:_NAMED]
+        ]
+        if len(here) > _NAMED:
+            found.append(f"{flank} flank: {len(here) - _NAMED} more points have no deviation; left out")
+    return tuple(found)
 
 
 def missing_points(file: FlankFile, teeth: int) -> tuple[str, ...]:
@@ -34,7 +64,8 @@ def missing_points(file: FlankFile, teeth: int) -> tuple[str, ...]:
     """
     places = _places(file.flank, file.tooth, file.row, file.col)
     missing = _missing(places, teeth, grid_shape(file), reference_point(file), MOST_MISSING)
-    return tuple(f"not whole: {one}" for one in missing)
+    cut = cut_off(file)
+    return tuple(f"not whole: {one}" for one in (*([cut] if cut else []), *missing))
 
 
 def missing_touches(touches: Touches, teeth: int, shape: tuple[int, int]) -> tuple[str, ...]:
@@ -55,6 +86,23 @@ def missing_touches(touches: Touches, teeth: int, shape: tuple[int, int]) -> tup
     if last[1] != often:
         found.append(f"the last point was touched {last[1]} times, others {often} times")
     return tuple(found)
+
+
+def missed_points(touches: Touches) -> tuple[str, ...]:
+    """Sentences on the points at which the probe touched nothing, every time or some of the times."""
+    tried: Counter[tuple] = Counter()
+    met: Counter[tuple] = Counter()
+    first: dict[tuple, int] = {}
+    for k, place in enumerate(zip(touches.flank, touches.tooth, touches.row, touches.col, strict=True)):
+        tried[place] += 1
+        met[place] += bool(touches.triggered[k])
+        first.setdefault(place, k)
+    return tuple(
+        f"{touches.name_of(first[place])}: triggered = 0: the probe touched nothing"
+        + (f", {count - met[place]} of {count} times" if met[place] else "; the point is left out")
+        for place, count in tried.items()
+        if met[place] < count
+    )
 
 
 def taken_for(touches: Touches, shape: tuple[int, int]) -> str:

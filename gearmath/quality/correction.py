@@ -24,8 +24,9 @@ from gearmath.quality.correction_fit import CorrectionFit, changed_settings, wit
 from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.identification import Identification
 from gearmath.quality.on_line import Run, as_it_stands
-from gearmath.quality.own_index import teeth_as_indexed_on_average
+from gearmath.quality.own_index import LEAST_OFF, near_the_median, teeth_as_indexed_on_average
 from gearmath.quality.pitch import evaluate_pitch, index_correction
+from gearmath.quality.representative import representative_tooth
 from gearmath.quality.target import blade_curve, flank_target, nominal_curvature
 from gearmath.quality.unknown_rotation import UnknownRotation, rotation_columns
 from gearmath.quality.variables import NAMES, Bounds, free_settings, parts, whole
@@ -78,6 +79,7 @@ def correct(
     higher_order: bool = False, few: bool = False, root_limit: float | None = ROOT_LIMIT,
     noise: float | None = None, added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None,
     bounds: Bounds = "machine", run: Run = as_it_stands, progress: Callable[[int], object] = lambda _: None,
+    indexed: bool = True,
 ) -> Correction:  # fmt: skip
     """The settings that make up for what was measured on a member.
 
@@ -86,7 +88,8 @@ def correct(
     where there is nothing to gain. ``noise`` [mm] is the standard deviation of a measured deviation, by default what
     all of the settings leave: weak directions are not moved for its sake. ``excluded`` (points of the file,) marks
     points that are not to be used; ``added`` gives for each flank deviations [mm] on the grid that are corrected
-    besides, such as those of the mate. ``bounds`` are those of errors of a machine, or of a design.
+    besides, such as those of the mate. ``bounds`` are those of errors of a machine, or of a design. There are no index
+    corrections where the pitch is not known: not ``indexed``.
 
     A tooth that is indexed otherwise than the others is moved to where they are on average: see
     :mod:`gearmath.quality.own_index`.
@@ -114,7 +117,8 @@ def correct(
     wanted, of_work = fit.turned(rotation.shift), replace(rotation, angles=-rotation.angles)
     judged, as_measured = without_shift(targets, of_work.shift), _turned_best(targets, columns)
     progress(1)
-    found = Correction({}, identified, {}, _index(member, measured), {}, {}, {}, {}, {}, of_work, {}, {}, remarks)
+    index = _index(member, measured) if indexed else None
+    found = Correction({}, identified, {}, index, {}, {}, {}, {}, {}, of_work, {}, {}, remarks)
     for group, analysis in zip(groups, fit.analysis, strict=True):
         mine, before = [wanted[flank] for flank in group], [as_measured[flank].deviation for flank in group]
         found.left_out.update({f: t.grid_points - len(t.deviation) for f, t in zip(group, mine, strict=True)})
@@ -188,9 +192,12 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
     if not found:
         return None
     before = np.radians(member.index_correction) if member.index_correction else np.zeros(member.teeth)
-    turn, (teeth, counts) = index_correction(found), np.unique(measured.tooth, return_counts=True)
+    turn = index_correction(found)
+    full = representative_tooth(measured, found[0].flank)
     # the settings put right where the others stand, not the tooth that was measured in full
-    return before + turn - np.delete(turn, teeth[np.argmax(counts)] % member.teeth).mean()
+    others = np.delete(turn, full % member.teeth)
+    radius = member.blank.mean_cone_distance * np.sin(np.radians(member.blank.pitch_angle))
+    return before + turn - others[near_the_median(others, LEAST_OFF / radius)].mean()
 
 
 def setting_changes(member: Member, correction: Correction) -> list[tuple[str, str, float, float]]:

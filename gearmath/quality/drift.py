@@ -24,40 +24,70 @@ _FELT = 0.1
 @dataclass(frozen=True)
 class Drift:
     """Drift seen by one flank: ``closure`` [mm], deviation of tooth 0 at the end less that at the start, as the mean of
-    ``points`` that were touched twice; ``rate`` (3,) [mm per row], what the machine drifted, in the axes of a space.
+    ``points`` that were touched twice; ``motion`` (3,) [mm], what the machine moved from the first row to the last, in
+    the axes of a space.
     """
 
     flank: str
     closure: float
-    rate: np.ndarray
+    motion: np.ndarray
     points: int
 
 
-def without_drift(file: FlankFile, teeth: int) -> tuple[FlankFile, dict[str, Drift]]:
+def evenly(file: FlankFile) -> np.ndarray:
+    """The course (n,) of a drift that is even over the rows, which stand in the order of measuring: from 0 to 1."""
+    return np.linspace(0.0, 1.0, len(file))
+
+
+def without_drift(
+    file: FlankFile, teeth: int, course: np.ndarray | None = None
+) -> tuple[FlankFile, dict[str, Drift]]:  # fmt: skip
     """The file without tooth 0 measured again and without what that shows, and the drift of each flank.
 
-    Drift is taken as even over the rows, which stand in the order of measuring, and as none at the first of them: one
-    clock for both flanks, or it would change the thickness of the teeth. A flank without such points stays as it is.
+    ``course`` (n,) is how far the motion has come at each row, even over all of them if not given: one clock for both
+    flanks, or it would change the thickness of the teeth. A flank without such points stays as it is.
     """
     pairs = {flank: _twice(file, teeth, flank) for flank in FLANKS}
     seen = [flank for flank in FLANKS if len(pairs[flank][0])]
     if not seen:
         return file.pick(file.tooth < teeth), {}
-    rows, normal = np.arange(len(file), dtype=float), _in_space(file)
     first, again = (np.concatenate([pairs[flank][k] for flank in seen]) for k in (0, 1))
-    change = file.deviation[again] - file.deviation[first]
-    rate, *_ = np.linalg.lstsq((rows[again] - rows[first])[:, None] * normal[first], change, rcond=_FELT)
+    course = evenly(file) if course is None else course
+    motion, normal = _motion(file, first, again, course)
     deviation, drifts = file.deviation.copy(), {}
     for flank in seen:
         here, (start, end) = file.flank == flank, pairs[flank]
-        deviation[here] -= rows[here] * (normal[here] @ rate)
+        deviation[here] -= course[here] * (normal[here] @ motion)
         closure = float(np.mean(file.deviation[end] - file.deviation[start]))
-        drifts[flank] = Drift(flank, closure, rate, len(start))
+        drifts[flank] = Drift(flank, closure, motion, len(start))
     moved = np.nan_to_num(deviation - file.deviation)[:, None] * file.normal
     return replace(file, deviation=deviation, point=file.point + moved).pick(file.tooth < teeth), drifts
 
 
-def untold_drift(file: FlankFile, teeth: int) -> np.ndarray:
+def measured_twice(file: FlankFile, teeth: int) -> tuple[np.ndarray, np.ndarray]:
+    """Rows of the points of tooth 0 that were touched again, and the rows of the second touches, of both flanks."""
+    pairs = [_twice(file, teeth, flank) for flank in FLANKS]
+    first, again = (np.concatenate([pair[k] for pair in pairs]) for k in (0, 1))
+    return first, again
+
+
+def moved_by(file: FlankFile, first: np.ndarray, again: np.ndarray, course: np.ndarray) -> np.ndarray:
+    """What the motion that points touched twice show makes of the deviation of every row (n,) [mm], on its course."""
+    motion, normal = _motion(file, first, again, course)
+    return course * (normal @ motion)
+
+
+def _motion(
+    file: FlankFile, first: np.ndarray, again: np.ndarray, course: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """The whole motion (3,) [mm] in the axes of a space, and the normals (n,3) in them."""
+    normal = _in_space(file)
+    change = file.deviation[again] - file.deviation[first]
+    motion, *_ = np.linalg.lstsq((course[again] - course[first])[:, None] * normal[first], change, rcond=_FELT)
+    return motion, normal
+
+
+def untold_drift(file: FlankFile, teeth: int, course: np.ndarray) -> np.ndarray:
     """Columns (n,q): what drift that is not felt at the points touched again does to the deviations, but for its size.
 
     Rows are those that ``without_drift`` keeps; q is 0 where nothing was touched again, or where that tells all of it.
@@ -66,10 +96,10 @@ def untold_drift(file: FlankFile, teeth: int) -> np.ndarray:
     first = np.concatenate([_twice(file, teeth, flank)[0] for flank in FLANKS])
     if not len(first):
         return np.empty((int(keep.sum()), 0))
-    normal, time = _in_space(file), np.linspace(0.0, 1.0, len(file))
+    normal = _in_space(file)
     _, sizes, directions = np.linalg.svd(normal[first])
     told = int((sizes > _FELT * sizes[0]).sum())
-    return (time[:, None] * (normal @ directions[told:].T))[keep]
+    return (course[:, None] * (normal @ directions[told:].T))[keep]
 
 
 def _twice(file: FlankFile, teeth: int, flank: str) -> tuple[np.ndarray, np.ndarray]:

@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.quality.completeness import missing_points
+from gearmath.quality.closing import Closing, close_run
+from gearmath.quality.completeness import cut_off, missing_points, silent_points
 from gearmath.quality.correction import check_belongs
 from gearmath.quality.drift import Drift, untold_drift, without_drift
-from gearmath.quality.nominal import at_one_place, check_points, completed, nominal_rows
+from gearmath.quality.nominal import at_one_place, check_phase, check_points, completed, nominal_rows
 from gearmath.quality.outliers import find_outliers
 from gearmath.quality.pitch import Pitch, evaluate_pitch
 from gearmath.quality.registration import Registration, register, stated_noise
 from gearmath.quality.rotation import Rotation, common_rotation
 from gearmath.quality.spaces import Runout, Thickness, evaluate_runout, evaluate_thickness
-from gearmath.quality.tolerance import Verdict, judge
+from gearmath.quality.tolerance import Verdict, iso17485, judge
 from gearmath.quality.topography import (
     Orders,
     Topography,
@@ -41,7 +42,8 @@ class FlankFigures:
     """One flank: the topography of every tooth measured in full, their mean, its first orders, and its pitch.
 
     ``chart`` is the mean as it is drawn: the flank turned until its reference point has no deviation. Where no tooth
-    was measured in full, there are no topographies, and ``mean``, ``chart`` and ``orders`` are None.
+    was measured in full, there are no topographies, and ``mean``, ``chart`` and ``orders`` are None. ``reason`` says
+    why there is no largest deviation although every point of the tooth has a reading.
     """
 
     topographies: tuple[Topography, ...]
@@ -49,6 +51,7 @@ class FlankFigures:
     chart: Topography | None
     orders: Orders | None
     pitch: Pitch | None
+    reason: str | None = None
 
     @property
     def withheld(self) -> dict[str, str]:
@@ -58,6 +61,8 @@ class FlankFigures:
             first = self.topographies[0]
             points = "1 point" if first.left_out == 1 else f"{first.left_out} points"
             reasons["max_deviation"] = f"{first.flank} flank, tooth {first.tooth}: {points} without a reading"
+        elif self.topographies and self.reason:
+            reasons["max_deviation"] = self.reason
         if self.pitch is not None and self.pitch.withheld is not None:
             reasons |= dict.fromkeys(("F_p", "max_f_pt"), self.pitch.withheld)
         return reasons
@@ -72,14 +77,14 @@ class FlankFigures:
             first = self.topographies[0]
             values |= {
                 "tooth": first.tooth,
-                "max_deviation_um": None if first.left_out else first.extreme * 1000,
+                "max_deviation_um": None if "max_deviation" in self.withheld else first.extreme * 1000,
                 "rms_um": first.rms * 1000,
                 "cubic_surface_residual_um": float(np.nanmax(np.abs(first.residual))) * 1000,
                 "surface_coefficients": first.coefficients.tolist(),
                 "left_out": first.left_out,
                 "zeroed_at_reference": {
                     "taken_off_um": (self.mean.at_reference - self.chart.at_reference) * 1000,
-                    "max_deviation_um": None if self.chart.left_out else self.chart.extreme * 1000,
+                    "max_deviation_um": (None if self.chart.left_out or self.reason else self.chart.extreme * 1000),
                     "rms_um": self.chart.rms * 1000,
                 },
                 "orders": self.orders.as_dict(),
@@ -108,11 +113,17 @@ class Evaluation:
     runout_as_measured: Runout | None
     thickness: Thickness | None
     drifts: dict[str, Drift]
+    closing: Closing
     registration: Registration | None
     rotation: Rotation | None
     verdict: Verdict | None
     left_out: tuple[str, ...]
     remarks: tuple[str, ...]
+
+    @property
+    def first(self) -> tuple[str, ...]:
+        """What is to be said before any figure: whether the work moved while it was measured, and what was left out."""
+        return (*self.closing.said, *self.left_out)
 
     @property
     def taken_out(self) -> Registration | None:
@@ -145,6 +156,7 @@ class Evaluation:
             "runout_as_measured": self.runout_as_measured.as_dict() if self.runout_as_measured else None,
             "thickness": self.thickness.as_dict() if self.thickness else None,
             "drift_um": {flank: drift.closure * 1000 for flank, drift in self.drifts.items()},
+            "closing": self.closing.as_dict(),
             "registration": self.registration.as_dict() if self.registration else None,
             "rotation": self.rotation.as_dict() if self.rotation else None,
             "tolerance": self.verdict.as_dict() if self.verdict else None,
@@ -164,22 +176,24 @@ def evaluate_member(
 
     Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
     the clamping where the points tell it beyond their noise; if ``rotated``, so is the rotation that both flanks have
-    in common. Raises InputError if the file is not of this member, or not in mm on its flanks, or if neither a tooth in
-    full nor pitch was measured.
+    in common. Raises InputError if the file is not of this member, or not in mm on its flanks, if neither a tooth in
+    full nor pitch was measured, or if its phase is not as its header says.
     """
     check_belongs(member, name, file)
     check_points(file, nominal_rows(file, member, name))
     complete, absent = completed(file, member, name)
-    outliers = find_outliers(complete, member.teeth)
+    closing = close_run(complete, member.teeth)
+    outliers = find_outliers(closing.straightened(complete), member.teeth)
     progress(1)
     whole = outliers.without(complete)
-    measured, drifts = without_drift(whole, member.teeth)
+    check_phase(whole)
+    measured, drifts = without_drift(whole, member.teeth, closing.course)
     as_measured = _flanks(measured, member)
-    left_out = (*outliers.reasons, *absent, *missing_points(file, member.teeth))
-    seat, remarks = None, (*left_out, *outliers.kept, *_silent(as_measured))
+    left_out = (*outliers.reasons, *absent, *silent_points(file), *missing_points(file, member.teeth))
+    seat, remarks = None, (*closing.said, *left_out, *outliers.kept, *_silent(as_measured))
     if registered:
         try:
-            seat = register(measured, member, name, untold_drift(whole, member.teeth))
+            seat = register(measured, member, name, untold_drift(whole, member.teeth, closing.course))
             remarks += (*seat.remarks, *([seat.remark] if seat.remark else []))
         except InputError as error:
             remarks += (f"not registered: {error}",)
@@ -202,11 +216,23 @@ def evaluate_member(
     if each_zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
     thickness = None if each_zeroed else evaluate_thickness(at_one_place(judged, member, name), member.teeth)
-    verdict = _verdict(member, name, flanks, runout)
+    cut = cut_off(file)
+    flanks = {flank: _without_maxima(figures, cut, closing) for flank, figures in flanks.items()}
+    spaces = cut or closing.spaces_withheld
+    runout = runout and replace(runout, reason=spaces)
+    thickness = thickness and replace(thickness, reason=spaces)
+    verdict = _verdict(member, name, flanks, runout, closing)
     progress(1)
     return Evaluation(
-        name, judged, flanks, as_measured, runout, before, thickness, drifts, seat, turn, verdict, left_out, remarks
-    )
+        name, judged, flanks, as_measured, runout, before, thickness, drifts, closing, seat, turn, verdict, left_out,
+        remarks,
+    )  # fmt: skip
+
+
+def _without_maxima(figures: FlankFigures, cut: str | None, closing: Closing) -> FlankFigures:
+    """The figures of a flank with the reasons why there are no maxima: a file that was cut off, a pitch not known."""
+    pitch = figures.pitch and replace(figures.pitch, reason=cut or closing.withheld)
+    return replace(figures, pitch=pitch, reason=cut)
 
 
 def _flanks(file: FlankFile, member: Member) -> dict[str, FlankFigures]:
@@ -235,8 +261,13 @@ def _silent(flanks: dict[str, FlankFigures]) -> Iterator[str]:
             yield f"{flank} flank: neither a tooth in full nor two reference points have readings; not judged"
 
 
-def _verdict(member: Member, name: str, flanks: dict[str, FlankFigures], runout: Runout | None) -> Verdict | None:
-    """The grade of pitch and runout, of what is known of every tooth; None where pitch was not measured."""
+def _verdict(
+    member: Member, name: str, flanks: dict[str, FlankFigures], runout: Runout | None, closing: Closing
+) -> Verdict | None:
+    """The grade of pitch and runout, of what is known of every tooth; None where pitch was not measured.
+
+    A drift that was taken out and is larger than the tolerance of the grade leaves none.
+    """
     pitches = {flank: figures.pitch for flank, figures in flanks.items() if figures.pitch is not None}
     if not pitches:
         return None
@@ -250,11 +281,19 @@ def _verdict(member: Member, name: str, flanks: dict[str, FlankFigures], runout:
     ]
     for key in ("f_pt", "F_p"):
         if gaps:
-            withheld[key] = "; ".join(gaps)
+            withheld[key] = "; ".join(dict.fromkeys(gaps))
         else:
             measured[key] = max(one[key] for one in of_flanks.values())
     if runout is None or runout.withheld is not None:
         withheld["F_r"] = "no two spaces have readings on both flanks" if runout is None else str(runout.withheld)
     else:
         measured["F_r"] = runout.total
-    return judge(member, name, measured, withheld, of_flanks)
+    verdict = judge(member, name, measured, withheld, of_flanks)
+    grade, drift = verdict.grades.get("F_p"), closing.arc * 1000
+    if closing.kind != "steady" or grade is None:
+        return verdict
+    limit = iso17485(verdict.data.mean_normal_module, verdict.data.tolerance_diameter, grade).rounded["F_p"]
+    if drift <= limit:
+        return verdict
+    why = f"the drift of {drift:.1f} um that was taken out is larger than F_p {limit:g} um of grade {grade}"
+    return judge(member, name, {}, dict.fromkeys(("f_pt", "F_p", "F_r"), why))

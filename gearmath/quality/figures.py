@@ -214,9 +214,10 @@ def _pitch(
 ) -> list[_Part]:  # fmt: skip
     """Single pitch of every tooth, the largest of them, and the total: the largest difference of two teeth.
 
-    Of teeth without a reading there is no single pitch, and then neither of the maxima.
+    Of teeth without a reading there is no single pitch, and then neither of the maxima; of none where the pitch is not
+    known for another reason.
     """
-    if figures.pitch is None:
+    if figures.pitch is None or figures.pitch.reason:
         return []
     rows = _reference(file, flank)
     _, arc = _by_tooth("flank_turning", file, rows, deviation, file.point)

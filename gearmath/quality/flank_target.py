@@ -23,6 +23,9 @@ from gearmath.quality.variables import SIZE, parts, whole
 from gearmath.specs.bevel_set import SETTINGS
 
 _LINE_TOLERANCE = 1e-9
+#: Newton steps at once, and how often they are made for points that are not found yet: from the settings nearby the
+#: first are enough, and after the last a cradle angle that a design changes by its bound.
+_STEPS, _ROUNDS = 3, 8
 
 
 @dataclass(frozen=True)
@@ -98,22 +101,46 @@ class FlankTarget:
         return *cut, self.how.side, float(self.how.rolling)
 
 
-def located(
-    target: FlankTarget, vectors: np.ndarray, run: Run = as_it_stands, moving: bool = True, bending: bool = False
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Deviations (n,) [mm] of settings and motions (83,), their gradient, and which points (n,) were not found.
+@dataclass(frozen=True)
+class Located:
+    """Where a flank crosses the normals of its nominal points: contact (n,3), deviation (n,) [mm], gradient, failed.
 
-    ``vectors`` may also be (n,83), one for every point. The gradient is (n,83), or (n,12) by the settings alone if
-    neither ``moving`` nor ``bending``; by the curvature it is zero where the blade is straight and not ``bending``.
+    The gradient is (n,83), or (n,12) by the settings alone; ``failed`` (n,) says which points were not found.
     """
-    nominal, kind = target.nominal, target.kind_of(vectors, bending)
-    contact, deviation, gradient, residual = run(flank_on_line(kind))(
-        nominal.contact, *target.given(vectors, kind), nominal.point, nominal.normal
+
+    contact: np.ndarray
+    deviation: np.ndarray
+    gradient: np.ndarray
+    failed: np.ndarray
+
+
+def locate(
+    target: FlankTarget, vectors: np.ndarray, run: Run = as_it_stands, moving: bool = True, bending: bool = False,
+    start: np.ndarray | None = None,
+) -> Located:  # fmt: skip
+    """Where the flank of settings and motions (83,) crosses the normals, found from ``start`` (n,3) on.
+
+    ``vectors`` may also be (n,83), one for every point; ``start`` is the nominal contact if it is not given. The
+    gradient is (n,12) by the settings alone if neither ``moving`` nor ``bending``; by the curvature it is zero where
+    the blade is straight and not ``bending``.
+    """
+    at, kind = target.nominal, target.kind_of(vectors, bending)
+    on_line = run(flank_on_line(kind, _STEPS))
+    contact, deviation, gradient, residual = on_line(
+        at.contact if start is None else start, *target.given(vectors, kind), at.point, at.normal
     )
+    for _ in range(_ROUNDS - 1):
+        lost = ~(residual <= _LINE_TOLERANCE)
+        lost &= np.isfinite(contact).all(axis=1)
+        if not lost.any():
+            break
+        given = target.given(vectors if vectors.ndim == 1 else vectors[lost], kind)
+        found = on_line(contact[lost], *given, at.point[lost], at.normal[lost])
+        contact[lost], deviation[lost], gradient[lost], residual[lost] = found
     failed = ~(residual <= _LINE_TOLERANCE)
     by_settings, by_curvature = gradient[:, : len(SETTINGS)], gradient[:, len(SETTINGS) :]
     if not moving and not bending:
-        return deviation, by_settings, failed
+        return Located(contact, deviation, by_settings, failed)
     full = np.zeros((len(deviation), SIZE))
     full[:, : len(SETTINGS)] = by_settings
     if moving:
@@ -121,7 +148,15 @@ def located(
         full[:, len(SETTINGS) : -1] = motion.reshape(len(motion), -1)
     if by_curvature.size:
         full[:, -1:] = by_curvature
-    return deviation, full, failed
+    return Located(contact, deviation, full, failed)
+
+
+def located(
+    target: FlankTarget, vectors: np.ndarray, run: Run = as_it_stands, moving: bool = True, bending: bool = False
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Deviations (n,) [mm], their gradient, and which points (n,) were not found, by ``locate`` from the nominal."""
+    found = locate(target, vectors, run, moving, bending)
+    return found.deviation, found.gradient, found.failed
 
 
 def predicted(target: FlankTarget, settings: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray]:

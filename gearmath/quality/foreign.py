@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,13 +14,13 @@ from gearmath.bevel.turning import half_turn, turned
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.mill import flank_header
+from gearmath.quality.gaps import fractions, gap_words, lost_words, only, outlier_words, standing_out
 from gearmath.quality.lattice import Lattice, find_lattice
 from gearmath.quality.misplaced import check_placed
 from gearmath.quality.nominal import SAME_POINT
-from gearmath.quality.outliers import flag_outliers
 from gearmath.quality.points import LEAST_FIT, Frame, Laid, Part, Phase, axial_hint, check_normals, lay, turn_of
 from gearmath.specs.bevel_set import BevelSet, Member
-from gearmath.specs.flank_csv import OWN, FlankFile, flank_file, join
+from gearmath.specs.flank_csv import OWN, PLANNED, FlankFile, flank_file, join
 
 #: Where points form no grid, deviations are interpolated on this one: its rows, columns and margins, widest first.
 _ROWS, _COLUMNS, _MARGINS = 5, 9, (0.1, 0.15, 0.2, 0.25, 0.3)
@@ -33,8 +32,6 @@ _NEAR_STEPS = 0.8
 _STEPS, _STILL = 8, 1e-13
 #: Flanks further apart than this part of a pitch are of different teeth.
 _SAME_TOOTH = 0.25
-#: A file whose points cover less than this part of face width or depth may have been cut off.
-_LEAST_COVERED = 0.6
 #: A surface of third degree is taken through so many of the nearest points, where there are enough.
 _NEAREST, _CUBIC, _QUADRATIC, _PLANE = 30, 10, 6, 3
 #: A step of the depth counts like this part of the face width.
@@ -47,25 +44,28 @@ _EVEN, _DIGITS = SAME_POINT / 2, 6
 class Foreign:
     """The flank file, the turning [rad] of every part that was taken out, and what was found, in sentences.
 
-    ``doubts`` are those of the sentences that say that the points may not stand as the options have them.
+    ``doubts`` are those of the sentences that say that the points may not stand as the options have them, ``gaps`` of
+    these the ones that say that points are bad or missing.
     """
 
     file: FlankFile
     turns: tuple[float, ...]
     remarks: tuple[str, ...]
     doubts: tuple[str, ...] = ()
+    gaps: tuple[str, ...] = ()
 
 
 def foreign_file(
     parts: Sequence[Part], frame: Frame, gear_set: BevelSet, name: str, phase: Phase = "common",
-    progress: Callable[[int], object] = lambda _: None,
+    progress: Callable[[int], object] = lambda _: None, leave_out: bool = False,
 ) -> Foreign:  # fmt: skip
     """The measured file of a member out of parts, each of them one flank of one tooth.
 
     ``phase``: all parts share one turning ("common"), each has its own ("each"), or they stand as the set has them
     ("kept"). A turning is such that the deviation at the reference point is zero, in the mean of the parts, where there
-    are both flanks of a common turning in the mean of the flanks: thickness and pitch stay. Raises InputError where
-    points are not of their flank, or parts not of their tooth.
+    are both flanks of a common turning in the mean of the flanks: thickness and pitch stay. ``leave_out`` leaves out
+    points of a grid that stand out from the others, as those of no grid always are. Raises InputError where points are
+    not of their flank, or parts not of their tooth.
     """
     member = gear_set.member(name)
     for part in parts:
@@ -85,23 +85,33 @@ def foreign_file(
     if phase != "kept":
         turns, laid = _zeroed(laid, lattices, turns, frame, member, phase == "common")
         lattices = _lattices(laid, member)
-    doubts = [hint] if (hint := axial_hint(parts[0], frame, member, turns[0])) else []
-    if not doubts:
+    off = [standing_out(one, member) for one in laid]
+    gaps, doubts = [], []
+    for one, lattice, far in zip(laid, lattices, off, strict=True):
+        bad, less = outlier_words(one, far) if lattice is not None else ([], [])
+        gaps += [*bad, *gap_words(one, lattice, member)]
+        doubts += [*less, *lost_words(one)]
+    if leave_out:
+        laid = [only(one, far == 0.0) for one, far in zip(laid, off, strict=True)]
+        lattices = _lattices(laid, member)
+    single = [replace(part, point=part.point[far == 0.0], normal=None) for part, far in zip(parts, off, strict=True)]
+    doubts += [hint] if (hint := axial_hint(parts[0], frame, member, turns[0])) else []
+    if not hint:
         groups = [[k] for k in range(len(parts))] if phase == "each" else [list(range(len(parts)))]
-        told = [check_placed([parts[k] for k in group], [turns[k] for k in group], frame, member) for group in groups]
-        doubts = [one for one in told if one]
+        told = [check_placed([single[k] for k in group], [turns[k] for k in group], frame, member) for group in groups]
+        doubts += [one for one in told if one]
     files, remarks = [], []
     for one, lattice, turn in zip(laid, lattices, turns, strict=True):
         file, found = _file(one, lattice, member, name)
         files.append(file)
-        doubts += [f"{one.part.name}: {each}" for each in (*_left_out(one), *_covered(one, member))]
         said = (*found, check_normals(one, frame, member, turn))
         remarks += [f"{one.part.name}: {each}" for each in said if each]
         progress(1)
     zeroed = phase == "each" or (phase == "common" and len({part.flank for part in parts}) == 1)
     header = _header(member, name, files, frame, zeroed)
     joined = join([replace(file, header=header) for file in files])
-    return Foreign(joined, tuple(turns), (*doubts, *remarks), tuple(doubts))
+    doubts[:0] = gaps
+    return Foreign(joined, tuple(turns), (*doubts, *remarks), tuple(doubts), tuple(gaps))
 
 
 def _common(parts: Sequence[Part], turns: Sequence[float], member: Member) -> float:
@@ -141,13 +151,9 @@ def _lattices(laid: Sequence[Laid], member: Member) -> list[Lattice | None]:
                 f"{one.part.name}: {len(one.part.point) - len(one.kept)} of {len(one.part.point)} points lie beyond "
                 "the flank, in the fillet or on the tip"
             )
-        found.append(find_lattice(*_fractions(one, member)))
+        found.append(find_lattice(*fractions(one, member)))
     shapes = {None if one is None else (one.rows, one.columns) for one in found}
     return found if len(shapes) == 1 else [None] * len(found)
-
-
-def _fractions(one: Laid, member: Member) -> tuple[np.ndarray, np.ndarray]:
-    return blank_fractions(member, one.foot[:, 2], np.hypot(one.foot[:, 0], one.foot[:, 1]))
 
 
 def _zeroed(
@@ -157,7 +163,7 @@ def _zeroed(
     """Turnings and points at which the deviation at the reference points is zero, or in the mean of the flanks."""
     found, turns = list(laid), list(turns)
     flanks = [one.part.flank for one in laid]
-    bad = [_off(one, member) for one in laid]
+    bad = [standing_out(one, member) != 0.0 for one in laid]
     for _ in range(_STEPS):
         angles = np.array([_reference_turn(*each, member) for each in zip(found, lattices, bad, strict=True)])
         if together:
@@ -175,7 +181,7 @@ def _reference_turn(one: Laid, lattice: Lattice | None, bad: np.ndarray, member:
 
     Where that point is missing or stands out from the others, what they say of its place counts.
     """
-    across, up = _fractions(one, member)
+    across, up = fractions(one, member)
     at, off = np.zeros(len(one.kept), dtype=bool), bad[one.kept]
     place = np.array([0.5, 0.5])
     if lattice is not None and len(lattice.row) == len(one.kept):
@@ -204,30 +210,6 @@ def _smooth(across: np.ndarray, up: np.ndarray, deviation: np.ndarray, place: np
     return float(np.linalg.lstsq(scaled, deviation[near] * weight, rcond=1e-9)[0][0])
 
 
-def _off(one: Laid, member: Member) -> np.ndarray:
-    """Which points of a part stand out from a smooth surface through the others; none where many do."""
-    across, up = _fractions(one, member)
-    bad = np.zeros(len(one.part.point), dtype=bool)
-    with suppress(InputError):  # many that stand out are no single bad points: the evaluation says so
-        bad[one.kept] = flag_outliers(across - across.mean(), up - up.mean(), one.deviation)[0]
-    return bad
-
-
-def _left_out(one: Laid) -> list[str]:
-    lost = len(one.part.point) - len(one.kept)
-    return [f"{lost} points lie beyond the flank or far off it, left out"] if lost else []
-
-
-def _covered(one: Laid, member: Member) -> list[str]:
-    """What to say of points that leave out much of the flank: the file may not be whole."""
-    found = []
-    for part, what in zip(_fractions(one, member), ("face width", "working depth"), strict=True):
-        if np.ptp(part) < _LEAST_COVERED:
-            low, high = 100 * part.min(), 100 * part.max()
-            found.append(f"its points cover the {what} from {low:.0f} to {high:.0f} % only: is the file whole?")
-    return found
-
-
 def _file(one: Laid, lattice: Lattice | None, member: Member, name: str) -> tuple[FlankFile, list[str]]:
     """The file of one part without its header, and how it came by its grid."""
     part, angle = one.part, 2 * math.pi * one.part.tooth / member.teeth
@@ -246,8 +228,8 @@ def _on_grid(
     one: Laid, member: Member, name: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[str]]:
     """Rows, columns, feet, normals and deviations on a grid of even margins, between the points of a part."""
-    across, up = _fractions(one, member)
-    off = _off(one, member)[one.kept]
+    across, up = fractions(one, member)
+    off = standing_out(one, member)[one.kept] != 0.0
     for margin in _MARGINS:
         place = np.stack(np.meshgrid(np.linspace(margin, 1 - margin, _COLUMNS), np.linspace(margin, 1 - margin, _ROWS)))
         place = place.reshape(2, -1).T
@@ -274,6 +256,7 @@ def _header(member: Member, name: str, files: Sequence[FlankFile], frame: Frame,
         "margins": _margins(member, name, files, rows, columns),
         "phase_zeroed": "true" if zeroed else "false",
         "tip_radius_mm": f"{frame.tip_radius:g}",
+        PLANNED: f"{sum(map(len, files))} points",
     }
 
 

@@ -26,7 +26,7 @@ def judging_of(file: FlankFile, member: Member, found: Evaluation) -> tuple[ca.F
     """
     at, n = np.nan_to_num(file.deviation), len(found.file)
     slope = np.zeros((n + 5, len(file)))
-    slope[:n] = _without_drift(file, member, found.member)
+    slope[:n] = _without_drift(file, member, found)
     deviation = ca.MX.sym("deviation", len(file))
     change = ca.mtimes(ca.sparsify(ca.DM(slope[:n])), deviation - ca.DM(at))
     seat, turn = ca.MX.zeros(4), ca.MX.zeros(1)
@@ -54,13 +54,13 @@ def judged_by_measured(file: FlankFile, member: Member, found: Evaluation) -> np
     return np.where(np.isfinite(found.file.deviation)[:, None], slope[: len(found.file)], 0.0)
 
 
-def _without_drift(file: FlankFile, member: Member, name: str) -> np.ndarray:
+def _without_drift(file: FlankFile, member: Member, found: Evaluation) -> np.ndarray:
     """How the deviations without outliers and drift (m,) depend on those measured (m,n).
 
     Taking out the drift is linear and homogeneous, so that unit deviations of the nominal points give the columns.
     """
-    complete, _ = completed(file, member, name)
-    whole = find_outliers(complete, member.teeth).without(complete)
+    complete, _ = completed(file, member, found.member)
+    whole = find_outliers(found.closing.straightened(complete), member.teeth).without(complete)
     known = np.isfinite(whole.deviation)
     kept = whole.tooth < member.teeth
     matrix = (np.eye(len(whole)) * known)[kept][:, : len(file)]
@@ -69,7 +69,7 @@ def _without_drift(file: FlankFile, member: Member, name: str) -> np.ndarray:
     for k in np.flatnonzero(twice[: len(file)]):
         unit = np.where(known, np.eye(len(whole))[k], np.nan)
         moved = replace(whole, deviation=unit, point=nominal + np.nan_to_num(unit)[:, None] * whole.normal)
-        matrix[:, k] = np.nan_to_num(without_drift(moved, member.teeth)[0].deviation)
+        matrix[:, k] = np.nan_to_num(without_drift(moved, member.teeth, found.closing.course)[0].deviation)
     return matrix
 
 

@@ -6,8 +6,10 @@ solves, by passes that fix what has reached its bound,
     (JᵀJ + λ μ I) s = -Jᵀr,   lower <= v + s <= upper,   μ the mean of the diagonal of JᵀJ
 
 λ is the trust region: it falls where the exact residual follows the prediction, and grows where it does not, or where
-there is no residual at all. It never falls below a floor, so that a direction whose singular value is less than 1e-6
-of the largest is left alone: among solutions that fit alike, the one that changes least.
+there is no residual at all. A step along a curved valley leaves its floor: where it does not keep its promise, it is
+first led back by steps so damped that the directions which the residuals show move alone, and judged then. λ never
+falls below a floor, so that a direction whose singular value is less than 1e-6 of the largest is left alone: among
+solutions that fit alike, the one that changes least.
 """
 
 from __future__ import annotations
@@ -26,14 +28,14 @@ from gearmath.engine.kernel import Kernel
 FLOOR = 1e-13
 #: Stands for infinity in the way to a bound.
 _FAR = 1e30
-#: The first step trusts the model this far; a step that is refused makes λ at least so large, and until then λ falls
-#: fast; afterwards, in a curved valley, slowly.
-_FIRST, _REFUSED, _FAST, _SLOW = 1e-9, 1e-7, 100, 4
+#: The first step trusts the model this far. Until a step has not kept its promise λ falls fast, afterwards at most by
+#: the slow factor; where nothing is gained it grows.
+_FIRST, _FAST, _SLOW, _REFUSED = 1e-9, 100, 3, 8
 _LARGEST = 1e8
 _MOST_ITERATIONS = 120
-#: A step that keeps less of its promise says that the valley is curved. The trial that tells how lies so far ahead, and
-#: the answer to it is believed where it is at most so many times as large as the step.
-_KEPT, _AHEAD, _BELIEVED = 0.75, 0.1, 1.5
+#: A step that keeps less of its promise says that the valley is curved: at most so many steps lead it back to the
+#: floor, each damped so many times more, a further one only if the one before left less than this part.
+_KEPT, _BACK, _STIFFER, _FALLS = 0.75, 2, 100.0, 0.25
 #: So many steps one after the other that gain less than this part of the sum of squares each: nothing more to gain.
 _STALLED, _IDLE = 3, 1e-3
 #: Converged: an undamped step would change the residual by less than this in the RMS, and less than this part. [mm]
@@ -127,7 +129,7 @@ def _solve(matrix: ca.SX, right: ca.SX) -> ca.SX:
     return ca.vertcat(*x)
 
 
-def enough(possible: np.ndarray, cost: np.ndarray, residuals: int, matters: float = 0.0) -> np.ndarray:
+def enough(possible: np.ndarray, cost: np.ndarray | float, residuals: int, matters: float = 0.0) -> np.ndarray:
     """Whether the gradient is as good as zero: what an undamped step could still gain of the sum of squares is noise.
 
     In the metric of the Jacobian, so that weak directions count by what they do to the residuals.
@@ -136,25 +138,24 @@ def enough(possible: np.ndarray, cost: np.ndarray, residuals: int, matters: floa
     return np.abs(possible) <= np.maximum(least, matters)
 
 
-def next_damping(damping: float, gained: float, promised: np.typing.ArrayLike) -> float:
-    """The trust region after a step: wider where the promise was kept, narrower where it was not, or nothing gained."""
+def next_damping(damping: float, gained: float, promised: np.typing.ArrayLike, curved: bool = False) -> float:
+    """The trust region after a step: wider the better it kept its promise, narrower where nothing was gained."""
     if gained <= 0:
-        return max(8 * damping, _REFUSED)
+        return _REFUSED * damping
     kept = gained / float(np.asarray(promised))
-    if kept > 0.75:
-        return max(damping / (_FAST if damping <= _FIRST else _SLOW), FLOOR)
-    return 4 * damping if kept < 0.25 else damping
+    if kept > _KEPT and damping <= _FIRST and not curved:
+        return max(damping / _FAST, FLOOR)
+    # Nielsen's rule: smooth, 1 where half of the promise was kept, 2 where none was
+    return max(damping * max(1 / _SLOW, 1 - (2 * min(kept, 1.0) - 1) ** 3), FLOOR)
 
 
 @dataclass(frozen=True)
-class Minimum:
-    """Scaled variables (p,), residual (m,) and Jacobian (m,p) there, steps tried, and whether it converged."""
+class Place:
+    """Scaled variables (p,), and residual (m,) and Jacobian (m,p) there."""
 
     variables: np.ndarray
     residual: np.ndarray
     jacobian: np.ndarray
-    iterations: int
-    converged: bool
 
     @property
     def cost(self) -> float:
@@ -162,60 +163,73 @@ class Minimum:
         return float(self.residual @ self.residual)
 
 
+@dataclass(frozen=True)
+class Minimum(Place):
+    """The place where a fit ended, the steps tried, and whether it converged."""
+
+    iterations: int
+    converged: bool
+
+
 def minimize(
-    fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | None = None, matters: float = 0.0,
-    start: np.ndarray | None = None, most: int = _MOST_ITERATIONS,
-) -> Minimum:  # fmt: skip
-    """The variables within their bounds at which the residuals of ``fit`` are least, from ``start`` or zero on.
+    fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | None = None, matters: float = 0.0
+) -> Minimum:
+    """The variables within their bounds at which the residuals of ``fit`` are least, found from zero on.
 
     ``fit`` returns residuals (m,) and their Jacobian (m,p), or None where the surface cannot be found; it must succeed
     at the start. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls,
-    and none is sought that makes the sum of squares fall by no more than ``matters``. Once a step has not kept its
-    promise, the valley is curved, and every step is bent along it; there are at most ``most`` steps. It has converged
-    where the linear model has nothing to gain, where ``_STALLED`` steps one after the other gained next to nothing, or
-    where less than ``_NOTHING`` is left.
+    and none is sought that makes the sum of squares fall by no more than ``matters``; there are at most
+    ``_MOST_ITERATIONS`` steps. It has converged where the linear model has nothing to gain, where ``_STALLED`` steps
+    one after the other gained next to nothing, or where less than ``_NOTHING`` is left.
     """
     step = step or compensation_step(len(lower))
-    v = np.zeros(len(lower)) if start is None else start
     damping, iterations, curved, idle = _FIRST, 0, False, 0
-    found = fit(v)
-    if found is None:
+    at = _place(fit, np.zeros(len(lower)), lower, upper)
+    if at is None:
         raise ValueError("there is no residual at the start")
-    residual, jacobian = found
-    while iterations < most:
-        cost, matrix, gradient = residual @ residual, jacobian.T @ jacobian, jacobian.T @ residual
-        _, possible = step(matrix, gradient, v, lower, upper, FLOOR)
-        if enough(possible, cost, len(residual), matters) or idle >= _STALLED:
-            return Minimum(v, residual, jacobian, iterations, True)
+    while iterations < _MOST_ITERATIONS:
+        normal = at.jacobian.T @ at.jacobian, at.jacobian.T @ at.residual
+        _, possible = step(*normal, at.variables, lower, upper, FLOOR)
+        if enough(possible, at.cost, len(at.residual), matters) or idle >= _STALLED:
+            return Minimum(**vars(at), iterations=iterations, converged=True)
         iterations += 1
-        change, promised = step(matrix, gradient, v, lower, upper, damping)
-        if curved and np.isfinite(change).all():
-            change = change + _bend(fit, step, v, change, residual, jacobian, matrix, lower, upper, damping)
-        there = np.clip(v + change, lower, upper)
-        tried = fit(there) if np.isfinite(change).all() else None
-        gained = -np.inf if tried is None else cost - tried[0] @ tried[0]
+        change, promised = step(*normal, at.variables, lower, upper, damping)
+        wanted = at.cost - _KEPT * float(promised)
+        there = _followed(fit, step, at.variables + change, wanted, lower, upper, damping)
+        gained = -np.inf if there is None else at.cost - there.cost
         curved = curved or bool(gained < _KEPT * promised)
-        damping = next_damping(damping, gained, promised)
-        if tried is not None and gained > 0:
-            v, (residual, jacobian) = there, tried
-            idle = idle + 1 if gained < _IDLE * cost else 0
+        damping = next_damping(damping, gained, promised, curved)
+        if there is not None and gained > 0:
+            idle = idle + 1 if gained < _IDLE * at.cost else 0
+            at = there
         elif damping > _LARGEST:
             break
-    return Minimum(v, residual, jacobian, iterations, bool(residual @ residual <= len(residual) * _NOTHING**2))
+    converged = at.cost <= len(at.residual) * _NOTHING**2
+    return Minimum(**vars(at), iterations=iterations, converged=converged)
 
 
-def _bend(
-    fit: Fit, step: Callable, v: np.ndarray, change: np.ndarray, residual: np.ndarray, jacobian: np.ndarray,
-    matrix: np.ndarray, lower: np.ndarray, upper: np.ndarray, damping: float,
-) -> np.ndarray:  # fmt: skip
-    """What follows the second derivative of the residuals along a step: its answer to half of it, the geodesic's.
+def _followed(
+    fit: Fit, step: Callable, there: np.ndarray, wanted: float, lower: np.ndarray, upper: np.ndarray, damping: float
+) -> Place | None:
+    """Where a step leads to, led back to the floor of its valley where more is left than ``wanted``."""
+    found = _place(fit, there, lower, upper)
+    for _ in range(_BACK):
+        if found is None or found.cost <= wanted:
+            break
+        normal = found.jacobian.T @ found.jacobian, found.jacobian.T @ found.residual
+        back, _ = step(*normal, found.variables, lower, upper, _STIFFER * damping)
+        nearer = _place(fit, found.variables + back, lower, upper)
+        if nearer is None or nearer.cost >= found.cost:
+            break
+        still_falls = nearer.cost <= _FALLS * found.cost
+        found = nearer
+        if not still_falls:
+            break
+    return found
 
-    The second derivative is from a trial a tenth of the way; an answer as large as the step itself is not believed.
-    """
-    ahead = fit(np.clip(v + _AHEAD * change, lower, upper))
-    if ahead is None:
-        return np.zeros_like(change)
-    half = ((ahead[0] - residual) / _AHEAD - jacobian @ change) / _AHEAD
-    answer, _ = step(matrix, jacobian.T @ half, np.clip(v + change, lower, upper), lower, upper, damping)
-    size = np.linalg.norm(answer)
-    return answer if size < _BELIEVED * np.linalg.norm(change) else np.zeros_like(change)
+
+def _place(fit: Fit, v: np.ndarray, lower: np.ndarray, upper: np.ndarray) -> Place | None:
+    """The residuals at variables, no farther than their bounds; None where there are none."""
+    v = np.clip(v, lower, upper)
+    found = fit(v) if np.isfinite(v).all() else None
+    return None if found is None else Place(v, *found)

@@ -17,26 +17,27 @@ from gearmath.errors import InputError
 from gearmath.quality.points import Frame, Part, lay
 from gearmath.specs.bevel_set import Member
 
-#: Points that are farther off than this, in RMS, are said to be. [mm]
-LARGEST_RMS = 0.01
-#: A cause is named where it leaves this part of the median distance; with both flanks, beside the best one only what
-#: leaves at most so many times as much. No tip is smaller than the last [mm].
-_LEAVES, _NEARLY_BEST, _LEAST_TIP = 0.3, 3.0, 0.1
+#: Points that are farther off than this, in RMS, are said to be; those of both flanks from the smaller one on, where a
+#: cause explains them. [mm]
+LARGEST_RMS, _LEAST_RMS = 0.01, 0.004
+#: A cause is named where it leaves this part of the RMS, with both flanks also at most so many times what the best one
+#: leaves, as the form of the flanks does not tell those apart. Less than a form does is explained where no more than
+#: so much is left of it. No tip is smaller than the last [mm].
+_LEAVES, _NEARLY_BEST, _EXPLAINED, _LEAST_TIP = 0.6, 1.5, 0.4, 0.1
 #: No tooth is measured with so much stock on both flanks: the radius of the tip was forgotten. [mm]
 _LARGEST_STOCK = 0.5
 #: Fits of a cause, and least-squares steps within each to least absolute values.
 _FITS, _STEPS = 4, 8
-#: Columns of the motion, shifts [mm] and turns [rad] about x y z, then the radius of the tip [mm].
-_APEX, _TURN, _TIP = 2, 5, 6
-_CAUSES = {"tip": (_TIP,), "apex": (_APEX,), "shift": (0, 1), "tilt": (3, 4)}
+#: Columns of the motion, shifts [mm] and turns [rad] about x y z, then the radius of the tip [mm], and a scale less 1.
+_APEX, _TURN, _TIP, _SCALE = 2, 5, 6, 7
+_CAUSES = {"tip": (_TIP,), "apex": (_APEX,), "shift": (0, 1), "tilt": (3, 4), "scale": (_SCALE,)}
 
 
 @dataclass(frozen=True)
 class _Fit:
-    """The motion (7,) that a cause takes out, and half of the points, and all in RMS, that then lie so far off [mm]."""
+    """The motion (8,) that a cause takes out, and how far off the points then lie, in RMS [mm]."""
 
     motion: np.ndarray
-    median: float
     rms: float
 
 
@@ -46,15 +47,15 @@ def check_placed(parts: Sequence[Part], turns: Sequence[float], frame: Frame, me
     The parts share one turning. Raises InputError where both flanks lie so far out that the radius of the tip is wrong.
     """
     before = _fit(parts, turns, frame, member, ())
-    if before.rms <= LARGEST_RMS:
+    both = len({part.flank for part in parts}) > 1
+    if before.rms <= (_LEAST_RMS if both else LARGEST_RMS):
         return ""
     fits = {cause: _fit(parts, turns, frame, member, columns) for cause, columns in _CAUSES.items()}
     if frame.tip_radius + fits["tip"].motion[_TIP] < _LEAST_TIP:
         del fits["tip"]
-    both = len({part.flank for part in parts}) > 1
-    best = min(one.median for one in fits.values())
-    most = min(_NEARLY_BEST * best, _LEAVES * before.median) if both else _LEAVES * before.median
-    named = sorted((cause for cause in fits if fits[cause].median <= most), key=lambda cause: fits[cause].median)
+    best = min(one.rms for one in fits.values())
+    most = min(_NEARLY_BEST * best, _LEAVES * before.rms) if both else _LEAVES * before.rms
+    named = sorted((cause for cause in fits if fits[cause].rms <= most), key=lambda cause: fits[cause].rms)
     whose = parts[0].name if len(parts) == 1 else f"{parts[0].name} and {len(parts) - 1} more"
     far = f"{whose}: after turning, points lie {before.rms * 1000:.1f} um RMS off the nominal flank"
     if both and "tip" in named and abs(fits["tip"].motion[_TIP]) > _LARGEST_STOCK:
@@ -62,6 +63,9 @@ def check_placed(parts: Sequence[Part], turns: Sequence[float], frame: Frame, me
             f"{far}, {fits['tip'].rms * 1000:.1f} um with {_words('tip', fits['tip'], frame)}: are the points contact "
             "points, or centers of the probe tip?"
         )
+    # a form of few micrometres, and teeth that are too thick by so little, are none of the clamping
+    if before.rms <= LARGEST_RMS and (best > _EXPLAINED * before.rms or set(named) <= {"tip"}):
+        return ""
     if not named:
         return f"{far}: is it of this set, and does it stand on the axis of the file?"
     words = " or ".join(_words(cause, fits[cause], frame) for cause in named)
@@ -76,6 +80,7 @@ def _words(cause: str, fit: _Fit, frame: Frame) -> str:
         "apex": f"--apex-offset {frame.apex_offset - fit.motion[_APEX]:.2f}",
         "shift": f"work that stands {across:.2f} mm beside the axis",
         "tilt": f"work that is tilted by {tilt:.2f} degrees",
+        "scale": f"points that are too far from the origin by {fit.motion[_SCALE] * 100:+.2f} %",
     }[cause]
 
 
@@ -84,8 +89,8 @@ def _fit(
 ) -> _Fit:  # fmt: skip
     """Least absolute distances from the flank, with the rotation about the axis free, too."""
     free = [_TURN, *columns]
-    motion, medians, rms = np.zeros(_TIP + 1), [], []
-    placed = [frame.placed(part.point) for part in parts]
+    motion, rms = np.zeros(_SCALE + 1), []
+    placed, origin = [frame.placed(part.point) for part in parts], np.array([0.0, 0.0, frame.apex_offset])
     for _ in range(_FITS):
         tried = Frame(tip_radius=frame.tip_radius + motion[_TIP])
         terms, off = [], []
@@ -94,16 +99,16 @@ def _fit(
             angle = turn + 2 * np.pi * part.tooth / member.teeth
             foot, normal = turned(laid.foot, angle), turned(laid.normal, angle)
             # what a motion of the points adds to their distances along the normal
-            terms.append(np.column_stack([normal, np.cross(foot, normal), np.ones(len(foot))]))
+            scale = np.sum((foot - origin) * normal, axis=1)
+            terms.append(np.column_stack([normal, np.cross(foot, normal), np.ones(len(foot)), scale]))
             off.append(laid.deviation)
         change, left = _least_absolute(np.concatenate(terms)[:, free], np.concatenate(off))
-        medians.append(float(np.median(np.abs(left))))
         rms.append(float(np.sqrt(np.mean(left**2))))
-        step = np.zeros(_TIP + 1)
+        step = np.zeros(_SCALE + 1)
         step[free] = change
         motion += step
-        placed = [point - step[:3] - np.cross(step[3:6], point) for point in placed]
-    return _Fit(motion, medians[-1], rms[-1])
+        placed = [point - step[:3] - np.cross(step[3:6], point) - step[_SCALE] * (point - origin) for point in placed]
+    return _Fit(motion, rms[-1])
 
 
 def _least_absolute(terms: np.ndarray, off: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -187,6 +187,29 @@ def check_points(file: FlankFile, rows: NominalRows) -> None:
         )
 
 
+def check_phase(file: FlankFile) -> None:
+    """Raise InputError where a file says that the phase of each flank was set to zero, and its reference points do not.
+
+    Either the first tooth of a flank has no deviation there, or the mean of its teeth; points without a reading, which
+    are NaN, say nothing.
+    """
+    if file.header["phase_zeroed"].lower() != "true":
+        return
+    row, col = reference_point(file)
+    for flank in FLANKS:
+        here = (file.flank == flank) & (file.row == row) & (file.col == col) & np.isfinite(file.deviation)
+        if not here.any():
+            continue
+        at, u = file.deviation[here], np.nan_to_num(file.uncertainty[here][0])
+        limit = SAME_DEVIATION + 3 * u
+        if min(abs(at[0]), abs(at.mean())) > limit:
+            raise InputError(
+                f"phase_zeroed = true: the reference point of the {flank} flank, tooth {file.tooth[here][0]}, deviates "
+                f"by {at[0] * 1000:+.2f} um, must be 0 within {limit * 1000:g} um: was the flank turned to it? else "
+                "write false"
+            )
+
+
 def _place(file: FlankFile, k: int) -> str:
     return f"{file.flank[k]} flank, tooth {file.tooth[k]}, row {file.row[k]}, col {file.col[k]}"
 

@@ -83,10 +83,11 @@ def family(kind: Kind, w: ca.SX, given: list[ca.SX], direction: ca.SX) -> Family
 
 
 @cache
-def flank_on_line(kind: Kind = "plain") -> Kernel:
+def flank_on_line(kind: Kind = "plain", steps: int = _NEWTON_STEPS) -> Kernel:
     """Kernel: where the flank of other settings crosses a line, and the gradient of that distance by the settings.
 
-    Of a curved blade, the gradient (13,) ends with that by its curvature.
+    Of a curved blade, the gradient (13,) ends with that by its curvature. ``steps`` of Newton are made, whatever they
+    leave: what calls it looks at the residual, and goes on from the contact where it is too large.
     """
     w, given = ca.SX.sym("contact", 3), symbols(kind)
     point, direction = ca.SX.sym("line_point", 3), ca.SX.sym("line_direction", 3)
@@ -100,14 +101,15 @@ def flank_on_line(kind: Kind = "plain") -> Kernel:
     quantities = (contact_guess, *INPUTS[kind], notation.line_point, notation.line_direction)
     guess, *others = (ca.MX.sym(quantity.name, *(quantity.shape or (1,))) for quantity in quantities)
     solution = guess
-    for _ in range(_NEWTON_STEPS):
+    for _ in range(steps):
         solution = step(solution, *others)
     outputs = (
         notation.contact, notation.deviation,
         notation.curved_rates if kind == "curved" else notation.sensitivity, residual_size,
     )  # fmt: skip
+    name = "flank_on_line" if kind == "plain" else f"{kind}_on_line"
     function = ca.Function(
-        "flank_on_line" if kind == "plain" else f"{kind}_on_line",
+        name if steps == _NEWTON_STEPS else f"{name}_in_{steps}",
         [guess, *others], [solution, *final(solution, *others)],
         [quantity.name for quantity in quantities], [quantity.name for quantity in outputs],
     )  # fmt: skip

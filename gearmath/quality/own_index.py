@@ -7,7 +7,8 @@ that they have too: each of n teeth turned by τ_k, the form at each place p the
     d_pk = g_p + c_pk τ_k + noise,   Σ τ_k = 0        c: what a turning about z_w makes of a point (18.2)
 
 and against the others it is turned by τ n/(n - 1). Where that is more than three standard uncertainties its points are
-turned back, onto the mean of the others.
+turned back, onto the mean of the others. A tooth that stands far off the others, by its index or its thickness, takes
+no part in that mean; nor is a tooth whose form is unlike that of most others taken for the form of the flank.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from gearmath.bevel.turning import turned
 from gearmath.kernels import kernel
 from gearmath.quality.nominal import NominalRows, deviations_of, nominal_rows, with_deviations
 from gearmath.quality.registration import stated_noise
+from gearmath.quality.representative import passed_over, representative_tooth
+from gearmath.quality.robust import limit_of
 from gearmath.quality.topography import evaluate_topography, teeth_in_full
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
@@ -31,17 +34,23 @@ _TURNING = 5
 _SIGNIFICANT, _LEAST = 3.0, 5e-4
 #: So many teeth besides make a mean.
 _LEAST_TEETH = 3
+#: A flank is off the others, in place or form, from this size on. [mm]
+LEAST_OFF = 0.01
 #: Fewer spare observations say nothing about the noise; then it is told by the tooth, and else this is assumed [mm].
 _LEAST_SPARE, _COEFFICIENTS, _UNKNOWN = 3, 10, 1e-3
 
 
 @dataclass(frozen=True)
 class OwnIndex:
-    """How far one flank of a tooth is turned against the mean of the others [rad], how sure that is, and where [mm]."""
+    """How far one flank of a tooth is turned against the mean of the others [rad], how sure that is, and where [mm].
+
+    ``apart`` are the teeth that stand far off the others, and are none of the mean.
+    """
 
     angle: float
     uncertainty: float
     radius: float
+    apart: tuple[int, ...] = ()
 
     @property
     def is_significant(self) -> bool:
@@ -58,14 +67,21 @@ def teeth_as_indexed_on_average(member: Member, name: str, file: FlankFile) -> t
     remarks: list[str] = []
     alone: list[str] = []
     for flank in FLANKS:
-        teeth, counts = np.unique(file.tooth[file.flank == flank], return_counts=True)
-        if not len(teeth):
+        if not (file.flank == flank).any():
             continue
-        tooth = int(teeth[np.argmax(counts)])
+        tooth = representative_tooth(file, flank)
+        remarks += [said] if (said := passed_over(file, flank)) else []
         found = own_index(file, rows, slope, flank, tooth)
         if found is None:
             alone.append(flank)
-        elif found.is_significant:
+            continue
+        if found.apart:
+            which = "tooth " if len(found.apart) == 1 else "teeth "
+            remarks.append(
+                f"{flank} flank: without {which}{', '.join(map(str, found.apart))}, far off the others: the settings "
+                "are corrected from the mean of the rest"
+            )
+        if found.is_significant:
             file = _turned_back(file, member, rows, slope, (file.flank == flank) & (file.tooth == tooth), found.angle)
             arc, u = found.angle * found.radius * 1000, found.uncertainty * found.radius * 1000
             remarks.append(
@@ -86,9 +102,43 @@ def own_index(file: FlankFile, rows: NominalRows, slope: np.ndarray, flank: str,
     width = int(file.col.max()) + 1
     place = file.row * width + file.col
     known &= np.isin(place, place[known & (file.tooth == tooth)])
-    teeth, of_tooth = np.unique(file.tooth[known], return_inverse=True)
-    if len(teeth) <= _LEAST_TEETH or tooth not in teeth:
+    if tooth not in file.tooth[known] or len(np.unique(file.tooth[known])) <= _LEAST_TEETH:
         return None
+    apart = _apart(file, rows, slope, known, place, tooth)
+    known &= ~np.isin(file.tooth, apart)
+    teeth, turning, covariance, left, spare = _turnings(file, slope, known, place)
+    if len(teeth) <= _LEAST_TEETH:
+        return None
+    at = int(np.searchsorted(teeth, tooth))
+    noise = np.sqrt(left @ left / spare) if spare >= _LEAST_SPARE else _noise(file, flank, tooth)
+    size, to_others = float(noise * np.sqrt(covariance[at, at])), len(teeth) / (len(teeth) - 1)
+    radius = float(np.hypot(*rows.point[known, :2].T).mean())
+    return OwnIndex(to_others * float(turning[at]), to_others * size, radius, apart)
+
+
+def near_the_median(values: np.ndarray, least: float) -> np.ndarray:
+    """Which values (k,) are not far off most of them: within six of their standard deviations, or ``least``."""
+    off = values - np.median(values)
+    return np.asarray(np.abs(off) <= limit_of(off, least))
+
+
+def _apart(
+    file: FlankFile, rows: NominalRows, slope: np.ndarray, known: np.ndarray, place: np.ndarray, tooth: int
+) -> tuple[int, ...]:  # fmt: skip
+    """The teeth but ``tooth`` that stand far off the median of all, if enough are left without them."""
+    teeth, turning, *_ = _turnings(file, slope, known, place)
+    least = LEAST_OFF / float(np.hypot(*rows.point[known, :2].T).mean())
+    far = ~near_the_median(turning, least) & (teeth != tooth)
+    return tuple(teeth[far].tolist()) if len(teeth) - far.sum() > _LEAST_TEETH else ()
+
+
+def _turnings(
+    file: FlankFile, slope: np.ndarray, known: np.ndarray, place: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
+    """Teeth (k,), the turning [rad] of each against the mean of all (k,), its covariance (k,k) for noise of 1 mm, what
+    the fit leaves (m,) [mm], and how many observations there are to spare.
+    """
+    teeth, of_tooth = np.unique(file.tooth[known], return_inverse=True)
     _, of_place = np.unique(place[known], return_inverse=True)
     shared = np.bincount(of_place) > 1
     use = shared[of_place]
@@ -97,15 +147,10 @@ def own_index(file: FlankFile, rows: NominalRows, slope: np.ndarray, flank: str,
     turning = turning[:, :-1] - turning[:, -1:] * (np.ones(len(teeth) - 1))  # they add up to nothing
     columns, values = np.hstack([form, turning]), file.deviation[known][use]
     solved, *_ = np.linalg.lstsq(columns, values, rcond=None)
-    left, spare = values - columns @ solved, len(values) - columns.shape[1]
-    at, n = int(np.searchsorted(teeth, tooth)), form.shape[1]
-    pick = np.append(np.zeros(n), np.eye(len(teeth))[at, :-1] - np.eye(len(teeth))[at, -1])
-    noise = np.sqrt(left @ left / spare) if spare >= _LEAST_SPARE else _noise(file, flank, tooth)
-    size = float(noise * np.sqrt(pick @ np.linalg.pinv(columns.T @ columns) @ pick))
-    to_others = len(teeth) / (len(teeth) - 1)
-    return OwnIndex(
-        to_others * float(pick @ solved), to_others * size, float(np.hypot(*rows.point[known][use, :2].T).mean())
-    )
+    n = form.shape[1]
+    pick = np.hstack([np.zeros((len(teeth), n)), np.vstack([np.eye(len(teeth) - 1), -np.ones(len(teeth) - 1)])])
+    covariance = pick @ np.linalg.pinv(columns.T @ columns) @ pick.T
+    return teeth, pick @ solved, covariance, values - columns @ solved, len(values) - columns.shape[1]
 
 
 def _noise(file: FlankFile, flank: str, tooth: int) -> float:

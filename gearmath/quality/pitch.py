@@ -8,6 +8,7 @@ are already in the nominal points. Tooth 0 measured again at the end shows the d
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -30,13 +31,15 @@ class Pitch:
     """Pitch of one flank: turning (z,) [rad] and cumulative deviation s (z,) [mm] of every tooth against tooth 0.
 
     Both are NaN for a tooth without a reading; where there is one, the maxima are NaN too. ``drift`` is the arc [mm] by
-    which tooth 0 had moved when it was measured again, None where it was not.
+    which tooth 0 had moved when it was measured again, None where it was not. ``reason`` says why there are no maxima
+    although every tooth has a reading; None where there is nothing to say.
     """
 
     flank: str
     turning: np.ndarray
     cumulative: np.ndarray
     drift: float | None = None
+    reason: str | None = None
 
     @property
     def single(self) -> np.ndarray:
@@ -45,13 +48,13 @@ class Pitch:
 
     @property
     def total(self) -> float:
-        """F_p [mm]; NaN where a tooth has no reading."""
-        return float(self.cumulative.max() - self.cumulative.min())
+        """F_p [mm]; NaN where it is withheld."""
+        return math.nan if self.reason else float(self.cumulative.max() - self.cumulative.min())
 
     @property
     def largest_single(self) -> float:
-        """The f_pt that is largest in size, without its sign [mm]; NaN where a tooth has no reading."""
-        return float(np.abs(self.single).max())
+        """The f_pt that is largest in size, without its sign [mm]; NaN where it is withheld."""
+        return math.nan if self.reason else float(np.abs(self.single).max())
 
     @property
     def nearly_whole(self) -> bool:
@@ -60,12 +63,12 @@ class Pitch:
 
     @property
     def withheld(self) -> str | None:
-        """Why there are no maxima; None where every tooth has a reading."""
-        return no_reading(f"{self.flank} flank", "tooth", np.isnan(self.cumulative))
+        """Why there are no maxima; None where every tooth has a reading and nothing else is wrong."""
+        return self.reason or no_reading(f"{self.flank} flank", "tooth", np.isnan(self.cumulative))
 
     def as_dict(self) -> dict[str, Any]:
         """Figures for people and programs, in µm; None for what was not measured or is withheld."""
-        values = [None if np.isnan(value) else float(value) * 1000 for value in self.cumulative]
+        values = [None if np.isnan(value) or self.reason else float(value) * 1000 for value in self.cumulative]
         known = self.withheld is None
         return {
             "F_p_um": self.total * 1000 if known else None,

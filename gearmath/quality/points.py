@@ -38,7 +38,7 @@ _TURNING_STEPS = 20
 _NORMAL_WITHIN = math.radians(15)
 #: Another apex offset is worth a word where it takes the median deviation from this [mm] to this part of it, and is
 #: demanded where that is larger than the form of a flank is [mm].
-_WORTH_A_HINT, _MUCH_LESS, _LARGEST_FORM = 0.02, 5.0, 0.1
+_WORTH_A_HINT, _MUCH_LESS, LARGEST_FORM = 0.02, 5.0, 0.1
 _AXIAL_STEPS = 6
 #: Apex offsets that are tried over two face widths.
 _TRIED = 81
@@ -69,13 +69,17 @@ class Frame:
 
 @dataclass(frozen=True)
 class Part:
-    """One flank of one tooth in a file: points (n,3) [mm] and normals (n,3) or None, in the axes of the file."""
+    """One flank of one tooth in a file: points (n,3) [mm] and normals (n,3) or None, in the axes of the file.
+
+    ``line`` (n,) are the lines of the file in which they stand, None where there is no file.
+    """
 
     name: str
     flank: str
     tooth: int
     point: np.ndarray
     normal: np.ndarray | None = None
+    line: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -172,7 +176,7 @@ def axial_hint(part: Part, frame: Frame, member: Member, turn: float) -> str:
         f"{part.name}: half of the points lie more than {before * 1000:.1f} um off the {part.flank} flank, with "
         f"--apex-offset {_plain(offset)} more than {after * 1000:.1f} um"
     )
-    if before > _LARGEST_FORM:
+    if before > LARGEST_FORM:
         raise InputError(f"{words}: where does the origin of the file lie on the axis?")
     return f"{words}; if the offset given is right, the member was cut or clamped so far off"
 

@@ -2,22 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from gearmath.errors import ComputationError
-from gearmath.quality.flank_target import FlankTarget, located
+from gearmath.quality.flank_target import FlankTarget, Located, locate
 from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.variables import SIZE, Variable
 from gearmath.specs.bevel_set import SETTINGS
 
 #: What a root line and its place between its limits differ by counts so many times its length.
 ROOT_WEIGHT = 100.0
-#: A design also starts with so much of the bound of the tilt.
-_TILTED = 0.25
+
+
+class Trail:
+    """The places that were found so far, by the variables (p,) that they belong to: the next is looked for from there.
+
+    What a design changes by its bounds lies too far for a search from the nominal flank alone.
+    """
+
+    def __init__(self, first: np.ndarray, p: int) -> None:
+        self._first, self._variables, self._places = first, np.zeros((1, p)), [first]
+
+    def starts(self, v: np.ndarray) -> Iterator[np.ndarray]:
+        """The place that belongs to the nearest variables, and after it the first of all."""
+        apart = self._variables - v
+        nearest = int(np.argmin(np.einsum("kp,kp->k", apart, apart)))
+        yield self._places[nearest]
+        if nearest:
+            yield self._first
+
+    def keep(self, v: np.ndarray, place: np.ndarray) -> None:
+        self._variables = np.vstack([self._variables, v])
+        self._places.append(place)
 
 
 @dataclass(frozen=True)
@@ -69,19 +89,31 @@ class Problem:
         """Residual (m,) of the points and its Jacobian (m,p); None where a point is not found."""
         values, jacobians = [], []
         for k in range(len(self.targets)):
-            deviation, gradient, failed = self.located(v, k)
-            if failed.any():
+            found = self.located(v, k)
+            if found is None:
                 return None
-            values.append(deviation)
-            jacobians.append(self.columns(gradient, k))
+            values.append(found.deviation)
+            jacobians.append(self.columns(found.gradient, k))
         return np.concatenate(values) - self.measured, np.concatenate(jacobians)
 
-    def located(self, v: np.ndarray, target: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """``located`` of one target for scaled variables (p,)."""
-        return located(
-            self.targets[target], self.targets[target].vector + self.change(v, target), self.run, self.moving,
-            self.bending,
-        )  # fmt: skip
+    @cached_property
+    def _trails(self) -> list[Trail]:
+        return [Trail(target.nominal.contact, len(self.variables)) for target in self.targets]
+
+    @cached_property
+    def _root_trails(self) -> list[Trail]:
+        return [Trail(t.root.start, len(self.variables)) for t in self.targets if t.root is not None]
+
+    def located(self, v: np.ndarray, target: int) -> Located | None:
+        """Where one target's flank of scaled variables (p,) crosses the normals; None where a point is not found."""
+        one, trail = self.targets[target], self._trails[target]
+        vector = one.vector + self.change(v, target)
+        for start in trail.starts(v):
+            found = locate(one, vector, self.run, self.moving, self.bending, start)
+            if not found.failed.any():
+                trail.keep(v, found.contact)
+                return found
+        return None
 
     def change(self, v: np.ndarray, target: int) -> np.ndarray:
         """Scaled variables (...,p) as whole vectors (...,83) of one target."""
@@ -103,7 +135,9 @@ class Problem:
         moved: list[tuple[np.ndarray, np.ndarray]] = []
         for k, target in enumerate(self.targets):
             if target.root is not None:
-                _, depth, gradient = target.root.depth(target.vector + self.change(v, k), self.run)
+                trail, vector = self._root_trails[len(moved)], target.vector + self.change(v, k)
+                contact, depth, gradient = target.root.depth(vector, self.run, next(trail.starts(v)))
+                trail.keep(v, contact)
                 moved.append((depth - self._depths[len(moved)], self.columns(gradient, k)))
         return moved
 
@@ -136,13 +170,3 @@ class Problem:
         slopes[: len(residual), :p], slopes[len(residual) :, :p] = jacobian, ROOT_WEIGHT * gradient
         np.fill_diagonal(slopes[len(residual) :, p:], -ROOT_WEIGHT * self.root_limit)  # type: ignore[operator]
         return np.concatenate([residual, apart]), slopes
-
-    @property
-    def other_starts(self) -> list[np.ndarray]:
-        """Where a design may start too: tilted to either side, as without tilt the swivel does nothing."""
-        names = [variable.name for variable in self.variables]
-        if "cutter_tilt" not in names:
-            return []
-        to_side = _TILTED * np.eye(len(names) + self.slacks)[names.index("cutter_tilt")]
-        low, high = self.bounds
-        return [v for v in (low * to_side, high * to_side) if self(v) is not None]

@@ -28,6 +28,8 @@ _ITERATIONS, _CONVERGED = 12, 1e-9
 _LEAST_SPARE = 3
 #: Eccentricity or tilt of fewer of their standard uncertainties is what noise alone would show.
 _SIGNIFICANT = 3.0
+#: Less than this is no uncertainty that anything says. [µm]
+_LEAST_KNOWN = 1e-3
 
 
 @dataclass(frozen=True)
@@ -122,12 +124,12 @@ class Registration:
         return {
             "taken_out": self.is_significant,
             "eccentricity_um": self.eccentricity * 1000,
-            "u_eccentricity_um": _or_none(self.eccentricity_uncertainty * 1000),
+            "u_eccentricity_um": known_um(self.eccentricity_uncertainty * 1000),
             "eccentricity_direction_deg": math.degrees(self.eccentricity_direction),
             "tilt_um_per_100mm": self.tilt * 1e5 if self.tilt_found else None,
-            "u_tilt_um_per_100mm": _or_none(self.tilt_uncertainty * 1e5),
+            "u_tilt_um_per_100mm": known_um(self.tilt_uncertainty * 1e5),
             "tilt_direction_deg": math.degrees(self.tilt_direction) if self.tilt_found else None,
-            "noise_um": _or_none(self.noise * 1000),
+            "noise_um": known_um(self.noise * 1000),
             "largest_removed_um": float(np.abs(self.removed).max() * 1000) if self.is_significant else 0.0,
             "index_model": self.index_model,
             "singular_values": self.singular_values.tolist(),
@@ -207,5 +209,6 @@ def _along(covariance: np.ndarray, direction: float) -> float:
     return float(np.sqrt(unit @ covariance @ unit))
 
 
-def _or_none(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+def known_um(value: float) -> float | None:
+    """An uncertainty [µm], None where it is not known; less than a nanometre is rounding of the file."""
+    return value if value >= _LEAST_KNOWN else None

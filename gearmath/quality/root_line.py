@@ -23,7 +23,8 @@ from gearmath.kernels import kernel
 from gearmath.quality.on_line import INPUTS, Run, as_it_stands, family, symbols
 from gearmath.quality.variables import parts
 
-_NEWTON_STEPS = 12
+#: Newton steps at once, and how often they are made until the root is found: at most 24.
+_NEWTON_STEPS, _ROUNDS = 3, 8
 _STEP_LIMITS = (2.0, 0.1, 0.1)
 _TOLERANCE = 1e-9
 
@@ -80,25 +81,30 @@ class RootLine:
     distances: np.ndarray
     start: np.ndarray
 
-    def depth(self, vector: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def depth(
+        self, vector: np.ndarray, run: Run = as_it_stands, start: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Contact (2,3), depth (2,) [mm] and its gradient (2,83) for settings, motion and curvature (83,).
 
-        Raises ComputationError if the tip of the blade does not reach the flank there.
+        ``start`` (2,3) is the contact of settings nearby. Raises ComputationError if the tip of the blade does not
+        reach the flank there.
         """
         blade = (self.how.blade_offset_angle, float(vector[-1]), self.reference_height)
-        contact, depth, gradient, residual = run(root_depth())(
-            self.start,
-            *parts(vector),
-            self.how.index_ratio,
-            *blade,
-            self.how.side,
-            float(self.how.rolling),
-            self.pitch_angle,
-            self.distances,
-        )
-        if not (residual <= _TOLERANCE).all():
-            raise ComputationError("the tip of the blade does not reach the root of the flank")
-        return contact, depth, gradient
+        contact, depths = self.start if start is None else start, run(root_depth())
+        for _ in range(_ROUNDS):
+            contact, depth, gradient, residual = depths(
+                contact,
+                *parts(vector),
+                self.how.index_ratio,
+                *blade,
+                self.how.side,
+                float(self.how.rolling),
+                self.pitch_angle,
+                self.distances,
+            )
+            if (residual <= _TOLERANCE).all():
+                return contact, depth, gradient
+        raise ComputationError("the tip of the blade does not reach the root of the flank")
 
     def sunk(self, before: np.ndarray, after: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray]:
         """How much deeper (2,) [mm] the root lies after a change, at toe and heel, and its gradient (2,83)."""

@@ -20,6 +20,7 @@ from gearmath.errors import ComputationError, InputError
 from gearmath.kernels import kernel
 from gearmath.quality.nominal import NominalRows, deviations_of, nominal_rows, with_deviations
 from gearmath.quality.pitch import reference_point
+from gearmath.quality.registration import known_um
 from gearmath.quality.robust import limit_of
 from gearmath.quality.tooth_shifts import LEAST_BETWEEN_TEETH
 from gearmath.specs.bevel_set import FLANKS, Member
@@ -57,13 +58,13 @@ class Rotation:
 
     def as_dict(self) -> dict[str, Any]:
         """Figures for people and programs: degrees, seconds of arc and µm; None where the uncertainty is not known."""
-        known = math.isfinite(self.uncertainty)
+        u_arc = known_um(self.uncertainty * self.radius * 1000)
         return {
             "angle_deg": math.degrees(self.angle),
             "angle_arcsec": math.degrees(self.angle) * 3600,
-            "u_angle_arcsec": math.degrees(self.uncertainty) * 3600 if known else None,
+            "u_angle_arcsec": None if u_arc is None else math.degrees(self.uncertainty) * 3600,
             "arc_um": self.arc * 1000,
-            "u_arc_um": self.uncertainty * self.radius * 1000 if known else None,
+            "u_arc_um": u_arc,
             "radius_mm": self.radius,
             "teeth": self.teeth,
         }

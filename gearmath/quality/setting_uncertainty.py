@@ -31,6 +31,7 @@ from gearmath.quality.flank_target import FlankTarget
 from gearmath.quality.identification import RANK, Identification
 from gearmath.quality.on_line import flank_on_line
 from gearmath.quality.problem import ROOT_WEIGHT, Problem
+from gearmath.quality.representative import representative_tooth
 from gearmath.quality.target import blade_curve, flank_target
 from gearmath.quality.topography import grid_shape
 from gearmath.quality.uncertainty import PROBABILITY, Uncertain
@@ -228,8 +229,7 @@ def _setting(flank: str, variable: Variable, value: float, u: float) -> Uncertai
 
 def rows_of(file: FlankFile, flank: str, target: FlankTarget) -> np.ndarray:
     """The rows of a file whose points make up a target of ``flank_target``, in its order."""
-    teeth, counts = np.unique(file.tooth[file.flank == flank], return_counts=True)
-    (rows,) = np.nonzero((file.flank == flank) & (file.tooth == teeth[np.argmax(counts)]))
+    (rows,) = np.nonzero((file.flank == flank) & (file.tooth == representative_tooth(file, flank)))
     columns = grid_shape(file)[1]
     place = file.row[rows] * columns + file.col[rows]
     if target.used is not None:

@@ -18,7 +18,7 @@ import numpy as np
 from gearmath.kernels import kernel
 from gearmath.quality.drift import without_drift
 from gearmath.quality.pitch import no_reading, reference_point, reference_rows
-from gearmath.quality.registration import Registration
+from gearmath.quality.registration import Registration, known_um
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile
 
@@ -33,22 +33,23 @@ class Runout:
     """Movement (z,) [mm] of a ball in every space, normal to the pitch cone, and the azimuth (z,) [rad] of the space.
 
     Both flanks of every space are needed for F_r. ``covariance`` (z,z) [mm²] is that of the movements, NaN where the
-    noise of a point is not known.
+    noise of a point is not known. ``reason`` says why there is no F_r although every space has a reading.
     """
 
     shift: np.ndarray
     azimuth: np.ndarray
     covariance: np.ndarray
+    reason: str | None = None
 
     @property
     def total(self) -> float:
-        """F_r [mm]; NaN where a space has no reading."""
-        return float(self.shift.max() - self.shift.min())
+        """F_r [mm]; NaN where it is withheld."""
+        return math.nan if self.reason else float(self.shift.max() - self.shift.min())
 
     @property
     def withheld(self) -> str | None:
-        """Why there is no F_r; None where every space has a reading."""
-        return no_reading("both flanks", "space", np.isnan(self.shift))
+        """Why there is no F_r; None where every space has a reading and nothing else is wrong."""
+        return self.reason or no_reading("both flanks", "space", np.isnan(self.shift))
 
     @cached_property
     def uncertainty(self) -> float:
@@ -102,6 +103,8 @@ class Runout:
             "first_harmonic_direction_deg": math.degrees(direction),
         }
         known = {key: value if math.isfinite(value) else None for key, value in values.items()}
+        if known_um(values["u_F_r_um"]) is None:  # nothing says how sure the points are
+            known |= dict.fromkeys(("u_F_r_um", "F_r_of_noise_um", "F_r_of_noise_spread_um"))
         withheld = {} if self.withheld is None else {"F_r": self.withheld}
         return {**known, "mostly_noise": self.mostly_noise, "withheld": withheld}
 
@@ -112,7 +115,8 @@ class Thickness:
 
     ``deviation`` has one value for each tooth, the one that follows the space of its number; where not all teeth were
     measured, one for each space, the sum of its two flanks. ``chord_factor`` turns an arc's deviation into the chord's.
-    ``radius`` [mm] is that of the transverse circle through the reference points, along which the arc runs.
+    ``radius`` [mm] is that of the transverse circle through the reference points, along which the arc runs. ``reason``
+    says why there is no range although every tooth has a reading.
     """
 
     arc: float
@@ -121,6 +125,7 @@ class Thickness:
     chord_factor: float
     teeth: int
     radius: float
+    reason: str | None = None
 
     @property
     def mean(self) -> float:
@@ -129,7 +134,9 @@ class Thickness:
 
     @property
     def withheld(self) -> str | None:
-        """Why there is no range over the teeth; None where every tooth has a reading."""
+        """Why there is no range over the teeth; None where every tooth has a reading and nothing else is wrong."""
+        if self.reason:
+            return self.reason
         known = int(np.isfinite(self.deviation).sum())
         return None if known == self.teeth else f"thickness was measured of {known} of {self.teeth} teeth"
 

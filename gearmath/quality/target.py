@@ -16,6 +16,7 @@ from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.quality.flank_target import FlankTarget
 from gearmath.quality.pitch import reference_point
+from gearmath.quality.representative import representative_tooth
 from gearmath.quality.root_line import RootLine
 from gearmath.quality.topography import grid_shape, local_coordinates
 from gearmath.specs.bevel_set import Flank, Member
@@ -31,7 +32,7 @@ def flank_target(
     member: Member, name: str, flank: str, measured: FlankFile, tooth: int | None = None,
     excluded: np.ndarray | None = None,
 ) -> FlankTarget:  # fmt: skip
-    """One flank of a file with the nominal points of the set, of the tooth that has most points if none is given.
+    """One flank of a file with the nominal points of the set, of a tooth that has most points if none is given.
 
     Points that the file does not have, that have no deviation, or that ``excluded`` (points of the file,) marks are
     left out. Raises InputError if nothing is left, if points lie outside of the grid or are there twice, or if they are
@@ -40,8 +41,7 @@ def flank_target(
     kept = np.ones(len(measured), dtype=bool) if excluded is None else ~excluded
     points, kept = measured.select(flank), kept[measured.flank == flank]
     if tooth is None and len(points):
-        teeth, counts = np.unique(points.tooth, return_counts=True)
-        tooth = int(teeth[np.argmax(counts)])  # the one with the whole grid
+        tooth = representative_tooth(points, flank)
     here = points.tooth == tooth
     points, kept = points.select(flank, tooth), kept[here]
     rows, columns = grid_shape(measured)

@@ -32,7 +32,7 @@ _LEAST_TEETH = 6
 #: Points of a flank agree where they differ by no more than this part of their size: a large turning is not linear.
 _ALIKE = 0.1
 #: The other flank confirms a single point where it moved at least this part of it.
-_CONFIRMS = 0.5
+CONFIRMS = 0.5
 #: Where more than this part of the single points of a flank is off, it is not single points that missed.
 _MOST = 0.2
 
@@ -70,7 +70,7 @@ def tooth_shifts(file: FlankFile, teeth: int, single: np.ndarray) -> Shifts:
             if abs(found.shift) <= found.limit:
                 continue
             other = flanks.get(FLANKS[1 - FLANKS.index(flank)])
-            confirmed = other is not None and abs(other.shift) >= _CONFIRMS * abs(found.shift)
+            confirmed = other is not None and abs(other.shift) >= CONFIRMS * abs(found.shift)
             if len(found.rows) == 1 and not confirmed and single[found.rows[0]]:
                 lone[int(found.rows[0])] = abs(found.shift)
             else:

@@ -119,14 +119,20 @@ def uncertainty_section(page: Page, one: Measurement) -> None:
     if not one.figures:
         return
     page.subheading("Uncertainty of the figures")
-    rows = [
-        [known.figure.flank, known.figure.name.replace("_", " "),
-         *(f"{value * known.figure.factor:.2f}" for value in (known.value, known.uncertainty, *known.interval)),
-         in_words(known.figure.unit), known.method]
-        for known in one.figures if not known.figure.name.startswith(("f_pt_", "c_"))
-    ]  # fmt: skip
-    head = ["flank", "figure", "value", "u", "from", "to", "unit", "by"]
-    page.table(f"Standard uncertainties u and intervals of 95 %: {in_words(one.how_sure)}", head, rows)
+    page.paragraph(
+        f"Standard uncertainties u and intervals of 95 %: {in_words(one.how_sure)}. Figures with * by Monte Carlo, the "
+        "others by propagation (GUM)."
+    )
+    shown = [known for known in one.figures if not known.figure.name.startswith(("f_pt_", "c_"))]
+    for flank in dict.fromkeys(known.figure.flank for known in shown):
+        rows = [
+            [known.figure.name.replace("_", " ") + ("" if known.method == "GUM" else " *"),
+             *(f"{value * known.figure.factor:.2f}" for value in (known.value, known.uncertainty, *known.interval)),
+             in_words(known.figure.unit)]
+            for known in shown if known.figure.flank == flank
+        ]  # fmt: skip
+        words = "both flanks" if flank == "both" else f"{flank} flank"
+        page.table(f"Values and uncertainties, {words}", ["figure", "value", "u", "from", "to", "unit"], rows)
 
 
 def clamping_section(page: Page, found: Evaluation) -> None:

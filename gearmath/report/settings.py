@@ -30,8 +30,9 @@ def _settings_section(page: Page, measurement: Measurement, correction: Correcti
         factor, unit = reading(name)
         u = standard.get((flank, name), math.nan)
         values = (f"{value * factor:.6f}" for value in (old, new, new - old))
-        rows.append([flank, name.replace("_", " "), *values, f"{u * factor:.6f}" if math.isfinite(u) else "", unit])
-    page.table("Settings that change", ["flank", "setting", "old", "new", "change", "u", "unit"], rows)
+        setting = f"{flank}: {name.replace('_', ' ')}"
+        rows.append([setting, *values, f"{u * factor:.6f}" if math.isfinite(u) else "", unit])
+    page.table("Settings that change", ["setting", "old", "new", "change", "u", "unit"], rows)
     if correction.index is not None:
         size = math.degrees(np.ptp(correction.index)) * 3600
         page.paragraph(f"The indexing of every tooth is corrected as well, within a range of {size:.1f} arcseconds.")

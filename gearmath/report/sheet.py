@@ -64,8 +64,8 @@ def _left_out(page: Page, members: Sequence[Measurement]) -> None:
             for flank, figures in found.flanks.items()
             if not figures.topographies
         ]
-        others = [text for text in found.remarks if text not in found.left_out]
-        texts = [*absent, *found.left_out, *found.withheld, *others, *one.remarks]
+        others = [text for text in found.remarks if text not in found.first]
+        texts = [*absent, *found.first, *found.withheld, *others, *one.remarks]
         sentences += [f"{found.member}: {in_words(text)}." for text in texts]
     if sentences:
         page.first("Left out, withheld, or not known", sentences)

@@ -8,6 +8,7 @@ loaded is in mm and degrees, with work by cradle, and counts from the pitch apex
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -18,8 +19,18 @@ from pydantic import Field, model_validator
 from derivations import notation
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.specs.cut import CRADLE_PER_WORK, MACHINE_SETTINGS, SETTINGS, Design, Flank, Motion, Settings, vector_of
-from gearmath.specs.sheet import Angle, Length, Sheet, Unit, is_number, shown
+from gearmath.specs.cut import (
+    CRADLE_PER_WORK,
+    MACHINE_SETTINGS,
+    RATIO,
+    SETTINGS,
+    Design,
+    Flank,
+    Motion,
+    Settings,
+    vector_of,
+)
+from gearmath.specs.sheet import Angle, Length, Sheet, Unit, is_number, refusal_of, shown
 from gearmath.specs.toml import load
 
 #: With what a set is made of, which is read from here.
@@ -96,7 +107,12 @@ class Member(Sheet):
 
     @classmethod
     def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
+        if values.get("index_correction") == []:
+            words = "holds no value, so it has no effect; leave it out"
+            raise refusal_of(cls, (*where, "index_correction"), [], words)
         plain = super().plain(values, mm, where)
+        if plain.get("generation") == "formate":
+            _fill_still_roll(plain)
         blank = plain.get("blank")
         beyond = blank.get(BEYOND, 0.0) if isinstance(blank, dict) else 0.0
         if beyond and is_number(beyond):
@@ -130,6 +146,11 @@ class Member(Sheet):
         if self.process == "face_hobbing" and self.cutting != "completing":
             raise ValueError("face_hobbing cuts both flanks at once: cutting must be completing")
         for flank in FLANKS:
+            if self.process == "face_hobbing" and self.flank(flank).blade_count is not None:
+                raise ValueError(
+                    f"{flank}.blade_count = {self.flank(flank).blade_count}: belongs to face_milling; in face_hobbing "
+                    "blade_groups says how many blades there are"
+                )
             self._check_cutter(flank)
         if self.cutting == "completing":
             differing = [name for name in MACHINE_SETTINGS if getattr(self.concave, name) != getattr(self.convex, name)]
@@ -226,14 +247,34 @@ def settings_sha256(member: Member) -> str:
 
 
 def _digest(member: Member, motions: list[Motion], radii: list[float | None], *settings: list) -> str:
-    """The digest of settings and motions together with the method and the blades, which no correction changes."""
+    """The digest of settings and motions together with the method and the blades, which no correction changes.
+
+    How many blades there are changes no flank, and no digest.
+    """
     method = member.model_dump(include={"teeth", "process", "generation", "blade_groups", "indexing_sign"})
-    others = {"design", *SETTINGS}
+    others = {"design", "blade_count", *SETTINGS}
     blades = [
         member.flank(flank).model_dump(exclude=others) | {"motion": motion.model_dump(), "blade_spheric_radius": radius}
         for flank, motion, radius in zip(FLANKS, motions, radii, strict=True)
     ]
     return hashlib.sha256(repr((sorted(method.items()), blades, *settings)).encode()).hexdigest()
+
+
+def _fill_still_roll(member: dict[str, Any]) -> None:
+    """A Formate flank needs no ratio of roll: where it is left out, it is that of the crown gear (14.2)."""
+    blank = member.get("blank")
+    pitch: Any = blank.get("pitch_angle") if isinstance(blank, dict) else None
+    flanks = [member[flank] for flank in FLANKS if isinstance(member.get(flank), dict)]
+    for table in (*flanks, *(flank["design"] for flank in flanks if isinstance(flank.get("design"), dict))):
+        root: Any = table.get("machine_root_angle")
+        if RATIO not in table and is_number(pitch) and is_number(root) and 0 < float(pitch) < 90:
+            table[RATIO] = _still_roll(float(pitch), float(root))
+
+
+def _still_roll(pitch_angle: float, machine_root_angle: float) -> float:
+    """The ratio of roll of the crown gear (14.2) of angles in degrees."""
+    (value,) = kernel("crown_gear_roll")(math.radians(pitch_angle), math.radians(machine_root_angle))
+    return float(value)
 
 
 def _from_apex(advance: float, beyond: float) -> float:

@@ -41,6 +41,10 @@ class Control(Spec):
     spindle_start_seconds: float = Field(default=3.0, ge=0.0, le=60.0)
     """How long the program waits after M3 or M4, so that the cutter is at speed before it meets metal."""
 
+    result_file_kB: int | None = Field(default=None, ge=1, le=1_000_000)
+    """MD11420 $MN_LEN_PROTOCOL_FILE: how long a file may be into which a program writes; left out, only the control
+    knows, and programs ask it before they move."""
+
     @property
     def decimals(self) -> tuple[int, int]:
         """Decimals of a position in mm and in degrees."""

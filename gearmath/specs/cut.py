@@ -44,6 +44,13 @@ class Motion(Sheet):
     work_rotation_offset: _Angles = ()
     modified_roll: Annotated[_Coefficients, Field(max_length=4)] = ()
 
+    @classmethod
+    def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
+        for key, value in values.items():
+            if value == [] and key in cls.model_fields:
+                raise refusal_of(cls, (*where, key), value, "holds no coefficient, so it has no effect; leave it out")
+        return super().plain(values, mm, where)
+
     @property
     def matrix(self) -> np.ndarray:
         """The motion as the matrix of ``notation.motion`` (10,7), mm and rad, without the modified roll."""
@@ -120,6 +127,8 @@ class Flank(Settings):
     blade_edge_radius: Length = Field(default=0.0, ge=0, le=10)
     #: Of a fixed-setting cutter, which has another side (mm); without it the root of the space decides.
     blade_point_width: Length | None = Field(default=None, gt=0, le=60)
+    #: Blades that cut this flank in a turn of the cutter, 1 for a fly cutter; they make the chip, and not the flank.
+    blade_count: int | None = Field(default=None, ge=1, le=100)
     blade_spheric_radius: Length | None = Field(default=None, ge=-STRAIGHT, le=STRAIGHT)
     blade_reference_height: Length = Field(default=0.0, ge=0, le=60)
     toprem_angle: Angle | None = Field(default=None, ge=0.5, le=45)

@@ -29,6 +29,10 @@ HEADER = (
 #: true where the deviation at the reference point of each flank was set to zero by turning, so that thickness is lost.
 COMMON = "common"
 
+#: Header key that a file may have: how many points its program plans, so that a file that was cut off is told.
+PLANNED = "planned"
+_PLAN = re.compile(r"([1-9]\d{0,7}) points?\b.*", re.ASCII)
+
 #: What these header values must look like: pattern, and the words that say it.
 _HEADER_VALUES = {
     "frame": (r"w", "must be w, the work frame"),
@@ -84,6 +88,12 @@ class FlankFile:
         """The points that an index array or a mask keeps."""
         return FlankFile(self.header, self.member, *(getattr(self, name)[keep] for name in _ARRAYS))
 
+    @property
+    def planned(self) -> int | None:
+        """How many points its program plans, None where the header does not say it."""
+        match = _PLAN.fullmatch(self.header.get(PLANNED, ""))
+        return None if match is None else int(match[1])
+
     def __len__(self) -> int:
         return len(self.tooth)
 
@@ -126,7 +136,7 @@ def write_flank_csv(path: Path, file: FlankFile) -> None:
 
 def read_flank_csv(path: Path) -> FlankFile:
     """Read a flank file. Raises InputError naming file, line, key, value and limit."""
-    header, lines = read_lines(path, HEADER)
+    header, lines = read_lines(path, (*HEADER, PLANNED))
     if not lines or lines[0].cells != COLUMNS:
         raise InputError(f"{path}: is no flank file: the column line must read {','.join(COLUMNS)}")
     missing = [key for key in HEADER if key not in header]
@@ -136,6 +146,7 @@ def read_flank_csv(path: Path) -> FlankFile:
     records = [_record(line, header) for line in lines[1:]]
     if not records:
         raise InputError(f"{path}: holds no point")
+    _check_plan(path, header, len(records))
     return _collect(header, records)
 
 
@@ -151,6 +162,16 @@ def _check_header(path: Path, header: dict[str, str]) -> None:
         raise InputError(f"{path}: grid = {rows}x{columns}: has {rows * columns} points, the limit is {MOST_POINTS}")
     if not (row < rows and col < columns):
         raise InputError(f"{path}: reference_point = {row},{col}: must lie in the grid {rows}x{columns}")
+
+
+def _check_plan(path: Path, header: dict[str, str], count: int) -> None:
+    if PLANNED not in header:
+        return
+    match = _PLAN.fullmatch(header[PLANNED])
+    if match is None:
+        raise InputError(f"{path}: {PLANNED} = {header[PLANNED]!r}: must begin like '112 points'")
+    if count > int(match[1]):
+        raise InputError(f"{path}: {PLANNED} = {header[PLANNED]}: it holds {count}; is this more than one measurement?")
 
 
 def _record(line: Line, header: dict[str, str]) -> tuple[Line, tuple]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
@@ -46,13 +47,15 @@ class TravelAxis(Spec):
 class TurningAxis(Spec):
     """Work or cutter spindle: a modulo axis turns without end and counts 0 to 360 degrees, a counting one has a travel.
 
-    In degrees, degrees/min and degrees/s².
+    In degrees, degrees/min and degrees/s². ``one_sided_approach`` is for A: the probe touches only after A has turned
+    so far forwards, so that its backlash is always on the same side.
     """
 
     modulo: bool
     travel: _Range | None = None
     max_speed_per_min: float = Field(gt=0)
     max_acceleration: float = Field(gt=0)
+    one_sided_approach: float = Field(default=0.0, ge=0, le=20)
 
     @model_validator(mode="after")
     def _one_way_to_count(self) -> TurningAxis:
@@ -130,6 +133,11 @@ class MillingMachine(Spec):
     def home(self) -> float:
         """The Z of ``home_z`` [mm]."""
         return self.axes.Z.travel[1] if self.home_z is None else self.home_z
+
+    @property
+    def one_sided(self) -> float:
+        """How far A turns forwards before every touch [rad]; 0 where it comes from either side."""
+        return math.radians(self.axes.A.one_sided_approach)
 
     @property
     def pivot_height(self) -> float:

@@ -42,7 +42,7 @@ def save_corrected(
     for flank, vector in settings.items():
         written = _written(table[flank], vector, mm, beyond)
         if "design" not in table[flank]:
-            table[flank]["design"] = {key: table[flank][key] for key in written}
+            table[flank]["design"] = {key: table[flank][key] for key in written if key in table[flank]}
         changed = vector != before.flank(flank).vector
         for (key, value), new in zip(written.items(), changed, strict=True):
             if new:

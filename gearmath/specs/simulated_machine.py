@@ -73,6 +73,9 @@ class AxisErrors(Spec):
     Z: float = Field(default=0.0, ge=-1, le=1)
     A: float = Field(default=0.0, ge=-1, le=1)
     B: float = Field(default=0.0, ge=-1, le=1)
+    A_backlash_arcsec: float = Field(default=0.0, ge=0, le=600)
+    B_backlash_arcsec: float = Field(default=0.0, ge=0, le=600)
+    """Between both directions of turning: half of it the axis lags behind in each."""
     squareness_x_z_um_per_m: float = Field(default=0.0, ge=-1000, le=1000)
     A_harmonics: tuple[Harmonic, ...] = Field(default=(), strict=False, max_length=20)
     screws: tuple[Screw, ...] = Field(default=(), strict=False, max_length=20)
@@ -81,6 +84,11 @@ class AxisErrors(Spec):
     def offsets(self) -> np.ndarray:
         """Offsets of X Y Z A B (5,), mm and rad."""
         return np.array([self.X, self.Y, self.Z, math.radians(self.A), math.radians(self.B)])
+
+    @property
+    def backlash(self) -> np.ndarray:
+        """Backlash of A and B (2,), rad."""
+        return np.radians(np.array([self.A_backlash_arcsec, self.B_backlash_arcsec]) / 3600)
 
 
 class Mounting(Spec):

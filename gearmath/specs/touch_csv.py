@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +21,10 @@ RING_FACE, SPHERE, WORK_SPHERE = "ring_face", "sphere", "work_sphere"
 _NAMES = {"member": MEMBERS, "flank": FLANKS, "target": (*RING, RING_FACE, SPHERE, WORK_SPHERE)}
 #: Key of the header comment before the columns of a run: the touches that its program makes.
 PLANNED = "planned"
+#: Key of the one after it, where a run makes some of them only: their numbers.
+HELD = "points"
 _PLAN = re.compile(r"(\d{1,8}) touches\b.*", re.ASCII)
+_HELD = re.compile(r"(\d{1,8}) to (\d{1,8})", re.ASCII)
 _WHOLE = ("run", "point", "tooth", "row", "col", "triggered")
 #: No axis of a machine is longer [mm], or turned further [degrees]; nothing counts further.
 _LARGEST, _LARGEST_COUNT = 1e5, 10_000_000
@@ -31,8 +34,9 @@ _LARGEST, _LARGEST_COUNT = 1e5, 10_000_000
 class Touches:
     """The touches of one run on one member: index arrays (n,), axis positions X Y Z A B (n,5) in mm and rad.
 
-    Touches of one point follow each other. Tooth z is tooth 0, touched again at the end. ``planned`` is how many
-    touches the program makes, None where the file does not say it.
+    Touches of one point follow each other. Tooth z is tooth 0, touched again at the end. ``triggered`` (n,) is False
+    where the probe touched nothing on its whole way. ``planned`` is how many touches the program makes, None where the
+    file does not say it; ``joined`` says which touches are of which run.
     """
 
     run: int
@@ -42,10 +46,21 @@ class Touches:
     row: np.ndarray
     col: np.ndarray
     axes: np.ndarray
+    triggered: np.ndarray
     planned: int | None = None
+    joined: str = ""
 
     def __len__(self) -> int:
         return len(self.tooth)
+
+    def pick(self, keep: np.ndarray) -> Touches:
+        """The touches that an index array or a mask keeps."""
+        names = ("flank", "tooth", "row", "col", "axes", "triggered")
+        return replace(self, **{name: getattr(self, name)[keep] for name in names})
+
+    def name_of(self, k: int) -> str:
+        """Where touch k is, in words."""
+        return f"{self.flank[k]} flank, tooth {self.tooth[k]}, row {self.row[k]}, col {self.col[k]}"
 
 
 @dataclass(frozen=True)
@@ -56,25 +71,40 @@ class CalibrationTouches:
     target: np.ndarray
     axes: np.ndarray
     planned: int | None = None
+    joined: str = ""
 
 
 def read_touch_csv(path: Path, run: int | None = None) -> Touches:
     """The touches of one run, by default the last one of the file.
 
-    The control adds every run to the same file, each with its own column line. Raises InputError naming file, line,
-    column, value and limit: for a point that is missing, twice there or did not trigger, too.
+    A program that was continued adds the run to the same file, with its own column line; where the last run says that
+    it makes a part of the touches only, the rest is taken of the runs before it of the same plan. Raises InputError
+    naming file, line, column, value and limit: for a point that is missing or twice there, and for a run that touched
+    nothing, too.
     """
-    wanted, records = _records(path, COLUMNS, run)
-    _check_points(records)
-    return _collected(wanted, records, _planned(path, records))
+    wanted, records, planned, joined = _whole(path, COLUMNS, run)
+    if not any(record["triggered"] for record in records):
+        raise InputError(f"{path}: run {wanted}: triggered = 0 in all of its {len(records)} touches: it met no flank")
+    return _collected(wanted, records, planned, joined)
 
 
 def read_calibration_csv(path: Path, run: int | None = None) -> CalibrationTouches:
-    """The touches on ring and sphere of one run, by default the last one. Raises InputError as for touches."""
-    wanted, records = _records(path, CALIBRATION_COLUMNS, run)
-    _check_points(records)
+    """The touches on ring and sphere of one run, by default the last one. Raises InputError as for touches.
+
+    A touch that met nothing is refused, too: ring and sphere stand where the file of the probe says.
+    """
+    wanted, records, planned, joined = _whole(path, CALIBRATION_COLUMNS, run)
+    missed = next((record for record in records if not record["triggered"]), None)
+    if missed is not None:
+        raise missed["line"].refuse("triggered = 0: must be 1: the probe touched nothing")
     targets = np.array([record["target"] for record in records])
-    return CalibrationTouches(wanted, targets, _axes(records), _planned(path, records))
+    return CalibrationTouches(wanted, targets, _axes(records), planned, joined)
+
+
+def planned_touches(program: str) -> int:
+    """How many touches the text of a probing or calibration program plans, 0 where it does not say it."""
+    plan = re.search(rf"# {PLANNED}: (\d+) touches", program)
+    return int(plan[1]) if plan else 0
 
 
 def run_lengths(path: Path) -> dict[int, int]:
@@ -99,18 +129,67 @@ def _records(path: Path, columns: tuple[str, ...], run: int | None) -> tuple[int
     return wanted, [record for record in records if record["run"] == wanted]
 
 
-def _planned(path: Path, records: list[dict]) -> int | None:
-    """How many touches a run was to have, from the last plan before its first one and after the run before it."""
-    plans = comments(path, PLANNED)
+def _whole(path: Path, columns: tuple[str, ...], run: int | None) -> tuple[int, list[dict], int | None, str]:
+    """A run, its records, how many touches its program plans, and what of them is of which run."""
+    wanted, records = _records(path, columns, run)
+    number, plan = _comment(path, PLANNED, records)
+    first, last = _held(path, records)
+    _check_points(records, first)
+    planned = None
+    if number is not None:
+        if (match := _PLAN.fullmatch(plan)) is None:
+            raise InputError(f"{path}, line {number}: {PLANNED} = {plan!r}: must begin like '122 touches'")
+        planned = int(match[1])
+    if first is None or last is None:
+        return wanted, records, planned, ""
+    if run is not None:
+        return wanted, records, planned, f"touches {first} to {records[-1]['point']} of {planned} only"
+    found = {record["point"]: record for record in records}
+    others = {record["run"] for record in _all(path, columns)} - {wanted}
+    for other in sorted(others, reverse=True):
+        _, earlier = _records(path, columns, other)
+        if earlier[0]["line"].number > records[0]["line"].number or _comment(path, PLANNED, earlier)[1] != plan:
+            continue
+        begin, _ = _held(path, earlier)
+        _check_points(earlier, begin)
+        for record in earlier:
+            found.setdefault(record["point"], record)
+        if begin in (None, 1):
+            break  # a run from the first point on: nothing before it belongs to it
+    records = [found[point] for point in sorted(found)]
+    return wanted, records, planned, _parts(records, planned)
+
+
+def _parts(records: list[dict], planned: int | None) -> str:
+    """In words, which touches are of which run."""
+    parts: list[list[int]] = []
+    for record in records:
+        if parts and parts[-1][0] == record["run"] and parts[-1][2] + 1 == record["point"]:
+            parts[-1][2] = record["point"]
+        else:
+            parts.append([record["run"], record["point"], record["point"]])
+    words = (f"touches {first} to {last} of run {run}" for run, first, last in parts)
+    return f"joined of {planned}: {', '.join(words)}"
+
+
+def _comment(path: Path, key: str, records: list[dict]) -> tuple[int | None, str]:
+    """Line and value of the last comment with a key before the first touch of a run and after the run before it."""
+    values = comments(path, key)
     first = records[0]["line"].number
     others = [line.number for line in read_lines(path)[1] if line.number < first and line.cells[0].isdigit()]
-    number = max((number for number in plans if max(others, default=0) < number < first), default=None)
+    number = max((number for number in values if max(others, default=0) < number < first), default=None)
+    return (None, "") if number is None else (number, values[number])
+
+
+def _held(path: Path, records: list[dict]) -> tuple[int | None, int | None]:
+    """The first and the last touch that a run makes, where it says that these are not all."""
+    number, text = _comment(path, HELD, records)
     if number is None:
-        return None
-    plan = _PLAN.fullmatch(plans[number])
-    if plan is None:
-        raise InputError(f"{path}, line {number}: {PLANNED} = {plans[number]!r}: must begin like '122 touches'")
-    return int(plan[1])
+        return None, None
+    match = _HELD.fullmatch(text)
+    if match is None or not 1 <= int(match[1]) <= int(match[2]):
+        raise InputError(f"{path}, line {number}: {HELD} = {text!r}: must be like '40 to 122'")
+    return int(match[1]), int(match[2])
 
 
 def _all(path: Path, columns: tuple[str, ...]) -> list[dict]:
@@ -139,7 +218,7 @@ def _record(line: Line, columns: tuple[str, ...]) -> dict:
     return record
 
 
-def _collected(run: int, records: list[dict], planned: int | None) -> Touches:
+def _collected(run: int, records: list[dict], planned: int | None, joined: str) -> Touches:
     member = records[0]["member"]
     seen: dict[tuple, int] = {}
     before: tuple = ()
@@ -155,21 +234,24 @@ def _collected(run: int, records: list[dict], planned: int | None) -> Touches:
         seen[place], before = line.number, place
     tooth, row, col = (np.array([record[name] for record in records]) for name in ("tooth", "row", "col"))
     flank = np.array([record["flank"] for record in records])
-    return Touches(run, member, flank, tooth, row, col, _axes(records), planned)
+    triggered = np.array([record["triggered"] == 1 for record in records])
+    return Touches(run, member, flank, tooth, row, col, _axes(records), triggered, planned, joined)
 
 
-def _check_points(records: list[dict]) -> None:
-    """Points count up from 0 or 1 without a gap, and every one triggered."""
+def _check_points(records: list[dict], held: int | None) -> None:
+    """Points count up without a gap, from 0 or 1 or the first that is ``held``, and each triggered or did not."""
     first = records[0]["point"]
-    if first > 1:
+    if held is not None and first != held:
+        raise records[0]["line"].refuse(f"run {records[0]['run']} begins with point = {first}: must be {held}")
+    if held is None and first > 1:
         raise records[0]["line"].refuse(f"run {records[0]['run']} begins with point = {first}: must be 0 or 1")
     for count, record in enumerate(records, start=first):
         line = record["line"]
         if record["point"] != count:
             again = f": run {record['run']} is there twice" if record["point"] == first else ""
             raise line.refuse(f"point = {record['point']}: must be {count}, without a gap{again}")
-        if record["triggered"] != 1:
-            raise line.refuse(f"triggered = {record['triggered']}: must be 1: the probe touched nothing")
+        if record["triggered"] > 1:
+            raise line.refuse(f"triggered = {record['triggered']}: must be 1, or 0 where the probe touched nothing")
 
 
 def _axes(records: list[dict]) -> np.ndarray:

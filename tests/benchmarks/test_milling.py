@@ -33,7 +33,7 @@ def path(blocks: int) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.benchmark(group="virtual milling")
 def test_cutter_line_intersections_per_second_and_core(benchmark, host_compiler) -> None:
-    """Goal: 5e6 with the compiled kernel; the interpreter of CasADi beside it."""
+    """Goal: 2e7 with the compiled kernel; the interpreter of CasADi beside it."""
     point, direction = lines(LINES)
     generator = np.random.default_rng(7)
     center = generator.normal(scale=0.5, size=(POSES, 3))
@@ -50,8 +50,8 @@ def test_cutter_line_intersections_per_second_and_core(benchmark, host_compiler)
         for entry in (compiled, interpreted)
     ]
     benchmark.extra_info["intersections_per_second_c"], benchmark.extra_info["in_casadi"] = map(round, rates)
-    print(f"\ncutter against line: {rates[0]:.3g} per s and core in C, {rates[1]:.3g} in CasADi")
-    assert rates[0] > 1e6  # the goal is 5e6; a busy machine may be slower
+    print(f"\ncutter against line: {rates[0]:.3g} per s and core in C, {rates[1]:.3g} in CasADi (goal 2e7)")
+    assert rates[0] > 1e6  # a busy machine may be slower than the goal
 
 
 def seconds(blocks: int, points: int, repeat: int = 2) -> float:

@@ -12,7 +12,7 @@ from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, BevelSet
 from gearmath.specs.toml import bundled, checked, parse
 
-NASA = "nasa_tp3096_12x36"
+NASA, HOBBED = "nasa_tp3096_12x36", "crown_gear_hobbed_14x39"
 #: What is changed, by how much, and the setting that the sentence must name, with the value that would fit.
 WRONG = {
     "sliding base of one flank": (NASA, {"pinion.concave.sliding_base": -0.2965}, r"sliding_base = -0\.2965: 0\.2\d+"),
@@ -24,20 +24,27 @@ WRONG = {
     "radial distance in inches": (
         NASA, {"pinion.concave.radial_distance": 2.94780202969}, r"pinion\.concave\.radial_distance = 2\.9478: 7\d\.",
     ),
-    "hand of one flank, where a roll backwards would do as well": (
-        NASA, {"pinion.concave.cradle_angle": 63.9420304635, "pinion.concave.blank_offset": -3.9262},
-        r"pinion\.concave\.cradle_angle = 63\.942: -",
+    "blades of both flanks": (
+        HOBBED, {f"gear.{flank}.blade_pressure_angle": 23.0 for flank in FLANKS},
+        r"gear\.concave\.blade_pressure_angle = 23: (19\.[89]|20\.[01])\d* would fit on both flanks",
+    ),
+    "ratio of roll the other way": (
+        NASA, {"pinion.concave.ratio_of_roll": 1 / 3.2426985355495}, r"ratio_of_roll = 0\.308385: 3\.2427 would fit",
     ),
 }  # fmt: skip
 
 
-def refusal(name: str, changes: dict[str, float]) -> str:
+def changed(name: str, changes: dict[str, float]) -> dict:
     values = tomllib.loads(bundled(f"{name}.toml").read_text("utf-8"))
     for place, value in changes.items():
         member, table, key = place.split(".")
         values[member][table][key] = value
+    return values
+
+
+def refusal(name: str, changes: dict[str, float]) -> str:
     with pytest.raises(InputError) as caught:
-        check_pair(checked(values, BevelSet, name))
+        check_pair(checked(changed(name, changes), BevelSet, name))
     return str(caught.value)
 
 
@@ -51,7 +58,28 @@ def test_setting_that_alone_puts_the_flank_right_is_named_with_the_value_that_wo
 def test_figures_that_no_single_setting_explains_are_said_to_be_so() -> None:
     text = refusal(NASA, {"pinion.concave.radial_distance": 113.8, "pinion.concave.blade_point_radius": 77.0,
                           "pinion.concave.cradle_angle": -20.0, "pinion.concave.sliding_base": 5.0})  # fmt: skip
-    assert "no single setting explains it" in text
+    assert "no single setting puts" in text
+    assert "would fit" not in text
+
+
+def test_setting_is_named_without_a_value_where_it_is_not_all_that_is_wrong() -> None:
+    text = refusal(NASA, {"pinion.concave.cradle_angle": 63.9420304635, "pinion.concave.blank_offset": -3.9262})
+    assert text.endswith(
+        "no single setting puts all of it right, most of it hangs on pinion.concave.cradle_angle = 63.942"
+    )
+
+
+ADVICE = re.compile(r"(pinion|gear)\.(?:(concave|convex)\.)?(\w+) = \S+: (\S+) would fit( on both flanks)?")
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_set_with_the_advised_value_passes(case: str) -> None:
+    name, changes, _ = WRONG[case]
+    advised = ADVICE.findall(refusal(name, changes))
+    assert advised
+    for member, flank, key, value, both in advised:
+        places = {f"{member}.{each}.{key}": float(value) for each in (FLANKS if both else (flank,))}
+        check_pair(checked(changed(name, changes | places), BevelSet, name))
 
 
 @pytest.mark.parametrize(

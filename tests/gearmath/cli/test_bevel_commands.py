@@ -111,7 +111,11 @@ def test_bad_arguments_are_one_line_and_write_nothing(refused, tmp_path, argumen
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("blade_pressure_angle = 22.0", "blade_pressure_angle = 95.0", r"blade_pressure_angle = 95\.0: should be less"),
+        (
+            "blade_pressure_angle = 22.0",
+            "blade_pressure_angle = 95.0",
+            r"blade_pressure_angle = 95\.0: must be at most 45",
+        ),
         ("blade_pressure_angle = 22.0", "blade_pressure_angle = nan", r"blade_pressure_angle = nan: must be a finite"),
         ("blade_pressure_angle = 22.0\n", "", r"blade_pressure_angle: the key is missing"),
         ("blade_pressure_angle = 22.0", "blade_pressure_angle = 22.0\ncolor = 1", r"color = 1: no such key is known"),

@@ -314,3 +314,46 @@ def test_file_cut_in_half_is_refused_or_said_not_to_be_whole_by_every_verb(comma
         assert status in (0, 2), (count, err)
         assert "not whole" in out if status == 0 else "m.csv" in err, count
         assert "grades: " not in out
+
+
+def test_file_without_uncertainties_shows_none_of_nothing(command, text, tmp_path):
+    """Exact deviations and no u_um: no '± 0.00', and a line that none is known."""
+    path = tmp_path / "m.csv"
+    path.write_text(text, "utf-8")
+    out = command("evaluate", path, "--set", SET)[1]
+    assert "± 0.00" not in out
+    assert "the file has no u_um, and --sigma-um is not given: " in out
+    assert "the file has no u_um" not in command("evaluate", path, "--set", SET, "--sigma-um", "0.5")[1]
+
+
+def planned(count):
+    return lambda text: text.replace("# grid", f"# planned: {count} points\n# grid", 1)
+
+
+def test_file_that_holds_fewer_points_than_planned_has_no_maximum_and_no_grade(command, text, tmp_path):
+    """Cut after the grids and pitch of one flank, or of one point only: said first, by every verb that judges."""
+    path = tmp_path / "m.csv"
+    whole = planned(112)(text)
+    path.write_text(whole, "utf-8")
+    assert "planned" not in command("evaluate", path, "--set", SET)[1]
+    lines = whole.splitlines()
+    for gone in (1, 11, 56):
+        path.write_text("\n".join(lines[:-gone]) + "\n", "utf-8")
+        said = f"the file holds {112 - gone} of 112 points that were planned"
+        status, out, err = command("evaluate", path, "--set", SET, "--json")
+        assert (status, err) == (0, "")
+        values = json.loads(out)
+        assert values["left_out"][0].startswith("not whole: ") or f"not whole: {said}" in values["left_out"]
+        for flank in values["flanks"].values():
+            assert flank.get("max_deviation_um") is None
+            assert flank.get("F_p_um") is None
+            assert said in flank["withheld"].values()
+        assert values["tolerance"] is None or values["tolerance"]["grade"] is None
+        assert values["tolerance"] is None or values["tolerance"]["grades_of_flanks"] == {}
+        assert f"not whole: {said}" in command("uncertainty", path, "--set", SET, "--draws", 1000)[1]
+        status, out, err = command("compensate", SET, "--measured", path, "-o", tmp_path / "out.toml")
+        assert said in out or status == 2
+    path.write_text(planned(100)(text), "utf-8")
+    assert "m.csv: planned = 100 points: it holds 112" in command("evaluate", path, "--set", SET)[2]
+    path.write_text(planned("many")(text), "utf-8")
+    assert "m.csv: planned = 'many points': must begin like" in command("evaluate", path, "--set", SET)[2]

@@ -115,12 +115,13 @@ def test_wrong_digit_is_named_with_its_line(command, tmp_path, pinion_program):
     status, out, err = command(*milling, pinion_program)
     assert (status, err) == (0, "")
     assert "every block checked on " in out
+    assert out.splitlines()[-1].startswith(f"{pinion_program}: passed: 1 of 12 spaces, nothing collides")
     status, out, err = command(*milling, wrong)
     assert status == 1
     assert err.startswith(f"gearmath: {wrong}: line ")
     assert "the program states 0.1 um" in err
-    assert f"line {k + 1} of the program (space " in err.split(";")[-1]
-    assert "off its path" in err.split(";")[-1]
+    assert f"line {k + 1} ends 0.010000 mm beside the path" in err
+    assert err.endswith(": refused\n")
     assert (tmp_path / "m.csv").exists()  # what the metal looks like is written all the same
 
 

@@ -9,8 +9,8 @@ import types
 import click
 import pytest
 
-from gearmath import __version__, cli
 from gearmath.errors import ComputationError, InputError
+from gearmath.version import __version__, cli
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:

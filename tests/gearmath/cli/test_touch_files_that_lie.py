@@ -5,9 +5,11 @@ Runs that were aborted, second runs of a few touches, files that are cut off, nu
 
 from __future__ import annotations
 
+import json
 import math
 import re
 
+import numpy as np
 import pytest
 
 from gearmath.machine.artefacts import Artefacts
@@ -16,6 +18,7 @@ from gearmath.machine.probe_run import run_touches
 from gearmath.machine.probing import probe_targets
 from gearmath.quality.completeness import missing_touches
 from gearmath.specs.calibration import load_calibration
+from gearmath.specs.flank_csv import read_flank_csv
 from gearmath.specs.toml import bundled
 from gearmath.specs.touch_csv import COLUMNS, read_touch_csv
 
@@ -96,7 +99,10 @@ TOUCHES_REFUSED = {
         r"line 9: point = 9: must be 8",
     ),
     "same run again": (lambda text: text + text, r"point = 1: must be \d+, without a gap: run 1 is there twice"),
-    "not triggered": (lambda text: text.replace(",1\n", ",0\n", 4), r"line 2: triggered = 0: must be 1"),
+    "nothing triggered": (
+        lambda text: text.replace(",1\n", ",0\n"),
+        r"(line 2: triggered = 0: must be 1|run 1: triggered = 0 in all of its 122 touches)",
+    ),
     "triggered twice": (lambda text: text.replace(",1\n", ",2\n", 4), r"line 2: triggered = 2: must be 1"),
     "decimal commas": (
         lambda text: text.replace(".", ","),
@@ -130,8 +136,8 @@ def test_raw_touches_that_lie_are_refused(command, raw, calibration_raw, tmp_pat
         (4, "13", "tooth = 13: the pinion and its grid 5x9 end at 12"),
         (5, "99999999", "row = 99999999: must be a whole number from 0 to 10000000"),
         (6, "9", "col = 9: the pinion and its grid 5x9 end at 8"),
-        (4, "7", r"the touch lies .* mm from its nominal place"),
-        (9, "600.0", r"the touch lies .* mm from its nominal place"),
+        (4, "7", r"tooth 7, row 0, col 0: A stands \+150\.0000 degrees from where the program searches"),
+        (9, "600.0", r"tooth 0, row 0, col 0: the touch lies .* mm from the line along which it was searched"),
         (2, "gear", "member = pinion: run 1 began with the gear"),
     ],
 )
@@ -229,3 +235,131 @@ def test_touches_in_the_numbers_of_a_control_are_read_as_they_are(command, raw, 
     path.write_bytes(b"\xef\xbb\xbf" + "\r\n".join(changed).encode())
     assert command("touches", path, "--set", SET, "-o", out)[0] == 0
     assert out.read_text() == expected
+
+
+def shifted(text, keep=lambda cells: True, **off):
+    """The touches that ``keep`` takes, with the axes moved."""
+    lines = text.splitlines()
+    for n, line in enumerate(lines):
+        cells = line.split(",")
+        if cells[0] == "1" and keep(cells):
+            for axis, value in off.items():
+                k = COLUMNS.index(axis)
+                cells[k] = f"{float(cells[k]) + value:.9f}"
+            lines[n] = ",".join(cells)
+    return "\n".join(lines) + "\n"
+
+
+#: Name: what was wrong with the set-up, and the sentence.
+SET_UPS = {
+    "tool length": (
+        {"Z": 1.0},
+        r"all touches lie \+1\.000 mm in Z from the planned lines, .*work offset or tool length",
+    ),
+    "tool length twice": ({"Z": -150.0}, r"all touches lie -150\.000 mm in Z from the planned lines"),
+    "offset of Y": (
+        {"Y": -0.4},
+        r"all touches lie -0\.400 mm in Y from the planned lines, .*: work offset, or another",
+    ),
+    "offset of X and Z": ({"X": 2.0, "Z": 0.7}, r"all touches lie \+2\.000 mm in X and \+0\.700 mm in Z"),
+    "offset of A": ({"A": 30.0}, r"all touches stand \+30\.0000 degrees in A"),
+    "offset of B": ({"B": 0.1}, r"all touches stand \+0\.1000 degrees in B"),
+}
+
+
+@pytest.mark.parametrize("name", SET_UPS)
+def test_wrong_offset_or_tool_length_is_named_with_its_axis_and_size(command, raw, tmp_path, name):
+    off, sentence = SET_UPS[name]
+    path = tmp_path / "raw.csv"
+    path.write_text(shifted(raw, **off))
+    status, out, err = command("touches", path, "--set", SET, "-o", tmp_path / "out.csv")
+    assert (status, out, err.count("\n")) == (2, "", 1), err
+    assert re.search(r"raw\.csv: " + sentence, err), err
+    assert not (tmp_path / "out.csv").exists()
+
+
+def test_single_touch_beside_its_line_is_named(command, raw, tmp_path):
+    """Z is nearly square to the search."""
+    path, out = tmp_path / "raw.csv", tmp_path / "out.csv"
+    path.write_text(shifted(raw, lambda cells: cells[3:7] == ["convex", "5", "2", "4"], Z=1.0))
+    status, _, err = command("touches", path, "--set", SET, "-o", out)
+    assert (status, out.exists()) == (2, False)
+    assert re.search(
+        r"convex flank, tooth 5, row 2, col 4: the touch lies \d\.\d+ mm from the line along which", err
+    ), err
+    path.write_text(shifted(raw, lambda cells: cells[3:7] == ["convex", "5", "2", "4"], A=7.0))
+    assert "tooth 5, row 2, col 4: A stands +7.0000 degrees from where" in command(
+        "touches", path, "--set", SET, "-o", out
+    )[2]  # fmt: skip
+
+
+def test_metal_along_the_search_is_measured_and_a_small_common_offset_is_said(
+    command, raw, gear_set, vertical, tmp_path
+):
+    """Stock of 0.4 mm on every flank is along the lines; the tip may have been calibrated anew by 0.05 mm."""
+    path, out = tmp_path / "raw.csv", tmp_path / "out.csv"
+    targets = probe_targets(gear_set.pinion, "pinion", vertical, PROBE)
+    way = targets.start[:, :3] - targets.touch[:, :3]
+    way *= 0.4 / np.linalg.norm(way, axis=1)[:, None]
+    lines = raw.splitlines()
+    for k, one in enumerate(way):
+        cells = lines[k + 1].split(",")
+        cells[7:10] = [f"{float(cells[7 + i]) + one[i]:.9f}" for i in range(3)]
+        lines[k + 1] = ",".join(cells)
+    path.write_text("\n".join(lines) + "\n")
+    status, said, err = command("touches", path, "--set", SET, "-o", out)
+    assert (status, "planned lines" in err) == (0, False)
+    assert "largest deviation 400.0" in said
+    path.write_text(shifted(raw, Z=0.05))
+    status, _, err = command("touches", path, "--set", SET, "-o", out)
+    assert status == 0
+    assert "raw.csv: all touches lie +0.050 mm in Z from the planned lines: work offset or tool length" in err
+
+
+def test_touch_that_met_nothing_is_one_missing_point_and_costs_only_what_needs_it(command, raw, tmp_path):
+    """The reference point of tooth 5 on one flank, and one point of a grid: named, all other figures stand."""
+    path, out = tmp_path / "raw.csv", tmp_path / "m.csv"
+    lines = raw.splitlines()
+    missed = {
+        "concave,0,1,3,": "concave flank, tooth 0, row 1, col 3",
+        "convex,5,2,4,": "convex flank, tooth 5, row 2, col 4",
+    }
+    for n, line in enumerate(lines):
+        if any(f"pinion,{place}" in line for place in missed):
+            lines[n] = line[:-1] + "0"
+    path.write_text("# planned: 122 touches, 13 teeth, concave and convex\n" + "\n".join(lines) + "\n")
+    status, said, err = command("touches", path, "--set", SET, "-o", out)
+    assert (status, err) == (0, "")
+    assert [line for line in said.splitlines() if "touched nothing" in line] == [
+        f"{words}: triggered = 0: the probe touched nothing; the point is left out" for words in missed.values()
+    ]
+    assert out.read_text().count("\npinion,") == 122
+    assert "# planned: 122 points\n" in out.read_text()
+    values = json.loads(command("evaluate", out, "--set", SET, "--json")[1])
+    for words in missed.values():
+        assert any(line.startswith(words) for line in values["left_out"]), values["left_out"]
+    flanks = values["flanks"]
+    assert flanks["concave"]["max_deviation_um"] is None
+    assert flanks["concave"]["F_p_um"] is not None
+    assert flanks["convex"]["F_p_um"] is None
+    assert flanks["convex"]["max_deviation_um"] is not None
+    assert values["tolerance"]["grade"] is None
+    assert set(values["tolerance"]["grades_of_flanks"]) == {"concave"}
+
+
+def test_repeated_touch_that_met_nothing_once_leaves_the_mean_of_the_others(command, raw, tmp_path):
+    """Every point twice, the second time 2 um higher along X; of one point only the first touch counts."""
+    path, out, clean = tmp_path / "raw.csv", tmp_path / "m.csv", tmp_path / "clean.csv"
+    head, *rows = raw.splitlines()
+    twice = [row for row in rows for _ in range(2)]
+    twice = [",".join([row.split(",")[0], str(k + 1), *row.split(",")[2:]]) for k, row in enumerate(twice)]
+    twice[9] = twice[9][:-1] + "0"
+    path.write_text("\n".join([head, *twice]) + "\n")
+    status, said, _ = command("touches", path, "--set", SET, "-o", out)
+    assert status == 0
+    assert "concave flank, tooth 0, row 0, col 4: triggered = 0: the probe touched nothing, 1 of 2 times\n" in said
+    path.write_text(raw)
+    command("touches", path, "--set", SET, "-o", clean)
+    found, wanted = read_flank_csv(out), read_flank_csv(clean)
+    np.testing.assert_allclose(found.point, wanted.point, rtol=0, atol=2e-9)
+    np.testing.assert_allclose(found.deviation, wanted.deviation, rtol=0, atol=2e-9)

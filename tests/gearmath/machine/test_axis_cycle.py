@@ -62,6 +62,10 @@ def test_tip_and_stylus_stay_clear_of_sphere_and_stem(machine):
     assert done.files["AXES_T"].count("work_sphere") == 81
     sphere, path = PROBE.work_sphere, done.path
     touching, moving = [], []
+    # a touch is a measuring block from which the next one goes back to where it began
+    touch = path.measuring.copy()
+    touch[1:-1] &= np.isclose(path.axes[2:], path.axes[:-2], rtol=0.0, atol=1e-9).all(axis=1)
+    assert touch.sum() == 81
     for k in range(1, len(path.axes)):
         change = path.axes[k] - path.axes[k - 1]
         steps = 2 + int(max(np.linalg.norm(change[:3]) / 0.25, np.degrees(np.abs(change[3:])).max()))
@@ -73,7 +77,7 @@ def test_tip_and_stylus_stay_clear_of_sphere_and_stem(machine):
             on_stem = off - np.clip(off[:, 2], 0.0, STEM)[:, None] * [0.0, 0.0, 1.0]
             from_stem = np.linalg.norm(on_stem, axis=1) - sphere.stem_diameter / 2 - own
             assert from_stem.min() > 0.9
-            ends = (path.measuring[k] or path.measuring[k - 1]) and above == 0.0
+            ends = (touch[k] or touch[k - 1]) and above == 0.0
             (touching if ends else moving).append(from_sphere.min())
     assert min(touching) > -1e-6
     assert min(moving) > 0.2

@@ -9,11 +9,16 @@ import pytest
 
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
+from gearmath.export.host import compile_kernel
 from gearmath.machine.control import Setup
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
 from gearmath.machine.judge import faults_of
+from gearmath.machine.judge_cut import metal_left
 from gearmath.machine.run import runs_of
+from gearmath.machine.stated import Stated
+from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.toml import bundled
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +77,13 @@ def test_exact_stop_needs_no_tolerance_of_the_path_and_g642_does(gear_set, verti
         (r" SOFT FFWON", "", "states SOFT or BRISK, FFWON or FFWOF"),
         (r"^; spaces: 0,1$", "; spaces: 0,1,2", "space 2 is not cut with GEAR, 1 of 3 are not"),
         (r"^; spaces: 0,1$", "; spaces: 0", "space 1 is cut with GEAR, and should not be"),
+        (r"S120\.000 M3", "S220.000 M3", r"line \d+ cuts at another speed than the 120 rpm that the program states"),
+        (r"F200\.000", "F900.000", r"line \d+ moves the cutter at 900 mm/min past the tooth, the program states 300"),
+        (r"^N\d+ G0 SUPA Z900\.00000\n(?=N\d+ D1)", "", r"line \d+ moves before Z has gone up to 599\.\d mm"),
+        (r"SUPA Z900\.00000", "SUPA Z400.00000", r"line \d+ moves before Z has gone up to 599\.\d mm"),
+        (r"(SECTION_1:[\s\S]*?)CTOL=0\.000050", r"\1CTOL=0.500000", r"line \d+ cuts with CTOL=0.5"),
+        (r"(SECTION_1:[\s\S]*?)G642 CTOL=\S* OTOL=\S*", r"\1G64", r"line \d+ cuts with G64, the machine file has G642"),
+        (r"^; spaces: 0,1\n", "", r"space 2 is not cut with GEAR, 34 of 36 are not"),
         (r"F200\.000", "F20000.000", r"line \d+ needs 20000 mm/min of Z: .* allows 15000 mm/min"),
         (r"(G93 G1 .*) F(\d+)\.", r"\1 F99\2.", r"line \d+ needs \d+ (mm|degrees)/(min|s2) of [XYAB]"),
     ],
@@ -132,3 +144,46 @@ def test_fixture_in_the_way_is_said_with_the_line(text, judged, vertical):
     wide = vertical.model_copy(update={"fixture": vertical.fixture.model_copy(
         update={"shank_radius": 50.0, "shank_length": 1.0, "radius": 300.0})})  # fmt: skip
     assert any("into the fixture" in one for one in judged(text, wide))
+
+
+@pytest.mark.slow
+def test_hobbed_block_beside_its_path_is_seen_in_every_axis(vertical):
+    """By hand: 0.06 mm or degrees in the middle of the roll, where 20 um are stated; A and C count together."""
+    bevel_set = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
+    spec = bevel_set.gear
+    text = cutting_program(bevel_set, "gear", vertical, "CUT", Job(range(39), 2e-2))
+
+    def said(text):
+        path = execute(text, "CUT", Setup.of(vertical))
+        runs = runs_of(path, spec, "gear", vertical, None)
+        return [str(one) for one in faults_of(text, path, runs, spec, "gear", vertical)]
+
+    assert said(text) == []
+    lines = text.split("\n")
+    k = [j for j, line in enumerate(lines) if " G93 " in line][350]
+    for axis in "XYZABC":
+        word = re.search(rf"{axis}(?:=DC\()?(-?[\d.]+)", lines[k])
+        wrong = lines[k].replace(word[0], word[0].replace(word[1], f"{float(word[1]) + 0.06:.6f}"))
+        found = said("\n".join([*lines[:k], wrong, *lines[k + 1 :]]))
+        assert any(one.startswith(f"line {k + 1} ends 0.") for one in found), (axis, found)
+
+
+def test_stock_gouge_and_missing_metal_are_said_without_a_report(gear_set, vertical, text, space, host_compiler):
+    """A program that states no tolerance is judged by 1 um, one that leaves stock by its stock."""
+    spec = gear_set.gear
+
+    def left(text):
+        runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, "gear", vertical, None, space, SHARP_EDGE)
+        found = metal_left(runs, spec, "gear", vertical, Stated.of(text), space, compile_kernel)
+        return [str(one) for one in found.faults]
+
+    assert left(text) == []
+    unsaid = bent(text, r"^; flank tolerance: .*\n", "")
+    assert any(re.search(r"leaves .* um, allowed are 1 um", one) for one in left(unsaid))
+    stock = cutting_program(gear_set, "gear", vertical, "CUT", Job((0,), 5e-3, finishing_stock=0.1))
+    assert left(stock) == []
+    said = left(stock.replace("; finish: stock 0.1 mm", "; finish: stock 0 mm"))
+    assert any(re.search(r"leaves \+[12]\d\d\.\d* um, the program states 5 um", one) for one in said), said
+    deeper = re.sub(r"(G1 .*)Z500\.00000", r"\1Z499.90000", text)
+    said = left(deeper)
+    assert any(re.search(r"gouges the (root|\w+ \w+) of space 0: -1\d\d", one) for one in said), said

@@ -58,13 +58,19 @@ def probed(gear_set, member, machine=MACHINE, probe=PROBE, stock=None, host=None
     return run_program(text, "PROBE.MPF", there, host, parameters), there
 
 
+def touches_of(path):
+    """Rows of a path that end at a touch: a measuring block along a normal, neither straight down nor sideways."""
+    moved = np.abs(np.diff(path.axes, axis=0, prepend=path.axes[:1])) > 1e-7
+    return path.measuring & (moved[:, 0] | moved[:, 1]) & moved[:, 2] & ~moved[:, 3]
+
+
 @pytest.mark.parametrize("member", MEMBERS)
 @SET_UPS
 def test_every_touch_is_within_a_micrometre_of_where_it_should_be(gear_set, member, machine, probe):
     """One tip radius above the flank point, along its normal, in the order of the program."""
     spec = gear_set.member(member)
     done, _ = probed(gear_set, member, machine, probe)
-    touched = done.path.axes[done.path.measuring][1::2]
+    touched = done.path.axes[touches_of(done.path)]
     rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[2:]]
     assert len(touched) == len(rows) == 2 * (45 + spec.teeth - 1 + 5)
     tips, _ = tip_in_work(touched, machine, probe)
@@ -227,9 +233,10 @@ def test_missing_metal_and_metal_in_the_way_stop_the_program_after_a_retract(gea
         done = run_program(text, "P", there)
         assert done.alarm is not None
         assert done.alarm[0] == alarm
-        assert done.messages == (message,)
+        assert done.messages[-1] == f"point 1: {message}"
         assert done.path.rapid[-1]
-        assert done.path.axes[-1, 2] == done.path.axes[2, 2]  # back at the height of sideways motion
+        lowered = int(np.argmax(done.path.measuring))
+        assert done.path.axes[-1, 2] == done.path.axes[lowered, 2]  # back at the height of sideways motion
         assert done.files["PROBE_T"].count("\n") == 2  # the plan and the column line only
 
 
@@ -251,18 +258,24 @@ def test_lint(gear_set, which):
     assert text.endswith("M30\n")
     assert not re.search(r"[\r\t]", text)
     number = r"-?\d+\.\d+"
+    table = r"U(?:WAY\[(?:UPLACE|\d+),\d\]|WHERE\[(?:UPLACE|\d+),\d\]|TURN\[(?:UTOOTH|\d+)\]|KIND\[(?:UTOOTH|\d+)\])"
+    variable = r"U(?:FROM|TO|POINT|ANGLE|BEFORE|ENDS\[\d+\])"
     word = re.compile(
-        rf"G(?:0|1|4|17|40|54|90|94|710|642)|M(?:5|6|9|30)|[XYZ]-?\d+\.\d{{5}}|B-?\d+\.\d{{6}}|F{number}|D[01]|SPOS=0|MEAS=1"
+        rf"G(?:0|1|4|17|40|54|90|94|710|642)|M(?:0|5|6|9|30)|[XYZ]-?\d+\.\d{{5}}|B-?\d+\.\d{{6}}|F{number}|D[01]|SPOS=0|MEAS=1"
         rf'|T="PROBE"|A=DC\(\d+\.\d{{6}}\)|A-?\d+\.\d{{6}}|[XYZAB]=IC\(0\)|[XY]=R1[01](?:[-+]\d+\.\d{{5}})?|STOPRE'
-        r"|SOFT|FFWON|SUPA|TRAFOOF|COMPOF|DIAMOF|TRANS|FGROUP\(X,Y,Z\)|[CO]TOL=0\.\d+|(?:OVR|OVRRAP|ACC\[[XYZAB]\])=100"
-        r"|R\d+=(?:R\d+(?:\+1)?|0|\(R12\+R13\)/2|\$A[AC]_ME?[AM]\[[XYZAB1]\]|\(?-?\d+\.\d{5}\)?)"
+        rf"|A=(?:DC\(UANGLE\)|UANGLE)|[XYZ]=UWAY\[UPLACE,[0-5]\]|{table}=(?:-?\d+\.\d{{5}}|-?\d+\.\d{{8}}|\d+)|POINTS:|SECTION_\d:"
+        rf"|{variable}=(?:{variable}|{table}|TRUNC|ROUND|R9[01]|[-+*/()]|\d+)+|FGREF\[[AB]\]=57\.29578"
+        r"|SOFT|FFWON|SUPA|TRAFOOF|COMPOF|DIAMOF|TRANS|FGROUP\(X,Y,Z(?:,A,B)?\)|[CO]TOL=0\.\d+|(?:OVR|OVRRAP|ACC\[[XYZAB]\])=100"
+        rf"|R\d+=(?:R\d+(?:\+1)?|0|\(R12\+R13\)/2|\$A[AC]_ME?[AM]\[[XYZAB1]\]|\(?-?\d+\.\d{{5}}\)?|UENDS\[(?:UFROM-1|\d)\]|\(UFROM-1\)\*\d+)"
     )
     whole = re.compile(
-        r"DEF INT U(?:ERR|TOUCH)|FOR UTOUCH=1 TO \d+|ENDFOR"
+        r"DEF (?:INT|REAL) U[A-Z0-9,\[\]]+|FOR UTOUCH=1 TO \d+|FOR U(?:TOOTH|PLACE)=0 TO \d+|ENDFOR|ELSE"
         r"|IF [^R$]*\$(?:MN|P_ACTFRAME|P_TOOLL|AA_IM|TC_TP2)[ -~]*"
         r"|IF (?:\$A_PROBE\[1\]<>0|\$AC_MEA\[1\]<>0|R205==0|UERR<>0|R104==1)|ENDIF|ENDWHILE"
-        r'|WHILE R103<>R101|SETAL\(650(?:0[0-3]|1[0-5])\)|MSG\("[A-Za-z0-9_., :\x27]+"\)'
-        r'|WRITE\(UERR,"[A-Z_]{1,24}",[A-Za-z0-9_,"<#: ]+\)'
+        r"|IF (?:[()]|R9[01]|U[A-Z]+(?:\[(?:UTOOTH|UPLACE,[03])\])?|[<>=]+|\d+| AND | OR )+"
+        r"|WHILE R103<>R101|SETAL\(650(?:0[0-4]|1[0-6])\)"
+        r'|MSG\((?:"[A-Za-z0-9_., :()\x27-]+"|<<|R9[01]|UPOINT|UTOOTH|UWHERE\[UPLACE,[12]\])+\)'
+        r'|DELETE\(UERR,"[A-Z_]{1,24}"\)|WRITE\(UERR,"[A-Z_]{1,24}",[A-Za-z0-9_,"<#: +*()\[\]]+\)'
     )
     modulo = which != "counting"
     blocks = [line for line in text.split("\n")[:-1] if not line.startswith(";")]
@@ -273,7 +286,7 @@ def test_lint(gear_set, which):
         assert whole.fullmatch(rest) or all(word.fullmatch(token) for token in rest.split(" ")), line
         assert not re.search(r"-0\.0+\b|\d[eE][-+]?\d", rest), line
         assert not re.search(r" A=DC" if not modulo else r" A-?\d", f" {rest}") or "MSG(" in rest, line
-        if "MEAS" in rest:
+        if "MEAS=1" in rest:
             assert [token[0] for token in rest.split(" ")[2:]] == list("XYZABF"), line
             assert blocks[count].endswith("STOPRE")
         for angle in re.findall(rf"DC\(({number})\)", rest):

@@ -21,6 +21,7 @@ from gearmath.machine.simulation import (
     mounted,
     roll_position,
     with_axis_errors,
+    with_backlash,
     with_setting_errors,
 )
 from gearmath.quality.pitch import evaluate_pitch
@@ -302,6 +303,37 @@ def test_ball_screw_ripple_does_not_hide_between_the_ends_of_blocks(gear_set, pr
     assert np.abs(one - none).max() > 1e-3
     # 24 chords to a period of 5 um leave out 0.04 um
     np.testing.assert_allclose(one, other, rtol=0, atol=6e-5)
+
+
+def test_backlash_stands_until_the_play_is_taken_up_by_hand():
+    """2 units of play: forwards 1 behind, back by 1 nothing moves, by 3 in all it moves by 1, and then 1 ahead."""
+    unit = 30.0 * ARCSEC
+    told, real = [0.0, 5.0, 4.0, 2.0, 1.0, 2.0, 4.0], [-1.0, 4.0, 4.0, 3.0, 2.0, 2.0, 3.0]
+    axes = np.zeros((7, 5))
+    axes[:, 3], axes[:, 0] = np.array(told) * unit, np.arange(7.0)
+    moved = with_backlash(axes, wrong(axes=AxisErrors(A_backlash_arcsec=60.0)))
+    np.testing.assert_allclose(moved[:, 3] / unit, real, rtol=0, atol=1e-9)
+    np.testing.assert_array_equal(np.delete(moved, 3, axis=1), np.delete(axes, 3, axis=1))
+    turned = with_backlash(axes[:, [0, 1, 2, 4, 3]], wrong(axes=AxisErrors(B_backlash_arcsec=60.0)))
+    np.testing.assert_array_equal(turned[:, 4], moved[:, 3])
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_backlash_turns_a_milled_flank_by_half_of_it_against_the_roll(gear_set, program, vertical, member):
+    """A work axis that lags behind by 10 arcsec all through the roll stands off by 10 arcsec."""
+    path = program(gear_set, member)
+    cutting = np.flatnonzero(~path.rapid)
+    for tool in range(len(path.tools)):
+        rows = cutting[path.tool[cutting] == tool]
+        steps = np.diff(path.axes[rows, 3])
+        (direction,) = set(np.sign(steps[np.abs(steps) > 1e-9]).tolist())
+    offset = AxisErrors(A=-direction * 10.0 / 3600)
+    one, other, none = (
+        mill_member(path, gear_set.member(member), member, vertical, errors).deviation
+        for errors in (wrong(axes=AxisErrors(A_backlash_arcsec=20.0)), wrong(axes=offset), None)
+    )
+    assert np.abs(one - none).max() > 5e-4
+    np.testing.assert_allclose(one, other, rtol=0, atol=2e-5)
 
 
 def test_work_that_sits_well_stays_where_it_is():

@@ -28,7 +28,8 @@ from gearmath.machine.path import Cut, flank_points
 from gearmath.machine.reader import read_program
 from gearmath.machine.rounding import control_share
 from gearmath.machine.run import runs_of
-from gearmath.machine.watch import distances_off_the_way, off_the_way, stated_tolerance, watch, watched_flanks
+from gearmath.machine.stated import stated_tolerance
+from gearmath.machine.watch import distances_off_the_way, off_the_way, watch, watched_flanks
 
 TOLERANCE = 1e-4
 SAMPLES = np.linspace(0.0, 1.0, 9)

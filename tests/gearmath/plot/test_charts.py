@@ -83,7 +83,7 @@ def test_numbers_do_not_cover_each_other_at_the_size_of_the_sheet():
         assert len(boxes) == 45
         for k, box in enumerate(boxes):
             assert not any(box.overlaps(other) for other in boxes[k + 1 :])
-            assert box.height > 0.85 * 7 * figure.dpi / 72  # seven points, a chart being as wide as half of A4
+            assert box.height > 0.85 * 8 * figure.dpi / 72  # eight points, a chart being as wide as half of A4
 
 
 def test_a_deviation_is_as_long_on_paper_as_the_scale_bar_says(uneven):
@@ -132,8 +132,8 @@ def test_what_was_taken_off_and_left_out_is_said_and_marked(uneven):
 
 def test_a_wide_grid_has_numbers_that_can_be_read_and_says_which():
     _, axes = drawn(flank(np.ones((5, 31)), columns=31))
-    assert {column for _, column in nodes(axes)} == set(range(0, 31, 3))
-    assert axes.get_title() == "numbers at one column in 3"
+    assert {column for _, column in nodes(axes)} == set(range(0, 31, 4))
+    assert axes.get_title() == "numbers at one column in 4"
 
 
 def test_bars_are_the_single_pitch_and_the_curve_is_cumulative():

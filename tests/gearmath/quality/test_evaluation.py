@@ -136,8 +136,34 @@ def test_teeth_measured_in_part_withhold_maxima_and_grades_but_nothing_else(pair
         assert np.isnan(one[gone]).all()
 
 
+def turned_to_zero(file):
+    """Each flank turned until the reference point of tooth 0 has no deviation, by its lever."""
+    lever = file.point[:, 0] * file.normal[:, 1] - file.point[:, 1] * file.normal[:, 0]
+    change = np.zeros(len(file))
+    for flank in ("concave", "convex"):
+        here = file.flank == flank
+        at = np.flatnonzero(here & (file.tooth == 0) & (file.row == 2) & (file.col == 4))[0]
+        change[here] = -file.deviation[at] * lever[here] / lever[at]
+    header = file.header | {"phase_zeroed": "true"}
+    point, deviation = file.point + change[:, None] * file.normal, file.deviation + change
+    return replace(file, header=header, deviation=deviation, point=point)
+
+
+def test_phase_that_is_not_as_the_header_says_is_refused_by_its_name(pair, pinion):
+    lying = replace(pair[1], header=pair[1].header | {"phase_zeroed": "true"})
+    with pytest.raises(InputError, match=r"phase_zeroed = true: the reference point of the concave flank, tooth 0"):
+        evaluate_member(lying, pinion, "pinion")
+    one_only = turned_to_zero(pair[1])
+    off = 0.005 * (one_only.flank == "convex")
+    one_only = replace(
+        one_only, deviation=one_only.deviation + off, point=one_only.point + off[:, None] * one_only.normal
+    )
+    with pytest.raises(InputError, match=r"convex flank, tooth 0, deviates by \+5\.00 um, must be 0 within 1 um"):
+        evaluate_member(one_only, pinion, "pinion")
+
+
 def test_zeroed_phase_says_nothing_of_the_thickness(pair, pinion):
-    zeroed = replace(pair[0], header=pair[0].header | {"phase_zeroed": "true"})
+    zeroed = turned_to_zero(pair[1])
     found = evaluate_member(zeroed, pinion, "pinion")
     assert found.thickness is None
     assert "no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)" in found.remarks

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.turning import turned
-from gearmath.machine.mill import flank_header
+from gearmath.machine.mill import flank_header, nominal_flank
 from gearmath.quality.correction import correct
 from gearmath.quality.flank_target import predicted
+from gearmath.quality.representative import passed_over, representative_tooth
 from gearmath.quality.target import target_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS
 from gearmath.specs.flank_csv import flank_file, join
@@ -74,3 +77,37 @@ def test_one_tooth_alone_says_that_its_index_is_not_known(gear_set):
     (line,) = found.remarks
     assert line.startswith("concave and convex flank: fewer than 4 teeth")
     assert "would count as an error of the settings" in line
+
+
+@pytest.mark.parametrize("sign", [1, -1], ids=["thick", "indexed"])
+def test_tooth_far_off_the_others_moves_no_setting(gear_set, sign):
+    """80 um on both flanks of space 4, which has its reference points only: metal left on, or an error of its index."""
+    file = pinion_with_one_tooth_indexed(gear_set, dict.fromkeys(FLANKS, 0.0))
+    off = 80 * UM * (file.tooth == 4) * np.where(file.flank == "convex", sign, 1)
+    file = replace(file, deviation=file.deviation + off, point=file.point + off[:, None] * file.normal)
+    found = correct(gear_set.pinion, "pinion", file, few=True)
+    for flank in FLANKS:
+        np.testing.assert_array_equal(found.settings[flank], gear_set.pinion.flank(flank).vector)
+        assert f"{flank} flank: without tooth 4, far off the others: the settings are corrected" in " ".join(
+            found.remarks
+        )
+
+
+@pytest.mark.parametrize("odd", [0, 2])
+def test_tooth_whose_form_is_unlike_the_others_is_not_the_one_that_is_corrected(gear_set, odd):
+    """Four teeth in full, one of them with 20 um of spiral angle; of two teeth none is known to be the odd one."""
+    files = []
+    for tooth in range(4):
+        one = nominal_flank(gear_set.pinion, "pinion", "concave", blank_grid(gear_set.pinion), tooth=tooth)
+        files.append(replace(one, deviation=20 * UM * (one.col / 4 - 1) * (tooth == odd) + 5 * UM * tooth))
+    right = min(set(range(4)) - {odd})
+    assert representative_tooth(join(files), "concave") == right
+    said = passed_over(join(files), "concave")
+    if odd == 0:
+        assert said == (
+            "concave flank: the form of tooth 0 deviates by 12.9 um (RMS) from the median of 4 teeth; the settings are "
+            "corrected from tooth 1"
+        )  # 20 um times the RMS of -1, -0.75 ... 1
+    else:
+        assert said is None
+    assert representative_tooth(join(files[:2]), "concave") == 0

@@ -434,3 +434,65 @@ def test_one_point_is_refused(gear_set):
     assert (
         refusal(gear_set, replace(part, point=part.point[:1])) == "concave.txt: holds 1 points, at least 6 are needed"
     )
+
+
+def written(tmp_path, parts):
+    """Files of points under a line of text, and the arguments that read them."""
+    arguments = []
+    for part in parts:
+        np.savetxt(tmp_path / part.name, part.point, "%.5f", header="POINTS", comments="")
+        arguments += [tmp_path / part.name, "--flank", part.flank]
+    return ["points", *arguments, "--set", SETS[0], "--member", "pinion", "-o", tmp_path / "m.csv"]
+
+
+def test_single_point_far_out_is_refused_with_its_line_and_left_out_on_request(command, gear_set, tmp_path):
+    """3 mm on one flank, in line 19; 30 um are said, and are for the evaluation to judge."""
+    one, other = both_flanks(gear_set.pinion, "pinion")
+    _, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    for size, refused_ in ((3.0, True), (0.03, False)):
+        point = one.point.copy()
+        point[17] += size * normal[17]
+        arguments = written(tmp_path, [replace(one, point=point), other])
+        status, _, err = command(*arguments)
+        assert (status == 2) == refused_, err
+        said = re.search(r"concave\.txt, line 19: the point is (\d+\.\d) um off the surface through the others", err)
+        assert float(said[1]) == pytest.approx(1000 * size, abs=3)
+        assert "RMS" not in err  # the other points stand where they should
+        assert ("--leave-out takes the other points" in err) == refused_
+        assert (tmp_path / "m.csv").exists() != refused_
+    point[17] += 3 * normal[17]
+    status, _, err = command(*written(tmp_path, [replace(one, point=point), other]), "--leave-out")
+    assert (status, "line 19" in err) == (0, True)
+    assert len(read_flank_csv(tmp_path / "m.csv")) == 89
+
+
+@pytest.mark.parametrize("count", [44, 40, 27])
+def test_file_cut_at_the_end_of_a_row_is_refused_unless_asked_for(command, gear_set, tmp_path, count):
+    one, other = both_flanks(gear_set.pinion, "pinion")
+    arguments = written(tmp_path, [replace(one, point=one.point[:count]), replace(other, point=other.point[:count])])
+    status, _, err = command(*arguments)
+    assert (status, err.count("\n")) == (2, 1)
+    assert re.search(
+        r"concave\.txt: its .*: is the file whole\? \(and 1 more\); --leave-out takes the other points", err
+    )
+    status, _, err = command(*arguments, "--leave-out")
+    assert (status, err.count("is the file whole?")) == (0, 2)
+    assert len(read_flank_csv(tmp_path / "m.csv")) == 2 * count
+
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("moved", "words"),
+    [
+        (lambda point: 1.003 * point, r"too far from the origin by \+0\.[23]\d %"),
+        (lambda point: point + UP * 0.3, r"--apex-offset -0\.(2[5-9]|3[0-5])"),
+        (lambda point: point + UP * 0.1, r"--apex-offset -0\.[01]\d"),
+    ],
+    ids=["scale", "apex by 0.3", "apex by 0.1"],
+)
+def test_scale_and_apex_are_named_by_size_where_both_flanks_show_them(gear_set, moved, words):
+    """Beside the others that the form of the flanks, 6 um RMS, does not tell from them."""
+    (doubt,) = foreign_file(both_flanks(gear_set.pinion, "pinion", moved), PLAIN, gear_set, "pinion").doubts
+    assert re.search(words, doubt), doubt

@@ -83,8 +83,9 @@ def test_injected_drift_is_recovered_and_taken_out():
     assert len(file) == 8
     assert drifts["concave"].closure == pytest.approx(4 * UM, abs=1e-12)
     assert drifts["convex"].closure == pytest.approx(-2 * UM, abs=1e-12)
-    # v by hand: 0.6 v_r + 0.8 v_t = 0.5 and 0.6 v_r - 0.8 v_t = -0.25 µm a row
-    np.testing.assert_allclose(drifts["concave"].rate, np.array([0.25 / 1.2, 0.75 / 1.6, 0]) * UM, rtol=0, atol=1e-12)
+    # v by hand: 0.6 v_r + 0.8 v_t = 0.5 and 0.6 v_r - 0.8 v_t = -0.25 µm a row, nine rows from first to last
+    v = 9 * np.array([0.25 / 1.2, 0.75 / 1.6, 0]) * UM
+    np.testing.assert_allclose(drifts["concave"].motion, v, rtol=0, atol=1e-11)
     assert [drift.points for drift in drifts.values()] == [1, 1]
     clean = spaces(low, high)
     np.testing.assert_allclose(file.deviation, clean.deviation, rtol=0, atol=1e-12)

@@ -31,7 +31,8 @@ def touched(gear_set, vertical):
     def make(member: str, shift=lambda axes: 0 * axes) -> FlankFile:
         spec = gear_set.member(member)
         there = probe_targets(spec, member, vertical, PROBE)
-        touches = Touches(1, member, there.flank, there.tooth, there.row, there.col, there.touch + shift(there.touch))
+        touches = Touches(1, member, there.flank, there.tooth, there.row, there.col, there.touch + shift(there.touch),
+                          np.ones(len(there), dtype=bool))  # fmt: skip
         return measured_member(touches, spec, member, vertical, PROBE)
 
     return make
@@ -132,9 +133,9 @@ def test_arc_second_at_100_mm_is_half_a_micrometre():
 @pytest.mark.parametrize(
     ("line", "sentence"),
     [
-        ("repeatability_um = -0.1", r"m\.toml: repeatability_um = -0\.1: .*greater than or equal to 0"),
+        ("repeatability_um = -0.1", r"m\.toml: repeatability_um = -0\.1: .*must be at least 0"),
         ("repeatability_um = nan", r"m\.toml: repeatability_um = nan: must be a finite number"),
-        ("touches = 0", r"m\.toml: touches = 0: .*greater than or equal to 1"),
+        ("touches = 0", r"m\.toml: touches = 0: .*must be at least 1"),
         ("sigma = 1.0", r"m\.toml: sigma = 1\.0: no such key is known here"),
     ],
 )

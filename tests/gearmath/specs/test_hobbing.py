@@ -97,7 +97,7 @@ def test_two_axes_or_a_fine_screw_need_64_bits():
 BAD = [
     (PLEWES, "worm = 10", 'worm = "1/3"', ("table", "1600/3", "whole number")),
     (PLEWES, "worm = 10", "worm = 10.5", ("table.worm", "10.5", "fraction")),
-    (PLEWES, "worm = 10", "worm = true", ("table.worm", "True", "whole number")),
+    (PLEWES, "worm = 10", "worm = true", ("table.worm", "true", "whole number")),
     (PLEWES, "worm = 10", 'worm = "1/0"', ("table.worm", "1/0", "fraction")),
     (PLEWES, "worm = 10", 'worm = "1000003/999983"', ("table.worm", "1000000")),
     (PLEWES, "worm = 10", "worm = 0", ("table.worm", "0", "between")),

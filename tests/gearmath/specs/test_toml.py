@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import datetime
+import importlib
+import pkgutil
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from pydantic import Field, model_validator
 
+from gearmath import specs
 from gearmath.errors import InputError
-from gearmath.specs.toml import Spec, bundled, load, parse
+from gearmath.specs.toml import Spec, bundled, checked, load, parse
 
 
 class Blade(Spec):
@@ -46,9 +52,9 @@ def test_good_file_becomes_the_model(tmp_path: Path) -> None:
         (("angle_deg = 20.0", "angle_deg = nan"), ["blade.angle_deg = nan", "finite"]),
         (("angle_deg = 20.0", "angle_deg = inf"), ["blade.angle_deg = inf", "finite"]),
         (("angle_deg = 20.0", 'angle_deg = "20"'), ["blade.angle_deg = '20'", "number"]),
-        (("angle_deg = 20.0", "angle_deg = true"), ["blade.angle_deg = True", "number"]),
+        (("angle_deg = 20.0", "angle_deg = true"), ["blade.angle_deg = true", "number"]),
         (("teeth = 12", "teeth = 1000"), ["teeth = 1000", "999"]),
-        (("teeth = 12", "teeth = 12.5"), ["teeth = 12.5", "integer"]),
+        (("teeth = 12", "teeth = 12.5"), ["teeth = 12.5", "whole number"]),
         (("[1.0, 2.5]", "[1, 2, 3, 4]"), ["heights has 4 entries, at most 3"]),
         (("[1.0, 2.5]", "[1.0, nan]"), ["heights.1 = nan", "finite"]),
         (("[blade]\nangle_deg = 20.0\n", ""), ["blade", "missing"]),
@@ -111,3 +117,42 @@ def test_misspelt_key_is_sought_among_the_keys_of_its_own_table() -> None:
         parse("[[jobs]]\nteetj = 1\n", Shop, "shop.toml")
     with pytest.raises(InputError, match=r"^shop\.toml: spare\.teetj = 1: no such key is known here"):
         parse("jobs = []\n[spare]\nteetj = 1\n", Shop, "shop.toml")
+
+
+def models(base: type[Spec] = Spec) -> Iterator[type[Spec]]:
+    """Every file model of the package."""
+    for model in base.__subclasses__():
+        yield from models(model)
+        if model.__module__.startswith("gearmath."):
+            yield model
+
+
+#: A value of each kind that TOML has, some beyond all limits.
+KINDS = (
+    True, -1, 10**400, 12.5, -1e300, float("nan"), "", "abc", "12.5", "x" * 2000, [], [1.0, "a"], [[1]], [0.0] * 99, {},
+    {"foo": 1}, datetime.date(2026, 1, 2), datetime.time(3, 4), datetime.datetime(2026, 1, 2, 3, 4),
+)  # fmt: skip
+#: Words of pydantic and of Python.
+FOREIGN = re.compile(
+    r"Input|should|valid\b|parse|instance|tuple|dict|float|integer|permitted|Field|True|False|datetime|\bNone\b|literal"
+)
+
+
+def test_whatever_stands_at_a_key_is_refused_in_words_of_our_own() -> None:
+    for module in pkgutil.iter_modules(specs.__path__):
+        importlib.import_module(f"gearmath.specs.{module.name}")
+    said = 0
+    for model in set(models()):
+        for key, field in model.model_fields.items():
+            for value in KINDS:
+                try:
+                    checked(
+                        {field.validation_alias if isinstance(field.validation_alias, str) else key: value}, model, "f"
+                    )
+                except InputError as error:
+                    sentence = str(error)
+                    said += f"{key} = " in sentence or f"{key}: " in sentence
+                    assert "\n" not in sentence
+                    assert len(sentence) < 400
+                    assert not FOREIGN.search(re.sub(r"'[^']*'", "", sentence)), sentence
+    assert said > 1000

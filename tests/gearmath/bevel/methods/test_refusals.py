@@ -26,7 +26,7 @@ REFUSALS = {
     "both of one hand": (
         MILLED, ("gear",), {"hand": "left"}, r"pinion and gear are both left hand: a pair has one of each hand",
     ),
-    "no blade group": (HOBBED, ("pinion",), {"blade_groups": 0}, r"pinion\.blade_groups = 0: .*equal to 1"),
+    "no blade group": (HOBBED, ("pinion",), {"blade_groups": 0}, r"pinion\.blade_groups = 0: must be at least 1"),
     "blade groups of a face mill": (MILLED, ("gear",), {"blade_groups": 5}, r"blade_groups belongs to face_hobbing"),
     "indexing of a face mill": (MILLED, ("gear",), {"indexing_sign": -1}, r"indexing_sign belongs to face_hobbing"),
     "indexing neither way": (HOBBED, ("gear",), {"indexing_sign": 2}, r"gear\.indexing_sign = 2: .*1 or -1"),

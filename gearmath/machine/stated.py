@@ -1,0 +1,54 @@
+"""What a cutting program states in its header, for whoever has to judge it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+_TOLERANCE = re.compile(r"^; flank tolerance: ([0-9.]+) um", re.MULTILINE)
+_MEMBER = re.compile(r"^; member: (pinion|gear)\b", re.MULTILINE)
+_FINISH = re.compile(r"^; finish: stock ([0-9.]+) mm", re.MULTILINE)
+_SPACES = re.compile(r"^; spaces: ([0-9,]+)", re.MULTILINE)
+_FEED = re.compile(r"^; feed: ([0-9.]+) mm/min at the tooth", re.MULTILINE)
+_SPINDLE = re.compile(r"^; spindle: ([0-9.]+) rpm(?:.*plunge: ([0-9.]+) mm/min)?", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Stated:
+    """Header of a program: lengths in mm, feeds in mm/min, None for what it does not say."""
+
+    tolerance: float | None
+    """How far the flanks may deviate along their normals, whatever stock they keep."""
+    stock: float
+    """What stays on the finished flanks."""
+    spaces: tuple[int, ...]
+    feed: float | None
+    plunge: float | None
+    rpm: float | None
+
+    @staticmethod
+    def of(text: str) -> Stated:
+        """Read the header of a program."""
+        tolerance, finish = _TOLERANCE.search(text), _FINISH.search(text)
+        feed, spindle = _FEED.search(text), _SPINDLE.search(text)
+        listed = {int(part) for line in _SPACES.findall(text) for part in line.split(",") if part}
+        return Stated(
+            float(tolerance[1]) / 1000 if tolerance else None,
+            float(finish[1]) if finish else 0.0,
+            tuple(sorted(listed)),
+            float(feed[1]) if feed else None,
+            float(spindle[2]) if spindle and spindle[2] else None,
+            float(spindle[1]) if spindle else None,
+        )
+
+
+def stated_tolerance(text: str) -> float | None:
+    """The tolerance [mm] that a cutting program promises in its head; None if it leaves stock, or says nothing."""
+    stated = Stated.of(text)
+    return stated.tolerance if stated.stock == 0.0 and _FINISH.search(text) else None
+
+
+def stated_member(text: str) -> str | None:
+    """The member that a program says in its head it is for; None if it says nothing."""
+    found = _MEMBER.search(text)
+    return found[1] if found else None

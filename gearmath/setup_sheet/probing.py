@@ -1,0 +1,84 @@
+"""The set-up sheet of a probing program: the machine with the probe in it, the work, and what the probe must clear."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gearmath.machine.bodies import work_profiles
+from gearmath.machine.probe_words import APPROACH_FEED, MEASURING_FEED
+from gearmath.machine.probing import APPROACH
+from gearmath.machine.setup_facts import NOT_ON_METAL, R_D, VARIABLES, BlankSizes
+from gearmath.page import Page
+from gearmath.setup_sheet.machine_drawing import Ring, machine_drawing
+from gearmath.setup_sheet.references import references
+from gearmath.setup_sheet.work_drawing import work_drawing
+from gearmath.specs.bevel_set import Member, design_sha256
+from gearmath.specs.calibration import Calibration
+from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.obstacles import Fixture
+from gearmath.version import __version__
+
+
+@dataclass(frozen=True)
+class ProbingJob:
+    """What a probing program does: number of touches, and the least clearances of its way in words."""
+
+    title: str
+    name: str
+    member: Member
+    machine: MillingMachine
+    probe: Calibration
+    fixture: Fixture
+    spindle_radius: float
+    touches: int
+    clearances: str
+
+
+def probing_sheet(job: ProbingJob, program: str) -> str:
+    """The page of one probing program as HTML; ``program`` is its file name."""
+    member, machine, probe = job.member, job.machine, job.probe
+    page = Page(f"Set-up sheet for probing: {job.name}")
+    page.paragraph(job.title)
+    page.head([job.name], [
+        ("Program", [program]),
+        ("Member", [f"{job.name}, {member.teeth} teeth, {member.hand} hand"]),
+        ("Nominal settings", [f"sha256 {design_sha256(member)[:16]}"]),
+        ("Machine", [machine.name]),
+        ("Probe", [probe.name]),
+        ("Made by", [f"gearmath {__version__}"]),
+        ("Set up by, date", [""]),
+    ])  # fmt: skip
+    page.first("Unconfirmed", [f"{text}." for text in (NOT_ON_METAL, VARIABLES)])
+    page.heading("Machine and references")
+    page.paragraph(f"{R_D}. Z counts up.")
+    profiles, b = work_profiles(member, job.fixture), math.radians(member.blank.root_angle)
+    stylus = [
+        Ring("tool", probe.stylus_length, probe.length, 0.5 * job.spindle_radius, 0.5 * job.spindle_radius),
+        Ring("blade", 0.0, probe.stylus_length, probe.tip_radius, probe.tip_radius),
+    ]
+    page.drawings([
+        (machine_drawing(machine, profiles, stylus, probe.length, "tip", 0.0, b),
+         f"Machine from the front: X 0, Z at its home, B {member.blank.root_angle:.2f}°; mm"),
+        (work_drawing(BlankSizes.of(member, machine), profiles, job.fixture), "Work on its fixture; mm"),
+    ], tall=True)  # fmt: skip
+    page.heading("Before the start", new_sheet=True)
+    references(page, machine, "center of the tip", probe.length, "length of the probe", _MORE)
+    page.table("Probe and touches", ["what", "value", "unit"], [
+        ["effective radius of the tip", f"{probe.tip_radius:.5f}", "mm"],
+        ["offset of the tip in X, Y, Z", ", ".join(f"{value:.5f}" for value in probe.offset), "mm"],
+        ["radius of the stylus", f"{probe.stylus_radius:g}", "mm"],
+        ["free length of the stylus", f"{probe.stylus_length:g}", "mm"],
+        ["touches", str(job.touches), ""],
+        ["a touch starts from the flank at most", f"{APPROACH:g}", "mm"],
+        ["and is searched beyond it for", f"{probe.overtravel:g}", "mm"],
+        ["feed of a touch, of an approach", f"{MEASURING_FEED:g}, {APPROACH_FEED:g}", "mm/min"],
+        ["radius of the fixture, of the spindle", f"{job.fixture.radius:g}, {job.spindle_radius:g}", "mm"],
+    ])  # fmt: skip
+    page.paragraph(
+        f"The program was run on the machine model: {job.clearances}. The spindle must stand still, oriented."
+    )
+    return page.html
+
+
+_MORE = "and where the probe is deflected before its first touch or on its way, or touches nothing"

@@ -1,0 +1,561 @@
+"""Whole programs with one thing wrong in them: each is refused, or seen, or shown to be harmless; none is left unseen.
+
+What ``gearmath mill`` says is asked block by block: the real reader and control run a changed block and the next ones
+from the state before it, and the checks of ``mill`` see these blocks among their neighbors; whatever passes is given to
+``mill`` whole if it does harm. What does harm is said by the dense check below, which shares no code with ``mill``: it
+reads the words by itself, moves the cutter by the machine of the witness, and asks in dense steps whether points a
+tolerance under the flanks are cut, and whether points a tolerance above them are left.
+"""
+
+from __future__ import annotations
+
+import copy
+import itertools
+import re
+from collections import Counter
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pytest
+
+from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+from gearmath.errors import InputError
+from gearmath.export.host import compile_kernel
+from gearmath.machine import nc_values
+from gearmath.machine.control import Control, Setup
+from gearmath.machine.cutting import Job, cutting_program
+from gearmath.machine.executor import MachinePath, execute
+from gearmath.machine.judge import faults_of, met
+from gearmath.machine.judge_cut import beside_the_path, metal_left
+from gearmath.machine.judge_motion import feeds, speeds, spindle, travel
+from gearmath.machine.nc_tree import Block, Branch
+from gearmath.machine.path import Cut, flank_points
+from gearmath.machine.reader import read_program
+from gearmath.machine.run import runs_of
+from gearmath.machine.stated import Stated
+from gearmath.specs.bevel_set import SIDES, load_bevel_set
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import bundled
+
+MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
+SETS = ("nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_universal_14x39", "crown_gear_formate_14x39")
+CASES = [(name, member) for name in SETS for member in ("pinion", "gear")]
+TOLERANCE, RPM, FEED, PLUNGE = 1e-4, 120.0, 300.0, 200.0
+#: Spaces of the programs in CI, and mutants of each of them: blocks, wrong digits in each of them, and everything else.
+SPACES = (0, 1)
+BLOCKS, PER_BLOCK, OTHERS = 85, 30, 40
+
+
+# ---------------------------------------------------------------------------------------------- the dense check
+WORD = re.compile(r"(?<![A-Z\[])(T=\"\w+\"|[A-Z]+(?:\[[A-Z]\])?=?(?:DC\()?)(-?[0-9.]*)")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A motion block as it is written: mm and rad, A counted on the short way."""
+
+    rapid: bool
+    at: tuple[float, ...]
+    seconds: float
+    spindle: float
+    line: int
+    tool: str
+
+
+@dataclass
+class Words:
+    """What is in force while the words of a program are read."""
+
+    now: dict = field(default_factory=dict)
+    rapid: bool = True
+    inverse: bool = False
+    feed: float = 0.0
+    speed: float = 0.0
+    spindle: float = 0.0
+    tool: str = ""
+    skipping: int = 0
+
+    def read(self, line, number):
+        """Let one line act; its row where it moves. Checks of the control are taken as passed."""
+        if line.startswith(";") or "MSG(" in line:
+            return None
+        if re.search(r"\bIF\b", line):
+            self.skipping += bool(self.skipping or not re.search(r"IF \(R90<=", line))
+            return None
+        if "ENDIF" in line:
+            self.skipping = max(self.skipping - 1, 0)
+            return None
+        if self.skipping:
+            return None
+        before, found = dict(self.now), WORD.findall(line)
+        words, codes = dict(found), {f"{a}{b}" for a, b in found}
+        self.tool = next((a[3:-1] for a, _ in found if a.startswith("T=")), self.tool)
+        self.rapid = (self.rapid or "G0" in codes) and "G1" not in codes
+        self.inverse = (self.inverse or "G93" in codes) and "G94" not in codes
+        if "G4" in codes:
+            return None
+        self.feed, self.speed = float(words.get("F") or self.feed), float(words.get("S") or self.speed)
+        if codes & {"M3", "M4", "M5"}:
+            self.spindle = 0.0 if "M5" in codes else self.speed if "M3" in codes else -self.speed
+        if "M6" in codes:
+            self.now, self.spindle = {}, 0.0
+        moved = False
+        for key in ("X", "Y", "Z", "A=DC(", "B"):
+            if words.get(key):
+                value = float(words[key])
+                if key[0] == "A" and "A" in self.now:
+                    value += 360.0 * round((self.now["A"] - value) / 360.0)
+                self.now[key[0]], moved = value, True
+        if not moved or len(self.now) < 5:
+            return None
+        at = tuple(self.now[axis] if axis in "XYZ" else np.radians(self.now[axis]) for axis in "XYZAB")
+        way = np.linalg.norm([self.now[a] - before.get(a, self.now[a]) for a in "XYZ"])
+        seconds = 0.0 if self.rapid else 60.0 / self.feed if self.inverse else 60.0 * way / self.feed
+        return Row(self.rapid, at, float(seconds), self.spindle, number, self.tool)
+
+
+def rows_of(lines, states=None):
+    """The motion of a program by its words alone; ``states`` gets what is in force before every line."""
+    words, rows = Words(), []
+    for number, line in enumerate(lines, start=1):
+        if states is not None:
+            states.append(replace(words, now=dict(words.now)))
+        row = words.read(line, number)
+        rows += [row] if row is not None else []
+    return rows
+
+
+@dataclass
+class Dense:
+    """What a right program does, and whether another one that differs in a few blocks does harm."""
+
+    name: str
+    member: str
+    witness: object
+    lines: list[str]
+    points: dict = field(default_factory=dict)
+    passes: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        self.states = []
+        self.rows = rows_of(self.lines, self.states)
+        self.place = {row.line: k for k, row in enumerate(self.rows)}
+        spec = load_bevel_set(bundled(f"{self.name}.toml")).member(self.member)
+        self.spec, self.height = spec, MACHINE.gauge_line_height + MACHINE.tool_length
+        self.axes = np.array([row.at for row in self.rows])
+        for cut in Cut.of(spec, self.member):
+            found = [flank_points(spec, flank, blank_grid(spec, 8, 160, 0.0)) for flank in cut.flanks]
+            self.points[cut.tool] = (
+                np.concatenate([one.point for one in found]), np.concatenate([one.normal for one in found])
+            )  # fmt: skip
+        blank, delta = spec.blank, np.radians(spec.blank.pitch_angle)
+        ends = blank.mean_cone_distance + np.array([-0.5, 0.5]) * blank.face_width
+        up = blank.mean_addendum + (ends - blank.mean_cone_distance) * np.tan(np.radians(blank.face_angle) - delta)
+        share, turn = np.linspace(0, 1, 25), np.linspace(0, 2 * np.pi, 240, endpoint=False)
+        z, r = (np.interp(share, [0, 1], part) for part in (
+            ends * np.cos(delta) - up * np.sin(delta), ends * np.sin(delta) + up * np.cos(delta)))  # fmt: skip
+        self.face = np.stack([np.outer(r, np.cos(turn)), np.outer(r, np.sin(turn)), np.outer(z, turn * 0 + 1)], -1)
+        self.face = self.face.reshape(-1, 3)
+
+    def blades(self, tool):
+        """Outer and inner cone: point radius and tangent of the pressure angle; of one flank only, a narrow one."""
+        cut = next(cut for cut in Cut.of(self.spec, self.member) if cut.tool == tool)
+        sides = {SIDES[flank]: self.spec.flank(flank) for flank in cut.flanks}
+        given = {
+            side: (one.blade_point_radius, np.tan(np.radians(one.blade_pressure_angle))) for side, one in sides.items()
+        }
+        if len(given) == 1:
+            ((side, (radius, slope)),) = given.items()
+            given[-side] = radius - side * 0.1, slope
+        return given[1], given[-1]
+
+    def inside(self, poses, tool, points, up=0.0):
+        """Whether points (p,3) are within the annulus of the blades at poses (m,5): (m,p)."""
+        centre, axis = self.witness.vertical_pose(poses, self.height)
+        away = points[None] - centre[:, None]
+        height = -np.einsum("mpk,mk->mp", away, axis)
+        radius = np.sqrt(np.maximum(np.einsum("mpk,mpk->mp", away, away) - height**2, 0.0))
+        (r, slope), (hole, inner) = self.blades(tool)
+        return (height > up) & (radius < r + slope * height) & (radius > hole - inner * height)
+
+    def harm(self, rows, first, behind):
+        """The harm done by ``rows`` in the place of the right ones from ``first`` up to ``behind``, or None."""
+        before, after = self.rows[first - 1] if first else None, self.rows[behind : behind + 1]
+        chain = [before, *rows, *after] if before else [*rows, *after]
+        blocks = [(a, b) for a, b in itertools.pairwise(chain) if a.tool == b.tool]
+        return self.limits(chain, blocks) or self.metal(chain, blocks, first, behind)
+
+    def harm_of_line(self, line, text):
+        """The same for a line of motion, from 1, that reads otherwise."""
+        words = replace(self.states[line - 1], now=dict(self.states[line - 1].now))
+        first, rows = self.place[line], [words.read(text, line)]
+        for number in range(line + 1, min(line + 8, len(self.lines)) + 1):
+            row = words.read(self.lines[number - 1], number)
+            if row is None:
+                continue
+            right = self.rows[self.place[number]]
+            if (
+                np.allclose(np.delete(row.at, 3), np.delete(right.at, 3), rtol=0, atol=1e-12)
+                and row.at[3] == right.at[3]
+            ):
+                break
+            rows.append(row)
+        return self.harm(rows, first, first + len(rows))
+
+    def harm_of_text(self, text):
+        """The same for a whole text: what differs from the right one."""
+        rows = rows_of(text.split("\n"))
+        same = [replace(row, line=0) for row in rows]
+        right = [replace(row, line=0) for row in self.rows]
+        first = next(
+            (k for k, (a, b) in enumerate(zip(same, right, strict=False)) if a != b), min(len(same), len(right))
+        )
+        last = 0
+        while last < min(len(same), len(right)) - first and same[-1 - last] == right[-1 - last]:
+            last += 1
+        return self.harm(rows[first : len(rows) - last], first, len(right) - last)
+
+    def limits(self, chain, blocks):
+        low, high = MACHINE.travel.T
+        speed, rate = MACHINE.max_speed * 1.002, MACHINE.max_acceleration * 1.002
+        for row in chain:
+            if (np.array(row.at) < low - 1e-5).any() or (np.array(row.at) > high + 1e-5).any():
+                return "travel"
+            if not row.rapid and abs(row.spindle - RPM) > 0.05 * RPM:
+                return "spindle"
+        last = None
+        for a, b in blocks:
+            if b.rapid or b.seconds == 0.0:
+                last = None
+                continue
+            v = (np.array(b.at) - a.at) / b.seconds
+            if (np.abs(v) > speed).any():
+                return "speed"
+            if last is not None and (np.abs(v - last[0]) > rate * (b.seconds + last[1]) / 2).any():
+                return "acceleration"
+            last = v, b.seconds
+        return None
+
+    def metal(self, chain, blocks, first, behind):
+        after = self.rows[max(first - 1, 0) : behind + 1]
+        standing = [(row.at, row.rapid) for row in chain] == [(row.at, row.rapid) for row in after]
+        new = blocks
+        for a, b in new:
+            tool = b.tool
+            point, normal = self.points[tool]
+            ends = np.array([a.at, b.at])
+            lift = ends[:, 2].min() - self.axes[:, 2].min()
+            if b.rapid:
+                straight_up = ends[1, 2] >= ends[0, 2] and not np.delete(ends[1] - ends[0], 2).any() and not a.rapid
+                steps = 2 + int(np.abs(ends[1] - ends[0])[:3].max() / 0.5 + np.abs(ends[1] - ends[0])[4] * 200)
+                if not straight_up and lift < 40.0:
+                    way = ends[0] + np.linspace(0, 1, steps)[:, None] * (ends[1] - ends[0])
+                    if any(self.inside(part, tool, self.face).any() for part in np.array_split(way, 1 + steps // 8)):
+                        return "rapid in the work"
+                continue
+            space = self.space_of(b)
+            turn = np.array([0, 0, 0, 2 * np.pi * space / self.spec.teeth, 0])
+            middle = point[len(point) // 4]
+            seen = [self.seen(end - turn, middle) for end in ends]
+            way = np.linalg.norm(seen[1] - seen[0])
+            plunge = not np.delete(ends[1] - ends[0], 2).any()
+            if b.seconds and way / b.seconds * 60.0 > (FEED if not plunge else max(FEED, PLUNGE)) * 1.1:
+                return "feed"
+            if standing:
+                continue
+            steps = int(np.clip(way / 0.04, 9, 400))
+            poses = ends[0] + np.linspace(0, 1, steps)[:, None] * (ends[1] - ends[0]) - turn
+            pitch = 2 * np.pi / self.spec.teeth
+            under = point - 1.1 * TOLERANCE * normal
+            for off in (0, -1, 1):
+                if self.inside(poses - off * np.array([0, 0, 0, pitch, 0]), tool, under).any():
+                    return "gouge"
+        return None if standing else self.left(new, first, behind)
+
+    def left(self, new, first, behind):
+        """Whether metal stays that the blocks from ``first`` to ``behind`` took away: 8 blocks around are looked at."""
+        old = [k for k in range(first, min(behind + 1, len(self.rows))) if k and not self.rows[k].rapid]
+        if not old:
+            return None
+        tool, space = self.rows[old[0]].tool, self.space_of(self.rows[old[0]])
+        turn = np.array([0, 0, 0, 2 * np.pi * space / self.spec.teeth, 0])
+        point, normal = self.points[tool]
+        above = point + 1.1 * TOLERANCE * normal
+        share = np.linspace(0, 1, 9)[:, None]
+
+        def cut(a, b, some):
+            a, b = np.array(a) - turn, np.array(b) - turn
+            return self.inside(a + share * (b - a), tool, some).any(axis=0)
+
+        mine = np.any([cut(self.axes[k - 1], self.axes[k], above) for k in old], axis=0)
+        some = above[mine]
+        if not len(some):
+            return None
+        done = np.zeros(len(some), bool)
+        for a, b in new:
+            if not b.rapid and b.tool == tool:
+                done |= cut(a.at, b.at, some)
+        for k in itertools.chain(range(behind + 1, behind + 9), range(first - 1, first - 9, -1)):
+            if done.all() or not 0 < k < len(self.rows) or self.rows[k].rapid or self.rows[k].tool != tool:
+                continue
+            if self.space_of(self.rows[k]) == space:
+                done[~done] |= cut(self.axes[k - 1], self.axes[k], some[~done])
+        return None if done.all() else "uncut"
+
+    def seen(self, at, point):
+        """A point of the work from the cutter centre, in the axes of the machine."""
+        x, y, z, a, b = at
+        c, s = np.cos(-a), np.sin(-a)
+        px, py, pz = c * point[0] - s * point[1], s * point[0] + c * point[1], point[2]
+        return np.array([-np.sin(b) * px - np.cos(b) * pz - x, py - y, np.cos(b) * px - np.sin(b) * pz - z])
+
+    def space_of(self, row):
+        """The space in which a row cuts: by the A of the right rows of the tool, nearest in X and Y."""
+        own = self.own(row.tool)
+        k = int(np.abs(own[:, :2] - np.array(row.at[:2])).sum(axis=1).argmin())
+        return round((row.at[3] - own[k, 3]) * self.spec.teeth / (2 * np.pi)) % self.spec.teeth
+
+    def own(self, tool):
+        """The positions of the first pass of a tool."""
+        if tool not in self.passes:
+            self.passes[tool] = self._first_pass(tool)
+        return self.passes[tool]
+
+    def _first_pass(self, tool):
+        numbers = [k for k, row in enumerate(self.rows) if row.tool == tool and not row.rapid]
+        end = next((j for j, (a, b) in enumerate(itertools.pairwise(numbers)) if b > a + 1), len(numbers) - 1)
+        return self.axes[numbers[: end + 1]]
+
+
+# -------------------------------------------------------------------------- what gearmath mill says, block by block
+def number(node, column):
+    return nc_values.number(node, None, "CUT", 0, column)
+
+
+def snapshot(control):
+    """The control as it stands, to go on from twice."""
+    kept = copy.copy(control)
+    for part in ("modal", "position", "shift", "feed_radius", "counting", "within", "path_modes"):
+        setattr(kept, part, dict(getattr(control, part)))
+    kept.blind = list(control.blind)
+    return kept
+
+
+def blocks_of(body):
+    """The blocks that act where nothing stops the program, sections included: no branch that ends or halts it."""
+    for part in body:
+        if isinstance(part, Block):
+            yield part
+        elif isinstance(part, Branch):
+            inside = list(blocks_of(part.then))
+            if not any({"program end", "program stop"} & set(block.words) for block in inside):
+                yield from inside
+
+
+def digits(line):
+    """The line with one digit or the sign of one axis, S or F word changed, in every way, with what it is."""
+    for word in re.finditer(r"(?:(?<=\s)[XYZBSF]|A=DC\()(-?)([0-9.]+)", line):
+        kind = "F" if word[0][0] == "F" else "S" if word[0][0] == "S" else "axis"
+        for at in range(word.start(2), word.end(2)):
+            for digit in "0123456789" if line[at].isdecimal() else "":
+                if digit != line[at]:
+                    yield f"{kind} digit", line[:at] + digit + line[at + 1 :]
+        if kind == "axis":
+            yield "sign", line[: word.start(1)] + ("" if word[1] else "-") + line[word.start(2) :]
+
+
+@dataclass
+class Whole:
+    """A right program, and what all that judges it needs."""
+
+    name: str
+    member: str
+    spaces: tuple[int, ...]
+
+    def __post_init__(self):
+        bevel_set = load_bevel_set(bundled(f"{self.name}.toml"))
+        self.spec = bevel_set.member(self.member)
+        self.text = cutting_program(bevel_set, self.member, MACHINE, "CUT", Job(self.spaces or range(self.spec.teeth)))
+        self.lines = self.text.split("\n")
+        self.space = tooth_space(self.spec, self.member, 7)
+        self.stated = Stated.of(self.text)
+        self.path = execute(self.text, "CUT", Setup.of(MACHINE))
+        self.degrees = self.path.axes * np.array([1, 1, 1, 180 / np.pi, 180 / np.pi])
+
+    def faults(self, text, everything=False):
+        """What mill says of a whole text: a list of sentences, or what refuses it."""
+        try:
+            path = execute(text, "CUT", Setup.of(MACHINE))
+            runs = runs_of(path, self.spec, self.member, MACHINE, None, self.space, SHARP_EDGE)
+            found = [str(one) for one in faults_of(text, path, runs, self.spec, self.member, MACHINE)]
+            if everything and not found:
+                left = metal_left(runs, self.spec, self.member, MACHINE, self.stated, self.space, compile_kernel)
+                found = [str(one) for one in left.faults]
+        except InputError as error:
+            return [str(error)]
+        return found
+
+    def windows(self, changed):
+        """What the checks of blocks say of changed lines: numbers from 0 of those refused, seen; rows of the others.
+
+        ``changed`` are line numbers from 1 and texts. Rows of three blocks before and behind surround the changed one.
+        """
+        program = read_program(self.text, "CUT")
+        wanted, control, states = {line for line, _ in changed}, Control("CUT", setup=Setup.of(MACHINE)), {}
+        blocks = list(blocks_of(program.body))
+        following = {block.line: blocks[k + 1 : k + 6] for k, block in enumerate(blocks)}
+        for block in blocks:
+            if block.line in wanted:
+                states[block.line] = snapshot(control)
+            control.run(block, number)
+        place = {line: k for k, line in enumerate(self.path.line.tolist())}
+        refused, parts = set(), []
+        for mutant, (line, text) in enumerate(changed):
+            try:
+                (block,) = read_program(text, "CUT").body
+                state = snapshot(states[line])
+                new, k = [state.run(block, number)], place[line]
+                for other in following[line]:
+                    row = state.run(other, number)
+                    if row is not None:
+                        if np.allclose(row.position, self.degrees[k + len(new)], rtol=0, atol=1e-9):
+                            break
+                        new.append(row)
+            except InputError:
+                refused.add(mutant)
+                continue
+            low, high = max(k - 3, 0), min(k + len(new) + 4, len(self.path.line))
+            rows = np.arange(low, high)
+            part = {key: getattr(self.path, key)[rows].copy() for key in KEYS}
+            for at, row in enumerate(new[: high - k], start=k - low):
+                part["axes"][at, :3], part["axes"][at, 3:] = row.position[:3], np.radians(row.position[3:])
+                part["rapid"][at], part["seconds"][at], part["rpm"][at] = row.rapid, row.seconds, row.rpm
+            part["line"] = np.where((rows >= k - 1) & (rows <= k + len(new)), mutant + 1, 0)
+            part["rapid"][0] = True
+            parts.append((mutant, part))
+        seen = set()
+        for tool in range(len(self.path.tools)):
+            own = [part for _, part in parts if part["tool"][-1] == tool and part["tool"][0] == tool]
+            if own:
+                seen |= self._seen(own)
+        for mutant, part in parts:
+            if part["tool"][0] != part["tool"][-1]:  # at a change of the tool: the whole text
+                line, text = changed[mutant]
+                if self.faults("\n".join([*self.lines[: line - 1], text, *self.lines[line:]])):
+                    seen.add(mutant)
+        return refused, seen
+
+    def _seen(self, parts):
+        joined = {key: np.concatenate([part[key] for part in parts]) for key in KEYS}
+        tools = (self.path.tools[int(joined["tool"][0])],)
+        joined["tool"] = np.zeros(len(joined["line"]), int)
+        path = MachinePath(tools=tools, cutter=np.full(len(joined["line"]), np.nan), **joined)
+        runs = runs_of(path, self.spec, self.member, MACHINE, None, self.space, SHARP_EDGE)
+        found = [
+            *spindle(path, MACHINE, self.stated), *travel(path, MACHINE), *speeds(path, MACHINE),
+            *feeds(path, runs, self.spec, MACHINE, self.stated),
+            *beside_the_path(runs, self.spec, MACHINE, self.stated),
+        ]  # fmt: skip
+        seen = {one.line - 1 for one in found if one.line > 0}
+        near = [
+            part for part in parts
+            if int(part["line"].max()) - 1 not in seen and part["rapid"][1:][part["line"][1:] > 0].any()
+        ]  # fmt: skip
+        for part in near:
+            path = MachinePath(
+                tools=tools, cutter=np.full(len(part["line"]), np.nan), **(part | {"tool": part["tool"] * 0})
+            )
+            runs = runs_of(path, self.spec, self.member, MACHINE, None, self.space, SHARP_EDGE)
+            if any(one.line > 0 for one in met(path, runs, self.spec, MACHINE)):
+                seen.add(int(part["line"].max()) - 1)
+        return seen
+
+
+MOTION = re.compile(r"[XYZ][-0-9]")
+KEYS = ("axes", "rapid", "tool", "line", "seconds", "rpm", "measuring")
+
+
+def others(whole):
+    """Whole texts with one block wrong otherwise: kind, line from 1, and the lines in its place."""
+    for k, line in enumerate(whole.lines):
+        if not line.startswith("N"):
+            continue
+        yield "removed block", k + 1, []
+        yield "doubled block", k + 1, [line, line]
+        if "MSG(" in line:
+            continue
+        for right, wrong, kind in (
+            ("G0", "G1", "G0 for G1"), ("G1", "G0", "G1 for G0"), ("M3", "M4", "M3 for M4"),
+            ("G54", "G55", "G54 for G55"),
+        ):  # fmt: skip
+            if re.search(rf"\b{right}\b", line):
+                yield kind, k + 1, [re.sub(rf"\b{right}\b", wrong, line)]
+        if not MOTION.search(line) and re.search(r"[SF][0-9]", line):
+            for kind, wrong in digits(line):
+                yield kind, k + 1, [wrong]
+        if " G93 " not in line and "MSG(" not in line and "IF" not in line:
+            words = line.split()
+            for j in range(1, len(words)):
+                yield "removed word", k + 1, [" ".join(words[:j] + words[j + 1 :])]
+
+
+def judge(whole, dense, kind, text, harm, count, unseen):
+    """What passes the checks of blocks: harmless by the dense check, or seen by all that mill does, or unseen."""
+    if harm is None:
+        count[kind, "harmless"] += 1
+    elif whole.faults(text, everything=True):
+        count[kind, "seen"] += 1
+    else:
+        unseen.append((kind, harm, text))
+
+
+def trial(name, member, witness, spaces, blocks, per_block, rest, random):
+    """Mutants of one program, of ``per_block`` digits in ``blocks`` blocks, and ``rest`` others: how many of each kind
+    were refused or seen, and harmless; and those that nobody sees."""
+    whole = Whole(name, member, spaces)
+    dense = Dense(name, member, witness, whole.lines)
+    assert [row.line for row in dense.rows] == whole.path.line.tolist()
+    np.testing.assert_allclose(dense.axes, whole.path.axes, atol=1e-9)
+    count, unseen = Counter(), []
+
+    def with_lines(line, new):
+        return "\n".join([*whole.lines[: line - 1], *new, *whole.lines[line:]])
+
+    chosen = [line for line in whole.path.line.tolist() if MOTION.search(whole.lines[line - 1])]
+    if blocks < len(chosen):
+        chosen = np.sort(random.choice(chosen, blocks, replace=False)).tolist()
+    changed = []
+    for line in chosen:
+        found = list(digits(whole.lines[line - 1]))
+        some = range(len(found)) if per_block >= len(found) else random.choice(len(found), per_block, replace=False)
+        changed += [(line, *found[j]) for j in some]
+    refused, seen = whole.windows([(line, text) for line, _, text in changed])
+    for mutant, (line, kind, text) in enumerate(changed):
+        if mutant in refused or mutant in seen:
+            count[kind, "seen"] += 1
+        else:
+            judge(whole, dense, kind, with_lines(line, [text]), dense.harm_of_line(line, text), count, unseen)
+
+    pool = list(others(whole))
+    if rest < len(pool):
+        pool = [pool[j] for j in np.sort(random.choice(len(pool), rest, replace=False))]
+    for kind, line, new in pool:
+        text = with_lines(line, new)
+        if whole.faults(text):
+            count[kind, "seen"] += 1
+        else:
+            judge(whole, dense, kind, text, dense.harm_of_text(text), count, unseen)
+    return count, unseen
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "member"), CASES, ids=["-".join(case) for case in CASES])
+def test_no_wrong_word_of_a_whole_program_is_left_unseen(witness, host_compiler, name, member):
+    random = np.random.default_rng(CASES.index((name, member)))
+    count, unseen = trial(name, member, witness, SPACES, BLOCKS, PER_BLOCK, OTHERS, random)
+    kinds = sorted({kind for kind, _ in count})
+    print(f"\n{name} {member}, {count.total()} mutants, {len(unseen)} unseen; refused or seen + harmless:")
+    print("; ".join(f"{kind} {count[kind, 'seen']} + {count[kind, 'harmless']}" for kind in kinds))
+    assert [(kind, harm) for kind, harm, _ in unseen] == []
+    assert sum(count[kind, "seen"] for kind in kinds) > 100
