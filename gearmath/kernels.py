@@ -42,7 +42,8 @@ def _origin() -> str:
     """A digest of all that a lowered expression is made from."""
     texts = [derivations.source(chapter) for chapter in (*derivations.CHAPTERS, *_BESIDE_CHAPTERS)]
     texts += [
-        files("gearmath").joinpath(name).read_text("utf-8") for name in ("lowering.py", "kernel.py", "kernels.py")
+        files("gearmath").joinpath(name).read_text("utf-8")
+        for name in ("lowering.py", "engine/kernel.py", "kernels.py")
     ]
     return kept.key(*texts, version("sympy"), version("casadi"), sys.platform)
 
