@@ -16,8 +16,8 @@ from gearmath.cli import VERBS
 
 ROOT = Path(__file__).parents[2]
 TOP_LEVEL = {
-    ".ci", ".editorconfig", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "Makefile", "README.md", "derivations", "docs",
-    "gearmath", "notebooks", "pyproject.toml", "tests",
+    ".ci", ".editorconfig", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md",
+    "LICENSE", "Makefile", "README.md", "derivations", "docs", "gearmath", "notebooks", "pyproject.toml", "tests",
 }  # fmt: skip
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 
