@@ -16,10 +16,8 @@ from gearmath.cli.waiting import hidden
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.figure import Figure
 
-    from gearmath.lowering import Kernel
     from gearmath.specs.bevel_set import BevelSet, Member
 
 #: The gear set of a verb whose first argument is another file.
@@ -130,19 +128,6 @@ def about(file: Path) -> Iterator[None]:
         yield
     except InputError as error:
         raise InputError(f"{file}: {error}") from error
-
-
-def fast_kernels() -> Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]:
-    """What evaluates kernels: machine code, or CasADi's interpreter where there is no C compiler."""
-    from gearmath.engine.compiler import find_compiler
-    from gearmath.errors import ComputationError
-    from gearmath.export.host import compile_kernel
-
-    try:
-        find_compiler()
-    except ComputationError:
-        return lambda kernel: kernel
-    return compile_kernel
 
 
 def echo_json(values: Any) -> None:

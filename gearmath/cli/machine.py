@@ -16,7 +16,6 @@ from gearmath.cli.common import (
     NewFile,
     about,
     bar,
-    fast_kernels,
     member_of,
     output,
 )
@@ -256,7 +255,7 @@ def _judge_metal(
     made = as_cut(spec)
     with bar(1, "space") as progress:
         own = space if made == spec else tooth_space(made, member, 7)
-        left = metal_left(runs, made, member, machine, Stated.of(text), own, fast_kernels(), progress)
+        left = metal_left(runs, made, member, machine, Stated.of(text), own, progress)
     found = left.watch
     if math.isfinite(found.lowest):
         _, (number, flank, line) = found.worst
@@ -279,7 +278,7 @@ def _write_report(
     from gearmath.machine.report import milling_report
 
     with bar(5 * spec.teeth, "surface") as progress:
-        found = milling_report(path, spec, member, machine, errors, tolerance, evaluator=fast_kernels(),
+        found = milling_report(path, spec, member, machine, errors, tolerance,
                                progress=progress, space=space)  # fmt: skip
     write_text(target, json.dumps(found.as_dict(), indent=2) + "\n")
     seconds = found.timing.feed_seconds + found.timing.rapid_seconds

@@ -16,7 +16,7 @@ import numpy as np
 from gearmath.bevel.turning import half_turn
 from gearmath.kernels import kernel
 from gearmath.machine.blades import Blades, Edge, crossing
-from gearmath.machine.milling import Evaluator, Removal
+from gearmath.machine.milling import Removal
 
 #: Between two nodes neither A nor C turns further than this. [rad]
 _NODE_STEP = 0.5
@@ -78,7 +78,6 @@ class _Passes:
 def removal_by_blades(
     axes: np.ndarray, cutter: np.ndarray, cutting: np.ndarray, blades: Blades, machine: tuple, point: np.ndarray,
     normal: np.ndarray, start: np.ndarray, progress: Callable[[int], object] = lambda _: None,
-    evaluator: Evaluator = lambda k: k,
 ) -> Removal:  # fmt: skip
     """What the blades leave of lines along ``normal`` (m,3) through ``point`` (m,3), and the blocks that cut deepest.
 
@@ -88,9 +87,9 @@ def removal_by_blades(
     path = _Path.of(axes, cutter, cutting)
     best, block = np.full(len(point), np.inf), np.full(len(point), -1)
     starts = np.broadcast_to(np.asarray(start, dtype=float), (len(point),))
-    nodes, seen = path.nodes, evaluator(kernel("seen_from_blades"))
+    nodes, seen = path.nodes, kernel("seen_from_blades")
     poses = kernel("tool_pose")(nodes[:, :5], *machine)
-    crosses = {is_arc: evaluator(crossing(is_arc)) for is_arc in {edge.is_arc for edge in blades.edges}}
+    crosses = {is_arc: crossing(is_arc) for is_arc in {edge.is_arc for edge in blades.edges}}
     for begin in range(0, len(point), _LINES):
         rows = np.arange(begin, min(begin + _LINES, len(point)))
         reach = _WINDOW - float(starts[rows].min())

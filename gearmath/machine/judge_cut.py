@@ -14,7 +14,6 @@ from gearmath.machine.alike import alike
 from gearmath.machine.cutting import tooth_angles
 from gearmath.machine.faults import Fault
 from gearmath.machine.hobbing import index_ratio, spindle_phase
-from gearmath.machine.milling import Evaluator
 from gearmath.machine.path import Cut, axis_positions
 from gearmath.machine.rounding import FROM_AXIS, FROM_CUTTER
 from gearmath.machine.run import Run
@@ -104,7 +103,7 @@ class MetalLeft:
 
 def metal_left(
     runs: list[Run], member: Member, name: str, machine: MillingMachine, stated: Stated, space: ToothSpace,
-    evaluator: Evaluator = lambda k: k, progress: Callable[[int], object] = lambda _: None,
+    progress: Callable[[int], object] = lambda _: None,
 ) -> MetalLeft:  # fmt: skip
     """Stock and gouges that a face milling program leaves on flanks, fillets and root, the work of its settings.
 
@@ -112,7 +111,7 @@ def metal_left(
     ``space`` is the space that the settings cut. ``progress`` is called for every space exposed.
     """
     groups = alike(runs, member, machine)
-    found = watch(runs, member, machine, None, evaluator, progress, groups)
+    found = watch(runs, member, machine, None, progress, groups)
     tolerance, stock = allowed(stated), stated.stock
     flattest = min(member.flank(flank).blade_pressure_angle for run in runs for flank in run.cut.flanks)
     # the cutter is withdrawn by this along its axis, and leaves as much at the foot of the flanks
@@ -133,7 +132,7 @@ def metal_left(
         faults.append(Fault(f"{found.uncut} of {found.lines} normals on the flanks are not cut at all"))
     states = surface_states(
         None, member, name, machine, None, _exposed(groups, member), tolerance + REPORTED, DEFAULT_COLUMNS, runs,
-        evaluator, progress, space,
+        progress, space,
     )  # fmt: skip
     deepest = min(states, key=lambda state: state.lowest)
     least, greatest = stock - tolerance - REPORTED, tolerance + REPORTED

@@ -15,7 +15,7 @@ from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.machine.blade_milling import removal_by_blades
 from gearmath.machine.executor import MachinePath
-from gearmath.machine.milling import Evaluator, Removal, removal
+from gearmath.machine.milling import Removal, removal
 from gearmath.machine.run import Run, runs_of
 from gearmath.machine.simulation import mounted
 from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
@@ -142,14 +142,14 @@ def measured_lines(
 
 def expose(
     runs: list[Run], machine: MillingMachine, errors: SimulatedMachine | None, point: np.ndarray, normal: np.ndarray,
-    start: np.ndarray, evaluator: Evaluator = lambda k: k, progress: Callable[[int], object] = lambda _: None,
+    start: np.ndarray, progress: Callable[[int], object] = lambda _: None,
 ) -> Removal:  # fmt: skip
     """What all tools leave of lines of the work; ``block`` counts through the blocks of all runs."""
     where, along = mounted(point, normal, errors.mounting) if errors is not None else (point, normal)
     left, offset = Removal(np.full(len(point), np.nan), np.full(len(point), -1)), 0
     for run in runs:
         pose = (machine.pivot_height, machine.pivot)
-        lines = (pose, where, along, start, progress, evaluator)
+        lines = (pose, where, along, start, progress)
         if run.blades is None:
             found = removal(run.axes, run.cutting, run.cutter, *lines)
         else:

@@ -33,8 +33,6 @@ _SAMPLES, _DIVISIONS = 9, 8
 #: Lines whose candidates are divided together.
 _LINES = 64
 
-#: What evaluates a kernel: the kernel itself, or a faster machine for it.
-Evaluator = Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]
 
 _base = Quantity("base", "height of the body's tip plane above that of the cutter", "mm", "h_0", (0.0, 10.0))
 _annulus = Quantity(
@@ -137,7 +135,6 @@ def _onto_cutter(t: ca.SX, center: ca.SX, axis: ca.SX, point: ca.SX, direction: 
 def removal(
     axes: np.ndarray, cutting: np.ndarray, cutter: Cutter, machine: tuple, point: np.ndarray, normal: np.ndarray,
     start: np.ndarray | float = -REACH, progress: Callable[[int], object] = lambda _: None,
-    evaluator: Evaluator = lambda k: k,
 ) -> Removal:  # fmt: skip
     """What a path leaves of lines along ``normal`` (m,3) through ``point`` (m,3), and which blocks it is left by.
 
@@ -157,7 +154,7 @@ def removal(
             rows = np.arange(begin, min(begin + _LINES, len(point)))
             lines = (point[rows], normal[rows], starts[rows])
             for body in cutter.bodies:
-                found, at = _of_body(axes, ends, where[ends], poses, body, machine, lines, evaluator)
+                found, at = _of_body(axes, ends, where[ends], poses, body, machine, lines)
                 closer = found < np.nan_to_num(best[rows], nan=np.inf)
                 best[rows], block[rows] = np.where(closer, found, best[rows]), np.where(closer, at, block[rows])
             progress(len(rows))
@@ -180,11 +177,11 @@ _Lines = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 def _of_body(
     axes: np.ndarray, ends: np.ndarray, place: np.ndarray, poses: tuple[np.ndarray, ...], body: Body, machine: tuple,
-    lines: _Lines, evaluator: Evaluator,
+    lines: _Lines,
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
     """Smallest distance (m,) of one body on some lines and the block it is in."""
     center, axis = poses
-    entry, annulus = evaluator(annulus_entry()), body.annulus
+    entry, annulus = annulus_entry(), body.annulus
     raised = center - body.base * axis
     at_nodes = np.stack([entry(raised, axis, p, d, t, annulus)[0] for p, d, t in zip(*lines, strict=True)])
     first, last = at_nodes[:, place - 1], at_nodes[:, place]
@@ -194,7 +191,7 @@ def _of_body(
     floor = np.maximum(best, lines[2][:, None])
     near = lower < np.maximum(floor, 0.0) + _CANDIDATE_WINDOW + slack
     line, k = np.nonzero((near | _beside_dips(lower, floor + _DIP_WINDOW + slack)) & (best < REACH))
-    return _divide(axes, ends[k], line, body, machine, lines, evaluator)
+    return _divide(axes, ends[k], line, body, machine, lines)
 
 
 def _beside_dips(lower: np.ndarray, limit: np.ndarray) -> np.ndarray:
@@ -205,13 +202,12 @@ def _beside_dips(lower: np.ndarray, limit: np.ndarray) -> np.ndarray:
 
 def _divide(
     axes: np.ndarray, block: np.ndarray, line: np.ndarray, body: Body, machine: tuple, lines: _Lines,
-    evaluator: Evaluator,
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
     """Smallest distance within candidate blocks: sampled, and again around the smallest sample.
 
     A candidate is given up when what its samples differ by cannot bring it below the smallest distance of its line.
     """
-    entry = evaluator(entry_along_block(body.sharp))
+    entry = entry_along_block(body.sharp)
     count = len(lines[0])
     best, at = np.full(count, np.inf), np.full(count, -1)
     low, width = np.zeros(len(block)), np.ones(len(block))

@@ -9,7 +9,6 @@ from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
 from gearmath.machine.bodies import obstacles
 from gearmath.machine.collision import Collision, collisions
 from gearmath.machine.executor import MachinePath
-from gearmath.machine.milling import Evaluator
 from gearmath.machine.run import runs_of
 from gearmath.machine.stock import DEFAULT_COLUMNS, DEFAULT_TOLERANCE, SurfaceState, surface_states
 from gearmath.machine.timing import Timing, timing
@@ -45,7 +44,7 @@ class MillingReport:
 
 def milling_report(
     path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None = None,
-    tolerance: float = DEFAULT_TOLERANCE, columns: int = DEFAULT_COLUMNS, evaluator: Evaluator = lambda k: k,
+    tolerance: float = DEFAULT_TOLERANCE, columns: int = DEFAULT_COLUMNS,
     progress: Callable[[int], object] = lambda _: None, space: ToothSpace | None = None,
 ) -> MillingReport:  # fmt: skip
     """The report of a whole program. ``progress`` is called for every surface of every space, five to a space;
@@ -54,7 +53,7 @@ def milling_report(
     space = space or tooth_space(member, name, columns)
     runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
     states = surface_states(
-        path, member, name, machine, errors, None, tolerance, columns, runs, evaluator, progress, space
+        path, member, name, machine, errors, None, tolerance, columns, runs, progress, space
     )  # fmt: skip
     met = collisions(path, runs, member, machine, *obstacles(machine, errors))
     return MillingReport(name, tolerance, tuple(states), tuple(met), timing(path, machine))

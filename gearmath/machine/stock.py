@@ -13,7 +13,7 @@ from gearmath.bevel.turning import turned
 from gearmath.machine.cutter import cutter_of
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.mill import expose, thickness
-from gearmath.machine.milling import Evaluator, removal
+from gearmath.machine.milling import removal
 from gearmath.machine.path import Cut, axis_positions, roll_range
 from gearmath.machine.run import Run, runs_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member
@@ -91,7 +91,7 @@ def surface_states(
     path: MachinePath | None, member: Member, name: str, machine: MillingMachine,
     errors: SimulatedMachine | None = None,
     spaces: Sequence[int] | None = None, tolerance: float = DEFAULT_TOLERANCE, columns: int = DEFAULT_COLUMNS,
-    runs: list[Run] | None = None, evaluator: Evaluator = lambda k: k,
+    runs: list[Run] | None = None,
     progress: Callable[[int], object] = lambda _: None, space: ToothSpace | None = None,
 ) -> list[SurfaceState]:  # fmt: skip
     """Every surface of ``spaces`` (all that the program cuts, by default), exposed to every pass of every tool.
@@ -101,7 +101,7 @@ def surface_states(
     """
     space = space or tooth_space(member, name, columns)
     *surfaces, root = nominal_surfaces(member, space)
-    surfaces.append(generated_root(root, member, name, space, evaluator))
+    surfaces.append(generated_root(root, member, name, space))
     if runs is None:
         if path is None:
             raise ValueError("either path or runs must be given")
@@ -114,29 +114,25 @@ def surface_states(
         angle = 2 * math.pi * number / member.teeth
         for surface in surfaces:
             point, normal = turned(surface.point, angle), turned(surface.normal, angle)
-            left = expose(runs, machine, errors, point, normal, surface.start, evaluator)
+            left = expose(runs, machine, errors, point, normal, surface.start)
             states.append(_state(surface, number, left.distance, left.block, lines, tolerance))
             progress(1)
     return states
 
 
-def generated_root(
-    root: Surface, member: Member, name: str, space: ToothSpace, evaluator: Evaluator = lambda k: k
-) -> Surface:
+def generated_root(root: Surface, member: Member, name: str, space: ToothSpace) -> Surface:
     """A root moved along its normals to the envelope of all tips that generate it at the nominal settings.
 
     Points that no tool comes near stay; so does the ruled root of a face hobbed member.
     """
     if member.process == "face_hobbing":
         return root
-    where = left_by_exact_motion(member, name, space, root, evaluator)
+    where = left_by_exact_motion(member, name, space, root)
     moved = root.point + np.where(np.isfinite(where), where, 0.0)[:, None] * root.normal
     return replace(root, point=moved)
 
 
-def left_by_exact_motion(
-    member: Member, name: str, space: ToothSpace, surface: Surface, evaluator: Evaluator = lambda k: k
-) -> np.ndarray:
+def left_by_exact_motion(member: Member, name: str, space: ToothSpace, surface: Surface) -> np.ndarray:
     """What all tools of a member leave on a surface of space 0 (n,) [mm] at the nominal settings; NaN for all of it.
 
     The way of every tool is divided so finely that it counts as curved.
@@ -152,7 +148,7 @@ def left_by_exact_motion(
             axes = axis_positions(spec, np.zeros(2), 0.0)
             axes[0, 2] += _PLUNGE
         lines, pose = (surface.point, surface.normal, surface.start), (0.0, np.zeros(3))
-        found = removal(axes, np.arange(len(axes)) > 0, cutter, pose, *lines, evaluator=evaluator)
+        found = removal(axes, np.arange(len(axes)) > 0, cutter, pose, *lines)
         left = np.fmin(left, found.distance)
     return left
 

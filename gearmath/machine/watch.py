@@ -20,7 +20,7 @@ from gearmath.kernels import kernel
 from gearmath.machine.blocks import flank_curve, foot_curves, on_one_machine
 from gearmath.machine.cutting import tooth_angles
 from gearmath.machine.mill import expose, thickness
-from gearmath.machine.milling import REACH, Evaluator, annulus_entry
+from gearmath.machine.milling import REACH, annulus_entry
 from gearmath.machine.path import axis_positions, flank_points, roll_range
 from gearmath.machine.run import Run
 from gearmath.machine.simulation import roll_position
@@ -101,7 +101,7 @@ def _lines(member: Member, run: Run, flank: str, blocks: int) -> tuple[np.ndarra
 
 def watch(
     runs: list[Run], member: Member, machine: MillingMachine, errors: SimulatedMachine | None = None,
-    evaluator: Evaluator = lambda k: k, progress: Callable[[int], object] = lambda _: None,
+    progress: Callable[[int], object] = lambda _: None,
     groups: Mapping[int, list[int]] | None = None,
 ) -> Watch:  # fmt: skip
     """What the passes of every space leave on the flanks of that space, the ``runs`` with rounded blades.
@@ -124,7 +124,7 @@ def watch(
         angle = turns[space]
         for one in flanks:
             lines = (turned(one.point, angle), turned(one.normal, angle), one.start)
-            left = expose(own, machine, errors, *lines, evaluator)
+            left = expose(own, machine, errors, *lines)
             met = np.isfinite(left.distance)
             low = int(np.argmin(np.where(met, left.distance, np.inf)))
             high = int(np.argmax(np.where(met, left.distance, -np.inf)))
@@ -148,7 +148,7 @@ def _rapid_in_metal(run: Run) -> np.ndarray:
 
 
 def off_the_way(
-    runs: list[Run], member: Member, machine: MillingMachine, evaluator: Evaluator = lambda k: k,
+    runs: list[Run], member: Member, machine: MillingMachine,
     flanks: list[WatchedFlank] | None = None,
 ) -> tuple[float, tuple[int, str, int]]:  # fmt: skip
     """The largest distance [mm] along a flank normal between the tool at the end of a block and where it belongs.
@@ -163,7 +163,7 @@ def off_the_way(
     for run in runs:
         for flank in run.cut.flanks:
             (lines,) = (one for one in flanks if one.flank == flank)
-            distance = distances_off_the_way(run, lines, member, machine, evaluator)
+            distance = distances_off_the_way(run, lines, member, machine)
             row = int(np.argmax(distance))
             if distance[row] > worst[0]:
                 worst = float(distance[row]), (int(run.space[row]), flank, int(run.line[row]))
@@ -178,9 +178,7 @@ def in_space_0(run: Run, member: Member) -> tuple[np.ndarray, np.ndarray]:
     return rows, axes
 
 
-def distances_off_the_way(
-    run: Run, lines: WatchedFlank, member: Member, machine: MillingMachine, evaluator: Evaluator = lambda k: k
-) -> np.ndarray:
+def distances_off_the_way(run: Run, lines: WatchedFlank, member: Member, machine: MillingMachine) -> np.ndarray:
     """How far the tool is off its path (n,) [mm] on one flank at every row of a run.
 
     Where it touches no line, as where it plunges, that is how far its X and Y are off the path.
@@ -194,7 +192,7 @@ def distances_off_the_way(
     off[rows] = np.where((aside > _FAR_ASIDE) | ~touches, aside, 0.0)
     meant = axis_positions(spec, theta, machine.pivot_height, machine.pivot)
     body = run.cutter.bodies[-1]
-    entry, found = evaluator(annulus_entry()), []
+    entry, found = annulus_entry(), []
     for where in (axes, meant):
         center, axis = kernel("tool_pose")(where, machine.pivot_height, machine.pivot)
         raised = center - body.base * axis

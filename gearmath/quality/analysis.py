@@ -20,7 +20,6 @@ import numpy as np
 from gearmath.errors import ComputationError
 from gearmath.quality.flank_target import FlankTarget
 from gearmath.quality.identification import RANK
-from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.problem import Problem
 from gearmath.quality.variables import FREE, Bounds, Variable, reading, variables_of
 
@@ -234,12 +233,10 @@ def fewest(
     return ordered(taken)
 
 
-def analyse(
-    targets: Sequence[FlankTarget], free: Sequence[str] = FREE, bounds: Bounds = "machine", run: Run = as_it_stands
-) -> Analysis:
+def analyse(targets: Sequence[FlankTarget], free: Sequence[str] = FREE, bounds: Bounds = "machine") -> Analysis:
     """What the free settings can do to the deviations of some targets, common to all of them."""
     variables = variables_of(free, [target.vector for target in targets], bounds)
-    problem = Problem(targets, variables, None, None, run)
+    problem = Problem(targets, variables, None, None)
     found = problem.deviations(np.zeros(len(variables)))
     if found is None:
         raise ComputationError("the flank as it was set does not cross the normals of all points")

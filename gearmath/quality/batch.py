@@ -18,7 +18,7 @@ from gearmath.errors import ComputationError
 from gearmath.quality.deviation_surface import surface_map
 from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.least_squares import FLOOR, compensation_step, enough, next_damping
-from gearmath.quality.on_line import Run, as_it_stands, flank_on_line
+from gearmath.quality.on_line import flank_on_line
 from gearmath.quality.problem import Problem
 from gearmath.quality.variables import FREE, variables_of
 from gearmath.specs.bevel_set import SETTINGS
@@ -43,7 +43,7 @@ class Draws:
 def identify_many(
     targets: Sequence[FlankTarget], deviations: np.ndarray, free: Sequence[str] = FREE, *,
     objective: str = "points", weights: np.ndarray | None = None, start: np.ndarray | None = None,
-    noise: float = 0.0, run: Run = as_it_stands,
+    noise: float = 0.0,
 ) -> Draws:  # fmt: skip
     """The errors that explain each of many measurements ``deviations`` (d,m) [mm] of the points of some targets.
 
@@ -51,7 +51,7 @@ def identify_many(
     root line is not held. A draw that does not converge is marked.
     """
     variables = variables_of(free, len(targets))
-    problem = Problem(targets, variables, None, None, run, noise)
+    problem = Problem(targets, variables, None, None, noise)
     weighting = surface_map(targets, weights) if objective == "surface" else None
     first = np.zeros(len(variables)) if start is None else start / problem.scale
     blocks = [
@@ -63,7 +63,7 @@ def identify_many(
 def _solve_block(problem: Problem, weighting: np.ndarray | None, deviations: np.ndarray, first: np.ndarray) -> Draws:
     """Levenberg-Marquardt of all draws of a block at once, each with its own damping."""
     d, p = len(deviations), len(first)
-    step, low, high = problem.run(compensation_step(p)), -np.ones(p), np.ones(p)
+    step, low, high = compensation_step(p), -np.ones(p), np.ones(p)
     v, damping = np.tile(first, (d, 1)), np.full(d, FLOOR)
     residual, jacobian, found = _residuals(problem, v, deviations)
     if not found.all():
@@ -110,7 +110,7 @@ def _residuals(problem: Problem, v: np.ndarray, deviations: np.ndarray) -> tuple
     for k, target in enumerate(problem.targets):
         n = len(target.nominal.point)
         vectors = np.repeat(target.vector + problem.change(v, k), n, axis=0)
-        deviation, gradient, failed = located(target.repeated(d), vectors, problem.run, problem.moving, problem.bending)
+        deviation, gradient, failed = located(target.repeated(d), vectors, problem.moving, problem.bending)
         parts.append(deviation.reshape(d, n))
         slopes.append(problem.columns(gradient, k).reshape(d, n, -1))
         found &= ~failed.reshape(d, n).any(axis=1)

@@ -15,7 +15,6 @@ from gearmath.quality.deviation_surface import surface_map
 from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.identification import Identification
 from gearmath.quality.least_squares import compensation_step, minimize
-from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.problem import Problem
 from gearmath.quality.variables import FREE, Bounds, variables_of
 
@@ -26,7 +25,6 @@ _MATTERS = 1e-6
 def identify(
     targets: Sequence[FlankTarget], free: Sequence[str] = FREE, *, objective: str = "points",
     weights: np.ndarray | None = None, root_limit: float | None = None, noise: float = 0.0, bounds: Bounds = "machine",
-    run: Run = as_it_stands,
 ) -> Identification:  # fmt: skip
     """The errors, common to all targets, whose exact flanks fit the measured deviations best.
 
@@ -44,9 +42,9 @@ def identify(
     """
     variables = variables_of(free, [target.vector for target in targets], bounds)
     weighting = surface_map(targets, weights) if objective == "surface" else None
-    problem = Problem(targets, variables, weighting, root_limit, run, noise)
+    problem = Problem(targets, variables, weighting, root_limit, noise)
     lower, upper = problem.bounds
-    step, p = run(compensation_step(len(lower))), len(variables)
+    step, p = compensation_step(len(lower)), len(variables)
     found = minimize(problem, lower, upper, step, _MATTERS * noise**2)
     v, slack = found.variables[:p], found.variables[p:]
     residual, jacobian = problem.deviations(v)  # type: ignore[misc]
@@ -62,10 +60,10 @@ def identify(
     )  # fmt: skip
 
 
-def nothing_identified(targets: Sequence[FlankTarget], run: Run = as_it_stands) -> Identification:
+def nothing_identified(targets: Sequence[FlankTarget]) -> Identification:
     """What was identified where no setting is free: the flanks are as they were set."""
     measured = np.concatenate([target.deviation for target in targets])
-    left = np.concatenate([located(target, target.vector, run, moving=False)[0] for target in targets]) - measured
+    left = np.concatenate([located(target, target.vector, moving=False)[0] for target in targets]) - measured
     before, after = (float(np.sqrt(np.mean(values**2))) for values in (measured, left))
     return Identification((), np.zeros(0), before, after, 0, True, np.zeros((len(measured), 0)), left)
 

@@ -23,7 +23,6 @@ from gearmath.quality.correction_checks import check_determined, made_worse, ref
 from gearmath.quality.correction_fit import CorrectionFit, changed_settings, without_shift
 from gearmath.quality.flank_target import FlankTarget, located
 from gearmath.quality.identification import Identification
-from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.own_index import LEAST_OFF, near_the_median, teeth_as_indexed_on_average
 from gearmath.quality.pitch import evaluate_pitch, index_correction
 from gearmath.quality.representative import representative_tooth
@@ -78,7 +77,7 @@ def correct(
     member: Member, name: str, measured: FlankFile, free: Sequence[str] | None = None, *, objective: str = "points",
     higher_order: bool = False, few: bool = False, root_limit: float | None = ROOT_LIMIT,
     noise: float | None = None, added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None,
-    bounds: Bounds = "machine", run: Run = as_it_stands, progress: Callable[[int], object] = lambda _: None,
+    bounds: Bounds = "machine", progress: Callable[[int], object] = lambda _: None,
     indexed: bool = True,
 ) -> Correction:  # fmt: skip
     """The settings that make up for what was measured on a member.
@@ -111,8 +110,8 @@ def correct(
     if added:
         targets = {flank: target.plus(added[flank]) for flank, target in targets.items()}
     columns = rotation_columns(list(targets.values()), measured)
-    how = {"objective": objective, "root_limit": root_limit, "bounds": bounds, "run": run}
-    fit = CorrectionFit({flank: _wanted(target, run) for flank, target in targets.items()}, groups, names, columns, how)
+    how = {"objective": objective, "root_limit": root_limit, "bounds": bounds}
+    fit = CorrectionFit({flank: _wanted(target) for flank, target in targets.items()}, groups, names, columns, how)
     identified, rotation = fit.solve(fit.chosen(noise) if few else dict.fromkeys(groups, names), noise)
     wanted, of_work = fit.turned(rotation.shift), replace(rotation, angles=-rotation.angles)
     judged, as_measured = without_shift(targets, of_work.shift), _turned_best(targets, columns)
@@ -127,7 +126,7 @@ def correct(
             deviation=np.concatenate([judged[flank].deviation for flank in group]),
             measured=np.concatenate([targets[flank].deviation for flank in group]),
         )
-        best = identify(mine, names, root_limit=root_limit, bounds=bounds, run=run)
+        best = identify(mine, names, root_limit=root_limit, bounds=bounds)
         held_back = bool(identified[group].active) and not _as_good(identified[group], best)
         if few and (held_back or made_worse(group, before, identified[group], noise or 0.0)):
             identified[group] = changed_settings(mine, names, noise, how)  # all of them may do what the few do not
@@ -143,9 +142,9 @@ def correct(
     return found
 
 
-def _wanted(target: FlankTarget, run: Run) -> FlankTarget:
+def _wanted(target: FlankTarget) -> FlankTarget:
     """The target whose deviations are those that the changed settings must leave, t(x) - d of (A)."""
-    now, _, _ = located(target, target.vector, run, moving=False)
+    now, _, _ = located(target, target.vector, moving=False)
     return replace(target, deviation=now - target.deviation)
 
 

@@ -38,8 +38,7 @@ class CorrectionFit:
     @cached_property
     def analysis(self) -> list[Analysis]:
         return [
-            analyse([self.targets[flank] for flank in group], self.names, self.how["bounds"], self.how["run"])
-            for group in self.groups
+            analyse([self.targets[flank] for flank in group], self.names, self.how["bounds"]) for group in self.groups
         ]
 
     def chosen(self, noise: float | None) -> dict[tuple[str, ...], tuple[str, ...]]:
@@ -116,10 +115,10 @@ def changed_settings(
 ) -> Identification:
     """The change at the given noise, or at the noise that it leaves itself: at first what no setting shows."""
     if not names:
-        return nothing_identified(targets, how["run"])
+        return nothing_identified(targets)
     if noise is not None:
         return identify(targets, names, noise=noise, **how)
-    level = analyse(targets, names, how["bounds"], how["run"]).noise
+    level = analyse(targets, names, how["bounds"]).noise
     for _ in range(_NOISE_TRIALS):
         found = identify(targets, names, noise=level, **how)
         free = max(len(found.residual) - found.corrected_parameters, 1.0)

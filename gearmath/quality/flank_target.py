@@ -17,7 +17,7 @@ from gearmath.bevel.generation import Generation
 from gearmath.bevel.newton import FlankPoints
 from gearmath.errors import ComputationError
 from gearmath.kernels import kernel
-from gearmath.quality.on_line import Kind, Run, as_it_stands, flank_on_line
+from gearmath.quality.on_line import Kind, flank_on_line
 from gearmath.quality.root_line import RootLine
 from gearmath.quality.variables import SIZE, parts, whole
 from gearmath.specs.bevel_set import SETTINGS
@@ -115,7 +115,7 @@ class Located:
 
 
 def locate(
-    target: FlankTarget, vectors: np.ndarray, run: Run = as_it_stands, moving: bool = True, bending: bool = False,
+    target: FlankTarget, vectors: np.ndarray, moving: bool = True, bending: bool = False,
     start: np.ndarray | None = None,
 ) -> Located:  # fmt: skip
     """Where the flank of settings and motions (83,) crosses the normals, found from ``start`` (n,3) on.
@@ -125,7 +125,7 @@ def locate(
     the blade is straight and not ``bending``.
     """
     at, kind = target.nominal, target.kind_of(vectors, bending)
-    on_line = run(flank_on_line(kind, _STEPS))
+    on_line = flank_on_line(kind, _STEPS)
     contact, deviation, gradient, residual = on_line(
         at.contact if start is None else start, *target.given(vectors, kind), at.point, at.normal
     )
@@ -144,7 +144,7 @@ def locate(
     full = np.zeros((len(deviation), SIZE))
     full[:, : len(SETTINGS)] = by_settings
     if moving:
-        (motion,) = run(kernel("coefficient_sensitivity"))(contact[:, 2], by_settings)
+        (motion,) = kernel("coefficient_sensitivity")(contact[:, 2], by_settings)
         full[:, len(SETTINGS) : -1] = motion.reshape(len(motion), -1)
     if by_curvature.size:
         full[:, -1:] = by_curvature
@@ -152,21 +152,21 @@ def locate(
 
 
 def located(
-    target: FlankTarget, vectors: np.ndarray, run: Run = as_it_stands, moving: bool = True, bending: bool = False
+    target: FlankTarget, vectors: np.ndarray, moving: bool = True, bending: bool = False
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Deviations (n,) [mm], their gradient, and which points (n,) were not found, by ``locate`` from the nominal."""
-    found = locate(target, vectors, run, moving, bending)
+    found = locate(target, vectors, moving, bending)
     return found.deviation, found.gradient, found.failed
 
 
-def predicted(target: FlankTarget, settings: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray]:
+def predicted(target: FlankTarget, settings: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Deviation (n,) [mm] that settings leave at the nominal points, and its gradient by them.
 
     ``settings`` are (12,), with the motion of the target and a gradient (n,12), or the whole vector (83,) and (n,83).
     Raises ComputationError if the surface does not cross the normal of one of the points.
     """
     vector = settings if len(settings) == SIZE else np.concatenate([settings, target.vector[len(SETTINGS) :]])
-    deviation, gradient, failed = located(target, vector, run, *[len(settings) == SIZE] * 2)
+    deviation, gradient, failed = located(target, vector, *[len(settings) == SIZE] * 2)
     if failed.any():
         raise ComputationError(
             f"the flank of the changed settings does not cross the normal of point {int(np.argmax(failed))}"

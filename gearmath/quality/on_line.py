@@ -8,13 +8,11 @@ gradient by the settings and by the coefficients of their motion.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal
 
 import casadi as ca
-import numpy as np
 
 from derivations import Quantity, notation
 from gearmath.bevel.generation_kernels import rolling_flag
@@ -25,9 +23,6 @@ from gearmath.kernels import kernel
 #: plain: face milling of chapters 2 to 4; straight and curved: the family of chapter 10, by its blade.
 Kind = Literal["plain", "straight", "curved"]
 
-#: How a Kernel is run: as it stands, or compiled first (``gearmath.export.host.compile_kernel``).
-Run = Callable[[Kernel], Callable[..., tuple[np.ndarray, ...]]]
-
 _NEWTON_STEPS = 6
 _STEP_LIMITS = (1.0, 0.05, 0.05)
 _CUT = (notation.settings, notation.motion, notation.index_ratio, notation.blade_offset_angle)
@@ -37,11 +32,6 @@ INPUTS: dict[str, tuple[Quantity, ...]] = {
     "straight": (*_CUT, notation.side, rolling_flag),
     "curved": (*_CUT, notation.blade_curvature, notation.reference_height, notation.side, rolling_flag),
 }
-
-
-def as_it_stands(kernel: Kernel) -> Kernel:
-    """The Kernel itself, run by CasADi."""
-    return kernel
 
 
 @dataclass(frozen=True)

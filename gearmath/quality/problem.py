@@ -10,7 +10,6 @@ import numpy as np
 
 from gearmath.errors import ComputationError
 from gearmath.quality.flank_target import FlankTarget, Located, locate
-from gearmath.quality.on_line import Run, as_it_stands
 from gearmath.quality.variables import SIZE, Variable
 from gearmath.specs.bevel_set import SETTINGS
 
@@ -48,7 +47,7 @@ class Problem:
     variables: tuple[Variable, ...]
     weighting: np.ndarray | None
     root_limit: float | None
-    run: Run = as_it_stands
+
     noise: float = 0.0
 
     @cached_property
@@ -83,7 +82,7 @@ class Problem:
     @cached_property
     def _depths(self) -> list[np.ndarray]:
         """Depths (2,) [mm] of the root lines as they were cut."""
-        return [t.root.depth(t.vector, self.run)[1] for t in self.targets if t.root is not None]
+        return [t.root.depth(t.vector)[1] for t in self.targets if t.root is not None]
 
     def deviations(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
         """Residual (m,) of the points and its Jacobian (m,p); None where a point is not found."""
@@ -109,7 +108,7 @@ class Problem:
         one, trail = self.targets[target], self._trails[target]
         vector = one.vector + self.change(v, target)
         for start in trail.starts(v):
-            found = locate(one, vector, self.run, self.moving, self.bending, start)
+            found = locate(one, vector, self.moving, self.bending, start)
             if not found.failed.any():
                 trail.keep(v, found.contact)
                 return found
@@ -136,7 +135,7 @@ class Problem:
         for k, target in enumerate(self.targets):
             if target.root is not None:
                 trail, vector = self._root_trails[len(moved)], target.vector + self.change(v, k)
-                contact, depth, gradient = target.root.depth(vector, self.run, next(trail.starts(v)))
+                contact, depth, gradient = target.root.depth(vector, next(trail.starts(v)))
                 trail.keep(v, contact)
                 moved.append((depth - self._depths[len(moved)], self.columns(gradient, k)))
         return moved

@@ -20,7 +20,7 @@ from gearmath.bevel.newton import contact_guess, newton_step, residual_size
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError
 from gearmath.kernels import kernel
-from gearmath.quality.on_line import INPUTS, Run, as_it_stands, family, symbols
+from gearmath.quality.on_line import INPUTS, family, symbols
 from gearmath.quality.variables import parts
 
 #: Newton steps at once, and how often they are made until the root is found: at most 24.
@@ -81,16 +81,14 @@ class RootLine:
     distances: np.ndarray
     start: np.ndarray
 
-    def depth(
-        self, vector: np.ndarray, run: Run = as_it_stands, start: np.ndarray | None = None
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def depth(self, vector: np.ndarray, start: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Contact (2,3), depth (2,) [mm] and its gradient (2,83) for settings, motion and curvature (83,).
 
         ``start`` (2,3) is the contact of settings nearby. Raises ComputationError if the tip of the blade does not
         reach the flank there.
         """
         blade = (self.how.blade_offset_angle, float(vector[-1]), self.reference_height)
-        contact, depths = self.start if start is None else start, run(root_depth())
+        contact, depths = self.start if start is None else start, root_depth()
         for _ in range(_ROUNDS):
             contact, depth, gradient, residual = depths(
                 contact,
@@ -106,7 +104,7 @@ class RootLine:
                 return contact, depth, gradient
         raise ComputationError("the tip of the blade does not reach the root of the flank")
 
-    def sunk(self, before: np.ndarray, after: np.ndarray, run: Run = as_it_stands) -> tuple[np.ndarray, np.ndarray]:
+    def sunk(self, before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """How much deeper (2,) [mm] the root lies after a change, at toe and heel, and its gradient (2,83)."""
-        _, depth, gradient = self.depth(after, run)
-        return depth - self.depth(before, run)[1], gradient
+        _, depth, gradient = self.depth(after)
+        return depth - self.depth(before)[1], gradient

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 import timeit
-from functools import cache
 
 import casadi as ca
 import numpy as np
@@ -30,7 +29,6 @@ from gearmath.specs.toml import bundled
 NINE = (*FREE, "cutter_tilt", "work_rotation_offset")
 #: RMS that all three reach. [mm]
 REACHED = 1e-7
-run = cache(compile_kernel)
 
 
 def problem(rows: int = 5, columns: int = 9) -> tuple[list, tuple]:
@@ -41,7 +39,7 @@ def problem(rows: int = 5, columns: int = 9) -> tuple[list, tuple]:
     variables = variables_of(NINE, 2)
     errors = np.random.default_rng(0).uniform(-1, 1, len(NINE)) * [variable.bound for variable in variables]
     errors *= 0.01
-    clean = Problem(targets, variables, None, None, run)
+    clean = Problem(targets, variables, None, None)
     for _ in range(3):
         left, _ = clean.deviations(errors / clean.scale)
         errors *= 0.05 / np.abs(left).max()
@@ -52,7 +50,7 @@ def by_scipy(targets: list, variables: tuple) -> np.ndarray:
     """Finite differences of the compiled surface, trust region reflective."""
     scale = np.array([variable.bound for variable in variables])
     measured = np.concatenate([target.deviation for target in targets])
-    compiled = run(flank_on_line())
+    compiled = compile_kernel(flank_on_line())
 
     def residual(v: np.ndarray) -> np.ndarray:
         parts = []
@@ -99,10 +97,10 @@ def by_hand(targets: list, variables: tuple) -> tuple[np.ndarray, int]:
 @pytest.mark.benchmark(group="compensation")
 def test_one_compensation_against_scipy_and_by_hand(benchmark, host_compiler) -> None:
     targets, variables = problem()
-    found = benchmark(identify, targets, NINE, run=run)
+    found = benchmark(identify, targets, NINE)
     assert found.converged
     assert found.rms_after <= REACHED
-    ours = min(timeit.repeat(lambda: identify(targets, NINE, run=run), number=5, repeat=5)) / 5
+    ours = min(timeit.repeat(lambda: identify(targets, NINE), number=5, repeat=5)) / 5
     theirs = min(timeit.repeat(lambda: by_scipy(targets, variables), number=1, repeat=3))
     assert np.sqrt(np.mean(by_scipy(targets, variables) ** 2)) <= REACHED
     begin = time.perf_counter()
@@ -112,7 +110,7 @@ def test_one_compensation_against_scipy_and_by_hand(benchmark, host_compiler) ->
     dense = {}
     for rows, columns in ((5, 9), (10, 18), (20, 36), (40, 72)):
         many, _ = problem(rows, columns)
-        dense[rows * columns] = min(timeit.repeat(lambda many=many: identify(many, NINE, run=run), number=1, repeat=3))
+        dense[rows * columns] = min(timeit.repeat(lambda many=many: identify(many, NINE), number=1, repeat=3))
     benchmark.extra_info.update(ratio_to_scipy=round(theirs / ours, 1), ratio_to_hand=round(hand / ours))
     print(
         f"\ncompensation: {ours * 1e3:.2f} ms in {found.iterations} steps; scipy {theirs * 1e3:.1f} ms, by hand "
@@ -136,9 +134,9 @@ def test_a_design_target_against_scipy(benchmark, host_compiler) -> None:
         "blade_pressure_angle",
         "blade_spheric_radius",
     )
-    found = benchmark(identify, [target], names, root_limit=0.025, bounds="design", run=run)
+    found = benchmark(identify, [target], names, root_limit=0.025, bounds="design")
     assert found.rms_after <= 2.2e-3
-    problem = Problem([target], found.variables, None, 0.025, run)
+    problem = Problem([target], found.variables, None, 0.025)
     low, high = problem.bounds
 
     def there(v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -151,7 +149,7 @@ def test_a_design_target_against_scipy(benchmark, host_compiler) -> None:
             max_nfev=200,
         ).fun  # fmt: skip
 
-    ours = min(timeit.repeat(lambda: identify([target], names, root_limit=0.025, bounds="design", run=run),
+    ours = min(timeit.repeat(lambda: identify([target], names, root_limit=0.025, bounds="design"),
                              number=1, repeat=10))  # fmt: skip
     begin = time.perf_counter()
     left = np.sqrt(np.mean(theirs()[:45] ** 2))

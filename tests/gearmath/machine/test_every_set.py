@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-from gearmath.export.host import compile_kernel
 from gearmath.machine.collision import collisions
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
@@ -72,7 +71,7 @@ def test_program_of_a_tenth_of_a_micrometre_keeps_it_from_tip_to_root(
         bevel_set = change(bevel_set)
     spec = bevel_set.member(name)
     path = execute(cutting_program(bevel_set, name, vertical, "EVERY_SET", Job(range(spec.teeth))), "EVERY_SET.MPF")
-    states = surface_states(path, spec, name, vertical, spaces=(0,), columns=9, evaluator=compile_kernel)
+    states = surface_states(path, spec, name, vertical, spaces=(0,), columns=9)
     for state in states:
         limit = 1.2e-4 if state.surface.endswith("fillet") else 1e-4  # mm
         assert -limit <= state.lowest, state
@@ -108,7 +107,7 @@ def test_program_for_toprem_blades_leaves_what_their_exact_motion_leaves(
     path = execute(cutting_program(bevel_set, "gear", vertical, "TOPREM", Job(range(3))), "TOPREM.MPF")
     runs = runs_of(path, spec, "gear", vertical, None, space, SHARP_EDGE)
     for surface in nominal_surfaces(spec, space):
-        exact = left_by_exact_motion(spec, "gear", space, surface, compile_kernel)
-        left = expose(runs, vertical, None, surface.point, surface.normal, surface.start, compile_kernel).distance
+        exact = left_by_exact_motion(spec, "gear", space, surface)
+        left = expose(runs, vertical, None, surface.point, surface.normal, surface.start).distance
         assert np.abs(left - exact).max() <= 1.2e-4  # mm, corners as above
         assert np.abs(exact).max() < 0.02

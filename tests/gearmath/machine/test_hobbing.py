@@ -16,7 +16,6 @@ from gearmath.bevel.method import generation_of
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
-from gearmath.export.host import compile_kernel
 from gearmath.kernels import kernel
 from gearmath.lowering import lower
 from gearmath.machine.blade_milling import removal_by_blades
@@ -533,9 +532,7 @@ def test_report_finds_no_fault_in_a_right_program_and_times_c(hobbed, written, v
     path = execute(written(member, tolerance=1e-4), "HOB.MPF")
     spec = hobbed.member(member)
     space = tooth_space(spec, member, 5)
-    states = surface_states(
-        path, spec, member, vertical, spaces=(0, spec.teeth - 1), columns=5, evaluator=compile_kernel, space=space
-    )
+    states = surface_states(path, spec, member, vertical, spaces=(0, spec.teeth - 1), columns=5, space=space)
     assert len(states) == 10
     for state in states:
         assert state.lowest > -1e-5, state
@@ -552,7 +549,7 @@ def test_tip_that_is_too_deep_is_seen_in_fillet_and_root(hobbed, written, vertic
     """A blade 0.05 mm longer than the member's: its Z lies that much lower, and so does the root."""
     path = execute(written("gear"), "HOB.MPF")
     deeper = replace(path, axes=path.axes - np.array([0, 0, 0.05, 0, 0]))
-    states = surface_states(deeper, hobbed.gear, "gear", vertical, spaces=(3,), columns=5, evaluator=compile_kernel)
+    states = surface_states(deeper, hobbed.gear, "gear", vertical, spaces=(3,), columns=5)
     found = {state.surface: state for state in states}
     assert found["root"].lowest == pytest.approx(-0.05, abs=2e-3)
     assert found["concave flank"].lowest == pytest.approx(-0.05 * math.sin(math.radians(20)), abs=1e-3)
@@ -565,7 +562,7 @@ def test_rounded_edges_are_cut_without_gouge(hobbed, written, vertical, host_com
     highest = []
     for gear_set in (hobbed, other):
         path = execute(written("gear", gear_set=gear_set), "HOB.MPF")
-        states = surface_states(path, gear_set.gear, "gear", vertical, spaces=(1,), columns=5, evaluator=compile_kernel)
+        states = surface_states(path, gear_set.gear, "gear", vertical, spaces=(1,), columns=5)
         assert min(state.lowest for state in states) > -2e-5
         highest.append(max(state.highest for state in states if "fillet" in state.surface))
     assert highest[1] < highest[0] / 2
@@ -578,7 +575,7 @@ def test_toprem_takes_away_what_its_own_edge_sweeps(hobbed, written, vertical, h
     space = tooth_space(other.gear, "gear", 5)
     flank = nominal_surfaces(other.gear, space)[0]
     (run,) = runs_of(path, other.gear, "gear", vertical, None, space, SHARP_EDGE)
-    left = expose([run], vertical, None, flank.point, flank.normal, flank.start, compile_kernel).distance
+    left = expose([run], vertical, None, flank.point, flank.normal, flank.start).distance
     deepest = int(np.argmin(left))
     assert left[deepest] < -0.01
     radius = spec.blade_point_radius + math.tan(math.radians(20)) - math.tan(math.radians(14))
@@ -674,16 +671,10 @@ def test_a_wrong_digit_is_refused_or_seen_on_the_flanks_of_all_spaces(hobbed, wr
         for key in ("point", "normal")
     )
     blades, pose = blades_of(member), (vertical.pivot_height, vertical.pivot)
-    kernels = {}
-
-    def compiled(kernel):
-        return kernels.setdefault(kernel.name, compile_kernel(kernel))
 
     def left(which, axes, cutter, cutting):
         start = np.full(len(point[which]), -1.0)
-        return removal_by_blades(
-            axes, cutter, cutting, blades, pose, point[which], normal[which], start, evaluator=compiled
-        )  # fmt: skip
+        return removal_by_blades(axes, cutter, cutting, blades, pose, point[which], normal[which], start)
 
     cutting = ~path.rapid
     whole = left(slice(None), path.axes, path.cutter, cutting)

@@ -9,7 +9,6 @@ import pytest
 
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
-from gearmath.export.host import compile_kernel
 from gearmath.machine.control import Setup
 from gearmath.machine.cutting import Job, cutting_program
 from gearmath.machine.executor import execute
@@ -174,7 +173,7 @@ def test_stock_gouge_and_missing_metal_are_said_without_a_report(gear_set, verti
 
     def left(text):
         runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, "gear", vertical, None, space, SHARP_EDGE)
-        found = metal_left(runs, spec, "gear", vertical, Stated.of(text), space, compile_kernel)
+        found = metal_left(runs, spec, "gear", vertical, Stated.of(text), space)
         return [str(one) for one in found.faults]
 
     assert left(text) == []

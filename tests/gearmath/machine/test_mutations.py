@@ -21,7 +21,6 @@ import pytest
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
-from gearmath.export.host import compile_kernel
 from gearmath.machine import nc_values
 from gearmath.machine.control import Control, Setup
 from gearmath.machine.cutting import Job, cutting_program
@@ -390,7 +389,7 @@ class Whole:
             runs = runs_of(path, self.spec, self.member, MACHINE, None, self.space, SHARP_EDGE)
             found = [str(one) for one in faults_of(text, path, runs, self.spec, self.member, MACHINE)]
             if everything and not found:
-                left = metal_left(runs, self.spec, self.member, MACHINE, self.stated, self.space, compile_kernel)
+                left = metal_left(runs, self.spec, self.member, MACHINE, self.stated, self.space)
                 found = [str(one) for one in left.faults]
         except InputError as error:
             return [str(error)]

@@ -16,7 +16,6 @@ import pytest
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
-from gearmath.export.host import compile_kernel
 from gearmath.machine.blocks import roll_nodes
 from gearmath.machine.collision import rapid_approaches
 from gearmath.machine.control import Control
@@ -99,7 +98,7 @@ def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_
     touch = np.concatenate([one.contact[:, 2] for one in contacts])
     touched, outward = (np.concatenate([getattr(one, part) for one in contacts]) for part in ("point", "normal"))
 
-    entry, body = compile_kernel(entry_along_block(True)), run.cutter.bodies[0]
+    entry, body = entry_along_block(True), run.cutter.bodies[0]
 
     def left(first, last, which):
         """What blocks (b,5) to (b,5) leave on lines (w,): (b, w), the smallest of some samples."""
@@ -160,7 +159,7 @@ def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_
             run, axes=np.vstack([run.axes, poses[rest, 0]]), cutting=run.cutting[among], space=run.space[among],
             line=run.line[among],
         )  # fmt: skip
-        off = np.max([distances_off_the_way(tried, one, spec, vertical, compile_kernel) for one in flanks], axis=0)
+        off = np.max([distances_off_the_way(tried, one, spec, vertical) for one in flanks], axis=0)
         unseen += [texts[k] for k, far in zip(rest, off[len(run.axes) :], strict=True) if far <= TOLERANCE]
         if n % 40 == 20:
             check_in_full(gear_set, spec, member, vertical, text, line, texts, deviation, wanted)
@@ -188,7 +187,7 @@ def check_in_full(gear_set, spec, member, vertical, text, line, texts, deviation
     lines[line - 1] = texts[k]
     path = execute("\n".join(lines), "CUT")
     runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 7), SHARP_EDGE)
-    found, (off, _) = watch(runs, spec, vertical, None, compile_kernel), off_the_way(runs, spec, vertical)
+    found, (off, _) = watch(runs, spec, vertical, None), off_the_way(runs, spec, vertical)
     assert max(abs(found.worst[0]), off) > TOLERANCE, texts[k]
     if deviation[k] < 5e-3:
         assert abs(found.worst[0]) >= deviation[k] - 3e-6  # mm: the samples, and blades that are not quite sharp
@@ -200,7 +199,7 @@ def test_right_program_leaves_no_more_than_it_states_and_stays_on_its_way(gear_s
     text = cutting_program(gear_set, member, vertical, "CUT", Job((0, 2)))
     assert stated_tolerance(text) == TOLERANCE
     runs = runs_of(execute(text, "CUT"), spec, member, vertical, None, tooth_space(spec, member, 7), SHARP_EDGE)
-    found = watch(runs, spec, vertical, None, compile_kernel)
+    found = watch(runs, spec, vertical, None)
     assert found.uncut == 0
     assert -TOLERANCE <= found.lowest <= found.highest <= TOLERANCE
     assert found.lines > 2 * text.count("G93") / 2
@@ -241,7 +240,7 @@ def test_wrong_digit_of_approach_plunge_or_retract_is_seen(gear_set, vertical, h
     assert right in rest
     path = execute(head + rest.replace(right, wrong, 1), "CUT")
     runs = runs_of(path, spec, "gear", vertical, None, tooth_space(spec, "gear", 7), SHARP_EDGE)
-    gouge = watch(runs, spec, vertical, None, compile_kernel).lowest
+    gouge = watch(runs, spec, vertical, None).lowest
     assert gouge < -1e-3 or off_the_way(runs, spec, vertical)[0] > 1e-3 or rapid_approaches(runs, spec, vertical)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from scipy.optimize import least_squares
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections
-from gearmath.export.host import compile_kernel
 from gearmath.quality.compensation import identify
 from gearmath.quality.problem import Problem
 from gearmath.quality.target import target_of
@@ -24,7 +22,6 @@ EASE_OFF, ROOT = 0.075, 0.025
 NINE = (*FREE, "cutter_tilt", "cutter_swivel")
 ELEVEN = (*NINE, "blade_point_radius", "blade_pressure_angle")
 TWELVE = (*ELEVEN, "blade_spheric_radius")
-run = cache(compile_kernel)
 PINION = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
 
 
@@ -48,7 +45,7 @@ def sunk(target, found):
 def test_ease_off_of_75_um_is_reached_by_twelve_settings(host_compiler, flank):
     """Goal 2.2 um RMS, the root within 25 um (and a nanometre), all within the bounds of a design."""
     target = design_target(flank)
-    found = identify([target], TWELVE, root_limit=ROOT, bounds="design", run=run)
+    found = identify([target], TWELVE, root_limit=ROOT, bounds="design")
     assert found.rms_before == pytest.approx(28.35e-3, abs=1e-5)
     assert found.rms_after <= 2.2e-3
     assert sunk(target, found) <= ROOT + 1e-6
@@ -71,7 +68,7 @@ def test_ease_off_of_75_um_is_reached_by_twelve_settings(host_compiler, flank):
 def test_what_is_left_is_so_on_the_surface_that_is_solved_on_the_blank(host_compiler):
     """Another solver, from the arc of chapter 1 and place by place: the deviations of the new settings to 1e-6 mm."""
     target = design_target("convex")
-    found = identify([target], TWELVE, root_limit=ROOT, bounds="design", run=run)
+    found = identify([target], TWELVE, root_limit=ROOT, bounds="design")
     now = target.vector + found.change()
     r, alpha, side = 1 / now[-1], now[11], target.how.side
     center = now[10] - side * r * np.cos(alpha), r * np.sin(alpha)
@@ -91,7 +88,7 @@ def test_what_is_left_is_so_on_the_surface_that_is_solved_on_the_blank(host_comp
 
 def by_scipy(target, names, starts, evaluations):
     """Least RMS [mm] of ``starts`` starts of scipy's bounded least squares within the limit of the root line."""
-    problem = Problem([target], variables_of(names, [target.vector], "design"), None, ROOT, run)
+    problem = Problem([target], variables_of(names, [target.vector], "design"), None, ROOT)
     low, high = problem.bounds
     random, best, known = np.random.default_rng(0), np.inf, {}
 
@@ -128,7 +125,7 @@ def test_second_order_twist_of_25_um_is_reached(host_compiler, member, flank, si
     blank = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).member(member)
     target = target_of(blank, flank, solve_flank(blank, member, flank, blank_grid(blank)))
     target = replace(target, deviation=sign * 0.025 * x * y)
-    found = identify([target], TWELVE, root_limit=ROOT, bounds="design", run=run)
+    found = identify([target], TWELVE, root_limit=ROOT, bounds="design")
     assert found.rms_before == pytest.approx(0.025 * np.sqrt(np.mean((x * y) ** 2)), rel=1e-12)
     assert found.rms_after <= 0.4e-3
     assert sunk(target, found) <= ROOT + 1e-6
@@ -139,7 +136,7 @@ def test_second_order_twist_of_25_um_is_reached(host_compiler, member, flank, si
 @pytest.mark.parametrize("flank", FLANKS)
 def test_fit_is_never_worse_than_scipy_from_ten_starts(host_compiler, flank, names):
     target = design_target(flank)
-    found = identify([target], names, root_limit=ROOT, bounds="design", run=run)
+    found = identify([target], names, root_limit=ROOT, bounds="design")
     left = by_scipy(target, names, 10, 150)
     print(f"{flank}, {len(names)} settings: {found.rms_after * 1000:.3f} um, scipy {left * 1000:.3f} um")
     assert found.rms_after <= left * (1 + 1e-6)  # where both find one minimum, rounding

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from scipy.optimize import lsq_linear
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections
-from gearmath.export.host import compile_kernel
 from gearmath.quality.batch import identify_many
 from gearmath.quality.compensation import identify, with_deviations
 from gearmath.quality.flank_target import predicted
@@ -31,8 +29,6 @@ each_member = pytest.mark.parametrize(("set_name", "name"), ALL)
 #: Errors of the largest size that must be found again. [mm]
 LARGEST = 0.05
 SIGMA, SEEDS = 0.5e-3, 200
-
-run = cache(compile_kernel)
 
 
 def member_of(set_name, name, arc=False):
@@ -153,7 +149,7 @@ def test_correctable_errors_are_found_to_the_last_digit(cut, host_compiler, set_
     """
     for targets, free, _, errors, left in cut(set_name, name):
         assert np.abs(left).max() == pytest.approx(LARGEST, rel=0.02)
-        found = identify(with_deviations(targets, left), free, run=run)
+        found = identify(with_deviations(targets, left), free)
         assert found.converged
         assert found.iterations <= 8
         assert found.rms_after <= 1e-7  # mm
@@ -171,7 +167,7 @@ def test_surface_objective_finds_the_same_errors(cut, host_compiler, set_name, n
     grid = np.indices((5, 9)).reshape(2, -1)
     place = np.stack([(grid[1] - 4) * 2.5, (grid[0] - 2) * 1.25], axis=1)
     targets = [replace(target, place=place) for target in targets]
-    found = identify(with_deviations(targets, left), free, objective="surface", run=run)
+    found = identify(with_deviations(targets, left), free, objective="surface")
     assert found.converged
     coefficients = found.weighting @ found.residual
     assert np.sqrt(np.mean(coefficients**2)) <= 1e-6
@@ -187,7 +183,7 @@ def test_what_no_setting_mends_is_all_that_is_left(cut, host_compiler, set_name,
     for targets, free, _, _, left in cut(set_name, name):
         row, col = (index.ravel() for index in np.indices((5, 9)))
         ripple = 3e-3 * np.concatenate([np.sin(2.1 * row + 1.3 * col + k) for k in range(len(targets))])
-        found = identify(with_deviations(targets, left + ripple), free, run=run)
+        found = identify(with_deviations(targets, left + ripple), free)
         v, J = found.values / found.scale, found.jacobian
         linear = lsq_linear(J, J @ v - found.residual, (-1, 1), tol=1e-14, max_iter=1000)
         projected = np.sqrt(np.mean(linear.fun**2))
@@ -196,7 +192,7 @@ def test_what_no_setting_mends_is_all_that_is_left(cut, host_compiler, set_name,
         # all of it lies outside of the columns: nothing can be done, and nothing is made worse
         columns = np.linalg.svd(J, full_matrices=False)[0]
         outside = ripple - columns @ (columns.T @ ripple)
-        alone = identify(with_deviations(targets, outside), free, run=run)
+        alone = identify(with_deviations(targets, outside), free)
         assert alone.rms_after <= 1.001 * np.sqrt(np.mean(outside**2))
 
 
@@ -208,10 +204,10 @@ def test_noise_leaves_as_much_as_there_are_corrected_parameters(cut, host_compil
     """
     for targets, free, _, _, true in cut(set_name, name):
         noise = np.array([np.random.default_rng(seed).normal(0, SIGMA, len(true)) for seed in range(SEEDS)])
-        found = identify_many(targets, true + noise, free, noise=SIGMA, run=run)
+        found = identify_many(targets, true + noise, free, noise=SIGMA)
         assert found.converged.all()
         remaining = found.residual + noise  # predicted less true
-        parameters = identify(with_deviations(targets, true), free, noise=SIGMA, run=run).corrected_parameters
+        parameters = identify(with_deviations(targets, true), free, noise=SIGMA).corrected_parameters
         expected = SIGMA * np.sqrt(parameters / len(true))
         rms = np.sqrt(np.mean(remaining**2, axis=1))
         assert np.sqrt(np.mean(rms**2)) == pytest.approx(expected, rel=0.05)
@@ -226,10 +222,10 @@ def test_higher_order_errors_need_motions_and_are_found_with_them(brute_force, h
     free, variables = free_settings(member, higher_order=True), variables_of(names, 1)
     errors = np.array([np.radians(0.2), 0.15])
     left = measured(brute_force, member, ("concave",), targets, variables, errors)
-    rest, moving = (identify(with_deviations(targets, left), f, run=run) for f in (free_settings(member), free))
+    rest, moving = (identify(with_deviations(targets, left), f) for f in (free_settings(member), free))
     assert rest.rms_after > 1e-5
     assert moving.rms_after <= 1e-7
-    alone = identify(with_deviations(targets, left), names, run=run)
+    alone = identify(with_deviations(targets, left), names)
     np.testing.assert_allclose(alone.values, errors, rtol=1e-6)
     assert not alone.errors.any()
     assert np.count_nonzero(alone.motion) == 2
@@ -244,7 +240,7 @@ def test_blades_of_a_completing_cut_are_identified_one_by_one(brute_force, host_
     ]  # fmt: skip
     errors = np.array([0.02, 0.001, -0.002])
     left = measured(brute_force, member, FLANKS, targets, variables, errors)
-    found = identify(with_deviations(targets, left), names, run=run)
+    found = identify(with_deviations(targets, left), names)
     np.testing.assert_allclose(found.values, errors, rtol=1e-6)
     np.testing.assert_allclose(found.change(1)[SETTINGS.index("blade_pressure_angle")], -0.002, rtol=1e-6)
 
