@@ -5,18 +5,21 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearmath.bevel.pair import check_pair
 from gearmath.errors import InputError
-from gearmath.front.sets import GearSet, Member
+from gearmath.front.sets import GearSet, Member, load_set
 from gearmath.front.tables import html_table
 from gearmath.quality.correction import Correction as Corrected
 from gearmath.quality.correction import correct, setting_changes
 from gearmath.quality.evaluation import Evaluation as Found
 from gearmath.quality.evaluation import evaluate_member
 from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
+from gearmath.specs.set_text import save_corrected
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -127,25 +130,39 @@ class Correction:
         return self.found.rms
 
     @property
-    def member(self) -> Member:
-        """The member with the corrected settings; its nominal flanks stay what they were.
+    def gear_set(self) -> GearSet:
+        """The set with corrected settings, motions, blades and index corrections; the nominal flanks stay."""
+        with TemporaryDirectory() as folder:
+            return load_set(self.save(Path(folder) / "corrected.toml"))
 
-        Raises InputError where a change cannot be told by settings alone (motions, blades or index corrections): write
-        the corrected set with ``gearmath compensate`` then.
-        """
-        if self.found.motions or self.found.curvatures or self.found.index is not None:
-            raise InputError("the correction has motions, blades or index corrections: use 'gearmath compensate'")
-        by: dict[str, dict[str, float]] = {}
-        for flank, name, change in self.changes:
-            by.setdefault(flank, {})[name] = change
-        return self.measurement.member.with_settings(**by)
+    @property
+    def member(self) -> Member:
+        """The member with the corrected settings; its nominal flanks stay what they were."""
+        return self.gear_set.member(self.measurement.member.name)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the corrected set as TOML, the nominal settings under ``design``. Raises InputError for no pair."""
+        member, found = self.measurement.member, self.found
+        with TemporaryDirectory() as folder:
+            before = member.gear_set.save(Path(folder) / "before.toml")
+            save_corrected(
+                before, Path(path), member.name, found.settings, found.index, found.motions, found.curvatures,
+                check=check_pair,
+            )  # fmt: skip
+        return Path(path)
 
     def to_dict(self) -> dict[str, Any]:
-        """Changes by flank and setting [mm, degrees], RMS before and expected [µm]."""
+        """Changes by flank and setting [mm, degrees]; RMS [µm] by flank, as measured and as expected."""
         changes: dict[str, dict[str, float]] = {}
         for flank, name, change in self.changes:
             changes.setdefault(flank, {})[name] = change
-        return {"changes": changes, "rms_um": {flank: [1000 * v for v in pair] for flank, pair in self.rms.items()}}
+        return {
+            "changes": changes,
+            "rms_um": {
+                flank: {"measured": 1000 * before, "expected": 1000 * after}
+                for flank, (before, after) in self.rms.items()
+            },
+        }
 
     def _repr_html_(self) -> str:
         rows = [[flank, name, change] for flank, name, change in self.changes]

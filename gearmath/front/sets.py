@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -161,15 +161,20 @@ class Member:
 
         return deviations(self, grid, margin)
 
-    def program(self, machine: Machine | None = None, name: str = "GEAR", **job: Any) -> Program:
-        """The cutting program of the member for a machine, by default the bundled vertical one.
+    def program(
+        self, machine: Machine | None = None, name: str = "GEAR", spaces: Sequence[int] | None = None,
+        tolerance: float = 1e-4, feed: float = 300.0, spindle_rpm: float = 120.0, roughing_stock: float = 0.0,
+        finishing_stock: float = 0.0,
+    ) -> Program:  # fmt: skip
+        """The cutting program of the member for a machine, by default the bundled vertical one; all spaces by default.
 
-        ``job`` may say ``spaces``, ``tolerance`` [mm], ``feed`` [mm/min], ``rpm``, ``roughing_stock`` and
-        ``finishing_stock`` [mm]. It is run before it is returned. Raises InputError naming what the machine cannot do.
+        ``tolerance`` of the flank and stocks [mm], ``feed`` past the tooth [mm/min]. The program is run before it is
+        returned. Raises InputError naming what the machine cannot do.
         """
         from gearmath.front.programs import cutting
 
-        return cutting(self, machine, name, **job)
+        job = {"feed": feed, "spindle_rpm": spindle_rpm, "roughing_stock": roughing_stock}
+        return cutting(self, machine, name, spaces, tolerance=tolerance, finishing_stock=finishing_stock, **job)
 
     def _repr_html_(self) -> str:
         rows = [[key, *(getattr(self.spec.flank(flank), key) for flank in FLANKS)] for key in SETTINGS]

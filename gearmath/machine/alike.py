@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearmath.machine.cutting import tooth_angles
+from gearmath.machine.passes import tooth_angles
 from gearmath.machine.run import Run
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine

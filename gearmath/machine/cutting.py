@@ -23,7 +23,7 @@ from gearmath.machine.clear_space import Room, room_of
 from gearmath.machine.cutter import cutter_of
 from gearmath.machine.feeds import block_seconds
 from gearmath.machine.hobbing import C_ROUNDING, hobbing_pass
-from gearmath.machine.passes import Pass
+from gearmath.machine.passes import Pass, tooth_angles
 from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
 from gearmath.machine.program import write_program
 from gearmath.machine.rounding import ControlShare, control_share
@@ -97,11 +97,6 @@ class Job:
 
 
 _ONE_SPACE = Job()
-
-
-def tooth_angles(teeth: int, correction: Sequence[float] = ()) -> np.ndarray:
-    """Angle (z,) [rad] of each tooth space about z_w, from its number and never summed; ``correction`` in degrees."""
-    return 2 * math.pi * np.arange(teeth) / teeth + np.radians(correction if len(correction) else np.zeros(teeth))
 
 
 @dataclass(frozen=True)
@@ -178,7 +173,7 @@ def program_of(plan: Plan, program_name: str) -> str:
         f"level with the B axis, C_t {machine.tool_length:g} the length of the tool",
         *map(plain, setup_notes(SetupFacts.of(plan, PLUNGE_FEED))),
         "R90, R91: first and last section to cut, 0 for all; the program asks before it leaves sections out",
-        f"cutting time: {plan.seconds:.1f} s",
+        f"time in the cut, without plunges and positioning: {plan.seconds:.1f} s",
     )
     return write_program(
         program_name, header, plan.passes, machine, job.spindle_rpm, CLEARANCE, plan.room, plan.tool_radius,

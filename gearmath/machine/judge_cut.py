@@ -11,9 +11,9 @@ import numpy as np
 from gearmath.bevel.method import motion_of
 from gearmath.bevel.tooth import ToothSpace
 from gearmath.machine.alike import alike
-from gearmath.machine.cutting import tooth_angles
 from gearmath.machine.faults import Fault
 from gearmath.machine.hobbing import index_ratio, spindle_phase
+from gearmath.machine.passes import tooth_angles
 from gearmath.machine.path import Cut, axis_positions
 from gearmath.machine.rounding import FROM_AXIS, FROM_CUTTER
 from gearmath.machine.run import Run
@@ -137,13 +137,13 @@ def metal_left(
     deepest = min(states, key=lambda state: state.lowest)
     least, greatest = stock - tolerance - REPORTED, tolerance + REPORTED
     if deepest.lowest < least:
-        what = f"gouges the {deepest.surface} of space {deepest.space}: {deepest.lowest * 1000:+.3f} um are left, "
-        faults.append(Fault(f"{what}{least * 1000:g} um are allowed", deepest.line, "gouge"))
+        what = f"gouges the {deepest.surface} of space {deepest.space}: {deepest.lowest * 1000:+.3f} um, "
+        faults.append(Fault(f"{what}the limit is {least * 1000:+g} um", deepest.line, "gouge"))
     fullest = max(states, key=lambda state: state.highest)
     if stock == 0.0 and fullest.highest > greatest:
         faults.append(Fault(
             f"the {fullest.surface} of space {fullest.space} keeps {fullest.highest * 1000:+.3f} um, "
-            f"{greatest * 1000:g} um are allowed"
+            f"the limit is {greatest * 1000:+g} um"
         ))  # fmt: skip
     uncut = sum(state.unmet for state in states)
     if uncut and not found.uncut:

@@ -11,10 +11,11 @@ import numpy as np
 
 from gearmath.kernels import kernel
 from gearmath.machine.clear_space import clear_height, room_of
-from gearmath.machine.cutting import middle_of_tooth, tooth_angles
+from gearmath.machine.cutting import middle_of_tooth
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.faults import Fault
 from gearmath.machine.feeds import accelerations
+from gearmath.machine.passes import tooth_angles
 from gearmath.machine.run import Run
 from gearmath.machine.stated import Stated
 from gearmath.specs.bevel_set import Member

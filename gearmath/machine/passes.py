@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -22,3 +24,8 @@ class Pass:
     """Time that the cutter turns at the last position, s."""
     theta: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Cradle rotation at each position, (n,) rad; where it stands still the cutter plunges. Empty where not known."""
+
+
+def tooth_angles(teeth: int, correction: Sequence[float] = ()) -> np.ndarray:
+    """Angle (z,) [rad] of each tooth space about z_w, from its number and never summed; ``correction`` in degrees."""
+    return 2 * math.pi * np.arange(teeth) / teeth + np.radians(correction if len(correction) else np.zeros(teeth))

@@ -20,6 +20,8 @@ from gearmath.machine.clear_space import Room, check_home, room_of
 from gearmath.machine.pattern import Pattern, Targets, check_travel
 from gearmath.machine.point_loop import point_loop
 from gearmath.machine.probe_words import Blocks, Plan
+from gearmath.machine.setup_facts import NOT_ON_METAL, PROBING, VARIABLES
+from gearmath.machine.words import plain
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member, design_sha256
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
@@ -168,16 +170,17 @@ def probing_program(
     check_home(room, machine, calibration.length + calibration.tip_radius - calibration.offset[2], program_name)
     header = (
         f"gearmath {__version__} probing program",
-        f"set: {bevel_set.title}",
+        f"set: {plain(bevel_set.title)}",
         f"member: {name}, {member.teeth} teeth, {member.hand} hand",
         f"nominal settings sha256: {design_sha256(member)}",
-        f"machine: {machine.name}",
-        f"probe: {calibration.name}, tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm",
+        f"machine: {plain(machine.name)}",
+        f"probe: {plain(calibration.name)}, tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm",
         f"{len(targets)} points" + (f", each touched {repeat} times" if repeat > 1 else ""),
         "R90, R91: first and last point to touch, 0 for all; the program asks before it leaves points out",
         "a run from point 1 on deletes the touches of the last run, one that begins later adds to them",
         "R102 counts the runs, R101 the points offered, R103 those that a host has acknowledged",
         "R104 = 1, set before the start: a host reads R200 to R205 of every point, and the program waits for it",
+        *(f"unconfirmed: {text}" for text in (NOT_ON_METAL, VARIABLES, PROBING)),
     )
     return write_touches(
         program_name, header, targets, name, member.teeth, machine, calibration, level, room, repeat

@@ -29,6 +29,10 @@ NOT_ON_METAL = "no program of this version has run on metal"
 VARIABLES = (
     "names of the system variables in the start checks ($P_ACTFRAME, $TC_TP2, $P_TOOLL, $MN_INT_INCR_PER_MM and _DEG)"
 )
+PATH = "names of the path tolerances CTOL and OTOL"
+PROBING = (
+    "return codes of DELETE and WRITE, the memory that the table of points takes, and that MEAS stops A on its way"
+)
 _C_AXIS = "whether C needs M70 after SPOS=0, and whether its sense is that of M3"
 
 
@@ -103,7 +107,8 @@ class SetupFacts:
     def unconfirmed(self) -> tuple[str, ...]:
         """What nobody has confirmed."""
         turned = (_C_AXIS,) if self.plan.member.process == "face_hobbing" else ()
-        return NOT_ON_METAL, VARIABLES, *turned
+        path = () if self.plan.machine.control.path_mode == "G60" else (PATH,)
+        return NOT_ON_METAL, VARIABLES, *path, *turned
 
     @property
     def not_stated(self) -> tuple[str, ...]:

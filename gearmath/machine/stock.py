@@ -14,6 +14,7 @@ from gearmath.machine.cutter import cutter_of
 from gearmath.machine.executor import MachinePath
 from gearmath.machine.mill import expose, thickness
 from gearmath.machine.milling import removal
+from gearmath.machine.passes import tooth_angles
 from gearmath.machine.path import Cut, axis_positions, roll_range
 from gearmath.machine.run import Run, runs_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member
@@ -109,9 +110,10 @@ def surface_states(
     if spaces is None:
         spaces = sorted({number for run in runs for number in run.spaces})
     lines = np.concatenate([run.line for run in runs])
+    angles = tooth_angles(member.teeth, member.index_correction)  # where the member is meant to have its spaces
     states = []
     for number in spaces:
-        angle = 2 * math.pi * number / member.teeth
+        angle = float(angles[number])
         for surface in surfaces:
             point, normal = turned(surface.point, angle), turned(surface.normal, angle)
             left = expose(runs, machine, errors, point, normal, surface.start)

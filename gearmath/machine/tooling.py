@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from gearmath.bevel.tooth import ToothSpace
-from gearmath.machine.cutter import cutter_of, point_width
+from gearmath.machine.cutter import cutter_of, point_width, root_widths
 from gearmath.machine.path import Cut
 from gearmath.specs.bevel_set import Flank, Member
 
@@ -59,14 +57,7 @@ def tools_of(member: Member, name: str, space: ToothSpace | None) -> tuple[Tool,
             point = PointWidth(body.outer.point_radius - body.inner.point_radius, True)
         else:
             (spec,) = blades.values()
-            least, most = _root_widths(space)
+            least, most = root_widths(space)
             point = PointWidth(point_width(spec, space), spec.blade_point_width is not None, most / 2, least)
         found.append(Tool(cut.tool, blades, cutter.height, point))
     return tuple(found)
-
-
-def _root_widths(space: ToothSpace) -> tuple[float, float]:
-    """The root of the space at its narrowest and at its widest place [mm], straight across from flank to flank."""
-    low, high = (surface.point[-1] for surface in space.ordered)
-    across = np.linalg.norm(low[:, None] - high[None], axis=2).min(axis=1)
-    return float(across.min()), float(across.max())

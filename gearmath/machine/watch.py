@@ -18,9 +18,9 @@ from gearmath.bevel.method import motion_of
 from gearmath.bevel.turning import turned
 from gearmath.kernels import kernel
 from gearmath.machine.blocks import flank_curve, foot_curves, on_one_machine
-from gearmath.machine.cutting import tooth_angles
 from gearmath.machine.mill import expose, thickness
 from gearmath.machine.milling import REACH, annulus_entry
+from gearmath.machine.passes import tooth_angles
 from gearmath.machine.path import axis_positions, flank_points, roll_range
 from gearmath.machine.run import Run
 from gearmath.machine.simulation import roll_position

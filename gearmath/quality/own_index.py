@@ -86,12 +86,12 @@ def teeth_as_indexed_on_average(member: Member, name: str, file: FlankFile) -> t
             arc, u = found.angle * found.radius * 1000, found.uncertainty * found.radius * 1000
             remarks.append(
                 f"{flank} flank: tooth {tooth} is indexed by an arc of {arc:+.2f} um (u = {u:.2f}) against the mean of "
-                "the others, which is no error of a setting; the settings are corrected as if it stood there"
+                "the others, which is no error of a setting: it is left to the index, and taken out for the settings"
             )
     if alone:
         remarks.append(
-            f"{' and '.join(alone)} flank: fewer than {_LEAST_TEETH + 1} teeth have readings at a common place: an "
-            "indexing error of the tooth measured in full would count as an error of the settings"
+            f"{' and '.join(alone)} flank: fewer than {_LEAST_TEETH + 1} teeth have readings at a common place: if the "
+            "tooth measured in full is indexed wrong, the settings are changed for it; measure the reference point of more"
         )
     return file, tuple(remarks)
 

@@ -71,7 +71,7 @@ def counted(found: Evaluation) -> str:
 
 def in_words(text: str) -> str:
     """A sentence or a unit as people read it: the rest of the program writes um for µm."""
-    return re.sub(r"\bum\b", "µm", text)
+    return re.sub(r"(?<![-\w])um\b", "µm", text)  # not in the name of an option
 
 
 def micro(value: float) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from gearmath.machine.bodies import work_profiles
 from gearmath.machine.probe_words import APPROACH_FEED, MEASURING_FEED
 from gearmath.machine.probing import APPROACH
-from gearmath.machine.setup_facts import NOT_ON_METAL, R_D, VARIABLES, BlankSizes
+from gearmath.machine.setup_facts import NOT_ON_METAL, PROBING, R_D, VARIABLES, BlankSizes
 from gearmath.page import Page
 from gearmath.setup_sheet.machine_drawing import Ring, machine_drawing
 from gearmath.setup_sheet.references import references
@@ -49,7 +49,11 @@ def probing_sheet(job: ProbingJob, program: str) -> str:
         ("Made by", [f"gearmath {__version__}"]),
         ("Set up by, date", [""]),
     ])  # fmt: skip
-    page.first("Unconfirmed", [f"{text}." for text in (NOT_ON_METAL, VARIABLES)])
+    page.first("Unconfirmed", [f"{text}." for text in (NOT_ON_METAL, VARIABLES, PROBING)])
+    page.first("To be watched", [
+        "A run from the first point on deletes the result file of the run before: fetch it first.",
+        "The back face and the shank of the work are assumed for the check of collisions: see the drawing.",
+    ])  # fmt: skip
     page.heading("Machine and references")
     page.paragraph(f"{R_D}. Z counts up.")
     profiles, b = work_profiles(member, job.fixture), math.radians(member.blank.root_angle)
@@ -77,6 +81,18 @@ def probing_sheet(job: ProbingJob, program: str) -> str:
     ])  # fmt: skip
     page.paragraph(
         f"The program was run on the machine model: {job.clearances}. The spindle must stand still, oriented."
+    )
+    page.subheading("Start, start again, and the result")
+    page.paragraph(
+        "The probe is read at input 1 ($A_PROBE[1], MEAS=1). R90 and R91 are the first and the last point that are "
+        "touched, 0 for all; the program shows them, and waits for NC start. After a stop: RESET, R90 = the point of "
+        "the alarm, R91 = 0, and start from the beginning of the program. R104 = 1, set before the start, lets a host "
+        "acknowledge every point."
+    )
+    stem = program.rsplit(".", 1)[0]
+    page.paragraph(
+        f"The touches are in the file {stem}_T, where the control keeps what WRITE makes: fetch it, and give it to "
+        f"'gearmath touches {stem}_T --set SET.toml -o measured.csv'."
     )
     return page.html
 

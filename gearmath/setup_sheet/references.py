@@ -6,7 +6,9 @@ from gearmath.page import Page
 from gearmath.specs.milling_machine import AXES, MillingMachine
 
 _Z_MODES = {
-    "gauge_line": "Z of a program is that of the gauge line: length 1 of the tool in the table must be 0.",
+    "gauge_line": "Z of a program is that of the gauge line: length 1 of the tool in the table must be 0. Nothing on "
+    "the control checks how long the tool really is: one that is longer cuts deeper by as much. A tool of another "
+    "length, after grinding too, needs its length in the machine file and the program written anew.",
     "tip": "Z of a program is that of the tips, with D1 active: length 1 of the tool in the table must be its length.",
 }
 
@@ -19,10 +21,10 @@ def references(page: Page, machine: MillingMachine, tips: str, length: float, le
     above = machine.home - machine.gauge_line_height
     offsets = " ".join(f"{axis}{value:g}" for axis, value in zip(AXES, machine.work_offset_values, strict=True))
     pivot, control = ", ".join(f"{value:g}" for value in machine.pivot_offset), machine.control
-    in_table = f"{length:g}" if machine.z_reference == "tip" else "0"
+    checked = f"by the program: length 1 = {length:g}" if machine.z_reference == "tip" else "by hand: measure the tool"
     page.table("References", ["what", "value", "unit", "checked"], [
         ["R_d, gauge_line_height", f"{machine.gauge_line_height:g}", "mm", "by hand, as below"],
-        [length_name, f"{length:g}", "mm", f"by the program, length 1 = {in_table}"],
+        [length_name, f"{length:g}", "mm", checked],
         ["home of Z", f"{machine.home:g}", "mm", ""],
         ["gauge line above the B axis there", f"{above:g}", "mm", "by hand"],
         [f"{tips} above the B axis there", f"{above - length:g}", "mm", "by hand"],

@@ -86,6 +86,11 @@ def _rings(cutter: Cutter, machine: MillingMachine) -> list[Ring]:
 
 def _tools(page: Page, facts: SetupFacts) -> None:
     page.subheading("Tools")
+    if any(len(tool.blades) == 1 for tool in facts.tools):
+        page.paragraph(
+            "A cutter for one flank is drawn with another side: it cuts nothing, and is taken for the check of "
+            "collisions at the point width, with the angle of the other flank's blade."
+        )
     blades = [(tool, flank) for tool in facts.tools for flank in tool.blades]
     groups = facts.plan.member.blade_groups
     columns = [dict(_blade(tool, flank, groups)) for tool, flank in blades]
@@ -161,6 +166,8 @@ def _cut(page: Page, facts: SetupFacts, timing: Timing) -> None:
     page.table("Speeds and times", ["", "", "unit"], [
         ["feed past the tooth, at most", f"{plan.job.feed:g}", "mm/min"],
         ["spindle", f"{plan.job.spindle_rpm:g}", "1/min"],
+        ["cutting speed at the tips", f"{_cutting_speed(facts):.0f}", "m/min"],
+        ["coolant", "off, dry run" if plan.job.dry_run else "on, M8, from the approach on", ""],
         ["tooth spaces", f"{len(plan.job.spaces)} of {plan.member.teeth}", ""],
         *([f"stock left, {stage}", f"{stock:g}", "mm"] for stage, stock, _ in plan.job.stages),
         ["in feed, with approaches", f"{timing.feed_seconds:.0f}", "s"],
@@ -175,6 +182,14 @@ def _cut(page: Page, facts: SetupFacts, timing: Timing) -> None:
     page.table("Chip load of a blade, mm: advance to the next blade, chip square to the flank, at most",
                ["flank", "", "advance", "chip"], rows)  # fmt: skip
     page.paragraph(_chip_words(facts))
+    if len(plan.job.stages) == 1:
+        page.paragraph("There is no roughing: every space is cut to its full depth in one go.")
+
+
+def _cutting_speed(facts: SetupFacts) -> float:
+    """Of the farthest blade tip [m/min]."""
+    radius = max(spec.blade_point_radius for tool in facts.tools for spec in tool.blades.values())
+    return 2 * math.pi * radius / 1000 * facts.plan.job.spindle_rpm
 
 
 def _chip_words(facts: SetupFacts) -> str:
@@ -217,7 +232,7 @@ def _restart(page: Page, facts: SetupFacts) -> None:
     page.paragraph(
         "Each section is one tooth space with one tool, and stands by itself. R90 and R91 are the first and the last "
         "that are cut, 0 for all; the program shows them, waits for NC start, and sets both to 0 at its end. After a "
-        "stop: RESET, R90 = the section that was cut when it stopped, and start from the beginning of the program."
+        "stop: RESET, R90 = the section that was cut when it stopped, R91 = 0, and start from the beginning."
     )
     page.table("Sections, and seconds in the cut of each", ["section", "tool", "cuts", "s"], [
         [one.numbers.split(" ", 1)[1], one.tool, one.span, f"{one.seconds:.1f}"] for one in facts.sections

@@ -9,9 +9,10 @@ import pytest
 
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.machine.cutting import Job, cutting_program, pass_count, tooth_angles
+from gearmath.machine.cutting import Job, cutting_program, pass_count
 from gearmath.machine.executor import execute
 from gearmath.machine.mill import mill_member
+from gearmath.machine.passes import tooth_angles
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, Motion, load_bevel_set, settings_sha256
 from gearmath.specs.toml import bundled
 
