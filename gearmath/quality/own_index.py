@@ -91,7 +91,7 @@ def teeth_as_indexed_on_average(member: Member, name: str, file: FlankFile) -> t
     if alone:
         remarks.append(
             f"{' and '.join(alone)} flank: fewer than {_LEAST_TEETH + 1} teeth have readings at a common place: if the "
-            "tooth measured in full is indexed wrong, the settings are changed for it; measure the reference point of more"
+            "tooth measured in full is indexed wrong, the settings are changed for it; measure more teeth"
         )
     return file, tuple(remarks)
 

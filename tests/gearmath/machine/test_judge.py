@@ -186,3 +186,19 @@ def test_stock_gouge_and_missing_metal_are_said_without_a_report(gear_set, verti
     deeper = re.sub(r"(G1 .*)Z500\.00000", r"\1Z499.90000", text)
     said = left(deeper)
     assert any(re.search(r"gouges the (root|\w+ \w+) of space 0: -1\d\d", one) for one in said), said
+
+
+def test_program_with_index_corrections_is_judged_by_the_places_that_they_ask_for(gear_set, vertical, host_compiler):
+    """As compensate writes them; the program of the set without them is a gouge for the set that has them."""
+    wanted = tuple(0.004 * (k % 3 - 1) for k in range(gear_set.gear.teeth))  # up to 0.004 degrees, about 9 um
+    spec = gear_set.gear.model_copy(update={"index_correction": wanted})
+    corrected = gear_set.model_copy(update={"gear": spec})
+    space = tooth_space(spec, "gear", 7)
+
+    def left(text):
+        runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, "gear", vertical, None, space, SHARP_EDGE)
+        return [str(one) for one in metal_left(runs, spec, "gear", vertical, Stated.of(text), space).faults]
+
+    job = Job((0, 2), 1e-3)
+    assert left(cutting_program(corrected, "gear", vertical, "CUT", job)) == []
+    assert left(cutting_program(gear_set, "gear", vertical, "CUT", job)) != []

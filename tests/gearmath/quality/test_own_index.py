@@ -76,7 +76,7 @@ def test_one_tooth_alone_says_that_its_index_is_not_known(gear_set):
     found = correct(gear_set.pinion, "pinion", file, few=True)
     (line,) = found.remarks
     assert line.startswith("concave and convex flank: fewer than 4 teeth")
-    assert "would count as an error of the settings" in line
+    assert "the settings are changed for it; measure more teeth" in line
 
 
 @pytest.mark.parametrize("sign", [1, -1], ids=["thick", "indexed"])
