@@ -58,7 +58,7 @@ class Runner:
         if self._compiled is None and self._spent < np.inf:
             self._consider(work)
         if self._compiled is None:
-            return self._interpreted(arguments, n)
+            return self.interpreted(arguments, n)
         outputs = [np.empty((n, size)) for size in self._sizes_out]
         parts = min(_threads(), int(work / _SPREAD) + 1)
         edges = [LANES * (n * k // parts // LANES) for k in range(parts)] + [n]
@@ -75,12 +75,13 @@ class Runner:
         pointers = [(ctypes.c_void_p * len(arrays))(*(a.ctypes.data for a in arrays)) for arrays in (given, results)]
         self._compiled.run(ctypes.c_longlong(high - low), *pointers)  # type: ignore[union-attr]
 
-    def _interpreted(self, arguments: Sequence[np.ndarray], n: int) -> list[np.ndarray]:
+    def interpreted(self, arguments: Sequence[np.ndarray], n: int) -> list[np.ndarray]:
+        """The same by CasADi's virtual machine, whatever is compiled."""
         if n > _BLOCK:
             parts = []
             for low in range(0, n, _BLOCK):
                 given = [a[low : low + _BLOCK] if many else a for a, many in zip(arguments, self._many, strict=True)]
-                parts.append(self._interpreted(given, min(_BLOCK, n - low)))
+                parts.append(self.interpreted(given, min(_BLOCK, n - low)))
             return [np.concatenate(arrays) for arrays in zip(*parts, strict=True)]
         columns = []
         for k, (array, size) in enumerate(zip(arguments, self._sizes_in, strict=True)):
