@@ -143,8 +143,9 @@ def mill(
     from gearmath.machine.control import Setup
     from gearmath.machine.executor import execute
     from gearmath.machine.judge import faults_of
+    from gearmath.machine.judge_cut import REPORTED
     from gearmath.machine.nc_text import program_text, skip_blocks
-    from gearmath.machine.stated import stated_member
+    from gearmath.machine.stated import Stated, stated_member
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
@@ -181,8 +182,16 @@ def mill(
         click.echo(f"the flanks are not compared with a tolerance: the machine has the errors of {errors}")
     else:
         cut = sorted({number for one in runs for number in one.spaces})
-        click.echo(f"{program}: passed: {len(cut)} of {spec.teeth} spaces, nothing collides, {milling_machine.name} "
-                   "keeps its limits")  # fmt: skip
+        stated = Stated.of(text)
+        within = f"within {1000 * (stated.tolerance or REPORTED):g} um"
+        if stated.tolerance is None:
+            within += ", as none is stated"
+        if not stated.is_ours:
+            click.echo(f"{program}: not judged: whether it looks at tool, offsets and units before it moves")
+        click.echo(
+            f"{program}: passed: {len(cut)} of {spec.teeth} spaces {within}, nothing collides, {milling_machine.name} "
+            "keeps its limits; run from its start, with the control set up as the machine file says"
+        )
 
 
 def _right_runs(

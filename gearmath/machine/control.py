@@ -167,6 +167,7 @@ class Control:
     """CTOL and OTOL, mm and degrees."""
     blind: list[Blind] = field(default_factory=list)
     path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
+    dynamics: dict[tuple[str, str], int] = field(default_factory=dict)
     """Path modes in which feed blocks run, with CTOL and OTOL, and the line of the first."""
 
     def __post_init__(self) -> None:
@@ -322,6 +323,7 @@ class Control:
         if not rapid:
             mode = self.modal.get("stop mode", ""), self.within.get("CTOL", 0.0), self.within.get("OTOL", 0.0)
             self.path_modes.setdefault(mode, line)
+            self.dynamics.setdefault((self.modal.get("acceleration", ""), self.modal.get("feed forward", "")), line)
         if any(axis not in self.position for axis in AXES):
             return None
         if self.tool is None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 
 from gearmath.machine.control import Blind, Control, Deflected, Follower, Probe, Row, Setup
 from gearmath.machine.nc_expression import AXES, Node, Value, Variable, refuse
-from gearmath.machine.nc_tree import Block, Branch, Command, Definition, Loop, Statement
+from gearmath.machine.nc_tree import Block, Branch, Command, Definition, Loop, Program, Statement
 from gearmath.machine.nc_values import evaluate, indices, number
 from gearmath.machine.reader import read_program
 
@@ -55,6 +56,10 @@ class MachinePath:
     """Motion while the position of an axis is unknown: at the start, and after a tool change."""
     path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
     """Path mode, CTOL [mm] and OTOL [degrees] of feed blocks, with the line of the first."""
+    dynamics: dict[tuple[str, str], int] = field(default_factory=dict)
+    """Acceleration and feed forward of feed blocks, with the line of the first."""
+    unset: dict[int, int] = field(default_factory=dict)
+    """R parameters that are read before the program sets them, with the line: they keep what another program left."""
 
     @property
     def spindle_on(self) -> np.ndarray:
@@ -76,6 +81,8 @@ class Run:
     """What the control showed during each row of the path, empty before the first message."""
 
 
+#: R parameters that operator and host set before a program, or that it counts on from run to run.
+HANDED_IN = frozenset((90, 91, 101, 102, 103, 104))
 #: Tables without offsets and tool lengths.
 AS_WRITTEN = Setup()
 
@@ -87,6 +94,12 @@ def execute(text: str, name: str, setup: Setup = AS_WRITTEN) -> MachinePath:
         why = f": {done.messages[-1]}" if done.messages else ""
         refuse(name, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]}{why}")
     return done.path
+
+
+@lru_cache(maxsize=2)
+def _read(text: str, name: str) -> Program:
+    """A program is often run several times, from other states of the control."""
+    return read_program(text, name)
 
 
 def run_program(
@@ -108,7 +121,7 @@ def run_program(
     Raises InputError with ``name``, line and column for what a program must not do, and for one that takes more than
     ``step_limit`` steps.
     """
-    program = read_program(text, name)
+    program = _read(text, name)
     runner = _Runner(Control(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved)
     runner.holds(files or {})
     try:
@@ -119,7 +132,7 @@ def run_program(
         if not runner.control.ended:
             refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
     files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
-    path = _path(runner.rows, runner.control)
+    path = _path(runner.rows, runner.control, runner.unset)
     return Run(path, files, tuple(runner.messages), runner.parameters, runner.alarm, tuple(runner.said))
 
 
@@ -134,6 +147,7 @@ class _Runner:
         self, control: Control, host: Host | None, parameters: dict[int, float], step_limit: int, deflected: Deflected,
         moved: Follower,
     ) -> None:  # fmt: skip
+        self.unset: dict[int, int] = {}
         self.control, self.host, self.parameters, self.steps_left = control, host, parameters, step_limit
         self.deflected, self.moved = deflected, moved
         self.variables: dict[tuple[str, tuple[int, ...]], float] = {}
@@ -173,6 +187,8 @@ class _Runner:
         if name == "R":
             if index[0] > _LAST_PARAMETER:
                 refuse(self.control.name, line, column, f"R{index[0]}: R parameters go from 0 to {_LAST_PARAMETER}")
+            if index[0] not in self.parameters and index[0] not in HANDED_IN:
+                self.unset.setdefault(index[0], line)
             return self.parameters.get(index[0], 0.0)
         if name.startswith("$"):
             return self._system(variable, line)
@@ -352,7 +368,7 @@ def _internal(position: tuple[float, ...]) -> np.ndarray:
     return np.array([*position[:3], *map(math.radians, position[3:])])
 
 
-def _path(rows: list[Row], control: Control) -> MachinePath:
+def _path(rows: list[Row], control: Control, unset: dict[int, int]) -> MachinePath:
     """The rows as arrays, in mm and rad."""
     positions = np.array([row.position for row in rows]).reshape(-1, len(AXES))
     positions[:, 3:] = np.radians(positions[:, 3:])
@@ -370,4 +386,6 @@ def _path(rows: list[Row], control: Control) -> MachinePath:
         unstated=control.unstated or (),
         blind=tuple(control.blind),
         path_modes=dict(control.path_modes),
+        dynamics=dict(control.dynamics),
+        unset=unset,
     )

@@ -13,6 +13,7 @@ from gearmath.machine.executor import MachinePath
 from gearmath.machine.faults import Fault, first_of_each
 from gearmath.machine.judge_cut import beside_the_path, missing
 from gearmath.machine.judge_motion import motion_faults
+from gearmath.machine.judge_start import start_faults
 from gearmath.machine.run import Run
 from gearmath.machine.stated import Stated
 from gearmath.specs.bevel_set import Member
@@ -31,7 +32,8 @@ def faults_of(
         *missing(stated, runs, member, name),
         *beside_the_path(runs, member, machine, stated),
     ]
-    return [*first_of_each(found), *met(path, runs, member, machine)]
+    started = start_faults(text, machine) if stated.is_ours else ()
+    return [*first_of_each(found), *started, *met(path, runs, member, machine)]
 
 
 def met(path: MachinePath, runs: list[Run], member: Member, machine: MillingMachine) -> list[Fault]:

@@ -33,6 +33,10 @@ def motion_faults(
     """All faults of motion, kind by kind."""
     if path.unstated:
         yield Fault(f"the program moves before it states {', '.join(path.unstated)}")
+    for number, line in path.unset.items():
+        yield Fault(
+            f"reads R{number} before it sets it: it has there what another program left, here it counts as 0", line, "R"
+        )  # fmt: skip
     yield from path_modes(path, machine)
     yield from blind_motion(path, member, machine)
     yield from spindle(path, machine, stated)
@@ -55,6 +59,12 @@ def path_modes(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
                 f"cuts with CTOL={contour:g} OTOL={orientation:g}, the machine file allows {within:g} mm and "
                 f"{turned:.3g} degrees", line, "path mode",
             )  # fmt: skip
+
+    wanted = control.jerk, "FFWON" if control.feed_forward else "FFWOF"
+    for found, line in path.dynamics.items():
+        for is_there, should_be in zip(found, wanted, strict=True):
+            if is_there not in ("", should_be):
+                yield Fault(f"cuts with {is_there}, the machine file has {should_be}", line, should_be)
 
 
 def blind_motion(path: MachinePath, member: Member, machine: MillingMachine) -> Iterator[Fault]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+_OURS = re.compile(r"^; gearmath \S+ cutting program", re.MULTILINE)
 _TOLERANCE = re.compile(r"^; flank tolerance: ([0-9.]+) um", re.MULTILINE)
 _MEMBER = re.compile(r"^; member: (pinion|gear)\b", re.MULTILINE)
 _FINISH = re.compile(r"^; finish: stock ([0-9.]+) mm", re.MULTILINE)
@@ -25,6 +26,8 @@ class Stated:
     feed: float | None
     plunge: float | None
     rpm: float | None
+    is_ours: bool = False
+    """Whether the header says that gearmath wrote it: then it looks at the control before it moves."""
 
     @staticmethod
     def of(text: str) -> Stated:
@@ -39,6 +42,7 @@ class Stated:
             float(feed[1]) if feed else None,
             float(spindle[2]) if spindle and spindle[2] else None,
             float(spindle[1]) if spindle else None,
+            _OURS.search(text) is not None,
         )
 
 

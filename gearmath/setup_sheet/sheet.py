@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from gearmath.machine.bodies import head_radius, work_profiles
 from gearmath.machine.chip_load import Bite
 from gearmath.machine.cutter import Cutter, cutter_of
+from gearmath.machine.cutting import DRY_LIFT
 from gearmath.machine.path import Cut
 from gearmath.machine.setup_facts import R_D, SetupFacts
 from gearmath.machine.timing import Timing
@@ -40,6 +41,8 @@ def setup_sheet(facts: SetupFacts, program: str, timing: Timing) -> str:
         ("Made by", [f"gearmath {__version__}"]),
         ("Set up by, date", [""]),
     ])  # fmt: skip
+    if plan.job.dry_run:
+        page.first("Dry run", [f"Z is raised by {DRY_LIFT:g} mm, coolant is off: the program cuts air."])
     page.first("Unconfirmed", [f"{text}." for text in facts.unconfirmed])
     page.first("Not stated by the files, or to be watched", [f"{text}." for text in facts.not_stated])
     page.heading("Machine and references")

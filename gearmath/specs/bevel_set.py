@@ -143,6 +143,8 @@ class Member(Sheet):
                 "indexing_sign: the key is missing: face_hobbing needs it, -1 where cutter and crown gear roll on each "
                 "other from outside (the epicycloid of ISO 23509), 1 from inside"
             )
+        if self.process == "face_hobbing" and any(self.index_correction):
+            raise ValueError("index_correction: face hobbing indexes without end: no space can be turned by itself")
         if self.process == "face_hobbing" and self.cutting != "completing":
             raise ValueError("face_hobbing cuts both flanks at once: cutting must be completing")
         for flank in FLANKS:

@@ -1,4 +1,4 @@
-"""Flank points per second: by the public function, by the kernel as the engine runs it, as exported C, in the CasADi VM,
+"""Flank points per second: by the public function, by the kernel as the engine runs it, as exported C, in the VM,
 and by scipy.optimize.fsolve, in one run.
 
 All but the first start from the same values and solve the same residual. fsolve takes one point at a time and calls the

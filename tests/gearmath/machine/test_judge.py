@@ -202,3 +202,33 @@ def test_program_with_index_corrections_is_judged_by_the_places_that_they_ask_fo
     job = Job((0, 2), 1e-3)
     assert left(cutting_program(corrected, "gear", vertical, "CUT", job)) == []
     assert left(cutting_program(gear_set, "gear", vertical, "CUT", job)) != []
+
+
+@pytest.mark.parametrize(
+    ("check", "said"),
+    [
+        (r"IF \$MN_SCALING.*\n(.*\n)*?.*ENDIF\n", "basic system is inch"),
+        (r"IF \$MN_INT_INCR_PER_MM.*\n(.*\n)*?.*ENDIF\n", "fewer increments per mm"),
+        (r"IF .*\$P_ACTFRAME\[X,TR\].*\n(.*\n)*?.*ENDIF\n", "G54 is 0.01 off in X"),
+        (r"IF .*\$P_ACTFRAME\[X,RT\].*\n(.*\n)*?.*ENDIF\n", "a frame turns"),
+        (r"IF \$TC_TP2.*\n(.*\n)*?.*ENDIF\n", "another tool is in the spindle"),
+        (r"IF ABS\(\$P_TOOLL.*\n(.*\n)*?.*ENDIF\n", "length 1 of the tool in the table is wrong"),
+    ],
+)
+def test_check_of_the_control_that_is_taken_out_is_missed(text, judged, check, said):
+    plain = re.sub(r"(?m)^N\d+ ", "", text)
+    assert judged(plain) == []
+    (fault,) = judged(re.sub(check, "", plain))
+    assert fault.startswith("does not stop before it cuts where")
+    assert said in fault
+
+
+def test_parameter_that_another_program_left_is_named(text, judged):
+    (fault,) = judged(bent(text, r"^(N\d+ )TRANS$", r"\1TRANS X=R50"))
+    assert re.match(r"line \d+ reads R50 before it sets it", fault)
+    assert judged(bent(text, r"^(N\d+ )TRANS$", r"R50=0\n\1TRANS X=R50")) == []
+
+
+def test_dynamics_are_those_of_the_machine_file(text, judged):
+    assert any("cuts with FFWOF, the machine file has FFWON" in one for one in judged(text.replace("FFWON", "FFWOF")))
+    assert any("cuts with BRISK, the machine file has SOFT" in one for one in judged(text.replace("SOFT", "BRISK")))
