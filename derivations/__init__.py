@@ -11,7 +11,7 @@ CHAPTERS = (
     "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
     "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
     "sweep", "probing", "registration", "spacing", "compensation", "ease_off", "touch_errors", "single_blades",
-    "axis_calibration", "tip_calibration",
+    "axis_calibration", "tip_calibration", "contact", "local_synthesis",
 )  # fmt: skip
 
 __all__ = ["CHAPTERS", "Expression", "Quantity", "expressions", "proofs"]
@@ -25,6 +25,7 @@ def expressions() -> Iterator[Expression]:
         blank,
         check_dimensions,
         compensation,
+        contact,
         cradle,
         cutter,
         deviation,
@@ -33,6 +34,7 @@ def expressions() -> Iterator[Expression]:
         gearbox,
         generation,
         hobbing,
+        local_synthesis,
         meshing,
         probing,
         registration,
@@ -76,6 +78,10 @@ def expressions() -> Iterator[Expression]:
     yield from (compensation.coefficient_sensitivity(), compensation.curved_height(), compensation.root_place())
     yield from (compensation.conjugate_place(), ease_off.conjugate_azimuth(), ease_off.ease_off())
     yield touch_errors.touch_error()
+    yield from (contact.pinion_in_pair(), contact.gear_in_pair(), contact.alignment(), contact.flank_border())
+    yield from (contact.tangency(), contact.transmission(), contact.meeting())
+    yield from (local_synthesis.flank_curvature(), local_synthesis.roll_at_contact(), local_synthesis.contact_motion())
+    yield from (local_synthesis.conjugate_curvature(), local_synthesis.contact_ellipse(), local_synthesis.synthesis())
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (
         gearbox.nearest_position(),
