@@ -1,0 +1,107 @@
+"""A flank as contact takes it: a function of three parameters with one condition, and the borders where it ends."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+
+import casadi as ca
+import numpy as np
+
+from derivations import generation
+from gearmath.bevel.generation import Generation, Section, solve_section
+from gearmath.bevel.kernels import kernel
+from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.newton import FlankPoints
+from gearmath.lowering import Kernel, lower
+from gearmath.specs.bevel_set import SIDES, Blank, Member
+
+#: The borders of a flank, in the order of ``Surface.borders``. No mate's edge lies at the root: there the fillet begins.
+BORDERS = ("tip", "toe", "heel", "root")
+
+
+@dataclass(frozen=True)
+class Surface:
+    """One flank of a member, nominal or measured.
+
+    ``function`` takes w = (u, β, θ) to point [mm], outward unit normal and condition [mm], zero on the flank, in the
+    frame of the work. ``borders`` (4,4) are those of (25.4), inside where positive. ``solve`` finds points at places
+    z_w, r_w (n,) [mm], NaN where there are none.
+    """
+
+    function: ca.Function
+    borders: np.ndarray
+    solve: Callable[[np.ndarray, np.ndarray], FlankPoints]
+    blank: Blank
+    teeth: int
+
+    @property
+    def apex_beyond(self) -> float:
+        return self.blank.pitch_apex_beyond_crossing_point
+
+    @property
+    def pitch_angle(self) -> float:
+        """Pitch angle δ [rad]."""
+        return math.radians(self.blank.pitch_angle)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Cone distances of toe and heel [mm]."""
+        mean, half = self.blank.mean_cone_distance, self.blank.face_width / 2
+        return mean - half, mean + half
+
+    def at(self, cone_distance: float, height: float = 0.0) -> FlankPoints:
+        """The one point at a cone distance and a height over the pitch cone [mm], NaN where there is none."""
+        s, c = math.sin(self.pitch_angle), math.cos(self.pitch_angle)
+        return self.solve(
+            np.array([cone_distance * c - height * s]), np.array([cone_distance * s + height * c])
+        )  # fmt: skip
+
+
+def nominal_surface(member: Member, flank: str) -> Surface:
+    """The nominal flank of a member: what the main section of its blade cuts, whatever the method."""
+    how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
+
+    def solve(axial: np.ndarray, radial: np.ndarray) -> FlankPoints:
+        found = solve_section(how, section, axial, radial)
+        lost = ~found.converged
+        arrays = [array.copy() for array in (found.contact, found.point, found.normal)]
+        for array in arrays:
+            array[lost] = np.nan
+        return FlankPoints(*arrays)
+
+    return Surface(_function(how.with_blade(section), section), _borders(member, section), solve, member.blank,
+                   member.teeth)  # fmt: skip
+
+
+def _borders(member: Member, section: Section) -> np.ndarray:
+    """Tip: the face cone; toe and heel: the cones square to the pitch cone; root: the lower end of the blade's section."""
+    blank = member.blank
+    delta, face = math.radians(blank.pitch_angle), math.radians(blank.face_angle)
+    axial, radial = (float(value) for value in kernel("flank_place")(blank.vector, 0.5, 1.0))
+    mean, half = blank.mean_cone_distance, blank.face_width / 2
+    sense, end = (-1.0, section.upper) if section.tip_is_upper else (1.0, section.lower)
+    return np.array([
+        [0.0, math.sin(face), -math.cos(face), radial * math.cos(face) - axial * math.sin(face)],
+        [0.0, math.cos(delta), math.sin(delta), half - mean],
+        [0.0, -math.cos(delta), -math.sin(delta), half + mean],
+        [sense, 0.0, 0.0, -sense * end],
+    ])  # fmt: skip
+
+
+@cache
+def _family(is_arc: bool) -> Kernel:
+    return lower((generation.arc_generation if is_arc else generation.straight_generation)())
+
+
+def _function(flank: Generation, section: Section) -> ca.Function:
+    """The family of chapter 10 with the numbers of one flank put in: what stands still drops out of the graph."""
+    w = ca.SX.sym("w", 3)
+    arc = () if section.arc is None else (ca.DM(section.arc),)
+    given = (ca.DM(flank.settings), ca.DM(flank.motion), flank.index_ratio, flank.blade_offset_angle, *arc, flank.side)
+    point, normal, meshing = _family(section.arc is not None).function(w[0], w[1], w[2], *given)
+    reach = float(flank.settings[0])
+    condition = meshing / reach if flank.rolling else reach * w[2]
+    return ca.Function("surface", [w], [point, normal, condition], ["w"], ["point", "normal", "condition"])

@@ -1,0 +1,193 @@
+"""A contact followed through its kinds: predictor and corrector in the rotation of the pinion, from border to border.
+
+The gear stands where the pinion stops it: sense · φ_2 is the largest over all points of both flanks. That is an optimum
+within borders, followed as its parameter φ_1 moves: where the contact comes to a border, the border becomes active (edge
+contact begins); where an active border is no longer pressed on, it is given up (the contact moves inside). A thread ends
+where no neighbour goes on: both members have left each other, or the contact turns back.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.contact.surface import BORDERS
+from gearmath.bevel.contact.system import System, Touch
+
+#: Step of the pinion [rad]: the usual one, and the one below which a contact counts as lost.
+_STEP, _LEAST_STEP = 0.04, 1e-5
+#: Largest change of u [mm] and of β, θ [rad] of either flank from one position to the next.
+_MOVES = np.array([2.5, 0.08, 0.15] * 2)
+#: Corrector steps of an accepted position.
+_CORRECTIONS = 6
+#: Margins [mm, or rad/mm] above this are positive.
+_SLACK = -1e-10
+_SECANTS = 40
+_PARTS = 24
+
+
+@dataclass(frozen=True)
+class Segment:
+    """Contacts (at least one) of one kind in the order of the rotation, from end to end."""
+
+    touches: tuple[Touch, ...]
+
+    @property
+    def active(self) -> tuple[int, ...]:
+        return self.touches[0].active
+
+    @property
+    def kind(self) -> str:
+        """``interior``, ``edge`` (an edge and the mate's flank, or two edges) or ``corner``."""
+        return kind_of(self.active)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        return self.touches[0].rotation, self.touches[-1].rotation
+
+
+def kind_of(active: tuple[int, ...]) -> str:
+    """The kind of a contact at these borders."""
+    if not active:
+        return "interior"
+    return "corner" if len(active) > 1 and len({border // len(BORDERS) for border in active}) == 1 else "edge"
+
+
+@dataclass(frozen=True)
+class Thread:
+    """Segments in the order of the rotation, each beginning where the one before ends."""
+
+    segments: tuple[Segment, ...]
+    assembly: np.ndarray
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        return self.segments[0].ends[0], self.segments[-1].ends[1]
+
+    def at(self, system: System, rotation: float) -> Touch | None:
+        """The contact at a rotation, None beyond the ends of the thread."""
+        for segment in self.segments:
+            low, high = segment.ends
+            if low <= rotation <= high:
+                return _between(system, segment.touches, rotation, self.assembly)
+        return None
+
+
+def follow(system: System, start: Touch, assembly: np.ndarray, low: float, high: float) -> Thread:
+    """The thread through a contact, within rotations from ``low`` to ``high``."""
+    forward = _parts(system, start, assembly, high)
+    backward = _parts(system, start, assembly, low)
+    joined = (*reversed(backward[0]), *forward[0][1:])
+    before = [Segment(tuple(reversed(part))) for part in reversed(backward[1:])]
+    return Thread((*before, Segment(joined), *(Segment(tuple(part)) for part in forward[1:])), assembly)
+
+
+def _parts(system: System, start: Touch, assembly: np.ndarray, limit: float) -> list[list[Touch]]:
+    """Contacts in one direction, a list for each kind; the first begins with ``start``."""
+    parts = [_run(system, start, assembly, limit)]
+    while len(parts) < _PARTS and (following := _next(system, parts[-1][-1], assembly, limit)) is not None:
+        run = _run(system, following, assembly, limit)
+        if len(run) < 2:
+            break
+        parts.append(run)
+    return parts
+
+
+def _run(system: System, start: Touch, assembly: np.ndarray, limit: float) -> list[Touch]:
+    """Contacts of one kind from ``start`` to the limit, or to where a margin becomes zero or the contact turns back."""
+    touches, step = [start], _STEP
+    way = 1.0 if limit > start.rotation else -1.0
+    while abs(limit - touches[-1].rotation) > 0.0:
+        last = touches[-1]
+        ahead = way * min(step, abs(limit - last.rotation))
+        following = _corrected(system, last, last.rotation + ahead, assembly)
+        if following is None or (np.abs(following.x[:6] - last.x[:6]) > _MOVES).any():
+            step /= 2
+            if step < _LEAST_STEP:
+                break
+            continue
+        if following.orientation != start.orientation:
+            break
+        if (following.margins < _SLACK).any():
+            touches.append(_border(system, last, following, assembly))
+            break
+        touches.append(following)
+        step = min(2 * step, _STEP)
+    return touches
+
+
+def _corrected(system: System, last: Touch, rotation: float, assembly: np.ndarray) -> Touch | None:
+    guess = last.x + (rotation - last.rotation) * last.tangent
+    return system.solve(guess, rotation, last.active, assembly, _CORRECTIONS)
+
+
+def _border(system: System, inside: Touch, outside: Touch, assembly: np.ndarray) -> Touch:
+    """The contact between two where the first margin is zero, by the Illinois rule; just inside of it."""
+    which = int(np.argmin(_crossings(inside, outside)))
+    low, high = inside, outside
+    one, other = float(inside.margins[which]), float(outside.margins[which])
+    for _ in range(_SECANTS):
+        if abs(high.rotation - low.rotation) < 1e-13 or 0 <= one < 1e-12:
+            break
+        rotation = low.rotation + (high.rotation - low.rotation) * one / (one - other)
+        middle = _between(system, (low, high), rotation, assembly)
+        if middle is None:
+            break
+        value = float(middle.margins[which])
+        if value >= 0:
+            low, one, other = middle, value, other / 2
+        else:
+            high, other, one = middle, value, one / 2
+    return low
+
+
+def _crossings(inside: Touch, outside: Touch) -> np.ndarray:
+    """The part of the way (8,) at which each margin is zero, infinite where it is not."""
+    one, other = inside.margins, outside.margins
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(other < _SLACK, np.maximum(one, 0.0) / (np.maximum(one, 0.0) - other), np.inf)
+
+
+def _next(system: System, end: Touch, assembly: np.ndarray, limit: float) -> Touch | None:
+    """The contact of another kind that goes on where one ends: a border more, a border less, or one for another."""
+    way = 1.0 if limit > end.rotation else -1.0
+    if not abs(limit - end.rotation) > 0.0:
+        return None
+    margins = end.margins
+    which = int(np.argmin(margins / np.where(np.isin(np.arange(len(margins)), end.active), 1e-4, 1.0)))
+    if which % len(BORDERS) == BORDERS.index("root"):
+        return None
+    if which in end.active:
+        candidates = [tuple(border for border in end.active if border != which)]
+    elif len(end.active) < 2:
+        candidates = [tuple(sorted((*end.active, which)))]
+    else:
+        candidates = [tuple(sorted((border, which))) for border in end.active]
+    for active in candidates:
+        start = system.solve(end.x, end.rotation, active, assembly)
+        if start is None:
+            continue
+        probe = _corrected(system, start, start.rotation + way * 1e-6, assembly)
+        if probe is not None and (probe.margins >= _SLACK).all():
+            return start
+    return None
+
+
+def _between(system: System, touches: Sequence[Touch], rotation: float, assembly: np.ndarray) -> Touch | None:
+    """The contact at a rotation among those of one segment, from the cubic through its neighbours."""
+    rotations = [touch.rotation for touch in touches]
+    if rotation in rotations:
+        return touches[rotations.index(rotation)]
+    k = int(np.clip(np.searchsorted(rotations, rotation), 1, len(rotations) - 1)) if len(rotations) > 1 else 0
+    if k == 0:
+        return system.solve(touches[0].x, rotation, touches[0].active, assembly)
+    one, other = touches[k - 1], touches[k]
+    h = other.rotation - one.rotation
+    t = (rotation - one.rotation) / h
+    guess = (
+        (1 + 2 * t) * (1 - t) ** 2 * one.x + t**2 * (3 - 2 * t) * other.x
+        + h * (t * (1 - t) ** 2 * one.tangent - t**2 * (1 - t) * other.tangent)
+    )  # fmt: skip
+    return system.solve(guess, rotation, one.active, assembly)
