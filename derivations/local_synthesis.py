@@ -17,6 +17,13 @@ The inverse: path direction p = (cos η, sin η), m' = φ_2'' and the major half
     s = (β_c - m' ρ_2)/(w·p),   D p = w/s,   D_22 = λ + D_12²/(D_11 - λ),   λ = 2τ/a²             (26.6)
 
 where 1 and 2 are along p and across it; D is turned back into the basis T. (26.2) holds with any offset.
+
+The basis used for the gear has t_1 along the generatrix of its root cone, g = cos δ_f k + sin δ_f [x, y, 0]/r_w, in
+the tangent plane, and t_2 towards the tip, p = cos δ_f [x, y, 0]/r_w - sin δ_f k:
+
+    t_1 = (g - (g·n) n)/|...|,   t_2 = ±n × t_1,   t_2·p > 0                                      (26.7)
+
+The path on the gear has the velocity v_1 + v.
 """
 
 from __future__ import annotations
@@ -29,7 +36,7 @@ import sympy as sp
 from derivations import notation as q
 from derivations.contact import gear_axes, gear_origin
 from derivations.expression import Expression
-from derivations.frames import K
+from derivations.frames import K, Rz
 from derivations.proof import DIGITS, is_close, is_zero, numbers
 
 
@@ -155,6 +162,48 @@ def synthesis() -> Expression:
         requires=(w.dot(p) ** 2 - sp.Rational(1, 100), speed**2 - 1, (along - least) ** 2 - sp.Rational(1, 10**6)),
         source="local synthesis of Litvin, solved in the tangent plane",
     )  # fmt: skip
+
+
+@cache
+def root_basis() -> Expression:
+    """(26.7) as an Expression."""
+    R, n, root = sp.Matrix(q.point_w.symbol), sp.Matrix(q.normal_w.symbol), q.root_angle.symbol
+    radius = sp.sqrt(R[0] ** 2 + R[1] ** 2)
+    outwards = sp.Matrix([R[0] / radius, R[1] / radius, 0])
+    along = sp.cos(root) * sp.Matrix(K) + sp.sin(root) * outwards
+    tipwards = sp.cos(root) * outwards - sp.sin(root) * sp.Matrix(K)
+    seen = along - along.dot(n) * n
+    size = sp.sqrt(seen.dot(seen))
+    first = seen / size
+    second = n.cross(first)
+    return Expression(
+        "root_basis",
+        "Basis of the tangent plane: along the root cone's generatrix, and towards the tip (26.7).",
+        (q.point_w, q.normal_w, q.root_angle),
+        ((q.contact_basis, sp.Matrix.hstack(first, sp.sign(second.dot(tipwards)) * second)),),
+        requires=(
+            R[0] ** 2 + R[1] ** 2 - 1,
+            size**2 - sp.Rational(1, 10),
+            second.dot(tipwards) ** 2 - sp.Rational(1, 100),
+        ),
+        source="projection into the tangent plane",
+    )
+
+
+def prove_root_basis_is_orthonormal_and_points_to_heel_and_tip() -> None:
+    """(26.7) On an upright flank the basis is the generatrix and the direction away from the root cone."""
+    root, azimuth = sp.symbols("delta_f chi", positive=True)
+    along = Rz(azimuth) * sp.Matrix([sp.sin(root), 0, sp.cos(root)])
+    tipwards = Rz(azimuth) * sp.Matrix([sp.cos(root), 0, -sp.sin(root)])
+    for side in (1, -1):
+        values = dict(zip(q.point_w.symbols, 50 * along, strict=True))
+        values |= dict(zip(q.normal_w.symbols, side * Rz(azimuth) * sp.Matrix([0, 1, 0]), strict=True))
+        found = root_basis()["contact_basis"].subs(values, simultaneous=True)
+        at = {root: sp.Rational(9, 8), azimuth: sp.Rational(1, 2), q.root_angle.symbol: sp.Rational(9, 8)}
+        with mpmath.workdps(DIGITS):
+            wanted = numbers([*along.subs(at), *tipwards.subs(at)])
+            T = sp.Matrix(found).subs(at)
+            assert is_close(numbers([*T[:, 0], *T[:, 1]]), wanted)
 
 
 def prove_curvature_of_a_torus_cut_as_an_envelope() -> None:

@@ -18,11 +18,11 @@ from gearmath.bevel.newton import FlankPoints
 from gearmath.lowering import Kernel, lower
 from gearmath.specs.bevel_set import SIDES, Blank, Member
 
-#: The borders of a flank, in the order of ``Surface.borders``. No mate's edge lies at the root: there the fillet begins.
+#: The borders of a flank, in the order of ``Surface.borders``. The root makes no edge: there the fillet begins.
 BORDERS = ("tip", "toe", "heel", "root")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Surface:
     """One flank of a member, nominal or measured.
 
@@ -77,7 +77,7 @@ def nominal_surface(member: Member, flank: str) -> Surface:
 
 
 def _borders(member: Member, section: Section) -> np.ndarray:
-    """Tip: the face cone; toe and heel: the cones square to the pitch cone; root: the lower end of the blade's section."""
+    """Tip: the face cone; toe and heel: cones square to the pitch cone; root: the lower end of the blade's section."""
     blank = member.blank
     delta, face = math.radians(blank.pitch_angle), math.radians(blank.face_angle)
     axial, radial = (float(value) for value in kernel("flank_place")(blank.vector, 0.5, 1.0))

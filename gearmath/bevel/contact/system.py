@@ -1,8 +1,8 @@
 """The equations of contact of one pair of flanks as CasADi functions, and their solution by Newton's method.
 
-Unknown x = ((u, β, θ) of the pinion, (u, β, θ) of the gear, φ_2), rotations counted from the position in which both mean
-points of the pitch cones stand on the pitch line. What touches what is told by the *active* borders: none, the flanks;
-one, the edge there and the mate's flank; two, a corner, or two edges that cross.
+Unknown x = ((u, β, θ) of the pinion, (u, β, θ) of the gear, φ_2), rotations counted from the position in which both
+mean points of the pitch cones stand on the pitch line. What touches what is told by the *active* borders: none, the
+flanks; one, the edge there and the mate's flank; two, a corner, or two edges that cross.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -22,6 +23,8 @@ from gearmath.errors import ComputationError
 #: Residual [mm] of a contact that counts, and Newton steps to get there.
 TOLERANCE = 1e-11
 _STEPS = 8
+#: Contacts of one call of the mapped equations.
+_BLOCK = 32
 #: Largest change in one step: of u [mm], β, θ, φ_2 [rad].
 _LIMITS = np.array([3.0, 0.2, 0.2, 3.0, 0.2, 0.2, 0.2])
 _SIDES = 2
@@ -30,22 +33,30 @@ COUNT = _SIDES * len(BORDERS)
 
 
 class Fast:
-    """A CasADi function called over buffers: for calls one by one, where the conversion of arguments would cost most."""
+    """A CasADi function called over buffers: for single calls, where the conversion of arguments would cost most."""
 
     def __init__(self, function: ca.Function) -> None:
+        self.function = function
+        self._buffer: Any
         self._buffer, self._run = function.buffer()
         self._inputs = [np.zeros(function.size_in(k), order="F") for k in range(function.n_in())]
         self._outputs = [np.zeros(function.size_out(k), order="F") for k in range(function.n_out())]
         for k, array in enumerate(self._inputs):
-            self._buffer.set_arg(k, memoryview(array.ravel(order="K")))
+            self._buffer.set_arg(k, _memory(array))
         for k, array in enumerate(self._outputs):
-            self._buffer.set_res(k, memoryview(array.ravel(order="K")))
+            self._buffer.set_res(k, _memory(array))
 
     def __call__(self, *arguments: np.typing.ArrayLike) -> list[np.ndarray]:
         for array, argument in zip(self._inputs, arguments, strict=True):
             array[...] = np.reshape(argument, array.shape)
         self._run()
         return [array.copy() for array in self._outputs]
+
+
+def _memory(array: np.ndarray) -> memoryview:
+    """The memory of an array, as CasADi takes it: columns one after the other."""
+    flat: Any = array.ravel(order="K")
+    return memoryview(flat)
 
 
 @dataclass(frozen=True)
@@ -86,7 +97,7 @@ class Touch:
         return values
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class System:
     """A pair of flanks in its frame. ``shaft_angle`` [rad], ``offset`` [mm]."""
 
@@ -106,17 +117,17 @@ class System:
         """Rotation of the pinion from tooth to tooth [rad]."""
         return 2 * math.pi / self.pinion.teeth
 
-    def placed(self, side: int, w: ca.SX, vector: ca.SX, turn: ca.SX, assembly: ca.SX) -> tuple[ca.SX, ca.SX]:
+    def placed(self, side: int, point: ca.SX, vector: ca.SX, turn: ca.SX, assembly: ca.SX) -> Any:
         """A point of a flank and a direction at it, turned into the frame of the pair (25.1, 25.2)."""
         beyond = (self.pinion, self.gear)[side].apex_beyond
         if side == 0:
-            return kernel("pinion_in_pair").function(w, vector, turn + self.phase[0], beyond, assembly)
+            return kernel("pinion_in_pair").function(point, vector, turn + self.phase[0], beyond, assembly)
         return kernel("gear_in_pair").function(
-            w, vector, turn + self.phase[1], beyond, self.shaft_angle, self.offset, assembly
+            point, vector, turn + self.phase[1], beyond, self.shaft_angle, self.offset, assembly
         )
 
     @cached_property
-    def _equations(self) -> Fast:
+    def equations(self) -> Fast:
         """x, φ_1, assembly -> every condition (23,) and its derivatives by x and φ_1 (23,8).
 
         In this order: common point (3), f of both (2), alignment (2), tangency of the edges (8), their distance (8).
@@ -146,7 +157,7 @@ class System:
         """The contact near ``x`` at a rotation of the pinion, None where Newton's method does not get there."""
         rows = _rows(active)
         for _ in range(steps):
-            every, by_all = self._equations(x, rotation, assembly)
+            every, by_all = self.equations(x, rotation, assembly)
             r, J = every[rows, 0], by_all[rows]
             if not np.isfinite(J).all():
                 return None
@@ -171,6 +182,42 @@ class System:
             pressure = -self.sense * np.linalg.lstsq(gradients.T, free[:, 6], rcond=None)[0]
         return Touch(rotation, x, active, tangent, distance, pressure, float(np.linalg.slogdet(J[:, :7])[0]))
 
+    def solve_many(
+        self, x: np.ndarray, rotation: np.ndarray, active: tuple[int, ...], assembly: np.ndarray
+    ) -> np.ndarray:
+        """Contacts (n,7) near ``x`` (n,7) at rotations (n,) in one go, NaN where Newton's method does not get there."""
+        rows, n, found = _rows(active), len(x), x.copy()
+        done = np.zeros(n, dtype=bool)
+        for _ in range(_STEPS):
+            r, J = self._every(found, rotation, assembly)
+            r, J = r[:, rows], J[:, rows, :7]
+            done = np.abs(r).max(axis=1) < TOLERANCE
+            good = np.isfinite(J).all(axis=(1, 2)) & (np.abs(np.linalg.det(np.nan_to_num(J))) > 0)
+            if (done | ~good).all():
+                break
+            step = np.zeros_like(found)
+            step[good] = np.linalg.solve(J[good], -r[good][..., None])[..., 0]
+            found += step / np.maximum(1.0, (np.abs(step) / _LIMITS).max(axis=1))[:, None]
+        found[~done] = np.nan
+        return found
+
+    def _every(self, x: np.ndarray, rotation: np.ndarray, assembly: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Every condition (n,23) and its derivatives (n,23,8), blocks of one size at a time: mapping takes a while."""
+        n = len(x)
+        padded = -(-n // _BLOCK) * _BLOCK
+        index = np.minimum(np.arange(padded), n - 1)
+        parts = []
+        for k in range(0, padded, _BLOCK):
+            block = index[k : k + _BLOCK]
+            r, J = self._mapped(x[block].T, rotation[block][None, :], assembly)
+            parts.append((r.T, J.reshape(len(r), _BLOCK, 8).swapaxes(0, 1)))
+        r, J = (np.concatenate(arrays)[:n] for arrays in zip(*parts, strict=True))
+        return r, J
+
+    @cached_property
+    def _mapped(self) -> Fast:
+        return Fast(self.equations.function.map("contacts", "serial", _BLOCK, [2], []))
+
     @cached_property
     def sense(self) -> float:
         """+1 where the pinion pushes the gear to larger φ_2: contact is the largest of sense · φ_2."""
@@ -187,15 +234,22 @@ class System:
         return float(touch.x[6] + self.ratio * touch.rotation)
 
     @cached_property
-    def _gear_place(self) -> ca.Function:
+    def _gear_place(self) -> Fast:
+        """x -> cone distance and depth on the gear, and their derivatives."""
         x = ca.SX.sym("x", 7)
         point, _, _ = self.gear.function(x[3:6])
-        return ca.Function("gear_place", [x], list(kernel("root_place").function(point, self.gear.pitch_angle)))
+        place = ca.vertcat(*kernel("root_place").function(point, self.gear.pitch_angle))
+        return Fast(ca.Function("gear_place", [x], ca.cse([place, ca.densify(ca.jacobian(place, x))])))
 
-    def gear_place(self, touch: Touch) -> tuple[float, float]:
-        """Cone distance and height above the pitch cone of the gear [mm]."""
-        distance, depth = self._gear_place(touch.x)
-        return float(distance), -float(depth)
+    def gear_place(self, x: np.ndarray) -> tuple[float, float]:
+        """Cone distance and height above the pitch cone of the gear [mm], of a contact ``x`` (7,)."""
+        (distance, depth), _ = self._gear_place(x)
+        return float(distance[0]), -float(depth[0])
+
+    def place_rates(self, x: np.ndarray) -> np.ndarray:
+        """How both change with ``x`` (2,7)."""
+        along, deep = self._gear_place(x)[1]
+        return np.stack([along, -deep])
 
 
 def pair_system(pinion: Surface, gear: Surface, shaft_angle: float, offset: float = 0.0) -> System:

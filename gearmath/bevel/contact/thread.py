@@ -1,14 +1,14 @@
 """A contact followed through its kinds: predictor and corrector in the rotation of the pinion, from border to border.
 
-The gear stands where the pinion stops it: sense · φ_2 is the largest over all points of both flanks. That is an optimum
-within borders, followed as its parameter φ_1 moves: where the contact comes to a border, the border becomes active (edge
-contact begins); where an active border is no longer pressed on, it is given up (the contact moves inside). A thread ends
-where no neighbour goes on: both members have left each other, or the contact turns back.
+The gear stands where the pinion stops it: sense · φ_2 is the largest over all points of both flanks. That is an
+optimum within borders, followed as its parameter φ_1 moves: where the contact comes to a border, the border becomes
+active (edge contact begins); where an active border is no longer pressed on, it is given up (the contact moves inside).
+A thread ends where no neighbor goes on: both members have left each other, or the contact turns back.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -73,6 +73,30 @@ class Thread:
             if low <= rotation <= high:
                 return _between(system, segment.touches, rotation, self.assembly)
         return None
+
+    def sample(self, system: System, rotations: np.ndarray) -> tuple[np.ndarray, list[str]]:
+        """Contacts x (n,7) at rotations (n,) in one go, and their kinds; NaN and "" beyond the ends."""
+        x, kinds = np.full((len(rotations), 7), np.nan), [""] * len(rotations)
+        for segment in self.segments:
+            low, high = segment.ends
+            here = np.flatnonzero((rotations >= low) & (rotations <= high))
+            if not len(here):
+                continue
+            guess = _cubic(segment.touches, rotations[here]) if low < high else segment.touches[0].x[None, :]
+            x[here] = system.solve_many(guess, rotations[here], segment.active, self.assembly)
+            for k in here:
+                kinds[k] = segment.kind
+        return x, kinds
+
+    def errors(self, system: System, rotations: np.ndarray) -> np.ndarray:
+        """φ_2 + i φ_1 (n,) [rad] at rotations (n,) by cubics between the positions followed; NaN beyond the ends."""
+        found = np.full(len(rotations), np.nan)
+        for segment in self.segments:
+            low, high = segment.ends
+            here = (rotations >= low) & (rotations <= high)
+            if here.any() and low < high:
+                found[here] = _cubic(segment.touches, rotations[here])[:, 6]
+        return found + system.ratio * rotations
 
 
 def follow(system: System, start: Touch, assembly: np.ndarray, low: float, high: float) -> Thread:
@@ -162,7 +186,7 @@ def _next(system: System, end: Touch, assembly: np.ndarray, limit: float) -> Tou
     if which in end.active:
         candidates = [tuple(border for border in end.active if border != which)]
     elif len(end.active) < 2:
-        candidates = [tuple(sorted((*end.active, which)))]
+        candidates = [tuple(sorted((*end.active, which))), (which,)]
     else:
         candidates = [tuple(sorted((border, which))) for border in end.active]
     for active in candidates:
@@ -177,17 +201,47 @@ def _next(system: System, end: Touch, assembly: np.ndarray, limit: float) -> Tou
 
 def _between(system: System, touches: Sequence[Touch], rotation: float, assembly: np.ndarray) -> Touch | None:
     """The contact at a rotation among those of one segment, from the cubic through its neighbours."""
-    rotations = [touch.rotation for touch in touches]
-    if rotation in rotations:
-        return touches[rotations.index(rotation)]
-    k = int(np.clip(np.searchsorted(rotations, rotation), 1, len(rotations) - 1)) if len(rotations) > 1 else 0
-    if k == 0:
-        return system.solve(touches[0].x, rotation, touches[0].active, assembly)
-    one, other = touches[k - 1], touches[k]
-    h = other.rotation - one.rotation
-    t = (rotation - one.rotation) / h
-    guess = (
-        (1 + 2 * t) * (1 - t) ** 2 * one.x + t**2 * (3 - 2 * t) * other.x
-        + h * (t * (1 - t) ** 2 * one.tangent - t**2 * (1 - t) * other.tangent)
+    for touch in (touches[0], touches[-1]):
+        if rotation == touch.rotation:
+            return touch
+    ordered = touches if touches[0].rotation < touches[-1].rotation else touches[::-1]
+    return system.solve(_cubic(ordered, np.array([rotation]))[0], rotation, touches[0].active, assembly)
+
+
+def _cubic(touches: Sequence[Touch], rotations: np.ndarray) -> np.ndarray:
+    """x (n,7) at rotations (n,) by Hermite's cubics between contacts (two or more) in the order of their rotation."""
+    at = np.array([touch.rotation for touch in touches])
+    x, slope = (np.stack([getattr(touch, name) for touch in touches]) for name in ("x", "tangent"))
+    k = np.clip(np.searchsorted(at, rotations), 1, len(at) - 1)
+    h = (at[k] - at[k - 1])[:, None]
+    t = (rotations - at[k - 1])[:, None] / h
+    return (
+        (1 + 2 * t) * (1 - t) ** 2 * x[k - 1] + t**2 * (3 - 2 * t) * x[k]
+        + h * (t * (1 - t) ** 2 * slope[k - 1] - t**2 * (1 - t) * slope[k])
     )  # fmt: skip
-    return system.solve(guess, rotation, one.active, assembly)
+
+
+def zero(at: Callable[[float], Touch | None], value: Callable[[Touch], float], low: float, high: float) -> Touch | None:
+    """The contact between two rotations where a value is zero, by the Illinois rule; None where it keeps its sign."""
+    first, second = at(low), at(high)
+    if first is None or second is None:
+        return None
+    one, other = value(first), value(second)
+    if one == 0 or other == 0:
+        return first if one == 0 else second
+    if one * other > 0:
+        return None
+    found = first
+    for _ in range(_SECANTS):
+        rotation = low + (high - low) * one / (one - other)
+        middle = at(rotation)
+        if middle is None:
+            return None
+        found, here = middle, value(middle)
+        if here == 0 or abs(high - low) < 1e-12 or abs(rotation - low) < 1e-13 or abs(high - rotation) < 1e-13:
+            break
+        if here * one > 0:
+            low, one, other = rotation, here, other / 2
+        else:
+            high, other, one = rotation, here, one / 2
+    return found

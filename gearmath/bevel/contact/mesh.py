@@ -1,0 +1,261 @@
+"""How a pair runs: the contact of one pair of teeth over three pitches, and the first contact among neighbouring pairs.
+
+The error of tooth pair k is that of pair 0 k pitches earlier. The gear follows whichever pair pushes it furthest:
+
+    lead(φ_1) = max over k and kinds of sense · (φ_2 + i φ_1)(φ_1 - k p),   p = 2π/z_1
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, partial
+
+import numpy as np
+
+from gearmath.bevel.contact.local import Local, local
+from gearmath.bevel.contact.places import Places, contact_line, places, seeds
+from gearmath.bevel.contact.system import Assembly, System, Touch
+from gearmath.bevel.contact.thread import Segment, Thread, follow, zero
+
+OUTCOMES = (
+    "interior contact", "edge contact", "corner contact", "reversed parabola", "contact lost", "line contact",
+)  # fmt: skip
+#: Pitches to either side over which a pair of teeth is followed, and positions of a pitch at which contacts are sought.
+REACH = 1.5
+_SOUGHT = 4
+#: Ease-off [mm] below which a pair counts as conjugate.
+_CONJUGATE = 1e-6
+_SAME_PLACE = 1e-6
+#: Samples of a pitch among which the leading pair is sought before its ends are found exactly.
+_SAMPLES = 120
+_BISECTIONS = 30
+
+
+@dataclass(frozen=True)
+class Row:
+    """A position of a pair of teeth: rotation [rad], kind, error φ_2 + i φ_1 [rad], place on the gear [mm]."""
+
+    rotation: float
+    kind: str
+    error: float
+    cone_distance: float
+    height: float
+
+
+@dataclass(frozen=True)
+class Leads:
+    """The first contact over a pitch: the kinds that occur, largest less smallest error; None where there is none."""
+
+    kinds: tuple[str, ...]
+    peak_to_peak: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A pair of flanks in contact, at an assembly."""
+
+    system: System
+    assembly: np.ndarray
+    places: Places
+    threads: tuple[Thread, ...]
+
+    @cached_property
+    def is_line(self) -> bool:
+        """Whether the flanks touch along lines: the ease-off is nothing over the common flank."""
+        found = self.places
+        error, lever = found.error[found.common], found.lever[found.common]
+        return error.size > 0 and float(np.ptp(error) * np.abs(lever).max()) < _CONJUGATE
+
+    def lead(self, touch: Touch) -> float:
+        """sense · (φ_2 + i φ_1) [rad]."""
+        return self.system.sense * self.system.transmission_error(touch)
+
+    def rows(self, rotations: np.ndarray) -> list[Row]:
+        """The positions of pair 0 at rotations (n,) [rad], without those at which it has no contact."""
+        if self.is_line:
+            return [row for rotation in rotations if (row := _line_row(self.places, rotation)) is not None]
+        best: dict[int, Row] = {}
+        for thread in self.threads:
+            x, kinds = thread.sample(self.system, rotations)
+            for k in np.flatnonzero(np.isfinite(x).all(axis=1)).tolist():
+                rotation = float(rotations[k])
+                error = float(x[k, 6] + self.system.ratio * rotation)
+                if k not in best or self.system.sense * (error - best[k].error) > 0:
+                    best[k] = Row(rotation, kinds[k], error, *self.system.gear_place(x[k]))
+        return [best[k] for k in sorted(best)]
+
+    def path(self, step: float) -> list[Row]:
+        """Positions of pair 0 at whole multiples of ``step`` [rad], and at every change of kind."""
+        limit = REACH * self.system.pitch
+        count = math.floor(limit / step * (1 + 1e-12))
+        rotations = np.arange(-count, count + 1) * step
+        others = [at for at in self.changes if np.abs(rotations - at).min() > 1e-9]
+        return self.rows(np.sort(np.concatenate([rotations, others])))
+
+    @property
+    def changes(self) -> list[float]:
+        """Rotations [rad] at which the kind of contact of pair 0 changes."""
+        return [
+            after.ends[0] for thread in self.threads
+            for before, after in zip(thread.segments[:-1], thread.segments[1:], strict=True)
+            if before.kind != after.kind
+        ]  # fmt: skip
+
+    @cached_property
+    def reference(self) -> float | None:
+        """φ_2 + i φ_1 [rad] of pair 0 at rotation zero, which errors are counted from; None without a contact there."""
+        rows = self.rows(np.zeros(1))
+        return rows[0].error if rows else None
+
+    @cached_property
+    def leads(self) -> Leads:
+        """Which contacts the pair runs on, over a pitch."""
+        return _lead_over_a_pitch(self)
+
+    @property
+    def interior(self) -> list[tuple[Thread, Segment]]:
+        """Where pair 0 touches within both flanks."""
+        return [(thread, part) for thread in self.threads for part in thread.segments if part.kind == "interior"]
+
+    @property
+    def contact_ratio(self) -> float:
+        """Rotation over which one pair of teeth touches within both flanks, over the pitch."""
+        if self.is_line:
+            return float(np.ptp(self.places.rotation[self.places.common])) / self.system.pitch
+        return sum(part.ends[1] - part.ends[0] for _, part in self.interior) / self.system.pitch
+
+    @cached_property
+    def at_mean(self) -> tuple[Touch, Local] | None:
+        """The contact within both flanks that is nearest to the mean point of the gear's pitch cone, if any."""
+        mean = self.system.gear.blank.mean_cone_distance
+
+        def away(touch: Touch) -> float:
+            distance, height = self.system.gear_place(touch.x)
+            return math.hypot(distance - mean, height)
+
+        def departing(touch: Touch) -> float:
+            distance, height = self.system.gear_place(touch.x)
+            along, up = self.system.place_rates(touch.x) @ touch.tangent
+            return float((distance - mean) * along + height * up)
+
+        found: list[Touch] = []
+        for thread, segment in self.interior:
+            touches = segment.touches
+            k = int(np.argmin([away(touch) for touch in touches]))
+            ends = touches[max(k - 1, 0)].rotation, touches[min(k + 1, len(touches) - 1)].rotation
+            nearest = zero(partial(thread.at, self.system), departing, *ends)
+            found += [touches[k]] if nearest is None else [touches[k], nearest]
+        if not found:
+            return None
+        best = min(found, key=away)
+        return best, local(self.system, best, self.assembly)
+
+    @property
+    def outcome(self) -> str:
+        """One of ``OUTCOMES``."""
+        if self.is_line:
+            return "line contact"
+        if self.leads.peak_to_peak is None:
+            return "contact lost"
+        if self.at_mean is not None and self.system.sense * self.at_mean[1].second_derivative > 0:
+            return "reversed parabola"
+        return next((f"{kind} contact" for kind in ("corner", "edge") if kind in self.leads.kinds), "interior contact")
+
+
+def mesh(system: System, assembly: Assembly | None = None) -> Mesh:
+    """The contact of a pair of flanks at an assembly: every thread that a search along its contact lines finds."""
+    vector = (assembly or Assembly()).vector
+    found = places(system, vector)
+    run = Mesh(system, vector, found, ())
+    return run if run.is_line else Mesh(system, vector, found, tuple(_threads(system, found, vector)))
+
+
+def _threads(system: System, found: Places, assembly: np.ndarray) -> list[Thread]:
+    limit = REACH * system.pitch
+    rotations = np.linspace(-limit, limit, int(2 * REACH * _SOUGHT) + 1)
+    threads: list[Thread] = []
+    for rotation in sorted(rotations, key=abs):
+        for seed in seeds(found, float(rotation), system.sense):
+            touch = system.solve(seed.x, seed.rotation, seed.active, assembly, 12)
+            if touch is None or (touch.margins < -1e-9).any() or _known(system, threads, touch):
+                continue
+            if not touch.active and not local(system, touch, assembly).definite:
+                continue
+            threads.append(follow(system, touch, assembly, -limit, limit))
+    return threads
+
+
+def _known(system: System, threads: list[Thread], touch: Touch) -> bool:
+    """Whether one of the threads runs through a contact."""
+    for thread in threads:
+        other = thread.at(system, touch.rotation)
+        if other is not None and np.abs(other.x - touch.x).max() < _SAME_PLACE:
+            return True
+    return False
+
+
+def _lead_over_a_pitch(run: Mesh) -> Leads:
+    """Over one pitch: by samples; its largest and smallest then exactly, where slope or difference is zero."""
+    if run.is_line:
+        return Leads(("interior",), float(np.ptp(run.places.error[run.places.common])))
+    system, pitch = run.system, run.system.pitch
+    samples = np.linspace(0, pitch, _SAMPLES + 1)
+    # whose lead it is: a thread of a tooth pair
+    runners = [(thread, k) for thread in run.threads for k in range(math.floor(-REACH), math.ceil(REACH) + 2)]
+    if not runners:
+        return Leads((), None)
+    leads = np.stack([system.sense * thread.errors(system, samples - k * pitch) for thread, k in runners])
+    if np.isnan(leads).all(axis=0).any():
+        return Leads((), None)
+    leads = np.where(np.isnan(leads), -np.inf, leads)
+    first = leads.argmax(axis=0)
+    kinds = set()
+    for index in np.unique(first):
+        thread, k = runners[index]
+        for rotation in samples[first == index] - k * pitch:
+            kinds.add(next(part.kind for part in thread.segments if part.ends[0] <= rotation <= part.ends[1]))
+
+    def value(index: int, rotation: float) -> float:
+        thread, k = runners[index]
+        touch = thread.at(system, rotation - k * pitch)
+        return -math.inf if touch is None else run.lead(touch)
+
+    def flat(index: int, low: float, high: float) -> float:
+        """The lead of one runner where its slope is zero, NaN where that is nowhere."""
+        thread, k = runners[index]
+        found = zero(lambda at: thread.at(system, at), lambda touch: float(touch.tangent[6]) + system.ratio,
+                     low - k * pitch, high - k * pitch)  # fmt: skip
+        return math.nan if found is None else run.lead(found)
+
+    extremes = []
+    for which in (leads.max(axis=0).argmax(), leads.max(axis=0).argmin()):
+        low, high = max(which - 1, 0), min(which + 1, _SAMPLES)
+        candidates = [value(first[which], samples[which]), flat(first[which], samples[low], samples[high])]
+        for left in range(low, high):
+            if first[left] != first[left + 1]:
+                candidates.append(_crossing(value, first[left], first[left + 1], samples[left], samples[left + 1]))
+        extremes.append([one for one in candidates if math.isfinite(one)])
+    return Leads(tuple(sorted(kinds)), max(extremes[0]) - min(extremes[1]))
+
+
+def _crossing(value: Callable[[int, float], float], one: int, other: int, low: float, high: float) -> float:
+    """The lead at which one runner takes over from another between two rotations."""
+    for _ in range(_BISECTIONS):
+        middle = (low + high) / 2
+        if value(one, middle) > value(other, middle):
+            low = middle
+        else:
+            high = middle
+    return max(value(one, high), value(other, high))
+
+
+def _line_row(found: Places, rotation: float) -> Row | None:
+    """The middle of a contact line, where the whole line touches."""
+    error, _, distance, along, height = contact_line(found, rotation)
+    inside = np.flatnonzero((distance > -_SAME_PLACE).all(axis=1))
+    if not len(inside):
+        return None
+    k = inside[len(inside) // 2]
+    return Row(rotation, "interior", float(error[k]), float(along[k]), float(height[k]))
