@@ -39,13 +39,13 @@ def _function(system: System) -> ca.Function:
     """x, φ_1, assembly -> w, β_c, D, lever, sliding (chapter 26), in the basis of the gear's root cone."""
     x, rotation, assembly = ca.SX.sym("x", 7), ca.SX.sym("rotation"), ca.SX.sym("assembly", 4)
     curvatures = []
-    point, normal, _ = system.gear.function(x[3:6])
+    point, normal, *_ = system.gear.function(x[3:6])
     basis = kernel("root_basis").function(point, normal, math.radians(system.gear.blank.root_angle))
     tangents = [system.placed(1, point, basis[:, k], x[6], assembly)[1] for k in range(2)]
     T = ca.horzcat(*tangents)
     for side, surface in enumerate((system.pinion, system.gear)):
         w = ca.SX.sym("w", 3)
-        point, normal, condition = surface.function(w)
+        point, normal, condition, _ = surface.function(w)
         point, normal = system.placed(side, point, normal, (rotation, x[6])[side], assembly)
         sign = -1 if side == 0 else 1  # one normal for both: out of the gear, into the pinion
         rates = [ca.jacobian(point, w), sign * ca.jacobian(normal, w), ca.jacobian(condition, w).T]

@@ -27,6 +27,9 @@ REACH = 1.5
 _SOUGHT = 4
 #: Ease-off [mm] below which a pair counts as conjugate.
 _CONJUGATE = 1e-6
+_MOSTLY = 0.7
+#: Lead [rad] of the gear half a pitch from the mean contact from which a parabola counts as reversed: 0.001 arcsec.
+_REVERSED = 5e-9
 _SAME_PLACE = 1e-6
 #: Samples of a pitch among which the leading pair is sought before its ends are found exactly.
 _SAMPLES = 120
@@ -63,10 +66,13 @@ class Mesh:
 
     @cached_property
     def is_line(self) -> bool:
-        """Whether the flanks touch along lines: the ease-off is nothing over the common flank."""
+        """Whether the flanks touch along lines: no ease-off over most of the common flank, and only gaps elsewhere."""
         found = self.places
-        error, lever = found.error[found.common], found.lever[found.common]
-        return error.size > 0 and float(np.ptp(error) * np.abs(lever).max()) < _CONJUGATE
+        if not found.common.any():
+            return False
+        ahead = self.system.sense * (found.error - np.median(found.error[found.common])) * np.abs(found.lever)
+        ahead = ahead[found.common]
+        return float(ahead.max()) < _CONJUGATE and float(np.mean(np.abs(ahead) < _CONJUGATE)) > _MOSTLY
 
     def lead(self, touch: Touch) -> float:
         """sense · (φ_2 + i φ_1) [rad]."""
@@ -75,7 +81,11 @@ class Mesh:
     def rows(self, rotations: np.ndarray) -> list[Row]:
         """The positions of pair 0 at rotations (n,) [rad], without those at which it has no contact."""
         if self.is_line:
-            return [row for rotation in rotations if (row := _line_row(self.places, rotation)) is not None]
+            return [
+                row
+                for rotation in rotations
+                if (row := _line_row(self.places, self.system.sense, rotation)) is not None
+            ]
         best: dict[int, Row] = {}
         for thread in self.threads:
             x, kinds = thread.sample(self.system, rotations)
@@ -159,8 +169,10 @@ class Mesh:
             return "line contact"
         if self.leads.peak_to_peak is None:
             return "contact lost"
-        if self.at_mean is not None and self.system.sense * self.at_mean[1].second_derivative > 0:
-            return "reversed parabola"
+        if self.at_mean is not None:
+            half_pitch = self.system.pitch / 2
+            if self.system.sense * self.at_mean[1].second_derivative * half_pitch**2 / 2 > _REVERSED:
+                return "reversed parabola"
         return next((f"{kind} contact" for kind in ("corner", "edge") if kind in self.leads.kinds), "interior contact")
 
 
@@ -199,7 +211,8 @@ def _known(system: System, threads: list[Thread], touch: Touch) -> bool:
 def _lead_over_a_pitch(run: Mesh) -> Leads:
     """Over one pitch: by samples; its largest and smallest then exactly, where slope or difference is zero."""
     if run.is_line:
-        return Leads(("interior",), float(np.ptp(run.places.error[run.places.common])))
+        rows = run.rows(np.linspace(-run.system.pitch / 2, run.system.pitch / 2, _SAMPLES + 1))
+        return Leads(("interior",), float(np.ptp([row.error for row in rows])) if rows else None)
     system, pitch = run.system, run.system.pitch
     samples = np.linspace(0, pitch, _SAMPLES + 1)
     # whose lead it is: a thread of a tooth pair
@@ -251,11 +264,12 @@ def _crossing(value: Callable[[int, float], float], one: int, other: int, low: f
     return max(value(one, high), value(other, high))
 
 
-def _line_row(found: Places, rotation: float) -> Row | None:
+def _line_row(found: Places, sense: float, rotation: float) -> Row | None:
     """The middle of a contact line, where the whole line touches."""
     error, _, distance, along, height = contact_line(found, rotation)
     inside = np.flatnonzero((distance > -_SAME_PLACE).all(axis=1))
     if not len(inside):
         return None
-    k = inside[len(inside) // 2]
+    touching = inside[sense * error[inside] > (sense * error[inside]).max() - _CONJUGATE / 100.0]
+    k = touching[len(touching) // 2]
     return Row(rotation, "interior", float(error[k]), float(along[k]), float(height[k]))

@@ -36,7 +36,7 @@ def _wanted(system: System) -> ca.Function:
     y, J, shaft, distance = ca.SX.sym("y", 10), ca.SX.sym("J"), ca.SX.sym("shaft"), ca.SX.sym("distance")
     x, assembly = y[:7], ca.vertcat(y[8], y[9], J, shaft)
     every, _ = system.equations.function(x, y[7], assembly)
-    own, normal, _ = system.gear.function(x[3:6])
+    own, normal, *_ = system.gear.function(x[3:6])
     along, depth = kernel("root_place").function(own, system.gear.pitch_angle)
     point, normal = system.placed(1, own, normal, x[6], assembly)
     _, slope = kernel("transmission").function(point, normal, system.shaft_angle, system.offset, assembly)

@@ -26,9 +26,10 @@ BORDERS = ("tip", "toe", "heel", "root")
 class Surface:
     """One flank of a member, nominal or measured.
 
-    ``function`` takes w = (u, β, θ) to point [mm], outward unit normal and condition [mm], zero on the flank, in the
-    frame of the work. ``borders`` (4,4) are those of (25.4), inside where positive. ``solve`` finds points at places
-    z_w, r_w (n,) [mm], NaN where there are none.
+    ``function`` takes w = (u, β, θ) to point [mm], outward unit normal, condition [mm], zero on the flank, and fold [1],
+    positive from the mean point to a singular line; in the frame of the work. ``borders`` (4,4) are those of (25.4),
+    inside where positive; beyond its singular line a flank is undercut, and ends as at its root. ``solve`` finds points
+    at places z_w, r_w (n,) [mm], NaN where there are none.
     """
 
     function: ca.Function
@@ -72,8 +73,10 @@ def nominal_surface(member: Member, flank: str) -> Surface:
             array[lost] = np.nan
         return FlankPoints(*arrays)
 
-    return Surface(_function(how.with_blade(section), section), _borders(member, section), solve, member.blank,
-                   member.teeth)  # fmt: skip
+    delta, distance = math.radians(member.blank.pitch_angle), member.blank.mean_cone_distance
+    mean = solve(*(np.array([distance * f(delta)]) for f in (math.cos, math.sin))).contact[0]
+    function = _function(how.with_blade(section), section, mean)
+    return Surface(function, _borders(member, section), solve, member.blank, member.teeth)
 
 
 def _borders(member: Member, section: Section) -> np.ndarray:
@@ -96,12 +99,21 @@ def _family(is_arc: bool) -> Kernel:
     return lower((generation.arc_generation if is_arc else generation.straight_generation)())
 
 
-def _function(flank: Generation, section: Section) -> ca.Function:
-    """The family of chapter 10 with the numbers of one flank put in: what stands still drops out of the graph."""
+def _function(flank: Generation, section: Section, mean: np.ndarray) -> ca.Function:
+    """The family of chapter 10 with the numbers of one flank put in: what stands still drops out of the graph.
+
+    ``mean`` holds u, β, θ of the mean point, which no singular line parts from the flank.
+    """
     w = ca.SX.sym("w", 3)
     arc = () if section.arc is None else (ca.DM(section.arc),)
     given = (ca.DM(flank.settings), ca.DM(flank.motion), flank.index_ratio, flank.blade_offset_angle, *arc, flank.side)
     point, normal, meshing = _family(section.arc is not None).function(w[0], w[1], w[2], *given)
     reach = float(flank.settings[0])
     condition = meshing / reach if flank.rolling else reach * w[2]
-    return ca.Function("surface", [w], [point, normal, condition], ["w"], ["point", "normal", "condition"])
+    place = ca.vertcat(point[2], ca.sqrt(point[0] ** 2 + point[1] ** 2), condition)
+    rows = ca.vertsplit(ca.jacobian(place, w))
+    volume = ca.dot(rows[0].T, ca.cross(rows[1].T, rows[2].T))
+    fold = volume / (ca.norm_2(rows[0]) * ca.norm_2(rows[1]) * ca.norm_2(rows[2]))
+    sign = math.copysign(1.0, float(ca.Function("fold", [w], [fold])(mean)))
+    names = ["point", "normal", "condition", "fold"]
+    return ca.Function("surface", [w], [point, normal, condition, sign * fold], ["w"], names)

@@ -23,6 +23,8 @@ from gearmath.errors import ComputationError
 #: Residual [mm] of a contact that counts, and Newton steps to get there.
 TOLERANCE = 1e-11
 _STEPS = 8
+#: Fold [1] as a distance from the singular line [mm], in its size.
+FOLD = 5.0
 #: Contacts of one call of the mapped equations.
 _BLOCK = 32
 #: Largest change in one step: of u [mm], β, θ, φ_2 [rad].
@@ -136,12 +138,13 @@ class System:
         points, normals, conditions, distances, edges = [], [], [], [], []
         for side, surface in enumerate((self.pinion, self.gear)):
             w, turn = x[3 * side : 3 * side + 3], (rotation, x[6])[side]
-            point, normal, condition = surface.function(w)
+            point, normal, condition, fold = surface.function(w)
             conditions.append(condition)
             for border in surface.borders:
                 distance, edge = kernel("flank_border").function(w[0], point, normal, ca.DM(border))
                 distances.append(distance)
                 edges.append((side, self.placed(side, point, edge, turn, assembly)[1]))
+            distances[-1] = ca.fmin(distances[-1], FOLD * fold)  # of the root
             point, normal = self.placed(side, point, normal, turn, assembly)
             points.append(point)
             normals.append(normal)
@@ -237,7 +240,7 @@ class System:
     def _gear_place(self) -> Fast:
         """x -> cone distance and depth on the gear, and their derivatives."""
         x = ca.SX.sym("x", 7)
-        point, _, _ = self.gear.function(x[3:6])
+        point, *_ = self.gear.function(x[3:6])
         place = ca.vertcat(*kernel("root_place").function(point, self.gear.pitch_angle))
         return Fast(ca.Function("gear_place", [x], ca.cse([place, ca.densify(ca.jacobian(place, x))])))
 
