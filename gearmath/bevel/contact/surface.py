@@ -26,7 +26,7 @@ BORDERS = ("tip", "toe", "heel", "root")
 class Surface:
     """One flank of a member, nominal or measured.
 
-    ``function`` takes w = (u, β, θ) to point [mm], outward unit normal, condition [mm], zero on the flank, and fold [1],
+    ``function`` takes w = (u, β, θ) to point [mm], outward unit normal, condition [mm], zero on the flank, and fold,
     positive from the mean point to a singular line; in the frame of the work. ``borders`` (4,4) are those of (25.4),
     inside where positive; beyond its singular line a flank is undercut, and ends as at its root. ``solve`` finds points
     at places z_w, r_w (n,) [mm], NaN where there are none.

@@ -24,7 +24,7 @@ from gearmath.specs.toml import checked
 _DEGREE = 21
 #: The surface reaches beyond the blank by these parts of its face width and depth.
 _BEYOND_ACROSS, _BEYOND_UP = 0.02, 0.05
-_GRID, _SHRINK = 33, 0.6
+_GRID, _SHRINK, _LEVELS = 25, 0.6, 31
 #: The pair of uniform depth: teeth, cone distance, spiral and pressure angle, cutter radius, depth below the pitch.
 _TEETH, _CONE, _SPIRAL, _ALPHA, _RADIUS, _DEPTH = (14, 39), 80.0, math.radians(35), math.radians(20), 100.0, 4.0
 
@@ -128,6 +128,8 @@ class Rolling:
         last, (off, *_) = turn - 1e-4, apart(turn - 1e-4)
         for _ in range(10):
             here, *place = apart(turn)
+            if np.abs(here).max() < 1e-13:
+                break
             slope = np.where(here == off, 1.0, (here - off) / np.where(turn == last, 1.0, turn - last))
             last, off, turn = turn, here, turn - np.where(here == off, 0.0, np.clip(here / slope, -0.2, 0.2))
         here, *place = apart(turn)
@@ -164,7 +166,7 @@ class Rolling:
     def _refined(self, points: Callable[..., tuple[np.ndarray, ...]], rotation: float) -> tuple[float, ...]:
         across, up = np.meshgrid(np.linspace(0, 1, 101), np.linspace(0, 1, 41), indexing="ij")
         width, best = 1.0, (math.nan,) * 4
-        for _ in range(40):
+        for _ in range(_LEVELS):
             turn, x, y, x_1, y_1 = points(across, up, rotation)
             inside = np.isfinite(turn) & (x >= 0) & (x <= 1) & (y <= 1) & (x_1 >= 0) & (x_1 <= 1) & (y_1 <= 1)
             inside &= (y >= self.gear.lowest) & (y_1 >= self.pinion.lowest)
