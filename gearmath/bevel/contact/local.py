@@ -22,7 +22,8 @@ class Local:
 
     ``second_derivative`` of φ_2 by φ_1 [rad/rad²], half axes (major, minor) [mm] of the ellipse, and directions on the
     gear, as angles from the root cone's generatrix towards the tip [rad]: of the path, and of the major axis.
-    ``definite`` tells whether the flanks touch there without cutting into each other.
+    ``definite`` tells whether the flanks touch there without cutting into each other. ``axial`` (2,2) takes a vector of
+    the tangent plane, in that basis, to cone distance and height on the gear.
     """
 
     second_derivative: float
@@ -32,11 +33,15 @@ class Local:
     definite: bool
     relative_curvature: np.ndarray
     path_speed: float
+    axial: np.ndarray
 
 
 @lru_cache(maxsize=16)
 def _function(system: System) -> ca.Function:
-    """x, φ_1, assembly -> w, β_c, D, lever, sliding (chapter 26), in the basis of the gear's root cone."""
+    """x, φ_1, assembly -> w, β_c, D, lever, sliding (chapter 26), in the basis of the gear's root cone.
+
+    Last how cone distance and depth on the gear change along the basis (2,2).
+    """
     x, rotation, assembly = ca.SX.sym("x", 7), ca.SX.sym("rotation"), ca.SX.sym("assembly", 4)
     curvatures = []
     point, normal, *_ = system.gear.function(x[3:6])
@@ -52,19 +57,22 @@ def _function(system: System) -> ca.Function:
         at = ca.substitute([*rates, point, normal], [w], [x[3 * side : 3 * side + 3]])
         curvatures.append(kernel("flank_curvature").function(*at[:3], T))
         point, normal = at[3:]
+    moved = ca.inv(ca.vertcat(T.T @ at[0], at[2].T))[:, :2]  # of the gear's parameters along the tangents
+    own, *_ = system.gear.function(x[3:6])
+    on_blank = ca.vertcat(*kernel("root_place").function(own, system.gear.pitch_angle))
+    seen = ca.jacobian(on_blank, x[3:6]) @ moved
     place = (system.shaft_angle, system.offset, assembly)
     w, beta, sliding = kernel("roll_at_contact").function(point, normal, T, curvatures[1], *place)
     lever, _ = kernel("transmission").function(point, normal, *place)
     D = curvatures[0] - curvatures[1]
     found = ca.vertcat(D[0, 0], (D[0, 1] + D[1, 0]) / 2, D[1, 1])
-    return ca.Function("local", [x, rotation, assembly], ca.cse([w, beta, found, lever, sliding]))
+    return ca.Function("local", [x, rotation, assembly], ca.cse([w, beta, found, lever, sliding, ca.densify(seen)]))
 
 
 def local(system: System, touch: Touch, assembly: np.ndarray, separation: float = MARKING) -> Local:
     """Curvature and motion at a contact within both flanks, its ellipse at a ``separation`` [mm]."""
-    w, beta, D, lever, sliding = (
-        np.asarray(one).ravel() for one in _function(system)(touch.x, touch.rotation, assembly)
-    )
+    *found, seen = (np.asarray(one) for one in _function(system)(touch.x, touch.rotation, assembly))
+    w, beta, D, lever, sliding = (one.ravel() for one in found)
     velocity, second = kernel("contact_motion")(w, beta[0], D, lever[0])
     (axes,) = kernel("contact_ellipse")(D, separation)
     on_gear = velocity + sliding
@@ -72,7 +80,7 @@ def local(system: System, touch: Touch, assembly: np.ndarray, separation: float 
     flat = vectors[:, 0]
     return Local(
         float(second), (float(axes[0]), float(axes[1])), _line(on_gear), _line(flat), bool(values[0] > 0), D,
-        float(np.linalg.norm(on_gear)),
+        float(np.linalg.norm(on_gear)), seen * [[1], [-1]],
     )  # fmt: skip
 
 
