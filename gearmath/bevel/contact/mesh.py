@@ -15,7 +15,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from gearmath.bevel.contact.local import Local, local
-from gearmath.bevel.contact.places import Places, contact_line, places, seeds
+from gearmath.bevel.contact.places import Places, Seed, contact_line, places, seeds
 from gearmath.bevel.contact.system import Assembly, System, Touch
 from gearmath.bevel.contact.thread import Segment, Thread, follow, zero
 
@@ -31,9 +31,12 @@ _MOSTLY = 0.7
 #: Lead [rad] of the gear half a pitch from the mean contact from which a parabola counts as reversed: 0.001 arcsec.
 _REVERSED = 5e-9
 _SAME_PLACE = 1e-6
+#: Start values nearer than this to a thread, in u [mm], β, θ [rad] of both flanks, lead to it.
+_NEAR = np.array([0.5, 0.02, 0.02] * 2)
 #: Samples of a pitch among which the leading pair is sought before its ends are found exactly.
 _SAMPLES = 120
-_BISECTIONS = 30
+#: Difference of leads [rad] that counts as none, and trials to get there.
+_SAME_LEAD, _TRIALS = 1e-13, 40
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,22 @@ class Mesh:
     assembly: np.ndarray
     places: Places
     threads: tuple[Thread, ...]
+    reach: float = REACH
+
+    @property
+    def carries_at_its_ends(self) -> bool:
+        """Whether a pair of teeth is still ahead of its neighbor where it was no longer followed."""
+        limit, system = self.reach * self.system.pitch, self.system
+        for thread in self.threads:
+            for end in thread.ends:
+                if abs(end) < limit - 1e-9:
+                    continue
+                before = np.array([end, end - math.copysign(system.pitch, end)])
+                own = thread.errors(system, before[:1])[0]
+                others = [one.errors(system, before[1:])[0] for one in self.threads]
+                if all(math.isnan(other) or system.sense * (own - other) > 0 for other in others):
+                    return True
+        return False
 
     @cached_property
     def is_line(self) -> bool:
@@ -177,19 +196,30 @@ class Mesh:
 
 
 def mesh(system: System, assembly: Assembly | None = None) -> Mesh:
-    """The contact of a pair of flanks at an assembly: every thread that a search along its contact lines finds."""
+    """The contact of a pair of flanks at an assembly: every thread that a search along its contact lines finds.
+
+    A pair of teeth is followed over three pitches, further where it still carries there.
+    """
     vector = (assembly or Assembly()).vector
     found = places(system, vector)
     run = Mesh(system, vector, found, ())
-    return run if run.is_line else Mesh(system, vector, found, tuple(_threads(system, found, vector)))
+    if run.is_line:
+        return run
+    for reach in (REACH, REACH + 1, REACH + 2):
+        run = Mesh(system, vector, found, tuple(_threads(system, found, vector, reach)), reach)
+        if not run.carries_at_its_ends:
+            break
+    return run
 
 
-def _threads(system: System, found: Places, assembly: np.ndarray) -> list[Thread]:
-    limit = REACH * system.pitch
-    rotations = np.linspace(-limit, limit, int(2 * REACH * _SOUGHT) + 1)
+def _threads(system: System, found: Places, assembly: np.ndarray, reach: float) -> list[Thread]:
+    limit = reach * system.pitch
+    rotations = np.linspace(-limit, limit, round(2 * reach * _SOUGHT) + 1)
     threads: list[Thread] = []
     for rotation in sorted(rotations, key=abs):
         for seed in seeds(found, float(rotation), system.sense):
+            if _near(threads, seed):
+                continue
             touch = system.solve(seed.x, seed.rotation, seed.active, assembly, 12)
             if touch is None or (touch.margins < -1e-9).any() or _known(system, threads, touch):
                 continue
@@ -197,6 +227,17 @@ def _threads(system: System, found: Places, assembly: np.ndarray) -> list[Thread
                 continue
             threads.append(follow(system, touch, assembly, -limit, limit))
     return threads
+
+
+def _near(threads: list[Thread], seed: Seed) -> bool:
+    """Whether one of the threads runs so near to a start value, on the same borders, that it would lead there."""
+    for thread in threads:
+        for segment in thread.segments:
+            if segment.active == seed.active and segment.ends[0] <= seed.rotation <= segment.ends[1]:
+                off = segment.between(np.array([seed.rotation]))[0] - seed.x
+                if (np.abs(off[:6]) < _NEAR).all():
+                    return True
+    return False
 
 
 def _known(system: System, threads: list[Thread], touch: Touch) -> bool:
@@ -216,7 +257,7 @@ def _lead_over_a_pitch(run: Mesh) -> Leads:
     system, pitch = run.system, run.system.pitch
     samples = np.linspace(0, pitch, _SAMPLES + 1)
     # whose lead it is: a thread of a tooth pair
-    runners = [(thread, k) for thread in run.threads for k in range(math.floor(-REACH), math.ceil(REACH) + 2)]
+    runners = [(thread, k) for thread in run.threads for k in range(math.floor(-run.reach), math.ceil(run.reach) + 2)]
     if not runners:
         return Leads((), None)
     leads = np.stack([system.sense * thread.errors(system, samples - k * pitch) for thread, k in runners])
@@ -254,14 +295,21 @@ def _lead_over_a_pitch(run: Mesh) -> Leads:
 
 
 def _crossing(value: Callable[[int, float], float], one: int, other: int, low: float, high: float) -> float:
-    """The lead at which one runner takes over from another between two rotations."""
-    for _ in range(_BISECTIONS):
-        middle = (low + high) / 2
-        if value(one, middle) > value(other, middle):
-            low = middle
+    """The lead at which one runner takes over from another between two rotations: Illinois, halves where one ends."""
+    before, after = (value(one, at) - value(other, at) for at in (low, high))
+    found = math.nan
+    for _ in range(_TRIALS):
+        part = before / (before - after) if math.isfinite(before - after) else 0.5
+        middle = low + (high - low) * part
+        first, second = value(one, middle), value(other, middle)
+        found, here = max(first, second), first - second
+        if abs(here) < _SAME_LEAD:
+            break
+        if here > 0:
+            low, before, after = middle, here, after / 2
         else:
-            high = middle
-    return max(value(one, high), value(other, high))
+            high, after, before = middle, here, before / 2
+    return found
 
 
 def _line_row(found: Places, sense: float, rotation: float) -> Row | None:

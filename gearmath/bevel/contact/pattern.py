@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.contact.local import MARKING
-from gearmath.bevel.contact.mesh import REACH, Mesh
+from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.contact.places import places
 
 _ROWS, _COLUMNS = 21, 41
@@ -62,7 +62,7 @@ def envelope(run: Mesh, rotations: np.ndarray) -> np.ndarray:
     within = (rotations + pitch / 2) % pitch - pitch / 2
     leads = [
         system.sense * thread.errors(system, within - k * pitch)
-        for thread in run.threads for k in range(-math.ceil(REACH), math.ceil(REACH) + 1)
+        for thread in run.threads for k in range(-math.ceil(run.reach), math.ceil(run.reach) + 1)
     ]  # fmt: skip
     if not leads:
         return np.full(len(rotations), np.nan)

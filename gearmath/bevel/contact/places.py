@@ -12,12 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.contact.surface import Surface
-from gearmath.bevel.contact.system import FOLD, System
+from gearmath.bevel.contact.system import System
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import half_turn
 
-_ROWS, _COLUMNS = 11, 21
+_ROWS, _COLUMNS = 9, 17
 
 
 @dataclass(frozen=True)
@@ -77,9 +76,7 @@ def places(system: System, assembly: np.ndarray, rows: int = _ROWS, columns: int
     error = gear_rotation + system.ratio * rotation
     shape = (rows, columns)
     x = np.column_stack([contact, own.contact, gear_rotation])
-    distance = np.concatenate(
-        [_distances(pinion, contact, on_pinion), _distances(gear, own.contact, own.point)], axis=1
-    )
+    distance = np.concatenate([pinion.distances(contact), gear.distances(own.contact)], axis=1)
     along, depth = kernel("root_place")(own.point, gear.pitch_angle)
     rotation, error, lever, along, height = (one.reshape(shape) for one in (rotation, error, lever, along, -depth))
     return Places(rotation, error, lever, x.reshape(*shape, 7), distance.reshape(*shape, -1), along, height)
@@ -87,17 +84,6 @@ def places(system: System, assembly: np.ndarray, rows: int = _ROWS, columns: int
 
 def _column(mask: np.ndarray, like: np.ndarray) -> np.ndarray:
     return mask.reshape(-1, *(1,) * (like.ndim - 1))
-
-
-def _distances(surface: Surface, contact: np.ndarray, point: np.ndarray) -> np.ndarray:
-    """Distances (n,4) from the borders of a flank; that from the root is negative below a fold too."""
-    columns = []
-    for border in surface.borders:
-        distance, _ = kernel("flank_border")(contact[:, 0], point, np.zeros_like(point), border)
-        columns.append(distance)
-    fold = np.asarray(surface.function(contact.T)[3])[0]
-    columns[-1] = np.minimum(columns[-1], FOLD * fold)
-    return np.stack(columns, axis=1)
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import casadi as ca
 import numpy as np
 
 from derivations import generation
+from gearmath.bevel.contact.fast import Mapped
 from gearmath.bevel.generation import Generation, Section, solve_section
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.method import blade_sections, generation_of
@@ -20,6 +21,10 @@ from gearmath.specs.bevel_set import SIDES, Blank, Member
 
 #: The borders of a flank, in the order of ``Surface.borders``. The root makes no edge: there the fillet begins.
 BORDERS = ("tip", "toe", "heel", "root")
+#: Fold [1] as a distance from the singular line [mm], in its size.
+_FOLD = 5.0
+#: Newton steps to a place, the residual [mm] to reach, and the largest change of u [mm], β, θ [rad] in a step.
+_STEPS, _TOLERANCE, _LIMITS = 10, 1e-11, np.array([3.0, 0.2, 0.2])
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +58,23 @@ class Surface:
         mean, half = self.blank.mean_cone_distance, self.blank.face_width / 2
         return mean - half, mean + half
 
+    @cached_property
+    def limits(self) -> ca.Function:
+        """w -> distances (4,) from the borders [mm]; that of the root is negative beyond a singular line too."""
+        w = ca.SX.sym("w", 3)
+        point, normal, _, fold = self.function(w)
+        distances = [kernel("flank_border").function(w[0], point, normal, ca.DM(border))[0] for border in self.borders]
+        distances[-1] = ca.fmin(distances[-1], _FOLD * fold)
+        return ca.Function("limits", [w], [ca.vertcat(*distances)])
+
+    @cached_property
+    def _mapped_limits(self) -> Mapped:
+        return Mapped(self.limits)
+
+    def distances(self, w: np.ndarray) -> np.ndarray:
+        """Distances (n,4) from the borders [mm] at w (n,3)."""
+        return self._mapped_limits(w)[0][:, :, 0]
+
     def at(self, cone_distance: float, height: float = 0.0) -> FlankPoints:
         """The one point at a cone distance and a height over the pitch cone [mm], NaN where there is none."""
         s, c = math.sin(self.pitch_angle), math.cos(self.pitch_angle)
@@ -65,18 +87,50 @@ def nominal_surface(member: Member, flank: str) -> Surface:
     """The nominal flank of a member: what the main section of its blade cuts, whatever the method."""
     how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
 
-    def solve(axial: np.ndarray, radial: np.ndarray) -> FlankPoints:
-        found = solve_section(how, section, axial, radial)
-        lost = ~found.converged
-        arrays = [array.copy() for array in (found.contact, found.point, found.normal)]
-        for array in arrays:
-            array[lost] = np.nan
-        return FlankPoints(*arrays)
-
     delta, distance = math.radians(member.blank.pitch_angle), member.blank.mean_cone_distance
-    mean = solve(*(np.array([distance * f(delta)]) for f in (math.cos, math.sin))).contact[0]
+    mean = _slowly(how, section, *(np.array([distance * f(delta)]) for f in (math.cos, math.sin))).contact[0]
     function = _function(how.with_blade(section), section, mean)
+    newton = _newton(function)
+
+    def solve(axial: np.ndarray, radial: np.ndarray) -> FlankPoints:
+        place = np.column_stack([axial, radial])
+        w = np.tile(mean, (len(place), 1))
+        for _ in range(_STEPS):
+            r, J, point, normal = newton(w, place)
+            done = np.abs(r[:, :, 0]).max(axis=1) < _TOLERANCE
+            volume = np.linalg.det(np.where(np.isfinite(J), J, 0.0))
+            if done.all():
+                break
+            step = np.zeros_like(w)
+            good = ~done & np.isfinite(volume) & (volume != 0)
+            step[good] = -np.linalg.solve(J[good], r[good])[:, :, 0]
+            w = w + step / np.maximum(1.0, (np.abs(step) / _LIMITS).max(axis=1))[:, None]
+        found = FlankPoints(w, point[:, :, 0], normal[:, :, 0])
+        if not done.all():
+            better = _slowly(how, section, axial[~done], radial[~done])
+            for array, other in zip(vars(found).values(), vars(better).values(), strict=True):
+                array[~done] = other
+        return found
+
     return Surface(function, _borders(member, section), solve, member.blank, member.teeth)
+
+
+def _slowly(how: Generation, section: Section, axial: np.ndarray, radial: np.ndarray) -> FlankPoints:
+    """Points of a flank as the general solver finds them, NaN where it finds none."""
+    found = solve_section(how, section, axial, radial)
+    arrays = [array.copy() for array in (found.contact, found.point, found.normal)]
+    for array in arrays:
+        array[~found.converged] = np.nan
+    return FlankPoints(*arrays)
+
+
+def _newton(function: ca.Function) -> Mapped:
+    """w and place -> how far w is off the place and the flank (3,), its derivatives (3,3), point and normal."""
+    w, place = ca.SX.sym("w", 3), ca.SX.sym("place", 2)
+    point, normal, condition, _ = function(w)
+    off = ca.vertcat(point[2] - place[0], ca.sqrt(point[0] ** 2 + point[1] ** 2) - place[1], condition)
+    outputs = ca.cse([off, ca.densify(ca.jacobian(off, w)), point, normal])
+    return Mapped(ca.Function("on_place", [w, place], outputs))
 
 
 def _borders(member: Member, section: Section) -> np.ndarray:

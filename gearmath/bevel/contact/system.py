@@ -15,6 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from gearmath.bevel.contact.fast import Fast, Mapped
 from gearmath.bevel.contact.surface import BORDERS, Surface
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.turning import half_turn
@@ -23,42 +24,11 @@ from gearmath.errors import ComputationError
 #: Residual [mm] of a contact that counts, and Newton steps to get there.
 TOLERANCE = 1e-11
 _STEPS = 8
-#: Fold [1] as a distance from the singular line [mm], in its size.
-FOLD = 5.0
-#: Contacts of one call of the mapped equations.
-_BLOCK = 32
 #: Largest change in one step: of u [mm], β, θ, φ_2 [rad].
 _LIMITS = np.array([3.0, 0.2, 0.2, 3.0, 0.2, 0.2, 0.2])
 _SIDES = 2
 #: Borders of both members: the pinion's, then the gear's.
 COUNT = _SIDES * len(BORDERS)
-
-
-class Fast:
-    """A CasADi function called over buffers: for single calls, where the conversion of arguments would cost most."""
-
-    def __init__(self, function: ca.Function) -> None:
-        self.function = function
-        self._buffer: Any
-        self._buffer, self._run = function.buffer()
-        self._inputs = [np.zeros(function.size_in(k), order="F") for k in range(function.n_in())]
-        self._outputs = [np.zeros(function.size_out(k), order="F") for k in range(function.n_out())]
-        for k, array in enumerate(self._inputs):
-            self._buffer.set_arg(k, _memory(array))
-        for k, array in enumerate(self._outputs):
-            self._buffer.set_res(k, _memory(array))
-
-    def __call__(self, *arguments: np.typing.ArrayLike) -> list[np.ndarray]:
-        for array, argument in zip(self._inputs, arguments, strict=True):
-            array[...] = np.reshape(argument, array.shape)
-        self._run()
-        return [array.copy() for array in self._outputs]
-
-
-def _memory(array: np.ndarray) -> memoryview:
-    """The memory of an array, as CasADi takes it: columns one after the other."""
-    flat: Any = array.ravel(order="K")
-    return memoryview(flat)
 
 
 @dataclass(frozen=True)
@@ -138,13 +108,12 @@ class System:
         points, normals, conditions, distances, edges = [], [], [], [], []
         for side, surface in enumerate((self.pinion, self.gear)):
             w, turn = x[3 * side : 3 * side + 3], (rotation, x[6])[side]
-            point, normal, condition, fold = surface.function(w)
+            point, normal, condition, _ = surface.function(w)
             conditions.append(condition)
             for border in surface.borders:
-                distance, edge = kernel("flank_border").function(w[0], point, normal, ca.DM(border))
-                distances.append(distance)
+                _, edge = kernel("flank_border").function(w[0], point, normal, ca.DM(border))
                 edges.append((side, self.placed(side, point, edge, turn, assembly)[1]))
-            distances[-1] = ca.fmin(distances[-1], FOLD * fold)  # of the root
+            distances.append(surface.limits(w))
             point, normal = self.placed(side, point, normal, turn, assembly)
             points.append(point)
             normals.append(normal)
@@ -173,6 +142,25 @@ class System:
             x = x + step[:, 0] / max(1.0, float((np.abs(step[:, 0]) / _LIMITS).max()))
         return None
 
+    def event(
+        self, x: np.ndarray, rotation: float, active: tuple[int, ...], border: int, assembly: np.ndarray
+    ) -> tuple[np.ndarray, float] | None:
+        """The contact at ``active`` borders that comes to one more border: x (7,) and the rotation of the pinion."""
+        rows, y = [*_rows(active), 7 + COUNT + border], np.append(x, rotation)
+        for _ in range(_STEPS):
+            every, by_all = self.equations(y[:7], y[7], assembly)
+            r, J = every[rows, 0], by_all[rows]
+            if not np.isfinite(J).all():
+                return None
+            if np.abs(r).max() < TOLERANCE:
+                return y[:7], float(y[7])
+            try:
+                step = np.linalg.solve(J, -r)
+            except np.linalg.LinAlgError:
+                return None
+            y = y + step / max(1.0, float((np.abs(step[:7]) / _LIMITS).max()))
+        return None
+
     def _touch(
         self, x: np.ndarray, rotation: float, active: tuple[int, ...], J: np.ndarray, tangent: np.ndarray,
         distance: np.ndarray, by_x: np.ndarray,
@@ -192,8 +180,8 @@ class System:
         rows, n, found = _rows(active), len(x), x.copy()
         done = np.zeros(n, dtype=bool)
         for _ in range(_STEPS):
-            r, J = self._every(found, rotation, assembly)
-            r, J = r[:, rows], J[:, rows, :7]
+            r, J = self._mapped(found, rotation, assembly)
+            r, J = r[:, rows, 0], J[:, rows, :7]
             done = np.abs(r).max(axis=1) < TOLERANCE
             good = np.isfinite(J).all(axis=(1, 2)) & (np.abs(np.linalg.det(np.nan_to_num(J))) > 0)
             if (done | ~good).all():
@@ -204,22 +192,9 @@ class System:
         found[~done] = np.nan
         return found
 
-    def _every(self, x: np.ndarray, rotation: np.ndarray, assembly: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Every condition (n,23) and its derivatives (n,23,8), blocks of one size at a time: mapping takes a while."""
-        n = len(x)
-        padded = -(-n // _BLOCK) * _BLOCK
-        index = np.minimum(np.arange(padded), n - 1)
-        parts = []
-        for k in range(0, padded, _BLOCK):
-            block = index[k : k + _BLOCK]
-            r, J = self._mapped(x[block].T, rotation[block][None, :], assembly)
-            parts.append((r.T, J.reshape(len(r), _BLOCK, 8).swapaxes(0, 1)))
-        r, J = (np.concatenate(arrays)[:n] for arrays in zip(*parts, strict=True))
-        return r, J
-
     @cached_property
-    def _mapped(self) -> Fast:
-        return Fast(self.equations.function.map("contacts", "serial", _BLOCK, [2], []))
+    def _mapped(self) -> Mapped:
+        return Mapped(self.equations.function, shared=(2,))
 
     @cached_property
     def sense(self) -> float:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -17,13 +18,15 @@ from gearmath.bevel.contact.surface import BORDERS
 from gearmath.bevel.contact.system import System, Touch
 
 #: Step of the pinion [rad]: the usual one, and the one below which a contact counts as lost.
-_STEP, _LEAST_STEP = 0.04, 1e-5
+_STEP, _LEAST_STEP = 0.05, 1e-5
 #: Largest change of u [mm] and of β, θ [rad] of either flank from one position to the next.
-_MOVES = np.array([2.5, 0.08, 0.15] * 2)
+_MOVES = np.array([3.0, 0.1, 0.15] * 2)
 #: Corrector steps of an accepted position.
 _CORRECTIONS = 6
 #: Margins [mm, or rad/mm] above this are positive.
-_SLACK = -1e-10
+_SLACK = -1e-9
+#: Margin [mm, or rad/mm] at which a border counts as reached.
+_CLOSE = 1e-10
 _SECANTS = 40
 _PARTS = 24
 
@@ -33,6 +36,15 @@ class Segment:
     """Contacts (at least one) of one kind in the order of the rotation, from end to end."""
 
     touches: tuple[Touch, ...]
+
+    @cached_property
+    def nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Rotations (n,), x (n,7) and dx/dφ_1 (n,7) of the contacts."""
+        return _nodes(self.touches)
+
+    def between(self, rotations: np.ndarray) -> np.ndarray:
+        """x (n,7) at rotations (n,) by Hermite's cubics between the contacts."""
+        return _cubic(self.nodes, rotations)
 
     @property
     def active(self) -> tuple[int, ...]:
@@ -46,6 +58,13 @@ class Segment:
     @property
     def ends(self) -> tuple[float, float]:
         return self.touches[0].rotation, self.touches[-1].rotation
+
+    def at(self, system: System, rotation: float, assembly: np.ndarray) -> Touch | None:
+        """The contact at a rotation between the ends."""
+        for touch in (self.touches[0], self.touches[-1]):
+            if rotation == touch.rotation:
+                return touch
+        return system.solve(self.between(np.array([rotation]))[0], rotation, self.active, assembly)
 
 
 def kind_of(active: tuple[int, ...]) -> str:
@@ -71,7 +90,7 @@ class Thread:
         for segment in self.segments:
             low, high = segment.ends
             if low <= rotation <= high:
-                return _between(system, segment.touches, rotation, self.assembly)
+                return segment.at(system, rotation, self.assembly)
         return None
 
     def sample(self, system: System, rotations: np.ndarray) -> tuple[np.ndarray, list[str]]:
@@ -82,8 +101,9 @@ class Thread:
             here = np.flatnonzero((rotations >= low) & (rotations <= high))
             if not len(here):
                 continue
-            guess = _cubic(segment.touches, rotations[here]) if low < high else segment.touches[0].x[None, :]
-            x[here] = system.solve_many(guess, rotations[here], segment.active, self.assembly)
+            x[here] = system.solve_many(
+                segment.between(rotations[here]), rotations[here], segment.active, self.assembly
+            )
             for k in here:
                 kinds[k] = segment.kind
         return x, kinds
@@ -94,8 +114,8 @@ class Thread:
         for segment in self.segments:
             low, high = segment.ends
             here = (rotations >= low) & (rotations <= high)
-            if here.any() and low < high:
-                found[here] = _cubic(segment.touches, rotations[here])[:, 6]
+            if here.any():
+                found[here] = segment.between(rotations[here])[:, 6]
         return found + system.ratio * rotations
 
 
@@ -126,7 +146,7 @@ def _run(system: System, start: Touch, assembly: np.ndarray, limit: float) -> li
     while abs(limit - touches[-1].rotation) > 0.0:
         last = touches[-1]
         ahead = way * min(step, abs(limit - last.rotation))
-        following = _corrected(system, last, last.rotation + ahead, assembly)
+        following = _corrected(system, touches, last.rotation + ahead, assembly)
         if following is None or (np.abs(following.x[:6] - last.x[:6]) > _MOVES).any():
             step /= 2
             if step < _LEAST_STEP:
@@ -142,21 +162,40 @@ def _run(system: System, start: Touch, assembly: np.ndarray, limit: float) -> li
     return touches
 
 
-def _corrected(system: System, last: Touch, rotation: float, assembly: np.ndarray) -> Touch | None:
-    guess = last.x + (rotation - last.rotation) * last.tangent
-    return system.solve(guess, rotation, last.active, assembly, _CORRECTIONS)
+def _corrected(system: System, before: Sequence[Touch], rotation: float, assembly: np.ndarray) -> Touch | None:
+    """The contact at a rotation, from the cubic through the last two positions, or from the tangent of one."""
+    last = before[-2:] if len(before) > 1 else before
+    ordered = last if last[0].rotation <= last[-1].rotation else last[::-1]
+    guess = _cubic(_nodes(ordered), np.array([rotation]))[0]
+    return system.solve(guess, rotation, last[-1].active, assembly, _CORRECTIONS)
 
 
 def _border(system: System, inside: Touch, outside: Touch, assembly: np.ndarray) -> Touch:
-    """The contact between two where the first margin is zero, by the Illinois rule; just inside of it."""
-    which = int(np.argmin(_crossings(inside, outside)))
+    """The contact between two where the first margin is zero: in one go, else by the Illinois rule from inside."""
+    parts = _crossings(inside, outside)
+    which, part = int(np.argmin(parts)), float(parts.min())
+    fewer = tuple(border for border in inside.active if border != which)
+    guess = inside.x + part * (outside.x - inside.x)
+    at = inside.rotation + part * (outside.rotation - inside.rotation)
+    if (found := system.event(guess, at, fewer, which, assembly)) is not None:
+        x, at = found
+        if min(inside.rotation, outside.rotation) <= at <= max(inside.rotation, outside.rotation):
+            touch = system.solve(x, at, inside.active, assembly)
+            if touch is not None and (touch.margins >= -_CLOSE).all() and np.abs(touch.x - x).max() < _CLOSE:
+                return touch
+    return _border_slowly(system, inside, outside, which, assembly)
+
+
+def _border_slowly(system: System, inside: Touch, outside: Touch, which: int, assembly: np.ndarray) -> Touch:
     low, high = inside, outside
     one, other = float(inside.margins[which]), float(outside.margins[which])
     for _ in range(_SECANTS):
-        if abs(high.rotation - low.rotation) < 1e-13 or 0 <= one < 1e-12:
+        if abs(high.rotation - low.rotation) < 1e-13 or 0 <= one < _CLOSE:
             break
         rotation = low.rotation + (high.rotation - low.rotation) * one / (one - other)
-        middle = _between(system, (low, high), rotation, assembly)
+        ends = (low, high) if low.rotation < high.rotation else (high, low)
+        guess = _cubic(_nodes(ends), np.array([rotation]))[0]
+        middle = system.solve(guess, rotation, inside.active, assembly)
         if middle is None:
             break
         value = float(middle.margins[which])
@@ -193,25 +232,24 @@ def _next(system: System, end: Touch, assembly: np.ndarray, limit: float) -> Tou
         start = system.solve(end.x, end.rotation, active, assembly)
         if start is None:
             continue
-        probe = _corrected(system, start, start.rotation + way * 1e-6, assembly)
+        probe = _corrected(system, [start], start.rotation + way * 1e-6, assembly)
         if probe is not None and (probe.margins >= _SLACK).all():
             return start
     return None
 
 
-def _between(system: System, touches: Sequence[Touch], rotation: float, assembly: np.ndarray) -> Touch | None:
-    """The contact at a rotation among those of one segment, from the cubic through its neighbours."""
-    for touch in (touches[0], touches[-1]):
-        if rotation == touch.rotation:
-            return touch
-    ordered = touches if touches[0].rotation < touches[-1].rotation else touches[::-1]
-    return system.solve(_cubic(ordered, np.array([rotation]))[0], rotation, touches[0].active, assembly)
+def _nodes(touches: Sequence[Touch]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    return (
+        np.array([touch.rotation for touch in touches]), np.stack([touch.x for touch in touches]),
+        np.stack([touch.tangent for touch in touches]),
+    )  # fmt: skip
 
 
-def _cubic(touches: Sequence[Touch], rotations: np.ndarray) -> np.ndarray:
-    """x (n,7) at rotations (n,) by Hermite's cubics between contacts (two or more) in the order of their rotation."""
-    at = np.array([touch.rotation for touch in touches])
-    x, slope = (np.stack([getattr(touch, name) for touch in touches]) for name in ("x", "tangent"))
+def _cubic(nodes: tuple[np.ndarray, np.ndarray, np.ndarray], rotations: np.ndarray) -> np.ndarray:
+    """x (n,7) at rotations (n,) by Hermite's cubics between nodes in the order of their rotation; of one, its line."""
+    at, x, slope = nodes
+    if len(at) == 1:
+        return x + (rotations - at)[:, None] * slope
     k = np.clip(np.searchsorted(at, rotations), 1, len(at) - 1)
     h = (at[k] - at[k - 1])[:, None]
     t = (rotations - at[k - 1])[:, None] / h
