@@ -130,6 +130,14 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
             ["half axes of the ellipse", f"{major:.3f} and {minor:.3f} mm"],
             ["path from root line towards tip", f"{mean['path_angle_deg']:.2f} degrees"],
         ]
+    found = result["pattern"]
+    if "length_share" in found:
+        rows += [
+            [f"pattern at {found['thickness_mm'] * 1000:.3g} um", f"{found['share']:.0%} of the flank, "
+             f"{found['length_share']:.0%} of its width"],
+            ["center of the pattern", f"cone distance {found['center_cone_distance_mm']:.2f}, height "
+             f"{found['center_height_mm']:+.2f} mm"],
+        ]  # fmt: skip
     for place, found in result["v_h_mm"].items():
         rows.append([f"V and H for contact at {place}",
                      "none" if found is None else f"{found[0]:+.4f} and {found[1]:+.4f} mm"])  # fmt: skip
@@ -137,7 +145,7 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
     if result["path"]:
         head = ["pinion deg", "kind", "error arcsec", "cone distance mm", "height mm"]
         cells = [
-            [f"{row['pinion_rotation_deg']:.3f}", row["kind"], f"{row['transmission_error_arcsec']:.3f}",
+            [f"{row['pinion_rotation_deg']:.3f}", row["kind"], f"{row['transmission_error_arcsec']:z.3f}",
              f"{row['gear_cone_distance_mm']:.4f}", f"{row['gear_height_mm']:.4f}"]
             for row in result["path"]
         ]  # fmt: skip

@@ -41,11 +41,12 @@ class Pattern:
     def figures(self) -> dict[str, float]:
         """Part of the flank's width and of all its points that is marked, and the center of the pattern [mm]."""
         marked = self.marked
+        thickness = {"thickness_mm": self.thickness, "share": float(marked.mean())}
         if not marked.any():
-            return {"share": 0.0}
+            return thickness
         across = self.cone_distance[marked]
         return {
-            "share": float(marked.mean()),
+            **thickness,
             "length_share": float(np.ptp(across) / np.ptp(self.cone_distance)),
             "center_cone_distance_mm": float(across.mean()),
             "center_height_mm": float(self.height[marked].mean()),

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from gearmath.bevel.contact.surface import Surface
 from gearmath.bevel.contact.system import System
 from gearmath.bevel.kernels import kernel
+from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import half_turn
 
 _ROWS, _COLUMNS = 9, 17
@@ -46,11 +49,7 @@ class Places:
 def places(system: System, assembly: np.ndarray, rows: int = _ROWS, columns: int = _COLUMNS) -> Places:
     """The map of the gear's whole flank, from the lower limit of its working depth to its tip."""
     gear, pinion = system.gear, system.pinion
-    up, across = (
-        one.ravel() for one in np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
-    )
-    axial, radial = kernel("flank_place")(gear.blank.vector, across, up)
-    own = gear.solve(axial, radial)
+    own = _grid(gear, rows, columns)
     pair = (system.shaft_angle, system.offset, assembly)
     given = (own.point, own.normal, gear.apex_beyond, *pair)
     found = []
@@ -80,6 +79,15 @@ def places(system: System, assembly: np.ndarray, rows: int = _ROWS, columns: int
     along, depth = kernel("root_place")(own.point, gear.pitch_angle)
     rotation, error, lever, along, height = (one.reshape(shape) for one in (rotation, error, lever, along, -depth))
     return Places(rotation, error, lever, x.reshape(*shape, 7), distance.reshape(*shape, -1), along, height)
+
+
+@lru_cache(maxsize=32)
+def _grid(surface: Surface, rows: int, columns: int) -> FlankPoints:
+    """Points of a flank on a grid of its blank, row by row; the assembly does not change them."""
+    up, across = (
+        one.ravel() for one in np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
+    )
+    return surface.solve(*kernel("flank_place")(surface.blank.vector, across, up))
 
 
 def _column(mask: np.ndarray, like: np.ndarray) -> np.ndarray:

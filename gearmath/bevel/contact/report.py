@@ -7,6 +7,7 @@ from typing import Any
 
 from gearmath.bevel.contact.mesh import Mesh, mesh
 from gearmath.bevel.contact.misalignment import contact_at, sensitivities
+from gearmath.bevel.contact.pattern import pattern
 from gearmath.bevel.contact.surface import nominal_surface
 from gearmath.bevel.contact.system import Assembly, System, pair_system
 from gearmath.specs.bevel_set import FLANKS, BevelSet
@@ -50,6 +51,7 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
             }
             for row in rows
         ],
+        "pattern": pattern(run).figures,
         "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
         "v_h_mm": _v_h(run),
     }

@@ -24,7 +24,7 @@ BORDERS = ("tip", "toe", "heel", "root")
 #: Fold [1] as a distance from the singular line [mm], in its size.
 _FOLD = 5.0
 #: Newton steps to a place, the residual [mm] to reach, and the largest change of u [mm], β, θ [rad] in a step.
-_STEPS, _TOLERANCE, _LIMITS = 10, 1e-11, np.array([3.0, 0.2, 0.2])
+_STEPS, _TOLERANCE, _LIMITS = 12, 1e-11, np.array([8.0, 0.4, 0.4])
 
 
 @dataclass(frozen=True, eq=False)

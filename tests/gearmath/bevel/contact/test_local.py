@@ -194,7 +194,6 @@ def test_sensitivity_of_the_place_is_that_of_differences(side: str, gear_set: Be
         assert found[:2, k] == pytest.approx(list(slope(place, 1e-3)), rel=1e-4, abs=1e-6)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("side", SIDES)
 def test_v_and_h_bring_the_rolled_contact_to_the_mean_point(side: str, gear_set: BevelSet, rolling) -> None:
     system = side_system(gear_set, side)

@@ -37,7 +37,6 @@ def same_as_rolled(pair: BevelSet, side: str, witness, assembly: dict, rotations
     return told
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("assembly", [{}, DISPLACED], ids=["true", "displaced"])
 @pytest.mark.parametrize("side", SIDES)
 def test_nasa_pair_runs_as_its_rolled_surfaces(side: str, assembly: dict, rolling) -> None:
@@ -45,7 +44,6 @@ def test_nasa_pair_runs_as_its_rolled_surfaces(side: str, assembly: dict, rollin
     assert same_as_rolled(pair, side, rolling(pair, SIDES[side], **assembly), assembly) == len(ROTATIONS)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("name", "side"), [(FORMATE, "coast"), (HOBBED, "drive"), (UNIVERSAL, "coast")])
 def test_other_methods_run_as_their_rolled_surfaces(name: str, side: str, rolling) -> None:
     pair = load_bevel_set(bundled(f"{name}.toml"))
@@ -53,7 +51,6 @@ def test_other_methods_run_as_their_rolled_surfaces(name: str, side: str, rollin
     assert same_as_rolled(pair, side, witness, DISPLACED) >= 3
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("side", SIDES)
 def test_crowned_pair_runs_as_its_rolled_surfaces(side: str, rolling, uniform_pair) -> None:
     pair = uniform_pair(CROWNED[side], BENT)
