@@ -13,13 +13,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from gearmath.bevel.contact.surface import Surface
+from gearmath.bevel.contact.surface import BORDERS, Surface
 from gearmath.bevel.contact.system import System
 from gearmath.bevel.kernels import kernel
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import half_turn
 
 _ROWS, _COLUMNS = 9, 17
+#: Which borders of both flanks make an edge.
+_EDGES = np.array([name != "root" for name in BORDERS] * 2)
 
 
 @dataclass(frozen=True)
@@ -136,6 +138,6 @@ def seeds(found: Places, rotation: float, sense: float) -> list[Seed]:
         if error[k] < before or error[k] < after:
             continue
         at_end = k in (0, len(error) - 1)
-        active = (int(np.argmin(distance[k])),) if at_end else ()
+        active = (int(np.argmin(np.where(_EDGES, distance[k], np.inf))),) if at_end else ()
         found_seeds.append(Seed(rotation, x[k], active))
     return found_seeds

@@ -31,7 +31,7 @@ _STEPS, _TOLERANCE, _LIMITS = 12, 1e-11, np.array([8.0, 0.4, 0.4])
 class Surface:
     """One flank of a member, nominal or measured.
 
-    ``function`` takes w = (u, β, θ) to point [mm], outward unit normal, condition [mm], zero on the flank, and fold,
+    ``function`` takes w = (u [mm], β, θ) to point [mm], outward unit normal, condition [mm], zero on the flank, and fold,
     positive from the mean point to a singular line; in the frame of the work. ``borders`` (4,4) are those of (25.4),
     inside where positive; beyond its singular line a flank is undercut, and ends as at its root. ``solve`` finds points
     at places z_w, r_w (n,) [mm], NaN where there are none.
@@ -118,7 +118,7 @@ def nominal_surface(member: Member, flank: str) -> Surface:
 def _slowly(how: Generation, section: Section, axial: np.ndarray, radial: np.ndarray) -> FlankPoints:
     """Points of a flank as the general solver finds them, NaN where it finds none."""
     found = solve_section(how, section, axial, radial)
-    arrays = [array.copy() for array in (found.contact, found.point, found.normal)]
+    arrays = [found.contact * [_length_of_u(section), 1.0, 1.0], found.point.copy(), found.normal.copy()]
     for array in arrays:
         array[~found.converged] = np.nan
     return FlankPoints(*arrays)
@@ -140,12 +140,18 @@ def _borders(member: Member, section: Section) -> np.ndarray:
     axial, radial = (float(value) for value in kernel("flank_place")(blank.vector, 0.5, 1.0))
     mean, half = blank.mean_cone_distance, blank.face_width / 2
     sense, end = (-1.0, section.upper) if section.tip_is_upper else (1.0, section.lower)
+    end *= _length_of_u(section)
     return np.array([
         [0.0, math.sin(face), -math.cos(face), radial * math.cos(face) - axial * math.sin(face)],
         [0.0, math.cos(delta), math.sin(delta), half - mean],
         [0.0, -math.cos(delta), -math.sin(delta), half + mean],
         [sense, 0.0, 0.0, -sense * end],
     ])  # fmt: skip
+
+
+def _length_of_u(section: Section) -> float:
+    """Length [mm] per unit of the blade's parameter: on an arc that is an angle."""
+    return 1.0 if section.arc is None else abs(section.arc[2])
 
 
 @cache
@@ -160,8 +166,9 @@ def _function(flank: Generation, section: Section, mean: np.ndarray) -> ca.Funct
     """
     w = ca.SX.sym("w", 3)
     arc = () if section.arc is None else (ca.DM(section.arc),)
+    u = w[0] / _length_of_u(section)
     given = (ca.DM(flank.settings), ca.DM(flank.motion), flank.index_ratio, flank.blade_offset_angle, *arc, flank.side)
-    point, normal, meshing = _family(section.arc is not None).function(w[0], w[1], w[2], *given)
+    point, normal, meshing = _family(section.arc is not None).function(u, w[1], w[2], *given)
     reach = float(flank.settings[0])
     condition = meshing / reach if flank.rolling else reach * w[2]
     place = ca.vertcat(point[2], ca.sqrt(point[0] ** 2 + point[1] ** 2), condition)
