@@ -82,7 +82,7 @@ def expressions() -> Iterator[Expression]:
     yield from (contact.tangency(), contact.transmission(), contact.meeting())
     yield from (local_synthesis.flank_curvature(), local_synthesis.roll_at_contact(), local_synthesis.contact_motion())
     yield from (local_synthesis.conjugate_curvature(), local_synthesis.contact_ellipse(), local_synthesis.synthesis())
-    yield local_synthesis.root_basis()
+    yield from (local_synthesis.root_basis(), local_synthesis.displaced_normal())
     yield from (gearbox.gearbox_ratio(), gearbox.gearbox_terms(), gearbox.gearbox_start(), gearbox.desired_position())
     yield from (
         gearbox.nearest_position(),

@@ -23,7 +23,10 @@ the tangent plane, and t_2 towards the tip, p = cos δ_f [x, y, 0]/r_w - sin δ_
 
     t_1 = (g - (g·n) n)/|...|,   t_2 = ±n × t_1,   t_2·p > 0                                      (26.7)
 
-The path on the gear has the velocity v_1 + v.
+The path on the gear has the velocity v_1 + v. A flank with a deviation δ(w) along its normals, R' = R + δ n, has along
+f = 0 the outward normal
+
+    n' = ±cof(R'_w) ∇f/|...|,   n'·n > 0                                                          (26.8)
 """
 
 from __future__ import annotations
@@ -188,6 +191,35 @@ def root_basis() -> Expression:
         ),
         source="projection into the tangent plane",
     )
+
+
+@cache
+def displaced_normal() -> Expression:
+    """(26.8) as an Expression; ``point_rates`` are those of the displaced points."""
+    R, f, n = (sp.Matrix(one.symbol) for one in (q.point_rates, q.meshing_gradient, q.normal_w))
+    columns = [R[:, k] for k in range(3)]
+    across = sum((f[k] * columns[(k + 1) % 3].cross(columns[(k + 2) % 3]) for k in range(3)), sp.zeros(3, 1))
+    size = sp.sqrt(across.dot(across))
+    return Expression(
+        "displaced_normal",
+        "Outward normal of a flank that deviates along its nominal normals (26.8).",
+        (q.point_rates, q.meshing_gradient, q.normal_w),
+        ((q.own_normal, sp.sign(across.dot(n)) * across / size),),
+        requires=(size**2 - 1, across.dot(n) ** 2 - sp.Rational(1, 100)),
+        source="a linear map takes areas by its cofactors",
+    )
+
+
+def prove_displaced_normal_is_square_to_every_direction_within_the_flank() -> None:
+    """(26.8) n' is square to R'_w b for every b with ∇f·b = 0, as b = ∇f × c is for any c."""
+    R, f = sp.Matrix(q.point_rates.symbol), sp.Matrix(q.meshing_gradient.symbol)
+    columns = [R[:, k] for k in range(3)]
+    across = sum((f[k] * columns[(k + 1) % 3].cross(columns[(k + 2) % 3]) for k in range(3)), sp.zeros(3, 1))
+    for c in sp.eye(3).columnspace():
+        assert is_zero(sp.expand(across.dot(R * f.cross(c))))
+    found = displaced_normal()["own_normal"]
+    side = sp.sign(across.dot(sp.Matrix(q.normal_w.symbol)))
+    assert is_zero(sp.Matrix(found) * sp.sqrt(across.dot(across)) / side - across)
 
 
 def prove_root_basis_is_orthonormal_and_points_to_heel_and_tip() -> None:

@@ -729,6 +729,10 @@ apex_beyond = _length(
     "apex_beyond", "t_z'", -20.0, 20.0, "pitch apex of the member beyond the crossing point, seen from the teeth"
 )
 
+own_normal = _vector(
+    "own_normal", r"\mathbf{n}'", "1", 1.0, 1.0, "outward unit normal of a flank with deviations, work frame w"
+)
+
 # --- curvature and local synthesis --------------------------------------------------------------------------------
 point_rates = Quantity(
     "point_rates", "derivatives of the point of a flank by its three parameters, as columns", "mixed",

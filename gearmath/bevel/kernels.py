@@ -88,6 +88,7 @@ _EXPRESSIONS = {
     "roll_at_contact": local_synthesis.roll_at_contact,
     "contact_motion": local_synthesis.contact_motion,
     "contact_ellipse": local_synthesis.contact_ellipse,
+    "displaced_normal": local_synthesis.displaced_normal,
     "root_basis": local_synthesis.root_basis,
     "synthesis": local_synthesis.synthesis,
 }

@@ -31,10 +31,10 @@ _STEPS, _TOLERANCE, _LIMITS = 12, 1e-11, np.array([8.0, 0.4, 0.4])
 class Surface:
     """One flank of a member, nominal or measured.
 
-    ``function`` takes w = (u [mm], β, θ) to point [mm], outward unit normal, condition [mm], zero on the flank, and fold,
-    positive from the mean point to a singular line; in the frame of the work. ``borders`` (4,4) are those of (25.4),
-    inside where positive; beyond its singular line a flank is undercut, and ends as at its root. ``solve`` finds points
-    at places z_w, r_w (n,) [mm], NaN where there are none.
+    ``function`` takes w = (u [mm], β, θ) to point [mm], outward unit normal, condition [mm], zero on the flank, and
+    fold, positive from the mean point to a singular line; in the frame of the work. ``borders`` (4,4) are those of
+    (25.4), inside where positive; beyond its singular line a flank is undercut, and ends as at its root. ``solve``
+    finds points at places z_w, r_w (n,) [mm], NaN where there are none.
     """
 
     function: ca.Function
@@ -90,6 +90,37 @@ def nominal_surface(member: Member, flank: str) -> Surface:
     delta, distance = math.radians(member.blank.pitch_angle), member.blank.mean_cone_distance
     mean = _slowly(how, section, *(np.array([distance * f(delta)]) for f in (math.cos, math.sin))).contact[0]
     function = _function(how.with_blade(section), section, mean)
+    solve = _solver(function, mean, lambda axial, radial: _slowly(how, section, axial, radial))
+    return Surface(function, _borders(member, section), solve, member.blank, member.teeth)
+
+
+def displaced_surface(surface: Surface, deviation: ca.Function) -> Surface:
+    """A flank with metal left on: ``deviation`` takes the place z_w, r_w of a nominal point to δ [mm] along its normal.
+
+    Borders and singular line are those of the nominal flank. ``deviation`` must be smooth: twice differentiable.
+    """
+    w = ca.SX.sym("w", 3)
+    point, normal, condition, fold = surface.function(w)
+    off = deviation(point[2], ca.sqrt(point[0] ** 2 + point[1] ** 2))
+    moved = point + off * normal
+    rates, gradient = ca.jacobian(moved, w), ca.jacobian(condition, w).T
+    own = kernel("displaced_normal").function(rates, gradient, normal)
+    function = ca.Function("displaced", [w], ca.cse([moved, own, condition, fold]))
+    mean = surface.at(surface.blank.mean_cone_distance).contact[0]
+    solve = _solver(function, mean, _nowhere)
+    return Surface(function, surface.borders, solve, surface.blank, surface.teeth)
+
+
+def _nowhere(axial: np.ndarray, radial: np.ndarray) -> FlankPoints:
+    lost = np.full((len(axial), 3), np.nan)
+    return FlankPoints(lost, lost, lost)
+
+
+_Solver = Callable[[np.ndarray, np.ndarray], FlankPoints]
+
+
+def _solver(function: ca.Function, mean: np.ndarray, otherwise: _Solver) -> _Solver:
+    """Newton's method for places of a flank, from the parameters of its mean point; ``otherwise`` where it fails."""
     newton = _newton(function)
 
     def solve(axial: np.ndarray, radial: np.ndarray) -> FlankPoints:
@@ -107,12 +138,12 @@ def nominal_surface(member: Member, flank: str) -> Surface:
             w = w + step / np.maximum(1.0, (np.abs(step) / _LIMITS).max(axis=1))[:, None]
         found = FlankPoints(w, point[:, :, 0], normal[:, :, 0])
         if not done.all():
-            better = _slowly(how, section, axial[~done], radial[~done])
+            better = otherwise(axial[~done], radial[~done])
             for array, other in zip(vars(found).values(), vars(better).values(), strict=True):
                 array[~done] = other
         return found
 
-    return Surface(function, _borders(member, section), solve, member.blank, member.teeth)
+    return solve
 
 
 def _slowly(how: Generation, section: Section, axial: np.ndarray, radial: np.ndarray) -> FlankPoints:

@@ -29,6 +29,10 @@ _GRID, _SHRINK, _LEVELS = 25, 0.6, 31
 _TEETH, _CONE, _SPIRAL, _ALPHA, _RADIUS, _DEPTH = (14, 39), 80.0, math.radians(35), math.radians(20), 100.0, 4.0
 
 
+#: Deviation [mm] along the outward normal at places z_w, r_w (n,) of nominal points.
+Deviation = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
 @dataclass(frozen=True)
 class Field:
     """A flank as its azimuth over (across, up) of the blank: 0 to 1 from toe to heel, from the clearance to the tip.
@@ -41,13 +45,21 @@ class Field:
     lowest: float
 
     @classmethod
-    def of(cls, member: Member, flank: str, lowest: float = 0.0) -> Field:
+    def of(cls, member: Member, flank: str, lowest: float = 0.0, deviation: Deviation | None = None) -> Field:
         nodes = np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1))
         x, y = np.meshgrid(nodes, nodes, indexing="ij")
         axial, radial = _place(member, *_fractions(x, y, lowest))
-        points, residual = nominal_points(member, flank, Grid(axial, radial))
-        assert (residual < 1e-9).all()
-        azimuth = np.unwrap(np.unwrap(np.arctan2(points.point[:, 1], points.point[:, 0]).reshape(x.shape)), axis=0)
+        at = np.stack([axial, radial])
+        for _ in range(1 if deviation is None else 6):
+            points, residual = nominal_points(member, flank, Grid(*at))
+            assert (residual < 1e-9).all()
+            point = points.point
+            if deviation is not None:  # which nominal place comes to stand on this one
+                off = deviation(*(one.ravel() for one in at))
+                point = point + off[:, None] * points.normal
+                here = np.stack([point[:, 2], np.hypot(point[:, 0], point[:, 1])]).reshape(at.shape)
+                at = at + np.stack([axial, radial]) - here
+        azimuth = np.unwrap(np.unwrap(np.arctan2(point[:, 1], point[:, 0]).reshape(x.shape)), axis=0)
         matrix = np.linalg.inv(chebyshev.chebvander(nodes, _DEGREE))
         return cls(member, matrix @ azimuth @ matrix.T, lowest)
 
@@ -185,11 +197,13 @@ def _half(angle: np.ndarray) -> np.ndarray:
 
 @pytest.fixture(scope="session")
 def rolling():
-    """rolling(set, pinion flank, lowest of the pinion, V, H, J, shaft): the witness of one side of a pair."""
+    """rolling(set, pinion flank, lowest and deviation of the pinion, V, H, J, shaft): one side of a pair."""
 
-    def make(pair: BevelSet, flank: str, lowest: float = 0.0, **assembly: float) -> Rolling:
+    def make(
+        pair: BevelSet, flank: str, lowest: float = 0.0, deviation: Deviation | None = None, **assembly: float
+    ) -> Rolling:
         mating = FLANKS[1 - FLANKS.index(flank)]
-        pinion, gear = Field.of(pair.pinion, flank, lowest), Field.of(pair.gear, mating)
+        pinion, gear = Field.of(pair.pinion, flank, lowest, deviation), Field.of(pair.gear, mating)
         # a left-hand pinion drives with its concave flank, turning clockwise about Z
         sense = 1 if (flank == "concave") == (pair.pinion.hand == "left") else -1
         return Rolling(pinion, gear, math.radians(pair.shaft_angle), sense, **assembly)
