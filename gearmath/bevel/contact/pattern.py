@@ -1,7 +1,9 @@
 """The contact pattern: where the gap falls below the thickness of the marking compound in the course of the mesh.
 
 A point of the gear is nearest to the pinion at the rotation of its own contact at the constant ratio. The gap there is
-its ease-off less what the gear lags at that rotation, with all pairs of teeth taken into account.
+its ease-off less what the gear lags at that rotation, with all pairs of teeth taken into account. Where the gear runs
+far from uniformly the least gap comes a little earlier or later and is smaller: by the square of the slope of the
+transmission error times half the lever, which is 0.03 µm at 2 arcsec a degree and 2 µm at 20.
 """
 
 from __future__ import annotations
