@@ -33,7 +33,7 @@ class Fast:
 class Mapped:
     """A CasADi function of dense outputs for many points, a block of one size at a time: to map it takes a while."""
 
-    def __init__(self, function: ca.Function, shared: tuple[int, ...] = (), block: int = 32) -> None:
+    def __init__(self, function: ca.Function, shared: tuple[int, ...] = (), block: int = 16) -> None:
         self._block, self._shared = block, shared
         self._shapes = [function.size_out(k) for k in range(function.n_out())]
         self._run = Fast(function.map(f"{function.name()}s", "serial", block, list(shared), []))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 #: Samples of a pitch among which the leading pair is sought before its ends are found exactly.
 _SAMPLES = 120
 #: Difference of leads [rad] that counts as none, and trials to get there.
-_SAME_LEAD, _TRIALS = 1e-13, 40
+_SAME_LEAD, _TRIALS = 1e-12, 40
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def leads_over_a_pitch(run: Mesh) -> Leads:
 def _crossing(value: Callable[[int, float], float], one: int, other: int, low: float, high: float) -> float:
     """The lead at which one runner takes over from another between two rotations: Illinois, halves where one ends."""
     before, after = (value(one, at) - value(other, at) for at in (low, high))
-    found = math.nan
+    found, kept = math.nan, 0
     for _ in range(_TRIALS):
         part = before / (before - after) if math.isfinite(before - after) else 0.5
         middle = low + (high - low) * part
@@ -84,8 +84,9 @@ def _crossing(value: Callable[[int, float], float], one: int, other: int, low: f
         found, here = max(first, second), first - second
         if abs(here) < _SAME_LEAD:
             break
+        # the end that stays twice counts half
         if here > 0:
-            low, before, after = middle, here, after / 2
+            low, before, after, kept = middle, here, after / 2 if kept == 1 else after, 1
         else:
-            high, after, before = middle, here, before / 2
+            high, after, before, kept = middle, here, before / 2 if kept == -1 else before, -1
     return found

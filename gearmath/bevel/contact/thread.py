@@ -28,6 +28,8 @@ _SLACK = -1e-9
 #: Margin [mm, or rad/mm] at which a border counts as reached.
 _CLOSE = 1e-10
 _SECANTS = 40
+#: Size of a value that counts as zero: of a slope [1], or of a product of lengths by an angle [mm²/rad].
+_ZERO = 1e-10
 _PARTS = 24
 
 
@@ -187,7 +189,7 @@ def _border(system: System, inside: Touch, outside: Touch, assembly: np.ndarray)
 
 
 def _border_slowly(system: System, inside: Touch, outside: Touch, which: int, assembly: np.ndarray) -> Touch:
-    low, high = inside, outside
+    low, high, kept = inside, outside, 0
     one, other = float(inside.margins[which]), float(outside.margins[which])
     for _ in range(_SECANTS):
         if abs(high.rotation - low.rotation) < 1e-13 or 0 <= one < _CLOSE:
@@ -200,9 +202,9 @@ def _border_slowly(system: System, inside: Touch, outside: Touch, which: int, as
             break
         value = float(middle.margins[which])
         if value >= 0:
-            low, one, other = middle, value, other / 2
+            low, one, other, kept = middle, value, other / 2 if kept == 1 else other, 1
         else:
-            high, other, one = middle, value, one / 2
+            high, other, one, kept = middle, value, one / 2 if kept == -1 else one, -1
     return low
 
 
@@ -269,17 +271,18 @@ def zero(at: Callable[[float], Touch | None], value: Callable[[Touch], float], l
         return first if one == 0 else second
     if one * other > 0:
         return None
-    found = first
+    found, kept = first, 0
     for _ in range(_SECANTS):
         rotation = low + (high - low) * one / (one - other)
         middle = at(rotation)
         if middle is None:
             return None
         found, here = middle, value(middle)
-        if here == 0 or abs(high - low) < 1e-12 or abs(rotation - low) < 1e-13 or abs(high - rotation) < 1e-13:
+        if abs(here) < _ZERO or abs(high - low) < 1e-12 or abs(rotation - low) < 1e-13 or abs(high - rotation) < 1e-13:
             break
+        # the end that stays twice counts half
         if here * one > 0:
-            low, one, other = rotation, here, other / 2
+            low, one, other, kept = rotation, here, other / 2 if kept == 1 else other, 1
         else:
-            high, other, one = rotation, here, one / 2
+            high, other, one, kept = rotation, here, one / 2 if kept == -1 else one, -1
     return found
