@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
+from matplotlib.patches import Patch, Polygon
 
 from gearmath.bevel.contact.local import local
 from gearmath.bevel.contact.mesh import REACH, Mesh
@@ -68,7 +68,7 @@ def _draw_error(axes: Axes, run: Mesh, title: str) -> None:
 
 def _draw_path(axes: Axes, run: Mesh, found: Pattern) -> None:
     """The path of one pair of teeth on the gear, with the contact ellipses along it."""
-    _outline(axes, found)
+    tooth = _outline(axes, found)
     step = 3 * run.system.pitch / (_SAMPLES - 1)
     rows = run.path(step)
     for kind, color in _KINDS.items():
@@ -88,9 +88,9 @@ def _draw_path(axes: Axes, run: Mesh, found: Pattern) -> None:
                 turn
             )
             center = np.array(run.system.gear_place(touch.x))
-            axes.add_patch(
-                Polygon((center[:, None] + here.axial @ ring).T, fill=False, edgecolor=AFTER, linewidth=0.6, alpha=0.7)
-            )
+            seen = (center[:, None] + here.axial @ ring).T
+            ellipse = axes.add_patch(Polygon(seen, fill=False, edgecolor=AFTER, linewidth=0.6, alpha=0.7))
+            ellipse.set_clip_path(tooth)
     axes.plot(run.system.gear.blank.mean_cone_distance, 0, "+", color=INK, markersize=7)
     _label(axes, "path on the gear", "cone distance / mm (toe left)", "height / mm")
 
@@ -118,11 +118,13 @@ def _draw_pattern(axes: Axes, run: Mesh, found: Pattern) -> None:
     )
 
 
-def _outline(axes: Axes, found: Pattern) -> None:
+def _outline(axes: Axes, found: Pattern) -> Patch:
+    """The projected tooth of the gear, from its tip to the lower limit of its working depth."""
     x, y = found.cone_distance, found.height
     rim = [np.concatenate([a[0], a[1:, -1], a[-1, ::-1], a[::-1, 0]]) for a in (x, y)]
-    axes.fill(*rim, facecolor="#f7f7f7", edgecolor=INK, linewidth=0.8, zorder=0)
+    (tooth,) = axes.fill(*rim, facecolor="#f7f7f7", edgecolor=INK, linewidth=0.8, zorder=0)
     axes.set_aspect("equal")
+    return tooth
 
 
 def _label(axes: Axes, title: str, x: str, y: str) -> None:

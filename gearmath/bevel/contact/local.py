@@ -37,7 +37,7 @@ class Local:
 
 
 @lru_cache(maxsize=16)
-def _function(system: System) -> ca.Function:
+def roll(system: System) -> ca.Function:
     """x, φ_1, assembly -> w, β_c, D, lever, sliding (chapter 26), in the basis of the gear's root cone.
 
     Last how cone distance and depth on the gear change along the basis (2,2).
@@ -71,7 +71,7 @@ def _function(system: System) -> ca.Function:
 
 def local(system: System, touch: Touch, assembly: np.ndarray, separation: float = MARKING) -> Local:
     """Curvature and motion at a contact within both flanks, its ellipse at a ``separation`` [mm]."""
-    *found, seen = (np.asarray(one) for one in _function(system)(touch.x, touch.rotation, assembly))
+    *found, seen = (np.asarray(one) for one in roll(system)(touch.x, touch.rotation, assembly))
     w, beta, D, lever, sliding = (one.ravel() for one in found)
     velocity, second = kernel("contact_motion")(w, beta[0], D, lever[0])
     (axes,) = kernel("contact_ellipse")(D, separation)

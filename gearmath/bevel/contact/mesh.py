@@ -96,11 +96,12 @@ class Mesh:
         best: dict[int, Row] = {}
         for thread in self.threads:
             x, kinds = thread.sample(self.system, rotations)
+            at = self.system.gear_places(x)
             for k in np.flatnonzero(np.isfinite(x).all(axis=1)).tolist():
                 rotation = float(rotations[k])
                 error = float(x[k, 6] + self.system.ratio * rotation)
                 if k not in best or self.system.sense * (error - best[k].error) > 0:
-                    best[k] = Row(rotation, kinds[k], error, *self.system.gear_place(x[k]))
+                    best[k] = Row(rotation, kinds[k], error, float(at[k, 0]), float(at[k, 1]))
         return [best[k] for k in sorted(best)]
 
     def path(self, step: float) -> list[Row]:

@@ -224,6 +224,14 @@ class System:
         (distance, depth), _ = self._gear_place(x)
         return float(distance[0]), -float(depth[0])
 
+    def gear_places(self, x: np.ndarray) -> np.ndarray:
+        """Cone distances and heights (n,2) on the gear [mm] of contacts ``x`` (n,7)."""
+        return self._gear_places(x)[0][:, :, 0] * [1.0, -1.0]
+
+    @cached_property
+    def _gear_places(self) -> Mapped:
+        return Mapped(self._gear_place.function)
+
     def place_rates(self, x: np.ndarray) -> np.ndarray:
         """How both change with ``x`` (2,7)."""
         along, deep = self._gear_place(x)[1]

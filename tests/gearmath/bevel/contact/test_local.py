@@ -9,12 +9,13 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from gearmath.bevel.contact.local import MARKING, local
+from gearmath.bevel.contact.local import MARKING, local, roll
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.misalignment import contact_at, sensitivities
 from gearmath.bevel.contact.report import ARCSEC, SIDES, side_mesh, side_system
 from gearmath.bevel.contact.surface import Surface
 from gearmath.bevel.contact.system import Assembly, System
+from gearmath.bevel.kernels import kernel
 from gearmath.specs.bevel_set import BevelSet, load_bevel_set
 from gearmath.specs.toml import bundled
 
@@ -154,6 +155,12 @@ def test_path_and_parabola_of_two_quadrics_are_those_of_differences(offset: floa
     assert found.path_speed == pytest.approx(float(np.hypot(*speed[3:5])), rel=1e-6)
     values = np.linalg.eigvalsh(bend[0] - bend[1])
     assert found.semi_axes == pytest.approx(list(np.sqrt(2 * MARKING / values)), rel=1e-9)
+    # the way back: from the direction of the path, the parabola and the ellipse to the curvatures
+    w, beta, D, lever, *_ = (np.asarray(one).ravel() for one in roll(system)(touch.x, 0.0, still))
+    velocity, second = kernel("contact_motion")(w, beta[0], D, lever[0])
+    direction = math.atan2(velocity[1], velocity[0])
+    (back,) = kernel("synthesis")(w, beta[0], lever[0], direction, second, found.semi_axes[0], MARKING)
+    assert back == pytest.approx(D, rel=1e-12)
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -219,6 +226,16 @@ def test_v_and_h_of_toe_and_heel_bring_the_contact_there(side: str, gear_set: Be
         assert (row.cone_distance, row.height) == pytest.approx((distance + inwards, 0.0), abs=1e-7)
         touch, _ = run.at_mean if run.at_mean[0].rotation == found.touch.rotation else (found.touch, None)
         assert abs(touch.tangent[6] + system.ratio) * ARCSEC < 1e-6
+
+
+@pytest.mark.parametrize(("member", "name", "sign"), [("pinion", "H", -1), ("gear", "J", -1)])
+def test_apex_beyond_the_crossing_point_moves_a_member_there(member: str, name: str, sign: int, gear_set) -> None:
+    # the same flank, counted from an apex beyond the crossing point, stands so much deeper
+    blank = getattr(gear_set, member).blank.model_copy(update={"pitch_apex_beyond_crossing_point": 0.3})
+    moved = gear_set.model_copy(update={member: getattr(gear_set, member).model_copy(update={"blank": blank})})
+    one, other = side_mesh(moved, "drive", Assembly()), side_mesh(gear_set, "drive", Assembly(**{name: sign * 0.3}))
+    rotations = np.radians([-20.0, 0.0, 20.0])
+    assert [row.error for row in one.rows(rotations)] == pytest.approx([row.error for row in other.rows(rotations)])
 
 
 def test_hands_of_a_pair_mirror_its_contact(gear_set: BevelSet) -> None:
