@@ -1,4 +1,4 @@
-"""How a pair runs: the contact of one pair of teeth over three pitches, and the first contact among neighbouring pairs.
+"""How a pair runs: the contact of one pair of teeth over three pitches, and the first contact among neighboring pairs.
 
 The error of tooth pair k is that of pair 0 k pitches earlier. The gear follows whichever pair pushes it furthest:
 
