@@ -700,3 +700,378 @@ passing_speed = Quantity(
 )  # fmt: skip
 blade_advance = Quantity("blade_advance", "advance of the work from one blade to the next", "mm", "f_b", scale=1.0)
 chip_thickness = Quantity("chip_thickness", "thickness of the chip, square to the blade", "mm", "h", scale=1.0)
+# --- contact of a pair ------------------------------------------------------------------------------------------
+pinion_rotation = _angle(
+    "pinion_rotation", r"\varphi_1", -pi, pi, "rotation of the pinion, right-handed about its axis"
+)
+gear_rotation = _angle("gear_rotation", r"\varphi_2", -pi, pi, "rotation of the gear about its axis")
+hypoid_offset = _length("hypoid_offset", "a", -50.0, 50.0, "offset of the gear's axis from the pinion's, along Z × X")
+assembly = Quantity(
+    "assembly", "displacements of the members in their assembly", "mixed", r"\mathbf{m}", shape=(4,),
+    components=(
+        _length("deviation_of_offset", "V", -5.0, 5.0, "gear axis shifted along Y = Z × X"),
+        _length("axial_displacement_pinion", "H", -5.0, 5.0, "pinion withdrawn along its axis Z"),
+        _length("axial_displacement_gear", "J", -5.0, 5.0, "gear withdrawn along its axis"),
+        _angle("deviation_of_shaft_angle", r"\Delta\Sigma", -0.05, 0.05, "growth of the shaft angle"),
+    ),
+)  # fmt: skip
+pinion_point = _vector("pinion_point", r"\mathbf{r}_1", "mm", 300.0, 300.0, "point of the pinion's flank, pair frame")
+pinion_normal = _vector("pinion_normal", r"\mathbf{n}_1", "1", 1.0, 1.0, "its outward unit normal, pair frame")
+gear_point = _vector("gear_point", r"\mathbf{r}_2", "mm", 300.0, 300.0, "point of the gear's flank, pair frame")
+gear_normal = _vector("gear_normal", r"\mathbf{n}_2", "1", 1.0, 1.0, "its outward unit normal, pair frame")
+alignment = Quantity(
+    "alignment", "parts of the pinion's normal across the gear's, times distances of the contact", "mm",
+    r"\mathbf{q}", shape=(2,), scale=1000.0,
+)  # fmt: skip
+border = Quantity(
+    "border", "coefficients of u, z_w, r_w and 1 of a border of a flank", "mixed", r"\mathbf{c}", shape=(4,),
+    components=(
+        _factor("border_blade", "c_u", -1.0, 1.0, "border: coefficient of the blade's parameter u"),
+        _factor("border_axial", "c_z", -1.0, 1.0, "border: coefficient of z_w"),
+        _factor("border_radial", "c_r", -1.0, 1.0, "border: coefficient of r_w"),
+        _length("border_constant", "c_0", -300.0, 300.0, "border: constant part"),
+    ),
+)  # fmt: skip
+border_distance = Quantity(
+    "border_distance", "distance of a point from a border of its flank, positive inside", "mm", "b", scale=1000.0
+)
+edge_tangent = _vector("edge_tangent", r"\mathbf{e}", "1", 2.0, 2.0, "direction of the edge at a border, work frame w")
+mate_normal = _vector("mate_normal", r"\mathbf{n}'", "1", 1.0, 1.0, "outward unit normal of the mate's flank")
+tangency = Quantity("tangency", "part of an edge's direction along the normal of the mate", "1", "t", scale=3.0)
+lever = Quantity("lever", "lever of the contact normal about the gear's axis", "mm", r"\rho_2", scale=1000.0)
+transmission_slope = Quantity(
+    "transmission_slope", "rotation of the gear per rotation of the pinion", "1", r"\varphi_2'", scale=1000.0
+)
+teeth_ratio = _factor("teeth_ratio", "i", 0.05, 2.0, "teeth of the pinion over teeth of the gear")
+apex_beyond = _length(
+    "apex_beyond", "t_z'", -20.0, 20.0, "pitch apex of the member beyond the crossing point, seen from the teeth"
+)
+
+own_normal = _vector(
+    "own_normal", r"\mathbf{n}'", "1", 1.0, 1.0, "outward unit normal of a flank with deviations, work frame w"
+)
+
+# --- curvature and local synthesis --------------------------------------------------------------------------------
+point_rates = Quantity(
+    "point_rates", "derivatives of the point of a flank by its three parameters, as columns", "mixed",
+    r"\mathbf{R}_w", (-50.0, 50.0), shape=(3, 3), scale=1000.0,
+)  # fmt: skip
+normal_rates = Quantity(
+    "normal_rates", "derivatives of the normal of a flank by its three parameters, as columns", "mixed",
+    r"\mathbf{N}_w", (-1.0, 1.0), shape=(3, 3), scale=100.0,
+)  # fmt: skip
+meshing_gradient = Quantity(
+    "meshing_gradient", "derivatives of the equation of meshing by the three parameters", "mixed", r"\nabla f",
+    (-50.0, 50.0), shape=(3,), scale=1000.0,
+)  # fmt: skip
+curvature = Quantity(
+    "approach_curvature", "second derivative of the distance of a blade from a flank point by the roll at its contact",
+    "mm/rad2", "c", (0.1, 1e5),
+)  # fmt: skip
+scallop = _length("scallop", r"\delta", 1e-6, 0.1, "height of what is left between two passes of a blade")
+roll_per_turn = Quantity("roll_per_turn", "cradle rotation per turn of the work", "rad", r"\Delta\theta")
+toprem_angle = _angle("toprem_angle", r"\alpha_T", 0.01, 0.6, "angle between the Toprem section and the cutter axis")
+toprem_height = _length("toprem_height", "h_T", 0.0, 5.0, "height above the tip plane at which Toprem ends")
+toprem_point_radius = _length(
+    "toprem_point_radius", "r_{pT}", 20.0, 250.0, "radius at which Toprem meets the tip plane"
+)
+blade_spheric_radius = _length("blade_spheric_radius", "r", 200.0, 2000.0, "radius of a circular-arc blade")
+blade_curvature = Quantity(
+    "blade_curvature", "curvature of a blade's edge: one over its radius, zero where it is straight", "1/mm", r"\kappa",
+    (-0.01, 0.01),
+)  # fmt: skip
+reference_height = _length("reference_height", "h_r", 0.0, 15.0, "height at which arc and straight blade touch")
+blade_edge_radius = _length("blade_edge_radius", "r_e", 0.1, 3.0, "radius of the rounded blade edge")
+joint_height = _length("joint_height", "h_j", 0.0, 5.0, "height above the tip plane at which edge and blade join")
+joint_angle = _angle("joint_angle", r"u_j", 0.0, 1.5, "angle of the normal at which edge and arc blade join")
+roll_coefficients = Quantity(
+    "roll_coefficients", "modified roll 2C, 6D, 24E, 120F", "1", "(2C, 6D, 24E, 120F)", (-50.0, 50.0), shape=(4,),
+)  # fmt: skip
+roll_motion = Quantity(
+    "roll_motion", "coefficients of theta^1 ... theta^7 of the work rotation offset", "rad", r"m_{\varphi}",
+    shape=(7,), scale=100.0,
+)  # fmt: skip
+
+# --- bevel blank to ISO 23509 -----------------------------------------------------------------------------------
+shaft_angle = _angle("shaft_angle", r"\Sigma", 0.6, 2.4, "angle between the axes of the pair")
+pinion_teeth = _count("pinion_teeth", "z_1", 5, 60, "teeth of the pinion")
+wheel_teeth = _count("wheel_teeth", "z_2", 10, 200, "teeth of the wheel")
+gear_ratio = _factor("gear_ratio", "u", 0.1, 40.0, "teeth of the wheel over teeth of the pinion")
+outer_transverse_module = _length("outer_transverse_module", "m_{et}", 0.3, 30.0, "module at the heel, across the axis")
+wheel_outer_pitch_diameter = _length("wheel_outer_pitch_diameter", "d_{e2}", 20.0, 1000.0, "pitch circle at the heel")
+mean_spiral_angle = _angle("mean_spiral_angle", r"\beta_m", 0.0, 0.9, "tooth trace against the cone line at mean point")
+spiral_angle = _angle("spiral_angle", r"\beta", -0.8, 1.3, "tooth trace against the cone line, at a cone distance")
+pinion_pitch_angle = _angle("pinion_pitch_angle", r"\delta_1", 0.1, 1.2, "pitch cone of the pinion against its axis")
+wheel_pitch_angle = _angle("wheel_pitch_angle", r"\delta_2", 0.4, 1.5, "pitch cone of the wheel against its axis")
+cone_distance = _length("cone_distance", "R", 10.0, 400.0, "apex to a place along the pitch cone")
+outer_cone_distance = _length("outer_cone_distance", "R_e", 10.0, 500.0, "apex to heel along the pitch cone")
+inner_cone_distance = _length("inner_cone_distance", "R_i", 5.0, 400.0, "apex to toe along the pitch cone")
+mean_normal_module = _length("mean_normal_module", "m_{mn}", 0.3, 20.0, "module across the tooth at the mean point")
+cutter_radius = _length("cutter_radius", "r_{c0}", 20.0, 250.0, "mean radius of the cutter, at the pitch plane")
+blade_groups = _count("blade_groups", "z_0", 1, 30, "blade groups of a face hobbing cutter")
+cutter_lead_angle = _angle("cutter_lead_angle", r"\nu", 0.0, 1.4, "lead of the blade against the circle it stands on")
+cutter_center_distance = _length(
+    "cutter_center_distance", r"\rho_{P0}", 10.0, 500.0, "axis of the crown gear to the axis of the cutter"
+)
+epicycloid_base_radius = _length("epicycloid_base_radius", r"\rho_b", 5.0, 400.0, "base circle of the epicycloid")
+pressure_angle_drive = _angle("pressure_angle_drive", r"\alpha_{nD}", 0.2, 0.5, "normal angle of the drive side")
+pressure_angle_coast = _angle("pressure_angle_coast", r"\alpha_{nC}", 0.2, 0.5, "normal angle of the coast side")
+mean_normal_pressure_angle = _angle("mean_normal_pressure_angle", r"\alpha_n", 0.2, 0.5, "mean of drive and coast side")
+mean_addendum_factor = _factor("mean_addendum_factor", "c_{ham}", 0.05, 0.6, "wheel mean addendum over working depth")
+tooth_depth_factor = _factor("tooth_depth_factor", "k_d", 1.5, 2.4, "mean working depth in mean normal modules")
+clearance_factor = _factor("clearance_factor", "k_c", 0.05, 0.3, "clearance over mean working depth")
+thickness_factor = _factor("thickness_factor", "k_t", -0.4, 0.4, "thickness exchanged between the members, in modules")
+crown_gear_addendum_factor = _factor("crown_gear_addendum_factor", "k_{hap}", 0.7, 1.2, "basic crown gear addendum")
+crown_gear_dedendum_factor = _factor("crown_gear_dedendum_factor", "k_{hfp}", 0.9, 1.6, "basic crown gear dedendum")
+profile_shift_coefficient = _factor("profile_shift_coefficient", "x_{hm1}", -0.2, 0.8, "profile shift of the pinion")
+thickness_modification = _factor(
+    "thickness_modification", "x_{smn}", -0.2, 0.2, "thickness modification of the pinion without backlash"
+)
+mean_working_depth = _length("mean_working_depth", "h_{mw}", 0.4, 50.0, "depth in which the teeth touch, at mean point")
+mean_whole_depth = _length("mean_whole_depth", "h_m", 0.4, 60.0, "mean addendum and dedendum of one member")
+pinion_mean_addendum = _length("pinion_mean_addendum", "h_{am1}", 0.2, 20.0, "pinion tooth above the pitch cone")
+pinion_mean_dedendum = _length("pinion_mean_dedendum", "h_{fm1}", 0.2, 20.0, "pinion tooth below the pitch cone")
+wheel_mean_addendum = _length("wheel_mean_addendum", "h_{am2}", 0.2, 20.0, "wheel tooth above the pitch cone")
+wheel_mean_dedendum = _length("wheel_mean_dedendum", "h_{fm2}", 0.2, 20.0, "wheel tooth below the pitch cone")
+depth_taper = Quantity(
+    "depth_taper", "0 uniform depth, 1 standard, 2 duplex (constant slot width), 3 tilted root line", "1", "T", (0, 3),
+    kind="int", values=(0, 1, 2, 3),
+)  # fmt: skip
+dedendum_angle_sum = _angle("dedendum_angle_sum", r"\Sigma\theta_f", -1.0, 1.0, "dedendum angles of both members")
+pinion_addendum_angle = _angle("pinion_addendum_angle", r"\theta_{a1}", 0.0, 0.2, "pinion face cone against pitch cone")
+pinion_dedendum_angle = _angle("pinion_dedendum_angle", r"\theta_{f1}", 0.0, 0.2, "pinion root against pitch cone")
+wheel_addendum_angle = _angle("wheel_addendum_angle", r"\theta_{a2}", 0.0, 0.2, "wheel face cone against pitch cone")
+wheel_dedendum_angle = _angle("wheel_dedendum_angle", r"\theta_{f2}", 0.0, 0.2, "wheel root cone against pitch cone")
+pinion_face_angle = _angle("pinion_face_angle", r"\delta_{a1}", 0.1, 1.57, "face cone of the pinion against its axis")
+pinion_root_angle = _angle("pinion_root_angle", r"\delta_{f1}", 0.05, 1.5, "root cone of the pinion against its axis")
+wheel_face_angle = _angle("wheel_face_angle", r"\delta_{a2}", 0.1, 1.57, "face cone of the wheel against its axis")
+wheel_root_angle = _angle("wheel_root_angle", r"\delta_{f2}", 0.05, 1.5, "root cone of the wheel against its axis")
+pinion_face_apex = _length("pinion_face_apex", "t_{zF1}", -100.0, 50.0, "pinion face apex beyond the crossing point")
+pinion_root_apex = _length("pinion_root_apex", "t_{zR1}", -50.0, 100.0, "pinion root apex beyond the crossing point")
+wheel_face_apex = _length("wheel_face_apex", "t_{zF2}", -100.0, 50.0, "wheel face apex beyond the crossing point")
+wheel_root_apex = _length("wheel_root_apex", "t_{zR2}", -50.0, 100.0, "wheel root apex beyond the crossing point")
+outer_addendum = _length("outer_addendum", "h_{ae}", 0.0, 30.0, "tooth above the pitch cone at the heel")
+outer_dedendum = _length("outer_dedendum", "h_{fe}", 0.0, 30.0, "tooth below the pitch cone at the heel")
+outer_whole_depth = _length("outer_whole_depth", "h_e", 0.0, 60.0, "depth of the tooth at the heel")
+inner_addendum = _length("inner_addendum", "h_{ai}", 0.0, 30.0, "tooth above the pitch cone at the toe")
+inner_dedendum = _length("inner_dedendum", "h_{fi}", 0.0, 30.0, "tooth below the pitch cone at the toe")
+inner_whole_depth = _length("inner_whole_depth", "h_i", 0.0, 60.0, "depth of the tooth at the toe")
+outer_pitch_diameter = _length("outer_pitch_diameter", "d_e", 5.0, 1000.0, "pitch circle at the heel")
+mean_pitch_diameter = _length("mean_pitch_diameter", "d_m", 5.0, 900.0, "pitch circle at the mean point")
+inner_pitch_diameter = _length("inner_pitch_diameter", "d_i", 5.0, 800.0, "pitch circle at the toe")
+outer_tip_diameter = _length("outer_tip_diameter", "d_{ae}", 5.0, 1000.0, "outside diameter of the crown")
+outer_root_diameter = _length("outer_root_diameter", "d_{fe}", 5.0, 1000.0, "root circle at the heel")
+inner_tip_diameter = _length("inner_tip_diameter", "d_{ai}", 5.0, 800.0, "tip circle at the toe")
+inner_root_diameter = _length("inner_root_diameter", "d_{fi}", 5.0, 800.0, "root circle at the toe")
+crossing_point_to_mean_point = _length("crossing_point_to_mean_point", "t_{zm}", 0.0, 500.0, "distance along the axis")
+crossing_point_to_crown = _length("crossing_point_to_crown", "t_{xo}", 0.0, 500.0, "along the axis to the crown")
+crossing_point_to_front_crown = _length(
+    "crossing_point_to_front_crown", "t_{xi}", 0.0, 500.0, "distance along the axis to the tip at the toe"
+)
+pinion_root_normal_depth = _length(
+    "pinion_root_normal_depth", "h_{t1}", 0.0, 60.0, "whole depth of the pinion at the crown, square to its root cone"
+)
+backlash = _length("backlash", "j", 0.0, 1.0, "backlash of the pair, of the kind that backlash_kind says")
+backlash_kind = Quantity(
+    "backlash_kind", "0 outer normal, 1 outer transverse, 2 mean normal, 3 mean transverse", "1", "K", (0, 3),
+    kind="int", values=(0, 1, 2, 3),
+)  # fmt: skip
+outer_normal_backlash = _length("outer_normal_backlash", "j_{en}", 0.0, 2.0, "square to the flank, at the heel")
+outer_transverse_backlash = _length("outer_transverse_backlash", "j_{et}", 0.0, 2.0, "backlash as an arc, at the heel")
+mean_normal_backlash = _length("mean_normal_backlash", "j_{mn}", 0.0, 2.0, "backlash square to the flank, mean point")
+mean_transverse_backlash = _length("mean_transverse_backlash", "j_{mt}", 0.0, 2.0, "backlash as an arc, mean point")
+pinion_thickness_coefficient = _factor("pinion_thickness_coefficient", "x_{sm1}", -0.3, 0.3, "with backlash")
+wheel_thickness_coefficient = _factor("wheel_thickness_coefficient", "x_{sm2}", -0.3, 0.3, "with backlash")
+pinion_mean_normal_thickness = _length("pinion_mean_normal_thickness", "s_{mn1}", 0.2, 40.0, "arc across the tooth")
+wheel_mean_normal_thickness = _length("wheel_mean_normal_thickness", "s_{mn2}", 0.2, 40.0, "arc across the tooth")
+mean_normal_thickness = _length("mean_normal_thickness", "s_{mn}", 0.2, 40.0, "arc across the tooth at the mean point")
+mean_transverse_thickness = _length("mean_transverse_thickness", "s_{mt}", 0.2, 60.0, "arc in the plane of rotation")
+mean_normal_diameter = _length("mean_normal_diameter", "d_{mn}", 5.0, 1e4, "pitch circle of the normal section")
+mean_normal_chordal_thickness = _length("mean_normal_chordal_thickness", "s_{mnc}", 0.2, 40.0, "chord across the tooth")
+mean_chordal_addendum = _length("mean_chordal_addendum", "h_{amc}", 0.2, 40.0, "tip above the chord of the thickness")
+
+# --- slot width, top land and edge radius to AGMA 929 -----------------------------------------------------------
+slot_rotation_factor = _factor(
+    "slot_rotation_factor", "k_E", 0.0, 1.3, "half pitches by which the work turns from blade to blade; 0 spread blade"
+)
+normal_pitch = _length("normal_pitch", "p_n", 0.5, 100.0, "pitch across the tooth at the mean point")
+normal_backlash = _length("normal_backlash", "j_n", -5.0, 5.0, "backlash square to the flank, at a cone distance")
+clearance_change = _length("clearance_change", r"\Delta c", 0.0, 2.0, "approach of the teeth that uses up the backlash")
+pinion_slot_width = _length("pinion_slot_width", "W_1", 0.0, 50.0, "width of the slot at the pinion's root")
+wheel_slot_width = _length("wheel_slot_width", "W_2", 0.0, 50.0, "width of the slot at the wheel's root")
+pinion_normal_thickness = _length("pinion_normal_thickness", "s_{n1}", 0.0, 50.0, "arc across the tooth, any place")
+wheel_normal_thickness = _length("wheel_normal_thickness", "s_{n2}", 0.0, 50.0, "arc across the tooth, any place")
+involute_cone_distance = _length("involute_cone_distance", "R_x", 0.0, 500.0, "where the normal pitch is greatest")
+virtual_pitch_radius = _length("virtual_pitch_radius", "r_{np}", 5.0, 1500.0, "pitch circle of the virtual spur gear")
+mate_virtual_pitch_radius = _length("mate_virtual_pitch_radius", "r'_{np}", 5.0, 1500.0, "the same of the mate")
+addendum_here = _length("addendum_here", "h_a", 0.0, 20.0, "tooth above the pitch cone at a cone distance")
+dedendum_here = _length("dedendum_here", "h_f", 0.0, 20.0, "tooth below the pitch cone at a cone distance")
+mate_addendum_here = _length("mate_addendum_here", "h'_a", 0.0, 20.0, "the mate's tooth above its pitch cone")
+normal_thickness = _length("normal_thickness", "s_n", 0.2, 40.0, "arc across the tooth at a cone distance")
+top_land = _length("top_land", "s_{an}", -10.0, 30.0, "width of the tip across the tooth; negative where it is pointed")
+flank_pressure_angle = _angle("flank_pressure_angle", r"\alpha", 0.2, 0.5, "normal pressure angle of one flank")
+interference_height = _length(
+    "interference_height", "h_{inf}", -20.0, 30.0, "root to the lowest point that the mate's tip reaches, on the blade"
+)
+edge_radius_interference = _length("edge_radius_interference", "r_{a01}", -30.0, 50.0, "largest that the mate clears")
+minimum_slot_width = _length("minimum_slot_width", "W_{min}", 0.3, 30.0, "narrowest place of the slot along the tooth")
+blade_flat = _length("blade_flat", r"\Delta_f", 0.0, 2.0, "flat that the edge radius leaves on the blade's tip")
+mutilation = _length("mutilation", "y", 0.001, 0.5, "depth of the fillet that the opposite blade may cut away")
+blade_point_width = _length("blade_point_width", "W_B", 0.0, 30.0, "width of the blade's tip")
+edge_radius_fillet = _length("edge_radius_fillet", "r_{a02}", 0.0, 50.0, "largest that the blade's tip has room for")
+edge_radius_mutilation = _length("edge_radius_mutilation", "r_{a03}", 0.0, 100.0, "largest without mutilation")
+
+# --- crown gear -------------------------------------------------------------------------------------------------
+hand_sign = Quantity("hand_sign", "+1 right-hand, -1 left-hand member", "1", r"s_h'", (-1, 1), values=(-1, 1))
+tilt_direction = _angle("tilt_direction", r"\chi", -1.5, 1.5, "swivel and cradle angle together, right-hand member")
+space_width = _length("space_width", "w", 0.0, 40.0, "normal width of the tooth space at the mean point")
+
+# --- compensation -----------------------------------------------------------------------------------------------
+setting_rates = Quantity(
+    "setting_rates", "shift of a flank along a line per unit of every setting", "mixed",
+    r"\partial t/\partial\mathbf{x}", (-300.0, 300.0), shape=(12,), scale=1000.0,
+)  # fmt: skip
+motion_rates = Quantity(
+    "motion_rates", "shift of a flank along a line per unit of every coefficient of the motion", "mixed",
+    r"\partial t/\partial m", shape=(10, 7), scale=1000.0,
+)  # fmt: skip
+curved_rates = Quantity(
+    "curved_rates", "shift of a flank along a line per unit of every setting, and of the curvature of the blade",
+    "mixed",
+    r"\partial t/\partial(\mathbf{x}, \kappa)", shape=(13,), scale=1000.0,
+)  # fmt: skip
+curved_height = Quantity("curved_height", "height of a point of a curved blade above the tip plane", "mm", "h_u")
+cone_place = _length("cone_place", "L", -500.0, 500.0, "cone distance of a point, along the pitch cone")
+cone_depth = _length("cone_depth", "D", -500.0, 500.0, "depth of a point below the pitch cone")
+mate_ratio = _factor("mate_ratio", "z_m/z", 0.1, 10.0, "teeth of the mate over teeth of the member")
+meeting_angle = _angle("meeting_angle", r"\psi", -6.3, 6.3, "rotation at which a point of a flank meets the mate")
+mate_axial = _length("mate_axial", "z_m", -500.0, 500.0, "coordinate of that point along the axis of the mate")
+mate_radial = _length("mate_radial", "r_m", 0.0, 500.0, "distance of that point from the axis of the mate")
+
+# --- ease-off ---------------------------------------------------------------------------------------------------
+conjugate_azimuth = Quantity("conjugate_azimuth", "azimuth of the conjugate point on the member", "rad", r"\chi")
+gap_turn = _angle("gap_turn", r"\Delta\chi", -0.3, 0.3, "turn of a flank about its axis up to the conjugate one")
+ease_off = Quantity("ease_off", "gap between a flank and the conjugate one along its normal", "mm", "E", scale=1.0)
+
+# --- contact of a pair ------------------------------------------------------------------------------------------
+pinion_rotation = _angle(
+    "pinion_rotation", r"\varphi_1", -pi, pi, "rotation of the pinion, right-handed about its axis"
+)
+gear_rotation = _angle("gear_rotation", r"\varphi_2", -pi, pi, "rotation of the gear about its axis")
+hypoid_offset = _length("hypoid_offset", "a", -50.0, 50.0, "offset of the gear's axis from the pinion's, along Z × X")
+assembly = Quantity(
+    "assembly", "displacements of the members in their assembly", "mixed", r"\mathbf{m}", shape=(4,),
+    components=(
+        _length("deviation_of_offset", "V", -5.0, 5.0, "gear axis shifted along Y = Z × X"),
+        _length("axial_displacement_pinion", "H", -5.0, 5.0, "pinion withdrawn along its axis Z"),
+        _length("axial_displacement_gear", "J", -5.0, 5.0, "gear withdrawn along its axis"),
+        _angle("deviation_of_shaft_angle", r"\Delta\Sigma", -0.05, 0.05, "growth of the shaft angle"),
+    ),
+)  # fmt: skip
+pinion_point = _vector("pinion_point", r"\mathbf{r}_1", "mm", 300.0, 300.0, "point of the pinion's flank, pair frame")
+pinion_normal = _vector("pinion_normal", r"\mathbf{n}_1", "1", 1.0, 1.0, "its outward unit normal, pair frame")
+gear_point = _vector("gear_point", r"\mathbf{r}_2", "mm", 300.0, 300.0, "point of the gear's flank, pair frame")
+gear_normal = _vector("gear_normal", r"\mathbf{n}_2", "1", 1.0, 1.0, "its outward unit normal, pair frame")
+alignment = Quantity(
+    "alignment", "parts of the pinion's normal across the gear's, times distances of the contact", "mm",
+    r"\mathbf{q}", shape=(2,), scale=1000.0,
+)  # fmt: skip
+border = Quantity(
+    "border", "coefficients of u, z_w, r_w and 1 of a border of a flank", "mixed", r"\mathbf{c}", shape=(4,),
+    components=(
+        _factor("border_blade", "c_u", -1.0, 1.0, "border: coefficient of the blade's parameter u"),
+        _factor("border_axial", "c_z", -1.0, 1.0, "border: coefficient of z_w"),
+        _factor("border_radial", "c_r", -1.0, 1.0, "border: coefficient of r_w"),
+        _length("border_constant", "c_0", -300.0, 300.0, "border: constant part"),
+    ),
+)  # fmt: skip
+border_distance = Quantity(
+    "border_distance", "distance of a point from a border of its flank, positive inside", "mm", "b", scale=1000.0
+)
+edge_tangent = _vector("edge_tangent", r"\mathbf{e}", "1", 2.0, 2.0, "direction of the edge at a border, work frame w")
+mate_normal = _vector("mate_normal", r"\mathbf{n}'", "1", 1.0, 1.0, "outward unit normal of the mate's flank")
+tangency = Quantity("tangency", "part of an edge's direction along the normal of the mate", "1", "t", scale=3.0)
+lever = Quantity("lever", "lever of the contact normal about the gear's axis", "mm", r"\rho_2", scale=1000.0)
+transmission_slope = Quantity(
+    "transmission_slope", "rotation of the gear per rotation of the pinion", "1", r"\varphi_2'", scale=1000.0
+)
+teeth_ratio = _factor("teeth_ratio", "i", 0.05, 2.0, "teeth of the pinion over teeth of the gear")
+apex_beyond = _length(
+    "apex_beyond", "t_z'", -20.0, 20.0, "pitch apex of the member beyond the crossing point, seen from the teeth"
+)
+
+# --- curvature and local synthesis --------------------------------------------------------------------------------
+point_rates = Quantity(
+    "point_rates", "derivatives of the point of a flank by its three parameters, as columns", "mixed",
+    r"\mathbf{R}_w", (-50.0, 50.0), shape=(3, 3), scale=1000.0,
+)  # fmt: skip
+normal_rates = Quantity(
+    "normal_rates", "derivatives of the normal of a flank by its three parameters, as columns", "mixed",
+    r"\mathbf{N}_w", (-1.0, 1.0), shape=(3, 3), scale=100.0,
+)  # fmt: skip
+meshing_gradient = Quantity(
+    "meshing_gradient", "derivatives of the equation of meshing by the three parameters", "mixed", r"\nabla f",
+    (-50.0, 50.0), shape=(3,), scale=1000.0,
+)  # fmt: skip
+first_tangent = _vector(
+    "first_tangent", r"\mathbf{t}_1", "1", 1.0, 1.0, "first vector of the basis of the tangent plane"
+)
+second_tangent = _vector(
+    "second_tangent", r"\mathbf{t}_2", "1", 1.0, 1.0, "second vector of the basis of the tangent plane"
+)
+curvature = Quantity(
+    "curvature", "shape operator K of a flank, dn = -K dr, in the basis of the tangent plane", "1/mm", "K",
+    (-0.1, 0.1), shape=(2, 2), scale=1e4,
+)  # fmt: skip
+contact_basis = Quantity(
+    "contact_basis", "orthonormal basis of the tangent plane, as columns", "1", r"\mathbf{T}", (-1.0, 1.0),
+    shape=(3, 2),
+)  # fmt: skip
+roll_vector = Quantity(
+    "roll_vector", "how the common normal turns against the gear's flank, in the tangent plane", "1", r"\mathbf{w}",
+    (-3.0, 3.0), shape=(2,), scale=1e3,
+)  # fmt: skip
+roll_acceleration = Quantity(
+    "roll_acceleration", "normal acceleration of the members against each other, per square of the pinion's speed",
+    "mm", r"\beta_c", (-200.0, 200.0), scale=1e5,
+)  # fmt: skip
+sliding = Quantity(
+    "sliding", "velocity of the pinion against the gear in the tangent plane, per speed of the pinion", "mm",
+    r"\mathbf{v}", (-100.0, 100.0), shape=(2,), scale=1e3,
+)  # fmt: skip
+relative_curvature = Quantity(
+    "relative_curvature", "D = K_1 - K_2: D_11, D_12, D_22", "1/mm", "D", shape=(3,),
+    components=(
+        Quantity("relative_curvature_11", "relative curvature along the first tangent", "1/mm", "D_{11}", (0.002, 0.1)),
+        Quantity("relative_curvature_12", "mixed relative curvature", "1/mm", "D_{12}", (-0.001, 0.001)),
+        Quantity("relative_curvature_22", "the same along the second tangent", "1/mm", "D_{22}", (0.002, 0.1)),
+    ),
+    scale=1e3,
+)  # fmt: skip
+lever_arm = _length("lever_arm", r"\rho", 5.0, 200.0, "lever of the contact normal about the gear's axis, given")
+contact_velocity = Quantity(
+    "contact_velocity", "velocity of the contact on the pinion's flank, per speed of the pinion", "mm",
+    r"\mathbf{v}_1", shape=(2,), scale=1e5,
+)  # fmt: skip
+transmission_curvature = Quantity(
+    "transmission_curvature", "second derivative of the gear's rotation by the pinion's", "rad/rad^2",
+    r"\varphi_2''", scale=1e5,
+)  # fmt: skip
+conjugate_curvature = Quantity(
+    "conjugate_curvature", "D of the pinion that is conjugate to the gear: D_11, D_12, D_22", "1/mm", "D_c",
+    shape=(3,), scale=1e3,
+)  # fmt: skip
+separation = _length("separation", r"\tau", 0.001, 0.02, "distance of the flanks at the border of the contact ellipse")
+semi_axes = Quantity(
+    "semi_axes", "half axes of the contact ellipse, the major one first", "mm", r"(a, b)", shape=(2,), scale=100.0
+)  # fmt: skip
+path_angle = _angle("path_angle", r"\eta", 0.2, 1.4, "direction of the path in the basis of the tangent plane")
+wanted_curvature = Quantity(
+    "wanted_curvature", "wanted second derivative of the gear's rotation by the pinion's", "rad/rad^2", "m'",
+    (-0.01, 0.01),
+)  # fmt: skip
+major_semi_axis = _length("major_semi_axis", "a_c", 2.0, 20.0, "wanted major half axis of the contact ellipse")
+synthesized_curvature = Quantity(
+    "synthesized_curvature", "D_11, D_12, D_22 that give path, parabola and ellipse as wanted", "1/mm", "D",
+    shape=(3,), scale=1e5,
+)  # fmt: skip

@@ -22,6 +22,7 @@ VERBS = {
     "blank": ("blank", "The blank of a pair from its design data, as table, JSON or part of a gear set."),
     "flank": ("bevel", "Nominal points and outward normals of one flank."),
     "tooth": ("bevel", "Whole teeth of a member: figures, and an STL of a space or of the whole member."),
+    "contact": ("contact", "How a pair runs: path of contact, transmission error, V-H check."),
     "nc": ("machine", "NC programs for the vertical 5-axis machine."),
     "mill": ("machine", "Virtual milling from the program text."),
     "probe": ("probe_run", "Run a program of 'nc probe' or 'nc calibrate' on the machine model: raw touches."),

@@ -1,0 +1,88 @@
+"""The contact of a pair as the figures that ``gearmath contact`` prints, names as in its JSON."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from gearmath.bevel.contact.mesh import Mesh, mesh
+from gearmath.bevel.contact.misalignment import contact_at, sensitivities
+from gearmath.bevel.contact.pattern import pattern
+from gearmath.bevel.contact.surface import nominal_surface
+from gearmath.bevel.contact.system import Assembly, System, pair_system
+from gearmath.specs.bevel_set import FLANKS, BevelSet
+
+#: The flank of the pinion that works on each side; the gear's is the other one.
+SIDES = {"drive": "concave", "coast": "convex"}
+ARCSEC = math.degrees(1) * 3600
+_DISPLACEMENTS = {"v_per_mm": 1.0, "h_per_mm": 1.0, "j_per_mm": 1.0, "shaft_per_deg": math.radians(1)}
+
+
+def side_system(pair: BevelSet, side: str) -> System:
+    """The flanks of a set that work on a side, ``drive`` or ``coast``. Raises InputError for a set without both."""
+    own = SIDES[side]
+    mating = FLANKS[1 - FLANKS.index(own)]
+    pinion, gear = (nominal_surface(pair.member(name), flank) for name, flank in (("pinion", own), ("gear", mating)))
+    return pair_system(pinion, gear, math.radians(pair.shaft_angle))
+
+
+def side_mesh(pair: BevelSet, side: str, assembly: Assembly) -> Mesh:
+    """The contact of a set on a side."""
+    return mesh(side_system(pair, side), assembly)
+
+
+def figures(run: Mesh, step: float) -> dict[str, Any]:
+    """The JSON object of one side, positions at multiples of ``step`` [rad]."""
+    zero = run.reference or 0.0
+    rows = run.path(step)
+    spread = run.leads.peak_to_peak
+    return {
+        "outcome": run.outcome,
+        "leading_kinds": list(run.leads.kinds),
+        "contact_ratio": run.contact_ratio,
+        "at_mean": _at_mean(run),
+        "path": [
+            {
+                "pinion_rotation_deg": math.degrees(row.rotation),
+                "kind": row.kind,
+                "transmission_error_arcsec": (row.error - zero) * ARCSEC,
+                "gear_cone_distance_mm": row.cone_distance,
+                "gear_height_mm": row.height,
+            }
+            for row in rows
+        ],
+        "pattern": pattern(run).figures,
+        "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
+        "v_h_mm": _v_h(run),
+    }
+
+
+def _at_mean(run: Mesh) -> dict[str, Any] | None:
+    if run.at_mean is None:
+        return None
+    touch, here = run.at_mean
+    moved = sensitivities(run.system, touch, run.assembly)
+    return {
+        "pinion_rotation_deg": math.degrees(touch.rotation),
+        "second_derivative": here.second_derivative,
+        "semi_axes_mm": list(here.semi_axes),
+        "path_angle_deg": math.degrees(here.path_angle),
+        "sensitivity": {
+            name: {
+                "gear_cone_distance_mm": float(column[0] * unit),
+                "gear_height_mm": float(column[1] * unit),
+                "transmission_error_arcsec": float(column[2] * unit * ARCSEC),
+            }
+            for (name, unit), column in zip(_DISPLACEMENTS.items(), moved.T, strict=True)
+        },
+    }
+
+
+def _v_h(run: Mesh) -> dict[str, list[float] | None]:
+    """V and H that bring the contact to toe, mean and heel, the other displacements as they are."""
+    if run.is_line:
+        return dict.fromkeys(("toe", "mean", "heel"))
+    toe, heel = run.system.gear.ends
+    places = {"toe": toe, "mean": run.system.gear.blank.mean_cone_distance, "heel": heel}
+    found = {name: contact_at(run.system, at, *run.assembly[2:]) for name, at in places.items()}
+    return {name: None if one is None else [one.V, one.H] for name, one in found.items()}

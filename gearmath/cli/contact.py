@@ -1,0 +1,153 @@
+"""``gearmath contact``: how a pair runs, nominal flanks at any assembly."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gearmath.cli.common import JSON, SET, about, bar, echo_json, plot, save_plot, table
+from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    from gearmath.bevel.contact.mesh import Mesh
+    from gearmath.bevel.contact.system import Assembly
+    from gearmath.specs.bevel_set import BevelSet
+
+_FINEST, _COARSEST = 0.01, 15.0
+#: Displacements [mm] and change of the shaft angle [degree] beyond which no assembly is meant.
+_MOST_MM, _MOST_DEG = 50.0, 10.0
+_LIMIT_TRIALS = 10
+
+
+@click.command()
+@SET
+@click.option("--v", "v", type=float, default=0.0, show_default=True, help="Gear axis shifted along Y = Z x X, mm.")
+@click.option("--h", "h", type=float, default=0.0, show_default=True, help="Pinion withdrawn along its axis Z, mm.")
+@click.option("--j", "j", type=float, default=0.0, show_default=True, help="Gear withdrawn along its axis X, mm.")
+@click.option("--shaft", type=float, default=0.0, show_default=True, help="Growth of the shaft angle, degrees.")
+@click.option("--step", type=float, default=1.0, show_default=True, help="Positions of the path, degrees of pinion.")
+@JSON
+@plot("transmission error, path and pattern of both sides")
+def contact(
+    gear_set: str, v: float, h: float, j: float, shaft: float, step: float, as_json: bool, picture: Path | None
+) -> None:  # fmt: skip
+    """How a pair runs: path of contact, transmission error, V-H check, of drive (pinion concave) and coast side.
+
+    The contact is exact: flanks, edges of tip, toe and heel, and corners, of one pair of teeth and its neighbors. The
+    path is that of one pair of teeth over three pitches. Rotation 0: both mean points on the pitch line.
+    """
+    from gearmath.bevel.contact.report import SIDES, figures, side_mesh
+    from gearmath.bevel.contact.system import Assembly
+    from gearmath.bevel.pair import load_pair
+    from gearmath.specs.toml import find
+
+    _check(v, h, j, shaft, step)
+    source = find(gear_set)
+    pair = load_pair(source)
+    for name in ("pinion", "gear"):
+        pair.member(name)
+    given = Assembly(v, h, j, math.radians(shaft))
+    results: dict[str, Any] = {}
+    runs: dict[str, Mesh] = {}
+    with bar(len(SIDES), "side", quiet=as_json) as done, about(source):
+        for side in SIDES:
+            runs[side] = side_mesh(pair, side, given)
+            if runs[side].outcome == "contact lost" and given != Assembly():
+                raise InputError(_lost(pair, side, given))
+            results[side] = figures(runs[side], math.radians(step))
+            done(1)
+    if picture is not None:
+        from gearmath.plot.contact import contact_figure
+
+        save_plot(contact_figure(runs), picture, as_json)
+    if as_json:
+        echo_json(results)
+        return
+    for side, result in results.items():
+        click.echo(_text(side, SIDES[side], result))
+
+
+def _check(v: float, h: float, j: float, shaft: float, step: float) -> None:
+    for name, value, most, unit in (
+        ("--v", v, _MOST_MM, "mm"), ("--h", h, _MOST_MM, "mm"), ("--j", j, _MOST_MM, "mm"),
+        ("--shaft", shaft, _MOST_DEG, "degrees"),
+    ):  # fmt: skip
+        if not abs(value) <= most:
+            raise InputError(f"{name} {value:g}: must lie between -{most:g} and {most:g} {unit}")
+    if not _FINEST <= step <= _COARSEST:
+        raise InputError(f"--step {step:g}: must lie between {_FINEST:g} and {_COARSEST:g} degrees")
+
+
+def _lost(pair: BevelSet, side: str, given: Assembly) -> str:
+    """Which displacement takes the flanks out of contact, and how far it may go."""
+    from gearmath.bevel.contact.mesh import mesh
+    from gearmath.bevel.contact.report import side_system
+
+    system = side_system(pair, side)
+
+    def keeps(assembly: Assembly) -> bool:
+        return mesh(system, assembly).outcome != "contact lost"
+
+    names = {"V": ("--v", 1.0, "mm"), "H": ("--h", 1.0, "mm"), "J": ("--j", 1.0, "mm"),
+             "shaft": ("--shaft", math.degrees(1), "degrees")}  # fmt: skip
+    there = [name for name in names if getattr(given, name)]
+    for name in there:
+        if not keeps(replace(given, **{name: 0.0})):
+            continue
+        value, (option, unit, word) = getattr(given, name), names[name]
+        low, high = 0.0, 1.0
+        for _ in range(_LIMIT_TRIALS):
+            middle = (low + high) / 2
+            low, high = (middle, high) if keeps(replace(given, **{name: middle * value})) else (low, middle)
+        others = " with the other displacements as given" if len(there) > 1 else ""
+        return (
+            f"{option} {value * unit:g}: the flanks of the {side} side lose contact; it may go to about "
+            f"{low * value * unit:.3g} {word}{others}"
+        )
+    stated = ", ".join(f"{names[name][0]} {getattr(given, name) * names[name][1]:g}" for name in there)
+    return f"{stated}: the flanks of the {side} side are out of contact, and no one of these alone brings it back"
+
+
+def _text(side: str, flank: str, result: dict[str, Any]) -> str:
+    """One side for people."""
+    spread = result["peak_to_peak_arcsec"]
+    other = "convex" if flank == "concave" else "concave"
+    lines = [f"{side}: pinion {flank} with gear {other}: {result['outcome']}"]
+    runs_on = [kind for kind in result["leading_kinds"] if kind != "interior"]
+    if runs_on and not result["outcome"].startswith(runs_on[0]):
+        lines[0] += f", running on {' and '.join(f'{kind} contact' for kind in runs_on)} in turn"
+    rows = [["transmission error, peak to peak", "none" if spread is None else f"{spread:.3f} arcsec"],
+            ["contact ratio within the flanks", f"{result['contact_ratio']:.3f}"]]  # fmt: skip
+    if (mean := result["at_mean"]) is not None:
+        major, minor = mean["semi_axes_mm"]
+        rows += [
+            ["nearest to the mean point", f"pinion at {mean['pinion_rotation_deg']:.3f} degrees"],
+            ["second derivative", f"{mean['second_derivative']:.5g} rad/rad^2"],
+            ["half axes of the ellipse", f"{major:.3f} and {minor:.3f} mm"],
+            ["path from root line towards tip", f"{mean['path_angle_deg']:.2f} degrees"],
+        ]
+    found = result["pattern"]
+    if "length_share" in found:
+        rows += [
+            [f"pattern at {found['thickness_mm'] * 1000:.3g} um", f"{found['share']:.0%} of the flank, "
+             f"{found['length_share']:.0%} of its width"],
+            ["center of the pattern", f"cone distance {found['center_cone_distance_mm']:.2f}, height "
+             f"{found['center_height_mm']:+.2f} mm"],
+        ]  # fmt: skip
+    for place, found in result["v_h_mm"].items():
+        rows.append([f"V and H for contact at {place}",
+                     "none" if found is None else f"{found[0]:+.4f} and {found[1]:+.4f} mm"])  # fmt: skip
+    lines.append(table(["figure", "value"], rows))
+    if result["path"]:
+        head = ["pinion deg", "kind", "error arcsec", "cone distance mm", "height mm"]
+        cells = [
+            [f"{row['pinion_rotation_deg']:.3f}", row["kind"], f"{row['transmission_error_arcsec']:z.3f}",
+             f"{row['gear_cone_distance_mm']:.4f}", f"{row['gear_height_mm']:.4f}"]
+            for row in result["path"]
+        ]  # fmt: skip
+        lines += ["path of one pair of teeth:", table(head, cells)]
+    return "\n".join(lines) + "\n"

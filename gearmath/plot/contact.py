@@ -1,0 +1,134 @@
+"""How a pair runs: transmission error over three pitches, path with ellipses, ease-off and pattern, side by side."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Polygon
+
+from gearmath.bevel.contact.local import local
+from gearmath.bevel.contact.mesh import REACH, Mesh
+from gearmath.bevel.contact.pattern import Pattern, envelope, pattern
+from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
+
+_ARCSEC = math.degrees(1) * 3600
+#: Colors of the kinds of contact.
+_KINDS = {"interior": AFTER, "edge": BEFORE, "corner": INK}
+_SAMPLES, _ELLIPSES = 361, 9
+#: Leads further behind than this many times what the pair runs on are not drawn.
+_SHOWN = 4.0
+
+
+def contact_figure(runs: Mapping[str, Mesh]) -> Figure:
+    """A row for each side: transmission error, path on the projected tooth of the gear, pattern over the ease-off."""
+    figure = Figure(figsize=(13.0, 3.7 * len(runs)), layout="constrained")
+    for places, (side, run) in zip(figure.subplots(len(runs), 3, squeeze=False), runs.items(), strict=True):
+        found = pattern(run)
+        _draw_error(places[0], run, f"{side}: {run.outcome}")
+        _draw_path(places[1], run, found)
+        _draw_pattern(places[2], run, found)
+    return figure
+
+
+def _draw_error(axes: Axes, run: Mesh, title: str) -> None:
+    """The error of three pairs of teeth, a color for each kind, under the envelope of all."""
+    system, pitch = run.system, run.system.pitch
+    rotations = np.linspace(-REACH, REACH, _SAMPLES) * pitch
+    zero = run.reference or 0.0
+    first = system.sense * envelope(run, rotations)
+    if run.is_line:
+        axes.plot(np.degrees(rotations), (first - zero) * _ARCSEC, color=AFTER, linewidth=1.5)
+    for thread in run.threads:
+        for k in (-1, 0, 1):
+            errors = thread.errors(system, rotations - k * pitch)
+            for kind, color in _KINDS.items():
+                here = np.zeros(len(rotations), dtype=bool)
+                for part in thread.segments:
+                    if part.kind == kind:
+                        here |= (rotations - k * pitch >= part.ends[0]) & (rotations - k * pitch <= part.ends[1])
+                shown = np.where(here, (errors - zero) * _ARCSEC, np.nan)
+                axes.plot(np.degrees(rotations), shown, color=color, linewidth=1.0, alpha=1.0 if k == 0 else 0.45)
+    axes.plot(np.degrees(rotations), (first - zero) * _ARCSEC, color=INK, linewidth=3.0, alpha=0.25)
+    known = (first[np.isfinite(first)] - zero) * _ARCSEC
+    if len(known):
+        spread = max(float(np.ptp(known)), 1e-6)
+        low, high = float(known.min()), float(known.max())
+        below, above = (_SHOWN, 0.3) if system.sense > 0 else (0.3, _SHOWN)
+        axes.set_ylim(low - below * spread, high + above * spread)
+    for kind, color in _KINDS.items():
+        axes.plot([], [], color=color, label=f"{kind} contact")
+    axes.plot([], [], color=INK, linewidth=3.0, alpha=0.25, label="gear follows")
+    axes.legend(fontsize=6, loc="best", frameon=False)
+    _label(axes, title, "pinion / degree", "transmission error / arcsec")
+
+
+def _draw_path(axes: Axes, run: Mesh, found: Pattern) -> None:
+    """The path of one pair of teeth on the gear, with the contact ellipses along it."""
+    tooth = _outline(axes, found)
+    step = 3 * run.system.pitch / (_SAMPLES - 1)
+    rows = run.path(step)
+    for kind, color in _KINDS.items():
+        among = [row for row in rows if row.kind == kind]
+        axes.plot([row.cone_distance for row in among], [row.height for row in among], ".", color=color, markersize=2)
+    for thread, segment in run.interior:
+        for rotation in np.linspace(*segment.ends, _ELLIPSES):
+            touch = thread.at(run.system, float(rotation))
+            if touch is None:
+                continue
+            here = local(run.system, touch, run.assembly)
+            if not here.definite:
+                continue
+            turn = np.linspace(0, 2 * np.pi, 60)
+            along, across = (np.array([f(here.major_angle) for f in pair]) for pair in _AXES)
+            ring = here.semi_axes[0] * along[:, None] * np.cos(turn) + here.semi_axes[1] * across[:, None] * np.sin(
+                turn
+            )
+            center = np.array(run.system.gear_place(touch.x))
+            seen = (center[:, None] + here.axial @ ring).T
+            ellipse = axes.add_patch(Polygon(seen, fill=False, edgecolor=AFTER, linewidth=0.6, alpha=0.7))
+            ellipse.set_clip_path(tooth)
+    axes.plot(run.system.gear.blank.mean_cone_distance, 0, "+", color=INK, markersize=7)
+    _label(axes, "path on the gear", "cone distance / mm (toe left)", "height / mm")
+
+
+_AXES = ((math.cos, math.sin), (lambda a: -math.sin(a), math.cos))
+
+
+def _draw_pattern(axes: Axes, run: Mesh, found: Pattern) -> None:
+    """Lines of the ease-off in µm, and the area within the marking compound."""
+    _outline(axes, found)
+    gap = np.ma.masked_invalid(found.gap * 1000)
+    if gap.count():
+        axes.contourf(
+            found.cone_distance, found.height, gap, levels=[-1e3, found.thickness * 1000], colors=[AFTER], alpha=0.45
+        )
+    ease_off = np.ma.masked_invalid(found.ease_off * 1000)
+    if ease_off.count() and float(np.ptp(ease_off.compressed())) > 1e-3:
+        lines = axes.contour(found.cone_distance, found.height, ease_off, levels=10, colors=[NOMINAL], linewidths=0.6)
+        axes.clabel(lines, fontsize=6, fmt="%g")
+    _label(
+        axes,
+        f"pattern at {found.thickness * 1000:.3g} µm, ease-off in µm",
+        "cone distance / mm (toe left)",
+        "height / mm",
+    )
+
+
+def _outline(axes: Axes, found: Pattern) -> Patch:
+    """The projected tooth of the gear, from its tip to the lower limit of its working depth."""
+    x, y = found.cone_distance, found.height
+    rim = [np.concatenate([a[0], a[1:, -1], a[-1, ::-1], a[::-1, 0]]) for a in (x, y)]
+    (tooth,) = axes.fill(*rim, facecolor="#f7f7f7", edgecolor=INK, linewidth=0.8, zorder=0)
+    axes.set_aspect("equal")
+    return tooth
+
+
+def _label(axes: Axes, title: str, x: str, y: str) -> None:
+    axes.set_title(title, fontsize=8, loc="left")
+    axes.set_xlabel(x, fontsize=7)
+    axes.set_ylabel(y, fontsize=7)
+    axes.tick_params(labelsize=7)
