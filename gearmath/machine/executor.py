@@ -264,6 +264,8 @@ class _Runner:
 
     def _assign(self, target: Variable, value: float, line: int) -> None:
         index = indices(target, self, self.control.name, line)
+        if target.name == "R":
+            self.parameters.setdefault(index[0], value)  # to be written, not read
         self.read(target, index, line)
         if target.name == "R":
             self.parameters[index[0]] = value
