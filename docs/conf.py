@@ -29,10 +29,7 @@ html_show_sphinx = False
 
 myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
-# a notebook without outputs is run now; those of `make notebooks` have theirs
-nb_execution_mode = "auto"
-nb_execution_timeout = 120
-nb_execution_raise_on_error = True
+nb_execution_mode = "off"  # `prepare` takes them as `make notebooks` ran them, and runs what is missing
 nb_merge_streams = True
 
 autodoc_member_order = "bysource"
@@ -58,14 +55,21 @@ mathjax2_config = {
 def prepare(app: Sphinx) -> None:
     """What the site takes from elsewhere: notebooks as they were run, chapters typeset, MathJax."""
     import jupyter_server_mathjax
+    import nbformat
     from chapters import write_chapters
+    from nbclient import NotebookClient
 
     target = HERE / "notebooks"
     target.mkdir(exist_ok=True)
     for source in sorted((ROOT / "notebooks").glob("*.ipynb")):
         executed = ROOT / "build" / "notebooks" / source.name
         fresh = executed.is_file() and executed.stat().st_mtime > source.stat().st_mtime
-        shutil.copyfile(executed if fresh else source, target / source.name)
+        if fresh:
+            shutil.copyfile(executed, target / source.name)
+        else:
+            notebook = nbformat.read(source, as_version=4)
+            NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(source.parent)}}).execute()
+            nbformat.write(notebook, target / source.name)
     write_chapters(HERE / "mathematics")
     mathjax, place = Path(jupyter_server_mathjax.__file__).parent / "static", HERE / "_static" / "mathjax"
     if not (place / "MathJax.js").is_file():
