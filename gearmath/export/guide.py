@@ -211,6 +211,18 @@ def _timing(machine: HobbingMachine) -> Iterator[str]:
         f"At the board's pins a step is {step}, forward is {forward}. At most {machine.max_step_rate} steps/s follow "
         f"the encoder, {machine.move_max_rate} steps/s a jog; {machine.limits.lag_steps} waiting steps are a fault."
     )
+    yield from paragraph(_enable(machine))
+
+
+def _enable(machine: HobbingMachine) -> str:
+    if machine.pins.enable is None:
+        return "**Leave ENABLE (ENA) of the driver open: it is enabled then.**"
+    level = "low" if machine.enable_active_low else "high"
+    doubt = "" if machine.driver.timing.enable_confirmed else (
+        " This was not confirmed by the manual of the driver: before the first run try the shaft by hand, it must hold."
+    )  # fmt: skip
+    current = " Current through its opto-coupler would switch the motor off." * (machine.driver.timing.enable == "dark")
+    return f"ENABLE: the board's pin is {level} while the driver is enabled, in every mode.{current}{doubt}"
 
 
 def _commissioning(machine: HobbingMachine) -> Iterator[str]:

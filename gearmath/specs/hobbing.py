@@ -101,6 +101,11 @@ class HobbingMachine(Spec):
 
     def _check_pins(self) -> None:
         self.pins.check(self.board, self.hardware)
+        if self.pins.enable is not None and self.driver.enables is None:
+            raise ValueError(
+                f"pins.enable = {self.pins.enable}: it is not known which level enables this driver; leave the pin out "
+                "and the driver's ENABLE open, or write driver.enable_active from its manual"
+            )
         for key in ("feed_step", "feed_dir"):
             if (getattr(self.pins, key) is None) != (self.feed is None):
                 raise ValueError(f"pins.{key} must be given where there is a [feed], and only there")
@@ -214,7 +219,7 @@ class HobbingMachine(Spec):
     @property
     def enable_active_low(self) -> bool:
         """Level of the board's pin that enables the driver."""
-        return self.driver.pin_active_low(self.driver.enable_active)
+        return self.pins.enable is not None and self.driver.pin_active_low(self.driver.enables or "low")
 
     @property
     def max_edge_rate(self) -> int:

@@ -175,3 +175,63 @@ def test_an_opto_coupler_between_transistor_and_motor_leaves_the_pin_active_high
     """The source text writes STEP high, waits, writes it low, through a 2N2222 that pulls the input down."""
     assert not load_hobbing_machine(bundled("hobbing_plewes.toml")).step_active_low
     assert changed(PLEWES, '"open_collector"', '"direct"').step_active_low
+
+
+# --- enable ---------------------------------------------------------------------------------------------------------
+
+
+def _current(output: str, common: str, pin_high: bool) -> bool:
+    """Whether current flows through the opto-coupler of an input: a transistor pulls its - terminal down while the pin
+    is high; a pin itself lights it when high against ground, when low against the supply."""
+    if output == "open_collector":
+        return pin_high
+    return pin_high if common == "ground" else not pin_high
+
+
+@pytest.mark.parametrize("name", ["m542", "dm422", "dm542", "dm556", "cl57t", "hbs86h"])
+@pytest.mark.parametrize(("output", "common"), [("open_collector", "+5 V"), ("direct", "+5 V"), ("direct", "ground")])
+def test_enable_pin_leaves_the_opto_coupler_dark_whatever_the_wiring(name, output, common):
+    """Leadshine: current through ENA switches the motor off; STEP counts when its own coupler is lit."""
+    step = "high" if common == "ground" else "low"
+    text = HELICAL.replace('name = "dm556"', f'name = "{name}"').replace('"open_collector"', f'"{output}"')
+    text = text.replace('step_active = "low"', f'step_active = "{step}"').replace("index = 9", "index = 9\nenable = 12")
+    machine = parse(text, HobbingMachine, "machine.toml")
+    assert not _current(output, common, pin_high=not machine.enable_active_low)
+    assert _current(output, common, pin_high=not machine.step_active_low)
+
+
+def test_logic_inputs_of_the_chips_are_enabled_low():
+    """Data sheets of A4988 (ENABLE), DRV8825 (nENBL), TMC2208 and TMC2209 (ENN): low switches the outputs on."""
+    for name in ("a4988", "drv8825", "tmc2208", "tmc2209"):
+        text = HELICAL.replace('name = "dm556"', f'name = "{name}"').replace('"open_collector"', '"direct"')
+        text = text.replace('step_active = "low"', 'step_active = "high"').replace(
+            "index = 9", "index = 9\nenable = 12"
+        )
+        assert parse(text, HobbingMachine, "machine.toml").enable_active_low, name
+
+
+def test_no_bundled_machine_connects_enable():
+    for name in ("hobbing_plewes.toml", "hobbing_metric.toml", "hobbing_helical.toml", "lathe_example.toml"):
+        assert load_hobbing_machine(bundled(name)).pins.enable is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('step_active = "low"', 'step_active = "low"\nenable_active = "low"', ("enable_active =", "off", "dm556")),
+        ('name = "dm556"', 'name = "unsure"', ("pins.enable = 12", "driver.enable_active", "open")),
+        ('name = "dm556"', "step_high_ns = 1\nstep_low_ns = 1\ndir_setup_ns = 1\ndir_hold_ns = 1", ("pins.enable",)),
+    ],
+)  # fmt: skip
+def test_a_setting_that_would_hold_the_motor_off_is_refused(old, new, words):
+    with pytest.raises(InputError) as caught:
+        changed(HELICAL.replace("index = 9", "index = 9\nenable = 12"), old, new)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_unknown_driver_takes_the_level_of_the_file():
+    text = HELICAL.replace('name = "dm556"', 'name = "unsure"').replace("index = 9", "index = 9\nenable = 12")
+    for level, low in (("low", False), ("high", True)):  # a transistor turns the level round
+        machine = changed(text, 'step_active = "low"', f'step_active = "low"\nenable_active = "{level}"')
+        assert machine.enable_active_low == low
