@@ -132,6 +132,7 @@ def _limits(machine: HobbingMachine) -> list[Macro]:
         ("GM_MAX_LAG", machine.limits.lag_steps, "steps that may wait"),
         ("GM_MAX_EDGE_RATE", machine.max_edge_rate, "edges/s at the highest speed of the hob"),
         ("GM_MAX_STEP_RATE", machine.max_step_rate, "steps/s while the motor follows, at most"),
+        ("GM_ACCELERATION", int(machine.limits.acceleration_hz_per_s), "steps/s^2 while the motor follows"),
         ("GM_MOVE_MAX_RATE", machine.move_max_rate, "steps/s of a jog or an index move"),
         ("GM_MOVE_ACCELERATION", int(machine.limits.acceleration_hz_per_s), "steps/s^2 of a jog or an index move"),
     ]

@@ -35,7 +35,8 @@ _RUN_OF_A_GEAR: tuple[Row, ...] = (
     ("Hob max", "highest speed of the hob for this job: its own limit, or what the motor's steps allow"),
     ("Hob", "its speed now, in turns per minute"),
     ("Table", "its speed now (first page), its angle since the start of the job (second page)"),
-    ("Lag", "motor steps that wait; 0 or 1 is usual"),
+    ("In phase: lag", "hob and table are in mesh; motor steps that wait, 0 or 1 is usual"),
+    ("Lag", "motor steps that the table is behind the hob: it waits for its phase, or is catching up"),
     ("Hob turns", "since the start of the job (second page)"),
     ("Tooth", "the tooth under the hob, counted from the start (second page)"),
 )
@@ -44,7 +45,8 @@ _RUN_OF_A_THREAD: tuple[Row, ...] = (
     ("Max speed", "highest speed of the spindle for this job: its own limit, or what the motor's steps allow"),
     ("Spindle", "its speed now, in turns per minute"),
     ("Thread start", "number of the start that is cut"),
-    ("Lag", "motor steps that wait; 0 or 1 is usual"),
+    ("In phase: lag", "spindle and carriage are in mesh; motor steps that wait, 0 or 1 is usual"),
+    ("Lag", "motor steps that the carriage is behind: it waits for its phase, or is catching up. Do not cut then"),
     ("Turns", "of the spindle since the start of the job (second page)"),
     ("Place", "travel of the carriage since the start of the job (second page)"),
 )
@@ -73,7 +75,9 @@ def screens(machine: HobbingMachine) -> Iterator[str]:
     )
     yield from paragraph(
         "After power-up the last job is offered again, but not its phase: that is lost, and a start must be confirmed. "
-        "After `Stop?` the phase is kept, and `run on` waits until both are in mesh again."
+        "After `Stop?` the motor brakes, the phase is kept, and `run on` waits until both are in mesh again. A motor "
+        "that is engaged while the other side turns speeds up and overtakes what it has missed; only then the display "
+        "says that it is in phase."
     )
     yield "### What every number means"
     yield ""
@@ -102,8 +106,10 @@ def faults(machine: HobbingMachine) -> Iterator[str]:
     yield "## Faults"
     yield ""
     yield from paragraph(
-        "A fault stops the motor and loses the phase. It stays on the display until its cause is gone and the button "
-        "is held."
+        f"A fault stops the {leading} where the fail-safe output is wired, and stays on the display until its cause is "
+        "gone and the button is held. Where the drive is sound (emergency stop, too fast) the motor follows until the "
+        f"{leading} stands, so that the work is not spoiled, and the phase is kept. After every other fault the motor "
+        "brakes at once and the phase is lost. Only that act of yours lets the fail-safe output go on again."
     )
     if machine.pins.healthy is None:
         yield from paragraph(f"**This machine has no fail-safe output: stop the {leading} yourself, at once.**")

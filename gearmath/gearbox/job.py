@@ -17,6 +17,8 @@ from gearmath.specs.hobbing import NARROW, Hand, HobbingMachine
 WIDEST = NARROW
 #: The same of the int64 rule.
 WIDEST_64 = 2**62
+#: The firmware trips where the hob is so much faster than the highest speed, which keeps the step rate even then.
+TRIP = Fraction(101, 100)
 #: Most whole steps of one edge.
 LARGEST_BASE = int(q.base_step.domain[1])
 
@@ -165,7 +167,7 @@ def check_range(key: str, value: int, quantity: Quantity) -> None:
 
 
 def _highest_rpm(machine: HobbingMachine, ratio: Fraction) -> float:
-    by_steps = machine.limits.step_rate_hz * 60.0 / (machine.encoder_counts * float(ratio))
+    by_steps = machine.limits.step_rate_hz * 60.0 / (machine.encoder_counts * float(ratio * TRIP))
     return min(machine.limits.hob_rpm, by_steps)
 
 

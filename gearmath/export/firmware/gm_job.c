@@ -164,15 +164,17 @@ static gm_refusal gm_fed_ratio(const gm_settings *settings, gm_ratio *ratio) {
   return GM_JOB_OK;
 }
 
-/* Highest hob rpm: that of the machine, or what the driver's steps/s allow, times D/N; whole, rounded down. A lathe
- * cuts a coarse thread slowly, so there it is only shown; behind a hob it must not be left to the operator. */
+/* Highest hob rpm: that of the machine, or what the driver's steps/s allow, times D/N; whole, rounded down. The core
+ * trips one in a hundred above it. A lathe cuts a coarse thread slowly, and trips there; behind a hob it must not be left
+ * to the operator. */
 static gm_refusal gm_check_rate(const gm_settings *settings, gm_facts *facts) {
   const int64_t size = (int64_t)gm_magnitude(facts->ratio.numerator);
   const uint64_t machine = (uint64_t)GM_MAX_EDGE_RATE * 60 / GM_ENCODER_COUNTS;
-  gm_ratio rpm = {(int64_t)(GM_MAX_STEP_RATE) * 60, GM_ENCODER_COUNTS};
+  gm_ratio rpm = {(int64_t)(GM_MAX_STEP_RATE) * 6000, (int64_t)GM_ENCODER_COUNTS * 101};
   uint64_t driver = machine, steps;
-  const int slow = gm_muldiv((uint64_t)size, GM_MAX_EDGE_RATE, 0, (uint64_t)facts->ratio.denominator, &steps) == 0 &&
-                   steps <= (uint64_t)(GM_MAX_STEP_RATE);
+  const int slow = gm_muldiv((uint64_t)size, (uint64_t)GM_MAX_EDGE_RATE * 101, 0,
+                             (uint64_t)facts->ratio.denominator, &steps) == 0 &&
+                   steps <= (uint64_t)(GM_MAX_STEP_RATE) * 100;
   if (!slow && gm_ratio_times(&rpm, facts->ratio.denominator, size) == 0) {
     driver = (uint64_t)(rpm.numerator / rpm.denominator);
   }

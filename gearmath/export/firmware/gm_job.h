@@ -15,9 +15,6 @@
 #include "gm_exact.h"
 
 /* What a machine file need not say. */
-#ifndef GM_MAX_STEP_RATE /* steps/s: what the driver's pulse and pause allow */
-#define GM_MAX_STEP_RATE (1000000000 / ((int64_t)GM_TICK_NS * (GM_STEP_HIGH_TICKS + GM_STEP_LOW_TICKS)))
-#endif
 #ifndef GM_HYSTERESIS
 #define GM_HYSTERESIS 0
 #endif

@@ -109,7 +109,11 @@ static void gm_draw_run_speed(gm_ui *ui, const gm_status *status) {
     gm_ratio table = {ui->loaded.starts < 0 ? -ui->loaded.starts : ui->loaded.starts, ui->loaded.teeth};
     gm_rpm(ui, 2, "Table", status->edge_rate, &table);
   }
-  gm_count(ui, 3, "Lag", status->pending, "step");
+  if (status->in_phase) {
+    gm_count(ui, 3, "In phase: lag", status->pending, "");
+  } else {
+    gm_count(ui, 3, "Lag", status->pending, "step");
+  }
 }
 
 /* Where hob and table stand, since the start of the job. */
@@ -156,6 +160,8 @@ static void gm_draw_run(gm_ui *ui, const gm_status *status) {
   gm_job_line(ui, 0, &ui->loaded);
   if (status->waiting) {
     gm_line(ui, 0, "WAITS FOR THE PHASE");
+  } else if (!status->in_phase) {
+    gm_line(ui, 0, "CATCHING UP");
   }
   if (ui->choice == 0) {
     gm_draw_run_speed(ui, status);
@@ -277,7 +283,8 @@ static void gm_draw_fault(gm_ui *ui, const gm_status *status) {
       break;
     case GM_OVERSPEED:
       gm_line(ui, 0, "FAULT hob too fast");
-      gm_count(ui, 1, "Hob max", (int64_t)GM_MAX_EDGE_RATE * 60 / GM_ENCODER_COUNTS, "rpm");
+      gm_count(ui, 1, "Hob max", ui->phase ? (int64_t)ui->facts.max_rpm : (int64_t)GM_MAX_EDGE_RATE * 60 / GM_ENCODER_COUNTS,
+               "rpm");
       break;
     case GM_ENCODER:
       gm_line(ui, 0, "FAULT hob encoder");
@@ -290,7 +297,11 @@ static void gm_draw_fault(gm_ui *ui, const gm_status *status) {
     default: break;
   }
   gm_line(ui, 2, GM_HAS_HEALTHY ? "Hob was switched off" : "YOU MUST STOP HOB!");
-  gm_line(ui, 3, "Hold: acknowledge");
+  if (status->mode == GM_RUN) {
+    gm_line(ui, 3, "Follows till it ends");
+  } else {
+    gm_line(ui, 3, ui->phase ? "Phase kept. Hold: on" : "Hold: acknowledge");
+  }
 }
 
 static void gm_draw_edit(gm_ui *ui) {

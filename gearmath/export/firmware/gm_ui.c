@@ -21,6 +21,13 @@ static int gm_move(gm_ui *ui, int32_t steps) {
   return refused;
 }
 
+/* An act of the operator: the healthy output may go on, where the core has no fault. */
+static void gm_arm_output(const gm_ui *ui) {
+  gm_mask();
+  (void)gm_core_arm(ui->core);
+  gm_unmask();
+}
+
 static int gm_far(int64_t a, int64_t b) {
   return a - b > GM_STANDING_COUNTS || b - a > GM_STANDING_COUNTS;
 }
@@ -84,6 +91,7 @@ static unsigned gm_start(gm_ui *ui, const gm_status *status) {
     ui->message = "Refused by the core";
     return 0;
   }
+  gm_arm_output(ui);
   ui->loaded = ui->edit;
   ui->loaded_ratio = ui->facts.ratio;
   ui->phase = 1;
@@ -106,6 +114,7 @@ static void gm_run_on(gm_ui *ui, const gm_status *status) {
     ui->message = "Refused by the core";
     return;
   }
+  gm_arm_output(ui);
   ui->edit = ui->loaded;
   gm_go(ui, GM_PAGE_RUN);
 }
@@ -251,7 +260,10 @@ static void gm_press_stop(gm_ui *ui) {
 static unsigned gm_press(gm_ui *ui, const gm_status *status, uint32_t now) {
   const int yes = ui->choice;
   switch (ui->page) {
-    case GM_PAGE_POWER_UP: gm_go(ui, gm_edit_first()); break;
+    case GM_PAGE_POWER_UP:
+      gm_arm_output(ui);
+      gm_go(ui, gm_edit_first());
+      break;
     case GM_PAGE_START:
       if (yes) {
         return gm_start(ui, status);
@@ -291,10 +303,15 @@ static void gm_acknowledge(gm_ui *ui) {
   gm_unmask();
   if (refused) {
     ui->message = "The cause is there";
-  } else {
-    gm_go(ui, gm_edit_first());
-    ui->message = "PHASE LOST: set up";
+    return;
   }
+  gm_arm_output(ui);
+  if (ui->phase) {
+    gm_go(ui, GM_PAGE_STOPPED);
+    return;
+  }
+  gm_go(ui, gm_edit_first());
+  ui->message = "PHASE LOST: set up";
 }
 
 static void gm_long_press(gm_ui *ui) {
@@ -313,8 +330,8 @@ static void gm_long_press(gm_ui *ui) {
 /* The page follows what the core does by itself. 1 where it changed: an event meant for the page before is dropped. */
 static int gm_follow(gm_ui *ui, const gm_status *status, uint32_t now) {
   const gm_page page = ui->page;
-  if (status->mode == GM_FAULT) {
-    ui->phase = 0;
+  if (status->fault != GM_NO_FAULT) { /* also while the table still follows a hob that runs down */
+    ui->phase = ui->phase && status->has_job && !ui->shifting;
     ui->shifting = 0;
     if (page != GM_PAGE_FAULT) {
       gm_go(ui, GM_PAGE_FAULT);

@@ -152,7 +152,8 @@ static void on_tick() {
 #if GM_HAS_FEED && !GM_DECODER_LS7184
   pass_edges(feed_encoder, &feed_seen, GM_FEED, FEED_UP);
 #endif
-  put_outputs(gm_core_tick(&core, inputs()));
+  put_outputs(gm_core_outputs(&core, inputs()));
+  gm_core_think(&core);
 }
 
 static void set_priorities() {
@@ -256,7 +257,7 @@ static void begin_operator() {
 
 void setup() {
   gm_core_init(&core);
-  put_outputs(gm_core_tick(&core, GM_IN_ESTOP_OK)); /* the levels stand before the pins drive */
+  put_outputs(gm_core_outputs(&core, GM_IN_ESTOP_OK)); /* the levels stand before the pins drive */
   pinMode(GM_PIN_STEP_OUT, OUTPUT);
   pinMode(GM_PIN_DIR_OUT, OUTPUT);
 #if GM_HAS_ENABLE
@@ -295,6 +296,9 @@ void setup() {
 
 void loop() {
   static uint32_t polled_at = 0;
+  gm_mask();
+  gm_core_alive(&core);
+  gm_unmask();
   read_knob();
   read_button();
   if (millis() - polled_at >= (uint32_t)POLL_MS) {
