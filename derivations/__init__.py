@@ -84,6 +84,9 @@ def expressions() -> Iterator[Expression]:
         gearbox.gearbox_edge(),
         gearbox.encoder_hysteresis(),
         gearbox.hobbed_blank(),
+        gearbox.run_up(),
+        gearbox.catch_up(),
+        gearbox.resolution(),
     )
     yield from (hobbing.hob_ratio(), hobbing.feed_ratio(), hobbing.feed_error(), hobbing.lead_screw_ratio())
     yield from (hobbing.helical_lead(), hobbing.swivel(), hobbing.fed_ratio())

@@ -49,6 +49,8 @@ class Limits(Spec):
     move_rate_hz: float | None = Field(default=None, ge=10.0, le=1e6)
     """Of a jog or an index move; 2000, or the step rate where that is less, if not given."""
     acceleration_hz_per_s: float = Field(ge=1.0, le=1e7)
+    run_up_s: float | None = Field(default=None, ge=0.0, le=600.0)
+    """Time of the hob from rest to hob_rpm, or from there to rest, whichever is shorter; plans are checked with it."""
     lag_steps: int = Field(ge=1, le=30_000)
     """Steps that may wait before the gearbox trips."""
 

@@ -48,6 +48,7 @@
 #define GM_QUICK (GM_ACCELERATION > 10000)
 #define GM_NEAR (GM_QUICK ? 1 : 2)
 #define GM_FAST (GM_QUICK ? 3 : 5)
+#define GM_LEAD (GM_QUICK ? 14 : 5) /* at a steady acceleration, v is late by (a - b/2)/(1 - a) r, in sixteenths */
 #define GM_LATE_MS (GM_QUICK ? 5 : 10)
 #define GM_SLACK_STEPS (2 + (int32_t)((int64_t)GM_ACCELERATION * GM_LATE_MS * GM_LATE_MS / 1000000))
 #define GM_STEADY_MS 8u
@@ -367,7 +368,13 @@ static uint32_t part_of_step(const gm_core *core)
   return (uint32_t)(core->remainder >> core->part_shift) * core->part_factor;
 }
 
-/* Where the rule's place is from the middle of a whole step, and its speed. */
+/* 2^-32 steps per millisecond in the unit of speeds. */
+static int64_t scaled(int64_t slope)
+{
+  return bounded(bounded(slope, GM_FASTEST_SLOPE) * GM_RATE_SCALE / 256, GM_ONE_STEP);
+}
+
+/* The speed of the rule's place. */
 static void measure(gm_core *core)
 {
   const uint32_t part = part_of_step(core);
@@ -377,7 +384,7 @@ static void measure(gm_core *core)
   core->off += moved - core->slope;
   core->slope = bounded(core->slope + core->off / (1 << GM_FAST), GM_FASTEST_SLOPE);
   core->off -= core->off / (1 << GM_NEAR);
-  core->rate = bounded(core->slope * GM_RATE_SCALE / 256, GM_ONE_STEP);
+  core->rate = scaled(core->slope + core->off * GM_LEAD / 16);
 }
 
 /* 2^-16 steps from the motion within the acceleration to the rule's place. */
@@ -385,7 +392,7 @@ static int32_t distance(const gm_core *core)
 {
   const int32_t most = 16000, behind = core->behind > most ? most : core->behind < -most ? -most : core->behind;
   int32_t at = behind * 65536 - (int32_t)(core->progress / ((int64_t)1 << 32));
-  if (core->engaged) at += (int32_t)(part_of_step(core) >> 16) - 32768;
+  if (core->engaged) at += (int32_t)(part_of_step(core) >> 16) - core->part_of_whole;
   return at;
 }
 
@@ -393,7 +400,7 @@ static int32_t distance(const gm_core *core)
 static void try_lock(gm_core *core)
 {
   const int32_t at = distance(core);
-  if (at > 65536 || at < -65536 || squared(core->rate - core->speed) > GM_BRAKING_ROOM * 16384) {
+  if (at > 65536 || at < -65536 || squared(scaled(core->slope) - core->speed) > GM_BRAKING_ROOM * 16384) {
     core->steady = 0;
   } else if (++core->steady >= GM_STEADY_MS) {
     core->locked = core->was_locked = 1;
@@ -414,14 +421,11 @@ static void watch_index(gm_core *core)
 static void end_millisecond(gm_core *core)
 {
   switch (core->duties--) {
-    case 4:
+    case 3:
       if (core->has_job) measure(core);
       break;
-    case 3:
-      if (core->engaged && !core->locked) try_lock(core);
-      break;
     case 2:
-      if (++core->milliseconds == GM_WINDOW_MILLISECONDS) end_window(core);
+      if (core->engaged && !core->locked) try_lock(core);
       break;
     default:
       if (GM_HAS_INDEX && core->has_job) watch_index(core);
@@ -577,7 +581,8 @@ void gm_core_think(gm_core *core)
 {
   if (--core->millisecond_ticks == 0) {
     core->millisecond_ticks = GM_MILLISECOND_TICKS;
-    core->duties = 4;
+    core->duties = 3;
+    if (++core->milliseconds == GM_WINDOW_MILLISECONDS) end_window(core);
   }
   if (--core->steer_wait == 0) {
     core->steer_wait = GM_STEER_TICKS;
@@ -687,10 +692,12 @@ int gm_core_set_job(gm_core *core, const gm_job *job)
   set_limits(core);
   core->moved = 0;
   core->part = part_of_step(core);
+  core->part_of_whole = (int32_t)(core->part >> 16);
   core->off = core->slope = core->rate = 0;
+  core->window_mark -= hob_count(core); /* the counts begin anew, the hob turns on */
+  core->second_mark -= hob_count(core);
   core->edges[GM_HOB] = core->edges[GM_FEED] = 0;
   core->position = 0;
-  core->window_mark = core->second_mark = 0;
   core->index_known = 0;
   core->index_last = 0;
   core->index_visits = core->index_turns = 0;

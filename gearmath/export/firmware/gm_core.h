@@ -195,6 +195,7 @@ struct gm_core {
   /* speed of the place that the rule wants: steps since the last millisecond, part of a step, filter, and the speed */
   int32_t moved;
   uint32_t part;
+  int32_t part_of_whole; /* 2^-16: the part where the rule's place is a whole step */
   int64_t off;
   int64_t slope;
   int64_t rate;
