@@ -96,8 +96,14 @@ def _decoder(machine: HobbingMachine) -> Iterator[str]:
     yield ""
     yield from paragraph(
         f"{machine.encoder.lines} lines, of each {machine.encoder.edges_per_line} edges counted: "
-        f"{machine.encoder_counts} counts per turn."
+        f"{machine.encoder.counts_per_shaft} counts per turn."
     )
+    if machine.encoder.belt != 1:
+        index = " The index pulse is one per turn of the encoder." * (machine.pins.index is not None)
+        yield from paragraph(
+            f"The encoder makes {machine.encoder.belt} turns per turn of the "
+            f"{'spindle' if machine.profile == 'lathe' else 'hob'}, which are exactly {machine.encoder_counts} counts.{index}"
+        )
     if machine.encoder.decoder == "hardware":
         yield from paragraph(
             "Channels A and B go to the board itself, whose pin interrupts see every edge (library Encoder)."
@@ -240,11 +246,11 @@ def _steps(machine: HobbingMachine) -> Iterator[str]:
     )
     yield (
         f"`test hob encoder`: press, turn the {leading} once by hand in its working direction, press. It must count "
-        f"{machine.encoder_counts}. `decoder mode?` means the MODE jumper or the number of lines; "
+        f"{round(machine.encoder_counts)}. `decoder mode?` means the MODE jumper or the number of lines; "
         "`OK, but backwards` asks for channels A and B to be exchanged."
     )
     yield (
-        f"Motor power on, nothing clamped. `test one turn`: mark the {driven}, answer yes; {machine.motor_steps} steps "
+        f"Motor power on, nothing clamped. `test one turn`: mark the {driven}, answer yes; {round(machine.motor_steps)} steps "
         f"must bring the mark back exactly. If not, full steps, microsteps{', belt' if lathe else ', belt or worm'} of "
         "the machine file are not those of the machine."
     )

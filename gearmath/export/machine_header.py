@@ -26,7 +26,7 @@ typedef {wide} gm_wide;
 enum {{ GM_INCH = 0, GM_MM = 1 }};
 enum {{ {rules} }};
 
-/* One hob: unit of its gears, rule for the whole depth of its teeth, 1000 x diametral pitch or 1000 x module [mm]. */
+/* One hob: unit of its gears, rule for the whole depth of its teeth, 10000 x diametral pitch or 10000 x module [mm]. */
 typedef struct {{
   uint8_t unit;
   uint8_t depth_rule;
@@ -87,10 +87,16 @@ def _train(machine: HobbingMachine) -> list[Macro]:
     driven = "lead screw of a lathe" if lathe else "work table of a hobbing machine"
     macros = [
         (f"GM_PROFILE_{machine.profile.upper()}", 1, f"the motor turns the {driven}"),
-        *(
-            _checked(machine, quantity)
-            for quantity in (notation.encoder_counts, notation.motor_steps, notation.hob_starts)
+        (
+            "GM_ENCODER_COUNTS",
+            machine.encoder.counts_per_shaft,
+            "encoder counts per turn of its shaft, after the decoder",
         ),
+        ("GM_TURN_COUNTS", machine.encoder_counts.numerator, "encoder counts per turn of the hob, numerator"),
+        ("GM_TURN_COUNTS_DEN", machine.encoder_counts.denominator, "and denominator"),
+        ("GM_MOTOR_STEPS", machine.motor_steps.numerator, f"motor steps per turn of the {driven}, numerator"),
+        ("GM_MOTOR_STEPS_DEN", machine.motor_steps.denominator, "and denominator"),
+        _checked(machine, notation.hob_starts),
         ("GM_HOB_LEFT", int(machine.hob_hand == "left"), "1: left-hand hob"),
         ("GM_HYSTERESIS", machine.encoder.hysteresis, "counts of play of the hob encoder"),
         ("GM_WIDE", int(machine.wide), "0: gm_wide is int32_t, 1: int64_t"),
@@ -179,7 +185,7 @@ def _hobs(machine: HobbingMachine) -> str:
     if not machine.hobs:
         return "#define GM_HOBS 0\n"
     rows = "".join(
-        f"  {{{'GM_INCH' if hob.unit == 'inch' else 'GM_MM'}, {_RULES[hob.depth_rule]}, {hob.size_thousandths}}},\n"
+        f"  {{{'GM_INCH' if hob.unit == 'inch' else 'GM_MM'}, {_RULES[hob.depth_rule]}, {hob.size_tenthousandths}}},\n"
         for hob in machine.hobs
     )
     return f"#define GM_HOBS {len(machine.hobs)}\nstatic const gm_hob gm_hobs[GM_HOBS] = {{\n{rows}}};\n"

@@ -90,7 +90,7 @@ def job_values(
     _check_speed(machine, what, speed, highest)
     moved = motion(machine, exact, speed)
     check_run_up(machine, moved, speed, run_up, what)
-    edge_rate = speed / 60.0 * machine.encoder_counts
+    edge_rate = speed / 60.0 * float(machine.encoder_counts)
     pulse_ratio = float(1 / exact)
     (step_rate,) = evaluate("desired_position", edge_rate, abs(pulse_ratio))
     return {
@@ -146,7 +146,8 @@ def plan_thread(
 def thread_ratio(machine: HobbingMachine, pitch: Fraction, starts: int, hand: Hand) -> JobRatio:
     """κ_t of (9.14), exactly."""
     train = (machine.lead_screw_pitch, machine.encoder_counts, machine.motor_steps)
-    return one_term(expression("lead_screw_ratio").exact(SIGNS[hand], starts, pitch, *train)[0])
+    exact = expression("lead_screw_ratio").exact(SIGNS[hand], starts, pitch, *train)[0]
+    return one_term(exact, machine.encoder_counts.denominator)
 
 
 def refusal(machine: HobbingMachine, ratio: JobRatio) -> str | None:
@@ -188,7 +189,7 @@ def check_range(key: str, value: int, quantity: Quantity) -> None:
 
 
 def _highest_rpm(machine: HobbingMachine, ratio: Fraction) -> float:
-    by_steps = machine.limits.step_rate_hz * 60.0 / (machine.encoder_counts * float(ratio * TRIP))
+    by_steps = machine.limits.step_rate_hz * 60.0 / float(machine.encoder_counts * ratio * TRIP)
     return min(machine.limits.hob_rpm, by_steps)
 
 

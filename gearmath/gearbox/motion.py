@@ -40,7 +40,7 @@ class Motion:
 def motion(machine: HobbingMachine, ratio: Fraction, rpm: float) -> Motion:
     """The motion of a job of ``ratio`` motor steps per count at ``rpm``."""
     limits = machine.limits
-    rate = rpm / 60.0 * machine.encoder_counts * float(abs(ratio))
+    rate = rpm / 60.0 * float(machine.encoder_counts * abs(ratio))
     run_up, _, shortest = evaluate("run_up", rate, limits.acceleration_hz_per_s, float(limits.lag_steps))
     seconds = _catch_up(machine, rate)
     turns = None if seconds is None else seconds * rpm / 60.0

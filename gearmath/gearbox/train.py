@@ -120,7 +120,7 @@ def _ratio(
     machine: HobbingMachine, teeth: int, starts: int, hobs: tuple[Hob, ...], helix: Helix | None
 ) -> tuple[JobRatio, Rounding | None]:
     if helix is None:
-        return one_term(hob_ratio(machine, teeth, starts)), None
+        return one_term(hob_ratio(machine, teeth, starts), machine.encoder_counts.denominator), None
     if len(hobs) > 1:
         names = ", ".join(hob.name for hob in hobs)
         raise InputError(f"helix = {helix.angle:g}: the lead depends on the hob, choose one of {names}")
@@ -164,7 +164,8 @@ def _blank(
         hand = 1 if helix is None else helix.sign
         stands = swivel(gear, SIGNS[machine.hob_hand], hand, starts, hob.diameter)
     pitch_diameter = teeth * hob.module_mm / math.cos(gear.beta)
-    arcs = evaluate("resolution", pitch_diameter, teeth, starts, machine.encoder_counts, machine.motor_steps)
+    train = (float(machine.encoder_counts), float(machine.motor_steps))
+    arcs = evaluate("resolution", pitch_diameter, teeth, starts, *train)
     return HobbedBlank(
         hob.name, hob.depth_rule, blank_diameter(gear), depth, stands, span(gear), chord(gear), over_pins(gear, pin),
         *arcs,

@@ -28,6 +28,8 @@ __all__ = ["Hob", "HobbingMachine", "load_hobbing_machine"]
 LS7184_EDGE_RATE = 100_000
 #: Largest denominator of the rule in 32 bits; gearmath.gearbox.proof shows that it is tight.
 NARROW = int(notation.steps_denominator.domain[1])
+#: Largest numerator of the counts per turn of the hob.
+MOST_TURN_COUNTS = 16_000_000
 LONGEST_RAMP = 10.0  # s
 #: Threads per inch that the firmware takes, in steps of 1/100.
 FINEST_TPI = 1000
@@ -114,10 +116,11 @@ class HobbingMachine(Spec):
 
     def _check_edges(self) -> None:
         most = int(notation.encoder_counts.domain[1])
-        if self.encoder_counts > most:
+        if self.encoder_counts > most or self.encoder_counts.numerator > MOST_TURN_COUNTS:
             raise ValueError(
-                f"encoder.lines = {self.encoder.lines} with {self.encoder.decoder} are {self.encoder_counts} counts a "
-                f"turn: the kernels take {most}, use at most {most // self.encoder.edges_per_line} lines"
+                f"encoder.lines = {self.encoder.lines} with {self.encoder.decoder} and belt {self.encoder.belt} are "
+                f"{self.encoder_counts} counts a turn: the kernels take {most}, and {MOST_TURN_COUNTS} as numerator; "
+                f"use at most {int(most / self.encoder.belt) // self.encoder.edges_per_line} lines"
             )
         carried = self.edge_rate_limit
         what = f"board {self.board}" if carried == self.hardware.highest_edge_rate else "the LS7184"
@@ -125,7 +128,7 @@ class HobbingMachine(Spec):
             raise ValueError(
                 f"limits.hob_rpm = {self.limits.hob_rpm:g} with {self.encoder_counts} counts a turn are "
                 f"{self.max_edge_rate} edges/s: {what} carries {carried}, which is at most "
-                f"{carried * 60 // self.encoder_counts} rpm"
+                f"{int(carried * 60 / self.encoder_counts)} rpm"
             )
 
     def _check_steps(self) -> None:
@@ -156,14 +159,14 @@ class HobbingMachine(Spec):
         return drive
 
     @property
-    def encoder_counts(self) -> int:
-        """Encoder counts per turn of the hob (the spindle), after the decoder."""
-        return self.encoder.lines * self.encoder.edges_per_line
+    def encoder_counts(self) -> Fraction:
+        """Encoder counts per turn of the hob (the spindle), after the decoder, exactly."""
+        return self.encoder.counts_per_shaft * self.encoder.belt
 
     @property
-    def motor_steps(self) -> int:
-        """Motor steps per turn of the work table (the lead screw)."""
-        return int(self.drive.steps_per_turn)
+    def motor_steps(self) -> Fraction:
+        """Motor steps per turn of the work table (the lead screw), exactly."""
+        return self.drive.steps_per_turn
 
     @property
     def lead_screw_pitch(self) -> Fraction:
@@ -185,12 +188,13 @@ class HobbingMachine(Spec):
     def wide(self) -> bool:
         """Whether some job of this machine needs 64 bits: two axes, or a denominator beyond the 32-bit rule."""
         if self.profile == "hobbing":
-            widest = int(notation.teeth.domain[1]) * self.encoder_counts
-            return self.feed is not None or widest > NARROW
-        per_mm = Fraction(self.motor_steps) / (self.lead_screw_pitch * self.encoder_counts)
+            counts = self.encoder_counts
+            widest = int(notation.teeth.domain[1]) * counts.numerator * self.motor_steps.denominator
+            return self.feed is not None or widest * counts.denominator > NARROW
+        per_mm = self.motor_steps / (self.lead_screw_pitch * self.encoder_counts)
         metric = (per_mm / 1000).denominator  # every pitch in 1/1000 mm
         inch = (per_mm * EXACT_INCH * 100).denominator * FINEST_TPI * 100  # every number of threads in 1/100 per inch
-        return max(metric, inch) > NARROW
+        return max(metric, inch) * self.encoder_counts.denominator > NARROW
 
     # --- board, driver and limits in the units of the firmware ------------------------------------------------------
     @property
@@ -226,7 +230,7 @@ class HobbingMachine(Spec):
     @property
     def max_edge_rate(self) -> int:
         """Encoder edges per second at the highest speed, rounded up."""
-        return math.ceil(self.limits.hob_rpm / 60.0 * self.encoder_counts)
+        return math.ceil(self.limits.hob_rpm / 60.0 * float(self.encoder_counts))
 
     @property
     def edge_rate_limit(self) -> int:

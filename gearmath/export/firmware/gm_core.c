@@ -73,6 +73,7 @@ typedef char gm_check_acceleration[GM_ACCELERATION >= 1 && GM_ACCELERATION <= 10
 typedef char gm_check_edges[GM_MAX_EDGE_RATE >= 1 && GM_MAX_EDGE_RATE <= 10000000 ? 1 : -1];
 typedef char gm_check_lag[GM_MAX_LAG >= 1 && GM_MAX_LAG <= 1000000 ? 1 : -1];
 typedef char gm_check_counts[GM_ENCODER_COUNTS >= 1 && GM_ENCODER_COUNTS <= 8000000 ? 1 : -1];
+typedef char gm_check_turn[GM_TURN_COUNTS >= 1 && GM_TURN_COUNTS <= 16000000 && GM_TURN_COUNTS_DEN >= 1 ? 1 : -1];
 typedef char gm_check_width[sizeof(gm_wide) == (GM_WIDE ? 8 : 4) ? 1 : -1];
 
 /* Levels that stand for off. */
@@ -618,6 +619,7 @@ static int in_range(const gm_job *job)
   int axis;
   if (job->denominator < 1 || job->denominator > GM_LARGEST_DENOMINATOR) return 0;
   if (job->hysteresis < 0 || job->hysteresis > GM_LARGEST_HYSTERESIS) return 0;
+  if (job->denominator % GM_TURN_COUNTS_DEN != 0 || job->increment[GM_HOB] % GM_TURN_COUNTS_DEN != 0) return 0;
   for (axis = 0; axis < GM_AXES; ++axis) {
     if (job->increment[axis] < 0 || job->increment[axis] >= job->denominator) return 0;
     if (job->base[axis] < -GM_LARGEST_BASE || job->base[axis] > GM_LARGEST_BASE) return 0;
@@ -626,7 +628,7 @@ static int in_range(const gm_job *job)
 }
 
 /* One turn of the hob in steps, |N| counts / D = lead_steps + lead_rest/D, by long multiplication: no sum leaves
- * gm_wide, as 2 D does not. */
+ * gm_wide, as 2 D does not. Counts are c/d: D and the rest are multiples of d, and the base gives base c/d steps. */
 static void set_lead(gm_core *core)
 {
   gm_wide D = core->job.denominator, rest = core->job.increment[GM_HOB];
@@ -638,10 +640,11 @@ static void set_lead(gm_core *core)
       --base;
     }
   }
+  rest /= GM_TURN_COUNTS_DEN;
   core->lead_steps = 0;
   core->lead_rest = 0;
   for (bit = (int32_t)1 << 23; bit; bit >>= 1) {
-    int add = (GM_ENCODER_COUNTS & bit) != 0;
+    int add = (GM_TURN_COUNTS & bit) != 0;
     core->lead_steps *= 2;
     core->lead_rest = core->lead_rest - D + core->lead_rest;
     if (core->lead_rest < 0) {
@@ -657,7 +660,13 @@ static void set_lead(gm_core *core)
       ++core->lead_steps;
     }
   }
-  core->lead_steps += base * GM_ENCODER_COUNTS;
+  core->lead_steps += base * GM_TURN_COUNTS / GM_TURN_COUNTS_DEN;
+  core->lead_rest -= D - D / GM_TURN_COUNTS_DEN * (base * GM_TURN_COUNTS % GM_TURN_COUNTS_DEN);
+  if (core->lead_rest < 0) {
+    core->lead_rest += D;
+  } else {
+    ++core->lead_steps;
+  }
 }
 
 /* How fast this job may turn the hob, and what its measuring needs. */
@@ -665,7 +674,8 @@ static void set_limits(gm_core *core)
 {
   /* steps/s over steps per turn are turns/s; the step rate is that of GM_MAX_STEP_RATE, whatever the hob may do */
   const uint64_t steps = (uint64_t)GM_MAX_STEP_RATE * GM_TICK_NS * GM_ONE_EDGE / 1000000u; /* 1/1000 */
-  const uint64_t leak = steps * GM_ENCODER_COUNTS / (((uint64_t)core->lead_steps + 1u) * 1000u);
+  const uint64_t turn = ((uint64_t)core->lead_steps + 1u) * 1000u * GM_TURN_COUNTS_DEN;
+  const uint64_t leak = steps * GM_TURN_COUNTS / turn;
   gm_wide whole = core->job.denominator;
   int32_t edge = core->job.base[GM_HOB];
   core->leak = leak < GM_LEAK ? (uint32_t)leak + 1u : GM_LEAK;

@@ -37,7 +37,8 @@
  * Index. While a job is loaded, an index pulse must find a whole number of turns since earlier pulses: within
  * GM_INDEX_TOLERANCE counts of the earlier pulses on which the hob came from the same side, and within GM_INDEX_WIDTH
  * of all of them, since a pulse begins at its other end when the hob turns back. All earlier pulses count, so that
- * edges lost one at a time are found. GM_INDEX_VISITS pulses in a row without a turn while running (an encoder line is
+ * edges lost one at a time are found. Turns are those of the encoder's shaft, GM_ENCODER_COUNTS each, where a belt drives
+ * it. GM_INDEX_VISITS pulses in a row without a turn while running (an encoder line is
  * broken), or GM_INDEX_MISSING turns without a pulse (the index line is), end in GM_ENCODER as well.
  */
 #ifndef GM_CORE_H
@@ -54,6 +55,10 @@ extern "C" {
 /* Choices that a machine may make otherwise, in gm_machine.h. */
 #ifndef GM_MAX_STEP_RATE /* steps/s: what the driver's pulse and pause allow */
 #define GM_MAX_STEP_RATE (1000000000 / ((int64_t)GM_TICK_NS * (GM_STEP_HIGH_TICKS + GM_STEP_LOW_TICKS)))
+#endif
+#ifndef GM_TURN_COUNTS /* counts per turn of the hob are GM_TURN_COUNTS/GM_TURN_COUNTS_DEN: its encoder may have a belt */
+#define GM_TURN_COUNTS GM_ENCODER_COUNTS
+#define GM_TURN_COUNTS_DEN 1
 #endif
 #ifndef GM_ACCELERATION /* steps/s^2 */
 #define GM_ACCELERATION GM_MOVE_ACCELERATION
@@ -99,7 +104,8 @@ typedef enum {
   GM_HOB_MOVED = 5   /* the hob turned during a move of the table */
 } gm_fault;
 
-/* One job: the ratio of each axis is base + increment/denominator motor steps per edge, exactly. */
+/* One job: the ratio of each axis is base + increment/denominator motor steps per edge, exactly. The denominator, and the
+ * hob's increment, are multiples of GM_TURN_COUNTS_DEN, so that a turn of the hob is a whole number of 1/denominator. */
 typedef struct {
   gm_wide denominator;
   gm_wide increment[GM_AXES];

@@ -194,14 +194,13 @@ static void gm_arm(gm_ui *ui, uint32_t now) {
 }
 
 static void gm_divide(gm_ui *ui) {
-  int32_t steps = gm_division_step(ui->target, ui->divisions) - gm_division_step(ui->at, ui->divisions);
-  if (steps > GM_MOTOR_STEPS / 2) {
-    steps -= GM_MOTOR_STEPS;
-  } else if (steps < -(GM_MOTOR_STEPS / 2)) {
-    steps += GM_MOTOR_STEPS;
-  }
-  if (!gm_move(ui, steps)) {
-    ui->at = ui->target;
+  /* the nearer way; `at` counts on beyond a turn, which need not be a whole number of steps */
+  int32_t way = (ui->target - ui->at) % ui->divisions;
+  int64_t steps;
+  way = way > ui->divisions / 2 ? way - ui->divisions : way < -(ui->divisions / 2) ? way + ui->divisions : way;
+  steps = gm_division_step(ui->at + way, ui->divisions) - gm_division_step(ui->at, ui->divisions);
+  if (!gm_move(ui, (int32_t)steps)) {
+    ui->at += way;
     ui->target = (ui->target + 1) % ui->divisions;
   }
 }
@@ -285,7 +284,7 @@ static unsigned gm_press(gm_ui *ui, const gm_status *status, uint32_t now) {
     case GM_PAGE_TEST_TABLE:
       if (yes) {
         ui->choice = 0;
-        ui->test = gm_move(ui, GM_MOTOR_STEPS) ? GM_TEST_READY : GM_TEST_DONE;
+        ui->test = gm_move(ui, (int32_t)gm_division_step(1, 1)) ? GM_TEST_READY : GM_TEST_DONE;
       } else {
         gm_go(ui, GM_PAGE_MENU);
       }

@@ -125,6 +125,27 @@ def test_table_meshes_again_after_any_turns_and_moves_while_it_stood(new_core, N
     assert waited > 5
 
 
+@pytest.mark.parametrize(("turn", "den"), [(40_000, 9), (81_920, 17), (160_000, 41)])
+@pytest.mark.parametrize(("N", "D"), [(125, 192), (-7, 2), (1, 3), (2**20, 2**20 - 3)])
+def test_a_turn_of_the_hob_that_is_no_whole_number_of_counts_is_met_exactly(new_core, turn, den, N, D):
+    """The encoder has a belt: after any whole turns and back at the place, the table starts with no error at all."""
+    core = new_core(True, GM_TURN_COUNTS=turn, GM_TURN_COUNTS_DEN=den, GM_MAX_EDGE_RATE=400_000)
+    assert core.job(N, D) == -1 or den == 1  # D must be a multiple of den
+    running(core, N * den, D * den)
+    core.play(edges(3000, 20))
+    lead = Fraction(N * turn, D * den)
+    for away in (17 * turn // den + 5, -turn, 12_345):
+        core.stop()
+        core.play(0, 6000)
+        core.play(edges(away, 4))
+        assert core.run() == 0
+        core.play(edges(turn // den + 2, 20))
+        core.play(0, 6000)
+        assert (core.status.waiting, core.status.in_phase) == (0, 1)
+        off = (core.status.position - Fraction(N * core.status.edges, D)) % abs(lead)
+        assert min(off, abs(lead) - off) <= Fraction(1, 2)
+
+
 def test_table_goes_on_at_once_where_nothing_has_turned(new_core):
     core = running(new_core(), 125, 192)
     core.play(edges(1000))

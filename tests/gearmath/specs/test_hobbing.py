@@ -40,7 +40,7 @@ def test_second_bundled_machine_has_the_metric_hobs_of_the_second_example():
     machine = load_hobbing_machine(bundled("hobbing_metric.toml"))
     assert [hob.diametral_pitch for hob in machine.hobs][:8] == [32, 36, 48, 60, 64, 80, 105, 126]
     assert [hob.module for hob in machine.hobs][8:] == [0.5, 1.0, 1.5]
-    assert [(hob.unit, hob.size_thousandths) for hob in machine.hobs[7:9]] == [("inch", 126_000), ("mm", 500)]
+    assert [(hob.unit, hob.size_tenthousandths) for hob in machine.hobs[7:9]] == [("inch", 1_260_000), ("mm", 5000)]
 
 
 @pytest.mark.parametrize(
@@ -53,6 +53,9 @@ def test_second_bundled_machine_has_the_metric_hobs_of_the_second_example():
         ('"ls7184_x4"', '"ls7184_x2"', 2048, 16000),  # MODE pin at 1
         ('"ls7184_x4"', '"hardware"', 4096, 16000),
         ('belt = "2/1"', 'belt = "127/50"', 4096, 20320),  # 800 x 2.54 x 10, exact
+        ("worm = 10", 'worm = "1/3"', 4096, Fraction(1600, 3)),
+        ("lines = 1024", 'lines = 1000\nbelt = "10/9"', Fraction(40_000, 9), 16000),  # 4444.44
+        ("full_steps = 200\nmicrosteps = 4", 'pulses = "131072/10"', 4096, 262_144),  # a servo of 17 bits, geared 1:10
     ],
 )
 def test_drive_trains_of_the_source_text(old, new, counts, steps):
@@ -95,7 +98,10 @@ def test_two_axes_or_a_fine_screw_need_64_bits():
 
 
 BAD = [
-    (PLEWES, "worm = 10", 'worm = "1/3"', ("table", "1600/3", "whole number")),
+    (PLEWES, "worm = 10", 'worm = "999983/999979"', ("table", "1599972800/999979", "1073741824")),
+    (PLEWES, "microsteps = 4", "microsteps = 4\npulses = 1000", ("table", "servo needs pulses")),
+    (PLEWES, "microsteps = 4", "", ("table", "full_steps and microsteps")),
+    (PLEWES, "lines = 1024", 'lines = 9999\nbelt = "1000/997"', ("encoder.lines = 9999", "at most 9970 lines")),
     (PLEWES, "worm = 10", "worm = 10.5", ("table.worm", "10.5", "fraction")),
     (PLEWES, "worm = 10", "worm = true", ("table.worm", "True", "whole number")),
     (PLEWES, "worm = 10", 'worm = "1/0"', ("table.worm", "1/0", "fraction")),
@@ -117,7 +123,7 @@ BAD = [
     (PLEWES, "module = 1.0", "module = nan", ("hobs.9.module", "nan", "finite")),
     (PLEWES, "module = 1.0", "module = 1.0\ndiametral_pitch = 32.0", ("hobs.9", "exactly one")),
     (PLEWES, "module = 1.0", "", ("hobs.9", "exactly one")),
-    (PLEWES, "module = 1.0", "module = 1.0001", ("hobs.9", "1.0001", "three decimals")),
+    (PLEWES, "module = 1.0", "module = 1.00001", ("hobs.9", "1.00001", "four decimals")),
     (PLEWES, "module = 1.0", "module = 1.0\ndiameter = 4.0", ("hobs.9", "diameter = 4", "five modules")),
     (PLEWES, '"2.25m"', '"2.25/P"', ("hobs.9", "2.25/P", "2.25m")),
     (PLEWES, '"2.25m"', '"2m"', ("hobs.9.depth_rule", "2m", "2.157/P")),

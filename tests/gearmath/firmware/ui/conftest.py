@@ -179,7 +179,7 @@ class Settings(ctypes.Structure):
 
 def settings(**changes: int) -> Settings:
     """A spur gear of 24 teeth and module 1 with changes, or a thread of 1 mm where profile = 1."""
-    usual = {"hob_unit": 1, "depth_rule": 3, "starts": 1, "teeth": 24, "hob_size": 1000, "pitch": 1000, "feed": 250}
+    usual = {"hob_unit": 1, "depth_rule": 3, "starts": 1, "teeth": 24, "hob_size": 10_000, "pitch": 1000, "feed": 250}
     return Settings(**usual | changes)
 
 

@@ -103,14 +103,14 @@ def test_ratios_beyond_the_kernels_are_refused(firmware, make_job, new_settings)
     steep = firmware("hobbing_plewes", GM_MOTOR_STEPS=4096 * 65, GM_MAX_STEP_RATE=2_000_000_000)
     assert make_job(steep, new_settings(teeth=1))[0] == STEEP
     assert make_job(steep, new_settings(teeth=2))[0] == 0
-    wide = firmware("hobbing_plewes", GM_ENCODER_COUNTS=1_111_111)
+    wide = firmware("hobbing_plewes", GM_TURN_COUNTS=1_111_111)
     assert make_job(wide, new_settings(teeth=967))[0] == WIDE  # 967 x 1111111 > 2^30, coprime to 16000
     assert make_job(wide, new_settings(teeth=960))[0] == 0
 
 
 def inverse_lead(wanted):
     """1/L [1/mm] of a right-hand helix with 60 digits."""
-    module = mpf(wanted.hob_size) / 1000 if wanted.hob_unit == 1 else mpf("25.4") * 1000 / wanted.hob_size
+    module = mpf(wanted.hob_size) / 10_000 if wanted.hob_unit == 1 else mpf("25.4") * 10_000 / wanted.hob_size
     return mp.sin(mp.pi * wanted.helix / 18000) / (mp.pi * module * wanted.teeth)
 
 
@@ -120,7 +120,9 @@ HELICES = st.fixed_dictionaries(
         "helix": st.integers(1, 6000),
         "left": st.integers(0, 1),
         "starts": st.sampled_from([1, -1]),
-        "hob": st.sampled_from([(1, 3, 1000), (1, 3, 500), (1, 3, 1500), (0, 0, 32000), (0, 0, 60800), (0, 2, 24000)]),
+        "hob": st.sampled_from(
+            [(1, 3, 10_000), (1, 3, 5000), (1, 3, 15_000), (0, 0, 320_000), (0, 0, 608_000), (0, 2, 240_000)]
+        ),
     }
 )
 

@@ -88,7 +88,7 @@ def test_a_fast_knob_reaches_999_teeth_and_a_slow_one_every_count(panel):
     p = panel("hobbing_plewes")
     p.short()
     p.knob(-40, after_ms=20)
-    assert p.edit.teeth == 6
+    assert p.edit.teeth == 1
     p.knob(1)
     assert p.edit.teeth == 7
     p.knob(1, after_ms=50)
@@ -157,7 +157,7 @@ def test_a_turning_hob_is_not_engaged(panel):
 
 def test_after_power_up_the_last_job_is_there_but_not_its_phase(panel, new_settings):
     p = panel("hobbing_plewes")
-    p.power_up(new_settings(teeth=127, hob_unit=0, depth_rule=0, hob_size=60800, starts=2))
+    p.power_up(new_settings(teeth=127, hob_unit=0, depth_rule=0, hob_size=608_000, starts=2))
     shows(p, "Last job restored", "127 teeth    60.8 DP", "PHASE IS LOST", "Press: check the job")
     p.edges(500)
     assert (p.mode, p.position) == (IDLE, 0)
@@ -165,7 +165,7 @@ def test_after_power_up_the_last_job_is_there_but_not_its_phase(panel, new_setti
     shows(p, "Teeth            127", "Steps            125", "Edges           2032", "Press: next")
 
 
-@pytest.mark.parametrize("foreign", [{"hob_size": 1250}, {"teeth": 0}, {"profile": 1}])
+@pytest.mark.parametrize("foreign", [{"hob_size": 12_500}, {"teeth": 0}, {"profile": 1}])
 def test_a_stored_job_of_another_machine_is_not_taken(panel, new_settings, foreign):
     p = panel("hobbing_plewes")
     p.power_up(new_settings(**foreign))
@@ -175,7 +175,7 @@ def test_a_stored_job_of_another_machine_is_not_taken(panel, new_settings, forei
 def test_a_job_too_fast_for_the_driver_is_refused_with_the_limit_that_would_do(panel):
     p = panel("hobbing_plewes")
     p.short()
-    p.knob(-40, after_ms=20)  # 6 teeth
+    p.knob(-18)  # 6 teeth
     p.short()
     p.short()
     p.knob(1)  # 2 starts
