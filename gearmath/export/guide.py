@@ -102,7 +102,8 @@ def _decoder(machine: HobbingMachine) -> Iterator[str]:
         index = " The index pulse is one per turn of the encoder." * (machine.pins.index is not None)
         yield from paragraph(
             f"The encoder makes {machine.encoder.belt} turns per turn of the "
-            f"{'spindle' if machine.profile == 'lathe' else 'hob'}, which are exactly {machine.encoder_counts} counts.{index}"
+            f"{'spindle' if machine.profile == 'lathe' else 'hob'}, which are exactly {machine.encoder_counts} "
+            f"counts.{index}"
         )
     if machine.encoder.decoder == "hardware":
         yield from paragraph(
@@ -159,7 +160,8 @@ def _transistors(machine: HobbingMachine) -> Iterator[tuple[str, str]]:
     if opened:
         yield f"RL1 to RL{signals}", "optional, see below"
     if relay:
-        yield "K1, 5 V relay with diode", "holds the contactor of the motor"
+        yield "C3 2.2 uF, C4 10 uF, D1 and D2 1N5819", "charge pump: only a square wave of the board holds K1"
+        yield "K1, 5 V relay of at most 50 mA, with diode", "holds the contactor of the motor"
 
 
 def _parts(machine: HobbingMachine) -> Iterator[str]:
@@ -190,7 +192,12 @@ def _advice(machine: HobbingMachine) -> Iterator[str]:
             "be without power in an emergency belongs into that circuit, not into a program."
         )
     if machine.pins.healthy is not None:
-        yield "K1 is energised while all is well: a fault, a reset or a broken wire lets it go and stops the machine."
+        yield (
+            "The fail-safe pin is a square wave of 1 kHz, which only a working program and a working interrupt make. "
+            "The charge pump C3, D1, D2, C4 turns it into base current of the last transistor, and K1 falls within 50 ms "
+            "after the wave ends, at whatever level: a fault, a reset, a hung processor or a broken wire stops the "
+            "machine. Only your press on the power-up page, a start, or the acknowledgement of a fault lets it go on."
+        )
     else:
         yield "No fail-safe output is wired: after a fault **you** must stop the machine. The fault page says so."
     if machine.pins.index is None:
@@ -250,9 +257,9 @@ def _steps(machine: HobbingMachine) -> Iterator[str]:
         "`OK, but backwards` asks for channels A and B to be exchanged."
     )
     yield (
-        f"Motor power on, nothing clamped. `test one turn`: mark the {driven}, answer yes; {round(machine.motor_steps)} steps "
-        f"must bring the mark back exactly. If not, full steps, microsteps{', belt' if lathe else ', belt or worm'} of "
-        "the machine file are not those of the machine."
+        f"Motor power on, nothing clamped. `test one turn`: mark the {driven}, answer yes; "
+        f"{round(machine.motor_steps)} steps must bring the mark back exactly. If not, full steps, microsteps"
+        f"{', belt' if lathe else ', belt or worm'} of the machine file are not those of the machine."
     )
     yield (
         f"Direction: jog forward. If the {driven} turns the wrong way, change `invert_direction` of the driver and "

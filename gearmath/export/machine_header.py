@@ -156,6 +156,11 @@ def _wired(machine: HobbingMachine) -> list[Macro]:
         ("GM_HAS_FEED", int(machine.feed is not None), "encoder of the axial feed"),
         ("GM_HAS_ENABLE", int(pins.enable is not None), "enable output of the driver"),
         ("GM_HAS_ESTOP", int(pins.estop is not None), "emergency stop input"),
+        ("GM_ENCODER_INVERT", int(machine.encoder.invert), "1: counts go down as the hob turns forward"),
+        ("GM_INDEX_ACTIVE_LOW", int(machine.encoder.index_active == "low"), "1: the index pulse is low"),
+        ("GM_HAS_ALARM", int(pins.alarm is not None), "alarm input of the driver"),
+        ("GM_ALARM_ACTIVE_LOW", int(machine.driver.alarm_active == "low"), "1: the pin is low during an alarm"),
+        ("GM_HAS_RESET", int(pins.reset is not None), "reset output to the driver"),
         ("GM_HAS_HEALTHY", int(pins.healthy is not None), "fail-safe output"),
     ]
 
@@ -176,7 +181,9 @@ PIN_SENTENCES = {
     "feed_dir": "feed encoder: direction of the LS7184, or channel B",
     "enable": "enable of the driver",
     "estop": "emergency stop, normally closed to ground",
-    "healthy": "fail-safe output, high while all is well",
+    "alarm": "alarm output of the driver, with a pull-up in the board",
+    "reset": "reset of the driver, high for 0.2 s when its alarm is acknowledged",
+    "healthy": "fail-safe output, a square wave of 1 kHz while all is well",
 }
 
 

@@ -120,6 +120,8 @@ def _faults(machine: HobbingMachine, leading: str) -> Iterator[Row]:
     limits = machine.limits
     if machine.pins.estop is not None:
         yield ("EMERGENCY STOP", "its contact is open, or its wire is broken")
+    if machine.pins.alarm is not None:
+        yield ("FAULT motor driver", "the driver of the motor reports a fault of its own; the motor has no torque then")
     yield (
         "FAULT table lags",
         f"more than {limits.lag_steps} steps waited: the motor cannot keep up with the {leading}",

@@ -62,8 +62,12 @@ class Pins(Spec):
     """Output that enables the driver."""
     estop: int | None = Field(default=None, ge=0)
     """Input of a normally closed emergency stop to ground: open means stop."""
+    alarm: int | None = Field(default=None, ge=0)
+    """Input of the driver's alarm output; driver.alarm_active is its level."""
+    reset: int | None = Field(default=None, ge=0)
+    """Output that is high for 0.2 s to reset the driver after its alarm."""
     healthy: int | None = Field(default=None, ge=0)
-    """Output that is energised while all is well, to hold the hob's contactor."""
+    """Output that is a square wave while all is well, for a stage that holds the hob's contactor."""
 
     def used(self) -> Iterator[tuple[str, int]]:
         """Name and number of every pin that is wired."""

@@ -23,6 +23,10 @@ class Encoder(Spec):
     belt: Rational = Fraction(1)
     """Turns of the encoder per turn of the hob (the spindle), where pulleys drive it. Its index is then one per turn of
     its own shaft."""
+    invert: bool = False
+    """Whether the counts go down as the hob turns forward: instead of exchanging its channels."""
+    index_active: Literal["high", "low"] = "high"
+    """Level of the index pulse at the board's pin."""
     decoder: Literal["ls7184_x1", "ls7184_x2", "ls7184_x4", "hardware"]
     hysteresis: int = Field(default=0, ge=0, le=int(notation.hysteresis.domain[1]))
 

@@ -100,6 +100,8 @@ class Driver(Spec):
     enable_active: Level | None = None
     """Level at the driver's own input that enables it; only for a driver whose row does not say it."""
     invert_direction: bool = False
+    alarm_active: Level = "low"
+    """Level at the board's pin while the driver has an alarm; an open wire reads high."""
 
     @model_validator(mode="after")
     def _one_timing(self) -> Driver:

@@ -114,6 +114,9 @@ class HobbingMachine(Spec):
             if (getattr(self.pins, key) is None) != (self.feed is None):
                 raise ValueError(f"pins.{key} must be given where there is a [feed], and only there")
 
+        if self.pins.reset is not None and self.pins.alarm is None:
+            raise ValueError("pins.reset has no meaning without pins.alarm")
+
     def _check_edges(self) -> None:
         most = int(notation.encoder_counts.domain[1])
         if self.encoder_counts > most or self.encoder_counts.numerator > MOST_TURN_COUNTS:

@@ -59,6 +59,8 @@
 #define GM_HOPELESS_TURNS 64
 
 #define GM_ESTOP_TICKS ((uint32_t)GM_ESTOP_MS * GM_MILLISECOND_TICKS)
+#define GM_ALARM_TICKS (2u * GM_MILLISECOND_TICKS) /* more on than off */
+#define GM_RESET_MS 200u
 #define GM_ALIVE_TICKS ((uint32_t)GM_ALIVE_MS * GM_MILLISECOND_TICKS)
 #define GM_HEALTHY_TICKS (GM_MILLISECOND_TICKS / 2u)
 
@@ -135,6 +137,10 @@ static void trip(gm_core *core, gm_fault fault)
   if (sound && core->mode == GM_RUN && (core->engaged || core->braking)) return; /* until the hob stands */
   brake(core);
   core->mode = GM_FAULT;
+  if (fault == GM_ALARM) { /* a driver that has given up turns nothing */
+    core->speed = core->progress = 0;
+    core->pending = 0;
+  }
   if (!sound) {
     core->has_job = 0;
     core->job.hysteresis = 0;
@@ -443,6 +449,15 @@ static void watch_estop(gm_core *core, unsigned inputs)
   }
 }
 
+static void watch_alarm(gm_core *core, unsigned inputs)
+{
+  if (!(inputs & (unsigned)GM_IN_ALARM)) {
+    if (core->alarm_on) --core->alarm_on;
+  } else if (core->alarm_on < GM_ALARM_TICKS && ++core->alarm_on == GM_ALARM_TICKS) {
+    trip(core, GM_ALARM);
+  }
+}
+
 /* Sets the speed of the motion within the acceleration: towards where the rule (or the move) wants it, so that braking
  * with three quarters of the acceleration ends there, at the speed of that place; a move, whose end stands, with nearly
  * all of it. */
@@ -570,11 +585,16 @@ unsigned gm_core_outputs(gm_core *core, unsigned inputs)
   ++core->now;
   core->bucket = core->bucket > leak ? core->bucket - leak : 0;
   if (GM_HAS_ESTOP) watch_estop(core, inputs);
+  if (GM_HAS_ALARM) watch_alarm(core, inputs);
   drive(core);
   beat(core);
   if (core->pulse) levels |= GM_OUT_STEP;
   if (core->dir > 0) levels |= GM_OUT_DIR;
   if (core->healthy_level) levels |= GM_OUT_HEALTHY;
+  if (core->reset) {
+    --core->reset;
+    levels |= GM_OUT_RESET;
+  }
   return levels ^ GM_OFF;
 }
 
@@ -752,6 +772,10 @@ int gm_core_move(gm_core *core, int32_t steps)
 int gm_core_acknowledge(gm_core *core)
 {
   if (core->mode != GM_FAULT || core->braking || (GM_HAS_ESTOP && core->estop_open)) return -1;
+  if (GM_HAS_ALARM && core->alarm_on) {
+    core->reset = GM_RESET_MS * GM_MILLISECOND_TICKS;
+    return -1; /* held once more when the driver is ready */
+  }
   if (core->fault == GM_OVERSPEED && core->bucket > GM_BURST * GM_ONE_EDGE / 2) return -1;
   core->mode = GM_IDLE;
   core->fault = GM_NO_FAULT;

@@ -81,6 +81,9 @@ extern "C" {
 #ifndef GM_ESTOP_MS
 #define GM_ESTOP_MS 10 /* the input must be open for so much longer than it is closed */
 #endif
+#ifndef GM_HAS_ALARM
+#define GM_HAS_ALARM 0
+#endif
 #ifndef GM_ALIVE_MS
 #define GM_ALIVE_MS 250 /* the longest silence of the main program; the EEPROM of a Teensy 4 takes less */
 #endif
@@ -101,7 +104,8 @@ typedef enum {
   GM_LAG = 2,        /* more steps wait than GM_MAX_LAG */
   GM_OVERSPEED = 3,  /* edges come faster than the hob may turn */
   GM_ENCODER = 4,    /* a turn of the hob had not GM_ENCODER_COUNTS edges: edges were lost or invented */
-  GM_HOB_MOVED = 5   /* the hob turned during a move of the table */
+  GM_HOB_MOVED = 5,  /* the hob turned during a move of the table */
+  GM_ALARM = 6       /* the driver of the motor says that it has a fault */
 } gm_fault;
 
 /* One job: the ratio of each axis is base + increment/denominator motor steps per edge, exactly. The denominator, and the
@@ -137,6 +141,7 @@ int gm_core_set_job(gm_core *core, const gm_job *job);
 int gm_core_run(gm_core *core);                   /* from GM_IDLE with a job; -1 otherwise */
 void gm_core_stop(gm_core *core);                 /* brakes, then GM_IDLE; the phase is kept */
 int gm_core_move(gm_core *core, int32_t steps);   /* from GM_IDLE, hob standing (not on a lathe): ramped; or -1 */
+/* Of a driver's alarm it resets the driver for GM_RESET_MS, too. */
 int gm_core_acknowledge(gm_core *core);           /* from GM_FAULT, cause gone and motor at rest: GM_IDLE; or -1 */
 int gm_core_arm(gm_core *core);                   /* the operator's act that lets the healthy output go on; or -1 */
 void gm_core_alive(gm_core *core);                /* the main program works */
@@ -144,9 +149,9 @@ void gm_core_status(const gm_core *core, gm_status *status);
 
 void gm_core_edge(gm_core *core, int axis, int edge); /* edge +1 or -1 */
 void gm_core_index(gm_core *core);
-/* inputs: GM_IN_ESTOP_OK. Returns GM_OUT_* levels as the driver wants them, polarity and inversion applied. */
-enum { GM_IN_ESTOP_OK = 1 };
-enum { GM_OUT_STEP = 1, GM_OUT_DIR = 2, GM_OUT_ENABLE = 4, GM_OUT_HEALTHY = 8 };
+/* inputs: GM_IN_ESTOP_OK, GM_IN_ALARM. Returns GM_OUT_* levels as the driver wants them, polarity and inversion applied. */
+enum { GM_IN_ESTOP_OK = 1, GM_IN_ALARM = 2 };
+enum { GM_OUT_STEP = 1, GM_OUT_DIR = 2, GM_OUT_ENABLE = 4, GM_OUT_HEALTHY = 8, GM_OUT_RESET = 16 };
 unsigned gm_core_outputs(gm_core *core, unsigned inputs); /* first, so that the levels are never late */
 void gm_core_think(gm_core *core);                        /* after them, in the same interrupt */
 unsigned gm_core_tick(gm_core *core, unsigned inputs);    /* both at once, where nobody waits for the levels */
@@ -177,6 +182,8 @@ struct gm_core {
   uint32_t dir_wait;
   int32_t dir; /* +1 or -1 */
   uint32_t estop_open;
+  uint32_t alarm_on;
+  uint32_t reset; /* ticks left of the pulse that resets the driver */
   uint32_t inputs_read; /* ticks, up to those of the filter */
   int armed;
   uint32_t alive;

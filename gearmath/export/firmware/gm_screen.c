@@ -298,6 +298,10 @@ static void gm_draw_fault(gm_ui *ui, const gm_status *status) {
       gm_line(ui, 0, "FAULT hob turned");
       gm_line(ui, 1, "Lock it for moves");
       break;
+    case GM_ALARM:
+      gm_line(ui, 0, "FAULT motor driver");
+      gm_line(ui, 1, "See its own lamp");
+      break;
     default: break;
   }
   gm_line(ui, 2, GM_HAS_HEALTHY ? "Hob was switched off" : "YOU MUST STOP HOB!");

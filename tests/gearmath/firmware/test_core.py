@@ -380,6 +380,29 @@ def test_machine_without_emergency_stop_input_ignores_it(new_core):
     assert core.status.fault == NO_FAULT
 
 
+# --- alarm of the driver --------------------------------------------------------------------------------------------
+
+OK, ALARM_INPUT, RESET_OUTPUT = 1, 2, 16
+
+
+def test_alarm_of_the_driver_stops_the_pulses_and_its_acknowledgement_resets_the_driver(new_core):
+    core = running(new_core(GM_HAS_ALARM=1), 1, 2)
+    noise = np.where(np.random.default_rng(3).random(20_000) < 0.4, OK | ALARM_INPUT, OK)
+    record = core.play(edges(400, 50), inputs=noise)
+    assert (core.status.fault, core.status.in_phase) == (NO_FAULT, 1)
+    assert not (record.levels & RESET_OUTPUT).any()
+    record = core.play(edges(100, 50), inputs=OK | ALARM_INPUT)
+    assert (core.status.mode, core.status.fault, core.status.has_job) == (FAULT, 6, 0)
+    tripped = int(np.argmax(record.fault == 6))
+    assert tripped == 399  # 2 ms
+    assert record.position[-1] == record.position[tripped]
+    assert core.acknowledge() == -1
+    reset = (core.play(0, 50_000, inputs=OK | ALARM_INPUT).levels & RESET_OUTPUT) != 0
+    assert (reset[:40_000].all(), reset[40_000:].any()) == (True, False)  # 200 ms
+    core.play(0, 1000)
+    assert core.acknowledge() == 0
+
+
 # --- index ------------------------------------------------------------------------------------------------------------
 
 

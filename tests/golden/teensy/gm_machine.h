@@ -67,6 +67,11 @@ typedef struct {
 #define GM_HAS_FEED 0 /* encoder of the axial feed */
 #define GM_HAS_ENABLE 0 /* enable output of the driver */
 #define GM_HAS_ESTOP 0 /* emergency stop input */
+#define GM_ENCODER_INVERT 0 /* 1: counts go down as the hob turns forward */
+#define GM_INDEX_ACTIVE_LOW 0 /* 1: the index pulse is low */
+#define GM_HAS_ALARM 0 /* alarm input of the driver */
+#define GM_ALARM_ACTIVE_LOW 1 /* 1: the pin is low during an alarm */
+#define GM_HAS_RESET 0 /* reset output to the driver */
 #define GM_HAS_HEALTHY 0 /* fail-safe output */
 
 /* --- pins */

@@ -90,9 +90,9 @@ def test_a_fast_knob_reaches_999_teeth_and_a_slow_one_every_count(panel):
     p.knob(-40, after_ms=20)
     assert p.edit.teeth == 1
     p.knob(1)
-    assert p.edit.teeth == 7
+    assert p.edit.teeth == 2
     p.knob(1, after_ms=50)
-    assert p.edit.teeth == 12
+    assert p.edit.teeth == 7
     p.knob(41, after_ms=20)
     assert p.edit.teeth == 999
     p.knob(-1, after_ms=10)  # the first detent back is a slow one
