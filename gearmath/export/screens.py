@@ -6,6 +6,7 @@ The labels are those of ``firmware/gm_screen.c``; a test compares them.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from gearmath.export.markdown import paragraph, table
 from gearmath.specs.hobbing import HobbingMachine
@@ -100,6 +101,53 @@ def _rows(machine: HobbingMachine) -> Iterator[Row]:
         yield from _DIVIDE
 
 
+@dataclass(frozen=True)
+class FaultRow:
+    """What a fault does: to the motor while it stands with a job, follows or moves by itself ("" where it cannot come),
+    and whether job and phase are kept. The tests run the firmware through every entry."""
+
+    page: str
+    fault: int
+    """gm_fault of gm_core.h."""
+    standing: str
+    following: str
+    moving: str
+    kept: bool
+
+
+FOLLOWS, BRAKES, STOPS, STANDS = "follows until it stands", "brakes", "gets no further pulse", "stands"
+FAULT_MATRIX = (
+    FaultRow("EMERGENCY STOP", 1, STANDS, FOLLOWS, BRAKES, kept=True),
+    FaultRow("FAULT hob too fast", 3, STANDS, FOLLOWS, "", kept=True),
+    FaultRow("FAULT table lags", 2, "", BRAKES, "", kept=False),
+    FaultRow("FAULT hob encoder", 4, STANDS, BRAKES, "", kept=False),
+    FaultRow("FAULT hob turned", 5, "", "", BRAKES, kept=False),
+    FaultRow("FAULT motor driver", 6, STANDS, STOPS, STOPS, kept=False),
+)
+
+
+def _matrix(machine: HobbingMachine) -> Iterator[str]:
+    """Every fault in every mode, and the loss of power."""
+    pins = machine.pins
+    wired = {
+        1: pins.estop is not None,
+        4: pins.index is not None,
+        5: machine.profile != "lathe",
+        6: pins.alarm is not None,
+    }
+    rows = [
+        (f"`{row.page}`", row.standing or "-", row.following or "-", row.moving or "-", "kept" if row.kept else "lost")
+        for row in FAULT_MATRIX
+        if wired.get(row.fault, True)
+    ]
+    rows.append(("power lost", STANDS, "runs out without torque", "runs out without torque", "job kept, phase lost"))
+    yield from table(("fault", "motor that stands", "that follows", "in a jog or move", "job and phase"), rows)
+    yield from paragraph(
+        "In every one of them the fail-safe output goes off at once and stays off, ENABLE stays on, and a step that "
+        "has begun ends at its full length."
+    )
+
+
 def faults(machine: HobbingMachine) -> Iterator[str]:
     """The chapter about faults."""
     leading = "spindle" if machine.profile == "lathe" else "hob"
@@ -114,6 +162,7 @@ def faults(machine: HobbingMachine) -> Iterator[str]:
     if machine.pins.healthy is None:
         yield from paragraph(f"**This machine has no fail-safe output: stop the {leading} yourself, at once.**")
     yield from table(("page", "meaning"), _quoted(_faults(machine, leading)))
+    yield from _matrix(machine)
 
 
 def _faults(machine: HobbingMachine, leading: str) -> Iterator[Row]:

@@ -391,6 +391,7 @@ def test_alarm_of_the_driver_stops_the_pulses_and_its_acknowledgement_resets_the
     record = core.play(edges(400, 50), inputs=noise)
     assert (core.status.fault, core.status.in_phase) == (NO_FAULT, 1)
     assert not (record.levels & RESET_OUTPUT).any()
+    core.play(0, 1000)
     record = core.play(edges(100, 50), inputs=OK | ALARM_INPUT)
     assert (core.status.mode, core.status.fault, core.status.has_job) == (FAULT, 6, 0)
     tripped = int(np.argmax(record.fault == 6))
