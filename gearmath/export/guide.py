@@ -196,7 +196,8 @@ def _advice(machine: HobbingMachine) -> Iterator[str]:
             "The fail-safe pin is a square wave of 1 kHz, which only a working program and a working interrupt make. "
             "The charge pump C3, D1, D2, C4 turns it into base current of the last transistor, and K1 falls within "
             "50 ms after the wave ends, at whatever level: a fault, a reset, a hung processor or a broken wire stops "
-            "the machine. Only your press on the power-up page, a start, or the acknowledgement of a fault lets it go on."
+            "the machine. Only your press on the power-up page, a start, or the acknowledgement of a fault lets it go "
+            "on."
         )
     else:
         yield "No fail-safe output is wired: after a fault **you** must stop the machine. The fault page says so."

@@ -152,6 +152,14 @@ def test_the_search_for_floating_calls_finds_them() -> None:
         assert not _FLOATING.fullmatch(symbol), symbol
 
 
+@pytest.mark.parametrize("level", ["-O2", "-O3", "-Os"])
+def test_no_level_of_optimization_brings_a_warning(level: str, tmp_path: Path, arm: str) -> None:
+    folder = write(teensy_files(machine("hobbing_helical")), tmp_path / "gearbox")
+    flags = ("-mcpu=cortex-m7", "-mthumb", level, "-Wall", "-Wextra", "-Werror", SINGLE)
+    run(folder, f"{arm}gcc", *flags, "-std=c99", "-c", *c_files(folder))
+    run(folder, f"{arm}g++", *flags, *CXX, *BOARDS["teensy41"][0], f"-I{STAND_IN}", "-c", "sketch.cpp")
+
+
 @pytest.mark.parametrize("name", MACHINES)
 def test_clang_accepts_the_folder_for_its_processor(name: str, tmp_path: Path) -> None:
     given = machine(name)
