@@ -85,6 +85,9 @@ def _board(machine: HobbingMachine) -> list[Macro]:
 def _train(machine: HobbingMachine) -> list[Macro]:
     lathe = machine.profile == "lathe"
     driven = "lead screw of a lathe" if lathe else "work table of a hobbing machine"
+    counts, steps, starts = (
+        _checked(machine, quantity) for quantity in (notation.encoder_counts, notation.motor_steps, notation.hob_starts)
+    )
     macros = [
         (f"GM_PROFILE_{machine.profile.upper()}", 1, f"the motor turns the {driven}"),
         (
@@ -92,11 +95,11 @@ def _train(machine: HobbingMachine) -> list[Macro]:
             machine.encoder.counts_per_shaft,
             "encoder counts per turn of its shaft, after the decoder",
         ),
-        ("GM_TURN_COUNTS", machine.encoder_counts.numerator, "encoder counts per turn of the hob, numerator"),
-        ("GM_TURN_COUNTS_DEN", machine.encoder_counts.denominator, "and denominator"),
-        ("GM_MOTOR_STEPS", machine.motor_steps.numerator, f"motor steps per turn of the {driven}, numerator"),
-        ("GM_MOTOR_STEPS_DEN", machine.motor_steps.denominator, "and denominator"),
-        _checked(machine, notation.hob_starts),
+        ("GM_TURN_COUNTS", counts.numerator, "encoder counts per turn of the hob, numerator"),
+        ("GM_TURN_COUNTS_DEN", counts.denominator, "and denominator"),
+        ("GM_MOTOR_STEPS", steps.numerator, f"motor steps per turn of the {driven}, numerator"),
+        ("GM_MOTOR_STEPS_DEN", steps.denominator, "and denominator"),
+        ("GM_HOB_STARTS", int(starts), notation.hob_starts.description),
         ("GM_HOB_LEFT", int(machine.hob_hand == "left"), "1: left-hand hob"),
         ("GM_HYSTERESIS", machine.encoder.hysteresis, "counts of play of the hob encoder"),
         ("GM_WIDE", int(machine.wide), "0: gm_wide is int32_t, 1: int64_t"),
@@ -107,8 +110,8 @@ def _train(machine: HobbingMachine) -> list[Macro]:
             ("GM_FEED_CLIMBS", int(machine.feed_climbs), "1: counts of the feed go up in climb hobbing"),
         ]
     if lathe:
-        steps = machine.motor_steps / machine.lead_screw_pitch
-        macros += _fraction("GM_SCREW_STEPS", steps, "motor steps per mm of the carriage")
+        per_mm = machine.motor_steps / machine.lead_screw_pitch
+        macros += _fraction("GM_SCREW_STEPS", per_mm, "motor steps per mm of the carriage")
     return macros
 
 
@@ -198,9 +201,10 @@ def _hobs(machine: HobbingMachine) -> str:
     return f"#define GM_HOBS {len(machine.hobs)}\nstatic const gm_hob gm_hobs[GM_HOBS] = {{\n{rows}}};\n"
 
 
-def _checked(machine: HobbingMachine, quantity: notation.Quantity) -> Macro:
-    value = getattr(machine, quantity.name)
+def _checked(machine: HobbingMachine, quantity: notation.Quantity) -> Fraction:
+    """The value of a quantity of the machine that is in the domain of the kernels."""
+    value = Fraction(getattr(machine, quantity.name))
     low, high = quantity.domain
     if not low <= value <= high:
         raise InputError(f"{machine.name}: {quantity.name} = {value}: the kernels take {low} to {high}")
-    return (f"GM_{quantity.name.upper()}", value, quantity.description)
+    return value
