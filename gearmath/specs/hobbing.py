@@ -135,7 +135,7 @@ class HobbingMachine(Spec):
             )
 
     def _check_steps(self) -> None:
-        limits, highest = self.limits, self.driver.timing.highest_rate(self.tick_ns, self.hardware.jitter_ns)
+        limits, highest = self.limits, self.driver.timing.highest_rate(self.tick_ns, self.jitter_ns)
         driver = self.driver.name or "of the file"
         for key in ("step_rate_hz", "move_rate_hz"):
             rate = getattr(limits, key)
@@ -211,9 +211,14 @@ class HobbingMachine(Spec):
         return self.hardware.tick_ns
 
     @property
+    def jitter_ns(self) -> int:
+        """How much a tick may be late: hob edge, feed edge and index in one moment, each before it."""
+        return self.hardware.jitter_ns * (1 + (self.feed is not None) + (self.pins.index is not None))
+
+    @property
     def timing_ticks(self) -> tuple[int, int, int, int]:
         """Step high, step low, DIR set-up and DIR hold, in ticks of the step timer."""
-        return self.driver.timing.ticks(self.tick_ns, self.hardware.jitter_ns)
+        return self.driver.timing.ticks(self.tick_ns, self.jitter_ns)
 
     @property
     def step_active_low(self) -> bool:

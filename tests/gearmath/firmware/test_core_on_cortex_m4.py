@@ -8,6 +8,8 @@ import struct
 import numpy as np
 import pytest
 
+from gearmath.specs.board import BOARDS
+
 DATA = 0x2000_0000
 NEXT_STEP, NEXT_REMAINDER = DATA, DATA + 8
 M4 = {"GM_STEP_HIGH_TICKS": 1, "GM_STEP_LOW_TICKS": 1, "GM_DIR_SETUP_TICKS": 1, "GM_DIR_HOLD_TICKS": 1}
@@ -100,10 +102,18 @@ def test_interrupts_keep_their_budget_of_instructions(core_on_target, wide):
                 if edge != previous:  # then the hob stood for longer than steps are ever spread over
                     target.call("wait", 4001)
                 previous = edge
-        index_costs.append(target.instructions("gm_core_index", core))
+        for count in (1, 1, 4096, 4096, -4096):  # a turn, and back
+            for _ in range(abs(count)):
+                target.call("gm_core_edge", core, 0, 1 if count > 0 else -1)
+            target.call("wait", 2)
+            index_costs.append(target.instructions("gm_core_index", core))
     costs = (max(edge_costs), max(levels_costs), max(tick_costs), max(index_costs))
     print(f"{'64' if wide else '32'} bits: edge, levels, whole tick, index at most {costs} instructions")
     assert max(edge_costs) <= 105
     assert max(levels_costs) <= 90
     assert max(tick_costs) <= 250
     assert max(index_costs) <= 120
+    # what a tick may be late for one of them: 1.4 cycles an instruction with the flash's wait states, 12 to enter
+    cycles = 1.4 * max(*edge_costs, *index_costs) + 12
+    assert cycles / 72e6 <= BOARDS["teensy32"].jitter_ns * 1e-9
+    assert cycles / 600e6 <= BOARDS["teensy41"].jitter_ns * 1e-9
