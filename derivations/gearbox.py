@@ -20,6 +20,23 @@ counts keeps a dithering encoder from stepping: with x from 0 to H,
     d' = [x + d > H] - [x + d < 0],   x' = x + d - d'                                          (7.9)
 
 passes on an edge only where the play is used up; it costs at most H N / D of position.
+
+A motor of acceleration a needs for w steps per second, and misses where it is engaged at that speed,
+
+    t_r = w / a,   m = w²/(2 a)                                                                (7.10)
+
+A hob that takes the time T from rest to that speed, faster than the motor, leaves it m - w T/2 + w t_0 behind, where
+t_0 = sqrt(2/a) is the time of a first step, before which nothing is seen. If L steps may wait, T must be at least
+
+    T_min = w/a - 2 (L/w - t_0), at most w/a and at least 0; also for a stop                   (7.11)
+
+Engaged at speed, the motor overtakes what it has missed: it goes on to w + u, and brakes to w with b a, b = 3/4,
+
+    m = (1 + 1/b) u²/(2 a) + u t_u,   t_c = (w + (1 + 1/b) u)/a + t_u                          (7.12)
+
+u is that with t_u = 0, or w_max - w where this is less. On the pitch circle of diameter d one count and one step are
+
+    δ_e = π d k/(G N_encoder),   δ_p = π d/N_motor                                             (7.13)
 """
 
 from __future__ import annotations
@@ -185,6 +202,59 @@ def hobbed_blank() -> Expression:
     )
 
 
+#: Part of its acceleration with which a motor that has caught up brakes; the firmware's motion does the same.
+BRAKING = sp.Rational(3, 4)
+
+
+@cache
+def run_up() -> Expression:
+    """(7.10, 7.11) as an Expression."""
+    w, a, L = q.step_rate.symbol, q.step_acceleration.symbol, q.lag_limit.symbol
+    return Expression(
+        "run_up",
+        "A motor's time to speed, what it misses meanwhile, and the shortest run-up of the hob (7.10, 7.11).",
+        (q.step_rate, q.step_acceleration, q.lag_limit),
+        (
+            (q.run_up_time, w / a),
+            (q.missed_steps, w**2 / (2 * a)),
+            (q.shortest_run_up, sp.Max(0, w / a - sp.Max(0, 2 * L / w - 2 * sp.sqrt(2 / a)))),
+        ),
+        source="constant acceleration",
+    )
+
+
+@cache
+def catch_up() -> Expression:
+    """(7.12) as an Expression."""
+    w, a, top = q.step_rate.symbol, q.step_acceleration.symbol, q.top_rate.symbol
+    both = 1 + 1 / BRAKING
+    missed = run_up()["missed_steps"]
+    u = sp.Min(w / sp.sqrt(both), top - w)
+    plateau = (missed - both * u**2 / (2 * a)) / u
+    return Expression(
+        "catch_up",
+        "How a motor that is engaged at speed overtakes what it has missed (7.12).",
+        (q.step_rate, q.step_acceleration, q.top_rate),
+        ((q.overtaking_rate, u), (q.catch_up_time, (w + both * u) / a + plateau)),
+        requires=(top - sp.Rational(1001, 1000) * w,),
+        source="constant acceleration",
+    )
+
+
+@cache
+def resolution() -> Expression:
+    """(7.13) as an Expression, in micrometres."""
+    around = 1000 * sp.pi * q.pitch_diameter.symbol
+    N, D = ratio_terms()
+    return Expression(
+        "resolution",
+        "Way of the pitch circle per encoder count and per motor step (7.13).",
+        (q.pitch_diameter, q.teeth, q.hob_starts, q.encoder_counts, q.motor_steps),
+        ((q.count_arc, around * N / D / q.motor_steps.symbol), (q.step_arc, around / q.motor_steps.symbol)),
+        source="one turn of the table is a turn of the pitch circle",
+    )
+
+
 #: The table of the source text for R = 3.142: encoder counts, desired position as printed, steps delivered.
 PUBLISHED_TABLE = (
     (1, "0.318", 0), (2, "0.637", 0), (3, "0.955", 0), (4, "1.273", 1), (5, "1.592", 1),
@@ -278,3 +348,51 @@ def prove_any_ratio_is_at_most_half_a_step_off() -> None:
                 steps, remainder = gearbox_edge().exact(remainder, edge, ratio % D, ratio // D, D)
                 target, position = target + edge * ratio, position + steps
                 assert abs(position - Fraction(target, D)) <= Fraction(1, 2)
+
+
+def prove_hob_that_runs_up_faster_than_the_motor_leaves_it_the_lag_of_the_limit() -> None:
+    """(7.10, 7.11) Places by integration; the lag is greatest where the motor reaches w, and is L for T = T_min."""
+    w, a, L, T = (quantity.symbol for quantity in (q.step_rate, q.step_acceleration, q.lag_limit, q.travel))
+    t = sp.Symbol("t", positive=True)
+    rule = run_up()
+    first = sp.sqrt(2 / a)
+    assert sp.simplify(sp.integrate(a * t, (t, 0, first)) - 1) == 0
+    hob = sp.integrate(w * t / T, (t, 0, T)) + w * (first + rule["run_up_time"] - T)  # at speed from T on
+    motor = sp.integrate(a * t, (t, 0, rule["run_up_time"]))  # begins later by `first`
+    assert sp.simplify(motor - rule["missed_steps"]) == 0
+    # the lag is greatest now: before, the hob is faster; afterwards both have the same speed
+    lag = sp.simplify(hob - motor)
+    assert sp.simplify(lag.subs(T, w / a - 2 * (L / w - first)) - L) == 0
+    at = {w: 2000, a: 20_000, L: 100}  # 0.1 s - 2 (50 ms - 10 ms)
+    assert rule["shortest_run_up"].subs(at) == sp.Rational(1, 50)
+    assert rule["shortest_run_up"].subs({w: 8000, a: 8000, L: 100}) == 1  # 100 steps are 12.5 ms, a first step takes 16
+    assert rule["shortest_run_up"].subs({w: 100, a: 8000, L: 100}) == 0
+
+
+def prove_motor_that_catches_up_ends_beside_the_hob_with_its_speed() -> None:
+    """(7.12) Way by the areas under the speeds: what is gained beyond w is what was missed before."""
+    w, a, top = (quantity.symbol for quantity in catch_up().inputs)
+    for speed, acceleration, most in ((30, 7, 1000), (30, 7, 35), (1, 3, 100), (9, 2, 10)):
+        at = {w: speed, a: acceleration, top: most}
+        u, total = (catch_up()[name].subs(at) for name in ("overtaking_rate", "catch_up_time"))
+        up, down = (speed + u) / acceleration, u / (BRAKING * acceleration)
+        level = total - up - down
+        assert level >= 0
+        way = (speed + u) * up / 2 + (speed + u) * level + speed * down + u * down / 2
+        assert sp.simplify(way - speed * total) == 0
+        assert speed + u <= most
+
+
+def prove_one_count_moves_the_pitch_circle_by_the_ratio_of_steps() -> None:
+    """(7.13) δ_e = (N/D) δ_p; the rule of the field for 16 DP and 0.0002 in asks for 981 counts: c >= π/(DP δ)."""
+    N, D = ratio_terms()
+    rule = resolution()
+    assert sp.simplify(rule["count_arc"] - N / D * rule["step_arc"]) == 0
+    teeth = 20
+    values = {
+        q.pitch_diameter.symbol: teeth * sp.Rational("25.4") / 16, q.teeth.symbol: teeth, q.hob_starts.symbol: 1,
+        q.encoder_counts.symbol: 981,
+    }  # fmt: skip
+    assert abs(rule["count_arc"].subs(values) / (1000 * sp.Rational("25.4")) - sp.Rational(2, 10_000)) < sp.Rational(
+        2, 10**7
+    )

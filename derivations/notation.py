@@ -347,6 +347,23 @@ passed_edge = Quantity(
     "passed_edge", "edge that is passed on: +1, 0 or -1", "1", "d'", (-1, 1), kind="int", values=(-1, 0, 1)
 )
 
+step_rate = Quantity("step_rate", "steps per second while the motor follows at speed", "1/s", "w", (1.0, 1e6))
+step_acceleration = Quantity("step_acceleration", "acceleration of the motor", "1/s^2", "a", (1.0, 1e7))
+top_rate = Quantity("top_rate", "most steps per second", "1/s", r"w_{max}", (1.0, 1e6))
+lag_limit = Quantity("lag_limit", "steps that may wait", "steps", "L", (1.0, 30_000.0))
+run_up_time = Quantity("run_up_time", "time of the motor from rest to speed", "s", "t_r", scale=1e3)
+missed_steps = Quantity(
+    "missed_steps", "steps missed meanwhile by a motor that is engaged at speed", "steps", "m", scale=1e6
+)
+shortest_run_up = Quantity(
+    "shortest_run_up", "shortest time in which the hob may come to speed, or stop", "s", "T_{min}", scale=1e3
+)
+overtaking_rate = Quantity("overtaking_rate", "by how much a motor that catches up is faster", "1/s", "u", scale=1e6)
+catch_up_time = Quantity("catch_up_time", "time from engaging at speed until in phase", "s", "t_c", scale=1e6)
+pitch_diameter = _length("pitch_diameter", "d", 0.01, 30_000.0, "reference diameter of the gear")
+count_arc = Quantity("count_arc", "way of the pitch circle per encoder count", "um", r"\delta_e", scale=1e6)
+step_arc = Quantity("step_arc", "way of the pitch circle per motor step", "um", r"\delta_p", scale=1e6)
+
 # --- hobbed blank -----------------------------------------------------------------------------------------------
 module = _length("module", "m", 0.1, 25.0, "normal module of the hob; 25.4/P for diametral pitch P")
 depth_factor = Quantity("depth_factor", "whole depth in modules", "1", "f_h", (2.0, 2.5), scale=1.0)

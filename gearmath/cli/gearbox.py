@@ -36,6 +36,7 @@ _JOB = (
     click.option("--hob", help="One hob of the machine file, such as 32dp or m1; all of them if left out."),
     click.option("--shift", type=float, help="Profile shift in modules."),
     click.option("--pin", type=float, help="Diameter of the measuring pins in mm; 1.68 modules if left out."),
+    click.option("--run-up", type=float, help="Seconds of the hob or spindle from rest to its speed, or to rest."),
     click.option("--rpm", type=float, help="Speed of hob or spindle; the highest within the limits if left out."),
 )
 
@@ -53,8 +54,8 @@ def _job_options(command: Callable) -> Callable:
     return with_plan
 
 
-_KEYS = ("teeth", "pitch", "starts", "hand", "helix", "cut", "feed", "hob", "shift", "pin", "rpm")
-_THREAD_KEYS = ("pitch", "starts", "hand", "rpm")
+_KEYS = ("teeth", "pitch", "starts", "hand", "helix", "cut", "feed", "hob", "shift", "pin", "run_up", "rpm")
+_THREAD_KEYS = ("pitch", "starts", "hand", "run_up", "rpm")
 
 
 @click.group()
@@ -132,7 +133,7 @@ def _plan(machine: HobbingMachine, options: dict[str, Any]) -> GearboxPlan | Thr
         if unfit:
             raise click.UsageError(f"--{unfit[0]} has no meaning for a thread")
         return plan_thread(machine, _pitch(given.pop("pitch")), **given)
-    gear = {key: given[key] for key in ("teeth", "starts", "hob", "rpm", "shift", "pin") if key in given}
+    gear = {key: given[key] for key in ("teeth", "starts", "hob", "rpm", "run_up", "shift", "pin") if key in given}
     return plan(machine, **gear, helix=_helix(given))
 
 

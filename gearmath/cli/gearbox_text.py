@@ -41,6 +41,30 @@ def _rates(job: Job, what: str) -> Iterator[str]:
     yield f"  steps  {job.step_rate_hz:9.0f} Hz    {job.step_rate_percent:5.1f} % of the limit"
     if not job.carried_at_every_speed and not isinstance(job, ThreadPlan):
         yield f"  the firmware refuses this job while limits.hob_rpm is more than {int(job.highest_rpm)}"
+    yield from _motion(job, what)
+
+
+def _motion(job: Job, what: str) -> Iterator[str]:
+    motion = job.motion
+    yield (
+        f"  run-up {motion.run_up_s:9.2f} s     of the motor: the {what} stays in phase up to "
+        f"{motion.hob_acceleration_rpm_per_s:.0f} rpm/s, {motion.shortest_run_up_s:.2f} s are followed within the lag"
+    )
+    if motion.catch_up_s is not None:
+        yield (
+            f"  engage {motion.catch_up_s:9.2f} s     at this speed until in phase, which are "
+            f"{motion.catch_up_turns:.1f} turns of the {what}"
+        )
+    else:
+        yield f"  engage only up to {motion.engage_rpm:.0f} rpm: above, the steps leave no room to catch up"
+
+
+def _resolution(count_um: float, step_um: float, where: str) -> str:
+    """Which of encoder and motor limits, and what would help."""
+    coarser = "step" if step_um > count_um else "count"
+    help_ = "more microsteps or reduction" if coarser == "step" else "an encoder of more lines"
+    arcs = f"{count_um:9.2f} um a count, {step_um:.2f} um a step {where}"
+    return f"resolution     {arcs}: the {coarser} limits, {help_} helps"
 
 
 def _thread(job: ThreadPlan) -> Iterator[str]:
@@ -49,6 +73,7 @@ def _thread(job: ThreadPlan) -> Iterator[str]:
     if job.starts > 1:
         yield f"  {job.starts} starts, lead {float(job.lead):.6g} mm"
     yield f"  R = {job.exact_pulse_ratio} = {job.pulse_ratio:.9g} encoder counts per motor step"
+    yield "  " + _resolution(job.count_um, job.step_um, "of the carriage")
 
 
 def _gear(job: GearboxPlan) -> Iterator[str]:
@@ -85,6 +110,7 @@ def _blank(blank: HobbedBlank) -> Iterator[str]:
     yield f"    chord          {_length(blank.chord.thickness)}  at {blank.chord.height:.4f} mm below the tip"
     if blank.over_pins is not None:
         yield f"    over pins      {_length(blank.over_pins.length)}  of {blank.over_pins.pin:.4g} mm"
+    yield "    " + _resolution(blank.count_um, blank.step_um, "at the pitch circle")
 
 
 def _length(value: float) -> str:

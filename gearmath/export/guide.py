@@ -96,8 +96,15 @@ def _decoder(machine: HobbingMachine) -> Iterator[str]:
     yield ""
     yield from paragraph(
         f"{machine.encoder.lines} lines, of each {machine.encoder.edges_per_line} edges counted: "
-        f"{machine.encoder_counts} counts per turn."
+        f"{machine.encoder.counts_per_shaft} counts per turn."
     )
+    if machine.encoder.belt != 1:
+        index = " The index pulse is one per turn of the encoder." * (machine.pins.index is not None)
+        yield from paragraph(
+            f"The encoder makes {machine.encoder.belt} turns per turn of the "
+            f"{'spindle' if machine.profile == 'lathe' else 'hob'}, which are exactly {machine.encoder_counts} "
+            f"counts.{index}"
+        )
     if machine.encoder.decoder == "hardware":
         yield from paragraph(
             "Channels A and B go to the board itself, whose pin interrupts see every edge (library Encoder)."
@@ -153,7 +160,8 @@ def _transistors(machine: HobbingMachine) -> Iterator[tuple[str, str]]:
     if opened:
         yield f"RL1 to RL{signals}", "optional, see below"
     if relay:
-        yield "K1, 5 V relay with diode", "holds the contactor of the motor"
+        yield "C3 2.2 uF, C4 10 uF, D1 and D2 1N5819", "charge pump: only a square wave of the board holds K1"
+        yield "K1, 5 V relay of at most 50 mA, with diode", "holds the contactor of the motor"
 
 
 def _parts(machine: HobbingMachine) -> Iterator[str]:
@@ -184,7 +192,13 @@ def _advice(machine: HobbingMachine) -> Iterator[str]:
             "be without power in an emergency belongs into that circuit, not into a program."
         )
     if machine.pins.healthy is not None:
-        yield "K1 is energised while all is well: a fault, a reset or a broken wire lets it go and stops the machine."
+        yield (
+            "The fail-safe pin is a square wave of 1 kHz, which only a working program and a working interrupt make. "
+            "The charge pump C3, D1, D2, C4 turns it into base current of the last transistor, and K1 falls within "
+            "50 ms after the wave ends, at whatever level: a fault, a reset, a hung processor or a broken wire stops "
+            "the machine. Only your press on the power-up page, a start, or the acknowledgement of a fault lets it go "
+            "on."
+        )
     else:
         yield "No fail-safe output is wired: after a fault **you** must stop the machine. The fault page says so."
     if machine.pins.index is None:
@@ -211,6 +225,18 @@ def _timing(machine: HobbingMachine) -> Iterator[str]:
         f"At the board's pins a step is {step}, forward is {forward}. At most {machine.max_step_rate} steps/s follow "
         f"the encoder, {machine.move_max_rate} steps/s a jog; {machine.limits.lag_steps} waiting steps are a fault."
     )
+    yield from paragraph(_enable(machine))
+
+
+def _enable(machine: HobbingMachine) -> str:
+    if machine.pins.enable is None:
+        return "**Leave ENABLE (ENA) of the driver open: it is enabled then.**"
+    level = "low" if machine.enable_active_low else "high"
+    doubt = "" if machine.driver.timing.enable_confirmed else (
+        " This was not confirmed by the manual of the driver: before the first run try the shaft by hand, it must hold."
+    )  # fmt: skip
+    current = " Current through its opto-coupler would switch the motor off." * (machine.driver.timing.enable == "dark")
+    return f"ENABLE: the board's pin is {level} while the driver is enabled, in every mode.{current}{doubt}"
 
 
 def _commissioning(machine: HobbingMachine) -> Iterator[str]:
@@ -228,13 +254,13 @@ def _steps(machine: HobbingMachine) -> Iterator[str]:
     )
     yield (
         f"`test hob encoder`: press, turn the {leading} once by hand in its working direction, press. It must count "
-        f"{machine.encoder_counts}. `decoder mode?` means the MODE jumper or the number of lines; "
+        f"{round(machine.encoder_counts)}. `decoder mode?` means the MODE jumper or the number of lines; "
         "`OK, but backwards` asks for channels A and B to be exchanged."
     )
     yield (
-        f"Motor power on, nothing clamped. `test one turn`: mark the {driven}, answer yes; {machine.motor_steps} steps "
-        f"must bring the mark back exactly. If not, full steps, microsteps{', belt' if lathe else ', belt or worm'} of "
-        "the machine file are not those of the machine."
+        f"Motor power on, nothing clamped. `test one turn`: mark the {driven}, answer yes; "
+        f"{round(machine.motor_steps)} steps must bring the mark back exactly. If not, full steps, microsteps"
+        f"{', belt' if lathe else ', belt or worm'} of the machine file are not those of the machine."
     )
     yield (
         f"Direction: jog forward. If the {driven} turns the wrong way, change `invert_direction` of the driver and "

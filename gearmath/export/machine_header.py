@@ -26,7 +26,7 @@ typedef {wide} gm_wide;
 enum {{ GM_INCH = 0, GM_MM = 1 }};
 enum {{ {rules} }};
 
-/* One hob: unit of its gears, rule for the whole depth of its teeth, 1000 x diametral pitch or 1000 x module [mm]. */
+/* One hob: unit of its gears, rule for the whole depth of its teeth, 10000 x diametral pitch or 10000 x module [mm]. */
 typedef struct {{
   uint8_t unit;
   uint8_t depth_rule;
@@ -85,12 +85,21 @@ def _board(machine: HobbingMachine) -> list[Macro]:
 def _train(machine: HobbingMachine) -> list[Macro]:
     lathe = machine.profile == "lathe"
     driven = "lead screw of a lathe" if lathe else "work table of a hobbing machine"
+    counts, steps, starts = (
+        _checked(machine, quantity) for quantity in (notation.encoder_counts, notation.motor_steps, notation.hob_starts)
+    )
     macros = [
         (f"GM_PROFILE_{machine.profile.upper()}", 1, f"the motor turns the {driven}"),
-        *(
-            _checked(machine, quantity)
-            for quantity in (notation.encoder_counts, notation.motor_steps, notation.hob_starts)
+        (
+            "GM_ENCODER_COUNTS",
+            machine.encoder.counts_per_shaft,
+            "encoder counts per turn of its shaft, after the decoder",
         ),
+        ("GM_TURN_COUNTS", counts.numerator, "encoder counts per turn of the hob, numerator"),
+        ("GM_TURN_COUNTS_DEN", counts.denominator, "and denominator"),
+        ("GM_MOTOR_STEPS", steps.numerator, f"motor steps per turn of the {driven}, numerator"),
+        ("GM_MOTOR_STEPS_DEN", steps.denominator, "and denominator"),
+        ("GM_HOB_STARTS", int(starts), notation.hob_starts.description),
         ("GM_HOB_LEFT", int(machine.hob_hand == "left"), "1: left-hand hob"),
         ("GM_HYSTERESIS", machine.encoder.hysteresis, "counts of play of the hob encoder"),
         ("GM_WIDE", int(machine.wide), "0: gm_wide is int32_t, 1: int64_t"),
@@ -101,8 +110,8 @@ def _train(machine: HobbingMachine) -> list[Macro]:
             ("GM_FEED_CLIMBS", int(machine.feed_climbs), "1: counts of the feed go up in climb hobbing"),
         ]
     if lathe:
-        steps = machine.motor_steps / machine.lead_screw_pitch
-        macros += _fraction("GM_SCREW_STEPS", steps, "motor steps per mm of the carriage")
+        per_mm = machine.motor_steps / machine.lead_screw_pitch
+        macros += _fraction("GM_SCREW_STEPS", per_mm, "motor steps per mm of the carriage")
     return macros
 
 
@@ -132,6 +141,7 @@ def _limits(machine: HobbingMachine) -> list[Macro]:
         ("GM_MAX_LAG", machine.limits.lag_steps, "steps that may wait"),
         ("GM_MAX_EDGE_RATE", machine.max_edge_rate, "edges/s at the highest speed of the hob"),
         ("GM_MAX_STEP_RATE", machine.max_step_rate, "steps/s while the motor follows, at most"),
+        ("GM_ACCELERATION", int(machine.limits.acceleration_hz_per_s), "steps/s^2 while the motor follows"),
         ("GM_MOVE_MAX_RATE", machine.move_max_rate, "steps/s of a jog or an index move"),
         ("GM_MOVE_ACCELERATION", int(machine.limits.acceleration_hz_per_s), "steps/s^2 of a jog or an index move"),
     ]
@@ -149,6 +159,11 @@ def _wired(machine: HobbingMachine) -> list[Macro]:
         ("GM_HAS_FEED", int(machine.feed is not None), "encoder of the axial feed"),
         ("GM_HAS_ENABLE", int(pins.enable is not None), "enable output of the driver"),
         ("GM_HAS_ESTOP", int(pins.estop is not None), "emergency stop input"),
+        ("GM_ENCODER_INVERT", int(machine.encoder.invert), "1: counts go down as the hob turns forward"),
+        ("GM_INDEX_ACTIVE_LOW", int(machine.encoder.index_active == "low"), "1: the index pulse is low"),
+        ("GM_HAS_ALARM", int(pins.alarm is not None), "alarm input of the driver"),
+        ("GM_ALARM_ACTIVE_LOW", int(machine.driver.alarm_active == "low"), "1: the pin is low during an alarm"),
+        ("GM_HAS_RESET", int(pins.reset is not None), "reset output to the driver"),
         ("GM_HAS_HEALTHY", int(pins.healthy is not None), "fail-safe output"),
     ]
 
@@ -169,7 +184,9 @@ PIN_SENTENCES = {
     "feed_dir": "feed encoder: direction of the LS7184, or channel B",
     "enable": "enable of the driver",
     "estop": "emergency stop, normally closed to ground",
-    "healthy": "fail-safe output, high while all is well",
+    "alarm": "alarm output of the driver, with a pull-up in the board",
+    "reset": "reset of the driver, high for 0.2 s when its alarm is acknowledged",
+    "healthy": "fail-safe output, a square wave of 1 kHz while all is well",
 }
 
 
@@ -178,15 +195,16 @@ def _hobs(machine: HobbingMachine) -> str:
     if not machine.hobs:
         return "#define GM_HOBS 0\n"
     rows = "".join(
-        f"  {{{'GM_INCH' if hob.unit == 'inch' else 'GM_MM'}, {_RULES[hob.depth_rule]}, {hob.size_thousandths}}},\n"
+        f"  {{{'GM_INCH' if hob.unit == 'inch' else 'GM_MM'}, {_RULES[hob.depth_rule]}, {hob.size_tenthousandths}}},\n"
         for hob in machine.hobs
     )
     return f"#define GM_HOBS {len(machine.hobs)}\nstatic const gm_hob gm_hobs[GM_HOBS] = {{\n{rows}}};\n"
 
 
-def _checked(machine: HobbingMachine, quantity: notation.Quantity) -> Macro:
-    value = getattr(machine, quantity.name)
+def _checked(machine: HobbingMachine, quantity: notation.Quantity) -> Fraction:
+    """The value of a quantity of the machine that is in the domain of the kernels."""
+    value = Fraction(getattr(machine, quantity.name))
     low, high = quantity.domain
     if not low <= value <= high:
         raise InputError(f"{machine.name}: {quantity.name} = {value}: the kernels take {low} to {high}")
-    return (f"GM_{quantity.name.upper()}", value, quantity.description)
+    return value

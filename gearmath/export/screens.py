@@ -6,6 +6,7 @@ The labels are those of ``firmware/gm_screen.c``; a test compares them.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from gearmath.export.markdown import paragraph, table
 from gearmath.specs.hobbing import HobbingMachine
@@ -35,7 +36,8 @@ _RUN_OF_A_GEAR: tuple[Row, ...] = (
     ("Hob max", "highest speed of the hob for this job: its own limit, or what the motor's steps allow"),
     ("Hob", "its speed now, in turns per minute"),
     ("Table", "its speed now (first page), its angle since the start of the job (second page)"),
-    ("Lag", "motor steps that wait; 0 or 1 is usual"),
+    ("In phase: lag", "hob and table are in mesh; motor steps that wait, 0 or 1 is usual"),
+    ("Lag", "motor steps that the table is behind the hob: it waits for its phase, or is catching up"),
     ("Hob turns", "since the start of the job (second page)"),
     ("Tooth", "the tooth under the hob, counted from the start (second page)"),
 )
@@ -44,7 +46,8 @@ _RUN_OF_A_THREAD: tuple[Row, ...] = (
     ("Max speed", "highest speed of the spindle for this job: its own limit, or what the motor's steps allow"),
     ("Spindle", "its speed now, in turns per minute"),
     ("Thread start", "number of the start that is cut"),
-    ("Lag", "motor steps that wait; 0 or 1 is usual"),
+    ("In phase: lag", "spindle and carriage are in mesh; motor steps that wait, 0 or 1 is usual"),
+    ("Lag", "motor steps that the carriage is behind: it waits for its phase, or is catching up. Do not cut then"),
     ("Turns", "of the spindle since the start of the job (second page)"),
     ("Place", "travel of the carriage since the start of the job (second page)"),
 )
@@ -73,7 +76,9 @@ def screens(machine: HobbingMachine) -> Iterator[str]:
     )
     yield from paragraph(
         "After power-up the last job is offered again, but not its phase: that is lost, and a start must be confirmed. "
-        "After `Stop?` the phase is kept, and `run on` waits until both are in mesh again."
+        "After `Stop?` the motor brakes, the phase is kept, and `run on` waits until both are in mesh again. A motor "
+        "that is engaged while the other side turns speeds up and overtakes what it has missed; only then the display "
+        "says that it is in phase."
     )
     yield "### What every number means"
     yield ""
@@ -96,24 +101,76 @@ def _rows(machine: HobbingMachine) -> Iterator[Row]:
         yield from _DIVIDE
 
 
+@dataclass(frozen=True)
+class FaultRow:
+    """What a fault does: to the motor while it stands with a job, follows or moves by itself ("" where it cannot come),
+    and whether job and phase are kept. The tests run the firmware through every entry."""
+
+    page: str
+    fault: int
+    """gm_fault of gm_core.h."""
+    standing: str
+    following: str
+    moving: str
+    kept: bool
+
+
+FOLLOWS, BRAKES, STOPS, STANDS = "follows until it stands", "brakes", "gets no further pulse", "stands"
+FAULT_MATRIX = (
+    FaultRow("EMERGENCY STOP", 1, STANDS, FOLLOWS, BRAKES, kept=True),
+    FaultRow("FAULT hob too fast", 3, STANDS, FOLLOWS, "", kept=True),
+    FaultRow("FAULT table lags", 2, "", BRAKES, "", kept=False),
+    FaultRow("FAULT hob encoder", 4, STANDS, BRAKES, "", kept=False),
+    FaultRow("FAULT hob turned", 5, "", "", BRAKES, kept=False),
+    FaultRow("FAULT motor driver", 6, STANDS, STOPS, STOPS, kept=False),
+)
+
+
+def _matrix(machine: HobbingMachine) -> Iterator[str]:
+    """Every fault in every mode, and the loss of power."""
+    pins = machine.pins
+    wired = {
+        1: pins.estop is not None,
+        4: pins.index is not None,
+        5: machine.profile != "lathe",
+        6: pins.alarm is not None,
+    }
+    rows = [
+        (f"`{row.page}`", row.standing or "-", row.following or "-", row.moving or "-", "kept" if row.kept else "lost")
+        for row in FAULT_MATRIX
+        if wired.get(row.fault, True)
+    ]
+    rows.append(("power lost", STANDS, "runs out without torque", "runs out without torque", "job kept, phase lost"))
+    yield from table(("fault", "motor that stands", "that follows", "in a jog or move", "job and phase"), rows)
+    yield from paragraph(
+        "In every one of them the fail-safe output goes off at once and stays off, ENABLE stays on, and a step that "
+        "has begun ends at its full length."
+    )
+
+
 def faults(machine: HobbingMachine) -> Iterator[str]:
     """The chapter about faults."""
     leading = "spindle" if machine.profile == "lathe" else "hob"
     yield "## Faults"
     yield ""
     yield from paragraph(
-        "A fault stops the motor and loses the phase. It stays on the display until its cause is gone and the button "
-        "is held."
+        f"A fault stops the {leading} where the fail-safe output is wired, and stays on the display until its cause is "
+        "gone and the button is held. Where the drive is sound (emergency stop, too fast) the motor follows until the "
+        f"{leading} stands, so that the work is not spoiled, and the phase is kept. After every other fault the motor "
+        "brakes at once and the phase is lost. Only that act of yours lets the fail-safe output go on again."
     )
     if machine.pins.healthy is None:
         yield from paragraph(f"**This machine has no fail-safe output: stop the {leading} yourself, at once.**")
     yield from table(("page", "meaning"), _quoted(_faults(machine, leading)))
+    yield from _matrix(machine)
 
 
 def _faults(machine: HobbingMachine, leading: str) -> Iterator[Row]:
     limits = machine.limits
     if machine.pins.estop is not None:
         yield ("EMERGENCY STOP", "its contact is open, or its wire is broken")
+    if machine.pins.alarm is not None:
+        yield ("FAULT motor driver", "the driver of the motor reports a fault of its own; the motor has no torque then")
     yield (
         "FAULT table lags",
         f"more than {limits.lag_steps} steps waited: the motor cannot keep up with the {leading}",

@@ -153,6 +153,10 @@ def _outputs(drawing: Drawing, machine: HobbingMachine) -> float:
     for k, (name, pin) in enumerate(signals):
         _drive(drawing, top - pitch * k, name, pin, f"T{k + 1}" if opened else "")
     last = top - pitch * (len(signals) - 1)
+    straight = [(name, pin) for name, pin in (("ALARM", pins.alarm), ("RESET", pins.reset)) if pin is not None]
+    for name, pin in straight:
+        last -= 1.2 if last < top - pitch * (len(signals) - 1) else 2.2
+        _drive(drawing, last, name, pin, "")
     box(drawing, _DRIVER, top + 1.9, last - 0.9, "step motor driver", at=top + 1.5)
     if opened:
         supply(drawing, (_DRIVER[1] - 1.2, top + 1.9), "+5 V to all + inputs")
@@ -160,7 +164,7 @@ def _outputs(drawing: Drawing, machine: HobbingMachine) -> float:
         ground(drawing, (_DRIVER[1] - 0.7, last - 0.9), "")
     y = last - 3.2
     if pins.healthy is not None:
-        _drive(drawing, y, "", pins.healthy, f"T{len(signals) + 1}")
+        _pump(drawing, y, pins.healthy, f"T{len(signals) + 1}")
         box(drawing, _DRIVER, y + 1.5, y - 0.6, "relay K1, with diode", at=y + 0.0)
         supply(drawing, (_DRIVER[1] - 0.7, y + 1.5), "+5 V")
         y -= 3.4
@@ -187,6 +191,30 @@ def _drive(drawing: Drawing, y: float, name: str, pin: int, transistor: str) -> 
         small(drawing, (_BOARD[1] + 6.2, height + 0.55), f"RL{transistor[1:]}, optional: see README")
     line(drawing, (_BOARD[1] + (7.4 if name else 5.0), height), (_DRIVER[0], height))
     text(drawing, (_DRIVER[0] + 0.2, height), f"{name} -" if name else "coil", align="left")
+
+
+def _pump(drawing: Drawing, y: float, pin: int, transistor: str) -> None:
+    """Charge pump and transistor of the fail-safe relay: direct current of the pin, high or low, does not pass C3."""
+    node, store = _BOARD[1] + 1.8, _BOARD[1] + 3.4
+    text(drawing, (_BOARD[1] - 0.2, y), f"pin {pin}", align="right")
+    drawing.add(elements.Capacitor().at((_BOARD[1], y)).to((node, y)))
+    small(drawing, (_BOARD[1] + 0.9, y + 0.6), "C3 2.2 uF")
+    drawing.add(elements.Diode().at((node, y - 1.5)).to((node, y)))
+    small(drawing, (node - 0.5, y - 1.0), "D1")
+    ground(drawing, (node, y - 1.5), "")
+    drawing.add(elements.Diode().at((node, y)).to((store, y)))
+    small(drawing, (node + 0.8, y + 0.5), "D2")
+    drawing.add(elements.Capacitor(polar=True).at((store, y)).to((store, y - 1.5)))
+    small(drawing, (store + 0.9, y - 1.0), "C4 10 uF")
+    ground(drawing, (store, y - 1.5), "")
+    base = store + 2.0
+    drawing.add(elements.Resistor().at((store, y)).to((base, y)))
+    small(drawing, (store + 1.0, y + 0.5), f"R{transistor[1:]}  1 k")
+    bjt = drawing.add(elements.BjtNpn(circle=True).at((base, y)).anchor("base"))
+    text(drawing, (bjt.center[0] + 0.9, y), transistor, align="left")
+    ground(drawing, bjt.emitter, "")
+    line(drawing, bjt.collector, (_DRIVER[0], bjt.collector[1]))
+    text(drawing, (_DRIVER[0] + 0.2, bjt.collector[1]), "coil", align="left")
 
 
 def _display(drawing: Drawing, machine: HobbingMachine, y: float) -> float:

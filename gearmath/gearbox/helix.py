@@ -73,18 +73,22 @@ class Helix:
         return SIGNS[self.hand]
 
 
-def one_term(ratio: Fraction) -> JobRatio:
-    """A job that the hob (or the spindle) alone leads."""
-    return JobRatio(ratio.denominator, (ratio.numerator, 0))
+def one_term(ratio: Fraction, turn: int = 1) -> JobRatio:
+    """A job that the hob (or the spindle) alone leads.
+
+    ``turn`` is the denominator of the counts per turn of the hob: times it, a whole turn is a whole number of 1/D.
+    """
+    return JobRatio(ratio.denominator * turn, (ratio.numerator * turn, 0))
 
 
-def two_terms(hob: Fraction, feed: Fraction, feed_counts: Fraction) -> JobRatio:
+def two_terms(hob: Fraction, feed: Fraction, feed_counts: Fraction, turn: int = 1) -> JobRatio:
     """The least multiple of the hob's denominator that keeps the bound of this module, and the feed rounded to it.
 
-    ``feed`` is κ_z to many digits, ``feed_counts`` are the counts per mm.
+    ``feed`` is κ_z to many digits, ``feed_counts`` are the counts per mm, ``turn`` is that of :func:`one_term`.
     """
     counts = math.ceil(TRAVEL * PART * feed_counts)
-    denominator = hob.denominator * (counts // 2 // hob.denominator + 1)
+    least = hob.denominator * turn
+    denominator = least * (counts // 2 // least + 1)
     size = math.floor(abs(feed) * denominator + Fraction(1, 2))
     return JobRatio(denominator, (int(hob * denominator), size if feed > 0 else -size))
 
@@ -129,8 +133,8 @@ def helical_ratio(
     hob = hob_ratio(machine, teeth, starts)
     counts_up = 1 if machine.feed_climbs else -1
     counts = float(machine.feed_counts)
-    exact = precise("feed_ratio", counts_up, helix.sign, teeth, module, helix.beta, machine.motor_steps, counts)
-    ratio = two_terms(hob, exact, machine.feed_counts)
+    exact = precise("feed_ratio", counts_up, helix.sign, teeth, module, helix.beta, float(machine.motor_steps), counts)
+    ratio = two_terms(hob, exact, machine.feed_counts, machine.encoder_counts.denominator)
     (bound,) = evaluate("feed_error", counts, TRAVEL, ratio.denominator)
     rounded = Fraction(ratio.numerators[1], ratio.denominator)
     return ratio, Rounding(bound, float(abs(exact - rounded) * machine.feed_counts * TRAVEL))
@@ -153,9 +157,9 @@ def _fed(machine: HobbingMachine, teeth: int, starts: int, module: float, helix:
         raise InputError(f"feed = {float(helix.feed):g}: must lie between 0.001 and 10 mm per turn of the table")
     exact = precise(
         "fed_ratio", SIGNS[machine.hob_hand], helix.sign, SIGNS[helix.cut], teeth, starts, module, helix.beta,
-        float(helix.feed), machine.encoder_counts, machine.motor_steps,
+        float(helix.feed), float(machine.encoder_counts), float(machine.motor_steps),
     )  # fmt: skip
     counts = Fraction(TRAVEL * teeth * machine.encoder_counts) / helix.feed
     found = convergent(abs(exact), math.ceil(2 * PART * counts))
     rounding = Rounding(1 / (2 * PART * starts), float(abs(abs(exact) - found) * counts / starts))
-    return one_term(found if exact > 0 else -found), rounding
+    return one_term(found if exact > 0 else -found, machine.encoder_counts.denominator), rounding

@@ -11,12 +11,15 @@ from derivations.expression import Quantity
 from gearmath.errors import InputError
 from gearmath.gearbox.helix import SIGNS, JobRatio, one_term
 from gearmath.gearbox.kernels import evaluate, expression
+from gearmath.gearbox.motion import Motion, check_run_up, motion
 from gearmath.specs.hobbing import NARROW, Hand, HobbingMachine
 
 #: Largest N and D of the int32 step rule; gearmath.gearbox.proof shows that this bound is tight.
 WIDEST = NARROW
 #: The same of the int64 rule.
 WIDEST_64 = 2**62
+#: The firmware trips where the hob is so much faster than the highest speed, which keeps the step rate even then.
+TRIP = Fraction(101, 100)
 #: Most whole steps of one edge.
 LARGEST_BASE = int(q.base_step.domain[1])
 
@@ -46,6 +49,7 @@ class Job:
     step_rate_percent: float
     carried_at_every_speed: bool
     """Whether the steps keep their limit up to limits.hob_rpm; the firmware refuses a gear otherwise."""
+    motion: Motion
 
     @property
     def exact_pulse_ratio(self) -> Fraction:
@@ -66,10 +70,16 @@ class ThreadPlan(Job):
     lead: Fraction
     starts: int
     hand: Hand
+    count_um: float
+    """Way of the carriage per encoder count [um]."""
+    step_um: float
+    """And per motor step."""
 
 
-def job_values(machine: HobbingMachine, ratio: JobRatio, rpm: float | None, what: str) -> dict[str, object]:
-    """The fields of a Job, by name. ``what`` is cut, in a message: "10 teeth".
+def job_values(
+    machine: HobbingMachine, ratio: JobRatio, rpm: float | None, what: str, run_up: float | None = None
+) -> dict[str, object]:
+    """The fields of a Job, by name. ``what`` is cut, in a message: "10 teeth"; ``run_up`` is that of the hob [s].
 
     Raises InputError where the ratio or the speed cannot be carried.
     """
@@ -78,7 +88,9 @@ def job_values(machine: HobbingMachine, ratio: JobRatio, rpm: float | None, what
     highest = _highest_rpm(machine, abs(exact))
     speed = highest if rpm is None else rpm
     _check_speed(machine, what, speed, highest)
-    edge_rate = speed / 60.0 * machine.encoder_counts
+    moved = motion(machine, exact, speed)
+    check_run_up(machine, moved, speed, run_up, what)
+    edge_rate = speed / 60.0 * float(machine.encoder_counts)
     pulse_ratio = float(1 / exact)
     (step_rate,) = evaluate("desired_position", edge_rate, abs(pulse_ratio))
     return {
@@ -98,13 +110,19 @@ def job_values(machine: HobbingMachine, ratio: JobRatio, rpm: float | None, what
         "edge_rate_percent": 100.0 * edge_rate / machine.edge_rate_limit,
         "step_rate_percent": 100.0 * step_rate / machine.limits.step_rate_hz,
         "carried_at_every_speed": highest == machine.limits.hob_rpm,
+        "motion": moved,
     }
 
 
 def plan_thread(
-    machine: HobbingMachine, pitch: Fraction, starts: int = 1, hand: Hand = "right", rpm: float | None = None
+    machine: HobbingMachine,
+    pitch: Fraction,
+    starts: int = 1,
+    hand: Hand = "right",
+    rpm: float | None = None,
+    run_up: float | None = None,
 ) -> ThreadPlan:
-    """The job of cutting a thread of ``pitch`` mm on a lathe.
+    """The job of cutting a thread of ``pitch`` mm on a lathe, whose spindle takes ``run_up`` seconds to its speed.
 
     Raises InputError where the machine is none, or cannot carry it.
     """
@@ -116,14 +134,20 @@ def plan_thread(
     reason = refusal(machine, ratio)
     if reason:
         raise InputError(f"{machine.name}: {what}: {reason}")
-    values = job_values(machine, ratio, rpm, what)
-    return ThreadPlan(**values, pitch=pitch, lead=starts * pitch, starts=starts, hand=hand)  # type: ignore[arg-type]
+    values = job_values(machine, ratio, rpm, what, run_up)
+    lead = starts * pitch
+    per_count = float(1000 * lead / machine.encoder_counts)
+    per_step = float(1000 * machine.lead_screw_pitch / machine.motor_steps)
+    return ThreadPlan(
+        **values, pitch=pitch, lead=lead, starts=starts, hand=hand, count_um=per_count, step_um=per_step,  # type: ignore[arg-type]
+    )  # fmt: skip
 
 
 def thread_ratio(machine: HobbingMachine, pitch: Fraction, starts: int, hand: Hand) -> JobRatio:
     """κ_t of (9.14), exactly."""
     train = (machine.lead_screw_pitch, machine.encoder_counts, machine.motor_steps)
-    return one_term(expression("lead_screw_ratio").exact(SIGNS[hand], starts, pitch, *train)[0])
+    exact = expression("lead_screw_ratio").exact(SIGNS[hand], starts, pitch, *train)[0]
+    return one_term(exact, machine.encoder_counts.denominator)
 
 
 def refusal(machine: HobbingMachine, ratio: JobRatio) -> str | None:
@@ -165,7 +189,7 @@ def check_range(key: str, value: int, quantity: Quantity) -> None:
 
 
 def _highest_rpm(machine: HobbingMachine, ratio: Fraction) -> float:
-    by_steps = machine.limits.step_rate_hz * 60.0 / (machine.encoder_counts * float(ratio))
+    by_steps = machine.limits.step_rate_hz * 60.0 / float(machine.encoder_counts * ratio * TRIP)
     return min(machine.limits.hob_rpm, by_steps)
 
 

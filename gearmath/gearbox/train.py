@@ -42,6 +42,10 @@ class HobbedBlank:
     span: Span | None
     chord: Chord
     over_pins: OverPins | None
+    count_um: float
+    """Way of the pitch circle per encoder count [um]."""
+    step_um: float
+    """And per motor step."""
 
 
 @dataclass(frozen=True)
@@ -79,12 +83,14 @@ def plan(
     helix: Helix | None = None,
     shift: float = 0.0,
     pin: float | None = None,
+    run_up: float | None = None,
 ) -> GearboxPlan:
     """The job of cutting ``teeth`` teeth.
 
     ``starts`` are those of the machine file if not given; ``hob`` is a name of its list (all of them if not given, but
     a helix needs one); ``rpm`` is the hob speed, by default the highest that keeps the limits; ``shift`` is the profile
-    shift in modules; ``pin`` the diameter of measuring pins [mm].
+    shift in modules; ``pin`` the diameter of measuring pins [mm]; ``run_up`` the time of the hob from rest to its
+    speed, or back [s].
     Raises InputError where the ratio or the speed cannot be carried, with the nearest choice that can.
     """
     if machine.profile != "hobbing":
@@ -103,7 +109,7 @@ def plan(
         )  # fmt: skip
         raise InputError(f"{machine.name}: teeth = {teeth}: {reason}; {other}")
     return GearboxPlan(
-        **job_values(machine, ratio, rpm, f"{teeth} teeth"),  # type: ignore[arg-type]
+        **job_values(machine, ratio, rpm, f"{teeth} teeth", run_up),  # type: ignore[arg-type]
         teeth=teeth, hob_starts=starts, hob_hand=machine.hob_hand, profile_shift=shift,
         helix=_helix_plan(teeth, hobs[0], helix, rounding),
         blanks=tuple(_blank(machine, teeth, starts, chosen, helix, shift, pin) for chosen in hobs),
@@ -114,7 +120,7 @@ def _ratio(
     machine: HobbingMachine, teeth: int, starts: int, hobs: tuple[Hob, ...], helix: Helix | None
 ) -> tuple[JobRatio, Rounding | None]:
     if helix is None:
-        return one_term(hob_ratio(machine, teeth, starts)), None
+        return one_term(hob_ratio(machine, teeth, starts), machine.encoder_counts.denominator), None
     if len(hobs) > 1:
         names = ", ".join(hob.name for hob in hobs)
         raise InputError(f"helix = {helix.angle:g}: the lead depends on the hob, choose one of {names}")
@@ -157,6 +163,10 @@ def _blank(
     if hob.diameter is not None:
         hand = 1 if helix is None else helix.sign
         stands = swivel(gear, SIGNS[machine.hob_hand], hand, starts, hob.diameter)
+    pitch_diameter = teeth * hob.module_mm / math.cos(gear.beta)
+    train = (float(machine.encoder_counts), float(machine.motor_steps))
+    arcs = evaluate("resolution", pitch_diameter, teeth, starts, *train)
     return HobbedBlank(
-        hob.name, hob.depth_rule, blank_diameter(gear), depth, stands, span(gear), chord(gear), over_pins(gear, pin)
-    )
+        hob.name, hob.depth_rule, blank_diameter(gear), depth, stands, span(gear), chord(gear), over_pins(gear, pin),
+        *arcs,
+    )  # fmt: skip

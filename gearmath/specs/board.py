@@ -13,7 +13,10 @@ from gearmath.specs.toml import Spec
 
 @dataclass(frozen=True)
 class Board:
-    """What matters of a board: highest pin, period of the step timer and its lateness [ns], edges per second."""
+    """What matters of a board: highest pin, period of the step timer, edges per second.
+
+    ``jitter_ns`` is how much a tick may be late for each other interrupt of its priority that has just begun.
+    """
 
     title: str
     highest_pin: int
@@ -23,10 +26,10 @@ class Board:
     five_volt_tolerant: bool
 
 
-#: 100 kHz leaves a Teensy 3.2 (72 MHz, no cache of note) 720 cycles an edge; a Teensy 4 has 600 MHz. A tick waits for
-#: an edge interrupt that has begun: 95 instructions at most, which are given 144 cycles and 300.
+#: 100 kHz leaves a Teensy 3.2 (72 MHz, no cache of note) 720 cycles an edge; a Teensy 4 has 600 MHz. The interrupts of
+#: edge and index take at most 105 and 120 instructions, which are given 180 cycles and 300; a test counts them.
 BOARDS = {
-    "teensy32": Board("Teensy 3.2", 33, 5000, 2000, 100_000, five_volt_tolerant=True),
+    "teensy32": Board("Teensy 3.2", 33, 5000, 2500, 100_000, five_volt_tolerant=True),
     "teensy40": Board("Teensy 4.0", 39, 2000, 500, 400_000, five_volt_tolerant=False),
     "teensy41": Board("Teensy 4.1", 54, 2000, 500, 400_000, five_volt_tolerant=False),
 }
@@ -62,8 +65,12 @@ class Pins(Spec):
     """Output that enables the driver."""
     estop: int | None = Field(default=None, ge=0)
     """Input of a normally closed emergency stop to ground: open means stop."""
+    alarm: int | None = Field(default=None, ge=0)
+    """Input of the driver's alarm output; driver.alarm_active is its level."""
+    reset: int | None = Field(default=None, ge=0)
+    """Output that is high for 0.2 s to reset the driver after its alarm."""
     healthy: int | None = Field(default=None, ge=0)
-    """Output that is energised while all is well, to hold the hob's contactor."""
+    """Output that is a square wave while all is well, for a stage that holds the hob's contactor."""
 
     def used(self) -> Iterator[tuple[str, int]]:
         """Name and number of every pin that is wired."""

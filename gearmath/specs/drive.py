@@ -8,7 +8,7 @@ from typing import Literal
 from pydantic import Field, model_validator
 
 from derivations import notation
-from gearmath.specs.ratio import Pitch, Rational
+from gearmath.specs.ratio import Pitch, Pulses, Rational
 from gearmath.specs.toml import Spec
 
 
@@ -20,6 +20,13 @@ class Encoder(Spec):
     """
 
     lines: int = Field(ge=1, le=1_000_000)
+    belt: Rational = Fraction(1)
+    """Turns of the encoder per turn of the hob (the spindle), where pulleys drive it. Its index is then one per turn of
+    its own shaft."""
+    invert: bool = False
+    """Whether the counts go down as the hob turns forward: instead of exchanging its channels."""
+    index_active: Literal["high", "low"] = "high"
+    """Level of the index pulse at the board's pin."""
     decoder: Literal["ls7184_x1", "ls7184_x2", "ls7184_x4", "hardware"]
     hysteresis: int = Field(default=0, ge=0, le=int(notation.hysteresis.domain[1]))
 
@@ -28,28 +35,62 @@ class Encoder(Spec):
         """1, 2 or 4."""
         return 4 if self.decoder == "hardware" else int(self.decoder[-1])
 
+    @property
+    def counts_per_shaft(self) -> int:
+        """Counts per turn of the encoder's own shaft."""
+        return self.lines * self.edges_per_line
+
+
+#: Largest numerator and denominator of the steps per turn, in lowest terms: products with them stay within 63 bits.
+LARGEST_STEPS = (2**30, 1_000_000)
+
 
 class Drive(Spec):
-    """Step motor with its belt: full steps and microsteps a motor turn, then an exact reduction."""
+    """Motor with its belt: pulses a motor turn, then an exact reduction. The steps per turn may be any fraction.
 
-    full_steps: int = Field(ge=1, le=10_000)
-    microsteps: int = Field(ge=1, le=1_024)
+    A step motor has full steps and microsteps; a servo has ``pulses``, the command pulses per turn of its motor, which
+    are its encoder's counts over its electronic gearing, such as "131072/10".
+    """
+
+    full_steps: int | None = Field(default=None, ge=1, le=10_000)
+    microsteps: int | None = Field(default=None, ge=1, le=1_024)
+    pulses: Pulses | None = None
     belt: Rational
 
     @property
+    def pulses_per_turn(self) -> Fraction:
+        """Steps per turn of the motor."""
+        return Fraction((self.full_steps or 0) * (self.microsteps or 0)) if self.pulses is None else self.pulses
+
+    @property
     def steps_per_turn(self) -> Fraction:
-        return self.full_steps * self.microsteps * self.belt
+        return self.pulses_per_turn * self.belt
 
     def _words(self) -> str:
-        return f"{self.full_steps} full steps x {self.microsteps} microsteps x belt {self.belt}"
+        motor = f"{self.full_steps} full steps x {self.microsteps} microsteps" if self.pulses is None else (
+            f"{self.pulses} pulses"
+        )  # fmt: skip
+        return f"{motor} x belt {self.belt}"
 
     @model_validator(mode="after")
-    def _whole(self) -> Drive:
+    def _one_motor(self) -> Drive:
+        given = [self.full_steps is not None, self.microsteps is not None]
+        if all(given) == (self.pulses is not None) or any(given) != all(given):
+            raise ValueError(
+                "a step motor needs full_steps and microsteps, a servo needs pulses, and neither the other's"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _fits(self) -> Drive:
         steps, most = self.steps_per_turn, int(notation.motor_steps.domain[1])
-        if steps.denominator != 1:
-            raise ValueError(f"{self._words()} = {steps} steps per turn, which must be a whole number")
-        if steps > most:
-            raise ValueError(f"{self._words()} = {steps} steps per turn, which must not exceed {most}")
+        if not 1 <= steps <= most:
+            raise ValueError(f"{self._words()} = {steps} steps per turn, which must lie between 1 and {most}")
+        if steps.numerator > LARGEST_STEPS[0] or steps.denominator > LARGEST_STEPS[1]:
+            raise ValueError(
+                f"{self._words()} = {steps} steps per turn: the numerator must not exceed {LARGEST_STEPS[0]}, the "
+                f"denominator {LARGEST_STEPS[1]}"
+            )
         return self
 
 
@@ -60,7 +101,7 @@ class Table(Drive):
 
     @property
     def steps_per_turn(self) -> Fraction:
-        return self.full_steps * self.microsteps * self.belt * self.worm
+        return self.pulses_per_turn * self.belt * self.worm
 
     def _words(self) -> str:
         return f"{super()._words()} x worm {self.worm}"

@@ -10,12 +10,18 @@ from pydantic import Field, model_validator
 
 from gearmath.specs.toml import Spec
 
+Level = Literal["high", "low"]
+#: What enables a driver: no current through the opto-coupler of its ENABLE input (current switches the motor off), or a
+#: low level at a logic input. An input that is left open enables either.
+EnableInput = Literal["dark", "low"]
+
 
 @dataclass(frozen=True)
 class StepTiming:
     """Shortest times of a driver [ns]: step pulse, pause after it, DIR before the pulse and after it.
 
     ``confirmed`` says that a publication of the maker or of LinuxCNC states these figures; the others are cautious.
+    ``enable`` says what the ENABLE input does, ``enable_confirmed`` that the maker's manual was seen to say so.
     """
 
     step_high: int
@@ -23,6 +29,8 @@ class StepTiming:
     dir_setup: int
     dir_hold: int
     confirmed: bool = True
+    enable: EnableInput | None = None
+    enable_confirmed: bool = False
 
     def ticks(self, tick_ns: int, jitter_ns: int) -> tuple[int, int, int, int]:
         """The four times in whole ticks of the step timer, rounded up, at least one each.
@@ -39,7 +47,8 @@ class StepTiming:
         return 1_000_000_000 // ((high + low) * tick_ns)
 
 
-#: Published in LinuxCNC's tables of step timing and stepconf, unless marked.
+#: Times published in LinuxCNC's tables of step timing and stepconf, unless marked. ENABLE: Leadshine's manuals say that
+#: an input pulled low (NPN wiring) disables, and to leave it open otherwise; the chips' data sheets have a low enable.
 DRIVERS = {
     "gecko201": StepTiming(500, 4000, 1000, 20_000),
     "gecko210": StepTiming(500, 4000, 1000, 20_000),
@@ -49,24 +58,28 @@ DRIVERS = {
     "gecko203v": StepTiming(1000, 2000, 200, 200),
     # 1000, 2000, 200, 200 before LinuxCNC's issue #577: too short for the 3.3 V of a Teensy
     "gecko_g540": StepTiming(5000, 5000, 10_000, 10_000),
-    "m542": StepTiming(1500, 1500, 5000, 8000),
-    "dm556": StepTiming(2500, 2500, 5000, 10_000),
-    "dm422": StepTiming(7500, 7500, 5000, 20_000),
-    "dm860t": StepTiming(5000, 5000, 5000, 5000),
-    "a4988": StepTiming(1000, 1000, 200, 200),
-    "drv8825": StepTiming(1900, 1900, 650, 650),
+    "m542": StepTiming(1500, 1500, 5000, 8000, enable="dark", enable_confirmed=True),
+    "dm556": StepTiming(2500, 2500, 5000, 10_000, enable="dark", enable_confirmed=True),
+    "dm422": StepTiming(7500, 7500, 5000, 20_000, enable="dark", enable_confirmed=True),
+    # closed-loop and newer drives: the family's usual 2.5 us and 5 us with a reserve, since revisions differ
+    "dm542": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark", enable_confirmed=True),
+    "cl57t": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark"),
+    "cl86t": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark"),
+    "hbs57": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark"),
+    "hbs86h": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark"),
+    "dm860t": StepTiming(5000, 5000, 5000, 5000, enable="dark"),
+    "a4988": StepTiming(1000, 1000, 200, 200, enable="low", enable_confirmed=True),
+    "drv8825": StepTiming(1900, 1900, 650, 650, enable="low", enable_confirmed=True),
     "xylotex_8s3": StepTiming(2000, 1000, 200, 200),
     "keling_4030": StepTiming(5000, 5000, 20_000, 20_000),
     "sherline": StepTiming(22_000, 22_000, 100_000, 100_000),
     "tb6560": StepTiming(150_000, 150_000, 150_000, 150_000),
-    "tmc2208": StepTiming(100, 100, 20, 20),
-    "tmc2209": StepTiming(100, 100, 20, 20),
+    "tmc2208": StepTiming(100, 100, 20, 20, enable="low", enable_confirmed=True),
+    "tmc2209": StepTiming(100, 100, 20, 20, enable="low", enable_confirmed=True),
     # 3 us and more are in use, one board needed 30 us
-    "tb6600": StepTiming(10_000, 10_000, 10_000, 10_000, confirmed=False),
+    "tb6600": StepTiming(10_000, 10_000, 10_000, 10_000, confirmed=False, enable="dark"),
     "unsure": StepTiming(10_000, 10_000, 10_000, 10_000, confirmed=False),
 }
-
-Level = Literal["high", "low"]
 
 
 class Driver(Spec):
@@ -84,8 +97,11 @@ class Driver(Spec):
     output: Literal["open_collector", "direct"]
     step_active: Level
     dir_active: Level = "low"
-    enable_active: Level = "low"
+    enable_active: Level | None = None
+    """Level at the driver's own input that enables it; only for a driver whose row does not say it."""
     invert_direction: bool = False
+    alarm_active: Level = "low"
+    """Level at the board's pin while the driver has an alarm; an open wire reads high."""
 
     @model_validator(mode="after")
     def _one_timing(self) -> Driver:
@@ -102,6 +118,31 @@ class Driver(Spec):
             if given:
                 raise ValueError(f"name = {self.name!r} and {given[0]} both state times, use one of them")
         return self
+
+    @model_validator(mode="after")
+    def _never_held_off(self) -> Driver:
+        known = self._row_enables
+        if self.enable_active is not None and known is not None and self.enable_active != known:
+            raise ValueError(
+                f"enable_active = {self.enable_active!r}: this level switches a {self.name} off with output = "
+                f"{self.output!r}, which is enabled by {known!r}; leave enable_active out"
+            )
+        return self
+
+    @property
+    def _row_enables(self) -> Level | None:
+        """The enabling level at the driver's input, where its row says so."""
+        kind = self.timing.enable
+        if kind != "dark":
+            return kind
+        # a transistor can only pull down, so that a low input is the one with current
+        current = "low" if self.output == "open_collector" else self.step_active
+        return "high" if current == "low" else "low"
+
+    @property
+    def enables(self) -> Level | None:
+        """Level at the driver's input that enables it; None where neither its row nor the file says it."""
+        return self._row_enables or self.enable_active
 
     @property
     def _times(self) -> dict[str, int | None]:

@@ -40,8 +40,8 @@ class Hob(Spec):
         if self.depth_rule.endswith("m") != (self.module is not None):
             fitting = [rule for rule in DEPTH_RULES if rule.endswith("m") != self.depth_rule.endswith("m")]
             raise ValueError(f"depth_rule {self.depth_rule!r} does not fit this hob, use one of {', '.join(fitting)}")
-        if abs(self._size * 1000 - self.size_thousandths) > 1e-6:
-            raise ValueError(f"size {self._size:g}: more than the three decimals that the display keeps")
+        if abs(self._size * 10_000 - self.size_tenthousandths) > 1e-6:
+            raise ValueError(f"size {self._size:g}: more than the four decimals that the display keeps")
         if self.diameter is not None and self.diameter <= 5.0 * self.module_mm:
             raise ValueError(f"diameter = {self.diameter:g}: must be more than five modules of {self.module_mm:g} mm")
         return self
@@ -61,9 +61,9 @@ class Hob(Spec):
         return "inch" if self.diametral_pitch is not None else "mm"
 
     @property
-    def size_thousandths(self) -> int:
-        """Diametral pitch or module, times 1000: a whole number."""
-        return round(self._size * 1000)
+    def size_tenthousandths(self) -> int:
+        """Diametral pitch or module, times 10 000: a whole number; GM_HOB_UNIT."""
+        return round(self._size * 10_000)
 
     @property
     def module_mm(self) -> float:

@@ -28,6 +28,8 @@ __all__ = ["Hob", "HobbingMachine", "load_hobbing_machine"]
 LS7184_EDGE_RATE = 100_000
 #: Largest denominator of the rule in 32 bits; gearmath.gearbox.proof shows that it is tight.
 NARROW = int(notation.steps_denominator.domain[1])
+#: Largest numerator of the counts per turn of the hob.
+MOST_TURN_COUNTS = 16_000_000
 LONGEST_RAMP = 10.0  # s
 #: Threads per inch that the firmware takes, in steps of 1/100.
 FINEST_TPI = 1000
@@ -49,6 +51,8 @@ class Limits(Spec):
     move_rate_hz: float | None = Field(default=None, ge=10.0, le=1e6)
     """Of a jog or an index move; 2000, or the step rate where that is less, if not given."""
     acceleration_hz_per_s: float = Field(ge=1.0, le=1e7)
+    run_up_s: float | None = Field(default=None, ge=0.0, le=600.0)
+    """Time of the hob from rest to hob_rpm, or from there to rest, whichever is shorter; plans are checked with it."""
     lag_steps: int = Field(ge=1, le=30_000)
     """Steps that may wait before the gearbox trips."""
 
@@ -101,16 +105,25 @@ class HobbingMachine(Spec):
 
     def _check_pins(self) -> None:
         self.pins.check(self.board, self.hardware)
+        if self.pins.enable is not None and self.driver.enables is None:
+            raise ValueError(
+                f"pins.enable = {self.pins.enable}: it is not known which level enables this driver; leave the pin out "
+                "and the driver's ENABLE open, or write driver.enable_active from its manual"
+            )
         for key in ("feed_step", "feed_dir"):
             if (getattr(self.pins, key) is None) != (self.feed is None):
                 raise ValueError(f"pins.{key} must be given where there is a [feed], and only there")
 
+        if self.pins.reset is not None and self.pins.alarm is None:
+            raise ValueError("pins.reset has no meaning without pins.alarm")
+
     def _check_edges(self) -> None:
         most = int(notation.encoder_counts.domain[1])
-        if self.encoder_counts > most:
+        if self.encoder_counts > most or self.encoder_counts.numerator > MOST_TURN_COUNTS:
             raise ValueError(
-                f"encoder.lines = {self.encoder.lines} with {self.encoder.decoder} are {self.encoder_counts} counts a "
-                f"turn: the kernels take {most}, use at most {most // self.encoder.edges_per_line} lines"
+                f"encoder.lines = {self.encoder.lines} with {self.encoder.decoder} and belt {self.encoder.belt} are "
+                f"{self.encoder_counts} counts a turn: the kernels take {most}, and {MOST_TURN_COUNTS} as numerator; "
+                f"use at most {int(most / self.encoder.belt) // self.encoder.edges_per_line} lines"
             )
         carried = self.edge_rate_limit
         what = f"board {self.board}" if carried == self.hardware.highest_edge_rate else "the LS7184"
@@ -118,11 +131,11 @@ class HobbingMachine(Spec):
             raise ValueError(
                 f"limits.hob_rpm = {self.limits.hob_rpm:g} with {self.encoder_counts} counts a turn are "
                 f"{self.max_edge_rate} edges/s: {what} carries {carried}, which is at most "
-                f"{carried * 60 // self.encoder_counts} rpm"
+                f"{int(carried * 60 / self.encoder_counts)} rpm"
             )
 
     def _check_steps(self) -> None:
-        limits, highest = self.limits, self.driver.timing.highest_rate(self.tick_ns, self.hardware.jitter_ns)
+        limits, highest = self.limits, self.driver.timing.highest_rate(self.tick_ns, self.jitter_ns)
         driver = self.driver.name or "of the file"
         for key in ("step_rate_hz", "move_rate_hz"):
             rate = getattr(limits, key)
@@ -149,14 +162,14 @@ class HobbingMachine(Spec):
         return drive
 
     @property
-    def encoder_counts(self) -> int:
-        """Encoder counts per turn of the hob (the spindle), after the decoder."""
-        return self.encoder.lines * self.encoder.edges_per_line
+    def encoder_counts(self) -> Fraction:
+        """Encoder counts per turn of the hob (the spindle), after the decoder, exactly."""
+        return self.encoder.counts_per_shaft * self.encoder.belt
 
     @property
-    def motor_steps(self) -> int:
-        """Motor steps per turn of the work table (the lead screw)."""
-        return int(self.drive.steps_per_turn)
+    def motor_steps(self) -> Fraction:
+        """Motor steps per turn of the work table (the lead screw), exactly."""
+        return self.drive.steps_per_turn
 
     @property
     def lead_screw_pitch(self) -> Fraction:
@@ -178,12 +191,13 @@ class HobbingMachine(Spec):
     def wide(self) -> bool:
         """Whether some job of this machine needs 64 bits: two axes, or a denominator beyond the 32-bit rule."""
         if self.profile == "hobbing":
-            widest = int(notation.teeth.domain[1]) * self.encoder_counts
-            return self.feed is not None or widest > NARROW
-        per_mm = Fraction(self.motor_steps) / (self.lead_screw_pitch * self.encoder_counts)
+            counts = self.encoder_counts
+            widest = int(notation.teeth.domain[1]) * counts.numerator * self.motor_steps.denominator
+            return self.feed is not None or widest * counts.denominator > NARROW
+        per_mm = self.motor_steps / (self.lead_screw_pitch * self.encoder_counts)
         metric = (per_mm / 1000).denominator  # every pitch in 1/1000 mm
         inch = (per_mm * EXACT_INCH * 100).denominator * FINEST_TPI * 100  # every number of threads in 1/100 per inch
-        return max(metric, inch) > NARROW
+        return max(metric, inch) * self.encoder_counts.denominator > NARROW
 
     # --- board, driver and limits in the units of the firmware ------------------------------------------------------
     @property
@@ -197,9 +211,14 @@ class HobbingMachine(Spec):
         return self.hardware.tick_ns
 
     @property
+    def jitter_ns(self) -> int:
+        """How much a tick may be late: hob edge, feed edge and index in one moment, each before it."""
+        return self.hardware.jitter_ns * (1 + (self.feed is not None) + (self.pins.index is not None))
+
+    @property
     def timing_ticks(self) -> tuple[int, int, int, int]:
         """Step high, step low, DIR set-up and DIR hold, in ticks of the step timer."""
-        return self.driver.timing.ticks(self.tick_ns, self.hardware.jitter_ns)
+        return self.driver.timing.ticks(self.tick_ns, self.jitter_ns)
 
     @property
     def step_active_low(self) -> bool:
@@ -214,12 +233,12 @@ class HobbingMachine(Spec):
     @property
     def enable_active_low(self) -> bool:
         """Level of the board's pin that enables the driver."""
-        return self.driver.pin_active_low(self.driver.enable_active)
+        return self.pins.enable is not None and self.driver.pin_active_low(self.driver.enables or "low")
 
     @property
     def max_edge_rate(self) -> int:
         """Encoder edges per second at the highest speed, rounded up."""
-        return math.ceil(self.limits.hob_rpm / 60.0 * self.encoder_counts)
+        return math.ceil(self.limits.hob_rpm / 60.0 * float(self.encoder_counts))
 
     @property
     def edge_rate_limit(self) -> int:

@@ -15,10 +15,13 @@ EXACT_INCH = Fraction(127, 5)
 #: Largest numerator and denominator of a fraction in a file: products of a few of them stay within 63 bits.
 LARGEST = 1_000_000
 
-_PITCH = re.compile(r"\s*(\d+(?:\.\d+|/\d+)?)\s*(mm|tpi)\s*\Z")
+#: π of worm threads by module or diametral pitch: 8.5e-8 of it too much, 43 nm over 500 mm.
+PI = Fraction(355, 113)
+
+_PITCH = re.compile(r"\s*(\d+(?:\.\d+|/\d+)?)\s*(mm|tpi|m|dp)\s*\Z")
 
 
-def _rational(value: object) -> Fraction:
+def _rational(value: object, most: int = 10_000) -> Fraction:
     """A whole number, or text like "5/2". A decimal number is refused: 0.1 is no exact ratio in binary."""
     if isinstance(value, bool) or not isinstance(value, int | str):
         raise ValueError('must be a whole number, or a fraction in quotes such as "5/2"')
@@ -26,13 +29,19 @@ def _rational(value: object) -> Fraction:
         ratio = Fraction(value)
     except (ValueError, ZeroDivisionError):
         raise ValueError('must be a whole number, or a fraction in quotes such as "5/2"') from None
-    if not Fraction(1, 1000) <= ratio <= 10_000:
-        raise ValueError("must lie between 1/1000 and 10000")
+    if not Fraction(1, 1000) <= ratio <= most:
+        raise ValueError(f"must lie between 1/1000 and {most}")
     return _small(ratio)
+
+
+def _pulses(value: object) -> Fraction:
+    return _rational(value, LARGEST)
 
 
 def pitch(value: object) -> Fraction:
     """Pitch [mm] of text such as "2mm", "1.25mm", "8tpi" or "23/2tpi", exactly; an inch is 127/5 mm.
+
+    "1.5m" is that of a worm of module 1.5 mm, "16dp" of diametral pitch 16, with PI for π.
 
     Raises ValueError where it is none, or outside 1/100 to 100 mm.
     """
@@ -42,8 +51,10 @@ def pitch(value: object) -> Fraction:
     except ZeroDivisionError:
         number = Fraction(0)
     if match is None or number == 0:
-        raise ValueError('must be a pitch such as "2mm", "1.25mm", "8tpi" or "23/2tpi"')
-    length = number if match[2] == "mm" else EXACT_INCH / number
+        raise ValueError('must be a pitch such as "2mm", "1.25mm", "8tpi", "23/2tpi", "1.5m" or "16dp"')
+    length = number if match[2] in ("mm", "m") else EXACT_INCH / number
+    if match[2] in ("m", "dp"):
+        length *= PI
     if not Fraction(1, 100) <= length <= 100:
         raise ValueError("must lie between 0.01 mm and 100 mm")
     return _small(length)
@@ -56,4 +67,6 @@ def _small(ratio: Fraction) -> Fraction:
 
 
 Rational = Annotated[InstanceOf[Fraction], BeforeValidator(_rational)]
+#: Pulses per turn of a servo, which may be more.
+Pulses = Annotated[InstanceOf[Fraction], BeforeValidator(_pulses)]
 Pitch = Annotated[InstanceOf[Fraction], BeforeValidator(pitch)]

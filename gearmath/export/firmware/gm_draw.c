@@ -44,23 +44,28 @@ void gm_answer(gm_ui *ui, const char *question) {
   gm_put(ui, 3, 9, ui->choice ? " no  >yes<" : ">no<  yes ");
 }
 
-void gm_size(gm_ui *ui, int row, int end, int32_t thousandths) {
-  int decimals = 3;
+void gm_size(gm_ui *ui, int row, int end, int32_t size) {
+  int decimals = 4;
   int32_t unit = 1;
-  for (; decimals > 0 && thousandths % (10 * unit) == 0; unit *= 10) {
+  for (; decimals > 0 && size % (10 * unit) == 0; unit *= 10) {
     --decimals;
   }
-  gm_format_ratio(ui->screen[row] + end - 7, 7, thousandths, 1000, decimals);
+  gm_format_ratio(ui->screen[row] + end - 7, 7, size, GM_HOB_UNIT, decimals);
 }
 
 /* Unit and decimals of a pitch. */
 static const char *gm_pitch_unit(const gm_settings *settings) {
-  return settings->pitch_kind == GM_PITCH_TPI ? "tpi" : "mm";
+  static const char *const units[GM_PITCHES] = {"mm", "tpi", "mm", "m", "DP"};
+  return units[settings->pitch_kind];
+}
+
+static int gm_in_inches(const gm_settings *settings) {
+  return settings->pitch_kind == GM_PITCH_TPI || settings->pitch_kind == GM_PITCH_DP;
 }
 
 void gm_pitch(gm_ui *ui, int row, const char *label, const gm_settings *settings) {
-  const gm_ratio pitch = {settings->pitch, settings->pitch_kind == GM_PITCH_TPI ? 100 : 1000};
-  gm_quantity(ui, row, label, &pitch, settings->pitch_kind == GM_PITCH_TPI ? 2 : 3, gm_pitch_unit(settings));
+  const gm_ratio pitch = {settings->pitch, gm_in_inches(settings) ? 100 : 1000};
+  gm_quantity(ui, row, label, &pitch, gm_in_inches(settings) ? 2 : 3, gm_pitch_unit(settings));
 }
 
 void gm_job_line(gm_ui *ui, int row, const gm_settings *settings) {
@@ -97,7 +102,7 @@ void gm_draw_choice(gm_ui *ui, const char *title, const char *const *entries, in
 void gm_rpm(gm_ui *ui, int row, const char *label, uint32_t rate, const gm_ratio *times) {
   gm_ratio rpm = {rate, 1};
   const gm_ratio none = {0, 0};
-  const int bad = gm_ratio_times(&rpm, 60, GM_ENCODER_COUNTS) ||
+  const int bad = gm_ratio_times(&rpm, 60 * (int64_t)GM_TURN_COUNTS_DEN, GM_TURN_COUNTS) ||
                   (times != NULL && gm_ratio_times(&rpm, times->numerator, times->denominator));
   gm_quantity(ui, row, label, bad ? &none : &rpm, times == NULL ? 1 : 2, "rpm");
 }

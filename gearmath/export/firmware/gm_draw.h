@@ -17,7 +17,7 @@ void gm_quantity(gm_ui *ui, int row, const char *label, const gm_ratio *value, i
 void gm_count(gm_ui *ui, int row, const char *label, int64_t value, const char *unit);
 void gm_answer(gm_ui *ui, const char *question);
 /* 1000 x value with no more decimals than it needs, right-aligned before `end`. */
-void gm_size(gm_ui *ui, int row, int end, int32_t thousandths);
+void gm_size(gm_ui *ui, int row, int end, int32_t size);
 void gm_pitch(gm_ui *ui, int row, const char *label, const gm_settings *settings);
 /* The job in one line: "127 teeth    60.8 DP", "Left       1.500 mm". */
 void gm_job_line(gm_ui *ui, int row, const gm_settings *settings);

@@ -41,7 +41,7 @@ void gm_edit_defaults(gm_ui *ui) {
   ui->edit.pitch = 1000;
   ui->edit.hob_unit = GM_MM;
   ui->edit.depth_rule = GM_DEPTH_225_M;
-  ui->edit.hob_size = 1000;
+  ui->edit.hob_size = GM_HOB_UNIT;
   ui->hob = 0;
   gm_take_hob(ui);
 }
@@ -85,10 +85,10 @@ static void gm_turn_helix(gm_settings *edit, int32_t change) {
 }
 
 static void gm_turn_pitch_kind(gm_settings *edit, int32_t direction) {
-  const int32_t kind = gm_bounded(edit->pitch_kind, direction, GM_PITCH_MM, GM_PITCH_FEED);
+  const int32_t kind = gm_bounded(edit->pitch_kind, direction, GM_PITCH_MM, GM_PITCHES - 1);
   if (kind != edit->pitch_kind) {
     edit->pitch_kind = (uint8_t)kind;
-    edit->pitch = kind == GM_PITCH_MM ? 1000 : kind == GM_PITCH_TPI ? 2000 : 100;
+    edit->pitch = kind == GM_PITCH_MM ? 1000 : kind == GM_PITCH_TPI || kind == GM_PITCH_DP ? 2000 : kind == GM_PITCH_MODULE ? 1000 : 100;
     edit->starts = 1;
   }
 }
@@ -96,7 +96,7 @@ static void gm_turn_pitch_kind(gm_settings *edit, int32_t direction) {
 void gm_edit_turn(gm_ui *ui, int32_t direction, int32_t factor) {
   gm_settings *edit = &ui->edit;
   const int32_t change = direction * factor;
-  const int32_t detent = edit->pitch_kind == GM_PITCH_TPI ? GM_TPI_DETENT : GM_PITCH_DETENT;
+  const int32_t detent = edit->pitch_kind == GM_PITCH_TPI || edit->pitch_kind == GM_PITCH_DP ? GM_TPI_DETENT : GM_PITCH_DETENT;
   switch (ui->page) {
     case GM_PAGE_TEETH: edit->teeth = (uint16_t)gm_bounded(edit->teeth, change, GM_MIN_TEETH, GM_MAX_TEETH); break;
     case GM_PAGE_HOB:

@@ -101,7 +101,7 @@ int gm_convergent(uint64_t value, uint64_t needed, uint64_t limit, gm_ratio *rat
 }
 
 uint64_t gm_sine(int32_t angle) {
-  uint64_t x, square, sum = GM_ONE;
+  uint64_t x = 0, square = 0, sum = GM_ONE;
   int k;
   gm_muldiv((uint64_t)angle, GM_PI, GM_RIGHT_ANGLE, 2 * GM_RIGHT_ANGLE, &x);
   gm_muldiv(x, x, GM_ONE / 2, GM_ONE, &square);

@@ -31,8 +31,8 @@ const char *gm_depth_text(const gm_settings *settings) {
 
 /* A number of modules as a length: times size/1000 mm, or 1000/size inch. */
 static int gm_modules(const gm_settings *settings, gm_ratio *length) {
-  return settings->hob_unit == GM_MM ? gm_ratio_times(length, settings->hob_size, 1000)
-                                     : gm_ratio_times(length, 1000, settings->hob_size);
+  return settings->hob_unit == GM_MM ? gm_ratio_times(length, settings->hob_size, GM_HOB_UNIT)
+                                     : gm_ratio_times(length, GM_HOB_UNIT, settings->hob_size);
 }
 
 int gm_blank_diameter(const gm_settings *settings, gm_ratio *diameter) {
@@ -95,29 +95,31 @@ int64_t gm_jog_steps(int size, int32_t n) {
 #ifdef GM_PROFILE_LATHE
   const int bad = gm_ratio_times(&steps, GM_SCREW_STEPS_NUM, GM_SCREW_STEPS_DEN) || gm_ratio_times(&steps, n, 1);
 #else
-  const int bad = gm_ratio_times(&steps, GM_MOTOR_STEPS, 360) || gm_ratio_times(&steps, n, 1);
+  const int bad = gm_ratio_times(&steps, GM_MOTOR_STEPS, 360) || gm_ratio_times(&steps, n, GM_MOTOR_STEPS_DEN);
 #endif
   return bad ? 0 : gm_nearest(&steps);
 }
 
-int32_t gm_division_step(int32_t n, int32_t divisions) {
+int64_t gm_division_step(int32_t n, int32_t divisions) {
   gm_ratio steps = {n, 1};
-  return gm_ratio_times(&steps, GM_MOTOR_STEPS, divisions) ? 0 : (int32_t)gm_nearest(&steps);
+  const int bad = gm_ratio_times(&steps, GM_MOTOR_STEPS, divisions) || gm_ratio_times(&steps, 1, GM_MOTOR_STEPS_DEN);
+  return bad ? 0 : gm_nearest(&steps);
 }
 
 int gm_next_start(const gm_settings *settings, const gm_ratio *ratio, int64_t edges, int64_t position, int32_t *move) {
-  /* One start is E of m = starts e + E, one lead E starts; a = ratio / starts steps each. */
-  const int64_t turn = GM_ENCODER_COUNTS, lead = turn * settings->starts;
+  /* A turn is E = turn/d counts. One start is `turn` of m = d starts e + turn, one lead turn starts; a = ratio / (d starts)
+   * steps each. */
+  const int64_t turn = GM_TURN_COUNTS, lead = turn * settings->starts;
   gm_ratio part = *ratio;
   int64_t here, wanted, aside, to;
   uint64_t size;
-  if (part.numerator == 0 || gm_ratio_times(&part, 1, settings->starts) ||
+  if (part.numerator == 0 || gm_ratio_times(&part, 1, settings->starts * (int64_t)GM_TURN_COUNTS_DEN) ||
       gm_muldiv(gm_magnitude(position), (uint64_t)part.denominator, gm_magnitude(part.numerator) / 2,
                 gm_magnitude(part.numerator), &size) || size >> 62) {
     return -1;
   }
   here = (position < 0) != (part.numerator < 0) ? -(int64_t)size : (int64_t)size;
-  wanted = edges % turn * settings->starts + turn;
+  wanted = edges % turn * GM_TURN_COUNTS_DEN % turn * settings->starts + turn; /* whole turns are whole leads */
   aside = (wanted - here) % lead;
   aside = aside > lead / 2 ? aside - lead : aside < -(lead / 2) ? aside + lead : aside;
   /* wanted + j lead = here + aside: the same whole number, so that only the steps are rounded */

@@ -35,8 +35,8 @@ gm_refusal gm_settings_check(const gm_settings *settings) {
     if (settings->starts < 1) {
       return GM_BAD_STARTS;
     }
-    return settings->pitch < 1 || settings->pitch > GM_MAX_PITCH || settings->pitch_kind > GM_PITCH_FEED ? GM_BAD_PITCH
-                                                                                                         : GM_JOB_OK;
+    return settings->pitch < 1 || settings->pitch > GM_MAX_PITCH || settings->pitch_kind >= GM_PITCHES ? GM_BAD_PITCH
+                                                                                                          : GM_JOB_OK;
   }
   if (settings->teeth < 1 || settings->teeth > GM_MAX_TEETH) {
     return GM_BAD_TEETH;
@@ -44,7 +44,7 @@ gm_refusal gm_settings_check(const gm_settings *settings) {
   if (settings->helix > GM_MAX_HELIX) {
     return GM_BAD_HELIX;
   }
-  if (settings->hob_size < 1 || settings->hob_size > 1000000 || settings->hob_unit > GM_MM ||
+  if (settings->hob_size < 1 || settings->hob_size > 1000 * GM_HOB_UNIT || settings->hob_unit > GM_MM ||
       settings->depth_rule > GM_DEPTH_225_M ||
       (settings->hob_unit == GM_MM) != (settings->depth_rule == GM_DEPTH_225_M)) {
     return GM_BAD_HOB;
@@ -57,15 +57,23 @@ static int gm_leading_ratio(const gm_settings *settings, gm_ratio *ratio) {
   ratio->numerator = settings->starts;
   ratio->denominator = 1;
   if (settings->profile == GM_HOBBING) {
-    return gm_ratio_times(ratio, GM_MOTOR_STEPS, settings->teeth) || gm_ratio_times(ratio, 1, GM_ENCODER_COUNTS);
+    return gm_ratio_times(ratio, GM_MOTOR_STEPS, settings->teeth) || gm_ratio_times(ratio, 1, GM_MOTOR_STEPS_DEN) ||
+           gm_ratio_times(ratio, GM_TURN_COUNTS_DEN, GM_TURN_COUNTS);
   }
   if (settings->left) {
     ratio->numerator = -ratio->numerator;
   }
+  if (settings->pitch_kind == GM_PITCH_MODULE || settings->pitch_kind == GM_PITCH_DP) {
+    if (gm_ratio_times(ratio, 355, 113)) {
+      return -1;
+    }
+  }
   /* a thread of t/100 per inch has a pitch of 2540/t mm */
-  return (settings->pitch_kind == GM_PITCH_TPI ? gm_ratio_times(ratio, 2540, settings->pitch)
-                                               : gm_ratio_times(ratio, settings->pitch, 1000)) ||
-         gm_ratio_times(ratio, GM_SCREW_STEPS_NUM, GM_SCREW_STEPS_DEN) || gm_ratio_times(ratio, 1, GM_ENCODER_COUNTS);
+  return (settings->pitch_kind == GM_PITCH_TPI || settings->pitch_kind == GM_PITCH_DP
+              ? gm_ratio_times(ratio, 2540, settings->pitch)
+              : gm_ratio_times(ratio, settings->pitch, 1000)) ||
+         gm_ratio_times(ratio, GM_SCREW_STEPS_NUM, GM_SCREW_STEPS_DEN) ||
+         gm_ratio_times(ratio, GM_TURN_COUNTS_DEN, GM_TURN_COUNTS);
 }
 
 /* size 2^point of `factor` turns per mm, over the lead: factor sin(beta) / (pi m z). */
@@ -73,8 +81,8 @@ static int gm_over_lead(const gm_settings *settings, gm_ratio factor, int point,
   const uint64_t sine = gm_sine_over_pi(settings->helix);
   int64_t down;
   if (gm_ratio_times(&factor, 1, settings->teeth) ||
-      (settings->hob_unit == GM_MM ? gm_ratio_times(&factor, 1000, settings->hob_size)
-                                   : gm_ratio_times(&factor, settings->hob_size, 25400)) ||
+      (settings->hob_unit == GM_MM ? gm_ratio_times(&factor, GM_HOB_UNIT, settings->hob_size)
+                                   : gm_ratio_times(&factor, 10 * (int64_t)settings->hob_size, 254 * GM_HOB_UNIT)) ||
       gm_multiply(factor.denominator, (int64_t)1 << (62 - point), &down)) {
     return -1;
   }
@@ -112,8 +120,8 @@ static gm_refusal gm_set_leading(gm_job *job, const gm_ratio *ratio, uint64_t de
 /* Two terms over one denominator: the hob's D1 times the least t for which rounding keeps the bound over the travel. */
 static gm_refusal gm_two_terms(const gm_settings *settings, const gm_ratio *ratio, gm_job *job) {
   const uint64_t one = (uint64_t)1 << GM_POINT;
-  gm_ratio factor = {GM_MOTOR_STEPS, 1};
-  uint64_t size, counts, times, rest;
+  gm_ratio factor = {GM_MOTOR_STEPS, GM_MOTOR_STEPS_DEN};
+  uint64_t size, counts, times, rest, least;
   gm_refusal refusal;
   if (gm_ratio_times(&factor, GM_FEED_COUNTS_DEN, GM_FEED_COUNTS_NUM) ||
       gm_over_lead(settings, factor, GM_POINT, &size)) {
@@ -124,8 +132,8 @@ static gm_refusal gm_two_terms(const gm_settings *settings, const gm_ratio *rati
                 GM_FEED_COUNTS_DEN, &counts)) {
     return GM_TOO_WIDE;
   }
-  times = counts / 2 / (uint64_t)ratio->denominator + 1;
-  if (gm_muldiv(times, (uint64_t)ratio->denominator, 0, 1, &times)) {
+  if (gm_muldiv((uint64_t)ratio->denominator, GM_TURN_COUNTS_DEN, 0, 1, &least) ||
+      gm_muldiv(counts / 2 / least + 1, least, 0, 1, &times)) {
     return GM_TOO_WIDE;
   }
   refusal = gm_set_leading(job, ratio, times);
@@ -153,9 +161,9 @@ static gm_refusal gm_fed_ratio(const gm_settings *settings, gm_ratio *ratio) {
     return GM_TOO_STEEP;
   }
   /* hob counts of the travel: travel/f turns of the table, z/k of the hob each */
-  if (gm_muldiv((uint64_t)GM_HELIX_TRAVEL_MM * 1000 * settings->teeth, 2 * GM_HELIX_PART * (uint64_t)GM_ENCODER_COUNTS,
-                (uint64_t)settings->feed, (uint64_t)settings->feed, &counts) ||
-      gm_convergent(value, counts, GM_WIDEST, ratio)) {
+  if (gm_muldiv((uint64_t)GM_HELIX_TRAVEL_MM * 1000 * settings->teeth, 2 * GM_HELIX_PART * (uint64_t)GM_TURN_COUNTS,
+                (uint64_t)settings->feed * GM_TURN_COUNTS_DEN, (uint64_t)settings->feed * GM_TURN_COUNTS_DEN, &counts) ||
+      gm_convergent(value, counts, GM_WIDEST / GM_TURN_COUNTS_DEN, ratio)) {
     return GM_TOO_WIDE;
   }
   if (negative) {
@@ -164,15 +172,17 @@ static gm_refusal gm_fed_ratio(const gm_settings *settings, gm_ratio *ratio) {
   return GM_JOB_OK;
 }
 
-/* Highest hob rpm: that of the machine, or what the driver's steps/s allow, times D/N; whole, rounded down. A lathe
- * cuts a coarse thread slowly, so there it is only shown; behind a hob it must not be left to the operator. */
+/* Highest hob rpm: that of the machine, or what the driver's steps/s allow, times D/N; whole, rounded down. The core
+ * trips one in a hundred above it. A lathe cuts a coarse thread slowly, and trips there; behind a hob it must not be left
+ * to the operator. */
 static gm_refusal gm_check_rate(const gm_settings *settings, gm_facts *facts) {
   const int64_t size = (int64_t)gm_magnitude(facts->ratio.numerator);
-  const uint64_t machine = (uint64_t)GM_MAX_EDGE_RATE * 60 / GM_ENCODER_COUNTS;
-  gm_ratio rpm = {(int64_t)(GM_MAX_STEP_RATE) * 60, GM_ENCODER_COUNTS};
+  const uint64_t machine = (uint64_t)GM_MAX_EDGE_RATE * 60 * GM_TURN_COUNTS_DEN / GM_TURN_COUNTS;
+  gm_ratio rpm = {(int64_t)(GM_MAX_STEP_RATE) * 6000 * GM_TURN_COUNTS_DEN, (int64_t)GM_TURN_COUNTS * 101};
   uint64_t driver = machine, steps;
-  const int slow = gm_muldiv((uint64_t)size, GM_MAX_EDGE_RATE, 0, (uint64_t)facts->ratio.denominator, &steps) == 0 &&
-                   steps <= (uint64_t)(GM_MAX_STEP_RATE);
+  const int slow = gm_muldiv((uint64_t)size, (uint64_t)GM_MAX_EDGE_RATE * 101, 0,
+                             (uint64_t)facts->ratio.denominator, &steps) == 0 &&
+                   steps <= (uint64_t)(GM_MAX_STEP_RATE) * 100;
   if (!slow && gm_ratio_times(&rpm, facts->ratio.denominator, size) == 0) {
     driver = (uint64_t)(rpm.numerator / rpm.denominator);
   }
@@ -183,6 +193,7 @@ static gm_refusal gm_check_rate(const gm_settings *settings, gm_facts *facts) {
 gm_refusal gm_job_make(const gm_settings *settings, gm_job *job, gm_facts *facts) {
   gm_job made = {0, {0, 0}, {0, 0}, GM_HYSTERESIS};
   const int helical = settings->profile == GM_HOBBING && settings->helix != 0;
+  uint64_t denominator;
   gm_refusal refusal = gm_settings_check(settings);
   facts->ratio.numerator = 0;
   facts->ratio.denominator = 1;
@@ -199,8 +210,11 @@ gm_refusal gm_job_make(const gm_settings *settings, gm_job *job, gm_facts *facts
       return refusal;
     }
   }
+  if (gm_muldiv((uint64_t)facts->ratio.denominator, GM_TURN_COUNTS_DEN, 0, 1, &denominator)) {
+    return GM_TOO_WIDE;
+  }
   refusal = helical && GM_HAS_FEED ? gm_two_terms(settings, &facts->ratio, &made)
-                                   : gm_set_leading(&made, &facts->ratio, (uint64_t)facts->ratio.denominator);
+                                   : gm_set_leading(&made, &facts->ratio, denominator);
   if (refusal == GM_JOB_OK) {
     refusal = gm_check_rate(settings, facts);
   }

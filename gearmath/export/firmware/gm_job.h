@@ -15,8 +15,8 @@
 #include "gm_exact.h"
 
 /* What a machine file need not say. */
-#ifndef GM_MAX_STEP_RATE /* steps/s: what the driver's pulse and pause allow */
-#define GM_MAX_STEP_RATE (1000000000 / ((int64_t)GM_TICK_NS * (GM_STEP_HIGH_TICKS + GM_STEP_LOW_TICKS)))
+#ifndef GM_MOTOR_STEPS_DEN /* steps per turn of the table are GM_MOTOR_STEPS/GM_MOTOR_STEPS_DEN */
+#define GM_MOTOR_STEPS_DEN 1
 #endif
 #ifndef GM_HYSTERESIS
 #define GM_HYSTERESIS 0
@@ -33,8 +33,10 @@ extern "C" {
 #endif
 
 enum { GM_HOBBING = 0, GM_LATHE = 1 };                              /* profile */
-enum { GM_PITCH_MM = 0, GM_PITCH_TPI = 1, GM_PITCH_FEED = 2 };      /* pitch_kind */
-enum { GM_MIN_TEETH = 6, GM_MAX_TEETH = 999, GM_MAX_STARTS = 10, GM_MAX_HELIX = 6000, GM_MAX_PITCH = 99999 };
+/* pitch_kind; worms by module or diametral pitch have a pitch of pi times it, with pi = 355/113: 8.5e-8 of it too long */
+enum { GM_PITCH_MM = 0, GM_PITCH_TPI = 1, GM_PITCH_FEED = 2, GM_PITCH_MODULE = 3, GM_PITCH_DP = 4, GM_PITCHES = 5 };
+enum { GM_HOB_UNIT = 10000 };
+enum { GM_MIN_TEETH = 1, GM_MAX_TEETH = 999, GM_MAX_STARTS = 10, GM_MAX_HELIX = 6000, GM_MAX_PITCH = 99999 };
 enum { GM_MAX_FEED = 9999, GM_MAX_BASE = 64 };
 enum { GM_HELIX_TRAVEL_MM = 500, GM_HELIX_PART = 100 };
 
@@ -49,8 +51,8 @@ typedef struct {
   uint8_t pitch_kind; /* lathe: GM_PITCH_... */
   uint16_t teeth;
   uint16_t helix;   /* 1/100 degree, 0 for spur gears */
-  int32_t hob_size; /* 1000 x diametral pitch, or 1000 x module */
-  int32_t pitch;    /* lathe: 1/1000 mm, or 1/100 thread per inch */
+  int32_t hob_size; /* GM_HOB_UNIT x diametral pitch, or x module */
+  int32_t pitch;    /* lathe: 1/1000 mm (pitch, feed, module), or 1/100 thread per inch or diametral pitch */
   int32_t feed;     /* helix without feed encoder: 1/1000 mm per turn of the table */
 } gm_settings;
 
@@ -87,8 +89,8 @@ int gm_helix_lead(const gm_settings *settings, gm_ratio *lead);
 const char *gm_depth_text(const gm_settings *settings);
 /* Motor steps, to the nearest, of n jogs of 0.01, 0.1, 1 or 10 degrees of the table or mm of the carriage: size 0-3. */
 int64_t gm_jog_steps(int size, int32_t n);
-/* Motor step of division n of a turn, to the nearest. */
-int32_t gm_division_step(int32_t n, int32_t divisions);
+/* Motor step of division n, also beyond a turn, to the nearest: of n / divisions turns. */
+int64_t gm_division_step(int32_t n, int32_t divisions);
 /* Lathe: the shortest move to where the next start of the thread is cut at this position of the spindle. With it, a
  * thread of `ratio` that has come to `edges` and `position` is one pitch on, modulo its lead. 0, or -1. */
 int gm_next_start(const gm_settings *settings, const gm_ratio *ratio, int64_t edges, int64_t position, int32_t *move);

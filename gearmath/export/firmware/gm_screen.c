@@ -70,10 +70,10 @@ static void gm_draw_helix_feed(gm_ui *ui) {
 }
 
 static void gm_draw_pitch_kind(gm_ui *ui) {
-  static const char *const kinds[] = {"Thread in mm", "Thread in tpi", "Feed in mm per turn"};
+  static const char *const kinds[] = {"Thread in mm", "Thread in tpi", "Feed in mm per turn", "Worm by module", "Worm by DP"};
   const int kept = ui->choice;
   ui->choice = ui->edit.pitch_kind;
-  gm_draw_choice(ui, "Lead screw", kinds, 3);
+  gm_draw_choice(ui, "Lead screw", kinds, GM_PITCHES);
   ui->choice = kept;
 }
 
@@ -109,12 +109,16 @@ static void gm_draw_run_speed(gm_ui *ui, const gm_status *status) {
     gm_ratio table = {ui->loaded.starts < 0 ? -ui->loaded.starts : ui->loaded.starts, ui->loaded.teeth};
     gm_rpm(ui, 2, "Table", status->edge_rate, &table);
   }
-  gm_count(ui, 3, "Lag", status->pending, "step");
+  if (status->in_phase) {
+    gm_count(ui, 3, "In phase: lag", status->pending, "");
+  } else {
+    gm_count(ui, 3, "Lag", status->pending, "step");
+  }
 }
 
 /* Where hob and table stand, since the start of the job. */
 static void gm_draw_run_place(gm_ui *ui, const gm_status *status) {
-  const gm_ratio turns = {status->edges[GM_HOB], GM_ENCODER_COUNTS};
+  const gm_ratio turns = {status->edges[GM_HOB] * GM_TURN_COUNTS_DEN, GM_TURN_COUNTS};
   gm_quantity(ui, 1, gm_is_lathe() ? "Turns" : "Hob turns", &turns, 2, "");
 #ifdef GM_PROFILE_LATHE
   {
@@ -126,7 +130,8 @@ static void gm_draw_run_place(gm_ui *ui, const gm_status *status) {
   }
 #else
   {
-    const int64_t rest = status->position % GM_MOTOR_STEPS, place = rest < 0 ? rest + GM_MOTOR_STEPS : rest;
+    const int64_t rest = status->position % GM_MOTOR_STEPS * GM_MOTOR_STEPS_DEN % GM_MOTOR_STEPS;
+    const int64_t place = rest < 0 ? rest + GM_MOTOR_STEPS : rest;
     gm_ratio angle = {place, 1};
     gm_ratio_times(&angle, 360, GM_MOTOR_STEPS);
     gm_quantity(ui, 2, "Table", &angle, 2, "deg");
@@ -156,6 +161,8 @@ static void gm_draw_run(gm_ui *ui, const gm_status *status) {
   gm_job_line(ui, 0, &ui->loaded);
   if (status->waiting) {
     gm_line(ui, 0, "WAITS FOR THE PHASE");
+  } else if (!status->in_phase) {
+    gm_line(ui, 0, "CATCHING UP");
   }
   if (ui->choice == 0) {
     gm_draw_run_speed(ui, status);
@@ -207,16 +214,19 @@ static void gm_draw_divide(gm_ui *ui) {
   }
   gm_ratio_times(&angle, ui->target, ui->divisions);
   gm_line(ui, 0, "At         of");
-  gm_number(ui, 0, 3, 7, ui->at);
+  gm_number(ui, 0, 3, 7, (ui->at % ui->divisions + ui->divisions) % ui->divisions);
   gm_number(ui, 0, 14, 6, ui->divisions);
   gm_count(ui, 1, "Go to", ui->target, "");
   gm_quantity(ui, 2, "Angle", &angle, 4, "deg");
   gm_line(ui, 3, "Press: go  Hold: end");
 }
 
+/* Counts of one turn, to the nearest. */
+enum { GM_WANTED_COUNTS = (GM_TURN_COUNTS + GM_TURN_COUNTS_DEN / 2) / GM_TURN_COUNTS_DEN };
+
 /* What a wrong count means: a decoder of another mode, or 1000 lines taken for 1024. */
 static const char *gm_verdict(int64_t counted) {
-  const int64_t size = counted < 0 ? -counted : counted, wanted = GM_ENCODER_COUNTS;
+  const int64_t size = counted < 0 ? -counted : counted, wanted = GM_WANTED_COUNTS;
   if (100 * size >= 99 * wanted && 100 * size <= 101 * wanted) {
     return counted < 0 ? "OK, but backwards" : "OK within 1 %";
   }
@@ -252,13 +262,13 @@ static void gm_draw_test_hob(gm_ui *ui, const gm_status *status) {
   }
   gm_line(ui, 0, ui->test == GM_TEST_DONE ? gm_verdict(counted) : "Turn once by hand");
   gm_count(ui, 1, "Counted", counted, "");
-  gm_count(ui, 2, "Wanted", GM_ENCODER_COUNTS, "");
+  gm_count(ui, 2, "Wanted", GM_WANTED_COUNTS, "");
   gm_line(ui, 3, ui->test == GM_TEST_DONE ? "Press: again" : "Press: turned once");
 }
 
 static void gm_draw_test_table(gm_ui *ui) {
   gm_line(ui, 0, gm_is_lathe() ? "Mark the lead screw" : "Mark the table");
-  gm_count(ui, 1, "Turn", GM_MOTOR_STEPS, "step");
+  gm_count(ui, 1, "Turn", gm_division_step(1, 1), "step");
   gm_line(ui, 2, ui->test == GM_TEST_DONE ? "Mark off? Check belt" : "Mark must come back");
   gm_answer(ui, "Turn it?");
 }
@@ -277,7 +287,8 @@ static void gm_draw_fault(gm_ui *ui, const gm_status *status) {
       break;
     case GM_OVERSPEED:
       gm_line(ui, 0, "FAULT hob too fast");
-      gm_count(ui, 1, "Hob max", (int64_t)GM_MAX_EDGE_RATE * 60 / GM_ENCODER_COUNTS, "rpm");
+      gm_count(ui, 1, "Hob max", ui->phase ? (int64_t)ui->facts.max_rpm : (int64_t)GM_MAX_EDGE_RATE * 60 * GM_TURN_COUNTS_DEN / GM_TURN_COUNTS,
+               "rpm");
       break;
     case GM_ENCODER:
       gm_line(ui, 0, "FAULT hob encoder");
@@ -287,10 +298,18 @@ static void gm_draw_fault(gm_ui *ui, const gm_status *status) {
       gm_line(ui, 0, "FAULT hob turned");
       gm_line(ui, 1, "Lock it for moves");
       break;
+    case GM_ALARM:
+      gm_line(ui, 0, "FAULT motor driver");
+      gm_line(ui, 1, "See its own lamp");
+      break;
     default: break;
   }
   gm_line(ui, 2, GM_HAS_HEALTHY ? "Hob was switched off" : "YOU MUST STOP HOB!");
-  gm_line(ui, 3, "Hold: acknowledge");
+  if (status->mode == GM_RUN) {
+    gm_line(ui, 3, "Follows till it ends");
+  } else {
+    gm_line(ui, 3, ui->phase ? "Phase kept. Hold: on" : "Hold: acknowledge");
+  }
 }
 
 static void gm_draw_edit(gm_ui *ui) {

@@ -1,7 +1,7 @@
 /* gm_store.c: records of the EEPROM, little-endian: 'G' 'M', version, fields, zeros, and the CRC-32 at the end. */
 #include "gm_store.h"
 
-enum { GM_VERSION = 1, GM_CRC_AT = GM_RECORD_BYTES - 4 };
+enum { GM_VERSION = 2, GM_CRC_AT = GM_RECORD_BYTES - 4 };
 
 uint32_t gm_crc32(const uint8_t *bytes, int count) {
   uint32_t crc = UINT32_C(0xffffffff);

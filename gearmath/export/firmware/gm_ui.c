@@ -21,6 +21,13 @@ static int gm_move(gm_ui *ui, int32_t steps) {
   return refused;
 }
 
+/* An act of the operator: the healthy output may go on, where the core has no fault. */
+static void gm_arm_output(const gm_ui *ui) {
+  gm_mask();
+  (void)gm_core_arm(ui->core);
+  gm_unmask();
+}
+
 static int gm_far(int64_t a, int64_t b) {
   return a - b > GM_STANDING_COUNTS || b - a > GM_STANDING_COUNTS;
 }
@@ -84,6 +91,7 @@ static unsigned gm_start(gm_ui *ui, const gm_status *status) {
     ui->message = "Refused by the core";
     return 0;
   }
+  gm_arm_output(ui);
   ui->loaded = ui->edit;
   ui->loaded_ratio = ui->facts.ratio;
   ui->phase = 1;
@@ -106,6 +114,7 @@ static void gm_run_on(gm_ui *ui, const gm_status *status) {
     ui->message = "Refused by the core";
     return;
   }
+  gm_arm_output(ui);
   ui->edit = ui->loaded;
   gm_go(ui, GM_PAGE_RUN);
 }
@@ -185,14 +194,13 @@ static void gm_arm(gm_ui *ui, uint32_t now) {
 }
 
 static void gm_divide(gm_ui *ui) {
-  int32_t steps = gm_division_step(ui->target, ui->divisions) - gm_division_step(ui->at, ui->divisions);
-  if (steps > GM_MOTOR_STEPS / 2) {
-    steps -= GM_MOTOR_STEPS;
-  } else if (steps < -(GM_MOTOR_STEPS / 2)) {
-    steps += GM_MOTOR_STEPS;
-  }
-  if (!gm_move(ui, steps)) {
-    ui->at = ui->target;
+  /* the nearer way; `at` counts on beyond a turn, which need not be a whole number of steps */
+  int32_t way = (ui->target - ui->at) % ui->divisions;
+  int64_t steps;
+  way = way > ui->divisions / 2 ? way - ui->divisions : way < -(ui->divisions / 2) ? way + ui->divisions : way;
+  steps = gm_division_step(ui->at + way, ui->divisions) - gm_division_step(ui->at, ui->divisions);
+  if (!gm_move(ui, (int32_t)steps)) {
+    ui->at += way;
     ui->target = (ui->target + 1) % ui->divisions;
   }
 }
@@ -251,7 +259,10 @@ static void gm_press_stop(gm_ui *ui) {
 static unsigned gm_press(gm_ui *ui, const gm_status *status, uint32_t now) {
   const int yes = ui->choice;
   switch (ui->page) {
-    case GM_PAGE_POWER_UP: gm_go(ui, gm_edit_first()); break;
+    case GM_PAGE_POWER_UP:
+      gm_arm_output(ui);
+      gm_go(ui, gm_edit_first());
+      break;
     case GM_PAGE_START:
       if (yes) {
         return gm_start(ui, status);
@@ -273,7 +284,7 @@ static unsigned gm_press(gm_ui *ui, const gm_status *status, uint32_t now) {
     case GM_PAGE_TEST_TABLE:
       if (yes) {
         ui->choice = 0;
-        ui->test = gm_move(ui, GM_MOTOR_STEPS) ? GM_TEST_READY : GM_TEST_DONE;
+        ui->test = gm_move(ui, (int32_t)gm_division_step(1, 1)) ? GM_TEST_READY : GM_TEST_DONE;
       } else {
         gm_go(ui, GM_PAGE_MENU);
       }
@@ -291,10 +302,15 @@ static void gm_acknowledge(gm_ui *ui) {
   gm_unmask();
   if (refused) {
     ui->message = "The cause is there";
-  } else {
-    gm_go(ui, gm_edit_first());
-    ui->message = "PHASE LOST: set up";
+    return;
   }
+  gm_arm_output(ui);
+  if (ui->phase) {
+    gm_go(ui, GM_PAGE_STOPPED);
+    return;
+  }
+  gm_go(ui, gm_edit_first());
+  ui->message = "PHASE LOST: set up";
 }
 
 static void gm_long_press(gm_ui *ui) {
@@ -313,8 +329,8 @@ static void gm_long_press(gm_ui *ui) {
 /* The page follows what the core does by itself. 1 where it changed: an event meant for the page before is dropped. */
 static int gm_follow(gm_ui *ui, const gm_status *status, uint32_t now) {
   const gm_page page = ui->page;
-  if (status->mode == GM_FAULT) {
-    ui->phase = 0;
+  if (status->fault != GM_NO_FAULT) { /* also while the table still follows a hob that runs down */
+    ui->phase = ui->phase && status->has_job && !ui->shifting;
     ui->shifting = 0;
     if (page != GM_PAGE_FAULT) {
       gm_go(ui, GM_PAGE_FAULT);

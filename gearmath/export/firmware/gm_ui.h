@@ -77,7 +77,7 @@ typedef struct {
   int64_t jog_done; /* motor steps given for them */
   int32_t divisions;
   int32_t target; /* division to go to */
-  int32_t at;     /* division where the table stands */
+  int32_t at;     /* division where the table stands, counted on beyond a turn */
   int test;
   int64_t counted; /* edges at the start of the test, then in it */
   int shifting;    /* lathe: the carriage moves to the next start */

@@ -88,8 +88,9 @@ static void show() {
 }
 
 /* --- interrupts --- */
+enum { HOB_UP = GM_ENCODER_INVERT ? -1 : 1 };
 #if GM_DECODER_LS7184
-static void on_hob_pulse() { gm_core_edge(&core, GM_HOB, digitalReadFast(GM_PIN_ENCODER_DIR) == HIGH ? 1 : -1); }
+static void on_hob_pulse() { gm_core_edge(&core, GM_HOB, digitalReadFast(GM_PIN_ENCODER_DIR) == HIGH ? HOB_UP : -HOB_UP); }
 static void follow_hob() {}
 #else
 static Encoder hob_encoder(GM_PIN_ENCODER_STEP, GM_PIN_ENCODER_DIR);
@@ -118,7 +119,7 @@ static void pass_edges(Encoder &encoder, uint32_t *seen, int axis, int up) {
   }
 }
 
-static void follow_hob() { pass_edges(hob_encoder, &hob_seen, GM_HOB, 1); }
+static void follow_hob() { pass_edges(hob_encoder, &hob_seen, GM_HOB, HOB_UP); }
 #endif
 
 #if GM_HAS_INDEX
@@ -136,15 +137,27 @@ static void put_outputs(unsigned levels) {
 #if GM_HAS_HEALTHY
   digitalWriteFast(GM_PIN_HEALTHY, levels & GM_OUT_HEALTHY ? HIGH : LOW);
 #endif
+#if GM_HAS_RESET
+  digitalWriteFast(GM_PIN_RESET, levels & GM_OUT_RESET ? HIGH : LOW);
+#endif
   digitalWriteFast(GM_PIN_STEP_OUT, levels & GM_OUT_STEP ? HIGH : LOW);
 }
 
 static unsigned inputs() {
+  unsigned levels = 0;
 #if GM_HAS_ESTOP /* a closed contact pulls the pin down; a broken wire stops */
-  return digitalReadFast(GM_PIN_ESTOP) == LOW ? (unsigned)GM_IN_ESTOP_OK : 0u;
+  if (digitalReadFast(GM_PIN_ESTOP) == LOW) {
+    levels |= (unsigned)GM_IN_ESTOP_OK;
+  }
 #else
-  return (unsigned)GM_IN_ESTOP_OK;
+  levels |= (unsigned)GM_IN_ESTOP_OK;
 #endif
+#if GM_HAS_ALARM
+  if (digitalReadFast(GM_PIN_ALARM) == (GM_ALARM_ACTIVE_LOW ? LOW : HIGH)) {
+    levels |= (unsigned)GM_IN_ALARM;
+  }
+#endif
+  return levels;
 }
 
 static void on_tick() {
@@ -152,7 +165,8 @@ static void on_tick() {
 #if GM_HAS_FEED && !GM_DECODER_LS7184
   pass_edges(feed_encoder, &feed_seen, GM_FEED, FEED_UP);
 #endif
-  put_outputs(gm_core_tick(&core, inputs()));
+  put_outputs(gm_core_outputs(&core, inputs()));
+  gm_core_think(&core);
 }
 
 static void set_priorities() {
@@ -256,7 +270,7 @@ static void begin_operator() {
 
 void setup() {
   gm_core_init(&core);
-  put_outputs(gm_core_tick(&core, GM_IN_ESTOP_OK)); /* the levels stand before the pins drive */
+  put_outputs(gm_core_outputs(&core, GM_IN_ESTOP_OK)); /* the levels stand before the pins drive */
   pinMode(GM_PIN_STEP_OUT, OUTPUT);
   pinMode(GM_PIN_DIR_OUT, OUTPUT);
 #if GM_HAS_ENABLE
@@ -264,6 +278,12 @@ void setup() {
 #endif
 #if GM_HAS_HEALTHY
   pinMode(GM_PIN_HEALTHY, OUTPUT);
+#endif
+#if GM_HAS_RESET
+  pinMode(GM_PIN_RESET, OUTPUT);
+#endif
+#if GM_HAS_ALARM
+  pinMode(GM_PIN_ALARM, INPUT_PULLUP);
 #endif
   pinMode(GM_PIN_BUTTON, INPUT_PULLUP);
 #if GM_HAS_ESTOP
@@ -288,13 +308,16 @@ void setup() {
 #endif
 #if GM_HAS_INDEX
   pinMode(GM_PIN_INDEX, INPUT_PULLUP);
-  attachInterrupt(digitalPinToInterrupt(GM_PIN_INDEX), on_index, RISING);
+  attachInterrupt(digitalPinToInterrupt(GM_PIN_INDEX), on_index, GM_INDEX_ACTIVE_LOW ? FALLING : RISING);
 #endif
   step_timer.begin(on_tick, GM_TICK_NS / 1000u); /* a timer is free: nothing else in this sketch takes one */
 }
 
 void loop() {
   static uint32_t polled_at = 0;
+  gm_mask();
+  gm_core_alive(&core);
+  gm_unmask();
   read_knob();
   read_button();
   if (millis() - polled_at >= (uint32_t)POLL_MS) {

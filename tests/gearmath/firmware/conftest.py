@@ -39,6 +39,8 @@ MACHINE = {
     "GM_STEP_HIGH_TICKS": 2, "GM_STEP_LOW_TICKS": 3, "GM_DIR_SETUP_TICKS": 4, "GM_DIR_HOLD_TICKS": 5,
     "GM_STEP_ACTIVE_LOW": 0, "GM_DIR_ACTIVE_LOW": 0, "GM_DIR_INVERT": 0, "GM_ENABLE_ACTIVE_LOW": 0,
     "GM_MAX_LAG": 100, "GM_MAX_EDGE_RATE": 54613, "GM_MOVE_MAX_RATE": 4000, "GM_MOVE_ACCELERATION": 8000,
+    # edges of these tests start at full speed: a motor that follows at once, but where a test is about acceleration
+    "GM_ACCELERATION": 10_000_000,
     "GM_HAS_INDEX": 0, "GM_HAS_ESTOP": 1, "GM_PROFILE_HOBBING": 1,
 }  # fmt: skip
 
@@ -69,7 +71,7 @@ PROBE = """\
 static gm_core core;
 
 typedef struct {
-  int32_t mode, fault, pending, index_error, waiting, healthy;
+  int32_t mode, fault, pending, index_error, waiting, in_phase, has_job;
   int64_t edges, feed, position;
   uint32_t edge_rate, index_turns;
 } probe_status;
@@ -78,6 +80,7 @@ void probe_init(void) { gm_core_init(&core); }
 int probe_run(void) { return gm_core_run(&core); }
 void probe_stop(void) { gm_core_stop(&core); }
 int probe_move(int32_t steps) { return gm_core_move(&core, steps); }
+int probe_arm(void) { gm_core_alive(&core); return gm_core_arm(&core); }
 int probe_acknowledge(void) { return gm_core_acknowledge(&core); }
 
 int probe_job(int64_t denominator, const int64_t *increment, const int32_t *base, int32_t hysteresis)
@@ -107,11 +110,13 @@ void probe_get(probe_status *to)
   to->index_turns = status.index_turns;
   to->index_error = status.index_error;
   to->waiting = status.waiting;
+  to->in_phase = status.in_phase;
+  to->has_job = status.has_job;
 }
 
-/* per tick: hob edges and feed edges (signed number), index pulses, inputs; levels, mode, position, pending */
+/* per tick: hob edges and feed edges (signed number), index pulses, inputs; levels, mode, position, lag, fault */
 void probe_play(long ticks, const int8_t *hob, const int8_t *feed, const uint8_t *index, const uint8_t *inputs,
-                uint8_t *levels, uint8_t *mode, int64_t *position, int32_t *pending)
+                uint8_t *levels, uint8_t *mode, int64_t *position, int32_t *pending, uint8_t *fault)
 {
   long k;
   int n;
@@ -124,7 +129,8 @@ void probe_play(long ticks, const int8_t *hob, const int8_t *feed, const uint8_t
     levels[k] = (uint8_t)gm_core_tick(&core, inputs[k]);
     mode[k] = (uint8_t)core.mode;
     position[k] = core.position;
-    pending[k] = core.pending;
+    pending[k] = core.locked ? core.pending : core.pending + core.behind;
+    fault[k] = (uint8_t)core.fault;
   }
 }
 """
@@ -137,7 +143,10 @@ class Status(ctypes.Structure):
     """gm_status."""
 
     _fields_ = [
-        *((name, ctypes.c_int32) for name in ("mode", "fault", "pending", "index_error", "waiting", "healthy")),
+        *(
+            (name, ctypes.c_int32)
+            for name in ("mode", "fault", "pending", "index_error", "waiting", "in_phase", "has_job")
+        ),
         *((name, ctypes.c_int64) for name in ("edges", "feed", "position")),
         *((name, ctypes.c_uint32) for name in ("edge_rate", "index_turns")),
     ]
@@ -151,6 +160,7 @@ class Record:
     mode: np.ndarray
     position: np.ndarray
     pending: np.ndarray
+    fault: np.ndarray
 
 
 @dataclass
@@ -179,6 +189,10 @@ class Core:
     def move(self, steps: int) -> int:
         return int(self.library.probe_move(ctypes.c_int32(steps)))
 
+    def arm(self) -> int:
+        """The operator's act, with a main program that works."""
+        return int(self.library.probe_arm())
+
     def acknowledge(self) -> int:
         return int(self.library.probe_acknowledge())
 
@@ -190,8 +204,8 @@ class Core:
             np.ascontiguousarray(np.broadcast_to(np.asarray(values), (n,)).astype(kind))
             for values, kind in ((hob, np.int8), (feed, np.int8), (index, np.uint8), (inputs, np.uint8))
         ]
-        record = Record(*(np.empty(n, kind) for kind in (np.uint8, np.uint8, np.int64, np.int32)))
-        arrays = [*scripts, record.levels, record.mode, record.position, record.pending]
+        record = Record(*(np.empty(n, kind) for kind in (np.uint8, np.uint8, np.int64, np.int32, np.uint8)))
+        arrays = [*scripts, record.levels, record.mode, record.position, record.pending, record.fault]
         self.library.probe_play(ctypes.c_long(n), *(ctypes.c_void_p(array.ctypes.data) for array in arrays))
         return record
 

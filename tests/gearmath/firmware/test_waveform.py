@@ -8,7 +8,7 @@ import pytest
 
 from gearmath.specs.drivers import DRIVERS
 
-STEP, DIR, HEALTHY = 1, 2, 8
+STEP, DIR = 1, 2
 FAULT = 3
 
 
@@ -97,12 +97,13 @@ def test_every_driver_gets_its_times_through_reversals_moves_and_a_trip(new_core
         estop = np.ones(120 * pulse + timing["GM_DIR_SETUP_TICKS"], np.uint8)
         estop[-7 * pulse :] = 0  # opened in the middle of steps
         records.append(core.play(np.where(np.arange(len(estop)) % (2 * pulse) == 0, -1, 0), inputs=estop))
+        records.append(core.play(0, 260_000_000 // tick_ns, inputs=0))  # seen, and the hob stands
         levels = np.concatenate([record.levels for record in records])
         seen = decode(levels, tick_ns, bool(step_low), bool(dir_low) != bool(invert))
         assert_driver_is_content(seen, driver)
         assert seen.reversals > 10
-        before, after = sum(len(record.levels) for record in records[:-1]), seen.position[-1]
-        assert seen.position[before - 1] == records[-2].position[-1]
+        before, after = sum(len(record.levels) for record in records[:-2]), seen.position[-1]
+        assert seen.position[before - 1] == records[-3].position[-1]
         assert after - seen.position[before - 1] == core.status.position - where
         assert core.status.mode == FAULT
         assert core.status.position < -10
@@ -148,23 +149,22 @@ def test_steps_wait_for_the_driver_but_not_for_a_standing_hob(new_core):
 
 
 def test_trip_ends_a_pulse_whole_and_starts_no_other(new_core):
-    """The emergency stop opens at every tick of a pulse in turn."""
-    for delay in range(12):
-        core = new_core(GM_STEP_HIGH_TICKS=6)
+    """More edges than the lag allows, at every tick of a pulse in turn."""
+    for delay in range(1, 13):
+        core = new_core(GM_STEP_HIGH_TICKS=6, GM_MAX_LAG=8)
         core.job(1, 1)
         core.run()
         core.play(0, 50)
-        script, inputs = np.zeros(100, np.int8), np.ones(100, np.uint8)
+        script = np.zeros(100, np.int8)
         script[10:13] = 1
-        inputs[10 + delay :] = 0
-        record = core.play(script, inputs=inputs)
+        script[10 + delay] += 20
+        record = core.play(script)
         step = (record.levels & STEP) != 0
         change = np.diff(step.astype(int), prepend=0, append=0)
         assert set(np.flatnonzero(change == -1) - np.flatnonzero(change == 1)) == {6}
         fault = int(np.argmax(record.mode == FAULT))
-        assert fault == 10 + delay + 3  # the fourth tick in a row
+        assert fault == 10 + delay
         assert not (np.flatnonzero(change == 1) > fault).any()
-        assert (((record.levels & HEALTHY) != 0) == (record.mode != FAULT)).all()
         assert (record.levels & 4).all()  # the motor keeps its torque
 
 
@@ -191,7 +191,8 @@ def test_move_is_a_trapezoid_of_exactly_its_steps(new_core, steps):
     assert rate.max() == pytest.approx(top, rel=0.03)
     at = np.arange(10, 40)
     np.testing.assert_allclose(rate[at], np.sqrt(2 * 8000.0 * (at + 1)), rtol=0.03)
-    np.testing.assert_allclose(rate[-at], np.sqrt(2 * 8000.0 * (at + 1)), rtol=0.08)
+    # at - 1/2 steps before the end, in the middle between two pulses; it brakes with 15/16, 3 % slower
+    np.testing.assert_allclose(rate[-at], np.sqrt(2 * 8000.0 * (at - 0.5)), rtol=0.05)
 
 
 def test_decoder_itself_finds_a_runt_a_late_direction_and_a_wrong_level():

@@ -47,7 +47,7 @@ def test_several_steps_an_edge_are_a_base_and_a_rest():
     job = plan(machine(lines="200"), 3)
     assert Fraction(job.steps_numerator, job.steps_denominator) == Fraction(20, 3)
     assert (job.base_steps, job.increments) == ((6, 0), (2, 0))
-    assert job.highest_rpm == pytest.approx(40000 / (16000 / 3) * 60)
+    assert job.highest_rpm == pytest.approx(40000 / (16000 / 3) * 60 / 1.01)  # the trip, 1 % above, keeps the rate
     assert not job.carried_at_every_speed
 
 
@@ -71,10 +71,44 @@ def test_rates_of_the_field_reference(plewes):
     assert job.step_rate_percent == pytest.approx(800 / 60 * 16000 / 6 / 40000 * 100, rel=1e-14)
 
 
+def test_plan_tells_what_the_acceleration_allows(plewes):
+    """24 teeth at 800 rpm: 8888.9 steps/s at 8000 steps/s^2. By hand: 1.111 s, 720 rpm/s; engaged at speed 4938 steps
+    are missed, which 5819 steps/s more (sqrt(3/7) w) overtake, in 1.111 + 0.727 + 0.970 s."""
+    motion = plan(plewes, 24).motion
+    assert motion.run_up_s == pytest.approx(1.1111, abs=1e-4)
+    assert motion.hob_acceleration_rpm_per_s == pytest.approx(720.0)
+    assert motion.catch_up_s == pytest.approx(2.808, abs=2e-3)
+    assert motion.catch_up_turns == pytest.approx(2.808 * 800 / 60, abs=0.03)
+    assert motion.engage_rpm == 800.0
+    fast = plan(plewes, 6).motion  # 35.6 kHz of 40: 4.4 kHz more overtake 79 000 steps, in 290 turns of the hob
+    assert (fast.catch_up_s, fast.catch_up_turns) == (None, None)
+    assert 300 < fast.engage_rpm < 800
+
+
+def test_hob_that_runs_up_too_fast_is_refused_with_the_nearest_speed(plewes):
+    assert plan(plewes, 24, run_up=1.2).rpm == 800.0
+    with pytest.raises(
+        InputError, match=r"run_up = 0.5 s: .* at least 1.11 s to 800 rpm .* nearest speed .* is 3\d\d rpm"
+    ):
+        plan(plewes, 24, run_up=0.5)  # 4000 steps/s are 360 rpm
+    quick = plewes.model_copy(update={"limits": plewes.limits.model_copy(update={"run_up_s": 0.5})})
+    with pytest.raises(InputError, match=r"limits.run_up_s = 0.5 s"):
+        plan(quick, 24)
+    assert plan(quick, 24, run_up=2.0).rpm == 800.0  # what is asked for counts
+    assert plan(quick, 127).rpm == 800.0
+
+
+def test_resolution_at_the_pitch_circle(plewes):
+    """24 teeth of 32 DP: 19.05 mm; 59.85 mm round, 16000 steps, 24 x 4096 counts."""
+    (blank,) = plan(plewes, 24, hob="32dp").blanks
+    assert blank.step_um == pytest.approx(3.7405, abs=1e-3)
+    assert blank.count_um == pytest.approx(0.6088, abs=1e-3)
+
+
 def test_highest_speed_keeps_both_limits():
     job = plan(machine(step_rate_hz="20000.0"), 10)
-    assert job.rpm == job.highest_rpm == pytest.approx(750.0, rel=1e-14)  # 20 kHz / 1600 steps a hob turn
-    assert job.step_rate_percent == pytest.approx(100.0, rel=1e-14)
+    assert job.rpm == job.highest_rpm == pytest.approx(750.0 / 1.01, rel=1e-14)  # 20 kHz / 1600 steps a hob turn
+    assert job.step_rate_percent == pytest.approx(100.0 / 1.01, rel=1e-14)
     assert plan(machine(), 160).highest_rpm == 800.0
 
 
@@ -119,7 +153,11 @@ def test_blanks_of_the_source_text(plewes):
         (10, {"rpm": 0.0}, ("rpm = 0", "positive")),
         (10, {"rpm": float("nan")}, ("rpm = nan", "positive")),
         (10, {"rpm": 801.0}, ("801", "800.0 rpm", "limits.hob_rpm")),
-        (4, {"rpm": 700.0}, ("700", "600.0 rpm", "limits.step_rate_hz = 40000")),  # 40 kHz / 4000 steps a hob turn
+        (
+            4,
+            {"rpm": 700.0},
+            ("700", "594.1 rpm", "limits.step_rate_hz = 40000"),
+        ),  # 600 rpm trip: 40 kHz / 4000 steps a turn
     ],
 )
 def test_what_cannot_be_met_is_refused_with_the_nearest_choice(plewes, teeth, options, words):

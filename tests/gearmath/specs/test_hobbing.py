@@ -40,7 +40,7 @@ def test_second_bundled_machine_has_the_metric_hobs_of_the_second_example():
     machine = load_hobbing_machine(bundled("hobbing_metric.toml"))
     assert [hob.diametral_pitch for hob in machine.hobs][:8] == [32, 36, 48, 60, 64, 80, 105, 126]
     assert [hob.module for hob in machine.hobs][8:] == [0.5, 1.0, 1.5]
-    assert [(hob.unit, hob.size_thousandths) for hob in machine.hobs[7:9]] == [("inch", 126_000), ("mm", 500)]
+    assert [(hob.unit, hob.size_tenthousandths) for hob in machine.hobs[7:9]] == [("inch", 1_260_000), ("mm", 5000)]
 
 
 @pytest.mark.parametrize(
@@ -53,6 +53,9 @@ def test_second_bundled_machine_has_the_metric_hobs_of_the_second_example():
         ('"ls7184_x4"', '"ls7184_x2"', 2048, 16000),  # MODE pin at 1
         ('"ls7184_x4"', '"hardware"', 4096, 16000),
         ('belt = "2/1"', 'belt = "127/50"', 4096, 20320),  # 800 x 2.54 x 10, exact
+        ("worm = 10", 'worm = "1/3"', 4096, Fraction(1600, 3)),
+        ("lines = 1024", 'lines = 1000\nbelt = "10/9"', Fraction(40_000, 9), 16000),  # 4444.44
+        ("full_steps = 200\nmicrosteps = 4", 'pulses = "131072/10"', 4096, 262_144),  # a servo of 17 bits, geared 1:10
     ],
 )
 def test_drive_trains_of_the_source_text(old, new, counts, steps):
@@ -95,7 +98,10 @@ def test_two_axes_or_a_fine_screw_need_64_bits():
 
 
 BAD = [
-    (PLEWES, "worm = 10", 'worm = "1/3"', ("table", "1600/3", "whole number")),
+    (PLEWES, "worm = 10", 'worm = "999983/999979"', ("table", "1599972800/999979", "1073741824")),
+    (PLEWES, "microsteps = 4", "microsteps = 4\npulses = 1000", ("table", "servo needs pulses")),
+    (PLEWES, "microsteps = 4", "", ("table", "full_steps and microsteps")),
+    (PLEWES, "lines = 1024", 'lines = 9999\nbelt = "1000/997"', ("encoder.lines = 9999", "at most 9970 lines")),
     (PLEWES, "worm = 10", "worm = 10.5", ("table.worm", "10.5", "fraction")),
     (PLEWES, "worm = 10", "worm = true", ("table.worm", "true", "whole number")),
     (PLEWES, "worm = 10", 'worm = "1/0"', ("table.worm", "1/0", "fraction")),
@@ -117,7 +123,7 @@ BAD = [
     (PLEWES, "module = 1.0", "module = nan", ("hobs.9.module", "nan", "finite")),
     (PLEWES, "module = 1.0", "module = 1.0\ndiametral_pitch = 32.0", ("hobs.9", "exactly one")),
     (PLEWES, "module = 1.0", "", ("hobs.9", "exactly one")),
-    (PLEWES, "module = 1.0", "module = 1.0001", ("hobs.9", "1.0001", "three decimals")),
+    (PLEWES, "module = 1.0", "module = 1.00001", ("hobs.9", "1.00001", "four decimals")),
     (PLEWES, "module = 1.0", "module = 1.0\ndiameter = 4.0", ("hobs.9", "diameter = 4", "five modules")),
     (PLEWES, '"2.25m"', '"2.25/P"', ("hobs.9", "2.25/P", "2.25m")),
     (PLEWES, '"2.25m"', '"2m"', ("hobs.9.depth_rule", "2m", "2.157/P")),
@@ -175,3 +181,63 @@ def test_an_opto_coupler_between_transistor_and_motor_leaves_the_pin_active_high
     """The source text writes STEP high, waits, writes it low, through a 2N2222 that pulls the input down."""
     assert not load_hobbing_machine(bundled("hobbing_plewes.toml")).step_active_low
     assert changed(PLEWES, '"open_collector"', '"direct"').step_active_low
+
+
+# --- enable ---------------------------------------------------------------------------------------------------------
+
+
+def _current(output: str, common: str, pin_high: bool) -> bool:
+    """Whether current flows through the opto-coupler of an input: a transistor pulls its - terminal down while the pin
+    is high; a pin itself lights it when high against ground, when low against the supply."""
+    if output == "open_collector":
+        return pin_high
+    return pin_high if common == "ground" else not pin_high
+
+
+@pytest.mark.parametrize("name", ["m542", "dm422", "dm542", "dm556", "cl57t", "hbs86h"])
+@pytest.mark.parametrize(("output", "common"), [("open_collector", "+5 V"), ("direct", "+5 V"), ("direct", "ground")])
+def test_enable_pin_leaves_the_opto_coupler_dark_whatever_the_wiring(name, output, common):
+    """Leadshine: current through ENA switches the motor off; STEP counts when its own coupler is lit."""
+    step = "high" if common == "ground" else "low"
+    text = HELICAL.replace('name = "dm556"', f'name = "{name}"').replace('"open_collector"', f'"{output}"')
+    text = text.replace('step_active = "low"', f'step_active = "{step}"').replace("index = 9", "index = 9\nenable = 12")
+    machine = parse(text, HobbingMachine, "machine.toml")
+    assert not _current(output, common, pin_high=not machine.enable_active_low)
+    assert _current(output, common, pin_high=not machine.step_active_low)
+
+
+def test_logic_inputs_of_the_chips_are_enabled_low():
+    """Data sheets of A4988 (ENABLE), DRV8825 (nENBL), TMC2208 and TMC2209 (ENN): low switches the outputs on."""
+    for name in ("a4988", "drv8825", "tmc2208", "tmc2209"):
+        text = HELICAL.replace('name = "dm556"', f'name = "{name}"').replace('"open_collector"', '"direct"')
+        text = text.replace('step_active = "low"', 'step_active = "high"').replace(
+            "index = 9", "index = 9\nenable = 12"
+        )
+        assert parse(text, HobbingMachine, "machine.toml").enable_active_low, name
+
+
+def test_no_bundled_machine_connects_enable():
+    for name in ("hobbing_plewes.toml", "hobbing_metric.toml", "hobbing_helical.toml", "lathe_example.toml"):
+        assert load_hobbing_machine(bundled(name)).pins.enable is None
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('step_active = "low"', 'step_active = "low"\nenable_active = "low"', ("enable_active =", "off", "dm556")),
+        ('name = "dm556"', 'name = "unsure"', ("pins.enable = 12", "driver.enable_active", "open")),
+        ('name = "dm556"', "step_high_ns = 1\nstep_low_ns = 1\ndir_setup_ns = 1\ndir_hold_ns = 1", ("pins.enable",)),
+    ],
+)  # fmt: skip
+def test_a_setting_that_would_hold_the_motor_off_is_refused(old, new, words):
+    with pytest.raises(InputError) as caught:
+        changed(HELICAL.replace("index = 9", "index = 9\nenable = 12"), old, new)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_unknown_driver_takes_the_level_of_the_file():
+    text = HELICAL.replace('name = "dm556"', 'name = "unsure"').replace("index = 9", "index = 9\nenable = 12")
+    for level, low in (("low", False), ("high", True)):  # a transistor turns the level round
+        machine = changed(text, 'step_active = "low"', f'step_active = "low"\nenable_active = "{level}"')
+        assert machine.enable_active_low == low

@@ -16,7 +16,7 @@ typedef int32_t gm_wide;
 enum { GM_INCH = 0, GM_MM = 1 };
 enum { GM_DEPTH_225_P = 0, GM_DEPTH_2157_P = 1, GM_DEPTH_22_P = 2, GM_DEPTH_225_M = 3 };
 
-/* One hob: unit of its gears, rule for the whole depth of its teeth, 1000 x diametral pitch or 1000 x module [mm]. */
+/* One hob: unit of its gears, rule for the whole depth of its teeth, 10000 x diametral pitch or 10000 x module [mm]. */
 typedef struct {
   uint8_t unit;
   uint8_t depth_rule;
@@ -33,8 +33,11 @@ typedef struct {
 
 /* --- the train */
 #define GM_PROFILE_HOBBING 1 /* the motor turns the work table of a hobbing machine */
-#define GM_ENCODER_COUNTS 4096 /* encoder counts per turn of the hob, after the decoder */
-#define GM_MOTOR_STEPS 16000 /* motor steps per turn of the work table */
+#define GM_ENCODER_COUNTS 4096 /* encoder counts per turn of its shaft, after the decoder */
+#define GM_TURN_COUNTS 4096 /* encoder counts per turn of the hob, numerator */
+#define GM_TURN_COUNTS_DEN 1 /* and denominator */
+#define GM_MOTOR_STEPS 16000 /* motor steps per turn of the work table of a hobbing machine, numerator */
+#define GM_MOTOR_STEPS_DEN 1 /* and denominator */
 #define GM_HOB_STARTS 1 /* starts of the hob */
 #define GM_HOB_LEFT 0 /* 1: left-hand hob */
 #define GM_HYSTERESIS 0 /* counts of play of the hob encoder */
@@ -54,6 +57,7 @@ typedef struct {
 #define GM_MAX_LAG 100 /* steps that may wait */
 #define GM_MAX_EDGE_RATE 54614 /* edges/s at the highest speed of the hob */
 #define GM_MAX_STEP_RATE 40000 /* steps/s while the motor follows, at most */
+#define GM_ACCELERATION 8000 /* steps/s^2 while the motor follows */
 #define GM_MOVE_MAX_RATE 2000 /* steps/s of a jog or an index move */
 #define GM_MOVE_ACCELERATION 8000 /* steps/s^2 of a jog or an index move */
 
@@ -63,6 +67,11 @@ typedef struct {
 #define GM_HAS_FEED 0 /* encoder of the axial feed */
 #define GM_HAS_ENABLE 0 /* enable output of the driver */
 #define GM_HAS_ESTOP 0 /* emergency stop input */
+#define GM_ENCODER_INVERT 0 /* 1: counts go down as the hob turns forward */
+#define GM_INDEX_ACTIVE_LOW 0 /* 1: the index pulse is low */
+#define GM_HAS_ALARM 0 /* alarm input of the driver */
+#define GM_ALARM_ACTIVE_LOW 1 /* 1: the pin is low during an alarm */
+#define GM_HAS_RESET 0 /* reset output to the driver */
 #define GM_HAS_HEALTHY 0 /* fail-safe output */
 
 /* --- pins */
@@ -77,16 +86,16 @@ typedef struct {
 #define GM_PIN_SCL 19 /* display, clock */
 #define GM_HOBS 10
 static const gm_hob gm_hobs[GM_HOBS] = {
-  {GM_INCH, GM_DEPTH_225_P, 32000},
-  {GM_INCH, GM_DEPTH_225_P, 36000},
-  {GM_INCH, GM_DEPTH_225_P, 48000},
-  {GM_INCH, GM_DEPTH_225_P, 60000},
-  {GM_INCH, GM_DEPTH_225_P, 60800},
-  {GM_INCH, GM_DEPTH_225_P, 64000},
-  {GM_INCH, GM_DEPTH_225_P, 80000},
-  {GM_INCH, GM_DEPTH_225_P, 105000},
-  {GM_INCH, GM_DEPTH_225_P, 126000},
-  {GM_MM, GM_DEPTH_225_M, 1000},
+  {GM_INCH, GM_DEPTH_225_P, 320000},
+  {GM_INCH, GM_DEPTH_225_P, 360000},
+  {GM_INCH, GM_DEPTH_225_P, 480000},
+  {GM_INCH, GM_DEPTH_225_P, 600000},
+  {GM_INCH, GM_DEPTH_225_P, 608000},
+  {GM_INCH, GM_DEPTH_225_P, 640000},
+  {GM_INCH, GM_DEPTH_225_P, 800000},
+  {GM_INCH, GM_DEPTH_225_P, 1050000},
+  {GM_INCH, GM_DEPTH_225_P, 1260000},
+  {GM_MM, GM_DEPTH_225_M, 10000},
 };
 
 #endif

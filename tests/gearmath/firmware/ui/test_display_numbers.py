@@ -81,7 +81,7 @@ def test_speeds_and_places_of_the_run(library_of, panel):
         speed, place = page(0, teeth, rate, edges, position, -teeth), page(1, teeth, rate, edges, position, 0)
         assert speed[1] == f"Hob{digits(Fraction(rate * 60, 4096), 1):>13} rpm"
         assert speed[2] == f"Table{digits(Fraction(rate * 60, 4096 * teeth), 2):>11} rpm"
-        assert speed[3] == f"Lag{-teeth:12} step"
+        assert speed[3] == f"In phase: lag{-teeth:7}"
         turns = ("-" if edges < 0 else "") + digits(abs(Fraction(edges, 4096)), 2)
         assert place[1] == f"Hob turns{turns:>11}"
         angle = Fraction(position % 16000, 16000)
