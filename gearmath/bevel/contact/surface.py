@@ -10,14 +10,12 @@ from functools import cache, cached_property
 import casadi as ca
 import numpy as np
 
-from derivations import generation
 from gearmath.bevel.contact.fast import Mapped
 from gearmath.bevel.generation import Generation, Section, solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.newton import FlankPoints
 from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
-from gearmath.lowering import lower
 from gearmath.specs.bevel_set import SIDES, Blank, Member
 
 #: The borders of a flank, in the order of ``Surface.borders``. The root makes no edge: there the fillet begins.
@@ -188,7 +186,7 @@ def _length_of_u(section: Section) -> float:
 
 @cache
 def _family(is_arc: bool) -> Kernel:
-    return lower((generation.arc_generation if is_arc else generation.straight_generation)())
+    return kernel("arc_generation" if is_arc else "straight_generation")
 
 
 def _function(flank: Generation, section: Section, mean: np.ndarray) -> ca.Function:
