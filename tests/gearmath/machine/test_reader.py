@@ -310,11 +310,11 @@ def cutting_texts(gear_set):
     """A face milled program, a face hobbed one on six axes, of a head and its last blocks, and a probing one."""
     hobbed = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
     long = cutting_program(hobbed, "pinion", MACHINE, "CUT", Job(range(14), 2e-2)).splitlines(keepends=True)
-    head = next(k for k, line in enumerate(long) if "STOPRE" in line)
+    head = next(k for k, line in enumerate(long) if " G93 " in line)
     probe = load_calibration(bundled("probe.toml"))
     return [
         cutting_program(gear_set, "pinion", MACHINE, "CUT", Job((0,), 2e-2)),
-        "".join(long[:head] + [line for line in long[-20:] if "ENDIF" not in line]),
+        "".join(long[:head] + long[-20:]),
         probing_program(gear_set, "pinion", MACHINE, probe, "PROBE", topography=()),
     ]
 
