@@ -189,21 +189,22 @@ class Dense:
         (r, slope), (hole, inner) = self.blades(tool)
         return (height > up) & (radius < r + slope * height) & (radius > hole - inner * height)
 
-    def harm(self, rows, first, behind):
-        """The harm done by ``rows`` in the place of the right ones from ``first`` up to ``behind``, or None."""
+    def harm(self, rows, first, behind, machine=True):
+        """The harm done by ``rows`` in the place of the right ones from ``first`` up to ``behind``, or None: to the
+        part alone unless ``machine``."""
         before, after = self.rows[first - 1] if first else None, self.rows[behind : behind + 1]
         chain = [before, *rows, *after] if before else [*rows, *after]
         blocks = [(a, b) for a, b in itertools.pairwise(chain) if a.tool == b.tool]
-        return self.limits(chain, blocks) or self.metal(chain, blocks, first, behind)
+        return (machine and self.limits(chain, blocks)) or self.metal(chain, blocks, first, behind, machine)
 
-    def harm_of(self, line, new):
+    def harm_of(self, line, new, machine=True):
         """The same for lines ``new`` in the place of one, from 1: read on until all in force is right again."""
         words = replace(self.states[line - 1], now=dict(self.states[line - 1].now))
         rows = [row for text in new if (row := words.read(text, line)) is not None]
         for after in range(line, min(line + 12, len(self.lines))):
             if words == self.states[after]:
                 first, behind = np.searchsorted([row.line for row in self.rows], [line, after + 1]).tolist()
-                return self.harm(rows, first, behind) if rows or behind > first else None
+                return self.harm(rows, first, behind, machine) if rows or behind > first else None
             rows += [row] if (row := words.read(self.lines[after], after + 1)) is not None else []
         return self.harm_of_text("\n".join([*self.lines[: line - 1], *new, *self.lines[line:]]))
 
@@ -241,7 +242,7 @@ class Dense:
             last = v, b.seconds
         return None
 
-    def metal(self, chain, blocks, first, behind):
+    def metal(self, chain, blocks, first, behind, machine):
         after = self.rows[max(first - 1, 0) : behind + 1]
         standing = [(row.at, row.rapid) for row in chain] == [(row.at, row.rapid) for row in after]
         new = blocks
@@ -264,7 +265,7 @@ class Dense:
             seen = [self.seen(end - turn, middle) for end in ends]
             way = np.linalg.norm(seen[1] - seen[0])
             plunge = not np.delete(ends[1] - ends[0], 2).any()
-            if b.seconds and way / b.seconds * 60.0 > (FEED if not plunge else max(FEED, PLUNGE)) * 1.1:
+            if machine and b.seconds and way / b.seconds * 60.0 > (FEED if not plunge else max(FEED, PLUNGE)) * 1.1:
                 return "feed"
             if standing:
                 continue
@@ -600,3 +601,44 @@ def test_no_wrong_word_of_a_whole_program_is_left_unseen(case):
     print("; ".join(f"{kind} {count[kind, 'seen']} + {count[kind, 'harmless']}" for kind in kinds))
     assert [(kind, harm) for kind, harm, _ in unseen] == []
     assert sum(count[kind, "seen"] for kind in kinds) > 100
+
+
+def moved(whole, dense, line, new):
+    """How far [mm] the end of a cutting block goes from where it belongs, at the back of the teeth; 0 for others."""
+    right = dense.rows[np.searchsorted([row.line for row in dense.rows], line)]
+    words = replace(dense.states[line - 1], now=dict(dense.states[line - 1].now))
+    wrong = words.read(new[0], line)
+    if right.line != line or right.rapid or wrong is None:
+        return 0.0
+    reach = whole.spec.blank.mean_cone_distance + whole.spec.blank.face_width / 2
+    return float(np.abs((np.array(wrong.at) - right.at) * [1, 1, 1, reach, reach]).max())
+
+
+@pytest.mark.slow
+def test_dense_check_is_not_blind_to_what_mill_sees(case):
+    """Of blocks that are moved by more than twice the tolerance, most gouge or leave metal, whatever the machine says.
+
+    The others slide along the flank, or end where the cutter is out of the metal: in the plunge, and in the 2 degrees
+    by which the roll goes beyond the flank at both ends, a tenth to a quarter of it.
+    """
+    whole, dense = case
+    random = np.random.default_rng(100)
+    changed = [
+        (line, new) for kind, line, new in wrong_digits(whole, 30, 4, random)
+        if kind in ("axis digit", "sign") and moved(whole, dense, line, new) > 2 * TOLERANCE
+    ]  # fmt: skip
+    seen, _ = whole.alone(changed)
+    harm = [dense.harm_of(*changed[mutant], machine=False) is not None for mutant in sorted(seen)]
+    print(f"\n{whole.name} {whole.member}: {len(changed)} moved, {len(seen)} seen, {sum(harm)} of them spoil the part")
+    assert sum(harm) > 0.6 * len(harm) > 20
+
+
+@pytest.mark.slow
+def test_blocks_judged_among_their_neighbors_are_judged_as_in_the_whole_program(case):
+    whole, _ = case
+    random = np.random.default_rng(200)
+    changed = [*wrong_digits(whole, 20, 1, random), *sample_of(others(whole), 7, random)]
+    seen, open_ = whole.alone([(line, new) for _, line, new in changed])
+    told = [mutant for mutant in range(len(changed)) if mutant not in open_]
+    assert len(told) > 15
+    assert [mutant for mutant in told if whole.faults(whole.with_lines(*changed[mutant][1:]))] == sorted(seen)
