@@ -2,9 +2,10 @@
 
 What ``gearmath mill`` says is asked block by block: the real reader and control run a changed block and the next ones
 from the state before it until all in force is as it was, and the checks of ``mill`` see these blocks among their
-neighbors, as a test shows just as in the whole; whatever passes is given to ``mill`` whole if it does harm. What does harm is said by the dense check below, which shares no code with ``mill``: it
-reads the words by itself, moves the cutter by the machine of the witness, and asks in dense steps whether points a
-tolerance under the flanks are cut, and whether points a tolerance above them are left.
+neighbors, as a test shows just as in the whole; whatever passes is given to ``mill`` whole if it does harm. What does
+harm is said by the dense check below, which shares no code with ``mill``: it reads the words by itself, moves the
+cutter by the machine of the witness, and asks in dense steps whether points a tolerance under the flanks are cut, and
+whether points a tolerance above them are left.
 """
 
 from __future__ import annotations
