@@ -632,7 +632,7 @@ def test_dense_check_is_not_blind_to_what_mill_sees(case):
     seen, _ = whole.alone(changed)
     harm = [dense.harm_of(*changed[mutant], machine=False) is not None for mutant in sorted(seen)]
     print(f"\n{whole.name} {whole.member}: {len(changed)} moved, {len(seen)} seen, {sum(harm)} of them spoil the part")
-    assert len(harm) > 40
+    assert len(harm) > (40 if whole.spec.generation == "generated" else 3)  # Formate: two blocks a space cut
     assert sum(harm) > 0.7 * len(harm)
 
 
@@ -662,7 +662,8 @@ def hobbed_path(text, spec, member):
 @pytest.mark.slow
 @pytest.mark.parametrize("member", ["pinion", "gear"])
 def test_what_passes_of_wrong_hobbing_programs_is_the_right_path_within_the_tolerance(member):
-    """Harmless is here: the same positions within 1.5 times the tolerance, or higher in the plunge, no block faster.
+    """Harmless is here: the same positions within 1.5 times the tolerance, and no block faster. In the plunge, at one
+    place of X Y B, Z may stand anywhere above its end: what it takes away too early is taken away later.
 
     No dense check follows the blades of face hobbing one by one; what mill says of the metal is not asked.
     """
@@ -690,7 +691,7 @@ def test_what_passes_of_wrong_hobbing_programs_is_the_right_path_within_the_tole
         off = axes - right
         off[:, 3::2] = (off[:, 3::2] + np.pi) % (2 * np.pi) - np.pi
         plunges = np.append(False, ~np.diff(right[:, :2], axis=0).any(axis=1))
-        off[plunges, 2] = np.minimum(off[plunges, 2], 0.0)
+        off[plunges, 2] = np.minimum(axes[plunges, 2] - right[plunges, 2].min(), 0.0)
         off *= [1, 1, 1, reach, reach, spec.flank("concave").blade_point_radius]
         assert np.nanmax(np.abs(off)) < 1.5 * tolerance, (kind, whole.lines[line - 1], new)
         cuts = times > 0
