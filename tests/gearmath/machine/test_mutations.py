@@ -47,7 +47,7 @@ CASES = [(name, member) for name in SETS for member in ("pinion", "gear")]
 TOLERANCE, RPM, FEED, PLUNGE = 1e-4, 120.0, 300.0, 200.0
 #: Spaces of the programs in CI, and mutants of each of them: blocks, wrong digits in each of them, and everything else.
 SPACES = (0, 1)
-BLOCKS, PER_BLOCK, OTHERS = 85, 30, 40
+BLOCKS, PER_BLOCK, OTHERS = 95, 30, 40
 #: So many blocks behind a wrong one all is as it was, or the whole program must tell.
 REACH = 16
 
@@ -185,11 +185,14 @@ class Dense:
     def inside(self, poses, tool, points, up=0.0):
         """Whether points (p,3) are within the annulus of the blades at poses (m,5): (m,p)."""
         centre, axis = self.witness.vertical_pose(poses, self.height)
-        away = points[None] - centre[:, None]
-        height = -np.einsum("mpk,mk->mp", away, axis)
-        radius = np.sqrt(np.maximum(np.einsum("mpk,mpk->mp", away, away) - height**2, 0.0))
+        height = (centre * axis).sum(axis=1)[:, None] - axis @ points.T
+        found = height > up
+        pose, point = np.nonzero(found)
+        height, away = height[pose, point], points[point] - centre[pose]
+        radius = np.sqrt(np.maximum(np.einsum("nk,nk->n", away, away) - height**2, 0.0))
         (r, slope), (hole, inner) = self.blades(tool)
-        return (height > up) & (radius < r + slope * height) & (radius > hole - inner * height)
+        found[pose, point] = (radius < r + slope * height) & (radius > hole - inner * height)
+        return found
 
     def harm(self, rows, first, behind, machine=True):
         """The harm done by ``rows`` in the place of the right ones from ``first`` up to ``behind``, or None: to the
