@@ -22,6 +22,10 @@ from gearmath.specs.obstacles import CutterHead, Fixture
 
 #: Spacing of the poses along a block. [mm]
 _STEP = 5.0
+#: Rings of points whose places in the cutter are worked out together.
+_TOGETHER = 2000
+#: What the cutter consists of.
+PARTS = ("blades", "head", "spindle")
 #: The same for rapid blocks [mm, rad], how far the blades must stay off the work there [mm], and what is far [mm].
 _RAPID_STEP, _RAPID_TURN, RAPID_CLEARANCE, _FAR = 1.5, 0.01, 3.0, 20.0
 
@@ -41,18 +45,21 @@ def collisions(
     fixture: Fixture | None = None,
 ) -> list[Collision]:  # fmt: skip
     """Every pair that meets on the way, rapid blocks included; poses are tried every 5 mm of a block."""
-    around = {name: rings(profile) for name, profile in work_profiles(member, fixture or machine.fixture).items()}
+    profiles = work_profiles(member, fixture or machine.fixture)
     found: dict[tuple[str, str], tuple[set[int], float]] = {}
     for run in runs:
         # A turns what is the same all around: blocks that differ in A only are one
         blocks = np.hstack([run.axes[:-1], run.axes[1:]])[:, [0, 1, 2, 4, 5, 6, 7, 9]]
         _, first, which = np.unique(np.round(blocks, 6), axis=0, return_index=True, return_inverse=True)
-        for k, row in enumerate(first):
-            meets = _of_block(blocks[row], run.cutter, machine, head or machine.cutter_head, around)
-            for pair, depth in meets.items():
-                lines, deepest = found.get(pair, (set(), 0.0))
-                lines |= set(run.line[1:][which.ravel() == k].tolist())
-                found[pair] = lines, max(depth, deepest)
+        poses, owner = _along(blocks[first])
+        for name, profile in profiles.items():
+            for part, depth in _deepest(run.cutter, head or machine.cutter_head, poses, profile, machine).items():
+                if (name, part) == ("teeth", "blades") or not (depth > 0.0).any():
+                    continue
+                lines, deepest = found.get((part, name), (set(), 0.0))
+                met = np.isin(which.ravel(), owner[depth > 0.0])
+                lines |= set(run.line[1:][met].tolist())
+                found[part, name] = lines, max(float(depth.max()), deepest)
     return [Collision(*pair, tuple(sorted(lines)), depth) for pair, (lines, depth) in sorted(found.items())]
 
 
@@ -97,19 +104,35 @@ def _poses(ends: np.ndarray) -> int:
     return 2 + int(reach / _RAPID_STEP + turn / _RAPID_TURN)
 
 
-def _of_block(
-    block: np.ndarray, cutter: Cutter, machine: MillingMachine, head: CutterHead, around: dict[str, np.ndarray]
-) -> dict[tuple[str, str], float]:
-    """What meets during one block (8,), X Y Z B at its start and end, with its depth [mm]."""
-    first, last = (np.insert(half, 3, 0.0) for half in (block[:4], block[4:]))
-    reach = float(np.abs(last - first)[:3].max())
-    poses = first + np.linspace(0.0, 1.0, 2 + int(reach / _STEP))[:, None] * (last - first)
-    meets = {}
-    for name, ring in around.items():
-        for part, depth in _depths(cutter, head, *_seen(poses, ring, machine)).items():
-            if (name, part) != ("teeth", "blades") and float(depth.max()) > 0.0:
-                meets[part, name] = float(depth.max())
-    return meets
+def _along(blocks: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Poses (p,5) along blocks (n,8), X Y Z B at their starts and ends, no more than a step apart; whose they are."""
+    reach = np.abs(blocks[:, 4:7] - blocks[:, :3]).max(axis=1, initial=0.0)
+    count = 2 + (reach / _STEP).astype(int)
+    owner = np.repeat(np.arange(len(blocks)), count)
+    share = (np.arange(len(owner)) - np.repeat(np.cumsum(count) - count, count)) / (count[owner] - 1)
+    first, last = blocks[owner, :4], blocks[owner, 4:]
+    return np.insert(first + share[:, None] * (last - first), 3, 0.0, axis=1), owner
+
+
+def _deepest(
+    cutter: Cutter, head: CutterHead, poses: np.ndarray, profile: np.ndarray, machine: MillingMachine
+) -> dict[str, np.ndarray]:
+    """How deep a profile (n,2) of the work gets into each part of the cutter at poses (p,5), zero where not. [mm]
+
+    Only rings that come above the plane of the tips can, and they are few: the highest point of one is known.
+    """
+    center, axis = kernel("tool_pose")(poses, machine.pivot_height, machine.pivot)
+    deepest = {part: np.zeros(len(poses)) for part in PARTS}
+    level = np.einsum("pk,pk->p", center, axis)[:, None] - axis[:, 2:] * profile[:, 0]
+    pose, ring = np.nonzero(level + np.hypot(axis[:, 0], axis[:, 1])[:, None] * profile[:, 1] > 0.0)
+    for begin in range(0, len(pose), _TOGETHER):
+        at, points = pose[begin : begin + _TOGETHER], rings(profile[ring[begin : begin + _TOGETHER]])
+        away = points.reshape(len(at), -1, 3) - center[at][:, None]
+        height = -np.einsum("pqk,pk->pq", away, axis[at])
+        radius = np.sqrt(np.maximum(np.einsum("pqk,pqk->pq", away, away) - height**2, 0.0))
+        for part, depth in _depths(cutter, head, height, radius).items():
+            np.maximum.at(deepest[part], at, depth.max(axis=1))
+    return deepest
 
 
 def _seen(poses: np.ndarray, points: np.ndarray, machine: MillingMachine) -> tuple[np.ndarray, np.ndarray]:
