@@ -171,7 +171,7 @@ def close_run(file: FlankFile, teeth: int) -> Closing:
     """Whether work or machine moved during a measurement, and how."""
     closing = _closed(file, teeth)
     slip = find_slip(file, teeth)
-    if slip is None and closing.kind in ("step", "small", "not told"):
+    if slip is None and closing.kind in ("still", "step", "small", "not told"):
         slip = _between_flanks(file, teeth, closing)
     if slip is not None:
         course = (np.arange(len(file)) >= slip.row).astype(float)

@@ -2,11 +2,11 @@
 
 The deviations of a flank are smooth over its points; a slip moves all that are touched after it by the same amount.
 Every place for a step is tried on top of a smooth surface, the cubic one (6.3) and one of fourth degree. A step is
-found where it is beyond its uncertainty and the points are far more likely with it than with a surface of fourth
-degree, any profile along the rows, and one point that missed, so that neither form nor dirt is taken for it. Points of
-tooth 0 that were touched again count too: those touched before the slip have changed at the end by its size more than
-those touched after it. A step between two rows is the same as form along the profile, one inside the first or last row
-the same as a burr: only points touched again tell these.
+found, of a motion along the normals or about the work axis, where it is beyond its uncertainty and the points are far
+more likely with it than with a surface of fourth degree, any profile along the rows, and one point that missed, so that
+neither form nor dirt is taken for it. Points of tooth 0 that were touched again count too: those touched before the
+slip have changed at the end by its size more than those touched after it. A step between two rows is the same as form
+along the profile, one inside the first or last row the same as a burr: only points touched again tell these.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -41,10 +42,10 @@ _AGREES = 0.4
 
 @dataclass(frozen=True)
 class Slip:
-    """A slip by ``size`` [mm], along the normals, before the point in ``row`` of the file was touched.
+    """A slip by ``size`` [mm], along the normals or an arc about the work axis, before a point was touched.
 
-    ``before`` and ``after`` are the last point before it and the first after it: flank, tooth, row and column of the
-    grid. ``uncertainty`` [mm] is the standard uncertainty of the size.
+    ``row`` is that of this point in the file. ``before`` and ``after`` are the last point before the slip and the
+    first after it: flank, tooth, row and column of the grid. ``uncertainty`` [mm] is that of the size, standard.
     """
 
     row: int
@@ -117,22 +118,25 @@ def _on_grid(
     first, again = first[pairs], again[pairs]
     n, m = len(here), len(first)
     change = file.deviation[again] - file.deviation[first]
-    values = np.concatenate([file.deviation[here], change / math.sqrt(2)])  # as sure as one point
+    values = np.concatenate([file.deviation[here], change * math.sqrt(0.5)])  # as sure as one point
     starts = np.arange(_LEAST_SIDE, n - _LEAST_SIDE + 1)
     steps = np.zeros((n + m, len(starts)))
     steps[:n] = np.arange(n)[:, None] >= starts
-    steps[n:] = (first[:, None] < here[starts]) / math.sqrt(2)
+    steps[n:] = first[:, None] < here[starts]
+    weight = np.concatenate([np.ones(n), np.full(m, math.sqrt(0.5))])
 
     cubic, quartic = _surfaces(along, upward)
     by_row = (file.row[here][:, None] == np.unique(file.row[here])).astype(float)
     smooth = _without_step(values, _basis(np.hstack([quartic, by_row]), first))
+    (_, lever) = kernel("flank_turning")(1.0, file.point, file.normal)
     found = None
-    for surface in (cubic, quartic):
-        k, size, u, variance = _likeliest(values, steps, _basis(surface, first))
-        evidence = (n + m) / 2 * math.log(smooth / variance) - math.log(len(starts))
+    for surface, turning in product((cubic, quartic), (np.ones(len(file)), 1 / lever)):
+        shape = weight * turning[np.concatenate([here, first])]
+        k, size, u, variance = _likeliest(values, steps * shape[:, None], _basis(surface, first))
+        evidence = (n + m) / 2 * math.log(smooth / variance) - math.log(2 * len(starts))
         if abs(size) <= max(_LEAST, _SIGNIFICANT * u) or evidence <= _TOLD:
             continue
-        if not _confirmed(change, first < here[starts[k]], file.row[here], starts[k], size, u):
+        if not _confirmed(change / turning[first], first < here[starts[k]], file.row[here], starts[k], size, u):
             continue
         slip = slip_between(file, int(here[starts[k] - 1]), int(here[starts[k]]), size, u)
         found = slip if found is None or slip.uncertainty < found.uncertainty else found

@@ -80,9 +80,10 @@ def test_slip_inside_a_grid_is_found_where_it_happened_with_its_size(part, again
 
 
 @pytest.mark.parametrize("again", [CORNERS, MIDDLE])
-def test_slip_between_the_flanks_of_the_tooth_in_full_is_told_from_one_after_it(part, again):
+@pytest.mark.parametrize("size_um", [20, -100])
+def test_slip_between_the_flanks_of_the_tooth_in_full_is_told_from_one_after_it(part, again, size_um):
     file = part[again]
-    between, after = (close_run(measured(file, noise(file, 4), slip(file, row, 20)), 12) for row in (45, 90))
+    between, after = (close_run(measured(file, noise(file, 4), slip(file, row, size_um)), 12) for row in (45, 90))
     assert between.slip is not None
     assert (between.slip.row, between.slip.before[0], between.slip.after[0]) == (45, "concave", "convex")
     assert after.slip is None
