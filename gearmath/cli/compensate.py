@@ -111,6 +111,7 @@ def compensate(
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured), bar(STAGES + correcting.STAGES, "stage", as_json) as progress:
         evaluation = evaluate_member(file, spec, member, registered, progress, rotated)
+        evaluation.closing.check_topography()
         level = noise_of_points(file, spec, evaluation, noise)
         correction = correct(
             spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
@@ -192,6 +193,7 @@ def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, register
         other = pair.member(mate)
     with about(path):
         judged = evaluate_member(read_flank_csv(path), other, mate, registered)
+        judged.closing.check_topography()
         return moved_to_mate(pair, mate, judged.file, read_flank_csv(measured))
 
 

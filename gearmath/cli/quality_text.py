@@ -52,7 +52,7 @@ def _orders(flanks: dict[str, Any]) -> Iterator[str]:
     rows = [
         [flank, *(f"{row['orders'][name]:+.3f}" for name in _ORDERS)]
         for flank, row in flanks.items()
-        if "orders" in row
+        if row.get("orders")
     ]
     if rows:
         yield "first and second order / um:"

@@ -136,6 +136,7 @@ def uncertain_correction(
 
     name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))
     try:
+        found.closing.check_topography()
         correction = correct(
             member, name, found.file, few=True, noise=noise_of_points(file, member, found, sigma_um),
             indexed=found.closing.withheld is None,

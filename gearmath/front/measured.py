@@ -52,6 +52,7 @@ class Measurement:
         Raises InputError where the measurement does not determine them, ComputationError where no correction helps.
         """
         found = self.evaluate().found
+        found.closing.check_topography()
         free = None if settings in ("few", "standard") else tuple(settings)
         corrected = correct(self.member.spec, self.member.name, found.file, free, few=settings == "few", **options)
         return Correction(self, corrected)

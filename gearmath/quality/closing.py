@@ -4,7 +4,9 @@ What both measurements of tooth 0 differ by is the return value. Where it exceed
 several points of one, the work or the machine has moved: such points are no misses. How it moved in between, the teeth
 tell where they are even enough. A steady drift and a step at some moment are both taken off the reference points, and
 what remains of every flank beyond its mean and first harmonic is compared. A steady drift is taken out evenly. After a
-step, or where neither is told and the pitch depends on it by more than a grade, the pitch is not known.
+step, or where neither is told and the pitch depends on it by more than a grade, the pitch is not known. A step inside
+the tooth that was measured in full, on one of its flanks (module ``slips``) or between them, or beside it, leaves
+neither thickness nor topography; nor does a motion of which it is not told when it was.
 """
 
 from __future__ import annotations
@@ -16,12 +18,15 @@ from typing import Any, Literal
 
 import numpy as np
 
+from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.quality.drift import evenly, measured_twice, moved_by
 from gearmath.quality.pitch import reference_point
 from gearmath.quality.registration import stated_noise
 from gearmath.quality.robust import limit_of, off_the_fit
+from gearmath.quality.slips import Slip, find_slip, slip_between
 from gearmath.quality.tooth_shifts import CONFIRMS, LEAST_BETWEEN_TEETH
+from gearmath.quality.topography import evaluate_topography, teeth_in_full
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile
 
@@ -35,6 +40,11 @@ _FLOOR = 1e-4
 _TOLD = 4.0
 #: F_p that differs by more than this part between courses may be of another grade.
 _ONE_GRADE = math.sqrt(2) - 1
+#: A flank does not feel a motion that changes it by less than this part of what it changes the other.
+_UNFELT = 0.15
+#: A slip between the flanks of a tooth counts from so many standard uncertainties of the width of a space; those are
+#: told by the median of the distances of the others from theirs.
+_BETWEEN, _MAD = 4.0, 1.4826
 #: A point that is farther off than so many return values says nothing of the course.
 _NOT_A_COURSE = 1.5
 
@@ -51,6 +61,7 @@ class Closing:
     deviation. ``arcs`` [mm] are those by which each flank of tooth 0 is turned at the end, right-handed about z_w, with
     the standard ``uncertainty`` [mm] of one. ``teeth`` are those before and after a step. ``of_spaces`` says that the
     spaces themselves do not depend on when it moved: their two flanks were measured one after the other, turned alike.
+    ``slip`` is one inside a tooth that was measured in full; ``beside`` says that a step was beside such a tooth.
     """
 
     kind: Kind
@@ -60,6 +71,8 @@ class Closing:
     uncertainty: float
     teeth: tuple[int, int] | None = None
     of_spaces: bool = True
+    slip: Slip | None = None
+    beside: bool = False
 
     def straightened(self, file: FlankFile) -> FlankFile:
         """The file in which single points that missed are to be looked for: without the motion, where there was one."""
@@ -79,6 +92,8 @@ class Closing:
     @property
     def withheld(self) -> str | None:
         """Why pitch is not known; None where it is."""
+        if self.slip is not None:
+            return f"the work or the machine slipped by {self._size} {self.slip.where}"
         if self.kind == "step":
             return f"the work or the machine slipped by {self._size} while it was measured"
         if self.kind == "not told":
@@ -88,11 +103,33 @@ class Closing:
     @property
     def spaces_withheld(self) -> str | None:
         """Why runout and range of the thickness are not known; None where they are."""
+        if self.topography_withheld is not None:
+            return self.topography_withheld
         return self.withheld if self.kind == "not told" and not self.of_spaces else None
+
+    @property
+    def topography_withheld(self) -> str | None:
+        """Why thickness, topography and corrections are not known; None where they are."""
+        if self.slip is None and self.kind == "step" and self.beside:
+            return f"the work or the machine slipped by {self._size} {self._between}, beside a tooth measured in full"
+        return self.withheld if self.slip is not None or self.kind == "not told" else None
+
+    def check_topography(self) -> None:
+        """Raises InputError where the topography is not known, and so no correction: what to measure again."""
+        why = self.topography_withheld
+        if why is None:
+            return
+        which = ""
+        if self.slip is not None:
+            which = f"; point {self.slip.row + 1} of the file and all after it do not go with those before"
+        raise InputError(f"{why}: no settings can be corrected from it{which}; clamp the work and measure it again")
 
     @property
     def said(self) -> tuple[str, ...]:
         """One sentence on a motion; empty where there was none."""
+        if self.slip is not None:
+            u = self.slip.uncertainty * 1000
+            return (f"{self.withheld}, u {u:.1f} um; pitch, thickness and topography are withheld",)
         if self.kind in ("not measured", "still"):
             return ()
         flanks = " and ".join(f"{arc * 1000:+.1f} um ({flank})" for flank, arc in self.arcs.items())
@@ -110,7 +147,7 @@ class Closing:
 
     @property
     def _size(self) -> str:
-        return f"{self.arc * 1000:.1f} um"
+        return f"{(self.arc if self.slip is None else abs(self.slip.size)) * 1000:.1f} um"
 
     @property
     def _between(self) -> str:
@@ -126,11 +163,66 @@ class Closing:
             "arc_um": {flank: arc * 1000 for flank, arc in self.arcs.items()},
             "u_arc_um": self.uncertainty * 1000 if self.arcs else None,
             "between_teeth": list(self.teeth) if self.teeth else None,
+            "slip": self.slip.as_dict() if self.slip else None,
         }
 
 
 def close_run(file: FlankFile, teeth: int) -> Closing:
     """Whether work or machine moved during a measurement, and how."""
+    closing = _closed(file, teeth)
+    slip = find_slip(file, teeth)
+    if slip is None and closing.kind in ("still", "step", "small", "not told"):
+        slip = _between_flanks(file, teeth, closing)
+    if slip is not None:
+        course = (np.arange(len(file)) >= slip.row).astype(float)
+        taken = moved_by(file, *measured_twice(file, teeth), course) if closing.arcs else np.zeros(len(file))
+        return replace(closing, kind="step", course=course, taken=taken, teeth=None, slip=slip)
+    full = {tooth for flank in FLANKS for tooth in teeth_in_full(file, flank)}
+    before, after = closing.teeth or (-1, -1)
+    return replace(closing, beside=before in full or (after > 0 and after in full))
+
+
+def _between_flanks(file: FlankFile, teeth: int, closing: Closing) -> Slip | None:
+    """A slip between the two flanks of tooth 0: only the first of them has changed at the end, and its space with it.
+
+    A motion that only one flank feels would be by chance along the other. Where the width of space 0 is that of the
+    other spaces, tooth 0 was measured well.
+    """
+    rows = [np.flatnonzero((file.flank == flank) & (file.tooth == 0) & np.isfinite(file.deviation)) for flank in FLANKS]
+    if closing.teeth not in (None, (0, 1)) or set(closing.arcs) != set(FLANKS) or not all(map(len, rows)):
+        return None
+    early, late = (0, 1) if rows[0].max() < rows[1].min() else (1, 0)
+    arc, other = (closing.arcs[FLANKS[each]] for each in (early, late))
+    if rows[early].max() > rows[late].min() or abs(other) > max(closing.uncertainty, _UNFELT * abs(arc)):
+        return None
+    (_, lever) = kernel("flank_turning")(1.0, file.point, file.normal)
+    arcs = [
+        dict(zip(file.tooth[each], (file.deviation * lever)[each], strict=True))
+        for each in _by_flank(file, _references(file, teeth))
+    ]
+    widths = {tooth: arcs[early][tooth] - arcs[late][tooth] for tooth in arcs[0].keys() & arcs[1].keys()}
+    others = np.array([width for tooth, width in widths.items() if tooth])
+    u = closing.uncertainty
+    if 0 in widths and len(others) >= _LEAST_TEETH:
+        middle = float(np.median(others))
+        u = max(u, float(np.median(np.abs(others - middle))) * _MAD)
+        if abs(middle - widths[0] - arc) > abs(arc) / 2:
+            return None
+    if abs(arc) <= _BETWEEN * u or _has_missed(file, FLANKS[early], arc):
+        return None
+    return slip_between(file, int(rows[early].max()), int(rows[late].min()), arc, closing.uncertainty)
+
+
+def _has_missed(file: FlankFile, flank: str, arc: float) -> bool:
+    """Whether the reference point of tooth 0 is off its flank's smooth surface by a quarter of an arc."""
+    if 0 not in teeth_in_full(file, flank):
+        return False
+    residual = evaluate_topography(file, flank, 0).residual[reference_point(file)]
+    return bool(abs(residual) > abs(arc) / 4)
+
+
+def _closed(file: FlankFile, teeth: int) -> Closing:
+    """What tooth 0 measured again tells, by both flanks."""
     course = evenly(file)
     first, again = measured_twice(file, teeth)
     if not len(first):

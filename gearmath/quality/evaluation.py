@@ -43,7 +43,8 @@ class FlankFigures:
 
     ``chart`` is the mean as it is drawn: the flank turned until its reference point has no deviation. Where no tooth
     was measured in full, there are no topographies, and ``mean``, ``chart`` and ``orders`` are None. ``reason`` says
-    why there is no largest deviation although every point of the tooth has a reading.
+    why there is no largest deviation although every point of the tooth has a reading. After a slip there are no
+    ``orders`` either.
     """
 
     topographies: tuple[Topography, ...]
@@ -73,7 +74,7 @@ class FlankFigures:
         A maximum over data with a gap is None, and ``withheld`` says why.
         """
         values: dict[str, Any] = {"teeth_in_full": [each.tooth for each in self.topographies]}
-        if self.orders is not None and self.mean is not None and self.chart is not None:
+        if self.mean is not None and self.chart is not None:
             first = self.topographies[0]
             values |= {
                 "tooth": first.tooth,
@@ -87,7 +88,7 @@ class FlankFigures:
                     "max_deviation_um": (None if self.chart.left_out or self.reason else self.chart.extreme * 1000),
                     "rms_um": self.chart.rms * 1000,
                 },
-                "orders": self.orders.as_dict(),
+                "orders": self.orders.as_dict() if self.orders is not None else None,
             }
         if self.pitch is not None:
             values |= {key: self.pitch.as_dict()[key] for key in ("F_p_um", "max_f_pt_um", "cumulative_um")}
@@ -215,7 +216,10 @@ def evaluate_member(
     each_zeroed = file.header["phase_zeroed"].lower() == "true"
     if each_zeroed:
         remarks += ("no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)",)
-    thickness = None if each_zeroed else evaluate_thickness(at_one_place(judged, member, name), member.teeth)
+    if closing.topography_withheld:
+        remarks += (f"no tooth thickness: {closing.topography_withheld}",)
+    unknown = each_zeroed or closing.topography_withheld
+    thickness = None if unknown else evaluate_thickness(at_one_place(judged, member, name), member.teeth)
     cut = cut_off(file)
     flanks = {flank: _without_maxima(figures, cut, closing) for flank, figures in flanks.items()}
     spaces = cut or closing.spaces_withheld
@@ -232,7 +236,8 @@ def evaluate_member(
 def _without_maxima(figures: FlankFigures, cut: str | None, closing: Closing) -> FlankFigures:
     """The figures of a flank with the reasons why there are no maxima: a file that was cut off, a pitch not known."""
     pitch = figures.pitch and replace(figures.pitch, reason=cut or closing.withheld)
-    return replace(figures, pitch=pitch, reason=cut)
+    moved = closing.topography_withheld
+    return replace(figures, pitch=pitch, reason=cut or moved, orders=None if moved else figures.orders)
 
 
 def _flanks(file: FlankFile, member: Member) -> dict[str, FlankFigures]:
