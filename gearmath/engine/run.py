@@ -33,6 +33,8 @@ FLAGS = ("-std=gnu99", "-O2", "-march=native", "-ffp-contract=off", "-fPIC", "-s
 _ASK = 2e5
 #: Operations from which it is compiled: about a second of virtual machine, which is what compiling takes.
 _COMPILE = 5e7
+#: Operations of a function that does not tell them, such as a map.
+_UNKNOWN = 10_000
 #: Points of one call of the virtual machine: mapped, it copies what they share for each of them.
 _BLOCK = 20_000
 #: Operations of a batch from which it is spread over threads.
@@ -123,6 +125,8 @@ def runner(function: ca.Function, many: tuple[bool, ...]) -> Runner:
 
 def _operations(function: ca.Function) -> int:
     """About how many operations a point takes."""
+    if not function.is_a("SXFunction") and not function.is_a("MXFunction"):
+        return _UNKNOWN
     total = 0
     for k in range(function.n_instructions()):
         called = None

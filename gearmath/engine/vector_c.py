@@ -20,6 +20,8 @@ LANES = 4
 _OPERATIONS = {getattr(ca, name): name[3:].lower() for name in dir(ca) if name.startswith("OP_")}
 _INFIX = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 _COMPARISONS = {"lt": "<", "le": "<=", "eq": "==", "ne": "!="}
+#: Operations of a function that is written as one: more take compilers minutes.
+_LARGEST = 20_000
 #: Functions of the C library, lane by lane; floor, fabs and sqrt are exact, so that they may be anything.
 _LIBRARY = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "fabs", "floor",
             "ceil", "log1p", "expm1")  # fmt: skip
@@ -207,9 +209,12 @@ def _steps(function: ca.Function) -> list[_Step]:
 
 def _expanded(function: ca.Function) -> ca.Function:
     try:
-        return function.expand()
+        expanded = function.expand()
     except RuntimeError as error:  # CasADi's word for an operation that scalars do not have
         raise NoVectorForm(function.name()) from error
+    if expanded.n_instructions() > _LARGEST:
+        raise NoVectorForm(f"{function.name()}: {expanded.n_instructions()} operations")
+    return expanded
 
 
 def _as_one(function: ca.Function) -> list[_Step]:

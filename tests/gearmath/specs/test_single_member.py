@@ -62,7 +62,7 @@ def test_flank_and_tooth_and_program_need_no_mate(alone, command, refused, tmp_p
     sentence = rf"alone\.toml: has no {absent}, only a {name}"
     refused(sentence, "flank", path, "--member", absent, "--flank", "convex", "-o", tmp_path / "g.csv")
     refused(sentence, "tooth", path, "--member", absent, "-o", tmp_path / "g.stl")
-    refused(sentence, "nc", "cut", path, "--member", absent, "-o", tmp_path / "G.MPF")
+    refused(sentence, "nc", "cut", path, "--member", absent, "-o", tmp_path / "GEAR.MPF")
     assert not list(tmp_path.glob("[gG].*"))
 
 
