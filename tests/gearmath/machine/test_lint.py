@@ -113,6 +113,7 @@ def _line_faults(line, modulo):
     code = re.sub(r'"[^"]*"', '""', line)
     if code != code.upper():
         yield "small letters outside of texts"
+    code = re.sub(r"\bU[A-Z]+\b", "R1", code)  # a variable of the user may stand in an expression
     if re.search(r"\+\d+\.\d", re.sub(r"[A-Z0-9\])]\+", "", code)) or re.search(r"[=A-Z(]\+\d", code):
         yield "a plus sign before a number"
     if re.search(r"(?<![0-9])\.\d|\d\.(?!\d)", code):
@@ -121,7 +122,7 @@ def _line_faults(line, modulo):
         yield "an exponent"
     if re.search(r"-0\.0+(?!\d)", code):
         yield "minus zero"
-    if re.search(r"\([^()]*[A-Z]{3,}[^()]*\)", code) and not re.search(r"MSG|WRITE|SETAL|SPCO|IF", code):
+    if re.search(r"\([^()]*[A-Z]{3,}[^()]*\)", code) and not re.search(r"MSG|WRITE|DELETE|SETAL|SPCO|IF", code):
         yield "a comment in parentheses"
     if re.search(r"SUPA|IF|ACC\[", code):
         code = re.sub(r"\[[^]]*\]", "[]", code)
