@@ -115,7 +115,7 @@ def test_wrong_digit_is_named_with_its_line(command, tmp_path, pinion_program):
     status, out, err = command(*milling, pinion_program)
     assert (status, err) == (0, "")
     assert "every block checked on " in out
-    assert out.splitlines()[-1].startswith(f"{pinion_program}: passed: 1 of 12 spaces, nothing collides")
+    assert out.splitlines()[-1].startswith(f"{pinion_program}: passed: 1 of 12 spaces within 0.1 um, nothing collides")
     status, out, err = command(*milling, wrong)
     assert status == 1
     assert err.startswith(f"gearmath: {wrong}: line ")
