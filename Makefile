@@ -62,7 +62,7 @@ golden: $(VENV)/.test
 	git status --short tests/golden
 
 clean:
-	rm -rf build dist gearmath-demo .benchmarks .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
+	rm -rf build dist docs/notebooks docs/mathematics docs/_static/mathjax gearmath-demo .benchmarks .hypothesis .import_linter_cache .mypy_cache .pytest_cache .ruff_cache
 	find derivations gearmath tests notebooks -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/.made:
