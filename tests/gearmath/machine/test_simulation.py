@@ -320,7 +320,7 @@ def test_backlash_stands_until_the_play_is_taken_up_by_hand():
 
 @pytest.mark.parametrize("member", MEMBERS)
 def test_backlash_turns_a_milled_flank_by_half_of_it_against_the_roll(gear_set, program, vertical, member):
-    """A work axis that lags behind by 10 arcsec all through the roll stands off by 10 arcsec."""
+    """A work axis that lags by 10 arcsec all through the roll leaves a deviation of 10 arcsec."""
     path = program(gear_set, member)
     cutting = np.flatnonzero(~path.rapid)
     for tool in range(len(path.tools)):
