@@ -26,7 +26,8 @@ def by_vm() -> Callable[[Kernel], Callable[..., list[np.ndarray]]]:
                 )
                 for a, q, is_many in zip(arrays, kernel.inputs, many, strict=True)
             ]
-            return Runner(kernel.function, many).interpreted(flats, n)
+            found = Runner(kernel.function, many).interpreted(flats, n)
+            return [a if q.shape else a.reshape(n) for a, q in zip(found, kernel.outputs, strict=True)]
 
         return run
 

@@ -9,8 +9,9 @@ import types
 import click
 import pytest
 
+from gearmath import cli
 from gearmath.errors import ComputationError, InputError
-from gearmath.version import __version__, cli
+from gearmath.version import __version__
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
