@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from gearmath.cli import VERBS
+from tests.arrows import arrows_of, circles
 
 ROOT = Path(__file__).parents[2]
 TOP_LEVEL = {
@@ -55,8 +56,14 @@ def test_layers_hold() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def test_no_folder_imports_in_a_circle() -> None:
+    _, arrows, upward = arrows_of()
+    assert not circles(arrows)
+    assert not upward
+
+
 def test_contributing_shows_the_layers_of_the_contract() -> None:
-    (layers,) = (c["layers"] for c in pyproject()["tool"]["importlinter"]["contracts"] if c["type"] == "layers")
+    layers = next(c["layers"] for c in pyproject()["tool"]["importlinter"]["contracts"] if c["type"] == "layers")
     drawn = "\n".join(line.removeprefix("gearmath.").replace(" | gearmath.", " | ") for line in layers)
     text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
     assert drawn in "\n".join(line.strip() for line in text.splitlines())
