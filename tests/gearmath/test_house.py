@@ -19,7 +19,8 @@ from tests.arrows import arrows_of, circles
 ROOT = Path(__file__).parents[2]
 TOP_LEVEL = {
     ".ci", ".editorconfig", ".github", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff",
-    "CONTRIBUTING.md", "LICENSE", "Makefile", "README.md", "derivations", "docs", "gearmath", "notebooks", "pyproject.toml", "tests",
+    "CONTRIBUTING.md", "LICENSE", "Makefile", "README.md", "derivations", "docs", "gearmath", "notebooks",
+    "pyproject.toml", "tests",
 }  # fmt: skip
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 
