@@ -88,8 +88,12 @@ class Store:
             if start.refers_to is not None:
                 self._check(start.refers_to)
             run = self.execute("SELECT coalesce(max(run), 0) + 1 FROM run")[0][0]
-            values = (run, start.control, start.program, now(), start.operator or _operator(), socket.gethostname())
-            self.execute("INSERT INTO run VALUES (?, ?, ?, ?, ?, ?, ?, ?)", *values, __version__, start.refers_to)
+            begun = (now(), start.operator or _operator(), socket.gethostname(), __version__)
+            self.execute(
+                "INSERT INTO run VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
+                run, start.control, start.program, *begun, start.refers_to,
+            )  # fmt: skip
+            self.execute("INSERT INTO session VALUES (?, 1, ?, ?, ?, ?)", run, *begun)
             self._keep_file(run, "program", start.program, start.program_text)
             for name, content in start.files.items():
                 self._keep_file(run, "file", name, content)
@@ -100,10 +104,13 @@ class Store:
         return Run(self, run, start)
 
     def resume_run(self, run: int) -> Run:
-        """A run that is there and not complete. Raises InputError where there is none, or where it is complete."""
+        """A run that is there and not complete, to go on with. Raises InputError where there is none such."""
         found = self.run(run)
-        if found.is_complete:
-            raise InputError(f"{self.path}: run {run} is complete: there is nothing to resume")
+        with self.transaction(f"run {run} cannot be resumed"):
+            if found.is_complete:
+                raise InputError(f"{self.path}: run {run} is complete: there is nothing to resume")
+            values = (now(), _operator(), socket.gethostname(), __version__)
+            self.execute("INSERT INTO session VALUES (?, ?, ?, ?, ?, ?)", run, found.next_number("session"), *values)
         return found
 
     def run(self, run: int) -> Run:
@@ -215,7 +222,11 @@ class Run:
         with self.store.transaction(f"run {self.id}: alarm {alarm.number} cannot be kept"):
             values = (alarm.key, alarm.number, alarm.text, alarm.severity, int(alarm.active), alarm.time)
             self.store.execute(
-                "INSERT INTO alarm VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", self.id, self._next("alarm"), now(), *values
+                "INSERT INTO alarm VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                self.id,
+                self.next_number("alarm"),
+                now(),
+                *values,
             )
 
     def alarms(self) -> list[Alarm]:
@@ -235,13 +246,27 @@ class Run:
                     f"{self.store.path}: run {self.id}: {len(missing)} of {len(self.start.points)} points have no "
                     f"touch, the first is {missing[0]}: it is not complete"
                 )
-            self.store.execute("INSERT INTO ending VALUES (?, ?, ?, ?)", self.id, self._next("ending"), now(), outcome)
+            self.store.execute(
+                "INSERT INTO ending VALUES (?, ?, ?, ?)", self.id, self.next_number("ending"), now(), outcome
+            )
+
+    def add_result(self, kind: str, content: bytes) -> None:
+        """Keep what was made of the run, such as its evaluation; of one kind the last one counts."""
+        with self.store.transaction(f"run {self.id}: the result {kind} cannot be kept"):
+            self.store.execute(
+                "INSERT INTO result VALUES (?, ?, ?, ?, ?, ?)",
+                self.id, self.next_number("result"), now(), __version__, kind, content,
+            )  # fmt: skip
+
+    def results(self) -> dict[str, bytes]:
+        """The last result of each kind."""
+        return dict(self._rows("SELECT kind, content FROM result WHERE run = ? ORDER BY number"))
 
     @property
     def is_complete(self) -> bool:
         return bool(self._rows("SELECT 1 FROM ending WHERE run = ? AND outcome = ?", COMPLETE))
 
-    def _next(self, table: str) -> int:
+    def next_number(self, table: str) -> int:
         """The number of a further row; ``table`` is a name of this module, no input."""
         return self._rows(f"SELECT coalesce(max(number), 0) + 1 FROM {table} WHERE run = ?")[0][0]
 

@@ -42,6 +42,18 @@ _VERSION_1 = (
         PRIMARY KEY (run, number)
     ) STRICT""",
 )
+#: Who went on with a run, and what was made of it.
+_VERSION_2 = (
+    """CREATE TABLE session (
+        run INTEGER NOT NULL REFERENCES run (run), number INTEGER NOT NULL, at TEXT NOT NULL, operator TEXT NOT NULL,
+        host TEXT NOT NULL, gearmath TEXT NOT NULL, PRIMARY KEY (run, number)
+    ) STRICT""",
+    "INSERT INTO session SELECT run, 1, begun, operator, host, gearmath FROM run",
+    """CREATE TABLE result (
+        run INTEGER NOT NULL REFERENCES run (run), number INTEGER NOT NULL, at TEXT NOT NULL, gearmath TEXT NOT NULL,
+        kind TEXT NOT NULL, content BLOB NOT NULL, PRIMARY KEY (run, number)
+    ) STRICT""",
+)
 #: A run that is complete takes no more.
 _CLOSED = """CREATE TRIGGER {table}_of_complete_run BEFORE INSERT ON {table}
     WHEN EXISTS (SELECT 1 FROM ending WHERE run = NEW.run AND outcome = 'complete')
@@ -63,6 +75,7 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
         *_append_only("run", "file", "run_file", "setting", "planned", "touch", "alarm", "ending"),
         *(_CLOSED.format(table=table) for table in ("planned", "touch", "ending")),
     ),
+    (*_VERSION_2, *_append_only("session", "result"), _CLOSED.format(table="session")),
 )
 VERSION = len(MIGRATIONS)
 
