@@ -35,12 +35,11 @@ _PATIENCE = 10.0
 
 
 class Store:
-    """A store that is open. ``Store.open`` opens a file; tests hand in a connection of their own."""
+    """A store that is open, by a connection that :func:`prepare` has set."""
 
     def __init__(self, connection: Any, path: Path) -> None:
         self.connection, self.path = connection, path
         self._one_at_a_time = threading.Lock()
-        prepare(connection, path)
 
     @staticmethod
     def open(path: Path, create: bool = True) -> Store:
@@ -59,7 +58,7 @@ class Store:
         connection = None
         try:
             connection = sqlite3.connect(path, timeout=_PATIENCE, isolation_level=None, check_same_thread=False)
-            store = Store(connection, path)
+            prepare(connection, path)
         except sqlite3.Error as error:
             if connection is not None:
                 connection.close()
@@ -70,7 +69,7 @@ class Store:
             raise
         if is_new:
             _sync_folder(path.parent)
-        return store
+        return Store(connection, path)
 
     def close(self) -> None:
         self.connection.close()
