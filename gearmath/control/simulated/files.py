@@ -64,7 +64,10 @@ class FileMethods:
         await self.refresh()
 
     async def refresh(self) -> None:
-        """A file object for every file."""
+        """A file object for every file, and for no other."""
+        for path in self._objects - set(self.nc.files):
+            self._objects.discard(path)
+            await self.server.delete_nodes([self.server.get_node(node_id(_PREFIX + path, self.index))], recursive=True)
         for path in list(self.nc.files):
             if path not in self._objects:
                 self._objects.add(path)
