@@ -21,6 +21,10 @@ class ConnectionLost(ComputationError):
     """The control does not answer any more: what was asked may or may not have been done."""
 
 
+class NoSession(ConnectionLost):
+    """The control has no session left: those that were lost go after its session time-out."""
+
+
 class ChannelState(StrEnum):
     """What the channel of a control does, in words that no control uses for something else."""
 
@@ -58,11 +62,13 @@ class Alarm:
 
 
 class Handshake(NamedTuple):
-    """The numbers of the handshake: point that the program offers, its run, point that was acknowledged."""
+    """The numbers of the handshake: point that the program offers, its run, point that was acknowledged, and whether
+    the program waits for a host at all."""
 
     offered: int
     number: int
     acknowledged: int
+    waits: bool
 
 
 class Touch(NamedTuple):
@@ -79,7 +85,8 @@ class Touch(NamedTuple):
 
 
 class Control(Protocol):
-    """Data, alarms, files and measuring of one control. Every call raises ConnectionLost where there is no answer."""
+    """Data, alarms, files and measuring of one control. Every call raises ConnectionLost where there is no answer, and
+    ComputationError in one sentence where the control refuses."""
 
     name: str
     """Where it is, for sentences and for the store; holds no password."""
@@ -91,7 +98,7 @@ class Control(Protocol):
         ...
 
     async def read_parameters(self, numbers: Sequence[int]) -> list[float]:
-        """R parameters."""
+        """R parameters by number."""
         ...
 
     async def write_parameters(self, values: Mapping[int, float]) -> None:
@@ -119,6 +126,12 @@ class Control(Protocol):
     async def acknowledge(self, point: int) -> None:
         """Let the program go on to the next point: the only write that releases motion."""
         ...
+
+    async def prepare(self, first: int, last: int) -> None:
+        """Before the operator starts: the program is to make these of its parts (0, 0: all), and to wait for a host."""
+        ...
+
+    async def close(self) -> None: ...
 
 
 @dataclass(frozen=True)
