@@ -35,9 +35,11 @@ class FigureRow:
 
     @property
     def change(self) -> float | None:
-        """From the first run to the last one."""
+        """From the first run to the last one; of the largest deviation, which has a sign, that of its size."""
         first, last = self.values[0], self.values[-1]
-        return None if first is None or last is None else last - first
+        if first is None or last is None:
+            return None
+        return abs(last) - abs(first) if self.name == "max_deviation_um" else last - first
 
 
 @dataclass(frozen=True)

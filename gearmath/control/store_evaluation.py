@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -16,12 +17,14 @@ from gearmath.quality.evaluation import Evaluation, evaluate_member
 from gearmath.quality.touches import measured_member
 from gearmath.specs.bevel_set import BevelSet, Member
 from gearmath.specs.calibration import load_calibration
-from gearmath.specs.flank_csv import FlankFile
+from gearmath.specs.flank_csv import FlankFile, read_flank_csv, write_flank_csv
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.touch_csv import read_touch_csv
 
 #: Names under which a run keeps the files that it needs to be evaluated.
 SET, MACHINE, CALIBRATION = "set.toml", "machine.toml", "calibration.toml"
+#: What is kept of its evaluation.
+MEASURED, FIGURES = "measured.csv", "evaluation.json"
 
 
 @dataclass(frozen=True)
@@ -48,21 +51,34 @@ def evaluate_run(run: Run, progress: Callable[[int], object] = lambda _: None) -
     where = f"{run.store.path}: run {run.id}"
     if run.start.columns[2] != "member":
         raise InputError(f"{where}: touches ring and spheres, not a member: 'gearmath calibrate' reads its touches")
-    missing = missing_points(run)
-    if missing:
-        raise InputError(
-            f"{where}: is not whole: {len(missing)} of {len(first_of(run).start.points)} points have no touch, the "
-            f"first is {missing[0]}"
-        )
+    for whose in dict.fromkeys((run, first_of(run))):
+        missing = run.missing() if whose is run else missing_points(run)
+        if missing:
+            raise InputError(
+                f"{where}: is not whole: {len(missing)} of {len(whose.start.points)} points have no touch, the first "
+                f"is {missing[0]}"
+            )
     with _files(run) as folder, _of_run(where, folder):
         pair = load_pair(folder / SET)
         at = load_milling_machine(folder / MACHINE), load_calibration(folder / CALIBRATION)
         touches = read_touch_csv(folder / "touches.csv")
         name = touches.member
         member = pair.member(name)
-        measured = measured_member(touches, member, name, *at)
+        # as it is written: what is kept is what was evaluated
+        write_flank_csv(folder / MEASURED, measured_member(touches, member, name, *at))
+        measured = read_flank_csv(folder / MEASURED)
         found = evaluate_member(measured, member, name, progress=progress)
     return EvaluatedRun(run, pair, name, measured, found)
+
+
+def keep_results(evaluated: EvaluatedRun) -> None:
+    """Keep the measured flanks and the figures with the run: ``measured.csv`` and ``evaluation.json``."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / MEASURED
+        write_flank_csv(path, evaluated.file)
+        evaluated.run.add_result(MEASURED, path.read_bytes())
+    text = json.dumps(evaluated.found.as_dict(), indent=2)
+    evaluated.run.add_result(FIGURES, f"{text}\n".encode())
 
 
 @contextmanager
