@@ -9,7 +9,7 @@ from typing import Any
 
 from gearmath.cli.common import table
 from gearmath.control.store import Run
-from gearmath.control.store_compare import Comparison, FigureRow
+from gearmath.control.store_compare import COVERAGE, Comparison, FigureRow
 from gearmath.control.store_summary import RunSummary, parts, summary
 
 #: Longer sentences on how a run stands are cut in a table.
@@ -90,10 +90,12 @@ def _compare_lines(found: Comparison) -> Iterator[str]:
     if not found.differs:
         yield "set, machine, probe, program, control and operator are the same"
     yield ""
-    heads = ["flank", "figure / um", *(f"run {each.run.id}" for each in found.runs), "change"]
+    heads = ["flank", "figure / um", *(f"run {each.run.id}" for each in found.runs), "change", "u", ""]
     yield table(heads, [[row.flank, row.name.removesuffix("_um"), *_cells(row)] for row in found.figures])
     yield ""
     first, last = found.runs[0].run.id, found.runs[-1].run.id
+    if any(row.beyond_noise is not None for row in found.figures):
+        yield f"* a change of more than {COVERAGE:g} u; u is the standard uncertainty by the noise of the touches alone"
     for change in found.changes:
         yield (
             f"{change.flank} flank, run {last} less run {first}: rms {change.rms_um:.3f} um, largest "
@@ -108,7 +110,9 @@ def _compare_lines(found: Comparison) -> Iterator[str]:
 
 def _cells(row: FigureRow) -> list[str]:
     values = ["withheld" if value is None else f"{value:+.3f}" for value in row.values]
-    return [*values, "" if row.change is None else f"{row.change:+.3f}"]
+    change, u = row.change, row.change_uncertainty
+    mark = "*" if row.beyond_noise else ""
+    return [*values, "" if change is None else f"{change:+.3f}", "" if u is None else f"{u:.3f}", mark]
 
 
 def resume_values(run: Run) -> dict[str, Any]:

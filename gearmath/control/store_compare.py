@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -13,6 +14,9 @@ import numpy as np
 from gearmath.control.store_evaluation import EvaluatedRun
 from gearmath.control.store_summary import summary
 from gearmath.errors import InputError
+from gearmath.quality.covariance import independent, stated
+from gearmath.quality.figures import figures_of
+from gearmath.quality.uncertainty import uncertain_figures
 from gearmath.specs.bevel_set import FLANKS, design_sha256
 
 #: Both flanks together, where a figure is of the member.
@@ -23,15 +27,23 @@ _OF_FORM = (
     "mean_um", "pressure_angle_deviation_um", "spiral_angle_deviation_um", "profile_crowning_um", "length_crowning_um",
     "twist_um", "residual_um",
 )  # fmt: skip
+#: What the same figure is called in `figures_of`, where it is not the name without its unit.
+_UNCERTAIN = {"arc_deviation_um": "mean_thickness"}
+#: A change of more than so many of its standard uncertainties is not noise; draws for those of maxima.
+COVERAGE, _DRAWS = 2.0, 2000
 
 
 @dataclass(frozen=True)
 class FigureRow:
-    """One figure of all runs [µm]; None where it is withheld or was not measured."""
+    """One figure of all runs and its standard uncertainties by the noise of the touches [µm].
+
+    A value is None where it is withheld or was not measured, an uncertainty also where it is not known.
+    """
 
     flank: str
     name: str
     values: tuple[float | None, ...]
+    uncertainties: tuple[float | None, ...]
 
     @property
     def change(self) -> float | None:
@@ -40,6 +52,25 @@ class FigureRow:
         if first is None or last is None:
             return None
         return abs(last) - abs(first) if self.name == "max_deviation_um" else last - first
+
+    @property
+    def change_uncertainty(self) -> float | None:
+        """Of the change: the touches of two runs err independently of each other."""
+        first, last = self.uncertainties[0], self.uncertainties[-1]
+        return None if first is None or last is None else math.hypot(first, last)
+
+    @property
+    def beyond_noise(self) -> bool | None:
+        """Whether the change is more than noise; None where that is not known."""
+        change, u = self.change, self.change_uncertainty
+        return None if change is None or u is None else abs(change) > COVERAGE * u
+
+    def as_dict(self) -> dict[str, Any]:
+        return {
+            "flank": self.flank, "name": self.name, "values": list(self.values),
+            "uncertainties": list(self.uncertainties), "change": self.change,
+            "u_change": self.change_uncertainty, "beyond_noise": self.beyond_noise,
+        }  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -69,7 +100,7 @@ class Comparison:
             "member": self.runs[0].name,
             "runs": [vars(summary(each.run)) for each in self.runs],
             "differs": list(self.differs),
-            "figures": [vars(row) | {"values": list(row.values), "change": row.change} for row in self.figures],
+            "figures": [row.as_dict() for row in self.figures],
             "changes": [vars(change) for change in self.changes],
             "noise_um": list(self.noise_um),
         }
@@ -84,15 +115,17 @@ def compare(runs: Sequence[EvaluatedRun]) -> Comparison:
                 f"run {other.run.id} is of a {other.name} with {other.member.teeth} teeth, run {first.run.id} of a "
                 f"{first.name} with {first.member.teeth}: they cannot be compared"
             )
-    by_run = [figures_of(each) for each in runs]
+    by_run, sure = [_figures(each) for each in runs], [_uncertainties(each) for each in runs]
     places = list(dict.fromkeys(place for figures in by_run for place in figures))
-    rows = tuple(FigureRow(*place, tuple(figures.get(place) for figures in by_run)) for place in places)
+    rows = tuple(
+        FigureRow(*place, *(tuple(each.get(place) for each in known) for known in (by_run, sure))) for place in places
+    )
     seats = [each.found.registration for each in runs]
     noise = tuple(None if seat is None else seat.as_dict()["noise_um"] for seat in seats)
     return Comparison(tuple(runs), tuple(_differs(runs)), rows, tuple(_changes(first, runs[-1])), noise)
 
 
-def figures_of(run: EvaluatedRun) -> dict[tuple[str, str], float | None]:
+def _figures(run: EvaluatedRun) -> dict[tuple[str, str], float | None]:
     """The figures of a run [µm] by flank and name, as far as they were measured; None where one is withheld."""
     values = run.found.as_dict()
     found: dict[tuple[str, str], float | None] = {}
@@ -105,6 +138,25 @@ def figures_of(run: EvaluatedRun) -> dict[tuple[str, str], float | None]:
     if values["thickness"] is not None:
         found[BOTH, "arc_deviation_um"] = values["thickness"]["arc_deviation_um"]
     return found
+
+
+def _uncertainties(run: EvaluatedRun) -> dict[tuple[str, str], float]:
+    """Standard uncertainties [µm] of the figures, from repeated touches, or else the noise that the clamping leaves.
+
+    Empty where neither tells it.
+    """
+    covariance, seat = stated(run.file), run.found.registration
+    if covariance is None:
+        if seat is None or not seat.noise > 0.0:
+            return {}
+        covariance = independent(np.full(len(run.file), seat.noise))
+    found = uncertain_figures(figures_of(run.file, run.member, run.found), covariance, _DRAWS)
+    by_name = {(one.figure.flank, one.figure.name): one.uncertainty * 1000 for one in found}
+    return {
+        (flank, name): by_name[flank, short]
+        for flank, name in _figures(run)
+        if (flank, short := _UNCERTAIN.get(name, name.removesuffix("_um"))) in by_name
+    }
 
 
 def _changes(first: EvaluatedRun, last: EvaluatedRun) -> Iterator[Change]:

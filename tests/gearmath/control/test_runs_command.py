@@ -28,6 +28,8 @@ SET = "nasa_tp3096_12x36.toml"
 TURNED = 0.01
 #: How much higher the probe stands at the points that are probed again [mm].
 RAISED = 0.004
+#: By what teeth 4 to 8 are turned in the last run [degrees]: 9.5 µm on the circle of 27.1 mm through the mean point.
+INDEXED = 0.02
 Command = Callable[..., tuple[int, str, str]]
 Refused = Callable[..., None]
 
@@ -44,7 +46,7 @@ def raw(gear_set: BevelSet, vertical: MillingMachine, shop: SimulatedMachine) ->
 @pytest.fixture(scope="module")
 def template(raw: tuple[str, str], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Run 1: whole. Run 2: the same touches with A turned on, by another operator and on another machine file. Run 3:
-    the first 70, then an alarm. Run 4: points 3 and 5 of run 1 probed again, RAISED."""
+    the first 70, then an alarm. Run 4: points 3 and 5 of run 1 probed again, RAISED. Run 5: teeth 4 to 8 INDEXED."""
     program, text = raw
     columns, *rows = csv.reader(line for line in text.splitlines() if not line.startswith("#"))
     places = {int(row[1]): tuple(row[2:7]) for row in rows}
@@ -60,7 +62,10 @@ def template(raw: tuple[str, str], tmp_path_factory: pytest.TempPathFactory) -> 
         second = store.begin_run(replace(start, operator="Bob", files=other))
         third = store.begin_run(start)
         fourth = store.begin_run(replace(start, points={k: places[k] for k in (3, 5)}, refers_to=first.id))
+        fifth = store.begin_run(start)
         for point, touch in touches.items():
+            turned = INDEXED if 4 <= int(places[point][2]) <= 8 else 0.0
+            fifth.commit_touch(point, touch._replace(A=touch.A + turned))
             first.commit_touch(point, touch)
             second.commit_touch(point, touch._replace(A=touch.A + TURNED))
             if point <= 70:
@@ -69,7 +74,7 @@ def template(raw: tuple[str, str], tmp_path_factory: pytest.TempPathFactory) -> 
                 fourth.commit_touch(point, touch._replace(Z=touch.Z + RAISED))
         third.add_alarm(Alarm("65001#1", "65001", "point 71: touched nothing", 1000, True))
         third.finish("alarm 65001: point 71: touched nothing")
-        for run in (first, second, fourth):
+        for run in (first, second, fourth, fifth):
             run.finish("complete")
         store.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     return path
@@ -86,14 +91,14 @@ def test_list_says_how_every_run_stands(path: Path, command: Command) -> None:
     status, out, _ = command("runs", "list", "--store", path)
     lines = [re.split(r"\s{2,}", line.strip()) for line in out.splitlines()]
     assert status == 0
-    assert [line[0] for line in lines[1:]] == ["1", "2", "3", "4"]
-    assert [line[5] for line in lines] == ["touches", "122/122", "122/122", "70/122", "2/2"]
+    assert [line[0] for line in lines[1:]] == ["1", "2", "3", "4", "5"]
+    assert [line[5] for line in lines] == ["touches", "122/122", "122/122", "70/122", "2/2", "122/122"]
     assert lines[3][-1] == "alarm 65001: point 71: touched nothing"
     _, out, _ = command("runs", "list", "--store", path, "--json")
     found = json.loads(out)
     assert [each["state"] for each in found[:2]] == ["complete", "complete"]
-    assert [each["refers_to"] for each in found] == [None, None, None, 1]
-    assert [each["alarms"] for each in found] == [0, 0, 1, 0]
+    assert [each["refers_to"] for each in found] == [None, None, None, 1, None]
+    assert [each["alarms"] for each in found] == [0, 0, 1, 0, 0]
 
 
 def test_show_says_what_a_run_was_begun_with_and_what_it_lacks(path: Path, command: Command) -> None:
@@ -157,6 +162,25 @@ def test_compare_finds_the_turn_of_the_work_and_what_was_not_the_same(path: Path
         assert change["rms_um"] < 0.01
     _, text, _ = command("runs", "compare", 1, 2, "--store", path)
     assert "not the same: runs 1 and 2: operator Ann, then Bob" in text
+
+
+def test_compare_tells_a_change_of_pitch_from_noise(path: Path, command: Command) -> None:
+    """Five teeth indexed by 9.5 µm: pitch changes on both flanks, and where tooth 0 lies from the mean of all teeth.
+
+    Neither its form does, nor the thickness, nor the runout.
+    """
+    _, out, _ = command("runs", "compare", 1, 5, "--store", path, "--json")
+    rows = {(row["flank"], row["name"]): row for row in json.loads(out)["figures"]}
+    changed = {place for place, row in rows.items() if row["beyond_noise"]}
+    assert changed == {
+        (flank, name)
+        for flank in ("concave", "convex")
+        for name in ("F_p_um", "max_f_pt_um", "mean_um", "max_deviation_um")
+    }
+    for flank in ("concave", "convex"):
+        assert rows[flank, "max_f_pt_um"]["values"][1] == pytest.approx(9.5, abs=3 * 0.7)  # noise of a touch 0.7 um
+    _, text, _ = command("runs", "compare", 1, 5, "--store", path)
+    assert sum(line.endswith("*") for line in text.splitlines()) == len(changed)
 
 
 def test_compare_shows_where_two_touches_changed(path: Path, tmp_path: Path, command: Command) -> None:
@@ -233,9 +257,9 @@ def test_resume_says_where_the_program_goes_on(
 
 def test_chosen_points_are_probed_again_in_one_start_a_stretch(path: Path, command: Command) -> None:
     _, out, _ = command("runs", "resume", 1, "--again", "17-20, 3", "--store", path)
-    assert "run 5: begun, to probe 5 points of run 1 again" in out
+    assert "run 6: begun, to probe 5 points of run 1 again" in out
     assert re.findall(r"R90=(\d+) R91=(\d+)", out) == [("3", "3"), ("17", "20")]
-    _, out, _ = command("runs", "show", 5, "--store", path, "--json")
+    _, out, _ = command("runs", "show", 6, "--store", path, "--json")
     assert (json.loads(out)["refers_to"], json.loads(out)["missing"]) == (1, [3, 17, 18, 19, 20])
 
 
@@ -243,7 +267,7 @@ def test_chosen_points_are_probed_again_in_one_start_a_stretch(path: Path, comma
     ("arguments", "sentence"),
     [
         (("list", "--store", "none.db"), r"none\.db: there is no such measurement store"),
-        (("show", 9), r"runs\.db: there is no run 9: it has 1 to 4"),
+        (("show", 9), r"runs\.db: there is no run 9: it has 1 to 5"),
         (("compare", 1), "runs 1: must be two different runs, or more"),
         (("compare", 1, 1), "must be two different runs"),
         (("compare", 1, 3), r"run 3: is not whole: 52 of 122 points have no touch, the first is 71"),
