@@ -144,8 +144,11 @@ class Store:
         )
 
     def execute(self, sql: str, *values: Any) -> list[tuple]:
-        """Run one statement with its values and give all rows."""
-        return self.connection.execute(sql, values).fetchall()
+        """Run one statement with its values and give all rows. Raises ComputationError where SQLite refuses."""
+        try:
+            return self.connection.execute(sql, values).fetchall()
+        except sqlite3.Error as error:
+            raise ComputationError(f"{self.path}: {error}") from error
 
     @contextmanager
     def transaction(self, failed: str) -> Iterator[None]:
@@ -158,8 +161,8 @@ class Store:
             except BaseException as error:
                 if self.connection.in_transaction:
                     self.execute("ROLLBACK")
-                if isinstance(error, sqlite3.Error):
-                    raise ComputationError(f"{self.path}: {failed}: {error}") from error
+                if isinstance(error.__cause__, sqlite3.Error):
+                    raise ComputationError(f"{self.path}: {failed}: {error.__cause__}") from error
                 raise
 
     def _check(self, run: int) -> None:
