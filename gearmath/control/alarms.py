@@ -11,9 +11,10 @@ from asyncua import Client, ua
 from gearmath.control import sinumerik
 from gearmath.control.interface import Alarm
 from gearmath.control.refusals import asked
+from gearmath.control.ua_words import node_id
 
-_REFRESHED = ua.NodeId(ua.ObjectIds.RefreshEndEventType)
-_BRACKETS = (ua.NodeId(ua.ObjectIds.RefreshStartEventType), _REFRESHED)
+_REFRESHED = node_id(ua.ObjectIds.RefreshEndEventType)
+_BRACKETS = (node_id(ua.ObjectIds.RefreshStartEventType), _REFRESHED)
 #: How long the end of a refresh is waited for: not every server sends it to every listener. [s]
 _REFRESH = 1.0
 #: More alarms than this are not kept: a control that repeats itself must not fill the memory.
@@ -32,7 +33,7 @@ class Alarms:
         """Listen to the object ``Sinumerik``, and to Server where there is no such object; ask for what is active."""
         found = Alarms()
         with asked(name, "subscribing to alarms", sinumerik.READ_ALARMS):
-            source = client.get_node(ua.NodeId(sinumerik.ROOT.text, index))
+            source = client.get_node(node_id(sinumerik.ROOT.text, index))
             try:
                 await source.read_browse_name()
             except ua.UaStatusCodeError:
@@ -41,7 +42,7 @@ class Alarms:
             await subscription.subscribe_events(source, evfilter=_filter())
             with suppress(ua.UaStatusCodeError):  # a server that cannot refresh tells of later changes only
                 await client.get_node(ua.ObjectIds.ConditionType).call_method(
-                    ua.NodeId(ua.ObjectIds.ConditionType_ConditionRefresh),
+                    node_id(ua.ObjectIds.ConditionType_ConditionRefresh),
                     ua.Variant(subscription.subscription_id, ua.VariantType.UInt32),
                 )
                 with suppress(asyncio.TimeoutError):
@@ -88,12 +89,14 @@ def _filter() -> ua.EventFilter:
     for kind, names in fields:
         for name in names:
             operand = ua.SimpleAttributeOperand(
-                TypeDefinitionId=ua.NodeId(kind), BrowsePath=[ua.QualifiedName(name, 0)], AttributeId=ua.AttributeIds.Value
+                TypeDefinitionId=node_id(kind),
+                BrowsePath=[ua.QualifiedName(name, 0)],
+                AttributeId=ua.AttributeIds.Value,
             )
             chosen.SelectClauses.append(operand)
     chosen.SelectClauses.append(
         ua.SimpleAttributeOperand(
-            TypeDefinitionId=ua.NodeId(ua.ObjectIds.ConditionType), BrowsePath=[], AttributeId=ua.AttributeIds.NodeId
+            TypeDefinitionId=node_id(ua.ObjectIds.ConditionType), BrowsePath=[], AttributeId=ua.AttributeIds.NodeId
         )
     )
     return chosen

@@ -17,8 +17,8 @@ def control_name(name: str) -> str:
     upper = name.upper() if name.isascii() else name
     if _ON_CONTROL.fullmatch(upper) is None or _DEVICES.match(upper) is not None:
         raise InputError(
-            f"file name {shown(name)}: must be like PROBE.MPF: 1 to 24 of A-Z, 0-9 and _, beginning with two letters or "
-            "with _ and a letter, then .MPF or .SPF, and no folder"
+            f"file name {shown(name)}: must be like PROBE.MPF: 1 to 24 of A-Z, 0-9 and _, two letters first, or _ "
+            "and a letter, then .MPF or .SPF, and no folder"
         )
     return upper
 

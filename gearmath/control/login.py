@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from asyncua import Client, ua
 from asyncua.common.utils import ServiceError
@@ -17,7 +18,7 @@ from gearmath.specs.control_connection import ControlConnection
 
 #: What certificates for this client must name as their URI.
 APPLICATION_URI = "urn:gearmath:control-client"
-_POLICIES = {
+_POLICIES: dict[str, Any] = {
     "Basic256Sha256": security_policies.SecurityPolicyBasic256Sha256,
     "Basic256": security_policies.SecurityPolicyBasic256,
     "Basic128Rsa15": security_policies.SecurityPolicyBasic128Rsa15,
@@ -71,8 +72,8 @@ async def _secure(client: Client, connection: ControlConnection) -> None:
         return
     if not connection.server_certificate or not Path(connection.server_certificate).is_file():
         raise InputError(
-            f"{connection.name}: server_certificate = {connection.server_certificate!r}: there is no such file; store the "
-            "control's certificate once with 'gearmath control trust' and compare its fingerprint"
+            f"{connection.name}: server_certificate = {connection.server_certificate!r}: there is no such file; store "
+            "the control's certificate once with 'gearmath control trust' and compare its fingerprint"
         )
     try:
         await client.set_security(
@@ -81,7 +82,7 @@ async def _secure(client: Client, connection: ControlConnection) -> None:
         )  # fmt: skip
         if not connection.user:
             await client.load_client_certificate(connection.certificate)
-            await client.load_private_key(connection.key)
+            await client.load_private_key(Path(connection.key))
     except ValueError as error:
         raise InputError(f"{connection.name}: certificate or key cannot be read: {error}") from error
 

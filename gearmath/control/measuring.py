@@ -25,7 +25,7 @@ class Patience:
     """Times [s]: between looks at the handshake, and at channel and alarms; between attempts to connect, growing; until
     it is given up; until the numbers of a run that has just begun are all its own."""
 
-    look: float = 0.01
+    look: float = 0.005
     state: float = 0.5
     first_retry: float = 0.1
     last_retry: float = 5.0
@@ -69,17 +69,20 @@ class Measuring:
             self._run.finish(str(error))
             kept = len(self._run.start.points) - len(self._missing)
             raise ComputationError(
-                f"{error}; {kept} of {len(self._run.start.points)} touches are kept in run {self._run.id}: go on with --resume "
-                f"{self._run.id}"
+                f"{error}; {kept} of {len(self._run.start.points)} touches are kept in run {self._run.id}: "
+                f"go on with --resume {self._run.id}"
             ) from error
         self._run.finish("complete")
 
     async def _whole(self, parts: tuple[int, int]) -> None:
         control = await self._connect()
         try:
-            await self._prepare(control, parts)
+            ready = False
             while True:
                 try:
+                    if not ready:
+                        await self._prepare(control, parts)
+                        ready = True
                     await self._follow(control)
                     return
                 except ConnectionLost as error:
@@ -117,11 +120,17 @@ class Measuring:
             self._alarms[alarm.key] = alarm
         handshake = await control.handshake()
         if status.channel is ChannelState.RESET:
-            await control.prepare(*parts)
             self._baseline = handshake.number
-            self._say(f"{control.name}: ready for {start.program}, {len(self._missing)} touches: start it on the control")
+            await control.prepare(*parts)
+            self._say(
+                f"{control.name}: ready for {start.program}, {len(self._missing)} touches: start it on the control"
+            )
+        elif self._baseline is not None:
+            pass  # started while the connection was lost
         elif not self._resumed(handshake):
-            raise _Stopped(f"{control.name}: the channel is {status.channel}: measuring begins before the program is started")
+            raise _Stopped(
+                f"{control.name}: the channel is {status.channel}: measuring begins before the program is started"
+            )
         else:
             self._number = handshake.number
 

@@ -1,4 +1,4 @@
-"""A SINUMERIK over OPC UA: R parameters, positions, alarms and the handshake of :class:`~gearmath.control.interface.Control`."""
+"""A SINUMERIK over OPC UA: R parameters, positions, alarms, files, handshake."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from asyncua.common.subscription import Subscription
 from gearmath.control import sinumerik
 from gearmath.control.alarms import Alarms
 from gearmath.control.file_names import shown
-from gearmath.control.interface import AXES, Alarm, ChannelState, ConnectionLost, Handshake, Status, Touch
+from gearmath.control.interface import Alarm, ChannelState, ConnectionLost, Handshake, Status, Touch
 from gearmath.control.login import log_in
 from gearmath.control.refusals import asked, code_name
-from gearmath.control.sinumerik import Confirmed
 from gearmath.control.transfer import Transfer
+from gearmath.control.ua_words import node_id
 from gearmath.errors import ComputationError, InputError
 from gearmath.specs.control_connection import ControlConnection
 
@@ -62,7 +62,8 @@ class OpcUaControl:
                 names = await client.get_namespace_array()
                 if sinumerik.NAMESPACE.text not in names:
                     raise ComputationError(
-                        f"{connection.name}: {connection.url} is no SINUMERIK: it has no namespace {sinumerik.NAMESPACE.text}"
+                        f"{connection.name}: {connection.url} is no SINUMERIK: "
+                        f"it has no namespace {sinumerik.NAMESPACE.text}"
                     )
                 index = names.index(sinumerik.NAMESPACE.text)
             control = OpcUaControl(connection, client, index, frozenset())
@@ -85,8 +86,8 @@ class OpcUaControl:
         if not {right.upper(), every.upper()} & {one.upper() for one in self.rights}:
             held = ", ".join(sorted(self.rights)) or "none"
             raise ComputationError(
-                f"{self.name}: user {self._connection.user or 'of the certificate'!r} lacks the right {right}, which the "
-                f"control's administrator gives; it has {held}"
+                f"{self.name}: user {self._connection.user or 'of the certificate'!r} lacks the right {right}, which "
+                f"the control's administrator gives; it has {held}"
             )
 
     # data
@@ -138,12 +139,11 @@ class OpcUaControl:
 
         names = self._position_names()
         milliseconds = next((one for one in sinumerik.INTERVALS_MS if one >= 1000 * interval - 1e-6), 5000)
+        rate: Any = float(milliseconds)
         with asked(self.name, "subscribing to positions", sinumerik.READ_STATE):
             subscription = await self._client.create_subscription(milliseconds, Handler())
             self._subscriptions.append(subscription)
-            await subscription.subscribe_data_change(
-                [self._node(name) for name in names], sampling_interval=float(milliseconds)
-            )
+            await subscription.subscribe_data_change([self._node(name) for name in names], sampling_interval=rate)
         try:
             due = time.monotonic()
             while True:
@@ -169,9 +169,13 @@ class OpcUaControl:
         """Write a program; not the selected one, and none while the channel is active."""
         status = await self.status()
         if status.channel is not ChannelState.RESET:
-            raise ComputationError(f"{self.name}: {name} is not written: the channel is {status.channel}, must be reset")
+            raise ComputationError(
+                f"{self.name}: {name} is not written: the channel is {status.channel}, must be reset"
+            )
         if status.selected == name.upper():
-            raise ComputationError(f"{self.name}: {name} is not written: it is the selected program, select another first")
+            raise ComputationError(
+                f"{self.name}: {name} is not written: it is the selected program, select another first"
+            )
         await self._transfer.put(name, content, replace)
 
     async def get(self, name: str) -> bytes:
@@ -181,7 +185,7 @@ class OpcUaControl:
     # the handshake
 
     async def handshake(self) -> Handshake:
-        """Point offered, run, point acknowledged, whether the program waits: one value, so that they belong together."""
+        """Point offered, run, point acknowledged, whether the program waits, read as one value."""
         offered, run, acknowledged, waits = await self.read_parameters(range(_OFFERED, _WAITS + 1))
         return Handshake(round(offered), round(run), round(acknowledged), waits == 1.0)
 
@@ -202,7 +206,7 @@ class OpcUaControl:
     # nodes
 
     def _node(self, name: str) -> Node:
-        return self._client.get_node(ua.NodeId(name, self._index))
+        return self._client.get_node(node_id(name, self._index))
 
     def _position_names(self) -> list[str]:
         return [sinumerik.POSITION(axis=axis) for axis in self._connection.axes]
@@ -219,7 +223,7 @@ class OpcUaControl:
         for part in _parts(names, self._read_limit):
             with asked(self.name, f"reading {part[0]}", sinumerik.READ_STATE):
                 found = await self._client.uaclient.session.read_attributes(
-                    [ua.NodeId(name, self._index) for name in part], ua.AttributeIds.Value
+                    [node_id(name, self._index) for name in part], ua.AttributeIds.Value
                 )
             for name, one in zip(part, found, strict=True):
                 self._check(name, one.StatusCode, sinumerik.READ_STATE)
@@ -231,7 +235,7 @@ class OpcUaControl:
             names = [self._parameters(number, 1) for number, _ in part]
             with asked(self.name, f"writing R{part[0][0]}", sinumerik.WRITE_STATE):
                 codes = await self._client.uaclient.session.write_attributes(
-                    [ua.NodeId(name, self._index) for name in names],
+                    [node_id(name, self._index) for name in names],
                     [ua.DataValue(ua.Variant(float(value), ua.VariantType.Double)) for _, value in part],
                     ua.AttributeIds.Value,
                 )
@@ -239,7 +243,7 @@ class OpcUaControl:
                 self._check(name, code, sinumerik.WRITE_STATE)
 
     def _check(self, name: str, code: ua.StatusCode | None, right: str) -> None:
-        if code is None or code.is_good():
+        if code is None or _good(code):
             return
         if code.value == ua.StatusCodes.BadUserAccessDenied:
             raise ComputationError(f"{self.name}: {name} is refused: the user lacks the right {right}")
@@ -269,13 +273,17 @@ class OpcUaControl:
         limits = ua.ObjectIds
         with asked(self.name, "reading the limits of the server"):
             found = await self._client.uaclient.session.read_attributes(
-                [ua.NodeId(limits.Server_ServerCapabilities_OperationLimits_MaxNodesPerRead),
-                 ua.NodeId(limits.Server_ServerCapabilities_OperationLimits_MaxNodesPerWrite)],
+                [node_id(limits.Server_ServerCapabilities_OperationLimits_MaxNodesPerRead),
+                 node_id(limits.Server_ServerCapabilities_OperationLimits_MaxNodesPerWrite)],
                 ua.AttributeIds.Value,
             )  # fmt: skip
         self._read_limit, self._write_limit = (
-            int(one.Value.Value or 0) if one.Value is not None and one.StatusCode.is_good() else 0 for one in found
+            int(one.Value.Value or 0) if one.Value is not None and _good(one.StatusCode) else 0 for one in found
         )
+
+
+def _good(code: ua.StatusCode | None) -> bool:
+    return code is None or code.is_good()
 
 
 def _parts(items: Sequence[Any], limit: int) -> list[Any]:

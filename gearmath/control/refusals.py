@@ -10,6 +10,7 @@ from asyncua import ua
 from asyncua.common.utils import ServiceError
 
 from gearmath.control.interface import ConnectionLost, NoSession
+from gearmath.control.ua_words import status
 from gearmath.errors import ComputationError
 
 _CODES = ua.StatusCodes
@@ -44,7 +45,7 @@ def asked(name: str, what: str, right: str = "") -> Iterator[None]:
         yield
     except (ua.UaStatusCodeError, ServiceError) as error:
         raise refusal(name, what, int(error.code), right) from error
-    except (OSError, asyncio.TimeoutError, asyncio.IncompleteReadError, EOFError) as error:
+    except (TimeoutError, OSError, asyncio.IncompleteReadError, EOFError) as error:
         raise ConnectionLost(f"{name}: no answer ({what})") from error
     except asyncio.CancelledError:
         current = asyncio.current_task()
@@ -76,7 +77,7 @@ def code_name(code: int) -> str:
         _CODES.BadEntryExists: ": there is such a file already",
         _CODES.BadNotWritable: ": it is in use",
     }.get(code, "")  # type: ignore[call-overload]
-    return f"{ua.StatusCode(code).name}{hint}"  # type: ignore[arg-type]
+    return f"{status(code).name}{hint}"
 
 
 def login_refusal(name: str, code: int, user: str, certificate: str, security: str) -> ComputationError:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from datetime import datetime
 
+from gearmath.control.run_start import MACHINE
 from gearmath.control.store_compare import BOTH, compare
-from gearmath.control.store_evaluation import MACHINE, EvaluatedRun
+from gearmath.control.store_evaluation import EvaluatedRun
 from gearmath.control.store_summary import summary
 from gearmath.exchange.dfq import Characteristic, Measured, Part, dfq
 from gearmath.quality.tolerance import gear_data, iso17485

@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from gearmath.bevel.pair import load_pair
+from gearmath.control.run_start import CALIBRATION, MACHINE, SET
 from gearmath.control.store import Run
 from gearmath.control.store_touches import first_of, missing_points, touch_csv
 from gearmath.errors import InputError
@@ -21,8 +22,6 @@ from gearmath.specs.flank_csv import FlankFile, read_flank_csv, write_flank_csv
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.touch_csv import read_touch_csv
 
-#: Names under which a run keeps the files that it needs to be evaluated.
-SET, MACHINE, CALIBRATION = "set.toml", "machine.toml", "calibration.toml"
 #: What is kept of its evaluation.
 MEASURED, FIGURES = "measured.csv", "evaluation.json"
 

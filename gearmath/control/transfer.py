@@ -12,6 +12,7 @@ from gearmath.control import sinumerik
 from gearmath.control.file_names import control_name
 from gearmath.control.refusals import asked, refusal
 from gearmath.control.sinumerik import Confirmed
+from gearmath.control.ua_words import node_id
 from gearmath.errors import ComputationError
 
 #: Bytes of one Read or Write of a file object.
@@ -60,7 +61,7 @@ class Transfer:
 
     async def area(self, area: Confirmed) -> Node | None:
         """A folder right below ``Sinumerik``."""
-        return await self.child(self._client.get_node(ua.NodeId(sinumerik.ROOT.text, self._index)), area)
+        return await self.child(self._client.get_node(node_id(sinumerik.ROOT.text, self._index)), area)
 
     async def child(self, parent: Node | None, name: Confirmed | str) -> Node | None:
         """What is called so below a node, in whatever namespace."""
@@ -117,7 +118,7 @@ class Transfer:
                 await self._call(node, "Close", handle)
         size = await self.child(node, "Size")
         if size is not None and (found := await size.read_value()) != len(content):
-            raise ComputationError(f"{self._name}: {name} has {found} of {len(content)} bytes on the control: write it again")
+            raise ComputationError(f"{self._name}: {name} has {found} of {len(content)} bytes there: write it again")
 
     async def _get_large(self, node: Node) -> bytes:
         handle = _handle(await self._call(node, "Open", ua.Variant(_READ, ua.VariantType.Byte)))

@@ -20,7 +20,6 @@ from gearmath.machine.reader import read_program
 Host = Callable[[Mapping[int, float]], Mapping[int, float]]
 
 
-
 class Moment(NamedTuple):
     """Where a program stands, for who watches it run; the tables are those of the program, and go on changing."""
 

@@ -13,7 +13,8 @@ from asyncua.crypto.permission_rules import User, UserRole
 from gearmath.control import sinumerik
 
 #: Who is calling, within one request.
-caller: ContextVar[User] = ContextVar("caller", default=User())
+NOBODY = User()
+caller: ContextVar[User] = ContextVar("caller", default=NOBODY)
 _USUAL = frozenset(
     (sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS, sinumerik.READ_FILES, sinumerik.WRITE_FILES)
 )

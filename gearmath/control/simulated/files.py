@@ -11,6 +11,7 @@ from asyncua.common.node import Node
 from gearmath.control import sinumerik
 from gearmath.control.simulated.access import Access
 from gearmath.control.simulated.nc import Nc
+from gearmath.control.ua_words import node_id, status
 
 _READ, _WRITE, _ERASE = 1, 2, 4
 _CODES = ua.StatusCodes
@@ -63,7 +64,10 @@ class FileMethods:
         await self.refresh()
 
     async def refresh(self) -> None:
-        """A file object for every file."""
+        """A file object for every file, and for no other."""
+        for path in self._objects - set(self.nc.files):
+            self._objects.discard(path)
+            await self.server.delete_nodes([self.server.get_node(node_id(_PREFIX + path, self.index))], recursive=True)
         for path in list(self.nc.files):
             if path not in self._objects:
                 self._objects.add(path)
@@ -71,7 +75,7 @@ class FileMethods:
 
     async def _object(self, parent: Node, name: str, identifier: str) -> Node:
         return await parent.add_object(
-            ua.NodeId(identifier, self.index), ua.QualifiedName(name, self.index), ua.ObjectIds.FolderType
+            node_id(identifier, self.index), ua.QualifiedName(name, self.index), ua.ObjectIds.FolderType
         )
 
     async def _method(self, parent: Node, identifier: str, name: str, call, takes: list, gives: list) -> None:  # type: ignore[no-untyped-def]
@@ -82,13 +86,15 @@ class FileMethods:
                 self.access.method_allowed()
                 values = await call(*(argument.Value for argument in arguments))
             except _Refused as refused:
-                return ua.CallMethodResult(StatusCode=ua.StatusCode(refused.code))  # type: ignore[arg-type]
+                return ua.CallMethodResult(StatusCode=status(refused.code))
             except ua.UaStatusCodeError as refused:
-                return ua.CallMethodResult(StatusCode=ua.StatusCode(refused.code))
+                return ua.CallMethodResult(StatusCode=status(refused.code))
             found = [ua.Variant(value, kind) for value, kind in zip(values, gives, strict=True)]
             return ua.CallMethodResult(OutputArguments=found)
 
-        await parent.add_method(ua.NodeId(identifier, self.index), ua.QualifiedName(name, self.index), answer, takes, gives)
+        await parent.add_method(
+            node_id(identifier, self.index), ua.QualifiedName(name, self.index), answer, takes, gives
+        )
 
     async def _file_object(self, path: str) -> None:
         folder, name = path.rsplit("/", 1)
@@ -96,7 +102,7 @@ class FileMethods:
             return
         identifier = f"{_PREFIX}{path}"
         node = await self._folders[folder].add_object(
-            ua.NodeId(identifier, self.index), ua.QualifiedName(name, self.index), ua.ObjectIds.FileType
+            node_id(identifier, self.index), ua.QualifiedName(name, self.index), ua.ObjectIds.FileType
         )
         for child in await node.get_children():  # those of the type, which do nothing
             await self.server.delete_nodes([child])
@@ -115,7 +121,7 @@ class FileMethods:
         ):
             await self._method(node, f"{identifier}.{method}", method, call, takes, gives)
         size = await node.add_variable(
-            ua.NodeId(f"{identifier}.Size", self.index), ua.QualifiedName("Size", self.index), 0, ua.VariantType.UInt64
+            node_id(f"{identifier}.Size", self.index), ua.QualifiedName("Size", self.index), 0, ua.VariantType.UInt64
         )
 
         def measured(nodeid: ua.NodeId, attribute: ua.AttributeIds) -> ua.DataValue:
@@ -151,7 +157,7 @@ class FileMethods:
             raise _Refused(_CODES.BadBrowseNameDuplicated)
         self._keep(path, b"")
         await self.refresh()
-        return [ua.NodeId(_PREFIX + path, self.index), self._opened(path, _WRITE) if opening else 0]
+        return [node_id(_PREFIX + path, self.index), self._opened(path, _WRITE) if opening else 0]
 
     def _opened(self, path: str, mode: int) -> int:
         if mode & _WRITE:

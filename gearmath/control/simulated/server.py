@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -22,9 +22,10 @@ from gearmath.control.simulated.line import Line
 from gearmath.control.simulated.nc import Nc, NcAlarm
 from gearmath.control.simulated.session import ControlServer
 from gearmath.control.simulated.values import first_names
+from gearmath.control.ua_words import node_id, status
 
 _HOST = "127.0.0.1"
-_URI = "urn:gearmath:simulated-control"
+URI = "urn:gearmath:simulated-control"
 #: Values that subscriptions look at are compared so often. [s]
 _TICK = 0.05
 
@@ -44,8 +45,6 @@ class Appearance:
 
     homes: tuple[str, ...] = ("old", "new")
     unencrypted: bool = False
-    clock_off: timedelta = field(default_factory=timedelta)
-    """What the clock of the control shows beyond the right time."""
 
 
 class SimulatedControl:
@@ -57,6 +56,8 @@ class SimulatedControl:
         self.nc, self.access, self.identity = nc, access, identity
         self.appearance = appearance or Appearance()
         self.line = Line(_HOST, port, 0)
+        self.clock_off = timedelta()
+        """What the clock of the control shows beyond the right time."""
         self._server: Server | None = None
         self._inner: ControlServer | None = None
         self._files: FileMethods | None = None
@@ -104,25 +105,29 @@ class SimulatedControl:
         """Every answer takes so long."""
         self.inner.slowness = seconds
 
+    def set_clock(self, off: timedelta) -> None:
+        """The clock of the control is off by so much."""
+        self.clock_off = off
+
     async def _begin(self) -> None:
         caller.set(caller.get())
         self._inner = ControlServer(self.nc, self.access)
         server = self._server = Server(self._inner)
         await server.init()
-        await server.set_application_uri(_URI)
+        await server.set_application_uri(URI)
         server.name = "Simulated SINUMERIK 840D sl"
         server.set_endpoint(f"opc.tcp://{_HOST}:0")
         await self._secure(server)
         index = await server.register_namespace(sinumerik.NAMESPACE.text)
         root = await server.nodes.objects.add_object(
-            ua.NodeId(sinumerik.ROOT.text, index), ua.QualifiedName(sinumerik.ROOT.text, index)
+            node_id(sinumerik.ROOT.text, index), ua.QualifiedName(sinumerik.ROOT.text, index)
         )
         await self._areas(server, root, index)
         methods = await root.add_object(
-            ua.NodeId(f"/{sinumerik.METHODS.text}", index), ua.QualifiedName(sinumerik.METHODS.text, index)
+            node_id(f"/{sinumerik.METHODS.text}", index), ua.QualifiedName(sinumerik.METHODS.text, index)
         )
         await methods.add_method(
-            ua.NodeId(f"/{sinumerik.METHODS.text}/{sinumerik.MY_RIGHTS.text}", index),
+            node_id(f"/{sinumerik.METHODS.text}/{sinumerik.MY_RIGHTS.text}", index),
             ua.QualifiedName(sinumerik.MY_RIGHTS.text, index), self._my_rights, [], [ua.VariantType.String],
         )  # fmt: skip
         self._files = FileMethods(server, self.nc, self.access, index)
@@ -171,7 +176,7 @@ class SimulatedControl:
 
         async def validate(certificate: Any, description: ua.ApplicationDescription) -> None:
             await validator(certificate, description)
-            now = datetime.now(UTC) + self.appearance.clock_off
+            now = datetime.now(UTC) + self.clock_off
             if not certificate.not_valid_before_utc <= now <= certificate.not_valid_after_utc:
                 raise ua.uaerrors.BadCertificateTimeInvalid
 
@@ -187,24 +192,24 @@ class SimulatedControl:
                 path += f"/{folder}"
                 if path not in areas:
                     areas[path] = await place.add_object(
-                        ua.NodeId(path, index), ua.QualifiedName(folder, index), ua.ObjectIds.FolderType
+                        node_id(path, index), ua.QualifiedName(folder, index), ua.ObjectIds.FolderType
                     )
                 place = areas[path]
-            found = await place.add_variable(ua.NodeId(name, index), ua.QualifiedName(last, index), 0.0)
+            found = await place.add_variable(node_id(name, index), ua.QualifiedName(last, index), 0.0)
             self.inner.variables.find(found.nodeid)
 
     async def _alarms(self, server: Server, root: Any) -> None:
         """Alarms come from ``Sinumerik``, and so do the brackets of a refresh."""
         index = await server.register_namespace(sinumerik.ALARM_NAMESPACE.text)
         self._alarm_type = await server.create_custom_event_type(
-            index, sinumerik.ALARM_TYPE.text, ua.NodeId(ua.ObjectIds.DiscreteAlarmType),
+            index, sinumerik.ALARM_TYPE.text, node_id(ua.ObjectIds.DiscreteAlarmType),
             [("AlarmIdentifier", ua.VariantType.String), ("AuxParameters", ua.VariantType.String),
              ("HelpSource", ua.VariantType.String)],
         )  # fmt: skip
         self._root = root
         for kind in (ua.ObjectIds.RefreshStartEventType, ua.ObjectIds.RefreshEndEventType):
             generator = EventGenerator(self.inner.isession)
-            await generator.init(ua.NodeId(kind), emitting_node=root, add_generates_event=False)
+            await generator.init(node_id(kind), emitting_node=root, add_generates_event=False)
             self.inner.subscription_service.standard_events[kind] = generator
         for key, alarm in list(self.nc.alarms.items()):
             await self._emit(key, alarm, True)
@@ -222,23 +227,21 @@ class SimulatedControl:
             await generator.init(self._alarm_type, emitting_node=self._root)
             self._generators[key] = generator
         event = self._generators[key].event
-        event.NodeId = ua.NodeId(f"alarm-{key}", self.inner.variables.index)
+        event.NodeId = node_id(f"alarm-{key}", self.inner.variables.index)
         event.ConditionName, event.BranchId = alarm.number, ua.NodeId()
         event.AlarmIdentifier, event.HelpSource, event.AuxParameters = alarm.number, "", ""
         event.SourceName = "NCK"
         event.Severity, event.Retain = alarm.severity, active
         event.ActiveState = ua.LocalizedText("Active" if active else "Inactive")
         setattr(event, "ActiveState/Id", active)
-        await self._generators[key].trigger(
-            time_attr=datetime.now(UTC) + self.appearance.clock_off, message=alarm.text
-        )
+        await self._generators[key].trigger(time_attr=datetime.now(UTC) + self.clock_off, message=alarm.text)
 
     async def _my_rights(self, _: ua.NodeId) -> Any:
         """GetMyAccessRights: the rights joined by semicolons (the form is unconfirmed)."""
         try:
             self.access.method_allowed()
         except ua.UaStatusCodeError as refused:
-            return ua.CallMethodResult(StatusCode=ua.StatusCode(refused.code))
+            return ua.CallMethodResult(StatusCode=status(refused.code))
         return [ua.Variant(";".join(sorted(self.access.rights(caller.get()))), ua.VariantType.String)]
 
     async def _tick(self) -> None:

@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 from asyncua import ua
 from asyncua.common.utils import ServiceError
-from asyncua.crypto.permission_rules import User, UserRole
+from asyncua.crypto.permission_rules import User
 from asyncua.server.address_space import AttributeValue, NodeData
 from asyncua.server.internal_server import InternalServer
 from asyncua.server.internal_session import InternalSession
 
 from gearmath.control import sinumerik
-from gearmath.control.simulated.access import Access, caller
+from gearmath.control.simulated.access import NOBODY, Access, caller
 from gearmath.control.simulated.nc import Nc
 from gearmath.control.simulated.values import Item, item
+from gearmath.control.ua_words import node_id, status
 
 if TYPE_CHECKING:
     from asyncua.server.address_space import AddressSpace
@@ -78,7 +79,7 @@ class Variables:
             ua.AttributeIds.NodeClass: ua.Variant(ua.NodeClass.Variable, i32),
             ua.AttributeIds.BrowseName: ua.Variant(ua.QualifiedName(name, self.index)),
             ua.AttributeIds.DisplayName: ua.Variant(ua.LocalizedText(name)),
-            ua.AttributeIds.DataType: ua.Variant(ua.NodeId(_kind(value).value)),
+            ua.AttributeIds.DataType: ua.Variant(node_id(_kind(value).value)),
             ua.AttributeIds.ValueRank: ua.Variant(1 if isinstance(value, list) else -1, i32),
             ua.AttributeIds.AccessLevel: ua.Variant(access, byte),
             ua.AttributeIds.UserAccessLevel: ua.Variant(access, byte),
@@ -149,9 +150,11 @@ class ControlSession(InternalSession):
         may = control.access.may(self.user, sinumerik.READ_STATE)
         for k, (one, found) in enumerate(zip(params.NodesToRead, ours, strict=True)):
             if found is not None and not may:
-                results[k] = ua.DataValue(StatusCode=ua.StatusCode(_CODES.BadUserAccessDenied))
-            elif found is None and one.NodeId.NamespaceIndex == control.variables.index and one.NodeId not in self.aspace:
-                results[k] = ua.DataValue(StatusCode=ua.StatusCode(_CODES.BadAttributeIdInvalid))
+                results[k] = ua.DataValue(StatusCode=status(_CODES.BadUserAccessDenied))
+            elif (
+                found is None and one.NodeId.NamespaceIndex == control.variables.index and one.NodeId not in self.aspace
+            ):
+                results[k] = ua.DataValue(StatusCode=status(_CODES.BadAttributeIdInvalid))
         return results
 
     async def write(self, params: ua.WriteParameters) -> list[ua.StatusCode]:
@@ -163,16 +166,16 @@ class ControlSession(InternalSession):
     def _written(self, one: ua.WriteValue) -> ua.StatusCode:
         found = self._control.variables.find(one.NodeId)
         if found is None:
-            return ua.StatusCode(_CODES.BadAttributeIdInvalid)
+            return status(_CODES.BadAttributeIdInvalid)
         if not self._control.access.may(self.user, sinumerik.WRITE_STATE):
-            return ua.StatusCode(_CODES.BadUserAccessDenied)
+            return status(_CODES.BadUserAccessDenied)
         if one.AttributeId != _VALUE or found.write is None:
-            return ua.StatusCode(_CODES.BadNotWritable)
+            return status(_CODES.BadNotWritable)
         value = one.Value.Value.Value if one.Value.Value is not None else None
         try:
             found.write(self._control.nc, value)
         except (TypeError, ValueError):
-            return ua.StatusCode(_CODES.BadTypeMismatch)
+            return status(_CODES.BadTypeMismatch)
         return ua.StatusCode()
 
     async def call(self, params: list[ua.CallMethodRequest]) -> list[ua.CallMethodResult]:
@@ -244,8 +247,6 @@ class ControlServer(InternalServer):
         self.bind_condition_methods = True
         self.variables = Variables(nc, self.aspace, 2)
 
-    def create_session(
-        self, name: str, user: User = User(role=UserRole.Anonymous), external: bool = False
-    ) -> InternalSession:
+    def create_session(self, name: str, user: User = NOBODY, external: bool = False) -> InternalSession:
         """A session of a client."""
         return ControlSession(self, self.aspace, self.subscription_service, name, user=user, external=external)

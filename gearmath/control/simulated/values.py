@@ -29,7 +29,7 @@ _WHOLE = {
     sinumerik.LINE: lambda nc: nc.line,
     sinumerik.ALARM_COUNT: lambda nc: len(nc.alarms),
     sinumerik.LAST_ALARM: lambda nc: int(list(nc.alarms.values())[-1].number) if nc.alarms else 0,
-    sinumerik.TOP_ALARM: lambda nc: int(list(nc.alarms.values())[0].number) if nc.alarms else 0,
+    sinumerik.TOP_ALARM: lambda nc: int(next(iter(nc.alarms.values())).number) if nc.alarms else 0,
     sinumerik.ACCESS_LEVEL: lambda nc: 4,
 }
 
