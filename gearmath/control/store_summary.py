@@ -8,6 +8,7 @@ from itertools import groupby
 from typing import Any
 
 from gearmath.control.store import COMPLETE, Run, Store
+from gearmath.control.store_touches import first_of
 
 #: What a run is called that has ended in no way: it is measured now, or its computer was switched off.
 OPEN = "open"
@@ -81,11 +82,9 @@ def parts(run: Run, points: list[int]) -> list[tuple[int, int]]:
 
 def _part_of(run: Run) -> dict[int, int]:
     """The part of the program in which each point of the whole plan is touched."""
-    whole = run
-    while whole.start.refers_to is not None:
-        whole = run.store.run(whole.start.refers_to)
-    places = whole.start.points
-    ends = [int(end) for end in _SECTION_ENDS.findall(whole.start.program_text.decode("utf-8", "replace"))]
+    start = first_of(run).start
+    places, text = start.points, start.program_text.decode("utf-8", "replace")
+    ends = [int(end) for end in _SECTION_ENDS.findall(text)]
     if ends:
         return {point: 1 + sum(end < point for end in ends) for point in places}
     found, part, before = {}, 0, None
