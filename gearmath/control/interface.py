@@ -131,6 +131,10 @@ class Control(Protocol):
         """Before the operator starts: the program is to make these of its parts (0, 0: all), and to wait for a host."""
         ...
 
+    async def finished(self) -> None:
+        """After the last touch: a program that is started later does not wait for a host."""
+        ...
+
     async def close(self) -> None: ...
 
 

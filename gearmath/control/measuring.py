@@ -23,12 +23,13 @@ Say = Callable[[str], object]
 @dataclass(frozen=True)
 class Patience:
     """Times [s]: between looks at the handshake, and at channel and alarms; between attempts to connect, growing; until
-    it is given up; until the numbers of a run that has just begun are all its own."""
+    the first connection, and later ones, are given up; until the numbers of a new run are all its own."""
 
     look: float = 0.005
     state: float = 0.5
     first_retry: float = 0.1
     last_retry: float = 5.0
+    first: float = 5.0
     give_up: float = 600.0
     settle: float = 0.1
 
@@ -75,7 +76,7 @@ class Measuring:
         self._run.finish("complete")
 
     async def _whole(self, parts: tuple[int, int]) -> None:
-        control = await self._connect()
+        control = await self._again(self._patience.first)
         try:
             ready = False
             while True:
@@ -84,27 +85,29 @@ class Measuring:
                         await self._prepare(control, parts)
                         ready = True
                     await self._follow(control)
+                    with suppress(ComputationError):
+                        await control.finished()
                     return
                 except ConnectionLost as error:
                     self._say(f"{error}; connecting again")
                     await _leave(control)
-                    control = await self._again(str(error))
+                    control = await self._again(self._patience.give_up)
+                    self.reconnected += 1
         finally:
             await _leave(control)
 
-    async def _again(self, why: str) -> Control:
+    async def _again(self, seconds: float) -> Control:
         """A new connection, with growing breaks."""
         begin, pause = time.monotonic(), self._patience.first_retry
         while True:
             try:
                 control = await self._connect()
             except ConnectionLost as error:
-                if time.monotonic() - begin > self._patience.give_up:
-                    raise _Stopped(f"{error}, after {self._patience.give_up:.0f} s of trying") from error
+                if time.monotonic() - begin > seconds:
+                    raise _Stopped(f"{error}, after {seconds:.0f} s of trying") from error
                 await asyncio.sleep(pause)
                 pause = min(2 * pause, self._patience.last_retry)
                 continue
-            self.reconnected += 1
             return control
 
     async def _prepare(self, control: Control, parts: tuple[int, int]) -> None:

@@ -203,6 +203,10 @@ class OpcUaControl:
             raise ComputationError(f"{self.name}: the run cannot be prepared: the channel is not in reset")
         await self._write({_FIRST: float(first), _LAST: float(last), _WAITS: 1.0})
 
+    async def finished(self) -> None:
+        """R104 = 0."""
+        await self._write({_WAITS: 0.0})
+
     # nodes
 
     def _node(self, name: str) -> Node:

@@ -173,8 +173,8 @@ def test_a_program_goes_up_and_down_unchanged(live: Any, megabytes: int) -> None
 @pytest.mark.parametrize(
     "name",
     ["../AB.MPF", "..\\AB.MPF", "/etc/passwd", "\\\\server\\share\\AB.MPF", "C:\\AB.MPF", "AB.MPF.MPF",
-     "A" * 300 + ".MPF", "AB\x00.MPF", "AB\n.MPF", "A\u0130B.MPF", "CON.MPF", "LPT1.SPF", "AB.TXT", "", ".", "Part Program/AB.MPF",
-     "1A.MPF"],
+     "A" * 300 + ".MPF", "AB\x00.MPF", "AB\n.MPF", "A\u0130B.MPF", "CON.MPF", "LPT1.SPF", "AB.TXT", "",
+     ".", "Part Program/AB.MPF", "1A.MPF"],
 )  # fmt: skip
 def test_names_that_lead_out_of_a_folder_or_that_the_control_refuses_are_refused_here(live: Any, name: str) -> None:
     async def work() -> None:

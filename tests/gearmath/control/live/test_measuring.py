@@ -41,16 +41,18 @@ async def _nothing() -> None: ...
 
 async def _measure(
     live: Any, run: Run, trouble: Trouble = _nothing, parts: tuple[int, int] = (0, 0), start: bool = True,
-    seconds: float = 1.0,
+    seconds: float = 4.0,
 ) -> Measuring:  # fmt: skip
     """A run from the operator's start to its end, with trouble from the moment at which the host is ready."""
-    one = Measuring(lambda: live.connect(*RIGHTS, seconds=seconds), run, QUICK)
+    told = asyncio.Event()
+    one = Measuring(
+        lambda: live.connect(*RIGHTS, seconds=seconds), run, QUICK,
+        say=lambda sentence: told.set() if "start it" in sentence else None,
+    )  # fmt: skip
 
     async def operator() -> None:
-        while start and (live.nc.parameters.get(104) != 1.0 or live.nc.channel):
-            await asyncio.sleep(0.005)
         if start:
-            await asyncio.sleep(0.02)
+            await told.wait()
             live.nc.start()
 
     others = [asyncio.create_task(operator()), asyncio.create_task(trouble())]  # type: ignore[arg-type]
@@ -86,7 +88,7 @@ def test_every_touch_is_kept_as_the_control_offered_it_and_acknowledged_once(
     live.nc.wait(10)
     lines = live.nc.files["Part Program/TEN_T.MPF"].decode().splitlines()
     own = [float(line.split(",")[7]) for line in lines if line[:1].isdigit()]
-    assert [touch.X for touch in run.touches().values()] == own
+    assert [touch.X for touch in run.touches().values()] == pytest.approx(own, abs=1e-8)
 
 
 def test_a_touch_is_on_the_disk_before_it_is_acknowledged(
@@ -137,7 +139,7 @@ def test_no_random_disconnect_loses_doubles_or_replays_a_touch(
                 await asyncio.sleep(0.3)
                 live.control.answer_slowly(0.0)
 
-    asyncio.run(_measure(live, run, trouble, seconds=0.6))
+    asyncio.run(_measure(live, run, trouble, seconds=1.5))
     _check(live, begin, run)
 
 
