@@ -6,16 +6,18 @@ import re
 from pathlib import Path
 
 from gearmath.control.file_names import control_name
-from gearmath.control.interface import Run, RunStart
+from gearmath.control.interface import RunStart
 from gearmath.control.plan import Plan, planned, resuming
+from gearmath.control.store import Run
+from gearmath.control.store_summary import parts
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
 from gearmath.machine.control import Setup
 from gearmath.machine.nc_text import decoded
 from gearmath.machine.probe_run import touches_artefacts
-from gearmath.specs.calibration import Calibration, load_calibration
-from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
-from gearmath.specs.toml import find, parse
+from gearmath.specs.calibration import load_calibration
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import find
 
 #: Names under which the store keeps the files.
 SET, MACHINE, CALIBRATION = "set.toml", "machine.toml", "calibration.toml"
@@ -48,15 +50,9 @@ def begun(
 
 
 def resumed(run: Run) -> tuple[int, int]:
-    """R90 and R91 with which the program of a run makes what is missing."""
-    start = run.start
-    text = decoded(start.program_text, start.program)
-    machine = parse(start.files[MACHINE].decode(), MillingMachine, MACHINE)
-    calibration = parse(start.files[CALIBRATION].decode(), Calibration, CALIBRATION)
-    setup = Setup.of(machine, calibration.length)
-    whole = planned(text, start.program, setup)
+    """R90 and R91 with which the program of a run makes the first stretch of what is missing."""
     missing = run.missing()
-    return resuming(text, start.program, setup, whole, missing) if missing else (0, 0)
+    return parts(run, missing)[0] if missing else (0, 0)
 
 
 def _chosen(points: str, plan: Plan) -> list[int]:

@@ -85,7 +85,7 @@ class Store:
         rows = _planned(start)
         with self.transaction("the run cannot be begun"):
             if start.refers_to is not None:
-                self._check(start.refers_to)
+                self._check_again(start, self.run(start.refers_to).start)
             run = self.execute("SELECT coalesce(max(run), 0) + 1 FROM run")[0][0]
             begun = (now(), start.operator or _operator(), socket.gethostname(), __version__)
             self.execute(
@@ -144,8 +144,11 @@ class Store:
         )
 
     def execute(self, sql: str, *values: Any) -> list[tuple]:
-        """Run one statement with its values and give all rows."""
-        return self.connection.execute(sql, values).fetchall()
+        """Run one statement with its values and give all rows. Raises ComputationError where SQLite refuses."""
+        try:
+            return self.connection.execute(sql, values).fetchall()
+        except sqlite3.Error as error:
+            raise ComputationError(f"{self.path}: {error}") from error
 
     @contextmanager
     def transaction(self, failed: str) -> Iterator[None]:
@@ -158,8 +161,8 @@ class Store:
             except BaseException as error:
                 if self.connection.in_transaction:
                     self.execute("ROLLBACK")
-                if isinstance(error, sqlite3.Error):
-                    raise ComputationError(f"{self.path}: {failed}: {error}") from error
+                if isinstance(error.__cause__, sqlite3.Error):
+                    raise ComputationError(f"{self.path}: {failed}: {error.__cause__}") from error
                 raise
 
     def _check(self, run: int) -> None:
@@ -167,6 +170,15 @@ class Store:
             runs = self.execute("SELECT min(run), max(run) FROM run")[0]
             known = "it has none" if runs[0] is None else f"it has {runs[0]} to {runs[1]}"
             raise InputError(f"{self.path}: there is no run {run}: {known}")
+
+    def _check_again(self, start: RunStart, old: RunStart) -> None:
+        """Raise InputError unless every point of a run is one of the run that it refers to."""
+        for point, place in start.points.items():
+            if old.points.get(point) != place:
+                raise InputError(
+                    f"{self.path}: point {point} ({','.join(place)}) is no point of run {start.refers_to}, whose "
+                    "points are to be probed again"
+                )
 
     def _keep_file(self, run: int, role: str, name: str, content: bytes) -> None:
         sha256 = hashlib.sha256(content).hexdigest()
@@ -248,6 +260,16 @@ class Run:
             self.store.execute(
                 "INSERT INTO ending VALUES (?, ?, ?, ?)", self.id, self.next_number("ending"), now(), outcome
             )
+
+    def sessions(self) -> list[dict[str, str]]:
+        """Who began the run and who went on with it, and when."""
+        rows = self._rows("SELECT at, operator, host, gearmath FROM session WHERE run = ? ORDER BY number")
+        return [dict(zip(("at", "operator", "host", "gearmath"), row, strict=True)) for row in rows]
+
+    def endings(self) -> list[dict[str, str]]:
+        """How and when the run ended, each time."""
+        rows = self._rows("SELECT at, outcome FROM ending WHERE run = ? ORDER BY number")
+        return [dict(zip(("at", "outcome"), row, strict=True)) for row in rows]
 
     def add_result(self, kind: str, content: bytes) -> None:
         """Keep what was made of the run, such as its evaluation; of one kind the last one counts."""

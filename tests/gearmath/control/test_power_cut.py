@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import random
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
@@ -169,6 +170,38 @@ def test_without_a_sync_at_every_commit_the_same_test_fails(tmp_path: Path, star
         lost(notes, cut, None, tmp_path / f"cut {cut}", touch) for cut in draw.sample(range(len(notes.events)), CUTS)
     ]
     assert sum(loss > 0 for loss in losses) > CUTS / 2
+
+
+def test_a_power_cut_while_an_old_store_is_brought_up_to_date_loses_nothing(tmp_path: Path, touch: Touched) -> None:
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    with sqlite3.connect(folder / "runs.db") as old:
+        old.executescript((Path(__file__).parent / "data" / "store_version_1.sql").read_text("utf-8"))
+    kept = old.execute("SELECT * FROM touch").fetchall()
+    old.close()
+    notes = Notes()
+    notes.add("runs.db", "write", 0, (folder / "runs.db").read_bytes())
+    notes.add("runs.db", "sync")
+    vfs = NotingVFS(notes)
+    connection = apsw.Connection(str(folder / "runs.db"), vfs="noting")
+    connection.execute("PRAGMA locking_mode = EXCLUSIVE")
+    prepare(connection, folder / "runs.db")
+    connection.close()
+    vfs.unregister()
+    versions = set()
+    for cut in range(2, len(notes.events) + 1):
+        after = tmp_path / f"cut {cut}"
+        after.mkdir()
+        for name, content in disk_after(notes.events[:cut], random.Random(cut)).items():
+            (after / name).write_bytes(content)
+        with sqlite3.connect(after / "runs.db") as found:
+            versions |= set(found.execute("PRAGMA user_version"))
+        found.close()
+        with Store.open(after / "runs.db") as store:
+            assert store.execute("SELECT * FROM touch") == kept
+            assert store.execute("PRAGMA integrity_check") == [("ok",)]
+            assert store.resume_run(2).missing() == [4, 5, 6, 7, 8]
+    assert versions == {(1,), (2,)}
 
 
 #: For each line that it reads: a process of its own that measures on, or anew, so many touches, says each one that is

@@ -89,7 +89,7 @@ def test_a_complete_run_takes_no_more(store: Store, start: Start, touch: Touched
     run.finish("complete")
     with pytest.raises(InputError, match="run 1 is complete: there is nothing to resume"):
         store.resume_run(run.id)
-    with pytest.raises(sqlite3.IntegrityError, match="the run is complete"):
+    with pytest.raises(ComputationError, match="the run is complete"):
         store.execute("INSERT INTO planned VALUES (1, 2, NULL, NULL, NULL, NULL, NULL, 'ring_face')")
 
 
@@ -133,7 +133,7 @@ def test_no_row_of_a_store_is_changed_or_removed(store: Store, start: Start, tou
     before = store.execute(f"SELECT * FROM {table}")
     assert before
     for sql in (f"DELETE FROM {table}", f"UPDATE {table} SET {column} = {column}"):
-        with pytest.raises(sqlite3.IntegrityError, match="append-only"):
+        with pytest.raises(ComputationError, match="append-only"):
             store.execute(sql)
     assert store.execute(f"SELECT * FROM {table}") == before
 
@@ -273,6 +273,26 @@ def test_a_full_disk_keeps_what_was_acknowledged(store: Store, start: Start, tou
     store.execute("PRAGMA max_page_count = 100000")
     assert run.touches() == kept
     run.commit_touch(run.missing()[0], touch(run.missing()[0]))
+
+
+def test_a_damaged_store_is_said_and_shows_no_traceback(
+    store: Store, start: Start, touch: Touched, command: Callable[..., tuple[int, str, str]]
+) -> None:  # fmt: skip
+    """Zeros over the first page of the touches."""
+    run = store.begin_run(start(50))
+    for point in range(1, 51):
+        run.commit_touch(point, touch(point))
+    ((size,),) = store.execute("PRAGMA page_size")
+    ((page,),) = store.execute("SELECT rootpage FROM sqlite_master WHERE name = 'touch'")
+    store.close()
+    content = bytearray(store.path.read_bytes())
+    content[(page - 1) * size : page * size] = bytes(size)
+    store.path.write_bytes(content)
+    for verb in (("list",), ("show", 1), ("export", 1, "-o", store.path.with_name("x.csv"))):
+        status, out, err = command("runs", *verb, "--store", store.path)
+        assert (status, out, err.count("\n")) == (1, "", 1)
+        assert "runs.db: database disk image is malformed" in err
+    assert not store.path.with_name("x.csv").exists()
 
 
 def test_the_store_loads_nothing_heavy() -> None:

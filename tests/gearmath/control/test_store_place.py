@@ -24,7 +24,7 @@ tmpfs /run tmpfs rw,nosuid 0 0
 server:/export /mnt/cell\0401 nfs4 rw,relatime 0 0
 systemd-1 /data autofs rw,relatime 0 0
 /dev/sdb1 /data xfs rw,relatime 0 0
-me@server: /home/me/remote fuse.sshfs rw 0 0
+me@server: /srv/remote fuse.sshfs rw 0 0
 /dev/sdc1 /mnt/shop/local ext4 rw 0 0
 """
 PARTS = ["..", ".", "/", "\\", "C:", "\\\\server\\share", "~", "PROBE", ".MPF", ".db", "\0", "\n", "\x1b", " ", "CON",
@@ -72,13 +72,13 @@ def test_names_as_controls_give_them_are_taken(name: str) -> None:
 @pytest.mark.parametrize(
     ("path", "kind"),
     [
-        ("/home/me/runs.db", "ext4"),
+        ("/srv/runs.db", "ext4"),
         ("/mnt/shop/runs.db", "cifs"),
         ("/mnt/shopping/runs.db", "ext4"),
         ("/mnt/shop/local/runs.db", "ext4"),
         ("/mnt/cell 1/runs.db", "nfs4"),
         ("/data/runs.db", "xfs"),
-        ("/home/me/remote/a/b/runs.db", "fuse.sshfs"),
+        ("/srv/remote/a/b/runs.db", "fuse.sshfs"),
     ],
 )
 def test_the_innermost_and_last_mount_says_what_holds_a_path(path: str, kind: str) -> None:
