@@ -154,7 +154,8 @@ class Measuring:
         while True:
             if time.monotonic() - looked >= self._patience.state:
                 looked = time.monotonic()
-                await self._look_around(control)
+                if await self._look_around(control):
+                    return
             handshake = await control.handshake()
             if self._number is None:
                 await self._join(handshake)
@@ -206,11 +207,13 @@ class Measuring:
         await control.acknowledge(point)
         return not self._missing and point == self._last
 
-    async def _look_around(self, control: Control) -> None:
-        """Alarms, and whether the program still runs."""
+    async def _look_around(self, control: Control) -> bool:
+        """Alarms, and whether the program still runs; True when it has ended and nothing is missing."""
         status = await control.status()
         await self._hear(control)
-        if self._number is not None and status.channel is ChannelState.RESET and self._missing:
+        if self._number is not None and status.channel is ChannelState.RESET:
+            if not self._missing:
+                return True
             handshake = await control.handshake()
             await asyncio.sleep(self._patience.news)
             await self._hear(control)
@@ -218,6 +221,7 @@ class Measuring:
                 raise _Stopped(f"{control.name}: the program ended before point {self._missing[0]}{self._because()}")
             if handshake.number == self._number:
                 raise _Stopped(f"{control.name}: the control was reset at point {handshake.offered}{self._because()}")
+        return False
 
     async def _hear(self, control: Control) -> None:
         """Keep alarms that are new."""
