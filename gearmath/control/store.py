@@ -57,7 +57,10 @@ class Store:
         is_new = not path.exists()
         connection = None
         try:
-            connection = sqlite3.connect(path, timeout=_PATIENCE, isolation_level=None, check_same_thread=False)
+            # absolute: ":memory:" is a file, too
+            connection = sqlite3.connect(
+                path.absolute(), timeout=_PATIENCE, isolation_level=None, check_same_thread=False
+            )
             prepare(connection, path)
         except sqlite3.Error as error:
             if connection is not None:
