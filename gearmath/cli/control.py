@@ -284,8 +284,10 @@ def trust(connection: Path, insecure: bool) -> None:
 
 @verb()
 @click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF", required=False)
-@click.option("--store", "store_path", type=click.Path(path_type=Path), required=True, metavar="RUNS.db",
-              help="Measurement store; made where there is none.")  # fmt: skip
+@click.option(
+    "--store", "store_path", type=click.Path(path_type=Path), default="runs.db", show_default=True,
+    envvar="GEARMATH_STORE", show_envvar=True, help="The measurement store; made where there is none.",
+)  # fmt: skip
 @click.option("--set", "gear_set", metavar="SET.toml", help="Gear set of the member, to be kept with the run.")
 @click.option("--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine, to be kept too.")
 @click.option("--calibration", default="probe.toml", show_default=True, help="Calibrated probe, to be kept too.")

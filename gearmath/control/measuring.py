@@ -23,7 +23,8 @@ Say = Callable[[str], object]
 @dataclass(frozen=True)
 class Patience:
     """Times [s]: between looks at the handshake, and at channel and alarms; between attempts to connect, growing; until
-    the first connection, and later ones, are given up; until the numbers of a new run are all its own."""
+    the first connection, and later ones, are given up; until the numbers of a new run are all its own, and until the
+    alarm that ended a program has come."""
 
     look: float = 0.005
     state: float = 0.5
@@ -32,6 +33,7 @@ class Patience:
     first: float = 5.0
     give_up: float = 600.0
     settle: float = 0.1
+    news: float = 0.3
 
 
 class _Stopped(ComputationError):
@@ -152,7 +154,8 @@ class Measuring:
         while True:
             if time.monotonic() - looked >= self._patience.state:
                 looked = time.monotonic()
-                await self._look_around(control)
+                if await self._look_around(control):
+                    return
             handshake = await control.handshake()
             if self._number is None:
                 await self._join(handshake)
@@ -204,20 +207,29 @@ class Measuring:
         await control.acknowledge(point)
         return not self._missing and point == self._last
 
-    async def _look_around(self, control: Control) -> None:
-        """Alarms, and whether the program still runs."""
+    async def _look_around(self, control: Control) -> bool:
+        """Alarms, and whether the program still runs; True when it has ended and nothing is missing."""
         status = await control.status()
-        new = [alarm for alarm in await control.alarms() if alarm.key not in self._alarms]
-        for alarm in new:
-            self._alarms[alarm.key] = alarm
-            self._run.add_alarm(alarm)
-            self._say(f"{control.name}: alarm {alarm.number}: {alarm.text}")
-        if self._number is not None and status.channel is ChannelState.RESET and self._missing:
+        await self._hear(control)
+        if self._number is not None and status.channel is ChannelState.RESET:
+            if not self._missing:
+                return True
             handshake = await control.handshake()
+            await asyncio.sleep(self._patience.news)
+            await self._hear(control)
             if handshake.number == self._number and handshake.offered == handshake.acknowledged:
                 raise _Stopped(f"{control.name}: the program ended before point {self._missing[0]}{self._because()}")
             if handshake.number == self._number:
                 raise _Stopped(f"{control.name}: the control was reset at point {handshake.offered}{self._because()}")
+        return False
+
+    async def _hear(self, control: Control) -> None:
+        """Keep alarms that are new."""
+        for alarm in await control.alarms():
+            if alarm.key not in self._alarms:
+                self._alarms[alarm.key] = alarm
+                self._run.add_alarm(alarm)
+                self._say(f"{control.name}: alarm {alarm.number}: {alarm.text}")
 
     def _because(self) -> str:
         """The alarms of this run, in words."""

@@ -14,7 +14,7 @@ from asyncua.common.subscription import Subscription
 
 from gearmath.control import sinumerik
 from gearmath.control.alarms import Alarms
-from gearmath.control.file_names import shown
+from gearmath.control.file_names import control_name, shown
 from gearmath.control.interface import Alarm, ChannelState, ConnectionLost, Handshake, Status, Touch
 from gearmath.control.login import log_in
 from gearmath.control.refusals import asked, code_name
@@ -167,12 +167,13 @@ class OpcUaControl:
 
     async def put(self, name: str, content: bytes, replace: bool = False) -> None:
         """Write a program; not the selected one, and none while the channel is active."""
+        name = control_name(name)
         status = await self.status()
         if status.channel is not ChannelState.RESET:
             raise ComputationError(
                 f"{self.name}: {name} is not written: the channel is {status.channel}, must be reset"
             )
-        if status.selected == name.upper():
+        if status.selected == name:
             raise ComputationError(
                 f"{self.name}: {name} is not written: it is the selected program, select another first"
             )

@@ -352,7 +352,7 @@ def test_positions_come_ten_times_a_second_while_the_axes_move(live: Any) -> Non
 def test_a_connection_that_breaks_is_a_lost_connection_and_no_traceback(live: Any) -> None:
     async def work() -> None:
         for trouble in (live.control.line.cut, live.control.line.die):
-            control = await live.connect(seconds=0.5)
+            control = await live.connect(seconds=2.0)
             live.soon(trouble)
             await asyncio.sleep(0.1)
             with pytest.raises(ConnectionLost):

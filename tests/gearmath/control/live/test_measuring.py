@@ -230,7 +230,7 @@ def test_a_host_that_died_finds_the_program_waiting_and_goes_on(live: Any, ten: 
 def test_a_run_does_not_begin_with_another_program_or_in_mid_run(
     live: Any, ten: RunStart, store: Store, what: str
 ) -> None:
-    said = {"none": "no program is selected", "other name": r"OTHER\.MPF is selected, must be live.TEN\.MPF",
+    said = {"none": "no program is selected", "other name": r"OTHER\.MPF is selected, must be TEN\.MPF",
             "other text": "is not the program of this run", "active": "before the program is started",
             "no host": "before the program is started"}[what]  # fmt: skip
     live.load(live.TEN + "; changed\n" if what == "other text" else live.TEN)
