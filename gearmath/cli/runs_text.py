@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from gearmath.cli.common import table
-from gearmath.control.store import Run
 from gearmath.control.store_compare import COVERAGE, Comparison, FigureRow
+from gearmath.control.store_run import Run
 from gearmath.control.store_summary import RunSummary, parts, summary
 
 #: Longer sentences on how a run stands are cut in a table.

@@ -8,7 +8,7 @@ from pathlib import Path
 from gearmath.control.file_names import control_name
 from gearmath.control.interface import RunStart
 from gearmath.control.plan import Plan, planned, resuming
-from gearmath.control.store import Run
+from gearmath.control.store_run import Run
 from gearmath.control.store_summary import parts
 from gearmath.errors import InputError
 from gearmath.files import read_bytes

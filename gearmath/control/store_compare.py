@@ -46,12 +46,17 @@ class FigureRow:
     uncertainties: tuple[float | None, ...]
 
     @property
+    def sizes(self) -> tuple[float | None, ...]:
+        """The values; of the largest deviation, whose sign is that of one point, its size."""
+        if self.name != "max_deviation_um":
+            return self.values
+        return tuple(None if value is None else abs(value) for value in self.values)
+
+    @property
     def change(self) -> float | None:
-        """From the first run to the last one; of the largest deviation, which has a sign, that of its size."""
-        first, last = self.values[0], self.values[-1]
-        if first is None or last is None:
-            return None
-        return abs(last) - abs(first) if self.name == "max_deviation_um" else last - first
+        """From the first run to the last one, in size where a sign says nothing."""
+        first, last = self.sizes[0], self.sizes[-1]
+        return None if first is None or last is None else last - first
 
     @property
     def change_uncertainty(self) -> float | None:

@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 
 from gearmath.bevel.pair import load_pair
 from gearmath.control.run_start import CALIBRATION, MACHINE, SET
-from gearmath.control.store import Run
+from gearmath.control.store_run import Run
 from gearmath.control.store_touches import first_of, missing_points, touch_csv
 from gearmath.errors import InputError
 from gearmath.quality.evaluation import Evaluation, evaluate_member

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from gearmath.control.store import Run
 from gearmath.control.store_place import inside
+from gearmath.control.store_run import Run
 from gearmath.control.store_summary import summary
 from gearmath.control.store_touches import touch_csv
 from gearmath.errors import InputError

@@ -98,6 +98,12 @@ def prepare(connection: Any, path: object, settings: Iterable[str] = SETTINGS) -
     _version(connection, path)  # before anything is written
     for setting in settings:
         connection.execute(setting).fetchall()
+    ((journal,),) = connection.execute("PRAGMA journal_mode").fetchall()
+    if journal != "wal":
+        raise InputError(
+            f"{path}: its file system does not take the journal WAL (journal_mode = {journal}): a store must lie on "
+            "a disk of this computer"
+        )
     if _version(connection, path) == VERSION:
         return
     connection.execute("BEGIN IMMEDIATE")

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from gearmath.control.store import COMPLETE, Run, Store
+from gearmath.control.store import Store
+from gearmath.control.store_run import COMPLETE, Run
 from gearmath.control.store_touches import first_of
 
 #: What a run is called that has ended in no way: it is measured now, or its computer was switched off.

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from decimal import Decimal
 
 from gearmath.control.interface import Touch
-from gearmath.control.store import Run
+from gearmath.control.store_run import Run
 from gearmath.specs.touch_csv import PLANNED
 
 

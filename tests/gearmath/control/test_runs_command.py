@@ -194,6 +194,14 @@ def test_compare_shows_where_two_touches_changed(path: Path, tmp_path: Path, com
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_compare_draws_the_course_of_more_than_two_runs(path: Path, tmp_path: Path, command: Command) -> None:
+    picture = tmp_path / "course.png"
+    status, out, err = command("runs", "compare", 1, 2, 5, "--store", path, "--plot", picture)
+    assert status == 0, err
+    assert re.search(r"figure / um +run 1 +run 2 +run 5 +change", out)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
 def test_evaluation_is_that_of_the_commands_and_is_kept(path: Path, tmp_path: Path, command: Command) -> None:
     command("runs", "export", 1, "--store", path, "-o", tmp_path / "raw.csv")
     command("touches", tmp_path / "raw.csv", "--set", SET, "-o", tmp_path / "measured.csv")

@@ -13,7 +13,7 @@ import pytest
 from gearmath.control import interface
 from gearmath.control.interface import Alarm, RunStart, Touch
 from gearmath.control.store import Store
-from gearmath.control.store_schema import APPLICATION_ID, VERSION
+from gearmath.control.store_schema import APPLICATION_ID, VERSION, prepare
 from gearmath.errors import ComputationError, InputError
 
 DATA = Path(__file__).parent / "data"
@@ -244,6 +244,25 @@ def test_a_store_that_is_not_there_is_made_only_to_write_into_it(tmp_path: Path)
     with pytest.raises(InputError, match="there is no folder"):
         Store.open(tmp_path / "nowhere" / "none.db")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_no_name_makes_a_store_that_is_in_memory_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, start: Start
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    with Store.open(Path(":memory:")) as store:
+        store.begin_run(start(1))
+    assert (tmp_path / ":memory:").exists()
+    with Store.open(Path(":memory:"), create=False) as store:
+        assert len(store.runs()) == 1
+
+
+def test_a_file_system_without_the_journal_is_refused() -> None:
+    """As SQLite answers where there is no shared memory: it keeps another journal and says which."""
+    connection = sqlite3.connect(":memory:", isolation_level=None)
+    with pytest.raises(InputError, match=r"does not take the journal WAL \(journal_mode = memory\)"):
+        prepare(connection, "runs.db")
+    connection.close()
 
 
 def test_a_store_says_what_it_is(store: Store) -> None:
