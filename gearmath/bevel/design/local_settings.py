@@ -1,0 +1,156 @@
+"""Settings of the pinion out of point, normal and curvature at one point: a square system, followed by homotopy (27.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+import casadi as ca
+import numpy as np
+
+from derivations import notation
+from gearmath.bevel.generation import Generation
+from gearmath.kernels import kernel
+from gearmath.specs.bevel_set import SETTINGS
+
+#: What may be unknown besides the settings: coefficients of the motion, by (setting, power).
+MOVING = {"modified_roll_2": ("work_rotation_offset", 2), "modified_roll_3": ("work_rotation_offset", 3),
+          "helical_motion": ("sliding_base", 1)}  # fmt: skip
+NAMES = ("u", "beta", *SETTINGS, *MOVING)
+UNTILTED = (
+    "u", "beta", "radial_distance", "cradle_angle", "blank_offset", "sliding_base",
+    "machine_center_to_crossing_point", "ratio_of_roll", "work_rotation_offset", "blade_point_radius",
+)  # fmt: skip
+#: Sizes that count alike in a Newton step: mm, rad and coefficients.
+_SIZES = {"u": 1.0, "beta": 0.05, "ratio_of_roll": 0.2, "modified_roll_2": 0.1, "modified_roll_3": 0.5}
+_STEPS, _TOLERANCE, _PARTS, _LEAST = 12, 1e-10, 20, 1e-4
+#: A curvature counts as a length by the square of this. [mm]
+_LENGTH = 30.0
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Point (3,) [mm], outward normal (3,), shape operator (2,2) [1/mm] in a ``basis`` (3,2), and u [mm] of the blade.
+
+    The shape operator is that with the normal into the pinion, as chapter 26 has it.
+    """
+
+    point: np.ndarray
+    normal: np.ndarray
+    basis: np.ndarray
+    curvature: np.ndarray
+    height: float
+
+
+@cache
+def _system(formate: bool) -> ca.Function:
+    """x of NAMES, index ratio, blade offset, side, and what is wanted -> residuals (10,) and derivatives by x."""
+    x = ca.SX.sym("x", len(NAMES))
+    index, offset, side = (ca.SX.sym(name) for name in ("index", "offset", "side"))
+    P, n, T, K, height = (ca.SX.sym(*s) for s in (("P", 3), ("n", 3), ("T", 3, 2), ("K", 3), ("height", 1)))
+    w = ca.SX.sym("w", 3)
+    settings, motion = x[2 : 2 + len(SETTINGS)], ca.SX(*notation.motion.shape)
+    for k, (name, power) in enumerate(MOVING.values()):
+        motion[SETTINGS.index(name), power - 1] = x[2 + len(SETTINGS) + k]
+    point, normal, meshing = kernel("straight_generation").function(
+        w[0], w[1], w[2], settings, motion, index, offset, side
+    )
+    reach = settings[0]
+    condition = reach * w[2] if formate else meshing / reach
+    rates = ca.jacobian(point, w), -ca.jacobian(normal, w), ca.jacobian(condition, w).T
+    found = kernel("flank_curvature").function(*rates, T)
+    off = ca.vertcat(
+        point - P, _LENGTH * T.T @ normal, condition,
+        _LENGTH**2 * (ca.vertcat(found[0, 0], (found[0, 1] + found[1, 0]) / 2, found[1, 1]) - K), w[0] - height,
+    )  # fmt: skip
+    off = ca.substitute(off, w, ca.vertcat(x[0], x[1], 0))
+    given = [x, index, offset, side, P, n, T, K, height]
+    return ca.Function("local_settings", given, ca.cse([off, ca.densify(ca.jacobian(off, x))]))
+
+
+@dataclass(frozen=True)
+class Local:
+    """A solution: x of NAMES, and how it moves with what was held: derivatives by all of NAMES."""
+
+    x: np.ndarray
+    residual: float
+    rates: np.ndarray
+
+    @property
+    def settings(self) -> np.ndarray:
+        return self.x[2 : 2 + len(SETTINGS)]
+
+
+def residual(how: Generation, x: np.ndarray, wanted: Wanted) -> tuple[np.ndarray, np.ndarray]:
+    """How far settings are off what is wanted (10,), and its derivatives (10,17)."""
+    K = wanted.curvature[[0, 0, 1], [0, 1, 1]]
+    off, rates = _system(not how.rolling)(
+        x, how.index_ratio, how.blade_offset_angle, how.side, wanted.point, wanted.normal, wanted.basis, K, wanted.height
+    )
+    return np.asarray(off).ravel(), np.asarray(rates)
+
+
+def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = UNTILTED) -> Local | None:
+    """The settings near ``x`` (17,) that give what is wanted, by the ``free`` ones alone; None where Newton fails."""
+    index = [NAMES.index(name) for name in free]
+    sizes = np.array([_SIZES.get(name, 1.0) for name in free])
+    x = x.copy()
+    for _ in range(_STEPS):
+        off, rates = residual(how, x, wanted)
+        if not (np.isfinite(off).all() and np.isfinite(rates).all()):
+            return None
+        size = float(np.abs(off).max())
+        if size < _TOLERANCE:
+            return Local(x, size, rates)
+        try:
+            step = np.linalg.solve(rates[:, index], -off)
+        except np.linalg.LinAlgError:
+            return None
+        x[index] += step / max(1.0, float((np.abs(step) / (10 * sizes)).max()))
+    return None
+
+
+def followed(how: Generation, x: np.ndarray, start: Wanted, end: Wanted, free: Sequence[str] = UNTILTED) -> Local | None:
+    """The settings that give ``end``, followed from ``x`` (17,) which gives ``start``; None where the way ends."""
+    found = solve(how, x, start, free)
+    part, step = 0.0, 1.0 / _PARTS
+    while found is not None and part < 1.0:
+        ahead = min(part + step, 1.0)
+        following = solve(how, found.x, between(start, end, ahead), free)
+        if following is None:
+            step /= 2
+            if step < _LEAST:
+                return None
+            continue
+        found, part, step = following, ahead, min(2 * step, 0.25)
+    return found
+
+
+def curvature(how: Generation, x: np.ndarray, at: Wanted) -> np.ndarray:
+    """The shape operator (2,2) [1/mm] that settings give in the basis of ``at``."""
+    off, _ = residual(how, x, at)
+    one, mixed, two = off[6:9] / _LENGTH**2
+    return at.curvature + np.array([[one, mixed], [mixed, two]])
+
+
+def generation(how: Generation, found: Local) -> Generation:
+    """The generation with the settings and the motion of a solution."""
+    motion = how.motion.copy()
+    for k, (name, power) in enumerate(MOVING.values()):
+        motion[SETTINGS.index(name), power - 1] = found.x[2 + len(SETTINGS) + k]
+    return replace(how, settings=found.settings.copy(), motion=motion)
+
+
+def between(start: Wanted, end: Wanted, part: float) -> Wanted:
+    """What lies a part of the way between two, each curvature in the basis at its own normal."""
+    normal = (1 - part) * start.normal + part * end.normal
+    normal /= np.linalg.norm(normal)
+    first = end.basis[:, 0] - normal * (normal @ end.basis[:, 0])
+    first /= np.linalg.norm(first)
+    second = np.cross(normal, first)
+    second *= np.sign(second @ end.basis[:, 1])
+    return Wanted(
+        (1 - part) * start.point + part * end.point, normal, np.column_stack([first, second]),
+        (1 - part) * start.curvature + part * end.curvature, (1 - part) * start.height + part * end.height,
+    )  # fmt: skip

@@ -1,0 +1,146 @@
+"""The pinion's flank that a side asks for: from the crown gear by homotopy, then over its whole flank."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearmath.bevel.design import local_settings as local
+from gearmath.bevel.design.local_settings import MOVING, NAMES, Local, Wanted
+from gearmath.bevel.design.request import Request
+from gearmath.bevel.design.whole_flank import Fitted, WholeFlank, fit
+from gearmath.bevel.generation import Generation, Section, solve_section
+from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.turning import turned
+from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
+from gearmath.specs.bevel_set import SETTINGS, SIDES, Member
+from gearmath.specs.cut import ANGULAR
+from gearmath.specs.toml import checked
+
+#: Bounds of what is left free: pressure angle and change of the root angle [rad], 2C and 6D, sliding base [mm/rad].
+_ANGLES = math.radians(10), math.radians(30)
+_ROOT_CHANGE = math.radians(2)
+_ROLL = (0.0, 0.15, 1.0)
+_HELICAL = 15.0
+_TILT = math.radians(15)
+_EXTRA = {
+    "blade_pressure_angle": ("blade_pressure_angle",), "modified_roll": ("modified_roll_2", "modified_roll_3"),
+    "cutter_tilt": ("cutter_tilt", "cutter_swivel"), "machine_root_angle": ("machine_root_angle",),
+    "helical_motion": ("helical_motion",),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class PinionFlank:
+    """One flank of the pinion as it was found: settings as x of ``local_settings.NAMES``, and how well they fit."""
+
+    name: str
+    request: Request
+    how: Generation
+    wanted: Wanted
+    fitted: Fitted
+
+    @property
+    def x(self) -> np.ndarray:
+        return self.fitted.local.x
+
+
+def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]) -> PinionFlank:
+    """The flank of the pinion from that of the crown gear, ``start``.
+
+    Raises ComputationError where the settings cannot be followed that far.
+    """
+    how, section = generation_of(start, name), blade_sections(start.flank(name), SIDES[name])["main"]
+    x, begin = _crown_gear(how, section, asked)
+    end = Wanted(asked.roll.point, asked.roll.normal, asked.roll.basis, asked.curvature, begin.height)
+    found = local.followed(how, x, begin, end)
+    if found is None:
+        raise ComputationError(
+            f"pinion {name} flank: no settings were found that give the {asked.side} side its path, parabola and "
+            "pattern at the mean point; ask for a path nearer to 90 degrees, a smaller transmission error, or less "
+            "crowning"
+        )
+    contact = _contacts(how, section, found, asked)
+    extra = tuple(extra for name in free for extra in _EXTRA[name])
+    problem = WholeFlank(how, end, asked.meeting, asked.gap, local.UNTILTED, extra, _bounds(extra, found.x), contact)
+    fitted = fit(problem, found)
+    if fitted is None:
+        raise ComputationError(
+            f"pinion {name} flank: the settings for the mean point leave parts of the flank uncut; ask for less of the "
+            "flank, or for a smaller transmission error"
+        )
+    return PinionFlank(name, asked, how, end, fitted)
+
+
+def _crown_gear(how: Generation, section: Section, asked: Request) -> tuple[np.ndarray, Wanted]:
+    """The crown gear's flank turned to the wanted point, at θ = 0 there: x, and what it has."""
+    P = asked.roll.point
+    at = solve_section(how, section, P[2:3], np.array([math.hypot(P[0], P[1])]))
+    if not at.converged.all():
+        raise ComputationError(f"{asked.side}: the crown gear's flank has no point where contact is wanted")
+    turn = math.atan2(P[1], P[0]) - math.atan2(at.point[0, 1], at.point[0, 0])
+    u, beta, theta = at.contact[0]
+    x = np.zeros(len(NAMES))
+    x[:2], x[2 : 2 + len(SETTINGS)] = (u, beta), how.settings
+    x[NAMES.index("cradle_angle")] += theta
+    x[NAMES.index("work_rotation_offset")] += x[NAMES.index("ratio_of_roll")] * theta - turn
+    there = Wanted(P, turned(at.normal, turn)[0], asked.roll.basis, asked.curvature, float(u))
+    begin = local.between(there, there, 0.0)
+    return x, Wanted(P, begin.normal, begin.basis, local.curvature(how, x, begin), float(u))
+
+
+def _contacts(how: Generation, section: Section, found: Local, asked: Request) -> np.ndarray:
+    """Start values (n,3) where the pinion's flank crosses the normals of the conjugate one: at the same places."""
+    moved = local.generation(how, found)
+    places = asked.meeting.point[:, 2], np.hypot(*asked.meeting.point[:, :2].T)
+    blade = Section(section.lower, section.upper, found.settings[-2], found.settings[-1])
+    return solve_section(moved, blade, *places).contact
+
+
+def _bounds(extra: tuple[str, ...], x: np.ndarray) -> np.ndarray:
+    """Least and largest values (p,2) of what is left free."""
+    ratio = x[NAMES.index("ratio_of_roll")]
+    now = {name: x[NAMES.index(name)] for name in extra}
+    table = {"blade_pressure_angle": _ANGLES, "helical_motion": (-_HELICAL, _HELICAL),
+             "cutter_tilt": (-_TILT, _TILT), "cutter_swivel": (-math.pi, math.pi)}  # fmt: skip
+    for name, most in zip(("modified_roll_2", "modified_roll_3"), roll_rows(ratio, _ROLL[1:]), strict=True):
+        table[name] = (-abs(most), abs(most))
+    if "machine_root_angle" in now:
+        root = now["machine_root_angle"]
+        table["machine_root_angle"] = (root - _ROOT_CHANGE, root + _ROOT_CHANGE)
+    return np.array([table[name] for name in extra]).reshape(-1, 2)
+
+
+def roll_rows(ratio: float, coefficients: tuple[float, ...]) -> np.ndarray:
+    """Coefficients of θ², θ³ of the work's rotation for 2C, 6D (10.7)."""
+    (row,) = kernel("modified_roll")(ratio, np.pad(np.array(coefficients), (0, 4 - len(coefficients))))
+    return np.asarray(row).ravel()[1 : 1 + len(coefficients)]
+
+
+def settings_table(x: np.ndarray) -> dict[str, Any]:
+    """Settings and motion of one flank as its file has them, mm and degrees."""
+    values = {
+        name: math.degrees(value) if name in ANGULAR else float(value)
+        for name, value in zip(SETTINGS, x[2 : 2 + len(SETTINGS)], strict=True)
+    }
+    values["work_rotation_offset"] = math.remainder(values["work_rotation_offset"], 360.0)
+    values["cradle_angle"] = math.remainder(values["cradle_angle"], 360.0)
+    moving = dict(zip(MOVING, x[2 + len(SETTINGS) :], strict=True))
+    motion: dict[str, tuple[float, ...]] = {}
+    rows = np.array([moving["modified_roll_2"], moving["modified_roll_3"]])
+    if rows.any():
+        motion["modified_roll"] = tuple((rows / roll_rows(values["ratio_of_roll"], (1.0, 1.0))).tolist())
+    if moving["helical_motion"]:
+        motion["sliding_base"] = (float(moving["helical_motion"]),)
+    return {**values, "motion": motion}
+
+
+def with_flank(member: Member, name: str, x: np.ndarray) -> Member:
+    """The member with the settings of one flank."""
+    values = member.model_dump()
+    values[name] = {**values[name], **settings_table(x)}
+    return checked(values, Member, f"pinion {name} flank")

@@ -1,0 +1,132 @@
+"""What one side of a pair asks of its pinion: the place of the contact, its curvature, the gap over the whole flank."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.blank import BevelBlank, MemberBlank
+from gearmath.bevel.contact.local import MARKING
+from gearmath.bevel.contact.report import ARCSEC
+from gearmath.bevel.contact.surface import Surface
+from gearmath.bevel.design.rolling import GearFlank, Meeting, Roll
+from gearmath.errors import InputError
+from gearmath.kernels import kernel
+from gearmath.specs.design import Contact
+
+#: Rows and columns of the gear's flank on which the gap is wanted, and heights at which its mate's tip is sought.
+_ROWS, _COLUMNS, _HEIGHTS = 7, 13, 41
+#: Path on the gear where none is asked for [degree]: it leans as lets one pair of teeth touch longest.
+_PATH = {"drive": 50.0, "coast": 130.0}
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is wanted of the pinion's flank of one ``side``.
+
+    ``place`` z_w, r_w of the vertex on the gear [mm]; ``parabola`` m' [rad/rad²]; ``path_angle`` on the gear [rad];
+    ``semi_axis`` [mm]; ``difference`` D (3,) and ``curvature`` K_2 + D (2,2) [1/mm]; ``roll`` of chapter 26;
+    ``meeting`` and ``gap`` [mm] at the places of the gear's flank that the pinion's tip reaches.
+    """
+
+    side: str
+    gear: GearFlank
+    roll: Roll
+    place: tuple[float, float]
+    parabola: float
+    path_angle: float
+    semi_axis: float
+    difference: np.ndarray
+    curvature: np.ndarray
+    meeting: Meeting
+    gap: np.ndarray
+
+
+def request(side: str, asked: Contact, gear: GearFlank, pinion: MemberBlank, teeth: int, tip: np.ndarray) -> Request:
+    """What is asked of a side. ``tip`` (4,) is the pinion's border there (25.4).
+
+    Raises InputError where no pinion touches the gear as is asked, with the limit.
+    """
+    blank, surface = gear.surface.blank.vector, gear.surface
+    across = asked.position[0]
+    lowest = _reached(gear, across, tip)
+    up = lowest + (1 - lowest) * asked.position[1]
+    axial, radial = (float(value) for value in kernel("flank_place")(blank, across, up))
+    roll = gear.roll(axial, radial)
+    w = roll.vector
+    path = math.radians(_PATH[side] if asked.path_angle is None else asked.path_angle)
+    amplitude = asked.transmission_error / ARCSEC
+    parabola = float(kernel("wanted_parabola")(amplitude, teeth, roll.lever)[0])
+    semi_axis = asked.pattern_length * surface.blank.face_width / 2
+    given = (w, roll.acceleration, roll.lever)
+    (own,) = kernel("path_on_pinion")(*given, roll.sliding, parabola, path)
+    (D,) = kernel("synthesis")(*given, own, parabola, semi_axis, MARKING)
+    (conjugate,) = kernel("conjugate_curvature")(w, roll.acceleration)
+    _check(side, asked, D, conjugate, path)
+    meeting, along = _flank(gear, roll, lowest)
+    lever = np.full(len(along), abs(roll.lever))
+    (gap,) = kernel("wanted_gap")(
+        meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever
+    )
+    return Request(side, gear, roll, (axial, radial), parabola, path, semi_axis, D,
+                   roll.gear_curvature + matrix(D), meeting, gap)  # fmt: skip
+
+
+def matrix(components: np.ndarray) -> np.ndarray:
+    """The symmetric matrix (2,2) of its three components."""
+    return components[[0, 1, 1, 2]].reshape(2, 2)
+
+
+def _reached(gear: GearFlank, across: float, tip: np.ndarray) -> float:
+    """The part of the gear's working depth from which on the pinion's tip reaches its flank."""
+    up = np.linspace(0.0, 1.0, _HEIGHTS)
+    places = kernel("flank_place")(gear.surface.blank.vector, np.full(_HEIGHTS, across), up)
+    inside = _inside(gear.meeting(*places, 0.0), tip)
+    if not (inside > 0).any():
+        return 0.0
+    first = int(np.argmax(inside > 0))
+    if first == 0:
+        return 0.0
+    below, above = inside[first - 1 : first + 1]
+    return float(up[first - 1] + (up[first] - up[first - 1]) * below / (below - above))
+
+
+def _inside(meeting: Meeting, tip: np.ndarray) -> np.ndarray:
+    """Distance (n,) from the pinion's tip [mm], inside where positive."""
+    return tip[1] * meeting.point[:, 2] + tip[2] * np.hypot(*meeting.point[:, :2].T) + tip[3]
+
+
+def _flank(gear: GearFlank, roll: Roll, lowest: float) -> tuple[Meeting, np.ndarray]:
+    """Conjugate places of the gear's flank above ``lowest``, and how far along the tooth each lies [mm]."""
+    up, across = (
+        one.ravel()
+        for one in np.meshgrid(np.linspace(lowest, 1, _ROWS), np.linspace(0, 1, _COLUMNS), indexing="ij")
+    )
+    found = gear.meeting(*kernel("flank_place")(gear.surface.blank.vector, across, up), roll.turn)
+    kept = np.isfinite(found.point).all(axis=1)
+    found = Meeting(*(array[kept] for array in vars(found).values()))
+    return found, (found.point - roll.point) @ roll.basis[:, 0]
+
+
+def _check(side: str, asked: Contact, D: np.ndarray, conjugate: np.ndarray, path: float) -> None:
+    """Refuse what would cut into the conjugate flank at the vertex: another path, or a shorter pattern, would not."""
+    if np.isfinite(D).all() and min(np.linalg.eigvalsh(matrix(D)).min(), _least(D - conjugate)) > 0:
+        return
+    raise InputError(
+        f"{side}: path_angle = {math.degrees(path):.4g} with transmission_error = {asked.transmission_error:g} arcsec "
+        f"and pattern_length = {asked.pattern_length:g}: the flanks would cut into each other beside the path; "
+        "the path must come nearer to 90 degrees, or the pattern be shorter"
+    )
+
+
+def _least(components: np.ndarray) -> float:
+    return float(np.linalg.eigvalsh(matrix(components)).min())
+
+
+def gear_flank(surface: Surface, blank: BevelBlank) -> GearFlank:
+    """The gear's flank in its pair."""
+    pinion, wheel = blank.pinion, blank.wheel
+    return GearFlank(surface, blank.shaft_angle, pinion.teeth / wheel.teeth, pinion.pitch_angle,
+                     blank.mean_cone_distance)  # fmt: skip
