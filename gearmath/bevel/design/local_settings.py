@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from derivations import notation
+from gearmath.bevel.check_flank import FLAT_BLADE
 from gearmath.bevel.generation import Generation
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SETTINGS
@@ -17,13 +18,16 @@ from gearmath.specs.bevel_set import SETTINGS
 #: What may be unknown besides the settings: coefficients of the motion, by (setting, power).
 MOVING = {"modified_roll_2": ("work_rotation_offset", 2), "modified_roll_3": ("work_rotation_offset", 3),
           "helical_motion": ("sliding_base", 1)}  # fmt: skip
-NAMES = ("u", "beta", *SETTINGS, *MOVING)
-UNTILTED = (
-    "u", "beta", "radial_distance", "cradle_angle", "blank_offset", "sliding_base",
+#: Contact of the flank (θ = 0) and of the tip plane at the root, then settings and coefficients of their motion.
+NAMES = ("u", "beta", "root_beta", "root_theta", *SETTINGS, *MOVING)
+FIRST = NAMES.index(SETTINGS[0])
+#: What the square system finds; any other of NAMES may be given.
+UNKNOWN = (
+    "u", "beta", "root_beta", "root_theta", "radial_distance", "cradle_angle", "blank_offset", "sliding_base",
     "machine_center_to_crossing_point", "ratio_of_roll", "work_rotation_offset", "blade_point_radius",
 )  # fmt: skip
 #: Sizes that count alike in a Newton step: mm, rad and coefficients.
-_SIZES = {"u": 1.0, "beta": 0.05, "ratio_of_roll": 0.2, "modified_roll_2": 0.1, "modified_roll_3": 0.5}
+_SIZES = {"u": 1.0, "beta": 0.05, "root_beta": 0.05, "root_theta": 0.05, "ratio_of_roll": 0.2, "modified_roll_2": 0.1, "modified_roll_3": 0.5}
 _STEPS, _TOLERANCE, _PARTS, _LEAST = 12, 1e-10, 20, 1e-4
 #: A curvature counts as a length by the square of this. [mm]
 _LENGTH = 30.0
@@ -31,41 +35,49 @@ _LENGTH = 30.0
 
 @dataclass(frozen=True)
 class Wanted:
-    """Point (3,) [mm], outward normal (3,), shape operator (2,2) [1/mm] in a ``basis`` (3,2), and u [mm] of the blade.
+    """Point (3,) [mm], outward normal (3,), shape operator (2,2) [1/mm] in a ``basis`` (3,2), depth of the root [mm].
 
-    The shape operator is that with the normal into the pinion, as chapter 26 has it.
+    The shape operator is that with the normal into the pinion, as chapter 26 has it; the depth that below the pitch
+    cone, at the mean cone distance. ``cone`` is the pitch angle [rad] and that distance [mm].
     """
 
     point: np.ndarray
     normal: np.ndarray
     basis: np.ndarray
     curvature: np.ndarray
-    height: float
+    depth: float
+    cone: tuple[float, float]
 
 
 @cache
 def _system(formate: bool) -> ca.Function:
-    """x of NAMES, index ratio, blade offset, side, and what is wanted -> residuals (10,) and derivatives by x."""
-    x = ca.SX.sym("x", len(NAMES))
-    index, offset, side = (ca.SX.sym(name) for name in ("index", "offset", "side"))
-    P, n, T, K, height = (ca.SX.sym(*s) for s in (("P", 3), ("n", 3), ("T", 3, 2), ("K", 3), ("height", 1)))
-    w = ca.SX.sym("w", 3)
-    settings, motion = x[2 : 2 + len(SETTINGS)], ca.SX(*notation.motion.shape)
+    """x of NAMES, index ratio, blade offset, side, and what is wanted -> residuals (12,) and derivatives by x."""
+    x, cone = ca.SX.sym("x", len(NAMES)), ca.SX.sym("cone", 2)
+    cut = [ca.SX.sym(name) for name in ("index", "offset", "side")]
+    P, n, T, K, depth = (ca.SX.sym(*s) for s in (("P", 3), ("n", 3), ("T", 3, 2), ("K", 3), ("depth", 1)))
+    w, motion = ca.SX.sym("w", 3), ca.SX(*notation.motion.shape)
+    settings = x[FIRST : FIRST + len(SETTINGS)]
     for k, (name, power) in enumerate(MOVING.values()):
-        motion[SETTINGS.index(name), power - 1] = x[2 + len(SETTINGS) + k]
-    point, normal, meshing = kernel("straight_generation").function(
-        w[0], w[1], w[2], settings, motion, index, offset, side
-    )
-    reach = settings[0]
-    condition = reach * w[2] if formate else meshing / reach
-    rates = ca.jacobian(point, w), -ca.jacobian(normal, w), ca.jacobian(condition, w).T
+        motion[SETTINGS.index(name), power - 1] = x[FIRST + len(SETTINGS) + k]
+    family, reach = kernel("straight_generation").function, settings[0]
+
+    def condition(meshing: ca.SX, theta: ca.SX) -> ca.SX:
+        return reach * theta if formate else meshing / reach
+
+    point, normal, meshing = family(w[0], w[1], w[2], settings, motion, *cut)
+    on_flank = condition(meshing, w[2])
+    rates = ca.jacobian(point, w), -ca.jacobian(normal, w), ca.jacobian(on_flank, w).T
     found = kernel("flank_curvature").function(*rates, T)
-    off = ca.vertcat(
-        point - P, _LENGTH * T.T @ normal, condition,
-        _LENGTH**2 * (ca.vertcat(found[0, 0], (found[0, 1] + found[1, 0]) / 2, found[1, 1]) - K), w[0] - height,
+    flank = ca.vertcat(
+        point - P, _LENGTH * T.T @ normal, on_flank,
+        _LENGTH**2 * (ca.vertcat(found[0, 0], (found[0, 1] + found[1, 0]) / 2, found[1, 1]) - K),
     )  # fmt: skip
-    off = ca.substitute(off, w, ca.vertcat(x[0], x[1], 0))
-    given = [x, index, offset, side, P, n, T, K, height]
+    flank = ca.substitute(flank, w, ca.vertcat(x[0], x[1], 0))
+    tip_plane = ca.vertcat(settings[:-1], FLAT_BLADE)
+    root, _, meshing = family(0, x[2], x[3], tip_plane, motion, *cut)
+    along, deep = kernel("root_place").function(root, cone[0])
+    off = ca.vertcat(flank, condition(meshing, x[3]), along - cone[1], deep - depth)
+    given = [x, *cut, cone, P, n, T, K, depth]
     return ca.Function("local_settings", given, ca.cse([off, ca.densify(ca.jacobian(off, x))]))
 
 
@@ -79,20 +91,21 @@ class Local:
 
     @property
     def settings(self) -> np.ndarray:
-        return self.x[2 : 2 + len(SETTINGS)]
+        return self.x[FIRST : FIRST + len(SETTINGS)]
 
 
 def residual(how: Generation, x: np.ndarray, wanted: Wanted) -> tuple[np.ndarray, np.ndarray]:
-    """How far settings are off what is wanted (10,), and its derivatives (10,17)."""
+    """How far settings are off what is wanted (12,), and its derivatives (12,19)."""
     K = wanted.curvature[[0, 0, 1], [0, 1, 1]]
     off, rates = _system(not how.rolling)(
-        x, how.index_ratio, how.blade_offset_angle, how.side, wanted.point, wanted.normal, wanted.basis, K, wanted.height
+        x, how.index_ratio, how.blade_offset_angle, how.side, wanted.cone, wanted.point, wanted.normal, wanted.basis, K,
+        wanted.depth,
     )
     return np.asarray(off).ravel(), np.asarray(rates)
 
 
-def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = UNTILTED) -> Local | None:
-    """The settings near ``x`` (17,) that give what is wanted, by the ``free`` ones alone; None where Newton fails."""
+def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = UNKNOWN) -> Local | None:
+    """The settings near ``x`` (19,) that give what is wanted, by the ``free`` ones alone; None where Newton fails."""
     index = [NAMES.index(name) for name in free]
     sizes = np.array([_SIZES.get(name, 1.0) for name in free])
     x = x.copy()
@@ -111,8 +124,8 @@ def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = 
     return None
 
 
-def followed(how: Generation, x: np.ndarray, start: Wanted, end: Wanted, free: Sequence[str] = UNTILTED) -> Local | None:
-    """The settings that give ``end``, followed from ``x`` (17,) which gives ``start``; None where the way ends."""
+def followed(how: Generation, x: np.ndarray, start: Wanted, end: Wanted, free: Sequence[str] = UNKNOWN) -> Local | None:
+    """The settings that give ``end``, followed from ``x`` (19,) which gives ``start``; None where the way ends."""
     found = solve(how, x, start, free)
     part, step = 0.0, 1.0 / _PARTS
     while found is not None and part < 1.0:
@@ -134,11 +147,16 @@ def curvature(how: Generation, x: np.ndarray, at: Wanted) -> np.ndarray:
     return at.curvature + np.array([[one, mixed], [mixed, two]])
 
 
+def depth(how: Generation, x: np.ndarray, at: Wanted) -> float:
+    """Depth of the root [mm] below the pitch cone that settings give."""
+    return at.depth + float(residual(how, x, at)[0][11])
+
+
 def generation(how: Generation, found: Local) -> Generation:
     """The generation with the settings and the motion of a solution."""
     motion = how.motion.copy()
     for k, (name, power) in enumerate(MOVING.values()):
-        motion[SETTINGS.index(name), power - 1] = found.x[2 + len(SETTINGS) + k]
+        motion[SETTINGS.index(name), power - 1] = found.x[FIRST + len(SETTINGS) + k]
     return replace(how, settings=found.settings.copy(), motion=motion)
 
 
@@ -152,5 +170,5 @@ def between(start: Wanted, end: Wanted, part: float) -> Wanted:
     second *= np.sign(second @ end.basis[:, 1])
     return Wanted(
         (1 - part) * start.point + part * end.point, normal, np.column_stack([first, second]),
-        (1 - part) * start.curvature + part * end.curvature, (1 - part) * start.height + part * end.height,
+        (1 - part) * start.curvature + part * end.curvature, (1 - part) * start.depth + part * end.depth, end.cone,
     )  # fmt: skip

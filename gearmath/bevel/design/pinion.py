@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from gearmath.bevel.design import local_settings as local
-from gearmath.bevel.design.local_settings import MOVING, NAMES, Local, Wanted
+from gearmath.bevel.design.local_settings import FIRST, MOVING, NAMES, Local, Wanted
 from gearmath.bevel.design.request import Request
 from gearmath.bevel.design.whole_flank import Fitted, WholeFlank, fit
-from gearmath.bevel.generation import Generation, Section, solve_section
+from gearmath.bevel.check_flank import FLAT_BLADE
+from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError
@@ -55,8 +56,9 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
     Raises ComputationError where the settings cannot be followed that far.
     """
     how, section = generation_of(start, name), blade_sections(start.flank(name), SIDES[name])["main"]
-    x, begin = _crown_gear(how, section, asked)
-    end = Wanted(asked.roll.point, asked.roll.normal, asked.roll.basis, asked.curvature, begin.height)
+    x, begin = _crown_gear(start, how, section, asked)
+    end = Wanted(asked.roll.point, asked.roll.normal, asked.roll.basis, asked.curvature,
+                 start.blank.mean_dedendum, begin.cone)  # fmt: skip
     found = local.followed(how, x, begin, end)
     if found is None:
         raise ComputationError(
@@ -66,7 +68,7 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
         )
     contact = _contacts(how, section, found, asked)
     extra = tuple(extra for name in free for extra in _EXTRA[name])
-    problem = WholeFlank(how, end, asked.meeting, asked.gap, local.UNTILTED, extra, _bounds(extra, found.x), contact)
+    problem = WholeFlank(how, end, asked.meeting, asked.gap, local.UNKNOWN, extra, _bounds(extra, found.x), contact)
     fitted = fit(problem, found)
     if fitted is None:
         raise ComputationError(
@@ -76,7 +78,7 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
     return PinionFlank(name, asked, how, end, fitted)
 
 
-def _crown_gear(how: Generation, section: Section, asked: Request) -> tuple[np.ndarray, Wanted]:
+def _crown_gear(member: Member, how: Generation, section: Section, asked: Request) -> tuple[np.ndarray, Wanted]:
     """The crown gear's flank turned to the wanted point, at θ = 0 there: x, and what it has."""
     P = asked.roll.point
     at = solve_section(how, section, P[2:3], np.array([math.hypot(P[0], P[1])]))
@@ -85,12 +87,18 @@ def _crown_gear(how: Generation, section: Section, asked: Request) -> tuple[np.n
     turn = math.atan2(P[1], P[0]) - math.atan2(at.point[0, 1], at.point[0, 0])
     u, beta, theta = at.contact[0]
     x = np.zeros(len(NAMES))
-    x[:2], x[2 : 2 + len(SETTINGS)] = (u, beta), how.settings
+    x[:2], x[FIRST : FIRST + len(SETTINGS)] = (u, beta), how.settings
     x[NAMES.index("cradle_angle")] += theta
     x[NAMES.index("work_rotation_offset")] += x[NAMES.index("ratio_of_roll")] * theta - turn
-    there = Wanted(P, turned(at.normal, turn)[0], asked.roll.basis, asked.curvature, float(u))
+    blank = member.blank
+    cone = math.radians(blank.pitch_angle), blank.mean_cone_distance
+    flat = Section(0.0, 1.0, float(how.settings[-2]), FLAT_BLADE)
+    direction = math.cos(cone[0]), math.sin(cone[0])
+    root = solve_curve(how, flat, np.zeros(1), direction, np.array([cone[1]]), np.array([[0.0, beta, theta]]))
+    x[2], x[3] = root.contact[0, 1], root.contact[0, 2] - theta
+    there = Wanted(P, turned(at.normal, turn)[0], asked.roll.basis, asked.curvature, blank.mean_dedendum, cone)
     begin = local.between(there, there, 0.0)
-    return x, Wanted(P, begin.normal, begin.basis, local.curvature(how, x, begin), float(u))
+    return x, replace(begin, curvature=local.curvature(how, x, begin), depth=local.depth(how, x, begin))
 
 
 def _contacts(how: Generation, section: Section, found: Local, asked: Request) -> np.ndarray:
@@ -125,11 +133,11 @@ def settings_table(x: np.ndarray) -> dict[str, Any]:
     """Settings and motion of one flank as its file has them, mm and degrees."""
     values = {
         name: math.degrees(value) if name in ANGULAR else float(value)
-        for name, value in zip(SETTINGS, x[2 : 2 + len(SETTINGS)], strict=True)
+        for name, value in zip(SETTINGS, x[FIRST : FIRST + len(SETTINGS)], strict=True)
     }
     values["work_rotation_offset"] = math.remainder(values["work_rotation_offset"], 360.0)
     values["cradle_angle"] = math.remainder(values["cradle_angle"], 360.0)
-    moving = dict(zip(MOVING, x[2 + len(SETTINGS) :], strict=True))
+    moving = dict(zip(MOVING, x[FIRST + len(SETTINGS) :], strict=True))
     motion: dict[str, tuple[float, ...]] = {}
     rows = np.array([moving["modified_roll_2"], moving["modified_roll_3"]])
     if rows.any():

@@ -71,7 +71,7 @@ class WholeFlank:
         if where:
             moved[index] = -np.linalg.solve(found.rates[:, index], found.rates[:, where])
         self.contact = crossing.contact
-        return found, -crossing.deviation - self.gap, -crossing.gradient[:, _INDEX] @ moved[2:]
+        return found, -crossing.deviation - self.gap, -crossing.gradient[:, _INDEX] @ moved[local.FIRST :]
 
 
 def fit(problem: WholeFlank, start: Local) -> Fitted | None:
