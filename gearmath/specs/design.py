@@ -53,6 +53,8 @@ class PinionMethod(Sheet):
 
     cutting: Literal["fixed_setting", "completing"] = "fixed_setting"
     free: tuple[Free, ...] = Field(default=("blade_pressure_angle", "modified_roll"), strict=False)
+    #: Tilt of the cutter to start from; without it none for a generated gear, and square to the root line of a Formate one.
+    cutter_tilt: Angle | None = Field(default=None, ge=-30, le=30)
 
 
 class GearMethod(Sheet):
@@ -128,7 +130,9 @@ class DesignData(Sheet):
     @model_validator(mode="after")
     def _possible(self) -> DesignData:
         if self.hypoid_offset:
-            raise ValueError(f"hypoid_offset = {shown(self.hypoid_offset):g}: must be 0, hypoid pairs are not designed yet")
+            raise ValueError(
+                f"hypoid_offset = {shown(self.hypoid_offset):g}: must be 0, hypoid pairs are not designed yet"
+            )
         if self.wheel_teeth < self.pinion_teeth:
             raise ValueError(f"wheel_teeth {self.wheel_teeth} must be at least pinion_teeth {self.pinion_teeth}")
         if (self.wheel_outer_pitch_diameter is None) == (self.outer_transverse_module is None):

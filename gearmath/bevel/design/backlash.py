@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from gearmath.bevel.design.rounding import to_step
 from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.tooth import mean_backlash, mean_pitch_radius
@@ -13,11 +14,11 @@ from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 from gearmath.specs.toml import checked
 
 
-def with_backlash(pinion: Member, gear: Member, backlash: float, like: Member) -> Member:
+def with_backlash(pinion: Member, gear: Member, backlash: float, like: Member, step: float = 0.0) -> Member:
     """The pinion with its flanks turned about the work axis until the pair has a transverse backlash [mm].
 
     That is the pitch less both tooth thicknesses at the mean point of the pitch cones. The space stays where it is in
-    ``like``, a pinion with about the same one.
+    ``like``, a pinion with about the same one. ``step`` [degree] is that of the work rotation offset.
     """
     turns = {flank: math.degrees(_azimuth(like, flank) - _azimuth(pinion, flank)) for flank in FLANKS}
     placed = _turned(pinion, turns)
@@ -25,15 +26,15 @@ def with_backlash(pinion: Member, gear: Member, backlash: float, like: Member) -
     half = math.degrees(missing / (2 * mean_pitch_radius(pinion)))
     hand = -1 if pinion.hand == "right" else 1
     # a wider space: each flank away from the middle of it
-    return _turned(placed, {flank: hand * SIDES[flank] * half for flank in FLANKS})
+    return _turned(placed, {flank: hand * SIDES[flank] * half for flank in FLANKS}, step)
 
 
-def _turned(member: Member, turns: dict[str, float]) -> Member:
-    """The member with work rotation offsets that turn its flanks by angles [degree] about z_w."""
+def _turned(member: Member, turns: dict[str, float], step: float = 0.0) -> Member:
+    """The member with work rotation offsets, in steps, that turn its flanks by angles [degree] about z_w."""
     values = member.model_dump()
     for flank, turn in turns.items():
         offset = values[flank]["work_rotation_offset"] - turn
-        values[flank]["work_rotation_offset"] = math.remainder(offset, 360.0)
+        values[flank]["work_rotation_offset"] = math.remainder(to_step(offset, step), 360.0)
     return checked(values, Member, "pinion")
 
 

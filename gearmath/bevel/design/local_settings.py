@@ -18,16 +18,20 @@ from gearmath.specs.bevel_set import SETTINGS
 #: What may be unknown besides the settings: coefficients of the motion, by (setting, power).
 MOVING = {"modified_roll_2": ("work_rotation_offset", 2), "modified_roll_3": ("work_rotation_offset", 3),
           "helical_motion": ("sliding_base", 1)}  # fmt: skip
-#: Contact of the flank (θ = 0) and of the tip plane at the root, then settings and coefficients of their motion.
-NAMES = ("u", "beta", "root_beta", "root_theta", *SETTINGS, *MOVING)
+#: Contact of the flank (θ = 0), of the tip plane at the root of toe and heel; settings, coefficients of their motion.
+ROOT = ("toe_beta", "toe_theta", "heel_beta", "heel_theta")
+#: Last the curvature [1/mm] added across the path, which changes neither path nor parabola, but the ellipse (26.6).
+ACROSS = "curvature_across"
+NAMES = ("u", "beta", *ROOT, *SETTINGS, *MOVING, ACROSS)
 FIRST = NAMES.index(SETTINGS[0])
 #: What the square system finds; any other of NAMES may be given.
 UNKNOWN = (
-    "u", "beta", "root_beta", "root_theta", "radial_distance", "cradle_angle", "blank_offset", "sliding_base",
-    "machine_center_to_crossing_point", "ratio_of_roll", "work_rotation_offset", "blade_point_radius",
+    "u", "beta", *ROOT, "radial_distance", "cradle_angle", "blank_offset", "sliding_base",
+    "machine_center_to_crossing_point", "machine_root_angle", "ratio_of_roll", "work_rotation_offset", "blade_point_radius",
 )  # fmt: skip
 #: Sizes that count alike in a Newton step: mm, rad and coefficients.
-_SIZES = {"u": 1.0, "beta": 0.05, "root_beta": 0.05, "root_theta": 0.05, "ratio_of_roll": 0.2, "modified_roll_2": 0.1, "modified_roll_3": 0.5}
+_SIZES = {"u": 1.0, "beta": 0.05, **dict.fromkeys(ROOT, 0.05), "machine_root_angle": 0.02, "ratio_of_roll": 0.2,
+          "modified_roll_2": 0.1, "modified_roll_3": 0.5}  # fmt: skip
 _STEPS, _TOLERANCE, _PARTS, _LEAST = 12, 1e-10, 20, 1e-4
 #: A curvature counts as a length by the square of this. [mm]
 _LENGTH = 30.0
@@ -35,26 +39,30 @@ _LENGTH = 30.0
 
 @dataclass(frozen=True)
 class Wanted:
-    """Point (3,) [mm], outward normal (3,), shape operator (2,2) [1/mm] in a ``basis`` (3,2), depth of the root [mm].
+    """Point (3,) [mm], outward normal (3,), shape operator (2,2) [1/mm] in a ``basis`` (3,2), depths of the root (2,) [mm].
 
-    The shape operator is that with the normal into the pinion, as chapter 26 has it; the depth that below the pitch
-    cone, at the mean cone distance. ``cone`` is the pitch angle [rad] and that distance [mm].
+    The shape operator is that with the normal into the pinion, as chapter 26 has it; the depths those below
+    the pitch cone at toe and heel. ``cone`` holds the pitch angle [rad] and the cone distances of toe and heel [mm],
+    ``path`` the direction of the path on the pinion [rad] in the basis.
     """
 
     point: np.ndarray
     normal: np.ndarray
     basis: np.ndarray
     curvature: np.ndarray
-    depth: float
-    cone: tuple[float, float]
+    depth: np.ndarray
+    cone: np.ndarray
+    path: float
 
 
 @cache
 def _system(formate: bool) -> ca.Function:
-    """x of NAMES, index ratio, blade offset, side, and what is wanted -> residuals (12,) and derivatives by x."""
-    x, cone = ca.SX.sym("x", len(NAMES)), ca.SX.sym("cone", 2)
+    """x of NAMES, index ratio, blade offset, side, and what is wanted -> residuals (15,) and derivatives by x."""
+    x, cone = ca.SX.sym("x", len(NAMES)), ca.SX.sym("cone", 3)
     cut = [ca.SX.sym(name) for name in ("index", "offset", "side")]
-    P, n, T, K, depth = (ca.SX.sym(*s) for s in (("P", 3), ("n", 3), ("T", 3, 2), ("K", 3), ("depth", 1)))
+    P, n, T, K, depth = (ca.SX.sym(*s) for s in (("P", 3), ("n", 3), ("T", 3, 2), ("K", 3), ("depth", 2)))
+    path, added = ca.SX.sym("path"), x[len(NAMES) - 1]
+    across = added * ca.vertcat(ca.sin(path) ** 2, -ca.sin(path) * ca.cos(path), ca.cos(path) ** 2)
     w, motion = ca.SX.sym("w", 3), ca.SX(*notation.motion.shape)
     settings = x[FIRST : FIRST + len(SETTINGS)]
     for k, (name, power) in enumerate(MOVING.values()):
@@ -70,14 +78,18 @@ def _system(formate: bool) -> ca.Function:
     found = kernel("flank_curvature").function(*rates, T)
     flank = ca.vertcat(
         point - P, _LENGTH * T.T @ normal, on_flank,
-        _LENGTH**2 * (ca.vertcat(found[0, 0], (found[0, 1] + found[1, 0]) / 2, found[1, 1]) - K),
+        _LENGTH**2 * (ca.vertcat(found[0, 0], (found[0, 1] + found[1, 0]) / 2, found[1, 1]) - K - across),
     )  # fmt: skip
     flank = ca.substitute(flank, w, ca.vertcat(x[0], x[1], 0))
     tip_plane = ca.vertcat(settings[:-1], FLAT_BLADE)
-    root, _, meshing = family(0, x[2], x[3], tip_plane, motion, *cut)
-    along, deep = kernel("root_place").function(root, cone[0])
-    off = ca.vertcat(flank, condition(meshing, x[3]), along - cone[1], deep - depth)
-    given = [x, *cut, cone, P, n, T, K, depth]
+    roots = []
+    for k in range(2):
+        beta, theta = x[2 + 2 * k], x[3 + 2 * k]
+        root, _, meshing = family(0, beta, theta, tip_plane, motion, *cut)
+        along, deep = kernel("root_place").function(root, cone[0])
+        roots += [condition(meshing, theta), along - cone[1 + k], deep - depth[k]]
+    off = ca.vertcat(flank, *roots)
+    given = [x, *cut, cone, P, n, T, K, depth, path]
     return ca.Function("local_settings", given, ca.cse([off, ca.densify(ca.jacobian(off, x))]))
 
 
@@ -95,17 +107,26 @@ class Local:
 
 
 def residual(how: Generation, x: np.ndarray, wanted: Wanted) -> tuple[np.ndarray, np.ndarray]:
-    """How far settings are off what is wanted (12,), and its derivatives (12,19)."""
+    """How far settings are off what is wanted (15,), and its derivatives (15,22)."""
     K = wanted.curvature[[0, 0, 1], [0, 1, 1]]
     off, rates = _system(not how.rolling)(
-        x, how.index_ratio, how.blade_offset_angle, how.side, wanted.cone, wanted.point, wanted.normal, wanted.basis, K,
+        x,
+        how.index_ratio,
+        how.blade_offset_angle,
+        how.side,
+        wanted.cone,
+        wanted.point,
+        wanted.normal,
+        wanted.basis,
+        K,
         wanted.depth,
+        wanted.path,
     )
     return np.asarray(off).ravel(), np.asarray(rates)
 
 
 def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = UNKNOWN) -> Local | None:
-    """The settings near ``x`` (19,) that give what is wanted, by the ``free`` ones alone; None where Newton fails."""
+    """The settings near ``x`` (22,) that give what is wanted, by the ``free`` ones alone; None where Newton fails."""
     index = [NAMES.index(name) for name in free]
     sizes = np.array([_SIZES.get(name, 1.0) for name in free])
     x = x.copy()
@@ -125,7 +146,7 @@ def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = 
 
 
 def followed(how: Generation, x: np.ndarray, start: Wanted, end: Wanted, free: Sequence[str] = UNKNOWN) -> Local | None:
-    """The settings that give ``end``, followed from ``x`` (19,) which gives ``start``; None where the way ends."""
+    """The settings that give ``end``, followed from ``x`` (22,) which gives ``start``; None where the way ends."""
     found = solve(how, x, start, free)
     part, step = 0.0, 1.0 / _PARTS
     while found is not None and part < 1.0:
@@ -147,9 +168,9 @@ def curvature(how: Generation, x: np.ndarray, at: Wanted) -> np.ndarray:
     return at.curvature + np.array([[one, mixed], [mixed, two]])
 
 
-def depth(how: Generation, x: np.ndarray, at: Wanted) -> float:
-    """Depth of the root [mm] below the pitch cone that settings give."""
-    return at.depth + float(residual(how, x, at)[0][11])
+def depth(how: Generation, x: np.ndarray, at: Wanted) -> np.ndarray:
+    """Depths (2,) of the root [mm] below the pitch cone that settings give at toe and heel."""
+    return at.depth + residual(how, x, at)[0][[11, 14]]
 
 
 def generation(how: Generation, found: Local) -> Generation:
@@ -170,5 +191,5 @@ def between(start: Wanted, end: Wanted, part: float) -> Wanted:
     second *= np.sign(second @ end.basis[:, 1])
     return Wanted(
         (1 - part) * start.point + part * end.point, normal, np.column_stack([first, second]),
-        (1 - part) * start.curvature + part * end.curvature, (1 - part) * start.depth + part * end.depth, end.cone,
+        (1 - part) * start.curvature + part * end.curvature, (1 - part) * start.depth + part * end.depth, end.cone, end.path,
     )  # fmt: skip

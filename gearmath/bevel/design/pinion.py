@@ -11,9 +11,10 @@ import numpy as np
 from gearmath.bevel.design import local_settings as local
 from gearmath.bevel.design.local_settings import FIRST, MOVING, NAMES, Local, Wanted
 from gearmath.bevel.design.request import Request
+from gearmath.bevel.design.rolling import Meeting
 from gearmath.bevel.design.whole_flank import Fitted, WholeFlank, fit
 from gearmath.bevel.check_flank import FLAT_BLADE
-from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
+from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section, turning_sense
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError
@@ -37,13 +38,17 @@ _EXTRA = {
 
 @dataclass(frozen=True)
 class PinionFlank:
-    """One flank of the pinion as it was found: settings as x of ``local_settings.NAMES``, and how well they fit."""
+    """One flank of the pinion as it was found: settings as x of ``local_settings.NAMES``, and how well they fit.
+
+    ``contact`` is where the first solution is cut, ``share`` the part of the gear's places that the blade reaches, where it was fitted.
+    """
 
     name: str
     request: Request
-    how: Generation
-    wanted: Wanted
+    problem: WholeFlank
+    contact: np.ndarray
     fitted: Fitted
+    share: float
 
     @property
     def x(self) -> np.ndarray:
@@ -58,7 +63,7 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
     how, section = generation_of(start, name), blade_sections(start.flank(name), SIDES[name])["main"]
     x, begin = _crown_gear(start, how, section, asked)
     end = Wanted(asked.roll.point, asked.roll.normal, asked.roll.basis, asked.curvature,
-                 start.blank.mean_dedendum, begin.cone)  # fmt: skip
+                 _root(start)[1], begin.cone, asked.own_path)  # fmt: skip
     found = local.followed(how, x, begin, end)
     if found is None:
         raise ComputationError(
@@ -66,16 +71,44 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
             "pattern at the mean point; ask for a path nearer to 90 degrees, a smaller transmission error, or less "
             "crowning"
         )
-    contact = _contacts(how, section, found, asked)
+    kept, contact = _reached(how, section, found, asked)
+    meeting = Meeting(*(array[kept] for array in vars(asked.meeting).values()))
     extra = tuple(extra for name in free for extra in _EXTRA[name])
-    problem = WholeFlank(how, end, asked.meeting, asked.gap, local.UNKNOWN, extra, _bounds(extra, found.x), contact)
-    fitted = fit(problem, found)
+    bounds = _bounds(extra, found.x)
+    problem = WholeFlank(how, end, meeting, asked.gap[kept], local.UNKNOWN, extra, bounds)
+    fitted = fit(problem, found, contact)
     if fitted is None:
         raise ComputationError(
             f"pinion {name} flank: the settings for the mean point leave parts of the flank uncut; ask for less of the "
             "flank, or for a smaller transmission error"
         )
-    return PinionFlank(name, asked, how, end, fitted)
+    return PinionFlank(name, asked, problem, contact, fitted, float(kept.mean()))
+
+
+def refitted(flank: PinionFlank, name: str, value: float) -> PinionFlank:
+    """The flank with a setting of the blade at a value [mm, rad], all others found anew.
+
+    One that was left free is held; for another the contact ellipse gives way, path and parabola stay (26.6).
+    Raises ComputationError where there is none.
+    """
+    problem, x = flank.problem, flank.x.copy()
+    if name in problem.extra:
+        problem = _without(problem, name)
+    else:
+        problem = replace(problem, free=[*(one for one in problem.free if one != name), local.ACROSS])
+    x[NAMES.index(name)] = value
+    found = local.solve(problem.how, x, problem.wanted, problem.free)
+    fitted = None if found is None else fit(problem, found, flank.contact)
+    if fitted is None:
+        raise ComputationError(
+            f"pinion {flank.name} flank: no settings were found with {name} in steps of the shop, {value:.6g}"
+        )
+    return replace(flank, problem=problem, fitted=fitted)
+
+
+def _without(problem: WholeFlank, name: str) -> WholeFlank:
+    kept = [k for k, one in enumerate(problem.extra) if one != name]
+    return replace(problem, extra=tuple(problem.extra[k] for k in kept), bounds=problem.bounds[kept])
 
 
 def _crown_gear(member: Member, how: Generation, section: Section, asked: Request) -> tuple[np.ndarray, Wanted]:
@@ -90,23 +123,34 @@ def _crown_gear(member: Member, how: Generation, section: Section, asked: Reques
     x[:2], x[FIRST : FIRST + len(SETTINGS)] = (u, beta), how.settings
     x[NAMES.index("cradle_angle")] += theta
     x[NAMES.index("work_rotation_offset")] += x[NAMES.index("ratio_of_roll")] * theta - turn
-    blank = member.blank
-    cone = math.radians(blank.pitch_angle), blank.mean_cone_distance
+    cone, depth = _root(member)
     flat = Section(0.0, 1.0, float(how.settings[-2]), FLAT_BLADE)
-    direction = math.cos(cone[0]), math.sin(cone[0])
-    root = solve_curve(how, flat, np.zeros(1), direction, np.array([cone[1]]), np.array([[0.0, beta, theta]]))
-    x[2], x[3] = root.contact[0, 1], root.contact[0, 2] - theta
-    there = Wanted(P, turned(at.normal, turn)[0], asked.roll.basis, asked.curvature, blank.mean_dedendum, cone)
+    direction, around = (math.cos(cone[0]), math.sin(cone[0])), np.array([[0.0, beta, theta]] * 2)
+    root = solve_curve(how, flat, np.zeros(2), direction, cone[1:], around)
+    x[2:6] = (root.contact[:, 1:] - [0.0, theta]).ravel()
+    there = Wanted(P, turned(at.normal, turn)[0], asked.roll.basis, asked.curvature, depth, cone, asked.own_path)
     begin = local.between(there, there, 0.0)
     return x, replace(begin, curvature=local.curvature(how, x, begin), depth=local.depth(how, x, begin))
 
 
-def _contacts(how: Generation, section: Section, found: Local, asked: Request) -> np.ndarray:
-    """Start values (n,3) where the pinion's flank crosses the normals of the conjugate one: at the same places."""
+def _root(member: Member) -> tuple[np.ndarray, np.ndarray]:
+    """Pitch angle and cone distances of toe and heel (3,), and the depths (2,) of the blank's root there."""
+    blank = member.blank
+    delta = math.radians(blank.pitch_angle)
+    axial, radial = kernel("flank_place")(blank.vector, np.array([0.0, 1.0]), np.zeros(2))
+    along, depth = kernel("root_place")(np.stack([radial, 0 * radial, axial], axis=1), delta)
+    return np.array([delta, *along]), depth + blank.clearance
+
+
+def _reached(how: Generation, section: Section, found: Local, asked: Request) -> tuple[np.ndarray, np.ndarray]:
+    """Which conjugate places (n,) the blade reaches above its tip, not undercut, and where it cuts them (m,3)."""
     moved = local.generation(how, found)
     places = asked.meeting.point[:, 2], np.hypot(*asked.meeting.point[:, :2].T)
-    blade = Section(section.lower, section.upper, found.settings[-2], found.settings[-1])
-    return solve_section(moved, blade, *places).contact
+    blade = Section(section.lower, section.upper, float(found.settings[-2]), float(found.settings[-1]))
+    at = solve_section(moved, blade, *places)
+    mean = turning_sense(moved, blade, np.array([[*found.x[:2], 0.0]]))
+    kept = at.converged & (at.contact[:, 0] >= section.lower) & (np.sign(at.sense) == np.sign(mean))
+    return kept, at.contact[kept]
 
 
 def _bounds(extra: tuple[str, ...], x: np.ndarray) -> np.ndarray:
@@ -137,7 +181,7 @@ def settings_table(x: np.ndarray) -> dict[str, Any]:
     }
     values["work_rotation_offset"] = math.remainder(values["work_rotation_offset"], 360.0)
     values["cradle_angle"] = math.remainder(values["cradle_angle"], 360.0)
-    moving = dict(zip(MOVING, x[FIRST + len(SETTINGS) :], strict=True))
+    moving = dict(zip(MOVING, x[FIRST + len(SETTINGS) :], strict=False))
     motion: dict[str, tuple[float, ...]] = {}
     rows = np.array([moving["modified_roll_2"], moving["modified_roll_3"]])
     if rows.any():

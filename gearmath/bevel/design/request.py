@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.blank import BevelBlank, MemberBlank
 from gearmath.bevel.contact.local import MARKING
 from gearmath.bevel.contact.report import ARCSEC
 from gearmath.bevel.contact.surface import Surface
 from gearmath.bevel.design.rolling import GearFlank, Meeting, Roll
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
+from gearmath.specs.bevel_set import Member
 from gearmath.specs.design import Contact
 
 #: Rows and columns of the gear's flank on which the gap is wanted, and heights at which its mate's tip is sought.
@@ -26,7 +26,7 @@ _PATH = {"drive": 50.0, "coast": 130.0}
 class Request:
     """What is wanted of the pinion's flank of one ``side``.
 
-    ``place`` z_w, r_w of the vertex on the gear [mm]; ``parabola`` m' [rad/rad²]; ``path_angle`` on the gear [rad];
+    ``place`` z_w, r_w of the vertex on the gear [mm]; ``parabola`` m' [rad/rad²]; ``path_angle`` on the gear, ``own_path`` on the pinion [rad];
     ``semi_axis`` [mm]; ``difference`` D (3,) and ``curvature`` K_2 + D (2,2) [1/mm]; ``roll`` of chapter 26;
     ``meeting`` and ``gap`` [mm] at the places of the gear's flank that the pinion's tip reaches.
     """
@@ -37,6 +37,7 @@ class Request:
     place: tuple[float, float]
     parabola: float
     path_angle: float
+    own_path: float
     semi_axis: float
     difference: np.ndarray
     curvature: np.ndarray
@@ -44,7 +45,7 @@ class Request:
     gap: np.ndarray
 
 
-def request(side: str, asked: Contact, gear: GearFlank, pinion: MemberBlank, teeth: int, tip: np.ndarray) -> Request:
+def request(side: str, asked: Contact, gear: GearFlank, teeth: int, tip: np.ndarray) -> Request:
     """What is asked of a side. ``tip`` (4,) is the pinion's border there (25.4).
 
     Raises InputError where no pinion touches the gear as is asked, with the limit.
@@ -67,10 +68,8 @@ def request(side: str, asked: Contact, gear: GearFlank, pinion: MemberBlank, tee
     _check(side, asked, D, conjugate, path)
     meeting, along = _flank(gear, roll, lowest)
     lever = np.full(len(along), abs(roll.lever))
-    (gap,) = kernel("wanted_gap")(
-        meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever
-    )
-    return Request(side, gear, roll, (axial, radial), parabola, path, semi_axis, D,
+    (gap,) = kernel("wanted_gap")(meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever)
+    return Request(side, gear, roll, (axial, radial), parabola, path, float(own), semi_axis, D,
                    roll.gear_curvature + matrix(D), meeting, gap)  # fmt: skip
 
 
@@ -101,8 +100,7 @@ def _inside(meeting: Meeting, tip: np.ndarray) -> np.ndarray:
 def _flank(gear: GearFlank, roll: Roll, lowest: float) -> tuple[Meeting, np.ndarray]:
     """Conjugate places of the gear's flank above ``lowest``, and how far along the tooth each lies [mm]."""
     up, across = (
-        one.ravel()
-        for one in np.meshgrid(np.linspace(lowest, 1, _ROWS), np.linspace(0, 1, _COLUMNS), indexing="ij")
+        one.ravel() for one in np.meshgrid(np.linspace(lowest, 1, _ROWS), np.linspace(0, 1, _COLUMNS), indexing="ij")
     )
     found = gear.meeting(*kernel("flank_place")(gear.surface.blank.vector, across, up), roll.turn)
     kept = np.isfinite(found.point).all(axis=1)
@@ -125,8 +123,8 @@ def _least(components: np.ndarray) -> float:
     return float(np.linalg.eigvalsh(matrix(components)).min())
 
 
-def gear_flank(surface: Surface, blank: BevelBlank) -> GearFlank:
-    """The gear's flank in its pair."""
-    pinion, wheel = blank.pinion, blank.wheel
-    return GearFlank(surface, blank.shaft_angle, pinion.teeth / wheel.teeth, pinion.pitch_angle,
-                     blank.mean_cone_distance)  # fmt: skip
+def gear_flank(surface: Surface, pinion: Member, shaft_angle: float) -> GearFlank:
+    """The gear's flank in its pair; ``shaft_angle`` in degrees."""
+    blank = pinion.blank
+    return GearFlank(surface, math.radians(shaft_angle), pinion.teeth / surface.teeth, math.radians(blank.pitch_angle),
+                     blank.mean_cone_distance, blank.pitch_apex_beyond_crossing_point)  # fmt: skip

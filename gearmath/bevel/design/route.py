@@ -1,46 +1,72 @@
-"""The route of a design: blank, gear in closed form, pinion by local synthesis and least squares, exact contact."""
+"""The route of a design: blank, gear in closed form, pinion by local synthesis and least squares, steps of the shop."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
-import numpy as np
+import math
+from dataclasses import dataclass
 
 from gearmath.bevel.blank import BevelBlank, blank_of
+from gearmath.bevel.contact.report import SIDES as OWN
 from gearmath.bevel.contact.surface import nominal_surface
 from gearmath.bevel.crown_gear import Method, crown_gear_set
 from gearmath.bevel.design.backlash import with_backlash
 from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, with_flank
 from gearmath.bevel.design.request import gear_flank, request
+from gearmath.bevel.design.rounding import rounded_gear, rounded_pinion
+from gearmath.bevel.tooth import mean_backlash
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
 from gearmath.specs.design import DesignData
 
-#: The pinion's flank that works on each side.
-OWN = {"drive": "concave", "coast": "convex"}
-
 
 @dataclass(frozen=True)
 class Designed:
-    """A pair, its blank, and how each flank of its pinion was found, by side."""
+    """A pair, how each flank of its pinion was found, by side, and the backlash asked for [mm]; the cutter's radius."""
 
     data: DesignData
-    blank: BevelBlank
     pair: BevelSet
     flanks: dict[str, PinionFlank]
+    backlash: float
+    cutter_radius: float
 
 
-def design(data: DesignData, name: str = "design data") -> Designed:
-    """A pair from the data of a design; ``name`` is their file in messages.
+def design(data: DesignData, name: str = "design data", given: BevelSet | None = None) -> Designed:
+    """A pair from the data of a design, to the gear of a ``given`` set or to one of its own.
 
-    Raises InputError naming key, value and limit of what cannot be, ComputationError where no settings are found.
+    ``name`` is the data's file in messages. Raises InputError naming key, value and limit of what cannot be,
+    ComputationError where no settings are found.
     """
-    if data.pinion.cutting != "fixed_setting" or data.cutter.process != "face_milling":
-        raise InputError("pinion.cutting: so far the pinion is designed face milled, fixed_setting")
-    given = data.blank_data(chosen_radius(data))
-    blank = blank_of(given, name)
-    start = crown_gear_set(given, Method("fixed_setting"), Method("completing", data.gear.generation), data.hand)
-    return _for_gear(data, blank, start)
+    if data.pinion.cutting != "fixed_setting":
+        raise InputError(
+            f"{name}: pinion.cutting = 'completing': a pinion is so far designed with 'fixed_setting' only"
+        )
+    if data.cutter.process != "face_milling":
+        raise InputError(f"{name}: cutter.process = 'face_hobbing': pairs are so far designed face milled only")
+    radius = chosen_radius(data)
+    blank_data = data.blank_data(radius)
+    blank = blank_of(blank_data, name)
+    start = crown_gear_set(
+        blank_data, Method("fixed_setting", tilt=_tilt(data, blank), tilt_direction=math.pi / 2),
+        Method("completing", data.gear.generation), data.hand,
+    )  # fmt: skip
+    backlash = blank.mean_transverse_backlash
+    pinion, gear = start.pinion, rounded_gear(start.gear, data.shop)
+    if given is not None:
+        pinion, gear = _on_blank_of(given, start.pinion, name), given.gear
+        if data.backlash is None:
+            backlash = mean_backlash(given.pinion, given.gear)
+    flanks: dict[str, PinionFlank] = {}
+    found: Member = pinion
+    for side, own in OWN.items():
+        mating = nominal_surface(gear, FLANKS[1 - FLANKS.index(own)])
+        tip = nominal_surface(pinion, own).borders[0]
+        facing = gear_flank(mating, pinion, start.shaft_angle)
+        asked = request(side, data.contact(side), facing, pinion.teeth, tip)
+        flanks[side] = rounded_pinion(pinion_flank(pinion, own, asked, data.pinion.free), data.shop)
+        found = with_flank(found, own, flanks[side].x)
+    found = with_backlash(found, gear, backlash, pinion, data.shop.angle_step)
+    pair = start.model_copy(update={"pinion": found, "gear": gear})
+    return Designed(data, pair, flanks, backlash, radius)
 
 
 def chosen_radius(data: DesignData) -> float:
@@ -52,16 +78,21 @@ def chosen_radius(data: DesignData) -> float:
     return min(data.cutter.radii, key=lambda radius: abs(radius - distance))
 
 
-def _for_gear(data: DesignData, blank: BevelBlank, start: BevelSet) -> Designed:
-    flanks: dict[str, PinionFlank] = {}
-    pinion: Member = start.pinion
-    for side, own in OWN.items():
-        mating = FLANKS[1 - FLANKS.index(own)]
-        gear = gear_flank(nominal_surface(start.gear, mating), blank)
-        tip = nominal_surface(start.pinion, own).borders[0]
-        asked = request(side, data.contact(side), gear, blank.pinion, data.pinion_teeth, tip)
-        flanks[side] = pinion_flank(start.pinion, own, asked, data.pinion.free)
-        pinion = with_flank(pinion, own, flanks[side].x)
-    pinion = with_backlash(pinion, start.gear, blank.mean_transverse_backlash, start.pinion)
-    pair = start.model_copy(update={"pinion": pinion})
-    return Designed(data, blank, pair, flanks)
+def _tilt(data: DesignData, blank: BevelBlank) -> float:
+    """Tilt of the pinion's cutter [rad]: as given, or for a Formate gear square to the gear's root line.
+
+    The gear's cutter stands square to that; a pinion cut by one that stands alike is nearly conjugate to it.
+    """
+    if data.pinion.cutter_tilt is not None:
+        return math.radians(data.pinion.cutter_tilt)
+    return blank.dedendum_angle_sum if data.gear.generation == "formate" else 0.0
+
+
+def _on_blank_of(given: BevelSet, start: Member, name: str) -> Member:
+    """The pinion of the crown gear on the blank of a given set. Raises InputError where the data are of another pair."""
+    for member, of_data, of_set in (
+        ("pinion_teeth", start.teeth, given.pinion.teeth), ("hand", start.hand, given.pinion.hand),
+    ):  # fmt: skip
+        if of_data != of_set:
+            raise InputError(f"{name}: {member} = {of_data!r}: must be {of_set!r}, as the set has it")
+    return start.model_copy(update={"blank": given.pinion.blank})

@@ -7,7 +7,7 @@ choice, so that a fit cannot trade what was asked for at the mean point against 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from gearmath.specs.bevel_set import SETTINGS
 #: Places of NAMES in the whole vector (83,) of a flank.
 _INDEX = [WHOLE.index(name) for name in (*SETTINGS, *(f"{name}.{power}" for name, power in MOVING.values()))]
 
+#: Room to a bound, in parts of it, that counts as none.
+_AT_BOUND = 1e-6
+
 
 @dataclass(frozen=True)
 class Fitted:
@@ -38,9 +41,26 @@ class Fitted:
         return float(np.sqrt(np.mean(self.off**2)))
 
 
-@dataclass
+@dataclass(frozen=True)
+class Tried:
+    """A choice of the extra settings: the others that belong to it, where its flank crosses, and what is off there.
+
+    ``contact`` (n,3); ``off`` (n,) [mm] and its derivatives (n,p) by the extra settings.
+    """
+
+    values: np.ndarray
+    local: Local
+    contact: np.ndarray
+    off: np.ndarray
+    rates: np.ndarray
+
+
+@dataclass(frozen=True)
 class WholeFlank:
-    """The problem of one flank: conjugate places (n,) of the gear's grid, and the gap (n,) [mm] wanted there."""
+    """The problem of one flank: conjugate places (n,) of the gear's grid, and the gap (n,) [mm] wanted there.
+
+    ``free`` settings follow from the mean point for each choice of the ``extra`` ones within ``bounds`` (p,2).
+    """
 
     how: Generation
     wanted: Wanted
@@ -49,19 +69,17 @@ class WholeFlank:
     free: Sequence[str]
     extra: tuple[str, ...]
     bounds: np.ndarray
-    contact: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
 
-    def at(self, start: Local, values: np.ndarray) -> tuple[Local, np.ndarray, np.ndarray] | None:
-        """Settings with the extra ones at ``values``, what is off (n,) and its derivatives by them (n,p)."""
-        x = start.x.copy()
+    def tried(self, near: Local, contact: np.ndarray, values: np.ndarray) -> Tried | None:
+        """The extra settings at ``values``, from a solution nearby; None where there is none, or a place is not cut."""
+        x = near.x.copy()
         where = [NAMES.index(name) for name in self.extra]
         x[where] = values
         found = local.solve(self.how, x, self.wanted, self.free)
         if found is None:
             return None
-        how = local.generation(self.how, found)
-        points = FlankPoints(self.contact, self.meeting.point, self.meeting.normal)
-        target = FlankTarget(how, points, np.zeros(len(self.gap)))
+        points = FlankPoints(contact, self.meeting.point, self.meeting.normal)
+        target = FlankTarget(local.generation(self.how, found), points, np.zeros(len(self.gap)))
         crossing = locate(target, target.vector, moving=True)
         if crossing.failed.any():
             return None
@@ -70,35 +88,35 @@ class WholeFlank:
         moved[where] = np.eye(len(where))
         if where:
             moved[index] = -np.linalg.solve(found.rates[:, index], found.rates[:, where])
-        self.contact = crossing.contact
-        return found, -crossing.deviation - self.gap, -crossing.gradient[:, _INDEX] @ moved[local.FIRST :]
+        rates = -crossing.gradient[:, _INDEX] @ moved[local.FIRST : -1]
+        return Tried(values, found, crossing.contact, -crossing.deviation - self.gap, rates)
 
 
-def fit(problem: WholeFlank, start: Local) -> Fitted | None:
-    """The extra settings within their bounds (p,2) that bring the ease-off nearest to what is wanted."""
-    where = [NAMES.index(name) for name in problem.extra]
-    begin = start.x[where]
-    state = {"at": start}
-    low, high = problem.bounds[:, 0] - begin, problem.bounds[:, 1] - begin
-    scale = np.maximum(np.abs(low), np.abs(high))
+def fit(problem: WholeFlank, start: Local, contact: np.ndarray) -> Fitted | None:
+    """The extra settings within their bounds that bring the ease-off nearest to what is wanted, by least squares.
 
-    def residuals(v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        found = problem.at(state["at"], begin + v * scale)
-        if found is None:
-            return None
-        return found[1], found[2] * scale
-
-    first = problem.at(start, begin)
+    ``contact`` (n,3) is where the flank of ``start`` is cut. None where a place of the gear is not cut there.
+    """
+    begin = start.x[[NAMES.index(name) for name in problem.extra]]
+    first = problem.tried(start, contact, begin)
     if first is None:
         return None
-    if not where:
-        return Fitted(first[0], first[1], ())
-    minimum = minimize(residuals, low / scale, high / scale)
-    found = problem.at(start, begin + minimum.variables * scale)
-    if found is None:
-        return None
-    active = tuple(
-        name for name, v, a, b in zip(problem.extra, minimum.variables, low / scale, high / scale, strict=True)
-        if min(v - a, b - v) < 1e-6
-    )  # fmt: skip
-    return Fitted(found[0], found[1], active)
+    if not problem.extra:
+        return Fitted(first.local, first.off, ())
+    low, high = problem.bounds[:, 0] - begin, problem.bounds[:, 1] - begin
+    scale, known = np.maximum(np.abs(low), np.abs(high)), [first]
+
+    def residuals(v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+        values = begin + v * scale
+        near = min(known, key=lambda one: float(np.linalg.norm((one.values - values) / scale)))
+        found = problem.tried(near.local, near.contact, values)
+        if found is None:
+            return None
+        known.append(found)
+        return found.off, found.rates * scale
+
+    v = minimize(residuals, low / scale, high / scale).variables
+    best = min(known, key=lambda one: float(np.linalg.norm((one.values - begin) / scale - v)))
+    room = np.minimum(v - low / scale, high / scale - v)
+    active = tuple(name for name, left in zip(problem.extra, room, strict=True) if left < _AT_BOUND)
+    return Fitted(best.local, best.off, active)
