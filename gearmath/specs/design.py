@@ -53,7 +53,7 @@ class PinionMethod(Sheet):
 
     cutting: Literal["fixed_setting", "completing"] = "fixed_setting"
     free: tuple[Free, ...] = Field(default=("blade_pressure_angle", "modified_roll"), strict=False)
-    #: Tilt of the cutter to start from; without it none for a generated gear, and square to the root line of a Formate one.
+    #: Tilt of the cutter; without it none for a generated gear, and square to the root line of a Formate one.
     cutter_tilt: Angle | None = Field(default=None, ge=-30, le=30)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearmath.bevel.blank import BevelBlank, blank_of
+from gearmath.bevel.blank import BevelBlank
 from gearmath.bevel.contact.report import SIDES as OWN
 from gearmath.bevel.contact.surface import nominal_surface
 from gearmath.bevel.crown_gear import Method, crown_gear_set
@@ -13,21 +13,23 @@ from gearmath.bevel.design.backlash import with_backlash
 from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, with_flank
 from gearmath.bevel.design.request import gear_flank, request
 from gearmath.bevel.design.rounding import rounded_gear, rounded_pinion
+from gearmath.bevel.design.start import blank_for
 from gearmath.bevel.tooth import mean_backlash
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
+from gearmath.specs.blank_data import BlankData
 from gearmath.specs.design import DesignData
 
 
 @dataclass(frozen=True)
 class Designed:
-    """A pair, how each flank of its pinion was found, by side, and the backlash asked for [mm]; the cutter's radius."""
+    """A pair, the data of its blank, how each flank of its pinion was found, by side, and the backlash wanted [mm]."""
 
     data: DesignData
     pair: BevelSet
     flanks: dict[str, PinionFlank]
     backlash: float
-    cutter_radius: float
+    blank_data: BlankData
 
 
 def design(data: DesignData, name: str = "design data", given: BevelSet | None = None) -> Designed:
@@ -42,19 +44,17 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
         )
     if data.cutter.process != "face_milling":
         raise InputError(f"{name}: cutter.process = 'face_hobbing': pairs are so far designed face milled only")
-    radius = chosen_radius(data)
-    blank_data = data.blank_data(radius)
-    blank = blank_of(blank_data, name)
+    blank_data, blank = blank_for(data, name)
     start = crown_gear_set(
         blank_data, Method("fixed_setting", tilt=_tilt(data, blank), tilt_direction=math.pi / 2),
         Method("completing", data.gear.generation), data.hand,
     )  # fmt: skip
     backlash = blank.mean_transverse_backlash
-    pinion, gear = start.pinion, rounded_gear(start.gear, data.shop)
+    pinion, gear = start.member("pinion"), rounded_gear(start.member("gear"), data.shop)
     if given is not None:
-        pinion, gear = _on_blank_of(given, start.pinion, name), given.gear
+        pinion, gear = _on_blank_of(given.member("pinion"), pinion, name), given.member("gear")
         if data.backlash is None:
-            backlash = mean_backlash(given.pinion, given.gear)
+            backlash = mean_backlash(given.member("pinion"), gear)
     flanks: dict[str, PinionFlank] = {}
     found: Member = pinion
     for side, own in OWN.items():
@@ -66,16 +66,7 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
         found = with_flank(found, own, flanks[side].x)
     found = with_backlash(found, gear, backlash, pinion, data.shop.angle_step)
     pair = start.model_copy(update={"pinion": found, "gear": gear})
-    return Designed(data, pair, flanks, backlash, radius)
-
-
-def chosen_radius(data: DesignData) -> float:
-    """The cutter's radius: as given, or of those at hand the one nearest to the mean cone distance."""
-    if not data.cutter.radii or data.cutter.cutter_radius:
-        return data.cutter.cutter_radius
-    first = data.blank_data(max(data.cutter.radii))
-    distance = blank_of(first).mean_cone_distance
-    return min(data.cutter.radii, key=lambda radius: abs(radius - distance))
+    return Designed(data, pair, flanks, backlash, blank_data)
 
 
 def _tilt(data: DesignData, blank: BevelBlank) -> float:
@@ -88,11 +79,9 @@ def _tilt(data: DesignData, blank: BevelBlank) -> float:
     return blank.dedendum_angle_sum if data.gear.generation == "formate" else 0.0
 
 
-def _on_blank_of(given: BevelSet, start: Member, name: str) -> Member:
-    """The pinion of the crown gear on the blank of a given set. Raises InputError where the data are of another pair."""
-    for member, of_data, of_set in (
-        ("pinion_teeth", start.teeth, given.pinion.teeth), ("hand", start.hand, given.pinion.hand),
-    ):  # fmt: skip
+def _on_blank_of(given: Member, start: Member, name: str) -> Member:
+    """The crown gear's pinion on the blank of a given one. Raises InputError where the data are of another pair."""
+    for key, of_data, of_set in (("pinion_teeth", start.teeth, given.teeth), ("hand", start.hand, given.hand)):
         if of_data != of_set:
-            raise InputError(f"{name}: {member} = {of_data!r}: must be {of_set!r}, as the set has it")
-    return start.model_copy(update={"blank": given.pinion.blank})
+            raise InputError(f"{name}: {key} = {of_data!r}: must be {of_set!r}, as the set has it")
+    return start.model_copy(update={"blank": given.blank})
