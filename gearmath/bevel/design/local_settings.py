@@ -29,9 +29,12 @@ UNKNOWN = (
     "u", "beta", *ROOT, "radial_distance", "cradle_angle", "blank_offset", "sliding_base",
     "machine_center_to_crossing_point", "machine_root_angle", "ratio_of_roll", "work_rotation_offset", "blade_point_radius",
 )  # fmt: skip
-#: Sizes that count alike in a Newton step: mm, rad and coefficients.
-_SIZES = {"u": 1.0, "beta": 0.05, **dict.fromkeys(ROOT, 0.05), "machine_root_angle": 0.02, "ratio_of_roll": 0.2,
-          "modified_roll_2": 0.1, "modified_roll_3": 0.5}  # fmt: skip
+#: Sizes that count alike in a Newton step: mm, rad and coefficients; the way of least change is taken in these.
+_SIZES = {
+    "u": 1.0, "beta": 0.05, **dict.fromkeys(ROOT, 0.05), "cradle_angle": 0.05, "work_rotation_offset": 0.1,
+    "cutter_tilt": 0.03, "cutter_swivel": 0.1, "machine_root_angle": 0.02, "ratio_of_roll": 0.1,
+    "blade_pressure_angle": 0.03, "modified_roll_2": 0.05, "modified_roll_3": 0.2,
+}  # fmt: skip
 _STEPS, _TOLERANCE, _PARTS, _LEAST = 12, 1e-10, 20, 1e-4
 #: A curvature counts as a length by the square of this. [mm]
 _LENGTH = 30.0
@@ -126,7 +129,10 @@ def residual(how: Generation, x: np.ndarray, wanted: Wanted) -> tuple[np.ndarray
 
 
 def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = UNKNOWN) -> Local | None:
-    """The settings near ``x`` (22,) that give what is wanted, by the ``free`` ones alone; None where Newton fails."""
+    """The settings near ``x`` (22,) that give what is wanted, by the ``free`` ones alone; None where Newton fails.
+
+    More free settings than conditions change as little as they can.
+    """
     index = [NAMES.index(name) for name in free]
     sizes = np.array([_SIZES.get(name, 1.0) for name in free])
     x = x.copy()
@@ -138,7 +144,7 @@ def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = 
         if size < _TOLERANCE:
             return Local(x, size, rates)
         try:
-            step = np.linalg.solve(rates[:, index], -off)
+            step = sizes * np.linalg.lstsq(rates[:, index] * sizes, -off)[0]
         except np.linalg.LinAlgError:
             return None
         x[index] += step / max(1.0, float((np.abs(step) / (10 * sizes)).max()))

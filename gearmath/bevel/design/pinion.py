@@ -64,25 +64,33 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
     x, begin = _crown_gear(start, how, section, asked)
     end = Wanted(asked.roll.point, asked.roll.normal, asked.roll.basis, asked.curvature,
                  _root(start)[1], begin.cone, asked.own_path)  # fmt: skip
-    found = local.followed(how, x, begin, end)
+    extra = tuple(extra for name in free for extra in _EXTRA[name])
+    found = local.followed(how, x, begin, end, (*local.UNKNOWN, *extra))
     if found is None:
         raise ComputationError(
             f"pinion {name} flank: no settings were found that give the {asked.side} side its path, parabola and "
             "pattern at the mean point; ask for a path nearer to 90 degrees, a smaller transmission error, or less "
             "crowning"
         )
-    kept, contact = _reached(how, section, found, asked)
-    meeting = Meeting(*(array[kept] for array in vars(asked.meeting).values()))
-    extra = tuple(extra for name in free for extra in _EXTRA[name])
     bounds = _bounds(extra, found.x)
-    problem = WholeFlank(how, end, meeting, asked.gap[kept], local.UNKNOWN, extra, bounds)
-    fitted = fit(problem, found, contact)
+
+    def problem(among: np.ndarray) -> WholeFlank:
+        meeting = Meeting(*(array[among] for array in vars(asked.meeting).values()))
+        return WholeFlank(how, end, meeting, asked.gap[among], local.UNKNOWN, extra, bounds)
+
+    # first the middle of the flank: on the way from there, no place comes to lie beyond a singular line
+    kept, contact = _reached(how, section, found, asked, asked.inner)
+    first = fit(problem(kept), found, contact)
+    near = found if first is None else first.local
+    kept, contact = _reached(how, section, near, asked, np.ones_like(kept))
+    whole = problem(kept)
+    fitted = fit(whole, near, contact)
     if fitted is None:
         raise ComputationError(
             f"pinion {name} flank: the settings for the mean point leave parts of the flank uncut; ask for less of the "
             "flank, or for a smaller transmission error"
         )
-    return PinionFlank(name, asked, problem, contact, fitted, float(kept.mean()))
+    return PinionFlank(name, asked, whole, contact, fitted, float(kept.mean()))
 
 
 def refitted(flank: PinionFlank, name: str, value: float) -> PinionFlank:
@@ -142,14 +150,16 @@ def _root(member: Member) -> tuple[np.ndarray, np.ndarray]:
     return np.array([delta, *along]), depth + blank.clearance
 
 
-def _reached(how: Generation, section: Section, found: Local, asked: Request) -> tuple[np.ndarray, np.ndarray]:
+def _reached(
+    how: Generation, section: Section, found: Local, asked: Request, among: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Which conjugate places (n,) the blade reaches above its tip, not undercut, and where it cuts them (m,3)."""
     moved = local.generation(how, found)
     places = asked.meeting.point[:, 2], np.hypot(*asked.meeting.point[:, :2].T)
     blade = Section(section.lower, section.upper, float(found.settings[-2]), float(found.settings[-1]))
     at = solve_section(moved, blade, *places)
     mean = turning_sense(moved, blade, np.array([[*found.x[:2], 0.0]]))
-    kept = at.converged & (at.contact[:, 0] >= section.lower) & (np.sign(at.sense) == np.sign(mean))
+    kept = among & at.converged & (at.contact[:, 0] >= section.lower) & (np.sign(at.sense) == np.sign(mean))
     return kept, at.contact[kept]
 
 

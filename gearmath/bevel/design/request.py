@@ -18,6 +18,8 @@ from gearmath.specs.design import Contact
 
 #: Rows and columns of the gear's flank on which the gap is wanted, and heights at which its mate's tip is sought.
 _ROWS, _COLUMNS, _HEIGHTS = 7, 13, 41
+#: The middle of a flank reaches so far to either side, in parts of its width and of its height.
+_INNER = 0.3
 #: Path on the gear where none is asked for [degree]: it leans as lets one pair of teeth touch longest.
 _PATH = {"drive": 50.0, "coast": 130.0}
 
@@ -28,7 +30,8 @@ class Request:
 
     ``place`` z_w, r_w of the vertex on the gear [mm]; ``parabola`` m' [rad/rad²]; ``path_angle`` on the gear, ``own_path`` on the pinion [rad];
     ``semi_axis`` [mm]; ``difference`` D (3,) and ``curvature`` K_2 + D (2,2) [1/mm]; ``roll`` of chapter 26;
-    ``meeting`` and ``gap`` [mm] at the places of the gear's flank that the pinion's tip reaches.
+    ``meeting`` and ``gap`` [mm] at places (n,) of the gear's flank that the
+    pinion's tip reaches; ``inner`` (n,) are those about the middle.
     """
 
     side: str
@@ -43,6 +46,7 @@ class Request:
     curvature: np.ndarray
     meeting: Meeting
     gap: np.ndarray
+    inner: np.ndarray
 
 
 def request(side: str, asked: Contact, gear: GearFlank, teeth: int, tip: np.ndarray) -> Request:
@@ -66,11 +70,11 @@ def request(side: str, asked: Contact, gear: GearFlank, teeth: int, tip: np.ndar
     (D,) = kernel("synthesis")(*given, own, parabola, semi_axis, MARKING)
     (conjugate,) = kernel("conjugate_curvature")(w, roll.acceleration)
     _check(side, asked, D, conjugate, path)
-    meeting, along = _flank(gear, roll, lowest)
+    meeting, along, inner = _flank(gear, roll, lowest)
     lever = np.full(len(along), abs(roll.lever))
     (gap,) = kernel("wanted_gap")(meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever)
     return Request(side, gear, roll, (axial, radial), parabola, path, float(own), semi_axis, D,
-                   roll.gear_curvature + matrix(D), meeting, gap)  # fmt: skip
+                   roll.gear_curvature + matrix(D), meeting, gap, inner)  # fmt: skip
 
 
 def matrix(components: np.ndarray) -> np.ndarray:
@@ -97,7 +101,7 @@ def _inside(meeting: Meeting, tip: np.ndarray) -> np.ndarray:
     return tip[1] * meeting.point[:, 2] + tip[2] * np.hypot(*meeting.point[:, :2].T) + tip[3]
 
 
-def _flank(gear: GearFlank, roll: Roll, lowest: float) -> tuple[Meeting, np.ndarray]:
+def _flank(gear: GearFlank, roll: Roll, lowest: float) -> tuple[Meeting, np.ndarray, np.ndarray]:
     """Conjugate places of the gear's flank above ``lowest``, and how far along the tooth each lies [mm]."""
     up, across = (
         one.ravel() for one in np.meshgrid(np.linspace(lowest, 1, _ROWS), np.linspace(0, 1, _COLUMNS), indexing="ij")
@@ -105,7 +109,8 @@ def _flank(gear: GearFlank, roll: Roll, lowest: float) -> tuple[Meeting, np.ndar
     found = gear.meeting(*kernel("flank_place")(gear.surface.blank.vector, across, up), roll.turn)
     kept = np.isfinite(found.point).all(axis=1)
     found = Meeting(*(array[kept] for array in vars(found).values()))
-    return found, (found.point - roll.point) @ roll.basis[:, 0]
+    inner = (np.abs(across - 0.5) < _INNER) & (np.abs((up - lowest) / (1 - lowest) - 0.5) < _INNER)
+    return found, (found.point - roll.point) @ roll.basis[:, 0], inner[kept]
 
 
 def _check(side: str, asked: Contact, D: np.ndarray, conjugate: np.ndarray, path: float) -> None:
