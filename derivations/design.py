@@ -123,7 +123,7 @@ def wanted_gap() -> Expression:
 
 
 def prove_factors_are_those_of_sample_1() -> None:
-    """(27.1) ISO 23509:2016, table F.2, 14 x 39 at 90°: 0.24737 and 0.0915, with 0.210 and 0.290 for 12 teeth or more."""
+    """(27.1) ISO 23509:2016, table F.2, 14 x 39 at 90°: 0.24737 and 0.0915, with 0.210 and 0.290."""
     ratio = sp.Rational(39, 14)
     pitch = sp.atan(1 / ratio)
     values = [ratio, 14, pitch, sp.pi / 2 - pitch, sp.Rational(21, 100), sp.Rational(29, 100)]

@@ -17,11 +17,14 @@ from gearmath.specs.blank_data import Backlash, BlankData, Cutter, DataType1, Da
 from gearmath.specs.sheet import Angle, Length, Sheet, shown
 from gearmath.specs.toml import checked, load
 
-#: Depth factor, and the two constants of the addendum factor, by the teeth of the pinion; 12 stands for all above.
+#: Depth factor, and the two constants of the addendum factor, by the teeth of the pinion; 12 stands for all above. The
+#: last is ISO 23509's, the others are shallower and give the pinion more of the depth, so that it is not undercut.
 _SMALL_PINIONS = {
-    5: (1.70, 0.085, 0.080), 6: (1.765, 0.100, 0.115), 7: (1.835, 0.110, 0.160), 8: (1.895, 0.130, 0.195),
-    9: (1.940, 0.145, 0.235), 10: (1.975, 0.175, 0.260), 11: (1.995, 0.210, 0.280), 12: (2.0, 0.210, 0.290),
+    5: (1.70, 0.115, 0.080), 6: (1.765, 0.130, 0.115), 7: (1.835, 0.145, 0.160), 8: (1.895, 0.160, 0.195),
+    9: (1.940, 0.170, 0.235), 10: (1.975, 0.185, 0.260), 11: (1.995, 0.210, 0.280), 12: (2.0, 0.210, 0.290),
 }  # fmt: skip
+#: A Formate gear has straight flanks, which reach deeper into the pinion: its addendum is so much of the other one.
+_FORMATE = 0.8
 _CLEARANCE_FACTOR = 0.125
 #: Backlash square to the flank, in outer transverse modules.
 _BACKLASH = 0.03
@@ -69,17 +72,18 @@ class Contact(Sheet):
     ``transmission_error`` is that half a pitch from the vertex [arcsec], ``path_angle`` the direction of the path on
     the gear in its tangent plane, from the root line towards the tip; without it, a path that leans with the roll.
     ``pattern_length`` is the major axis of the contact ellipse at 6.35 µm over the face width. ``position`` tells where
-    the vertex lies: from toe (0) to heel (1), and from root to tip of the part of the flank that the mate reaches.
+    the vertex lies: from toe (0) to heel (1), and from root to tip of the part of the flank that the mate reaches;
+    without it halfway along the tooth, and as high as makes both halves of the path as long.
     """
 
     transmission_error: float = Field(default=8.0, gt=0, le=120)
     path_angle: Angle | None = Field(default=None, ge=15, le=165)
     pattern_length: float = Field(default=0.5, ge=0.1, le=2)
-    position: tuple[float, float] = Field(default=(0.5, 0.5), strict=False)
+    position: tuple[float, float] | None = Field(default=None, strict=False)
 
     @model_validator(mode="after")
     def _inside(self) -> Contact:
-        if any(not 0.1 <= part <= 0.9 for part in self.position):
+        if self.position is not None and any(not 0.1 <= part <= 0.9 for part in self.position):
             raise ValueError("position must lie between 0.1 and 0.9, from toe to heel and from root to tip")
         return self
 
@@ -188,7 +192,8 @@ class DesignData(Sheet):
         )
         return {
             "tooth_depth_factor": depth, "clearance_factor": _CLEARANCE_FACTOR,
-            "mean_addendum_factor": float(addendum), "thickness_factor": float(thickness),
+            "mean_addendum_factor": float(addendum) * (_FORMATE if self.gear.generation == "formate" else 1.0),
+            "thickness_factor": float(thickness),
         }  # fmt: skip
 
 

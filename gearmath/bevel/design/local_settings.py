@@ -1,4 +1,7 @@
-"""Settings of the pinion out of point, normal and curvature at one point: a square system, followed by homotopy (27.4)."""
+"""Settings of the pinion out of point, normal and curvature at one point: a square system and its homotopy (27.5).
+
+The root is held with it: where the tip plane of the cutter cuts deepest, at toe and heel, is where the blank has it.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,8 @@ FIRST = NAMES.index(SETTINGS[0])
 #: What the square system finds; any other of NAMES may be given.
 UNKNOWN = (
     "u", "beta", *ROOT, "radial_distance", "cradle_angle", "blank_offset", "sliding_base",
-    "machine_center_to_crossing_point", "machine_root_angle", "ratio_of_roll", "work_rotation_offset", "blade_point_radius",
+    "machine_center_to_crossing_point", "machine_root_angle", "ratio_of_roll", "work_rotation_offset",
+    "blade_point_radius",
 )  # fmt: skip
 #: Sizes that count alike in a Newton step: mm, rad and coefficients; the way of least change is taken in these.
 _SIZES = {
@@ -42,11 +46,11 @@ _LENGTH = 30.0
 
 @dataclass(frozen=True)
 class Wanted:
-    """Point (3,) [mm], outward normal (3,), shape operator (2,2) [1/mm] in a ``basis`` (3,2), depths of the root (2,) [mm].
+    """Point (3,) [mm], outward normal (3,), shape operator (2,2) [1/mm] in a ``basis`` (3,2), depths (2,) [mm].
 
-    The shape operator is that with the normal into the pinion, as chapter 26 has it; the depths those below
-    the pitch cone at toe and heel. ``cone`` holds the pitch angle [rad] and the cone distances of toe and heel [mm],
-    ``path`` the direction of the path on the pinion [rad] in the basis.
+    The shape operator is that with the normal into the pinion, as chapter 26 has it; the depths those of the
+    root below the pitch cone at toe and heel. ``cone`` holds the pitch angle [rad] and the cone distances of toe and
+    heel [mm], ``path`` the direction of the path on the pinion [rad] in the basis.
     """
 
     point: np.ndarray
@@ -197,5 +201,6 @@ def between(start: Wanted, end: Wanted, part: float) -> Wanted:
     second *= np.sign(second @ end.basis[:, 1])
     return Wanted(
         (1 - part) * start.point + part * end.point, normal, np.column_stack([first, second]),
-        (1 - part) * start.curvature + part * end.curvature, (1 - part) * start.depth + part * end.depth, end.cone, end.path,
+        (1 - part) * start.curvature + part * end.curvature, (1 - part) * start.depth + part * end.depth, end.cone,
+        end.path,
     )  # fmt: skip

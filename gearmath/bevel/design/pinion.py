@@ -40,7 +40,8 @@ _EXTRA = {
 class PinionFlank:
     """One flank of the pinion as it was found: settings as x of ``local_settings.NAMES``, and how well they fit.
 
-    ``contact`` is where the first solution is cut, ``share`` the part of the gear's places that the blade reaches, where it was fitted.
+    ``contact`` is where the first solution is cut, ``share`` the part of the gear's places that the blade reaches:
+    there it was fitted.
     """
 
     name: str

@@ -18,6 +18,8 @@ from gearmath.specs.design import Contact
 
 #: Rows and columns of the gear's flank on which the gap is wanted, and heights at which its mate's tip is sought.
 _ROWS, _COLUMNS, _HEIGHTS = 7, 13, 41
+#: Parts of the height at which the vertex is tried, from, to and how many.
+_TRIED = (0.2, 0.8, 7)
 #: The middle of a flank reaches so far to either side, in parts of its width and of its height.
 _INNER = 0.3
 #: Path on the gear where none is asked for [degree]: it leans as lets one pair of teeth touch longest.
@@ -28,10 +30,10 @@ _PATH = {"drive": 50.0, "coast": 130.0}
 class Request:
     """What is wanted of the pinion's flank of one ``side``.
 
-    ``place`` z_w, r_w of the vertex on the gear [mm]; ``parabola`` m' [rad/rad²]; ``path_angle`` on the gear, ``own_path`` on the pinion [rad];
-    ``semi_axis`` [mm]; ``difference`` D (3,) and ``curvature`` K_2 + D (2,2) [1/mm]; ``roll`` of chapter 26;
-    ``meeting`` and ``gap`` [mm] at places (n,) of the gear's flank that the
-    pinion's tip reaches; ``inner`` (n,) are those about the middle.
+    ``place`` z_w, r_w of the vertex on the gear [mm]; ``parabola`` m' [rad/rad²]; ``path_angle`` on the gear,
+    ``own_path`` on the pinion [rad]; ``semi_axis`` [mm]; ``difference`` D (3,) and ``curvature`` K_2 + D (2,2) [1/mm];
+    ``roll`` of chapter 26; ``meeting`` and ``gap`` [mm] at places (n,) of the gear's flank that the pinion's tip
+    reaches; ``inner`` (n,) are those about the middle.
     """
 
     side: str
@@ -55,13 +57,14 @@ def request(side: str, asked: Contact, gear: GearFlank, teeth: int, tip: np.ndar
     Raises InputError where no pinion touches the gear as is asked, with the limit.
     """
     blank, surface = gear.surface.blank.vector, gear.surface
-    across = asked.position[0]
+    path = math.radians(_PATH[side] if asked.path_angle is None else asked.path_angle)
+    across = 0.5 if asked.position is None else asked.position[0]
     lowest = _reached(gear, across, tip)
-    up = lowest + (1 - lowest) * asked.position[1]
+    part = _middle(gear, across, lowest, path) if asked.position is None else asked.position[1]
+    up = lowest + (1 - lowest) * part
     axial, radial = (float(value) for value in kernel("flank_place")(blank, across, up))
     roll = gear.roll(axial, radial)
     w = roll.vector
-    path = math.radians(_PATH[side] if asked.path_angle is None else asked.path_angle)
     amplitude = asked.transmission_error / ARCSEC
     parabola = float(kernel("wanted_parabola")(amplitude, teeth, roll.lever)[0])
     semi_axis = asked.pattern_length * surface.blank.face_width / 2
@@ -86,7 +89,7 @@ def _reached(gear: GearFlank, across: float, tip: np.ndarray) -> float:
     """The part of the gear's working depth from which on the pinion's tip reaches its flank."""
     up = np.linspace(0.0, 1.0, _HEIGHTS)
     places = kernel("flank_place")(gear.surface.blank.vector, np.full(_HEIGHTS, across), up)
-    inside = _inside(gear.meeting(*places, 0.0), tip)
+    inside = _inside(gear.meeting(places[0], places[1], 0.0), tip)
     if not (inside > 0).any():
         return 0.0
     first = int(np.argmax(inside > 0))
@@ -94,6 +97,31 @@ def _reached(gear: GearFlank, across: float, tip: np.ndarray) -> float:
         return 0.0
     below, above = inside[first - 1 : first + 1]
     return float(up[first - 1] + (up[first] - up[first - 1]) * below / (below - above))
+
+
+def _middle(gear: GearFlank, across: float, lowest: float, path: float) -> float:
+    """How high the vertex lies on the flank that the mate reaches so that both halves of a straight path last as long.
+
+    Each height is tried: how far the pinion turns from there to the tip, and to the lower end, along the path.
+    """
+    blank, parts = gear.surface.blank, np.linspace(*_TRIED)
+    places = kernel("flank_place")(blank.vector, np.full(2, across), np.array([lowest, 1.0]))
+    depth = math.hypot(*(float(place[1] - place[0]) for place in places))
+    lean = depth / math.tan(path) / blank.face_width
+    ups = np.concatenate([lowest + (1 - lowest) * parts, np.ones_like(parts), np.full_like(parts, lowest)])
+    shifts = np.concatenate([0 * parts, (1 - parts) * lean, -parts * lean])
+    rotation = gear.meeting(*_place(blank.vector, across + shifts, ups), 0.0).rotation
+    here, high, low = np.unwrap(rotation).reshape(3, -1)
+    balance = high + low - 2 * here
+    if not np.isfinite(balance).all() or balance[0] * balance[-1] >= 0:
+        return 0.5
+    order = np.argsort(balance)
+    return float(np.interp(0.0, balance[order], parts[order]))
+
+
+def _place(blank: np.ndarray, across: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    axial, radial = kernel("flank_place")(blank, across, up)
+    return axial, radial
 
 
 def _inside(meeting: Meeting, tip: np.ndarray) -> np.ndarray:
@@ -106,7 +134,7 @@ def _flank(gear: GearFlank, roll: Roll, lowest: float) -> tuple[Meeting, np.ndar
     up, across = (
         one.ravel() for one in np.meshgrid(np.linspace(lowest, 1, _ROWS), np.linspace(0, 1, _COLUMNS), indexing="ij")
     )
-    found = gear.meeting(*kernel("flank_place")(gear.surface.blank.vector, across, up), roll.turn)
+    found = gear.meeting(*_place(gear.surface.blank.vector, across, up), roll.turn)
     kept = np.isfinite(found.point).all(axis=1)
     found = Meeting(*(array[kept] for array in vars(found).values()))
     inner = (np.abs(across - 0.5) < _INNER) & (np.abs((up - lowest) / (1 - lowest) - 0.5) < _INNER)

@@ -1,4 +1,4 @@
-"""The gear's flank as the pinion meets it at the constant ratio: places, curvatures and speeds of the conjugate pinion."""
+"""The gear's flank as the pinion meets it at the constant ratio: places, curvatures and speeds."""
 
 from __future__ import annotations
 
@@ -64,6 +64,10 @@ class GearFlank:
     def _pair(self) -> tuple[float, float, np.ndarray]:
         return self.shaft_angle, self.offset, _TRUE
 
+    @property
+    def _apex(self) -> np.ndarray:
+        return np.array([0.0, 0.0, self.pinion_beyond])
+
     def turns(self, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
         """Rotations (n,) of the gear at which its points meet the pinion near the common pitch line, NaN for none."""
         beyond, delta = self.surface.apex_beyond, self.pinion_pitch_angle
@@ -83,7 +87,7 @@ class GearFlank:
         point, normal = kernel("gear_in_pair")(own.point, own.normal, turn, self.surface.apex_beyond, *self._pair)
         lever, _ = kernel("transmission")(point, normal, *self._pair)
         rotation = -(turn - zero) / self.ratio
-        point = turned(point, -rotation) + [0.0, 0.0, self.pinion_beyond]
+        point = turned(point, -rotation) + self._apex
         return Meeting(point, -turned(normal, -rotation), rotation, lever)
 
     def roll(self, axial: float, radial: float) -> Roll:
@@ -93,7 +97,7 @@ class GearFlank:
         point, normal, basis, curvature, vector, beta, lever, sliding = (
             np.asarray(one) for one in self._rolling(own.contact[0], turn)
         )
-        at = point.ravel() + [0.0, 0.0, self.pinion_beyond]
+        at = point.ravel() + self._apex
         return Roll(at, -normal.ravel(), basis, curvature, vector.ravel(), float(beta[0, 0]), float(lever[0, 0]),
                     sliding.ravel(), float(turn))  # fmt: skip
 

@@ -10,8 +10,8 @@ from gearmath.specs.toml import checked
 
 #: Top land, in mean normal modules, that a thickness nobody has chosen leaves; what a design must have is 0.2.
 _LAND = 0.3
-#: Most that the thickness factor may be changed for it.
-_MOST = 0.25
+#: Most that the thickness factor may be changed for it, and the least thickness left to the gear, in modules.
+_MOST, _THINNEST = 0.15, 0.95
 
 
 def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
@@ -23,7 +23,8 @@ def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
     slots, wanted = slots_of(blank), _LAND * blank.mean_normal_module
     missing = [wanted - min(member.top_land) for member in (slots.pinion, slots.wheel)]
     change = max(missing[0], 0.0) - max(missing[1], 0.0)
-    change = min(max(change / blank.mean_normal_module, -_MOST), _MOST)
+    thick = blank.wheel.mean_normal_thickness / blank.mean_normal_module
+    change = min(max(change / blank.mean_normal_module, -_MOST), _MOST, thick - _THINNEST)
     if not change:
         return given, blank
     values = given.model_dump(exclude_none=True)

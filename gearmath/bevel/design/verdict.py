@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -86,7 +87,14 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
 
     Raises InputError with the limit that is broken: the pair is none, runs on edges, or has too thin a tooth.
     """
-    check_pair(made.pair)
+    try:
+        check_pair(made.pair)
+    except InputError as error:
+        said = re.sub(r"; (no single setting|the setting that alone).*", "", str(error))
+        raise InputError(
+            f"the pair that was found is refused: {said}; another mean_addendum_factor, thickness_factor, pressure "
+            "angle, cutter_radius or method of the gear is needed"
+        ) from error
     runs = {side: side_mesh(made.pair, side, Assembly()) for side in made.flanks}
     pinion, gear = made.pair.member("pinion"), made.pair.member("gear")
     module = mean_module(made)
@@ -123,6 +131,11 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
     """The figures of one side. Raises InputError where it does not run as asked."""
     flank, asked = made.flanks[side], made.data.contact(side)
     found = vertex(run)
+    if run.outcome == "interior contact" and found is None:
+        raise InputError(
+            f"{side}: transmission_error = {asked.transmission_error:g} arcsec: the parabola has no vertex within both "
+            "flanks; position must be given, or the path come nearer to 90 degrees"
+        )
     if run.outcome != "interior contact" or found is None:
         raise InputError(
             f"{side}: {run.outcome}, with a contact ratio of {run.contact_ratio:.3g} within the flanks, which must let "
