@@ -13,7 +13,7 @@ from typing import Any, Literal
 from pydantic import Field, model_validator
 
 from gearmath.kernels import kernel
-from gearmath.specs.blank_data import Backlash, BlankData, Cutter, DataType1, DataType2, Taper
+from gearmath.specs.blank_data import Backlash, BlankData, DataType1, DataType2, Taper
 from gearmath.specs.sheet import Angle, Length, Sheet, shown
 from gearmath.specs.toml import checked, load
 
@@ -29,23 +29,26 @@ _CLEARANCE_FACTOR = 0.125
 #: Backlash square to the flank, in outer transverse modules.
 _BACKLASH = 0.03
 #: What may be left free beyond what the mean point needs.
-Free = Literal["blade_pressure_angle", "modified_roll", "cutter_tilt", "machine_root_angle", "helical_motion"]
+Free = Literal["blade_pressure_angle", "modified_roll", "cutter_tilt", "helical_motion"]
 
 
-class DesignCutter(Cutter):
+class DesignCutter(Sheet):
     """The cutter, and the radii of the cutters that the shop has: then the radius must be one of them, or is chosen."""
 
     process: Literal["face_milling", "face_hobbing"] = "face_milling"
-    cutter_radius: Length = Field(default=0.0, ge=5, le=500)
+    cutter_radius: Length | None = Field(default=None, ge=5, le=500)
+    blade_groups: int | None = Field(default=None, ge=1, le=60)
     radii: tuple[Length, ...] = Field(default=(), strict=False, max_length=200)
 
     @model_validator(mode="after")
     def _radius(self) -> DesignCutter:
+        if (self.process == "face_hobbing") != (self.blade_groups is not None):
+            raise ValueError("blade_groups belongs to face_hobbing, which needs it, and to no other process")
         if any(not 5 <= radius <= 500 for radius in self.radii):
             raise ValueError("radii must lie between 5 and 500 mm")
-        if "cutter_radius" not in self.model_fields_set and not self.radii:
+        if self.cutter_radius is None and not self.radii:
             raise ValueError("cutter needs cutter_radius, or radii to choose from")
-        if self.radii and "cutter_radius" in self.model_fields_set and self.cutter_radius not in self.radii:
+        if self.radii and self.cutter_radius is not None and self.cutter_radius not in self.radii:
             listed = ", ".join(f"{shown(radius):g}" for radius in sorted(self.radii))
             raise ValueError(f"cutter_radius {shown(self.cutter_radius):g} is not on the list of radii: {listed}")
         return self
@@ -178,7 +181,10 @@ class DesignData(Sheet):
             "pressure_angle_coast", "taper", "data_type_1", "data_type_2", "backlash",
         )  # fmt: skip
         values = self.model_dump(include=set(keys), exclude_none=True)
-        values["cutter"] = {**self.cutter.model_dump(exclude={"radii"}), "cutter_radius": cutter_radius}
+        values["cutter"] = {
+            **self.cutter.model_dump(include={"process", "blade_groups"}),
+            "cutter_radius": cutter_radius,
+        }
         values.setdefault("taper", {"kind": "uniform" if hobbed else "duplex"})
         values.setdefault("backlash", {"outer_normal": _BACKLASH * self.module})
         if self.data_type_1 is None and self.data_type_2 is None:

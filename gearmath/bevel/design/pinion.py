@@ -23,15 +23,14 @@ from gearmath.specs.bevel_set import SETTINGS, SIDES, Member
 from gearmath.specs.cut import ANGULAR
 from gearmath.specs.toml import checked
 
-#: Bounds of what is left free: pressure angle and change of the root angle [rad], 2C and 6D, sliding base [mm/rad].
+#: Bounds of what is left free: pressure angle [rad]; 2C and 6D; motion of the sliding base [mm/rad]; tilt [rad].
 _ANGLES = math.radians(10), math.radians(30)
-_ROOT_CHANGE = math.radians(2)
-_ROLL = (0.0, 0.15, 1.0)
+_ROLL = 0.15, 1.0
 _HELICAL = 15.0
 _TILT = math.radians(15)
 _EXTRA = {
     "blade_pressure_angle": ("blade_pressure_angle",), "modified_roll": ("modified_roll_2", "modified_roll_3"),
-    "cutter_tilt": ("cutter_tilt", "cutter_swivel"), "machine_root_angle": ("machine_root_angle",),
+    "cutter_tilt": ("cutter_tilt", "cutter_swivel"),
     "helical_motion": ("helical_motion",),
 }  # fmt: skip
 
@@ -167,14 +166,10 @@ def _reached(
 def _bounds(extra: tuple[str, ...], x: np.ndarray) -> np.ndarray:
     """Least and largest values (p,2) of what is left free."""
     ratio = x[NAMES.index("ratio_of_roll")]
-    now = {name: x[NAMES.index(name)] for name in extra}
     table = {"blade_pressure_angle": _ANGLES, "helical_motion": (-_HELICAL, _HELICAL),
              "cutter_tilt": (-_TILT, _TILT), "cutter_swivel": (-math.pi, math.pi)}  # fmt: skip
-    for name, most in zip(("modified_roll_2", "modified_roll_3"), roll_rows(ratio, _ROLL[1:]), strict=True):
+    for name, most in zip(("modified_roll_2", "modified_roll_3"), roll_rows(ratio, _ROLL), strict=True):
         table[name] = (-abs(most), abs(most))
-    if "machine_root_angle" in now:
-        root = now["machine_root_angle"]
-        table["machine_root_angle"] = (root - _ROOT_CHANGE, root + _ROOT_CHANGE)
     return np.array([table[name] for name in extra]).reshape(-1, 2)
 
 

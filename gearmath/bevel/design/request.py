@@ -65,14 +65,12 @@ def request(side: str, asked: Contact, gear: GearFlank, teeth: int, tip: np.ndar
     axial, radial = (float(value) for value in kernel("flank_place")(blank, across, up))
     roll = gear.roll(axial, radial)
     w = roll.vector
-    amplitude = asked.transmission_error / ARCSEC
-    parabola = float(kernel("wanted_parabola")(amplitude, teeth, roll.lever)[0])
+    parabola = _parabola(side, asked.transmission_error / ARCSEC, teeth, roll)
     semi_axis = asked.pattern_length * surface.blank.face_width / 2
     given = (w, roll.acceleration, roll.lever)
     (own,) = kernel("path_on_pinion")(*given, roll.sliding, parabola, path)
     (D,) = kernel("synthesis")(*given, own, parabola, semi_axis, MARKING)
-    (conjugate,) = kernel("conjugate_curvature")(w, roll.acceleration)
-    _check(side, asked, D, conjugate, path)
+    _check_ellipse(side, asked, matrix(D), float(own), surface.blank.face_width)
     meeting, along, inner = _flank(gear, roll, lowest)
     lever = np.full(len(along), abs(roll.lever))
     (gap,) = kernel("wanted_gap")(meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever)
@@ -141,19 +139,27 @@ def _flank(gear: GearFlank, roll: Roll, lowest: float) -> tuple[Meeting, np.ndar
     return found, (found.point - roll.point) @ roll.basis[:, 0], inner[kept]
 
 
-def _check(side: str, asked: Contact, D: np.ndarray, conjugate: np.ndarray, path: float) -> None:
-    """Refuse what would cut into the conjugate flank at the vertex: another path, or a shorter pattern, would not."""
-    if np.isfinite(D).all() and min(np.linalg.eigvalsh(matrix(D)).min(), _least(D - conjugate)) > 0:
-        return
-    raise InputError(
-        f"{side}: path_angle = {math.degrees(path):.4g} with transmission_error = {asked.transmission_error:g} arcsec "
-        f"and pattern_length = {asked.pattern_length:g}: the flanks would cut into each other beside the path; "
-        "the path must come nearer to 90 degrees, or the pattern be shorter"
-    )
+def _parabola(side: str, amplitude: float, teeth: int, roll: Roll) -> float:
+    """m' [rad/rad²] for an amplitude [rad]. Raises InputError where no contact has such a parabola."""
+    found, unit = (float(kernel("wanted_parabola")(one, teeth, roll.lever)[0]) for one in (amplitude, 1.0))
+    most = roll.acceleration / (unit * roll.lever)  # there s of (26.6) vanishes
+    if not amplitude < most:
+        raise InputError(
+            f"{side}: transmission_error = {amplitude * ARCSEC:g}: must be below {most * ARCSEC:.4g} arcsec, where the "
+            "flanks would no longer roll on each other"
+        )
+    return found
 
 
-def _least(components: np.ndarray) -> float:
-    return float(np.linalg.eigvalsh(matrix(components)).min())
+def _check_ellipse(side: str, asked: Contact, D: np.ndarray, own: float, face_width: float) -> None:
+    """The path needs a curvature along it, and the ellipse must be longer than that alone makes it."""
+    along = np.array([math.cos(own), math.sin(own)])
+    least = 2 * math.sqrt(2 * MARKING / float(along @ D @ along)) / face_width
+    if not asked.pattern_length > least:
+        raise InputError(
+            f"{side}: pattern_length = {asked.pattern_length:g}: must be above {least:.4g} with this path and "
+            f"transmission_error = {asked.transmission_error:g}; the path may come nearer to 90 degrees instead"
+        )
 
 
 def gear_flank(surface: Surface, pinion: Member, shaft_angle: float) -> GearFlank:

@@ -35,7 +35,7 @@ def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
 
 def chosen_radius(data: DesignData, name: str) -> float:
     """The cutter's radius: as given, or of those at hand the one nearest to the mean cone distance."""
-    if not data.cutter.radii or data.cutter.cutter_radius:
+    if data.cutter.cutter_radius is not None:
         return data.cutter.cutter_radius
     distance = blank_of(data.blank_data(max(data.cutter.radii)), name).mean_cone_distance
     return min(data.cutter.radii, key=lambda radius: abs(radius - distance))
