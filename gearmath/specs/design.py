@@ -61,12 +61,14 @@ class PinionMethod(Sheet):
     free: tuple[Free, ...] = Field(default=("blade_pressure_angle", "modified_roll"), strict=False)
     #: Tilt of the cutter; without it none for a generated gear, and square to the root line of a Formate one.
     cutter_tilt: Angle | None = Field(default=None, ge=-30, le=30)
+    blade_edge_radius: Length | None = Field(default=None, ge=0, le=10)
 
 
 class GearMethod(Sheet):
     """How the gear is cut; both its flanks in one cut."""
 
     generation: Literal["generated", "formate"] = "generated"
+    blade_edge_radius: Length | None = Field(default=None, ge=0, le=10)
 
 
 class Contact(Sheet):

@@ -102,7 +102,7 @@ def refitted(flank: PinionFlank, name: str, value: float) -> PinionFlank:
     problem, x = flank.problem, flank.x.copy()
     if name in problem.extra:
         problem = _without(problem, name)
-    else:
+    elif name in problem.free:
         problem = replace(problem, free=[*(one for one in problem.free if one != name), local.ACROSS])
     x[NAMES.index(name)] = value
     found = local.solve(problem.how, x, problem.wanted, problem.free)

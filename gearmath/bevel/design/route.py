@@ -13,7 +13,8 @@ from gearmath.bevel.design.backlash import with_backlash
 from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, with_flank
 from gearmath.bevel.design.request import gear_flank, request
 from gearmath.bevel.design.rounding import rounded_gear, rounded_pinion
-from gearmath.bevel.design.start import blank_for
+from gearmath.bevel.design.start import blank_for, edge_radius
+from gearmath.bevel.slots import slots_of
 from gearmath.bevel.tooth import mean_backlash
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
@@ -49,8 +50,12 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
         blank_data, Method("fixed_setting", tilt=_tilt(data, blank), tilt_direction=math.pi / 2),
         Method("completing", data.gear.generation), data.hand,
     )  # fmt: skip
-    backlash = blank.mean_transverse_backlash
-    pinion, gear = start.member("pinion"), rounded_gear(start.member("gear"), data.shop)
+    backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
+    pinion = _with_edge(
+        start.member("pinion"), edge_radius(data.pinion.blade_edge_radius, slots.pinion, blank.clearance)
+    )
+    gear = _with_edge(start.member("gear"), edge_radius(data.gear.blade_edge_radius, slots.wheel, blank.clearance))
+    gear = rounded_gear(gear, data.shop)
     if given is not None:
         pinion, gear = _on_blank_of(given.member("pinion"), pinion, name), given.member("gear")
         if data.backlash is None:
@@ -77,6 +82,12 @@ def _tilt(data: DesignData, blank: BevelBlank) -> float:
     if data.pinion.cutter_tilt is not None:
         return math.radians(data.pinion.cutter_tilt)
     return blank.dedendum_angle_sum if data.gear.generation == "formate" else 0.0
+
+
+def _with_edge(member: Member, radius: float) -> Member:
+    """The member with an edge radius [mm] on the blades of both flanks."""
+    edged = {flank: member.flank(flank).model_copy(update={"blade_edge_radius": radius}) for flank in FLANKS}
+    return member.model_copy(update=edged)
 
 
 def _on_blank_of(given: Member, start: Member, name: str) -> Member:

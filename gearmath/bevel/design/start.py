@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from gearmath.bevel.blank import BevelBlank, blank_of
-from gearmath.bevel.slots import slots_of
+from gearmath.bevel.slots import MemberSlots, slots_of
 from gearmath.specs.blank_data import BlankData
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
@@ -12,6 +14,7 @@ from gearmath.specs.toml import checked
 _LAND = 0.3
 #: Most that the thickness factor may be changed for it, and the least thickness left to the gear, in modules.
 _MOST, _THINNEST = 0.15, 0.95
+_TENTH = 0.1
 
 
 def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
@@ -39,3 +42,9 @@ def chosen_radius(data: DesignData, name: str) -> float:
         return data.cutter.cutter_radius
     distance = blank_of(data.blank_data(max(data.cutter.radii)), name).mean_cone_distance
     return min(data.cutter.radii, key=lambda radius: abs(radius - distance))
+
+
+def edge_radius(asked: float | None, slots: MemberSlots, clearance: float) -> float:
+    """Edge radius of a member's blades [mm]: as asked, or the largest in tenths that AGMA 929 and clearance allow."""
+    largest = min(slots.maximum_edge_radius, clearance)
+    return max(math.floor(largest / _TENTH) * _TENTH, 0.0) if asked is None else asked
