@@ -30,18 +30,24 @@ _LIMIT_TRIALS = 10
 @click.option("--j", "j", type=float, default=0.0, show_default=True, help="Gear withdrawn along its axis X, mm.")
 @click.option("--shaft", type=float, default=0.0, show_default=True, help="Growth of the shaft angle, degrees.")
 @click.option("--step", type=float, default=1.0, show_default=True, help="Positions of the path, degrees of pinion.")
+@click.option(
+    "--tolerance", "with_tolerance", is_flag=True,
+    help="Also V and H, from the assembly as given, at which the pattern reaches an edge.",
+)  # fmt: skip
 @JSON
-@plot("transmission error, path and pattern of both sides")
+@plot("transmission error, path, pattern and V-H diagram of both sides")
 def contact(
-    gear_set: str, v: float, h: float, j: float, shaft: float, step: float, as_json: bool, picture: Path | None
+    gear_set: str, v: float, h: float, j: float, shaft: float, step: float, with_tolerance: bool, as_json: bool,
+    picture: Path | None,
 ) -> None:  # fmt: skip
     """How a pair runs: path of contact, transmission error, V-H check, of drive (pinion concave) and coast side.
 
     The contact is exact: flanks, edges of tip, toe and heel, and corners, of one pair of teeth and its neighbors. The
     path is that of one pair of teeth over three pitches. Rotation 0: both mean points on the pitch line.
     """
-    from gearmath.bevel.contact.report import SIDES, figures, side_mesh
+    from gearmath.bevel.contact.report import SIDES, figures, side_mesh, tolerance_figures
     from gearmath.bevel.contact.system import Assembly
+    from gearmath.bevel.contact.tolerance import SEARCHES, tolerance
     from gearmath.bevel.pair import load_pair
     from gearmath.specs.toml import find
 
@@ -53,17 +59,21 @@ def contact(
     given = Assembly(v, h, j, math.radians(shaft))
     results: dict[str, Any] = {}
     runs: dict[str, Mesh] = {}
-    with bar(len(SIDES), "side", quiet=as_json) as done, about(source):
+    searches = SEARCHES if with_tolerance else 0
+    with bar(len(SIDES) * (1 + searches), "step", quiet=as_json) as done, about(source):
         for side in SIDES:
             runs[side] = side_mesh(pair, side, given)
             if runs[side].outcome == "contact lost" and given != Assembly():
                 raise InputError(_lost(pair, side, given))
             results[side] = figures(runs[side], math.radians(step))
             done(1)
+            if with_tolerance:
+                results[side]["tolerance_mm"] = tolerance_figures(tolerance(runs[side], progress=done))
     if picture is not None:
         from gearmath.plot.contact import contact_figure
 
-        save_plot(contact_figure(runs), picture, as_json)
+        limits = {side: result.get("tolerance_mm") for side, result in results.items()}
+        save_plot(contact_figure(runs, limits), picture, as_json)
     if as_json:
         echo_json(results)
         return
@@ -141,6 +151,8 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
     for place, found in result["v_h_mm"].items():
         rows.append([f"V and H for contact at {place}",
                      "none" if found is None else f"{found[0]:+.4f} and {found[1]:+.4f} mm"])  # fmt: skip
+    if "tolerance_mm" in result:
+        rows += _tolerance_rows(result["tolerance_mm"])
     lines.append(table(["figure", "value"], rows))
     if result["path"]:
         head = ["pinion deg", "kind", "error arcsec", "cone distance mm", "height mm"]
@@ -151,3 +163,18 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
         ]  # fmt: skip
         lines += ["path of one pair of teeth:", table(head, cells)]
     return "\n".join(lines) + "\n"
+
+
+def _tolerance_rows(found: dict[str, Any] | None) -> list[list[str]]:
+    """V and H to both senses, and the edge that the pattern reaches there."""
+    if found is None:
+        return [["V and H to the edges", "none: no pattern with edges of its own"]]
+    rows = []
+    for name in ("v", "h"):
+        for sense in ("minus", "plus"):
+            value, edge = found[name][sense]["value"], found[name][sense]["edge"]
+            text = f"{value:+.3f} mm: no edge up to there" if edge is None else f"{value:+.3f} mm: {edge}"
+            rows.append([f"{name.upper()} to the {sense} side", text])
+    if found["reached"]:
+        rows.append(["reached as it stands", ", ".join(found["reached"])])
+    return rows
