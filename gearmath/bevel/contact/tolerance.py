@@ -23,7 +23,7 @@ EDGES = {
 }  # fmt: skip
 #: Displacement [mm] with which the search begins, and beyond which it ends.
 _FIRST, MOST = 0.02, 5.0
-_ROWS, _COLUMNS = 15, 31
+_ROWS, _COLUMNS = 41, 41
 #: How often ``tolerance`` tells its progress.
 SEARCHES = 4
 _TRIALS, _CLOSE = 30, 1e-4

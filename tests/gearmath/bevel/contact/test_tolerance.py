@@ -52,10 +52,10 @@ def test_pattern_comes_to_the_named_edge_at_the_limit_and_not_before(side: str, 
             least = []
             for part in (0.9, 1.0):
                 moved = mesh(run.system, replace(Assembly(), **{name: part * limit.value}))
-                least.append(np.nanmin(pattern(moved, rows=41, columns=61).gap[RIM[limit.edge]]) * 1000)
+                least.append(np.nanmin(pattern(moved, rows=81, columns=81).gap[RIM[limit.edge]]) * 1000)
             assert least[0] > 6.6
-            # the limit is found with 15 rows on the edge, this is the least of 41
-            assert least[1] == pytest.approx(6.35, abs=0.2)
+            # the limit is found with 41 rows on the edge, this is the least of 81: near a corner the gap is steep
+            assert least[1] == pytest.approx(6.35, abs=0.6)
             checked += 1
     assert checked >= 1
 
