@@ -37,8 +37,20 @@ def contact_figure(runs: Mapping[str, Mesh], tolerances: Mapping[str, Any] | Non
         found = pattern(run)
         _draw_error(places[0], run, f"{side}: {run.outcome}")
         _draw_path(places[1], run, found)
-        draw_pattern(places[2], run, found)
+        _draw_pattern(places[2], run, found)
         _draw_v_h(places[3], run, (tolerances or {}).get(side))
+    return figure
+
+
+def patterns_figure(states: Mapping[str, Mapping[str, Mesh]]) -> Figure:
+    """Patterns of one pair in several states (nominal, measured, corrected): a column a state, a row a side."""
+    sides = list(next(iter(states.values())))
+    figure = Figure(figsize=(4.6 * len(states), 2.2 * len(sides)), layout="constrained")
+    rows = figure.subplots(len(sides), len(states), squeeze=False, sharex=True, sharey=True)
+    for places, side in zip(rows, sides, strict=True):
+        for axes, (state, runs) in zip(places, states.items(), strict=True):
+            _draw_pattern(axes, runs[side], pattern(runs[side]))
+            axes.set_title(f"{state}, {side}", fontsize=8, loc="left")
     return figure
 
 
@@ -128,7 +140,7 @@ def _draw_path(axes: Axes, run: Mesh, found: Pattern) -> None:
 _AXES = ((math.cos, math.sin), (lambda a: -math.sin(a), math.cos))
 
 
-def draw_pattern(axes: Axes, run: Mesh, found: Pattern) -> None:
+def _draw_pattern(axes: Axes, run: Mesh, found: Pattern) -> None:
     """Lines of the ease-off in µm, and the area within the marking compound."""
     _outline(axes, found)
     gap = np.ma.masked_invalid(found.gap * 1000)

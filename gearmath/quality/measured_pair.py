@@ -72,7 +72,7 @@ def measured_pair(pair: BevelSet, files: Mapping[str, Path]) -> MeasuredPair:
     remarks: list[str] = []
     for name, file in read.items():
         try:
-            found, said = _flanks_of(pair, name, file)
+            found, said = flanks_of(pair, name, file)
         except InputError as error:
             raise InputError(f"{files[name]}: {error}") from error
         flanks |= found
@@ -80,9 +80,13 @@ def measured_pair(pair: BevelSet, files: Mapping[str, Path]) -> MeasuredPair:
     return MeasuredPair(pair, flanks, tuple(remarks))
 
 
-def _flanks_of(
+def flanks_of(
     pair: BevelSet, name: str, file: FlankFile
 ) -> tuple[dict[tuple[str, str], MeasuredFlank | None], tuple[str, ...]]:
+    """The measured flanks of a member by member and flank, and what is to be said of the file first.
+
+    Raises InputError where it is not of the member, or holds no tooth in full.
+    """
     member = pair.member(name)
     evaluation = evaluate_member(file, member, name)
     evaluation.closing.check_topography()
