@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from gearmath.bevel.contact.mesh import Mesh as Run
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.report import SIDES, figures
@@ -15,7 +17,9 @@ from gearmath.errors import InputError
 from gearmath.front.measured import Measurement
 from gearmath.front.sets import GearSet
 from gearmath.front.tables import html_table
+from gearmath.quality.measured_flank import MeasuredFlank
 from gearmath.quality.measured_pair import MeasuredPair, flanks_of
+from gearmath.specs.bevel_set import FLANKS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Contact:
-    """A pair in contact: ``runs`` has the exact contact of each side, ``drive`` and ``coast``; figures in mm and rad."""
+    """A pair in contact: ``runs`` has the exact contact of each side, ``drive`` and ``coast``, in mm and rad."""
 
     measured: MeasuredPair
     runs: Mapping[str, Run]
@@ -67,12 +71,24 @@ def contact(
     for side in sides:
         if side not in SIDES:
             raise InputError(f"sides: {side!r}: must be of {', '.join(SIDES)}")
-    flanks = {}
+    flanks: dict[tuple[str, str], MeasuredFlank | None] = {}
     for one in measured:
-        found, _ = flanks_of(pair.spec, one.member.name, one.file)
+        _check_nominal(pair, one)
+        found, _ = flanks_of(one.member.gear_set.spec, one.member.name, one.file)
         flanks |= found
     whole = MeasuredPair(pair.spec, flanks)
     for name in ("pinion", "gear"):
         pair.spec.member(name)
     given = Assembly(v, h, j, math.radians(shaft))
     return Contact(whole, {side: mesh(whole.system(side), given) for side in sides})
+
+
+def _check_nominal(pair: GearSet, measurement: Measurement) -> None:
+    """A measurement counts from its own nominal flanks: they must be those of the pair."""
+    name = measurement.member.name
+    for flank in FLANKS:
+        own, wanted = (
+            member.flank(flank).nominal.vector for member in (measurement.member.spec, pair.spec.member(name))
+        )
+        if not np.allclose(own, wanted, rtol=0, atol=1e-8):  # a set file has nine decimals
+            raise InputError(f"{name}.{flank}: was measured against other nominal settings than those of the pair")

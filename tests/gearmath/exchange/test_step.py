@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from gearmath import cli
 from gearmath.bevel.generation import solve_curve, solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.solid import member_triangles, volume
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-from gearmath.exchange.body import member_patches, space_grids
+from gearmath.exchange.body import space_grids
 from gearmath.exchange.spline import basis, through
-from gearmath.exchange.step import write_step
 from gearmath.specs.bevel_set import SIDES, BevelSet
 
 pytest.importorskip("OCP", reason="the extra cad is not installed")
@@ -41,10 +44,13 @@ def test_patches_with_common_points_have_a_common_border() -> None:
 
 
 @pytest.fixture(scope="module")
-def pinion(gear_set: BevelSet, tmp_path_factory) -> tuple[Path, float]:
-    target = tmp_path_factory.mktemp("step") / "pinion.step"
-    (found,) = write_step(target, [("pinion", member_patches(gear_set.pinion, "pinion"))])
-    return target, found
+def pinion(tmp_path_factory) -> tuple[Path, float]:
+    """The STEP file of the pinion as the command writes it, and the volume that it says."""
+    target, out = tmp_path_factory.mktemp("step") / "pinion.step", io.StringIO()
+    arguments = ["export", "step", "nasa_tp3096_12x36.toml", "--member", "pinion", "--json", "-o", str(target)]
+    with contextlib.redirect_stdout(out):
+        cli.main(arguments)
+    return target, json.loads(out.getvalue())["pinion"]["volume_mm3"]
 
 
 @pytest.fixture(scope="module")
