@@ -36,7 +36,7 @@ _SAMPLES, _BEYOND = 120, 0.25
 
 #: The measured flanks of pinion and gear.
 Flanks = tuple[MeasuredFlank | None, MeasuredFlank | None]
-#: Contacts x (n,7) to what the deviations of all points do there.
+#: Contacts x (n,7) to what the coefficients of all splines do there.
 Effect = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -108,7 +108,7 @@ def jacobian(run: Mesh, flanks: Flanks) -> np.ndarray:
         _extreme(run, effect, samples, whose, by_sample, inner.start + int(k))
         for k in (leads[inner].argmax(), leads[inner].argmin())
     ]
-    return np.vstack([center_by, extremes[0] - extremes[1]])
+    return np.vstack([center_by, extremes[0] - extremes[1]]) @ _fit(flanks)
 
 
 def _extreme(
@@ -156,8 +156,8 @@ def _first(run: Mesh, rotations: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
 
 
 def _turn(run: Mesh, flanks: Flanks) -> Callable[[np.ndarray], np.ndarray]:
-    """x (n,7) to the change of the rotation of the pinion (n,k) [rad/mm] at which that point of the gear meets it."""
-    count = [0 if one is None else one.fit.shape[1] for one in flanks]
+    """x (n,7) to the change of the rotation of the pinion at which that point of the gear meets it (n,m) [rad/mm]."""
+    count = [0 if one is None else len(one.fit) for one in flanks]
     gear, system = flanks[1], run.system
     if gear is None:
         return lambda x: np.zeros((len(x), sum(count)))
@@ -185,13 +185,24 @@ def _turn(run: Mesh, flanks: Flanks) -> Callable[[np.ndarray], np.ndarray]:
             both = np.stack([kernel("meeting")(point, tilted, *pair, side)[0] for side in (1, -1)])
             by_function[:, k] = half_turn(np.take_along_axis(both - still, nearest[None], 0)[0]) / _TILT
         # where a point meets the pinion, the error does not change with the rotation: both turn by the ratio
-        return np.hstack([np.zeros((len(x), count[0])), -by_function @ gear.fit / system.ratio])
+        return np.hstack([np.zeros((len(x), count[0])), -by_function / system.ratio])
 
     return turn
 
 
+def _fit(flanks: Flanks) -> np.ndarray:
+    """From the deviations of all points to the coefficients of all splines (m,k)."""
+    fits = [flank.fit for flank in flanks if flank is not None]
+    whole = np.zeros([sum(sizes) for sizes in zip(*(one.shape for one in fits), strict=True)])
+    row = column = 0
+    for one in fits:
+        whole[row : row + len(one), column : column + one.shape[1]] = one
+        row, column = row + len(one), column + one.shape[1]
+    return whole
+
+
 def _effect(run: Mesh, flanks: Flanks) -> Effect:
-    """x (n,7) to δ_1 + δ_2 there by the deviations of all points (n,k), and the size of the gear's lever [mm] (n,)."""
+    """x (n,7) to δ_1 + δ_2 there by the coefficients of all splines (n,m), and the gear's lever in size (n,) [mm]."""
     system = run.system
     x, assembly = ca.SX.sym("x", 7), ca.SX.sym("assembly", 4)
     rows = []
@@ -204,15 +215,9 @@ def _effect(run: Mesh, flanks: Flanks) -> Effect:
     lever, _ = kernel("transmission").function(*placed, system.shaft_angle, system.offset, assembly)
     outputs = [ca.horzcat(*rows), ca.fabs(lever)]
     run_at = Points(ca.Function("effect", [x, assembly], ca.cse([ca.densify(one) for one in outputs])), shared=(1,))
-    fits = [flank.fit for flank in flanks if flank is not None]
-    fit = np.zeros([sum(sizes) for sizes in zip(*(one.shape for one in fits), strict=True)])
-    row = column = 0
-    for one in fits:
-        fit[row : row + len(one), column : column + one.shape[1]] = one
-        row, column = row + len(one), column + one.shape[1]
 
     def effect(at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         functions, size = run_at(at, run.assembly)
-        return functions[:, 0, :] @ fit, size[:, 0, 0]
+        return functions[:, 0, :], size[:, 0, 0]
 
     return effect

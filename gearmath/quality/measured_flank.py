@@ -1,9 +1,9 @@
 """Measured flanks as contact takes them: the nominal flank, and a smooth spline of its measured deviations on it.
 
-The spline is a tensor product of cubics over the flank, along the tooth and up the profile, with about two thirds as
-many functions each way as the grid has columns and rows; five rows make one cubic. It is fitted by least squares, so
-that it holds every cubic surface exactly and smooths what is rougher: contact needs its second derivatives. It depends
-on the deviations by a matrix, and so does what it does to the contact in first order.
+The spline is a tensor product over the flank: one cubic up the profile, and along the tooth a cubic spline with about
+two thirds as many functions as the grid has columns, eight at most. It is fitted by least squares, so that it holds
+every cubic surface exactly and smooths what is rougher: contact needs its second derivatives. It depends on the
+deviations by a matrix, and so does what it does to the contact in first order.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 
 from gearmath.bevel.contact.surface import Surface, displaced_surface, nominal_surface
 from gearmath.bevel.grid import file_grid
+from gearmath.engine.points import Points
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.quality.evaluation import Evaluation
@@ -24,8 +25,8 @@ from gearmath.quality.topography import grid_shape
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
 
-#: Functions of a cubic without knots, and the most that are taken each way.
-_CUBIC, _MOST = 4, 12
+#: Functions of a cubic without knots, and the most that are taken along the tooth.
+_CUBIC, _MOST = 4, 8
 #: Condition of the fit beyond which the points do not determine the spline.
 _WORST = 1e8
 
@@ -59,8 +60,7 @@ class MeasuredFlank:
     @cached_property
     def residual(self) -> np.ndarray:
         """What the spline leaves (k,) [mm]."""
-        rows = np.vstack([np.asarray(self.basis(*place)) for place in self.places])
-        return self.deviation - rows @ (self.fit @ self.deviation)
+        return self.deviation - _rows(self.basis, self.places) @ (self.fit @ self.deviation)
 
 
 def measured_flank(member: Member, flank: str, file: FlankFile, evaluation: Evaluation) -> MeasuredFlank | None:
@@ -95,13 +95,18 @@ def flank_with(
     deviation = deviation.ravel()
     known = np.isfinite(deviation)
     places = np.column_stack([axial.ravel(), radial.ravel()])[known]
-    matrix = np.vstack([np.asarray(basis(*place)) for place in places])
+    matrix = _rows(basis, places)
     if len(matrix) < matrix.shape[1] or np.linalg.cond(matrix) > _WORST:
         raise InputError(
             f"{flank} flank: {len(matrix)} points do not determine a spline of {matrix.shape[1]} functions"
         )
     nominal = nominal_surface(member, flank)
     return MeasuredFlank(nominal, deviation[known], variance.ravel()[known], np.linalg.pinv(matrix), basis, places)
+
+
+def _rows(basis: ca.Function, places: np.ndarray) -> np.ndarray:
+    """The functions of the spline (k,m) at places (k,2)."""
+    return Points(basis)(places[:, :1], places[:, 1:])[0][:, 0, :]
 
 
 def _basis(member: Member, axial: np.ndarray, radial: np.ndarray) -> ca.Function:
@@ -116,8 +121,8 @@ def _basis(member: Member, axial: np.ndarray, radial: np.ndarray) -> ca.Function
         (2 * one - float(values.min() + values.max())) / float(np.ptp(values))
         for one, values in zip(place, (along, depth), strict=True)
     )
-    functions = [a * b for a in _functions(deep, rows) for b in _functions(across, columns)]
-    return ca.Function("basis", [z, r], [ca.horzcat(*functions)])
+    functions = [a * b for a in _functions(deep, min(rows, _CUBIC)) for b in _functions(across, columns)]
+    return ca.Function("basis", [z, r], [ca.densify(ca.horzcat(*functions))])
 
 
 def _functions(x: ca.SX, count: int) -> list[ca.SX]:

@@ -30,7 +30,7 @@ def flat(member, flank: str, u: float = math.nan, shape: tuple[int, int] = (5, 9
     return flank_with(member, flank, grid.axial, grid.radial, np.zeros(shape), np.full(shape, u**2))
 
 
-@pytest.mark.parametrize("shape", [(5, 9), (4, 7), (9, 15)])
+@pytest.mark.parametrize("shape", [(5, 9), (4, 7), (9, 15), (31, 41)])
 def test_spline_holds_a_cubic_exactly_to_the_edges_of_the_flank(shape: tuple[int, int], gear_set: BevelSet) -> None:
     member = gear_set.pinion
     grid = blank_grid(member, *shape, 0.1)
