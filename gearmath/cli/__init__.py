@@ -37,7 +37,8 @@ VERBS = {
     "uncertainty": ("uncertainty", "How sure the figures of a measured member are."),
     "control": ("control", "The machine control over OPC UA: state, files, alarms, measuring; a simulated one."),
     "runs": ("runs", "The measurement store: list, show, export, compare and resume runs."),
-    "export": ("export", "C for the microcontroller and for the CNC post-processor."),
+    "rexs": ("rexs", "A gear set out of a REXS file."),
+    "export": ("export", "C for the machines; STEP, STL, REXS and points for other programs."),
 }
 
 

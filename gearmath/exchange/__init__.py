@@ -1,1 +1,1 @@
-"""Files that other programs read: each a module, without what computes."""
+"""Sets and members for other programs: STEP, STL of a pair, REXS, plain point files."""
