@@ -94,7 +94,7 @@ def two_terms(hob: Fraction, feed: Fraction, feed_counts: Fraction, turn: int = 
 
 
 def simplest(value: Fraction, needed: int) -> Fraction:
-    """The fraction of the least denominator within 1/``needed`` of ``value`` > 1/``needed``; the firmware's choice, too.
+    """The fraction of the least denominator within 1/``needed`` of ``value`` > 1/``needed``, as the firmware takes it.
 
     Continued fractions of both ends of that interval, as long as they agree. Their ends have nothing to do with the
     value, unlike the convergents of the value itself: a value that is nearly rational has two that are next to each
