@@ -365,7 +365,7 @@ def prove_play_neither_makes_nor_loses_counts() -> None:
 def prove_a_counter_that_runs_over_tells_every_motion_of_less_than_half_its_range() -> None:
     """(7.14) c' = c + m + k M with c' from 0 to M - 1 leaves m - k M for c' - c: k = -1, 0, 1 and both ends of each."""
     motion, M, H = counter_motion()["counted"], int(COUNTER_RANGE), int(COUNTER_RANGE) // 2
-    edges = {m for m in range(-H, H, 997)} | {-H, -H + 1, -1, 0, 1, H - 1}
+    edges = set(range(-H, H, 997)) | {-H, -H + 1, -1, 0, 1, H - 1}
     for before in (0, 1, H - 1, H, H + 1, M - 2, M - 1):
         for moved in edges:
             assert motion.subs({q.count_before.symbol: before, q.count_now.symbol: (before + moved) % M}) == moved

@@ -25,7 +25,11 @@ _LIBRARIES = {
 _FILES = (
     ("`gm_machine.h`", "this machine as whole numbers"),
     ("`gm_core.*`", "the gearbox while it runs: step timer, phase, faults"),
-    ("`gm_gearbox_edge.h`, `gm_encoder_hysteresis.h`", "generated kernels: the step rule, the encoder's play"),
+    (
+        "`gm_gearbox_edge.h`, `gm_encoder_hysteresis.h`, `gm_counter_motion.h`",
+        "generated kernels: the step rule, the encoder's play, a counter that runs over",
+    ),
+    ("`gm_counter.h`", "the board's own counters"),
     ("`gm_job.*`, `gm_gear.c`, `gm_exact.*`", "from teeth or pitch to the exact ratio; the numbers of the blank"),
     ("`gm_ui.*`, `gm_edit.c`, `gm_screen.c`, `gm_draw.*`, `gm_format.*`", "the operator's pages"),
     ("`gm_store.*`", "the last job in the EEPROM, with its check sum"),
@@ -105,10 +109,9 @@ def _decoder(machine: HobbingMachine) -> Iterator[str]:
             f"{'spindle' if machine.profile == 'lathe' else 'hob'}, which are exactly {machine.encoder_counts} "
             f"counts.{index}"
         )
-    if machine.encoder.decoder == "hardware":
-        yield from paragraph(
-            "Channels A and B go to the board itself, whose pin interrupts see every edge (library Encoder)."
-        )
+    if not machine.encoder.has_ls7184:
+        by = "whose counter sees" if machine.hob_counter else "whose pin interrupts see (library Encoder)"
+        yield from paragraph(f"Channels A and B go to the board itself, {by} every edge.{_counter_words(machine)}")
         return
     jumper = {
         1: "to ground: the jumper joins pins 2 and 3 of its terminal",
@@ -126,6 +129,18 @@ def _decoder(machine: HobbingMachine) -> Iterator[str]:
         f"{machine.max_edge_rate} edges/s the pulse must stay below {longest} ns, since the edges of a real encoder "
         f"come up to {_UNEVEN} times closer than on the average."
     )
+    if machine.hob_counter:
+        yield from paragraph(f"A counter of the board counts those pulses.{_counter_words(machine)}")
+
+
+def _counter_words(machine: HobbingMachine) -> str:
+    """Which counter of the board counts the hob, and what its filter ignores."""
+    reached = machine.hob_counter
+    if reached is None:
+        return ""
+    kind = "FTM" if machine.board == "teensy32" else "ENC"
+    _, filtered = machine.counter_filter(machine.max_edge_rate)
+    return f" It is {kind}{reached.unit}, and pulses shorter than {filtered:.0f} ns are ignored as noise."
 
 
 def parts(machine: HobbingMachine) -> list[tuple[str, str]]:
@@ -134,7 +149,7 @@ def parts(machine: HobbingMachine) -> list[tuple[str, str]]:
     rows = [(machine.hardware.title, "the board"), (f"encoder, {machine.encoder.lines} lines", channels)]
     if machine.feed is not None:
         rows.append(("feed encoder", f"{machine.feed.counts_per_mm} counts per mm after its decoder, channels A and B"))
-    if machine.encoder.decoder != "hardware":
+    if machine.encoder.has_ls7184:
         two = machine.feed is not None
         rows.append((f"{1 + two} x LS7184N", f"decoder, with RBIAS resistor RB1{', RB2' if two else ''}: see above"))
     rows += _transistors(machine)

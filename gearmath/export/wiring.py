@@ -68,12 +68,12 @@ def _encoder(drawing: Drawing, machine: HobbingMachine, y: float, title: str, pi
     for name, (height, pin) in rows.items():
         assert pin is not None
         text(drawing, (_SENSOR[1] - 0.2, height), name, align="right")
-        if name == "Z" or machine.encoder.decoder == "hardware":
+        if name == "Z" or not machine.encoder.has_ls7184:
             _to_pin(drawing, (_SENSOR[1], height), pin, machine)
             continue
         line(drawing, (_SENSOR[1], height), (_DECODER[0], height))
         _to_pin(drawing, (_DECODER[1], height), pin, machine)
-    if machine.encoder.decoder != "hardware":
+    if machine.encoder.has_ls7184:
         _decoder(drawing, machine, y, "RB2" if title.startswith("feed") else "RB1")
         return y - 7.0
     return y - 5.4

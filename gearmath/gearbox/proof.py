@@ -11,8 +11,8 @@ of whatever axis keeps p D + a - Σ N_j e_j, so |p - Σ N_j e_j/D| ≤ 1/2 for e
 
 ``encoder_hysteresis``, 0 ≤ x ≤ H: the play stays in 0 ≤ x' ≤ H, no count is made or lost, what passes is 0 or the edge.
 
-``counter_motion``, any reading c and motion -M/2 ≤ m < M/2: the result is m, however often the counter ran over. So the sum
-of the results is the true count, for every history of readings that are less than M/2 counts apart.
+``counter_motion``, any reading c and motion -M/2 ≤ m < M/2: the result is m, however often the counter ran over. So the
+sum of the results is the true count, for every history of readings that are less than M/2 counts apart.
 """
 
 from __future__ import annotations

@@ -47,6 +47,31 @@ enum IRQ_NUMBER_t { IRQ_GPIO6789 = 157 };
 #error "no board of the stand-in"
 #endif
 
+/* Registers, as variables: the tests are the hardware behind them. */
+extern volatile uint32_t stand_in_pin_config[64];
+#define portConfigRegister(pin) (&stand_in_pin_config[(pin)])
+#if defined(__MK20DX256__)
+#define PORT_PCR_MUX(n) ((uint32_t)(((n) & 7) << 8))
+#define PORT_PCR_PE ((uint32_t)0x00000002)
+#define PORT_PCR_PS ((uint32_t)0x00000001)
+#define STAND_IN_FTM(unit)                                                                                       \
+  extern volatile uint32_t FTM##unit##_SC, FTM##unit##_CNT, FTM##unit##_MOD, FTM##unit##_C0SC, FTM##unit##_C1SC, \
+      FTM##unit##_CNTIN, FTM##unit##_MODE, FTM##unit##_FILTER, FTM##unit##_QDCTRL;
+STAND_IN_FTM(1)
+STAND_IN_FTM(2)
+#else
+#define CCM_CCGR_ON 3
+#define CCM_CCGR2_XBAR1(n) ((uint32_t)(((n) & 0x03) << 22))
+#define CCM_CCGR4_ENC1(n) ((uint32_t)(((n) & 0x03) << 24))
+#define CCM_CCGR4_ENC3(n) ((uint32_t)(((n) & 0x03) << 28))
+extern volatile uint32_t CCM_CCGR2, CCM_CCGR4, IOMUXC_XBAR1_IN06_SELECT_INPUT, IOMUXC_XBAR1_IN07_SELECT_INPUT,
+    IOMUXC_XBAR1_IN08_SELECT_INPUT, IOMUXC_XBAR1_IN09_SELECT_INPUT, IOMUXC_XBAR1_IN14_SELECT_INPUT,
+    IOMUXC_XBAR1_IN15_SELECT_INPUT, IOMUXC_XBAR1_IN17_SELECT_INPUT, IOMUXC_XBAR1_IN22_SELECT_INPUT,
+    IOMUXC_XBAR1_IN23_SELECT_INPUT;
+extern volatile uint16_t XBARA1_SEL33, XBARA1_SEL38, ENC1_CTRL, ENC1_FILT, ENC1_LPOS, ENC1_UINIT, ENC1_LINIT, ENC3_CTRL,
+    ENC3_FILT, ENC3_LPOS, ENC3_UINIT, ENC3_LINIT;
+#endif
+
 #ifdef __cplusplus
 #include "IntervalTimer.h" /* as the cores do */
 

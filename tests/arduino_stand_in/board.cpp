@@ -36,8 +36,108 @@ static void ticks(long n) {
   }
 }
 
+#if GM_HOB_COUNTER || GM_FEED_COUNTER
+/* What the reference manuals say of the counters: FTM with QUADEN and, for pulse and direction, QUADMODE; ENC with PH1 and
+ * REV. Every register that leads a pin there must have been set. */
+struct phases {
+  int a, b;
+};
+static phases at[2] = {{GM_DECODER_LS7184, 0}, {GM_DECODER_LS7184, 0}};
+
+#ifdef GM_BOARD_TEENSY_32
+static bool connected(uint8_t a, uint8_t b) {
+  static const int pins[][4] = {{16, 17, 6, 1}, {3, 4, 7, 1}, {32, 25, 6, 2}}; /* A, B, multiplexer, FTM */
+  const int unit = a == GM_PIN_ENCODER_STEP ? GM_HOB_COUNTER : GM_FEED_COUNTER;
+  for (const auto &pair : pins) {
+    if (pair[0] == a && pair[1] == b && pair[3] == unit) {
+      return ((stand_in_pin_config[a] >> 8) & 7) == (unsigned)pair[2] && ((stand_in_pin_config[b] >> 8) & 7) == (unsigned)pair[2];
+    }
+  }
+  return false;
+}
+static void count(uint8_t a, phases was, phases now) {
+  const bool first = (a == GM_PIN_ENCODER_STEP ? GM_HOB_COUNTER : GM_FEED_COUNTER) == 1;
+  const uint32_t control = first ? FTM1_QDCTRL : FTM2_QDCTRL;
+  volatile uint32_t &counter = first ? FTM1_CNT : FTM2_CNT;
+  if (!(control & 1) || (first ? FTM1_MOD : FTM2_MOD) != 0xFFFF || !((first ? FTM1_MODE : FTM2_MODE) & 1)) {
+    return;
+  }
+#else
+static int input_of(uint8_t pin) {
+  static const struct { /* pin, multiplexer, input of the crossbar, its pad and where that is chosen */
+    uint8_t pin;
+    uint32_t mux;
+    int input;
+    uint32_t daisy;
+    volatile uint32_t *chosen;
+  } pads[] = {{0, 1, 17, 1, &IOMUXC_XBAR1_IN17_SELECT_INPUT},  {2, 3, 6, 0, &IOMUXC_XBAR1_IN06_SELECT_INPUT},
+              {3, 3, 7, 0, &IOMUXC_XBAR1_IN07_SELECT_INPUT},   {4, 3, 8, 0, &IOMUXC_XBAR1_IN08_SELECT_INPUT},
+              {5, 3, 17, 0, &IOMUXC_XBAR1_IN17_SELECT_INPUT},  {7, 1, 15, 1, &IOMUXC_XBAR1_IN15_SELECT_INPUT},
+              {8, 1, 14, 1, &IOMUXC_XBAR1_IN14_SELECT_INPUT},  {30, 1, 23, 0, &IOMUXC_XBAR1_IN23_SELECT_INPUT},
+              {31, 1, 22, 0, &IOMUXC_XBAR1_IN22_SELECT_INPUT}, {33, 3, 9, 0, &IOMUXC_XBAR1_IN09_SELECT_INPUT}};
+  for (const auto &pad : pads) {
+    if (pad.pin == pin && stand_in_pin_config[pin] == pad.mux && *pad.chosen == pad.daisy) {
+      return pad.input;
+    }
+  }
+  return -1;
+}
+static bool connected(uint8_t a, uint8_t b) {
+  const bool hob = a == GM_PIN_ENCODER_STEP;
+  const uint16_t chosen = hob ? XBARA1_SEL33 : XBARA1_SEL38;
+  const uint32_t clock = hob ? 3u << 24 : 3u << 28;
+  return (CCM_CCGR2 & 3u << 22) == 3u << 22 && (CCM_CCGR4 & clock) == clock && input_of(a) == (chosen & 0xFF) &&
+         input_of(b) == chosen >> 8;
+}
+static void count(uint8_t a, phases was, phases now) {
+  const bool hob = a == GM_PIN_ENCODER_STEP;
+  const uint16_t control = hob ? ENC1_CTRL : ENC3_CTRL;
+  volatile uint16_t &counter = hob ? ENC1_LPOS : ENC3_LPOS;
+#endif
+#ifdef GM_BOARD_TEENSY_32
+  const bool pulses = control & 8, up = now.b;
+#else
+  const bool pulses = control & 0x200, up = (control & 0x400 ? 1 : 0) == now.b;
+#endif
+  int moved = 0;
+  if (pulses) {
+    moved = !was.a && now.a ? (up ? 1 : -1) : 0;
+  } else if (was.a != now.a) { /* A leads B while it counts up */
+    moved = now.a != now.b ? 1 : -1;
+  } else if (was.b != now.b) {
+    moved = now.a == now.b ? 1 : -1;
+  }
+  counter = (uint16_t)(counter + moved);
+}
+
+static void counted_edge(uint8_t a, uint8_t b, int forward) {
+  phases &state = at[a == GM_PIN_ENCODER_STEP ? 0 : 1];
+  if (!connected(a, b)) {
+    return;
+  }
+  if (GM_DECODER_LS7184) { /* CLK is low during its pulse */
+    const phases pulse[] = {{0, forward}, {1, forward}};
+    for (const phases &next : pulse) {
+      count(a, state, next);
+      state = next;
+    }
+    return;
+  }
+  const phases next = (state.a == state.b) == (forward != 0) ? phases{!state.a, state.b} : phases{state.a, !state.b};
+  count(a, state, next);
+  state = next;
+}
+#endif
+
 static void edges(uint8_t pulse, uint8_t direction, long n, int forward, long ticks_between) {
   for (; n > 0; --n) {
+#if GM_HOB_COUNTER || GM_FEED_COUNTER
+    if ((pulse == GM_PIN_ENCODER_STEP ? GM_HOB_COUNTER : GM_FEED_COUNTER) > 0) {
+      counted_edge(pulse, direction, forward);
+      ticks(ticks_between);
+      continue;
+    }
+#endif
     if (GM_DECODER_LS7184) {
       stand_in.level[direction] = (uint8_t)forward;
       if (stand_in.edge[pulse] == RISING) { /* CLK is low during the pulse */

@@ -10,6 +10,22 @@ stand_in_board stand_in;
 TwoWire Wire;
 EEPROMClass EEPROM;
 
+volatile uint32_t stand_in_pin_config[64];
+#if defined(__MK20DX256__)
+#define FTM(unit)                                                                                         \
+  volatile uint32_t FTM##unit##_SC, FTM##unit##_CNT, FTM##unit##_MOD, FTM##unit##_C0SC, FTM##unit##_C1SC, \
+      FTM##unit##_CNTIN, FTM##unit##_MODE, FTM##unit##_FILTER, FTM##unit##_QDCTRL;
+FTM(1)
+FTM(2)
+#else
+volatile uint32_t CCM_CCGR2, CCM_CCGR4, IOMUXC_XBAR1_IN06_SELECT_INPUT, IOMUXC_XBAR1_IN07_SELECT_INPUT,
+    IOMUXC_XBAR1_IN08_SELECT_INPUT, IOMUXC_XBAR1_IN09_SELECT_INPUT, IOMUXC_XBAR1_IN14_SELECT_INPUT,
+    IOMUXC_XBAR1_IN15_SELECT_INPUT, IOMUXC_XBAR1_IN17_SELECT_INPUT, IOMUXC_XBAR1_IN22_SELECT_INPUT,
+    IOMUXC_XBAR1_IN23_SELECT_INPUT;
+volatile uint16_t XBARA1_SEL33, XBARA1_SEL38, ENC1_CTRL, ENC1_FILT, ENC1_LPOS, ENC1_UINIT, ENC1_LINIT, ENC3_CTRL,
+    ENC3_FILT, ENC3_LPOS, ENC3_UINIT, ENC3_LINIT;
+#endif
+
 extern "C" {
 void pinMode(uint8_t pin, uint8_t mode) { stand_in.mode[pin] = mode; }
 uint8_t digitalReadFast(uint8_t pin) { return stand_in.level[pin]; }

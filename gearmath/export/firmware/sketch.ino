@@ -7,9 +7,10 @@
  * (gm_mask, gm_unmask).
  *
  * Encoders. An LS7184 pulls CLK low for one output pulse per count; its UP/DN holds until the next one. So the end of
- * the pulse, the rising edge, is where the direction is read. Without LS7184 the library Encoder decodes channels A and
- * B in the board's pin interrupts, all four edges of a line; the step timer takes the difference of its count, which is
- * at most a few edges, and passes them on one by one.
+ * the pulse, the rising edge, is where the direction is read. A counter of the board (gm_counter.h) counts channels A and
+ * B, or those pulses, by itself. Otherwise the pin interrupts do: for channels A and B with the library Encoder, all four
+ * edges of a line. What was counted elsewhere is taken by the step timer, at most a few edges, which it passes on one by
+ * one, behind its outputs so that these are never late.
  */
 #include <Arduino.h>
 #include <EEPROM.h>
@@ -17,6 +18,7 @@
 #include <Wire.h>
 
 #include "gm_core.h"
+#include "gm_counter.h"
 #include "gm_store.h"
 #include "gm_ui.h"
 
@@ -88,38 +90,92 @@ static void show() {
 }
 
 /* --- interrupts --- */
+/* Feed edges count up where the table has to turn further on: in conventional cutting. */
 enum { HOB_UP = GM_ENCODER_INVERT ? -1 : 1 };
-#if GM_DECODER_LS7184
+#if GM_HAS_FEED
+enum { FEED_UP = GM_FEED_CLIMBS ? -1 : 1 };
+#endif
+
+#if GM_HOB_COUNTER || !GM_DECODER_LS7184
+static void pass_edges(int32_t moved, int axis, int up) {
+  for (; moved > 0; --moved) {
+    gm_core_edge(&core, axis, up);
+  }
+  for (; moved < 0; ++moved) {
+    gm_core_edge(&core, axis, -up);
+  }
+}
+#endif
+
+#if GM_HOB_COUNTER
+static uint16_t hob_seen;
+
+static void follow_hob() {
+  const uint16_t count = GM_COUNTER_READ(HOB);
+  int32_t moved;
+  gm_counter_motion(hob_seen, count, &moved);
+  hob_seen = count;
+  pass_edges(moved, GM_HOB, HOB_UP);
+}
+
+static void begin_hob() { GM_COUNTER_BEGIN(HOB, GM_PIN_ENCODER_STEP, GM_PIN_ENCODER_DIR); }
+#elif GM_DECODER_LS7184
 static void on_hob_pulse() { gm_core_edge(&core, GM_HOB, digitalReadFast(GM_PIN_ENCODER_DIR) == HIGH ? HOB_UP : -HOB_UP); }
 static void follow_hob() {}
+
+static void begin_hob() {
+  pinMode(GM_PIN_ENCODER_STEP, INPUT_PULLUP); /* a broken wire is quiet and counts nothing */
+  pinMode(GM_PIN_ENCODER_DIR, INPUT_PULLUP);
+  attachInterrupt(digitalPinToInterrupt(GM_PIN_ENCODER_STEP), on_hob_pulse, RISING);
+}
 #else
 static Encoder hob_encoder(GM_PIN_ENCODER_STEP, GM_PIN_ENCODER_DIR);
 static uint32_t hob_seen;
-#endif
 
-/* Feed edges count up where the table has to turn further on: in conventional cutting. */
-#if GM_HAS_FEED
-enum { FEED_UP = GM_FEED_CLIMBS ? -1 : 1 };
-#if GM_DECODER_LS7184
-static void on_feed_pulse() { gm_core_edge(&core, GM_FEED, digitalReadFast(GM_PIN_FEED_DIR) == HIGH ? FEED_UP : -FEED_UP); }
-#else
-static Encoder feed_encoder(GM_PIN_FEED_STEP, GM_PIN_FEED_DIR);
-static uint32_t feed_seen;
-#endif
-#endif
-
-#if !GM_DECODER_LS7184
-/* The counts since the last call, as edges; the difference is right when the count runs over, too. */
-static void pass_edges(Encoder &encoder, uint32_t *seen, int axis, int up) {
-  const uint32_t count = (uint32_t)encoder.read();
-  const bool forward = (int32_t)(count - *seen) > 0;
-  while (*seen != count) {
-    *seen += forward ? 1u : (uint32_t)-1;
-    gm_core_edge(&core, axis, forward ? up : -up);
-  }
+static void follow_hob() {
+  const uint32_t count = (uint32_t)hob_encoder.read();
+  pass_edges((int32_t)(count - hob_seen), GM_HOB, HOB_UP);
+  hob_seen = count;
 }
 
-static void follow_hob() { pass_edges(hob_encoder, &hob_seen, GM_HOB, HOB_UP); }
+static void begin_hob() { hob_seen = (uint32_t)hob_encoder.read(); } /* what was counted before is no motion of a job */
+#endif
+
+#if GM_HAS_FEED && GM_FEED_COUNTER
+static uint16_t feed_seen;
+
+static void follow_feed() {
+  const uint16_t count = GM_COUNTER_READ(FEED);
+  int32_t moved;
+  gm_counter_motion(feed_seen, count, &moved);
+  feed_seen = count;
+  pass_edges(moved, GM_FEED, FEED_UP);
+}
+
+static void begin_feed() { GM_COUNTER_BEGIN(FEED, GM_PIN_FEED_STEP, GM_PIN_FEED_DIR); }
+#elif GM_HAS_FEED && GM_DECODER_LS7184
+static void on_feed_pulse() { gm_core_edge(&core, GM_FEED, digitalReadFast(GM_PIN_FEED_DIR) == HIGH ? FEED_UP : -FEED_UP); }
+static void follow_feed() {}
+
+static void begin_feed() {
+  pinMode(GM_PIN_FEED_STEP, INPUT_PULLUP);
+  pinMode(GM_PIN_FEED_DIR, INPUT_PULLUP);
+  attachInterrupt(digitalPinToInterrupt(GM_PIN_FEED_STEP), on_feed_pulse, RISING);
+}
+#elif GM_HAS_FEED
+static Encoder feed_encoder(GM_PIN_FEED_STEP, GM_PIN_FEED_DIR);
+static uint32_t feed_seen;
+
+static void follow_feed() {
+  const uint32_t count = (uint32_t)feed_encoder.read();
+  pass_edges((int32_t)(count - feed_seen), GM_FEED, FEED_UP);
+  feed_seen = count;
+}
+
+static void begin_feed() { feed_seen = (uint32_t)feed_encoder.read(); }
+#else
+static void follow_feed() {}
+static void begin_feed() {}
 #endif
 
 #if GM_HAS_INDEX
@@ -161,11 +217,9 @@ static unsigned inputs() {
 }
 
 static void on_tick() {
-  follow_hob();
-#if GM_HAS_FEED && !GM_DECODER_LS7184
-  pass_edges(feed_encoder, &feed_seen, GM_FEED, FEED_UP);
-#endif
   put_outputs(gm_core_outputs(&core, inputs()));
+  follow_hob();
+  follow_feed();
   gm_core_think(&core);
 }
 
@@ -291,21 +345,8 @@ void setup() {
 #endif
   begin_operator();
   set_priorities();
-#if GM_DECODER_LS7184
-  pinMode(GM_PIN_ENCODER_STEP, INPUT_PULLUP); /* a broken wire is quiet and counts nothing */
-  pinMode(GM_PIN_ENCODER_DIR, INPUT_PULLUP);
-  attachInterrupt(digitalPinToInterrupt(GM_PIN_ENCODER_STEP), on_hob_pulse, RISING);
-#if GM_HAS_FEED
-  pinMode(GM_PIN_FEED_STEP, INPUT_PULLUP);
-  pinMode(GM_PIN_FEED_DIR, INPUT_PULLUP);
-  attachInterrupt(digitalPinToInterrupt(GM_PIN_FEED_STEP), on_feed_pulse, RISING);
-#endif
-#else /* what was counted before the timer runs is no motion of this job */
-  hob_seen = (uint32_t)hob_encoder.read();
-#if GM_HAS_FEED
-  feed_seen = (uint32_t)feed_encoder.read();
-#endif
-#endif
+  begin_hob();
+  begin_feed();
 #if GM_HAS_INDEX
   pinMode(GM_PIN_INDEX, INPUT_PULLUP);
   attachInterrupt(digitalPinToInterrupt(GM_PIN_INDEX), on_index, GM_INDEX_ACTIVE_LOW ? FALLING : RISING);

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 from elftools.elf.elffile import ELFFile
 
@@ -22,7 +23,7 @@ from gearmath.errors import InputError
 from gearmath.export.teensy import export_teensy, teensy_files
 from gearmath.specs.drive import Feed
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
-from gearmath.specs.toml import bundled
+from gearmath.specs.toml import bundled, parse
 
 STAND_IN = Path(__file__).parents[2] / "arduino_stand_in"
 MACHINES = ("hobbing_plewes", "hobbing_metric", "hobbing_helical", "lathe_example")
@@ -348,6 +349,100 @@ def test_channels_of_the_boards_own_decoder_follow_too(power_up: Callable[..., B
     board.hob(500, forward=False, ticks=5)
     board.wait(20)
     assert board.board.board_position() == round(11500 * Fraction(16000, 24 * 4096))
+
+
+COUNTERS = {
+    "FTM1, channels": ("teensy32", {"decoder": '"hardware"'}, ""),
+    "FTM1 on its other pins": (
+        "teensy32", {"decoder": '"hardware"'}, "encoder_step = 3\nencoder_dir = 4\nknob_b = 5\nbutton = 9"
+    ),
+    "FTM2, channels": ("teensy32", {"decoder": '"hardware"'}, "encoder_step = 32\nencoder_dir = 25"),
+    "FTM1, LS7184": ("teensy32", {"decoder": '"ls7184_x4"\ncounter = "hardware"'}, ""),
+    "ENC1, channels": ("teensy41", {"decoder": '"hardware"'}, ""),
+    "ENC1 on other pins": ("teensy40", {"decoder": '"hardware"'}, "encoder_step = 33\nencoder_dir = 0"),
+    "ENC1, LS7184": ("teensy40", {"decoder": '"ls7184_x4"\ncounter = "hardware"'}, ""),
+}  # fmt: skip
+
+
+def with_counter(name: str, base: str = "hobbing_plewes") -> HobbingMachine:
+    board, changes, pins = COUNTERS[name]
+    text = bundled(f"{base}.toml").read_text("utf-8")
+    for key, value in {"board": f'"{board}"', **changes}.items():
+        text = re.sub(rf"^{key} = .*$", f"{key} = {value}", text, count=1, flags=re.MULTILINE)
+    return parse(text.replace("[pins]\n", f"[pins]\n{pins}\n"), HobbingMachine, name)
+
+
+@pytest.mark.parametrize("name", COUNTERS)
+def test_counter_of_the_board_loses_nothing_where_it_runs_over(name: str, power_up: Callable[..., Board]) -> None:
+    """Registers as the reference manuals describe them: over 0 and 65536 both ways, and to and fro on both; read after
+    every edge, and after as many as come between two ticks or more."""
+    given = at_once(with_counter(name))
+    board = power_up(given)
+    board.start()
+    steps_per_edge = Fraction(16000, 24 * 4096)
+    random, turned = np.random.default_rng(7), 0
+
+    def drive(edges: int, ticks: int) -> None:
+        nonlocal turned
+        board.hob(abs(edges), edges > 0, ticks)
+        turned += edges
+
+    def check() -> None:
+        board.wait(20)
+        assert abs(board.board.board_position() - turned * steps_per_edge) <= Fraction(1, 2), turned
+
+    tick_us = given.tick_ns // 1000
+    for place in (-3, 65533, 131_070, 65_540, 2, -65_538):
+        drive(place - turned, 20 // tick_us)
+        check()
+        for edges in random.integers(-9, 10, 60).tolist():
+            if edges:
+                drive(edges, int(random.choice([0, 1, 5])))  # 0: all of them between two readings
+                board.board.board_pass(1)
+        drive(place - turned, 20 // tick_us)
+        check()
+    assert board.board.board_bad_pulses() == 0
+
+
+@pytest.mark.parametrize("name", ["FTM2, channels", "FTM1, LS7184", "ENC1, LS7184"])
+def test_counters_compile_for_their_board(name: str, tmp_path: Path, arm: str) -> None:
+    given = with_counter(name)
+    folder = write(teensy_files(given), tmp_path / "gearbox")
+    defines, processor, _ = BOARDS[given.board]
+    run(
+        folder,
+        f"{arm}g++",
+        *processor,
+        "-mthumb",
+        *CXX,
+        *STRICT,
+        *defines,
+        f"-I{STAND_IN}",
+        "-fsyntax-only",
+        "sketch.cpp",
+    )
+
+
+def test_feed_has_a_counter_of_its_own(power_up: Callable[..., Board]) -> None:
+    text = bundled("hobbing_helical.toml").read_text("utf-8").replace('"ls7184_x4"', '"hardware"')
+    given = parse(text.replace("feed_step = 10\nfeed_dir = 11", "feed_step = 30\nfeed_dir = 31"), HobbingMachine, "m")
+    assert (given.hob_counter.unit, given.feed_counter.unit) == (1, 3)
+    board = power_up(given)
+    for _ in range(12):
+        if board.display()[0].startswith("Helix none"):
+            break
+        board.press()
+    board.knob(8)
+    board.start()
+    up = int(not given.feed_climbs)
+    board.board.board_feed(ctypes.c_long(70_000), up, ctypes.c_long(10))
+    board.wait(5)
+    # 0.08 degrees (the knob's 8 detents): 16 steps/mm over the lead, 70 mm of feed
+    there = board.board.board_position()
+    assert there > 0
+    board.board.board_feed(ctypes.c_long(70_000), 1 - up, ctypes.c_long(10))
+    board.wait(5)
+    assert board.board.board_position() == 0
 
 
 def test_feed_counts_turn_the_table_forward_in_a_conventional_cut(power_up: Callable[..., Board]) -> None:
