@@ -11,12 +11,14 @@ static uint8_t step_before;
 static long position; /* pulses, by their direction */
 static long bad_pulses;
 static uint32_t high_ticks;
+static uint32_t last_step_at;
 
 static void watch() {
   const uint8_t step = (uint8_t)(stand_in.level[GM_PIN_STEP_OUT] != GM_STEP_ACTIVE_LOW);
   const uint8_t forward = (uint8_t)(stand_in.level[GM_PIN_DIR_OUT] != GM_DIR_ACTIVE_LOW);
   if (step && !step_before) {
     position += forward != GM_DIR_INVERT ? 1 : -1;
+    last_step_at = stand_in.now_ms;
     high_ticks = 0;
   }
   high_ticks += step;
@@ -33,6 +35,10 @@ static void ticks(long n) {
     }
     stand_in.tick();
     watch();
+    if (stand_in.pended && !stand_in.masked) { /* of low priority: it follows the tick */
+      stand_in.pended = 0;
+      stand_in.software();
+    }
   }
 }
 
@@ -150,7 +156,32 @@ static void edges(uint8_t pulse, uint8_t direction, long n, int forward, long ti
   }
 }
 
+static uint32_t press_at = UINT32_MAX;
+static long hob_every = 0; /* ticks from edge to edge of a hob that turns by itself */
+
+static void one_ms() {
+  ++stand_in.now_ms;
+  if (stand_in.now_ms == press_at) {
+    stand_in.level[GM_PIN_BUTTON] = LOW;
+  } else if (stand_in.now_ms == press_at + 60) {
+    stand_in.level[GM_PIN_BUTTON] = HIGH;
+  }
+  if (hob_every == 0) {
+    ticks(TICKS_A_MS);
+    return;
+  }
+  edges(GM_PIN_ENCODER_STEP, GM_PIN_ENCODER_DIR, TICKS_A_MS / hob_every, 1, hob_every);
+}
+
+/* Every call to the display takes 600 ms: a Teensy 4 gives a transmission 50 ms, and a letter has twelve. */
+static void stuck() {
+  for (int ms = 0; ms < 600; ++ms) {
+    one_ms();
+  }
+}
+
 extern "C" {
+void board_pass(long ms);
 void board_power_up(const uint8_t *eeprom, long size) {
   for (long k = 0; k < 4284; ++k) {
     stand_in.eeprom[k] = k < size ? eeprom[k] : 0xff;
@@ -163,10 +194,67 @@ void board_power_up(const uint8_t *eeprom, long size) {
   step_before = (uint8_t)(stand_in.level[GM_PIN_STEP_OUT] != GM_STEP_ACTIVE_LOW);
 }
 
-void board_pass(long ms) {
+void board_bus(int is_stuck) { stand_in.bus_waits = is_stuck ? stuck : nullptr; }
+void board_display_off(int off) { stand_in.display_off = off; }
+void board_garbage() {
+  for (int k = 0; k < 80; ++k) {
+    stand_in.lcd[k] = (char)(33 + k % 90);
+  }
+}
+void board_turn_hob(long every) { hob_every = every; }
+/* Presses the button after so many ms; how long after it the last step came, when `ms` have passed. */
+long board_press_and_count(long after, long ms) {
+  press_at = stand_in.now_ms + (uint32_t)after;
+  board_pass(1);
+  while (stand_in.now_ms < press_at + (uint32_t)ms) {
+    board_pass(1);
+  }
+  return (long)(last_step_at - press_at);
+}
+/* Whether the watchdog was refreshed since the last call. */
+int board_refreshed() {
+#ifdef GM_BOARD_TEENSY_32
+  const bool seen = WDOG_REFRESH == 0xB480;
+  WDOG_REFRESH = 0;
+#else
+  const bool seen = WDOG1_WSR == 0xAAAA;
+  WDOG1_WSR = 0;
+#endif
+  return seen;
+}
+int board_watchdog_ms() {
+#ifdef GM_BOARD_TEENSY_32
+  return WDOG_STCTRLH & 1 ? WDOG_TOVALL : 0; /* STCTRLH bit 0 turns it on, bit 1 would take another clock than 1 kHz */
+#else
+  return WDOG1_WCR & 4 ? 500 * (1 + (WDOG1_WCR >> 8)) : 0; /* WDE, and WT in half seconds */
+#endif
+}
+/* Time passes without one of its parts: 1 the step timer, 2 the operator's interrupt, 3 loop(). */
+void board_hang(int what, long ms) {
   for (; ms > 0; --ms) {
     ++stand_in.now_ms;
-    ticks(TICKS_A_MS);
+    if (what != 1) {
+      stand_in.pended = what == 2 ? 0 : stand_in.pended;
+      void (*const software)(void) = stand_in.software;
+      for (int k = 0; k < TICKS_A_MS; ++k) {
+        stand_in.tick();
+        watch();
+        if (stand_in.pended && what != 2) {
+          stand_in.pended = 0;
+          software();
+        }
+      }
+    }
+    if (what != 3) {
+      loop();
+    }
+  }
+}
+int board_starts() { return stand_in.lcd_starts; }
+
+void board_pass(long ms) {
+  for (; ms > 0; --ms) {
+    one_ms();
     loop();
   }
 }
@@ -211,7 +299,10 @@ int board_level(int pin) { return stand_in.level[pin]; }
 int board_mode(int pin) { return stand_in.mode[pin]; }
 int board_writes() { return stand_in.lcd_writes; }
 int board_eeprom_writes() { return stand_in.eeprom_writes; }
-int board_priority(int of_timer) { return of_timer ? stand_in.priority_of_timer : stand_in.priority_of_pins; }
+int board_priority(int of) {
+  return of == 2 ? stand_in.priority_of_software : of ? stand_in.priority_of_timer : stand_in.priority_of_pins;
+}
+void board_button(int held) { stand_in.level[GM_PIN_BUTTON] = held ? LOW : HIGH; }
 long board_tick_us() { return (long)stand_in.tick_us; }
 void board_eeprom(uint8_t *copy) {
   for (int k = 0; k < 4284; ++k) {

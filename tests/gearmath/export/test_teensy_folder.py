@@ -257,8 +257,10 @@ def test_open_collector_inverts_the_level_at_the_pin() -> None:
 class Board:
     """One board in memory, in the hands of an operator."""
 
-    def __init__(self, library: Path, eeprom: bytes = b"") -> None:
+    def __init__(self, library: Path, eeprom: bytes = b"", display_off: bool = False) -> None:
         self.board = ctypes.CDLL(str(library))
+        self.board.board_press_and_count.restype = ctypes.c_long
+        self.board.board_display_off(int(display_off))
         self.board.board_position.restype = ctypes.c_long
         self.board.board_bad_pulses.restype = ctypes.c_long
         self.board.board_power_up(eeprom, ctypes.c_long(len(eeprom)))
@@ -305,13 +307,13 @@ def power_up(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Board]:
         pytest.skip("needs g++")
     built: dict[str, Path] = {}
 
-    def make(given: HobbingMachine, eeprom: bytes = b"") -> Board:
+    def make(given: HobbingMachine, eeprom: bytes = b"", display_off: bool = False) -> Board:
         key = given.model_dump_json()
         if key not in built:
             built[key] = _build(given, tmp_path_factory.mktemp("sketch"))
         fresh = tmp_path_factory.mktemp("power") / "board.so"  # another file is another memory
         shutil.copy(built[key], fresh)
-        return Board(fresh, eeprom)
+        return Board(fresh, eeprom, display_off)
 
     return make
 
@@ -465,10 +467,85 @@ def test_feed_counts_turn_the_table_forward_in_a_conventional_cut(power_up: Call
     assert board.board.board_position() == 0
 
 
+@pytest.mark.parametrize(("name", "after"), [("hobbing_plewes", 37), ("hobbing_plewes", 598), ("lathe_example", 411)])
+def test_a_stuck_display_delays_neither_a_stop_nor_the_job(
+    name: str, after: int, power_up: Callable[..., Board]
+) -> None:
+    """Every call to the display lasts 600 ms; the press is obeyed in 20 ms of debouncing and 5 ms, 50 at most."""
+    given = at_once(machine(name))
+    board = power_up(given)
+    board.start()
+    tick_us = given.tick_ns // 1000
+    board.board.board_turn_hob(ctypes.c_long(200 // tick_us))  # 5000 edges/s
+    board.wait(300)
+    assert board.display()[3].startswith("In phase: lag")
+    board.press()
+    board.knob(1)
+    assert board.display()[3].startswith("Stop?     no  >yes<")
+    board.board.board_bus(1)
+    assert 10 <= board.board.board_press_and_count(ctypes.c_long(after), ctypes.c_long(1500)) <= 50
+    board.board.board_bus(0)
+    board.board.board_turn_hob(ctypes.c_long(0))
+    board.wait(1500)
+    assert board.display()[0] == "STOPPED, phase kept"
+    assert board.board.board_bad_pulses() == 0
+
+
+def test_display_is_begun_anew_while_the_job_runs(power_up: Callable[..., Board]) -> None:
+    """Garbage: by turning the knob while the button is held; a display that was away: by itself. The phase stays."""
+    board = power_up(at_once(machine("hobbing_plewes")))
+    board.start()
+    board.board.board_turn_hob(ctypes.c_long(40))
+    board.wait(300)
+    shown, starts = board.display(), board.board.board_starts()
+    board.board.board_garbage()
+    assert board.display() != shown
+    board.board.board_button(1)
+    board.wait(60)
+    board.knob(1)
+    board.board.board_button(0)
+    board.wait(600)
+    assert board.display()[0] == shown[0]
+    assert board.display()[3].startswith("In phase: lag")  # the page did not change either
+    assert board.board.board_starts() == starts + 1
+    board.board.board_display_off(1)
+    board.wait(2500)
+    board.board.board_garbage()
+    board.board.board_display_off(0)
+    board.wait(2500)
+    assert board.display()[0] == shown[0]
+    assert board.display()[3].startswith("In phase: lag")
+
+
+def test_display_that_is_plugged_in_later_is_found(power_up: Callable[..., Board]) -> None:
+    board = power_up(machine("lathe_example"), display_off=True)
+    assert not any("PHASE" in line for line in board.display())
+    board.board.board_display_off(0)
+    board.wait(2500)
+    assert board.display()[2] == "PHASE IS LOST"
+
+
+@pytest.mark.parametrize(("name", "timeout"), [("hobbing_plewes", 500), ("lathe_example", 1000)])
+def test_watchdog_is_refreshed_only_while_every_part_works(name, timeout, power_up: Callable[..., Board]) -> None:
+    board = power_up(machine(name))
+    assert board.board.board_watchdog_ms() == timeout
+    for _ in range(20):
+        board.wait(20)
+        assert board.board.board_refreshed()
+    for part in (1, 2, 3):  # step timer, operator, loop; the last may wait 8 s for a display
+        board.board.board_hang(part, ctypes.c_long(8100 if part == 3 else 50))
+        board.board.board_refreshed()
+        board.board.board_hang(part, ctypes.c_long(1000))
+        assert not board.board.board_refreshed()
+        board.wait(50)
+        assert board.board.board_refreshed()
+
+
 def test_edges_and_ticks_have_one_priority(power_up: Callable[..., Board]) -> None:
     for name in ("hobbing_plewes", "hobbing_helical"):
         board, given = power_up(machine(name)), machine(name)
         assert board.board.board_priority(0) == board.board.board_priority(1) == 16
+        assert board.board.board_priority(2) == 208  # knob, button and pages: below everything else
         assert board.board.board_tick_us() * 1000 == given.tick_ns
         for pin in (given.pins.step_out, given.pins.dir_out):
             assert board.board.board_mode(pin) == 1  # OUTPUT

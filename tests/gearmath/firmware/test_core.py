@@ -477,7 +477,7 @@ def test_broken_encoder_line_is_found_though_every_turn_counts_zero(hob):
     """One channel stuck: the decoder counts one forward, one back; the index pulses find no edges at all."""
     it = hob()
     it.turn(2 * COUNTS - it.place)  # onto the mark
-    script = np.tile([1, 0, 0, -1, 0, 0], 4000)
+    script = np.tile([1, 0, 0, -1, 0, 0], 5000)
     it.core.play(script, index=np.arange(len(script)) % 3000 == 0)
     assert (it.core.status.fault, it.core.status.index_error) == (ENCODER, -COUNTS)
 
