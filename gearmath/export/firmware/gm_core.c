@@ -385,7 +385,12 @@ static void watch_index(gm_core *core)
   const int32_t travel = (int32_t)(hob_count(core) - core->index_zone);
   const int32_t turns = travel / GM_ENCODER_COUNTS - (travel % GM_ENCODER_COUNTS < 0);
   const int32_t beyond = travel - turns * GM_ENCODER_COUNTS;
-  if (!core->index_known || beyond <= GM_INDEX_WIDTH || beyond >= GM_ENCODER_COUNTS - GM_INDEX_WIDTH) return;
+  if (!core->index_known) { /* none has come yet, since the start of the job */
+    const uint32_t all = magnitude((int32_t)hob_count(core));
+    if (all > (uint32_t)GM_INDEX_MISSING * GM_ENCODER_COUNTS + GM_INDEX_WIDTH) accuse(core, (int32_t)all);
+    return;
+  }
+  if (beyond <= GM_INDEX_WIDTH || beyond >= GM_ENCODER_COUNTS - GM_INDEX_WIDTH) return;
   core->index_zone += (uint32_t)(turns * GM_ENCODER_COUNTS);
   if (turns != 0) {
     core->index_missed = core->index_good ? 0 : core->index_missed + magnitude(turns);

@@ -95,6 +95,9 @@ static void gm_draw_start(gm_ui *ui) {
   }
   gm_count(ui, 1, gm_is_lathe() ? "Max speed" : "Hob max", ui->facts.max_rpm, "rpm");
   gm_line(ui, 2, ui->phase ? "OLD PHASE WILL GO" : "PHASE STARTS HERE");
+  if (ui->turning && !gm_is_lathe()) {
+    gm_line(ui, 2, "HOB TURNS: KEEP FREE");
+  }
   gm_answer(ui, "Start?");
 }
 

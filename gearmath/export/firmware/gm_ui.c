@@ -80,8 +80,8 @@ static unsigned gm_start(gm_ui *ui, const gm_status *status) {
   if (ui->refusal != GM_JOB_OK) {
     return 0;
   }
-  if (status->mode != GM_IDLE || (!gm_is_lathe() && gm_hob_turns(ui, status))) {
-    ui->message = "Stop the hob first";
+  if (status->mode != GM_IDLE) {
+    ui->message = "Not now: table moves";
     return 0;
   }
   gm_mask();
@@ -103,8 +103,8 @@ static unsigned gm_start(gm_ui *ui, const gm_status *status) {
 
 static void gm_run_on(gm_ui *ui, const gm_status *status) {
   int refused;
-  if (status->mode != GM_IDLE || (!gm_is_lathe() && gm_hob_turns(ui, status))) {
-    ui->message = "Stop the hob first";
+  if (status->mode != GM_IDLE) {
+    ui->message = "Not now: table moves";
     return;
   }
   gm_mask();

@@ -482,6 +482,14 @@ def test_broken_encoder_line_is_found_though_every_turn_counts_zero(hob):
     assert (it.core.status.fault, it.core.status.index_error) == (ENCODER, -COUNTS)
 
 
+def test_index_that_never_comes_is_found_after_four_turns(hob):
+    it = hob()
+    it.turn(4 * COUNTS, index=False)
+    assert it.core.status.fault == NO_FAULT
+    it.turn(COUNTS, index=False)
+    assert (it.core.status.fault, it.core.status.mode) == (ENCODER, FAULT)
+
+
 def test_missing_index_is_found_after_four_turns(hob):
     it = hob()
     it.turn(COUNTS)

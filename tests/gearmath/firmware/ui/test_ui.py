@@ -138,21 +138,23 @@ def test_stop_must_be_confirmed_and_keeps_the_phase(panel):
     assert abs(p.position - Fraction(16000, 32 * 4096) * 3000) <= Fraction(3, 2)
 
 
-def test_a_turning_hob_is_not_engaged(panel):
-    p = panel("hobbing_plewes")
-    p.edges(5000, ticks=100)
+def test_a_turning_hob_is_engaged_and_caught_up_before_it_is_in_phase(panel):
+    """At 8000 steps/s^2 and 1628 steps/s: the table speeds up for 0.2 s, and what it missed meanwhile is overtaken."""
+    p = panel("hobbing_plewes", GM_ACCELERATION=8000)
+    p.edges(10_000, ticks=20)  # 10 kHz: 146 rpm
     for _ in range(5):
         p.short()
+    p.edges(1600, ticks=20)
+    shows(p, " 24 teeth      32 DP", "Hob max      800 rpm", "HOB TURNS: KEEP FREE", "Start?   >no<  yes")
     p.knob(1)
-    p.library.board_edges(0, 9, 1, 100)
-    assert p.short() == 0
-    assert p.mode == IDLE
-    shows(p, " 24 teeth      32 DP", "Hob max      800 rpm", "PHASE STARTS HERE", "Stop the hob first")
-    p.ticks(1000)
-    assert p.short() == 0  # only takes the message away
-    shows(p, " 24 teeth      32 DP", "Hob max      800 rpm", "PHASE STARTS HERE", "Start?    no  >yes<")
     assert p.short() == SAVE
+    p.edges(500, ticks=20)
     assert p.mode == RUN
+    assert p.screen.startswith("CATCHING UP")
+    for _ in range(30):
+        p.edges(1000, ticks=20)
+    shows(p, " 24 teeth      32 DP", "Hob        146.5 rpm", "Table       6.10 rpm", "In phase: lag      0")
+    assert abs(p.position - Fraction(16000, 24 * 4096) * 30_500) <= Fraction(3, 2)
 
 
 def test_after_power_up_the_last_job_is_there_but_not_its_phase(panel, new_settings):
