@@ -138,6 +138,39 @@ def test_bundled_machine_links_without_any_floating_call(name: str, tmp_path: Pa
     assert [symbol for symbol in names if _FLOATING.fullmatch(symbol)] == []
 
 
+@pytest.mark.parametrize("name", ["hobbing_plewes", "hobbing_default", "hobbing_helical", "lathe_example"])
+def test_flash_and_ram_of_the_readme_are_those_of_the_compiled_files(name: str, tmp_path: Path, arm: str) -> None:
+    given = machine(name)
+    defines, processor, _ = BOARDS[given.board]
+    folder = write(teensy_files(given), tmp_path / "gearbox")
+    common = (*processor, "-mthumb", "-O2", "-ffunction-sections", "-fdata-sections", "-c")
+    run(folder, f"{arm}gcc", *common, "-std=c99", *c_files(folder))
+    run(folder, f"{arm}g++", *common, *CXX, *defines, f"-I{STAND_IN}", "sketch.cpp")
+    sizes = subprocess.run(
+        [f"{arm}size", *sorted(path.name for path in folder.glob("*.o"))], cwd=folder, capture_output=True
+    )
+    text, data, bss = (sum(column) for column in zip(*(
+        [int(number) for number in line.split()[:3]] for line in sizes.stdout.decode().splitlines()[1:]
+    ), strict=True))  # fmt: skip
+    stated = re.search(
+        r"take\s+about\s+([\d.]+)\s+kB\s+of\s+flash\s+and\s+([\d.]+)\s+kB", teensy_files(given)["README.md"]
+    )
+    assert stated is not None
+    assert float(stated[1]) * 1000 == pytest.approx(text + data, rel=0.1)
+    assert float(stated[2]) * 1000 == pytest.approx(data + bss, rel=0.1)
+
+
+@pytest.mark.parametrize("level", ["-O1", "-O2", "-O3", "-Os"])
+def test_no_level_of_optimization_brings_a_warning_on_this_computer(level: str, tmp_path: Path) -> None:
+    if shutil.which("g++") is None or shutil.which("gcc") is None:
+        pytest.skip("needs g++")
+    given = machine("hobbing_default")
+    folder = write(teensy_files(given), tmp_path / "gearbox")
+    run(folder, "gcc", level, "-Wall", "-Wextra", "-Werror", "-std=c99", "-c", *c_files(folder))
+    flags = (level, "-Wall", "-Wextra", "-Werror", *CXX, *BOARDS[given.board][0], f"-I{STAND_IN}")
+    run(folder, "g++", *flags, "-c", "sketch.cpp")
+
+
 def test_the_search_for_floating_calls_finds_them() -> None:
     for symbol in (
         "__aeabi_dmul",
