@@ -102,6 +102,7 @@ def _train(machine: HobbingMachine) -> list[Macro]:
         ("GM_MOTOR_STEPS_DEN", steps.denominator, "and denominator"),
         ("GM_HOB_STARTS", int(starts), notation.hob_starts.description),
         ("GM_HOB_LEFT", int(machine.hob_hand == "left"), "1: left-hand hob"),
+        ("GM_BACKLASH_STEPS", machine.drive.backlash_steps, "motor steps of play that are taken up"),
         ("GM_HYSTERESIS", machine.encoder.hysteresis, "counts of play of the hob encoder"),
         ("GM_WIDE", int(machine.wide), "0: gm_wide is int32_t, 1: int64_t"),
     ]

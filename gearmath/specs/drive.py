@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Literal
 
@@ -74,6 +75,18 @@ class Drive(Spec):
     microsteps: int | None = Field(default=None, ge=1, le=1_024)
     pulses: Pulses | None = None
     belt: Rational
+    backlash: float = Field(default=0.0, ge=0.0, le=5.0)
+    """Play between motor and table [degrees] or carriage [mm], taken up by dividing, a return and a restart."""
+
+    @property
+    def backlash_steps(self) -> int:
+        """That play in motor steps, rounded up."""
+        return math.ceil(Fraction(str(self.backlash)) * self.steps_per_turn / self._turn)
+
+    @property
+    def _turn(self) -> Fraction:
+        """A turn of the table [degrees], or of the lead screw [mm]."""
+        return Fraction(360)
 
     @property
     def pulses_per_turn(self) -> Fraction:
@@ -129,6 +142,10 @@ class LeadScrew(Drive):
     """Step motor of a lathe's lead screw, and the pitch of that screw [mm], from text in mm or tpi."""
 
     pitch: Pitch
+
+    @property
+    def _turn(self) -> Fraction:
+        return self.pitch
 
 
 class Feed(Spec):

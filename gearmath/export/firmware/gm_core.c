@@ -505,6 +505,20 @@ static void watch_alarm(gm_core *core, unsigned inputs)
   }
 }
 
+/* Whether braking must begin to stop before the shoulder: over the way of the present speed, that until the next look, and
+ * a step for each rounding. */
+static int near_shoulder(const gm_core *core)
+{
+  const int side = core->shoulder > 0 ? 1 : -1;
+  const int64_t follows = core->rate * side, moves = core->speed * side;
+  const int64_t speed = follows > moves ? follows : moves;
+  int64_t room = (core->shoulder - core->position - core->pending) * side;
+  if (speed <= 0) return 0;
+  room -= 3 + (int64_t)(3 * GM_STEER_TICKS * speed / GM_ONE_STEP);
+  if (room > 16000) return 0;
+  return room <= 0 || room * 65536 * GM_BRAKING_ROOM <= squared(speed < GM_FOLLOW_SPEED ? speed : GM_FOLLOW_SPEED);
+}
+
 /* Sets the speed of the motion within the acceleration: towards where the rule (or the move) wants it, so that braking
  * with three quarters of the acceleration ends there, at the speed of that place; a move, whose end stands, with nearly
  * all of it. */
@@ -526,6 +540,11 @@ static void steer(gm_core *core)
   if (core->engaged && !core->locked) {
     watch_lag(core);
     if (core->braking) return;
+  }
+  if (core->shoulder != 0 && core->engaged && near_shoulder(core)) {
+    core->at_shoulder = 1;
+    brake(core);
+    return;
   }
   apart = core->mode == GM_MOVE ? -core->speed : core->rate - core->speed;
   way = squared(apart);
@@ -774,7 +793,8 @@ int gm_core_set_job(gm_core *core, const gm_job *job)
   core->window_mark -= hob_count(core); /* the counts begin anew, the hob turns on */
   core->second_mark -= hob_count(core);
   core->edges[GM_HOB] = core->edges[GM_FEED] = 0;
-  core->position = 0;
+  core->position = core->shoulder = 0;
+  core->at_shoulder = 0;
   core->index_known = 0;
   core->index_alone = core->index_good = core->index_stray = 0;
   core->index_at = core->now - GM_INDEX_QUIET_TICKS - 1u;
@@ -789,10 +809,16 @@ int gm_core_run(gm_core *core)
   if (core->mode != GM_IDLE || !core->has_job) return -1;
   core->mode = GM_RUN;
   core->waiting = 1;
+  core->at_shoulder = 0;
   core->index_visits = 0;
   core->edge_at = core->now;
   if (core->away == 0) engage(core);
   return 0;
+}
+
+void gm_core_set_shoulder(gm_core *core, int64_t place)
+{
+  core->shoulder = core->has_job ? place : 0;
 }
 
 void gm_core_stop(gm_core *core)
@@ -857,4 +883,7 @@ void gm_core_status(const gm_core *core, gm_status *status)
   status->in_phase = core->engaged && core->locked;
   status->has_job = core->has_job;
   status->armed = core->armed;
+  status->dir = core->dir;
+  status->shoulder = core->shoulder;
+  status->at_shoulder = core->at_shoulder;
 }

@@ -132,6 +132,9 @@ typedef struct {
   int in_phase;           /* 1 while the table takes every step of the rule at once */
   int has_job;            /* 1 while a job is loaded and its phase known */
   int armed;              /* 1 while the healthy output may be on */
+  int dir;                /* of the last step: +1 or -1 */
+  int64_t shoulder;       /* 0: none is set */
+  int at_shoulder;        /* 1 where the last run has ended at the shoulder */
 } gm_status;
 
 typedef struct gm_core gm_core; /* complete below, for static storage; its members are private */
@@ -141,6 +144,9 @@ void gm_core_init(gm_core *core);
 int gm_core_set_job(gm_core *core, const gm_job *job);
 int gm_core_run(gm_core *core);                   /* from GM_IDLE with a job; -1 otherwise */
 void gm_core_stop(gm_core *core);                 /* brakes, then GM_IDLE; the phase is kept */
+/* A shoulder: the table brakes so that it stops before this place (steps since the start of the job) as it follows towards
+ * it from the side of the start; 0, which is the start itself, is none. A new job has none. */
+void gm_core_set_shoulder(gm_core *core, int64_t place);
 int gm_core_move(gm_core *core, int32_t steps);   /* from GM_IDLE, hob standing (not on a lathe): ramped; or -1 */
 /* Of a driver's alarm it resets the driver for GM_RESET_MS, too. */
 int gm_core_acknowledge(gm_core *core);           /* from GM_FAULT, cause gone and motor at rest: GM_IDLE; or -1 */
@@ -202,6 +208,8 @@ struct gm_core {
   uint32_t steer_wait;
   uint32_t duties; /* left of this millisecond */
   int braking;
+  int64_t shoulder;
+  int at_shoulder;
   int was_locked; /* in this run */
   uint32_t steady; /* milliseconds that it has kept up */
   uint32_t hopeless; /* steps behind that are never overtaken */
