@@ -16,6 +16,28 @@ _SUPPLIES = (9.0, 12.0)
 _UNDERSIDE = {"teensy32": range(24, 34), "teensy40": range(24, 40), "teensy41": range(42, 55)}
 
 
+def order(machine: HobbingMachine) -> Iterator[str]:
+    """From parts to the first gear: the chapters in the order of the work."""
+    work = "thread" if machine.profile == "lathe" else "gear"
+    yield from paragraph(f"From parts to the first {work}, chapter by chapter:")
+    yield from bullets(
+        (
+            "Parts: buy them, every one is in the list.",
+            "Wiring: solder by the diagram, tick off every connection, measure. U1 is not in its socket yet: "
+            "with 9 V on, "
+            "its socket must have 5 V between Vin and GND.",
+            "Encoder and decoder: the resistor of the LS7184N, the mode jumper, the output of your encoder."
+            if machine.encoder.has_ls7184
+            else "Encoder and decoder: the output of your encoder.",
+            "Step motor driver: switches and current; motor power stays off.",
+            "Flashing: U1 by USB alone, out of its socket; then into it.",
+            "Commissioning: encoder, motor, directions, emergency stop, one after the other.",
+            f"The first cut, and what the display shows meanwhile: Using it. What stops the {work}: Faults.",
+        ),
+        numbered=True,
+    )
+
+
 def parts_chapter(machine: HobbingMachine) -> Iterator[str]:
     """Every part with its value, by the name in diagram and tables."""
     yield "## Parts"
@@ -30,18 +52,18 @@ def _power(found: Netlist) -> Iterator[str]:
     watts = {volts: (volts - 5.0) * current for volts in _SUPPLIES}
     words = ", ".join(f"{watts[volts]:.1f} W at {volts:g} V" for volts in _SUPPLIES)
     bare = (_HOT - _ROOM) / _BARE
-    text = (
-        f"Supply: 9 V DC, {math.ceil(current * 15) / 10:.1f} A, of its own, not that of the motor. The parts take "
-        f"{found.current} mA from +5 V at the most, so that U2 has to get rid of {words}; without a heat sink it "
-        f"stands {bare:.1f} W in a cabinet at {_ROOM:g} degrees C."
-    )
     sinks = [
-        f"{volts:g} V: {(_HOT - _ROOM) / watts[volts] - _PAD:.0f} K/W"
+        f"at most {(_HOT - _ROOM) / watts[volts] - _PAD:.0f} K/W at {volts:g} V"
         for volts in _SUPPLIES
         if watts[volts] > bare and (_HOT - _ROOM) / watts[volts] > _PAD
     ]
-    heat = f" Heat sink of at most {', '.join(sinks)}, with its pad." if sinks else ""
-    yield from paragraph(text + heat + " The metal of U2 is 0 V.")
+    heat = f"It needs a heat sink of {', '.join(sinks)}, its pad counted in." if sinks else "It needs no heat sink."
+    yield from paragraph(
+        f"Supply: 9 V DC, {math.ceil(current * 15) / 10:.1f} A, of its own, not that of the motor. The parts take "
+        f"{found.current} mA from +5 V at the most, so that U2 has to get rid of {words}; without a heat sink it "
+        "stands "
+        f"{bare:.1f} W in a cabinet at {_ROOM:g} degrees C. {heat} The metal of U2 is 0 V."
+    )
 
 
 def connections(machine: HobbingMachine) -> Iterator[str]:
@@ -93,6 +115,10 @@ def encoder_outputs(machine: HobbingMachine) -> Iterator[str]:
          "to +5 V"),
     ]  # fmt: skip
     yield from table(("output", "in front of the input"), rows)
+    yield from paragraph(
+        "An opto-coupler turns the levels round. For A and B that changes nothing; for Z the machine file then says "
+        '`index_active = "low"` under `[encoder]`.'
+    )
     yield from bullets(
         (
             "Cable: shielded, twisted, not in one duct with that of the motor; 100 mm away at least, crossings "
@@ -192,7 +218,8 @@ def scope(machine: HobbingMachine) -> Iterator[str]:
     at = f"pins {machine.pins.step_out} and {machine.pins.dir_out} of the board"
     yield "### STEP and DIR on an oscilloscope"
     yield ""
-    rest = "Logic analyzers do as well. Motor power off, jog armed, one detent at a time of 10 degrees or mm."
+    unit = "mm" if machine.profile == "lathe" else "degrees"
+    rest = f"A logic analyzer does as well. Motor power off, jog armed, one detent at a time of 10 {unit}."
     yield from paragraph(f"Probes on {at}, ground at its GND. {rest}")
     rows = [
         ("STEP", f"{step} for {high:g} us, then the other level for {low:g} us at least"),

@@ -10,6 +10,7 @@ from gearmath.export.building import (
     connections,
     encoder_outputs,
     first_cut,
+    order,
     parts_chapter,
     scope,
     switches,
@@ -73,6 +74,7 @@ def _head(machine: HobbingMachine, sketch: str) -> Iterator[str]:
         "All of it counts in whole numbers, without a floating-point constant, and the motor's place is the whole step "
         "nearest to the exact one, however long it runs and however often it reverses."
     )
+    yield from order(machine)
 
 
 def _flashing(machine: HobbingMachine, sketch: str) -> Iterator[str]:
