@@ -60,7 +60,7 @@ def contact(
     from gearmath.bevel.contact.system import Assembly
     from gearmath.bevel.contact.tolerance import SEARCHES, tolerance
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.measured_pair import measured_pair
+    from gearmath.quality.contact.pair import measured_pair
     from gearmath.specs.toml import find
 
     _check(v, h, j, shaft, step)

@@ -17,8 +17,8 @@ from gearmath.errors import InputError
 from gearmath.front.measured import Measurement
 from gearmath.front.sets import GearSet
 from gearmath.front.tables import html_table
-from gearmath.quality.measured_flank import MeasuredFlank
-from gearmath.quality.measured_pair import MeasuredPair, flanks_of
+from gearmath.quality.contact.flank import MeasuredFlank
+from gearmath.quality.contact.pair import MeasuredPair, flanks_of
 from gearmath.specs.bevel_set import FLANKS
 
 if TYPE_CHECKING:

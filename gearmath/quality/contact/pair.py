@@ -15,9 +15,9 @@ from gearmath.bevel.contact.report import SIDES
 from gearmath.bevel.contact.surface import nominal_surface
 from gearmath.bevel.contact.system import System, pair_system
 from gearmath.errors import InputError
-from gearmath.quality.contact_uncertainty import uncertain_contact
+from gearmath.quality.contact.flank import MeasuredFlank, measured_flank
+from gearmath.quality.contact.uncertainty import uncertain_contact
 from gearmath.quality.evaluation.member import evaluate_member
-from gearmath.quality.measured_flank import MeasuredFlank, measured_flank
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet
 from gearmath.specs.flank_csv import FlankFile, read_flank_csv
 

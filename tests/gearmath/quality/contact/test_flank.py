@@ -12,8 +12,8 @@ from gearmath.bevel.contact.pattern import pattern
 from gearmath.bevel.contact.system import pair_system
 from gearmath.bevel.flank import blank_grid
 from gearmath.errors import InputError
-from gearmath.quality.contact_uncertainty import jacobian, uncertain_contact
-from gearmath.quality.measured_flank import MeasuredFlank, flank_with
+from gearmath.quality.contact.flank import MeasuredFlank, flank_with
+from gearmath.quality.contact.uncertainty import jacobian, uncertain_contact
 from gearmath.specs.bevel_set import BevelSet
 
 SIZES = [("pinion", "concave"), ("gear", "convex")]

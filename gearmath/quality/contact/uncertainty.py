@@ -25,7 +25,7 @@ from gearmath.bevel.contact.report import ARCSEC
 from gearmath.bevel.turning import half_turn
 from gearmath.engine.points import Points
 from gearmath.kernels import kernel
-from gearmath.quality.measured_flank import MeasuredFlank
+from gearmath.quality.contact.flank import MeasuredFlank
 
 #: Change of a field [mm] by which derivatives of the pattern's center are taken: small beside the compound's thickness.
 _STEP = 1e-6
