@@ -46,22 +46,23 @@ def flank(
     from gearmath.specs.places import read_places
     from gearmath.specs.toml import find
 
-    source = find(gear_set)
-    pair = load_pair(source)
-    member, spec = member_of(pair, member)
     given = {"": margin, "-root": root, "-tip": tip, "-toe": toe, "-heel": heel}
+    margins, shape = _margins(given), None if size is None else _grid(size)
     if places is not None:
         for name, value in given.items():
             if value is not None:
                 raise InputError(f"--margin{name} {value:g}: listed places (--places) have no margins")
+    source = find(gear_set)
+    pair = load_pair(source)
+    member, spec = member_of(pair, member)
+    if places is not None:
         axial, radial = read_places(places)
         with about(places):
-            grid = listed_grid(spec, axial, radial, _grid(size) if size else (len(axial), 1))
+            grid = listed_grid(spec, axial, radial, shape or (len(axial), 1))
         with about(source):
             file = nominal_flank(spec, member, side, grid, None)
     else:
-        margins = _margins(given)
-        grid = blank_grid(spec, *_grid(size or "5x9"), margins)
+        grid = blank_grid(spec, *(shape or (5, 9)), margins)
         with about(source):
             file = nominal_flank(spec, member, side, grid, margins)
     write_flank_csv(target, file)

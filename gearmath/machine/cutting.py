@@ -17,11 +17,11 @@ import numpy as np
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.tooth import ToothSpace, tooth_space
 from gearmath.errors import InputError
-from gearmath.machine.blocks import ROUNDING, TOLERANCES, roll_nodes
+from gearmath.machine.blocks import ROUNDING, TOLERANCES, check_tolerance, roll_nodes
 from gearmath.machine.bodies import widest
 from gearmath.machine.clear_space import Room, room_of
 from gearmath.machine.cutter import cutter_of
-from gearmath.machine.feeds import block_seconds
+from gearmath.machine.feeds import block_seconds, check_feed
 from gearmath.machine.hobbing import C_ROUNDING, hobbing_pass
 from gearmath.machine.passes import Pass, tooth_angles
 from gearmath.machine.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
@@ -85,6 +85,8 @@ class Job:
             )
         if not len(self.spaces):
             raise InputError("spaces: there is no tooth space to cut")
+        check_tolerance(self.tolerance)
+        check_feed(self.feed)
 
     @property
     def stages(self) -> tuple[tuple[str, float, float], ...]:
