@@ -30,7 +30,7 @@ _TAPER = 4.0
 #: universal pinion), 0.23 and 0.05 of spiral angle.
 _MATING = {"spiral_angle": (0.5, 0.5), "pressure_angle": (1.1, 1.5)}
 #: Transverse backlash at the mean point over the module: 0.02 to 0.08 are usual, the finer the pitch the more.
-_BACKLASH = (-0.01, 0.12)
+_BACKLASH = (0.0, 0.12)
 
 Cut = dict[str, CutFlank]
 
