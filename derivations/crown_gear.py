@@ -19,9 +19,11 @@ M follows from the motion of the blade against the work, r_c0 k × e - ι V_p ×
     sin ν = ι R_m sin δ cos θ_f cos ψ / (r_c0 √(cos² θ_f cos² ψ + sin² ψ))                     (14.6)
 
 ι < 0, cutter and crown gear rolling on each other from outside, is the epicycloid of (12.2); ι = 0 is face milling.
-The blade stands square to its path if η = -ν. A flank is half the width w of the space from that wall if its blade has
+The blade stands square to its path if η = -ν. Milled flanks have their pressure angles only about a wall that is square
+to the pitch cone, not upright: it is the flank of (14.3-14.5) for α_n = 0, and leans by the angle ω of its blade,
+sin ω = sin ψ sin θ_f. A flank is half the width w of the space from the wall if its blade has
 
-    r_p = r_c0 + s (w/2 - u tan α)/cos η                                                       (14.7)
+    r_p = r_c0 + s (w/2 cos ω - (u + s w/2 sin ω) tan α)/cos η                                 (14.7)
 
 All this is a right-hand member; the left-hand one has -q, -η and the swivel π - j. A Formate member is the same, with
 the cradle held at θ = 0.
@@ -167,8 +169,17 @@ def crown_gear_space() -> Expression:
 
 def point_radius() -> sp.Expr:
     """r_p (14.7)."""
-    off = q.space_width.symbol / 2 - q.u.symbol * sp.tan(q.blade_pressure_angle.symbol)
+    off = _half_width() * sp.cos(q.wall_angle.symbol) - _flank_height() * sp.tan(q.blade_pressure_angle.symbol)
     return q.cutter_radius.symbol + q.side.symbol * off / sp.cos(q.blade_offset_angle.symbol)
+
+
+def _half_width() -> sp.Expr:
+    return q.space_width.symbol / 2
+
+
+def _flank_height() -> sp.Expr:
+    """Height above the tip plane where the flank is square beside the mean point."""
+    return q.u.symbol + q.side.symbol * _half_width() * sp.sin(q.wall_angle.symbol)
 
 
 @cache
@@ -177,7 +188,15 @@ def blade_in_space() -> Expression:
     return Expression(
         "blade_in_space",
         "Point radius of the blade whose flank is half the width of the space from its middle (14.7).",
-        (q.cutter_radius, q.space_width, q.u, q.blade_pressure_angle, q.blade_offset_angle, q.side),
+        (
+            q.cutter_radius,
+            q.space_width,
+            q.u,
+            q.blade_pressure_angle,
+            q.blade_offset_angle,
+            q.side,
+            q.wall_angle,
+        ),
         ((q.blade_point_radius, point_radius()),),
         source="distances along the normal of the path, in the plane of the blade",
     )
@@ -275,9 +294,19 @@ def prove_uniform_depth_gives_the_epicycloid_of_the_standard() -> None:
 
 
 def prove_the_flanks_are_half_the_width_from_the_middle() -> None:
-    """(14.7) The point of (10.4) at height u is s w/2 from the wall, along the plane of the blade."""
-    eta, side, r = q.blade_offset_angle.symbol, q.side.symbol, q.cutter_radius.symbol
-    off = side * q.u.symbol * sp.tan(q.blade_pressure_angle.symbol)
-    from_wall = sp.Matrix([point_radius() + off * sp.cos(eta) - r, off * sp.sin(eta)])
+    """(14.7) The point of (10.4) beside the mean point is s w/2 from the wall: along the plane of the blade, and where
+    the wall leans, up or down with its normal."""
+    eta, side, omega = q.blade_offset_angle.symbol, q.side.symbol, q.wall_angle.symbol
+    off = side * _flank_height() * sp.tan(q.blade_pressure_angle.symbol)
+    from_wall = sp.Matrix([point_radius() + off * sp.cos(eta) - q.cutter_radius.symbol, off * sp.sin(eta)])
     along = from_wall.dot(sp.Matrix([sp.cos(eta), sp.sin(eta)]))
-    assert is_zero(along - side * q.space_width.symbol / 2)
+    up = _flank_height() - q.u.symbol
+    assert is_zero(along - side * _half_width() * sp.cos(omega))
+    for sign in (1, -1):
+        assert is_zero((along**2 + up**2 - _half_width() ** 2).subs(side, sign))
+
+
+def prove_the_middle_of_a_space_square_to_the_pitch_cone_leans_by_the_blade_of_no_pressure_angle() -> None:
+    """(14.3, 14.4) sin ω = -n · k = sin ψ sin θ_f of the convex flank with α_n = 0."""
+    n = flank_normal().subs({q.flank_pressure_angle.symbol: 0, q.side.symbol: -1})
+    assert is_zero(-n.dot(sp.Matrix(K)) - sp.sin(q.mean_spiral_angle.symbol) * sp.sin(_below()))

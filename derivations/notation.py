@@ -681,6 +681,7 @@ edge_radius_mutilation = _length("edge_radius_mutilation", "r_{a03}", 0.0, 100.0
 hand_sign = Quantity("hand_sign", "+1 right-hand, -1 left-hand member", "1", r"s_h'", (-1, 1), values=(-1, 1))
 tilt_direction = _angle("tilt_direction", r"\chi", -1.5, 1.5, "swivel and cradle angle together, right-hand member")
 space_width = _length("space_width", "w", 0.0, 40.0, "normal width of the tooth space at the mean point")
+wall_angle = _angle("wall_angle", r"\omega", -0.3, 0.3, "how far the middle of the space leans from the cutter's axis")
 
 # --- compensation -----------------------------------------------------------------------------------------------
 setting_rates = Quantity(

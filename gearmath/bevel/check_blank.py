@@ -91,6 +91,7 @@ def check_blanks(pinion: Member, gear: Member, shaft_angle: float) -> None:
                 f"{share * max(one, two):.3g} mm"
             )
     allowed = _PRINTED_DEPTH * transverse_module(gear)
+    _check_apexes(pinion, gear, allowed)
     for name, other in _MATES:
         own, mate = members[name].blank, members[other].blank
         needed = mate.mean_addendum + own.clearance
@@ -106,6 +107,24 @@ def check_blanks(pinion: Member, gear: Member, shaft_angle: float) -> None:
                 f"of the {other}, {mate.face_angle:g}, it must be {parallel:.5g} within {_PARALLEL:g} degree, or the "
                 "clearance is not the same along the tooth"
             )
+
+
+def _check_apexes(pinion: Member, gear: Member, allowed: float) -> None:
+    """Pitch cones touch: what an apex beyond the crossing point puts one of them into the other by, the other gives."""
+    given = {name: member.blank for name, member in (("pinion", pinion), ("gear", gear))}
+    into = {
+        name: blank.pitch_apex_beyond_crossing_point * math.sin(math.radians(blank.pitch_angle))
+        for name, blank in given.items()
+    }
+    if not abs(sum(into.values())) <= allowed:
+        name = max(into, key=lambda one: abs(into[one]))
+        other = "gear" if name == "pinion" else "pinion"
+        raise InputError(
+            f"{name}.blank.pitch_apex_beyond_crossing_point = {given[name].pitch_apex_beyond_crossing_point:g}: with "
+            f"{given[other].pitch_apex_beyond_crossing_point:g} of the {other} the pitch cones lie "
+            f"{abs(sum(into.values())):.3g} mm {'in each other' if sum(into.values()) > 0 else 'apart'}, which must be "
+            f"at most {allowed:.2g} mm"
+        )
 
 
 def check_cones(pinion: Member, gear: Member, shaft_angle: float) -> None:

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmath.bevel.check_blank import transverse_module, working_depth
+from gearmath.bevel.check_blank import transverse_module
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
-from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
+from gearmath.bevel.generation import Generation, Section, solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.newton import FlankPoints
+from gearmath.bevel.root import ENDS, PLACES, above_root, mean_place, root_trace
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
@@ -27,9 +28,6 @@ _ZEROL = 2.0
 ROOT, _CORRECTED_ROOT = (0.75, 0.25, 0.75), (1.0, 1.0, 1.0)
 #: The mean point is cut near the middle of the roll: largest cradle rotation from where cradle_angle puts it. [degree]
 OFF_CENTER = 15.0
-#: The tip plane of the cutter as a blade: nearly square to its axis, so that it shows where the root is deepest.
-FLAT_BLADE = math.radians(89.9)
-_PLACES = ("toe", "mean point", "heel")
 _BLADE_SLACK = 1e-7
 #: What motions of the settings may change of the form of a flank, over the transverse module.
 _MOTION = 0.1
@@ -39,7 +37,8 @@ _MOTION = 0.1
 class CutFlank:
     """A flank of space 0 (mm, rad): signed pressure and spiral angle at the mean point (8.4), the direction about z_w
     of the mean point and of the tips (3,), and ``across``, +1 where the space lies towards larger angles. ``root``
-    (3,3) are the points that the tip of the blade leaves, toe to heel."""
+    (13,3) are the points that the tip of the blade leaves, from before the toe to beyond the heel, ``contact``
+    (1,3) is that at the mean point."""
 
     pressure_angle: float
     spiral_angle: float
@@ -47,6 +46,7 @@ class CutFlank:
     across: int
     tip_azimuth: np.ndarray
     root: np.ndarray
+    contact: np.ndarray
 
 
 def cut_flank(member: Member, name: str, flank: str, how: Generation, corrected: bool = False) -> CutFlank:
@@ -76,7 +76,7 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation, corrected:
     _check_tips(name, flank, section, tips.contact[:, 0], tips.converged, spec.blade_profile_height)
     tip_azimuth = np.arctan2(tips.point[:, 1], tips.point[:, 0])
     _check_hand(member, name, flank, spiral, tip_azimuth)
-    return CutFlank(pressure, spiral, azimuth, 1 if across > 0 else -1, tip_azimuth, root)
+    return CutFlank(pressure, spiral, azimuth, 1 if across > 0 else -1, tip_azimuth, root, mean.contact)
 
 
 def check_grid(member: Member, name: str, flank: str) -> None:
@@ -106,14 +106,6 @@ def _check_motion(member: Member, name: str, flank: str, grid: Grid, points: Fla
             f"{name}.{flank}.motion: it changes the form of the flank by {np.ptp(change):.3g} mm from end to end "
             f"against settings at rest, which must be at most {limit:.3g} mm, {_MOTION:g} of the module"
         )
-
-
-def mean_place(member: Member) -> tuple[np.ndarray, np.ndarray]:
-    """Where the mean point of the pitch cone lies: (z_w,), (r_w,)."""
-    blank = member.blank
-    up = (blank.mean_dedendum - blank.clearance) / working_depth(blank)
-    axial, radial = kernel("flank_place")(blank.vector, np.array([0.5]), np.array([up]))
-    return axial, radial
 
 
 def _check_angles(name: str, flank: str, pressure: float, spiral: float) -> None:
@@ -149,33 +141,24 @@ def _check_hand(member: Member, name: str, flank: str, spiral: float, tip_azimut
 
 
 def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Points (3,3) that the tip of the blade leaves: they have to lie on the root of the blank, to a ``share`` (3,) of
-    the clearance."""
-    blank = member.blank
-    across, delta = np.array([0.0, 0.5, 1.0]), math.radians(blank.pitch_angle)
-    place, out = (math.cos(delta), math.sin(delta)), (-math.sin(delta), math.cos(delta))
-    ends = [np.stack(kernel("flank_place")(blank.vector, across, np.full(3, up)), axis=1) for up in (0.0, 1.0)]
-    height = [end @ out for end in ends]
-    root = height[0] - blank.clearance
-    distance = ends[0] @ place
-    tip = Section(0.0, 1.0, member.flank(flank).nominal.blade_point_radius, FLAT_BLADE)
-    start = np.column_stack([np.zeros(3), np.repeat(mean[:, 1:], 3, axis=0)])
-    found = solve_curve(how, tip, np.zeros(3), place, distance, start)
-    if not found.converged.all():
-        k = int(np.argmax(~found.converged))
-        raise Misfit.of(name, flank, f"the tip of the blade does not reach the root at the {_PLACES[k]}")
-    at = np.stack([found.point[:, 2], np.hypot(found.point[:, 0], found.point[:, 1])], axis=1)
-    off = at @ out - root
-    beyond = ~(np.abs(off) <= share * blank.clearance)
+    """Points (13,3) that the tip of the blade leaves: they have to lie on the root of the blank, to a ``share`` (3,) of
+    the clearance at toe, mean point and heel. NaN beyond the ends where there is none."""
+    clearance, found = member.blank.clearance, root_trace(member, flank, how, mean)
+    reached = found.converged[ENDS[0] : ENDS[-1] + 1]
+    if not reached.all():
+        k = round(int(np.argmax(~reached)) / (len(reached) - 1) * (len(PLACES) - 1))
+        raise Misfit.of(name, flank, f"the tip of the blade does not reach the root at the {PLACES[k]}")
+    off = above_root(member, found.point)[list(ENDS)]
+    beyond = ~(np.abs(off) <= share * clearance)
     if beyond.any():
         k = int(np.argmax(np.abs(off) / share))
         raise Misfit.of(
             name, flank,
             f"the tip of the blade leaves the root {abs(off[k]):.3g} mm {'above' if off[k] > 0 else 'below'} that of "
-            f"the blank at the {_PLACES[k]}, which must be at most {share[k] * blank.clearance:.3g} mm, "
+            f"the blank at the {PLACES[k]}, which must be at most {share[k] * clearance:.3g} mm, "
             f"{share[k]:g} of the clearance",
         )  # fmt: skip
-    return found.point
+    return np.where(found.converged[:, None], found.point, np.nan)
 
 
 def _check_tips(name: str, flank: str, section: Section, u: np.ndarray, converged: np.ndarray, height: float) -> None:
@@ -183,7 +166,7 @@ def _check_tips(name: str, flank: str, section: Section, u: np.ndarray, converge
     if not converged.all():
         k = int(np.argmax(~converged))
         raise Misfit.of(
-            name, flank, f"the equation of meshing has no solution at the tip of the tooth at the {_PLACES[k]}"
+            name, flank, f"the equation of meshing has no solution at the tip of the tooth at the {PLACES[k]}"
         )
     short, long = u < section.lower - _BLADE_SLACK, u > section.upper + _BLADE_SLACK
     above = short if section.tip_is_upper else long
@@ -193,10 +176,10 @@ def _check_tips(name: str, flank: str, section: Section, u: np.ndarray, converge
         needed = f": it must be at least {u.max():.4g} mm" if section.arc is None else ""
         raise InputError(
             f"{name} {flank} flank: blade_profile_height = {height:g} does not reach the tip of the tooth at the "
-            f"{_PLACES[k]}{needed}"
+            f"{PLACES[k]}{needed}"
         )
     if below.any():
         k = int(np.argmax(below))
         raise Misfit.of(
-            name, flank, f"the tip of the tooth at the {_PLACES[k]} lies below the main section of the blade"
+            name, flank, f"the tip of the tooth at the {PLACES[k]} lies below the main section of the blade"
         )

@@ -9,7 +9,9 @@ import numpy as np
 from gearmath.bevel.check_blade import tip_taken
 from gearmath.bevel.check_blank import transverse_module, working_depth
 from gearmath.bevel.check_flank import CutFlank
+from gearmath.bevel.method import generation_of
 from gearmath.bevel.misfit import Misfit
+from gearmath.bevel.root import ENDS, PLACES, Widths, slot_widths
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
@@ -28,9 +30,7 @@ _TAPER = 4.0
 #: universal pinion), 0.23 and 0.05 of spiral angle.
 _MATING = {"spiral_angle": (0.5, 0.5), "pressure_angle": (1.1, 1.5)}
 #: Transverse backlash at the mean point over the module: 0.02 to 0.08 are usual, the finer the pitch the more.
-_BACKLASH = (-0.01, 0.12)
-
-_PLACES = ("toe", "mean point", "heel")
+_BACKLASH = (0.0, 0.12)
 
 Cut = dict[str, CutFlank]
 
@@ -69,7 +69,7 @@ def check_space(member: Member, name: str, cut: Cut) -> float:
             f"lie between {_DEPTH[0] * module:.4g} and {_DEPTH[1] * module:.4g} mm: mean normal module {module:.4g}"
         )
     _check_top_land(member, name, concave, convex, pitch)
-    _check_root_width(member, name, concave, convex, cosine)
+    _check_root(member, name, concave, convex)
     return radius * turn
 
 
@@ -97,53 +97,58 @@ def _check_top_land(member: Member, name: str, concave: CutFlank, convex: CutFla
         k = int(np.argmin(land))
         raise InputError(
             f"{name}: {_phase(member)}, blank.mean_addendum = {member.blank.mean_addendum:g}, blank.face_angle = "
-            f"{member.blank.face_angle:g}: the teeth are pointed at the {_PLACES[k]}: a top land of "
+            f"{member.blank.face_angle:g}: the teeth are pointed at the {PLACES[k]}: a top land of "
             f"{math.degrees(land[k]):.3g} degrees about the axis is left, which must be above 0"
         )
 
 
-def _check_root_width(member: Member, name: str, concave: CutFlank, convex: CutFlank, cosine: float) -> None:
+def _check_root(member: Member, name: str, concave: CutFlank, convex: CutFlank) -> None:
     """The space is open down to its root, and wide enough there for a cutter of a stated point width."""
-    azimuths = [np.arctan2(flank.root[:, 1], flank.root[:, 0]) for flank in (concave, convex)]
-    turn = half_turn(concave.across * (azimuths[1] - azimuths[0]))
-    width = np.hypot(concave.root[:, 0], concave.root[:, 1]) * turn * cosine
-    k = int(np.argmin(width))
-    if not width[k] > 0:
+    azimuth = [np.arctan2(flank.root[:, 1], flank.root[:, 0])[list(ENDS)] for flank in (concave, convex)]
+    turn = half_turn(concave.across * (azimuth[1] - azimuth[0]))
+    k = int(np.argmin(turn))
+    if not turn[k] > 0:
+        crossed = float(np.hypot(*concave.root[ENDS[k], :2]) * turn[k])
         raise InputError(
-            f"{name}: {_phase(member)}: the flanks cross above the root at the {_PLACES[k]}: a root of {width[k]:.3g} "
+            f"{name}: {_phase(member)}: the flanks cross above the root at the {PLACES[k]}: a root of {crossed:.3g} "
             "mm is left between them, which must be above 0"
         )
+    if member.cutting == "completing":
+        return  # the blades of one cutter leave the root, and have their own check
+    cut = {"concave": concave, "convex": convex}
+    slots = {
+        flank: slot_widths(member, flank, generation_of(member, flank), cut[flank].contact, cut[flank].root, other.root)
+        for flank, other in (("concave", convex), ("convex", concave))
+    }
     taken = {flank: tip_taken(member.flank(flank), SIDES[flank]) for flank in FLANKS}
-    if sum(taken.values()) > width[k]:
-        flank = max(FLANKS, key=lambda one: taken[one])
+    flank = max(FLANKS, key=lambda one: taken[one])
+    if sum(taken.values()) > slots[flank].least:
         raise InputError(
             f"{name}.{flank}.blade_edge_radius = {member.flank(flank).blade_edge_radius:g}: the rounded edges of both "
-            f"flanks take {sum(taken.values()):.3g} mm of the root, which is {width[k]:.3g} mm wide at the {_PLACES[k]}"
+            f"flanks take {sum(taken.values()):.3g} mm of the slot, which is {slots[flank].least:.3g} mm wide at the "
+            f"{slots[flank].narrow_place}"
         )
-    if member.cutting == "fixed_setting":
-        _check_cutters(member, name, width)
+    _check_cutters(member, name, slots)
 
 
-def _check_cutters(member: Member, name: str, width: np.ndarray) -> None:
-    """Cutters for one flank pass through the root of the space, ``width`` (3,) wide, and leave no fin between them."""
-    narrow, wide = float(width.min()), float(width.max())
+def _check_cutters(member: Member, name: str, slots: dict[str, Widths]) -> None:
+    """Cutters for one flank pass through the slot, and leave no fin between them."""
     stated = {flank: member.flank(flank).blade_point_width for flank in FLANKS}
     for flank, own in stated.items():
         if own is None:
             continue
-        other = stated[FLANKS[1 - FLANKS.index(flank)]]
-        least = wide - (narrow if other is None else other)
-        if own > narrow:
+        slot, other = slots[flank], stated[FLANKS[1 - FLANKS.index(flank)]]
+        if own > slot.least:
             raise InputError(
-                f"{name}.{flank}.blade_point_width = {own:g}: the root of the space is {narrow:.3g} mm wide at the "
-                f"{_PLACES[int(np.argmin(width))]}, the cutter must be no wider"
+                f"{name}.{flank}.blade_point_width = {own:g}: the slot is {slot.least:.3g} mm wide at the "
+                f"{slot.narrow_place}, the cutter must be no wider"
             )
-        if own < least:
-            beside = f"at most {narrow:.3g}" if other is None else f"{other:g}"
+        if own < slot.most - (slot.least if other is None else other):
+            beside = f"at most {slot.least:.3g}" if other is None else f"{other:g}"
             raise InputError(
                 f"{name}.{flank}.blade_point_width = {own:g}: with {beside} mm of the cutter of the other flank a fin "
-                f"would stay between both cuts, as the root of the space is {wide:.3g} mm wide at the "
-                f"{_PLACES[int(np.argmax(width))]}, which both together must be at least"
+                f"would stay between both cuts, as the slot is {slot.most:.3g} mm wide at the {slot.wide_place}, "
+                "which both together must be at least"
             )
 
 

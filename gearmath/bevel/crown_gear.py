@@ -1,7 +1,8 @@
 """Sensible basic settings of a member from its blank: the imaginary crown gear of chapter 14.
 
-They cut the mean point rightly: position, spiral angle, and for a cut of one flank alone the pressure angle too. They
-are a start for a design, no design: nothing is done here for the contact of the pair beside the mean point.
+They cut the mean point rightly: position, pressure angle, spiral angle, the latter in the middle of both flanks where
+they are cut at once. Generated members of a pair are mates then, crowned by what their cutters differ in. The mate of a
+Formate member needs a design: nothing is done here for what its flanks lack.
 """
 
 from __future__ import annotations
@@ -112,16 +113,34 @@ def _tooth(data: BlankData, pair: BevelBlank, member: MemberBlank, hand: Literal
 
 
 def _both_flanks(tooth: Tooth) -> dict[str, dict[str, float]]:
-    """Both flanks in one cut, the mean radius of the cutter in the middle of the space."""
-    values = tooth.values
-    space = evaluate("crown_gear_space", values)
-    if not math.isfinite(space["radial_distance"]):
-        raise InputError(
-            f"cutter_radius = {tooth.cutter_radius:g}: {tooth.blade_groups} blade groups do not fit on it: "
-            "blade_groups times the mean normal module must be below the cutter's diameter"
-        )
+    """Both flanks in one cut, the mean radius of the cutter in the middle of the space.
+
+    The root line of a milled space is inclined, which takes from the pressure angle of one flank what it gives to the
+    other, θ_f sin ψ. So its blades are of two angles, and stand about a wall that is square to the pitch cone; the
+    trade gives the difference as the number of a cutter. Hobbed teeth are of uniform depth.
+    """
+    if tooth.blade_groups:
+        space = evaluate("crown_gear_space", tooth.values)
+        if not math.isfinite(space["radial_distance"]):
+            raise InputError(
+                f"cutter_radius = {tooth.cutter_radius:g}: {tooth.blade_groups} blade groups do not fit on it: "
+                "blade_groups times the mean normal module must be below the cutter's diameter"
+            )
+        space["wall_angle"], blades = 0.0, tooth.pressure_angles
+    else:
+        space = _untilted(tooth, "convex", 0.0) | {"blade_offset_angle": 0.0, "cutter_swivel": 0.0}
+        space["wall_angle"] = space["blade_pressure_angle"]
+        blades = {
+            flank: _untilted(tooth, flank, tooth.pressure_angles[flank])["blade_pressure_angle"] for flank in FLANKS
+        }
     space["space_width"] = tooth.space_width
-    return {flank: _flank(tooth, space, tooth.pressure_angles[flank], SIDES[flank]) for flank in FLANKS}
+    return {flank: _flank(tooth, space, blades[flank], SIDES[flank]) for flank in FLANKS}
+
+
+def _untilted(tooth: Tooth, flank: str, pressure_angle: float) -> dict[str, float]:
+    """Settings of an untilted blade that cuts this pressure angle [rad] at the mean point (14.3-14.5)."""
+    given = {"side": SIDES[flank], "cutter_tilt": 0.0, "tilt_direction": 0.0, "flank_pressure_angle": pressure_angle}
+    return evaluate("crown_gear_flank", {**tooth.values, **given})
 
 
 def _one_flank(tooth: Tooth, method: Method, flank: str) -> dict[str, float]:
@@ -141,6 +160,7 @@ def _one_flank(tooth: Tooth, method: Method, flank: str) -> dict[str, float]:
         "blade_offset_angle": 0.0,
         "work_rotation_offset": turn,
         "space_width": 0.0,
+        "wall_angle": 0.0,
     }
     if method.tilt == 0:
         settings["cutter_swivel"] = 0.0  # it would turn the cutter about its own axis

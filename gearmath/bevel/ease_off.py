@@ -97,3 +97,18 @@ def parts(E: np.ndarray) -> Parts:
     found, *_ = np.linalg.lstsq(terms, E.ravel(), rcond=None)
     slope, profile, crowning, twist, across = (float(part) for part in found[:5])
     return Parts(slope, profile, crowning, twist, across, float(np.abs(terms @ found - E.ravel()).max()))
+
+
+def hollow(found: Parts) -> float:
+    """How far the second order of an ease-off falls below its middle anywhere on the grid, in its unit.
+
+    The least of crowning x² + twist x y + profile_crowning y² on the square lies in its middle, or on an edge.
+    """
+
+    def edge(along: float, across: float) -> float:
+        """Least of along t² + twist t + across for t from -1 to 1."""
+        t = min(max(-found.twist / (2 * along), -1.0), 1.0) if along > 0 else -np.copysign(1.0, found.twist)
+        return float(along * t * t + found.twist * t + across)
+
+    least = min(edge(found.crowning, found.profile_crowning), edge(found.profile_crowning, found.crowning), 0.0)
+    return -least

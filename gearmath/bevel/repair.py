@@ -14,11 +14,12 @@ from operator import ge, gt, le, lt
 
 import numpy as np
 
-from gearmath.bevel.check_flank import FLAT_BLADE, OFF_CENTER, ROOT, mean_place
+from gearmath.bevel.check_flank import OFF_CENTER, ROOT
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.generation_kernels import generation_point
 from gearmath.bevel.method import generation_of
 from gearmath.bevel.newton import TOLERANCE
+from gearmath.bevel.root import FLAT_BLADE, mean_place
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member, Settings
 from gearmath.specs.cut import RATIO

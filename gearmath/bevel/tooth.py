@@ -15,6 +15,7 @@ import numpy as np
 
 from gearmath.bevel.generation import Section, SurfacePoints, solve_curve, solve_section
 from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.root import ENDS, Widths, mean_place, root_trace, root_widths, slot_widths
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
@@ -56,11 +57,17 @@ class FlankSurface:
 
 @dataclass(frozen=True)
 class ToothSpace:
-    """Space 0 of a member: both flanks, with the same number of rows and columns, and the member's pitch [rad]."""
+    """Space 0 of a member: both flanks, with the same number of rows and columns, and the member's pitch [rad].
+
+    ``root`` are the widths of its root between the corners of the blades, ``slots`` the slot widths by the flank at
+    whose settings a cutter would leave it.
+    """
 
     concave: FlankSurface
     convex: FlankSurface
     pitch: float
+    root: Widths
+    slots: dict[str, Widths]
 
     def width(self, row: int) -> np.ndarray:
         """Angle (columns,) [rad] between the flanks, from the one that lies lower about z_w to the other."""
@@ -90,7 +97,25 @@ def tooth_space(
     Raises InputError naming member, flank, section, row and column of the first point without a solution.
     """
     surfaces = [flank_surface(member, name, flank, columns, rows) for flank in FLANKS]
-    return ToothSpace(surfaces[0], surfaces[1], 2 * math.pi / member.teeth)
+    root, slots = space_widths(member, name)
+    return ToothSpace(surfaces[0], surfaces[1], 2 * math.pi / member.teeth, root, slots)
+
+
+def space_widths(member: Member, name: str) -> tuple[Widths, dict[str, Widths]]:
+    """Widths of the root of space 0, and slot widths by flank. Raises InputError naming member and flank."""
+    hows = {flank: generation_of(member, flank) for flank in FLANKS}
+    starts, traces = {}, {}
+    for flank, how in hows.items():
+        section = blade_sections(member.flank(flank), SIDES[flank])["main"]
+        starts[flank] = solve_section(how, section, *mean_place(member)).contact
+        found = root_trace(member, flank, how, starts[flank])
+        if not found.converged[ENDS[0] : ENDS[-1] + 1].all():
+            raise InputError(f"{name} {flank} flank: the tip of the blade does not reach the root from toe to heel")
+        traces[flank] = np.where(found.converged[:, None], found.point, np.nan)
+    slots = {}
+    for flank, mate in zip(FLANKS, reversed(FLANKS), strict=True):
+        slots[flank] = slot_widths(member, flank, hows[flank], starts[flank], traces[flank], traces[mate])
+    return root_widths(member, *traces.values()), slots
 
 
 def flank_surface(
@@ -141,6 +166,9 @@ def space_figures(member: Member, space: ToothSpace) -> dict[str, float]:
         "reference_transverse_tooth_thickness_mm": tooth_thickness(member, float(axial), float(radial)),
         "reference_radius_mm": float(radial),
         "mean_transverse_pitch_mm": mean_pitch_radius(member) * space.pitch,
+        "root_width_toe_mm": space.root.toe,
+        "root_width_mean_mm": space.root.mean,
+        "root_width_heel_mm": space.root.heel,
         "top_land_toe_mm": float(land[0]),
         "top_land_mean_mm": float(land[len(land) // 2]),
         "top_land_heel_mm": float(land[-1]),

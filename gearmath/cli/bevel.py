@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -46,22 +46,23 @@ def flank(
     from gearmath.specs.places import read_places
     from gearmath.specs.toml import find
 
-    source = find(gear_set)
-    pair = load_pair(source)
-    member, spec = member_of(pair, member)
     given = {"": margin, "-root": root, "-tip": tip, "-toe": toe, "-heel": heel}
+    margins, shape = _margins(given), None if size is None else _grid(size)
     if places is not None:
         for name, value in given.items():
             if value is not None:
                 raise InputError(f"--margin{name} {value:g}: listed places (--places) have no margins")
+    source = find(gear_set)
+    pair = load_pair(source)
+    member, spec = member_of(pair, member)
+    if places is not None:
         axial, radial = read_places(places)
         with about(places):
-            grid = listed_grid(spec, axial, radial, _grid(size) if size else (len(axial), 1))
+            grid = listed_grid(spec, axial, radial, shape or (len(axial), 1))
         with about(source):
             file = nominal_flank(spec, member, side, grid, None)
     else:
-        margins = _margins(given)
-        grid = blank_grid(spec, *_grid(size or "5x9"), margins)
+        grid = blank_grid(spec, *(shape or (5, 9)), margins)
         with about(source):
             file = nominal_flank(spec, member, side, grid, margins)
     write_flank_csv(target, file)
@@ -76,7 +77,8 @@ def flank(
 @JSON
 @output("STL")
 def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
-    """Whole teeth of a member: thickness, top land, undercut; and an STL."""
+    """Whole teeth of a member: thickness, top land, undercut; backlash and ease-off of the pair; and an STL."""
+    from gearmath.bevel.mates import pair_figures
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
     from gearmath.bevel.tooth import space_figures, tooth_space
@@ -87,18 +89,38 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     member, spec = member_of(bevel_set, member)
     with about(source):
         surface = tooth_space(spec, member, columns)
+        mates = pair_figures(bevel_set)
     triangles = space_triangles(surface) if space else member_triangles(spec, surface)
     write_stl(target, triangles, f"{member} {'space' if space else 'member'}")
     figures = space_figures(spec, surface)
     if as_json:
-        echo_json({"triangles": len(triangles), **figures})
+        echo_json({"triangles": len(triangles), **figures} | ({} if mates is None else {"pair": mates}))
         return
     click.echo(table(["figure", "value"], [[name, f"{value:.4f}"] for name, value in figures.items()]))
     click.echo(
         "thicknesses are transverse arcs: mean_ at the mean point of the pitch cone, reference_ at the middle of the"
     )
     click.echo("grid of flank files, where 'gearmath evaluate' measures")
+    if mates is not None:
+        _echo_pair(mates)
     click.echo(f"{target}: {len(triangles)} triangles")
+
+
+def _echo_pair(mates: dict[str, Any]) -> None:
+    """Backlash, and what each pair of mating flanks differs by."""
+    for kind in ("normal", "transverse"):
+        click.echo(f"pair, {kind} backlash at the mean point: {mates[f'mean_{kind}_backlash_mm']:.4f} mm")
+    rows = []
+    for flank in ("concave", "convex"):
+        one = mates[flank]
+        angles = (f"{one[f'{angle}_angle_difference_deg']:+.3f}" for angle in ("pressure", "spiral"))
+        rows.append([f"pinion {flank}", *angles, *(f"{value:+.1f}" for value in one["ease_off_um"].values())])
+    head = [name.replace("_", " ") for name in mates["concave"]["ease_off_um"]]
+    click.echo(table(["mates", "pressure angle deg", "spiral angle deg", *head], rows))
+    click.echo(
+        "ease-off in um at the edges of the grid, positive where there is a gap; hollow: how far its second order"
+    )
+    click.echo("falls below the middle")
 
 
 def _margins(given: dict[str, float | None]) -> Margins:

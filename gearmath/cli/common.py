@@ -47,6 +47,23 @@ REGISTER = click.option(
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
+class Number(click.FloatRange):
+    """A number within limits, which nan is not. What is wrong with it is said before any work is done."""
+
+    def __init__(self, low: float, high: float, unit: str = "", above: bool = False) -> None:
+        super().__init__(low, high, min_open=above)
+        words = f"be greater than {low:g} and at most {high:g}" if above else f"lie between {low:g} and {high:g}"
+        self.words = f"must {words} {unit}".rstrip()
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        number = float(click.FLOAT.convert(value, param, ctx))
+        low, high = float(self.min or 0), float(self.max or 0)
+        if not low <= number <= high or (self.min_open and number == low):
+            name = param.opts[0] if param is not None else "value"
+            raise InputError(f"{name} = {number:g}: {self.words}")
+        return number
+
+
 class NewFile(click.Path):
     """A file to write: that it can be written there is checked before any work is done."""
 

@@ -15,6 +15,7 @@ from gearmath.cli.common import (
     REGISTER,
     SET,
     SET_OPTION,
+    Number,
     about,
     bar,
     echo_json,
@@ -67,12 +68,14 @@ if TYPE_CHECKING:
     "--bounds", type=click.Choice(["machine", "design"]), default="machine", show_default=True,
     help="How far settings may change: as a machine may be off, or as a new design may want it.",
 )  # fmt: skip
-@click.option("--root-limit", type=click.FloatRange(0.001, 2), metavar="MM", help="Most that the root line may move.")
+@click.option("--root-limit", type=Number(0.001, 2, "mm"), metavar="MM", help="Most that the root line may move.")
 @click.option(
-    "--noise", "--sigma-um", "noise", type=click.FloatRange(0, 100), metavar="UM",
+    "--noise", "--sigma-um", "noise", type=Number(0, 100, "um"), metavar="UM",
     help="Noise of one deviation; else what is left. With it, or with u_um in the file, settings have uncertainties.",
 )  # fmt: skip
-@click.option("--thickness", type=float, default=0.0, metavar="UM", help="Leave the teeth thicker by so much.")
+@click.option(
+    "--thickness", type=Number(-500, 500, "um"), default=0.0, metavar="UM", help="Leave the teeth thicker by so much."
+)
 @click.option(
     "--thickness-by",
     type=click.Choice(["work_rotation_offset", "sliding_base"]),
@@ -202,7 +205,7 @@ def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, register
 @SET_OPTION
 @MEMBER
 @click.option("--advance", is_flag=True, help="Find an axial shift too, not only the rotation.")
-@click.option("--least", type=click.FloatRange(0, 2000), default=0.0, show_default=True, metavar="UM",
+@click.option("--least", type=Number(0, 2000, "um"), default=0.0, show_default=True, metavar="UM",
               help="Stock that must remain everywhere.")  # fmt: skip
 @JSON
 def stock(measured: Path, gear_set: str, member: str | None, advance: bool, least: float, as_json: bool) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from gearmath.cli.common import (
     SET,
     SHEET,
     NewFile,
+    Number,
     about,
     bar,
     member_of,
@@ -76,6 +78,7 @@ def cut(
     from gearmath.machine.judging.program import faults_of
     from gearmath.machine.judging.timing import timing
     from gearmath.machine.planning.cut_plan import PLUNGE_FEED, Job, cutting_plan, pass_count
+    from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
     from gearmath.machine.writing.cutting import program_of
     from gearmath.machine.writing.words import block_count, check_name
@@ -83,11 +86,12 @@ def cut(
     from gearmath.specs.toml import find
 
     check_name(target.stem)
+    job = Job((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
+    milling_machine = load_milling_machine(find(machine))
+    check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
-    wanted = _spaces(spaces, spec.teeth)
-    job = Job(wanted, tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
-    milling_machine = load_milling_machine(find(machine))
+    job = replace(job, spaces=_spaces(spaces, spec.teeth))
     with bar(pass_count(spec, member, job), "pass") as progress:
         plan = cutting_plan(bevel_set, member, milling_machine, job, progress)
         text = program_of(plan, target.stem)
@@ -102,7 +106,7 @@ def cut(
 
         page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
     write_text(target, text)
-    click.echo(f"{target}: {len(wanted)} of {spec.teeth} spaces, {block_count(text)} blocks")
+    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {block_count(text)} blocks")
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
@@ -118,7 +122,7 @@ def cut(
     "--report", type=NewFile(),
     help="Also write a JSON file of gouges, uncut stock, collisions, axis speeds and time.",
 )  # fmt: skip
-@click.option("--report-tolerance-um", type=click.FloatRange(0.01, 1000), default=1.0, show_default=True,
+@click.option("--report-tolerance-um", type=Number(0.01, 1000, "um"), default=1.0, show_default=True,
               help="Deviation on flank, fillet or root that the report counts as a fault.")  # fmt: skip
 @click.option("--measured", is_flag=True, help="Clamp the member anew and measure it as the machine of --errors does.")
 @click.option("--run", type=click.IntRange(min=1), default=1, show_default=True,
@@ -211,7 +215,6 @@ def _milled(
 ) -> FlankFile:  # fmt: skip
     """The flanks that a program leaves, or with the number of a ``measurement`` what a measuring machine says of
     them."""
-    from dataclasses import replace
 
     from gearmath.machine.bodies.cutter import cutter_of
     from gearmath.machine.measuring.measurement import measure_member

@@ -10,7 +10,7 @@ import click
 
 from gearmath.cli.common import FLANK_CSV, MACHINE, SET_OPTION, about, bar, output
 from gearmath.cli.probe import CALIBRATION
-from gearmath.cli.uncertainty import MODEL, SIGMA, covariance_of, uncertain_correction
+from gearmath.cli.uncertainty import MODEL, SIGMA, check_one_source, covariance_of, uncertain_correction
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -71,12 +71,14 @@ def report(
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
+    check_one_source(sigma_um, model)
+    measurements = 1 if mate is None else 2
+    if len(part_number) > measurements:
+        raise InputError(f"--part-number: given {len(part_number)} times, for {measurements} measured file(s)")
     pair = load_pair(find(gear_set))
     files = {path: read_flank_csv(path) for path in (measured, *([mate] if mate else []))}
     if mate is not None and files[mate].member == files[measured].member:
         raise InputError(f"{mate}: member = {files[mate].member!r}: --mate must be of the other member than {measured}")
-    if len(part_number) > len(files):
-        raise InputError(f"--part-number: given {len(part_number)} times, for {len(files)} measured file(s)")
     given = {"date": date, "operator": operator, "machine": measured_on, "probe": probe}
     sure = (sigma_um, model, machine, calibration)
     members = []

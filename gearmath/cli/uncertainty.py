@@ -17,6 +17,7 @@ from gearmath.cli.common import (
     MEMBER,
     REGISTER,
     SET_OPTION,
+    Number,
     about,
     bar,
     echo_json,
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
     from gearmath.specs.flank_csv import FlankFile
 
 SIGMA = click.option(
-    "--sigma-um", type=float,
+    "--sigma-um", type=Number(0, 1000, "um", above=True),
     help="Standard uncertainty of every point, nothing in common, in place of u_um of the file.",
 )  # fmt: skip
 _BUNDLED = "measurement.toml"
@@ -81,6 +82,7 @@ def uncertainty(
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
+    check_one_source(sigma_um, model)
     file = read_flank_csv(measured)
     pair = load_pair(find(gear_set))
     member, spec = member_of(pair, member, file.member)
@@ -189,8 +191,6 @@ def covariance_of(
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
-    if sigma_um is not None and model is not None:
-        raise InputError("--sigma-um and --model: only one can say how well the points were measured")
     known = point_covariance(file, sigma_um)
     if known is not None and model is None:
         return known, "u_um of the file" if sigma_um is None else f"{sigma_um:g} um at every point"
@@ -203,14 +203,18 @@ def covariance_of(
     return touch_covariance(file, member, file.member, how, spindle, probe), source
 
 
+def check_one_source(sigma_um: float | None, model: str | None) -> None:
+    """Raises InputError where two options say how well the points were measured."""
+    if sigma_um is not None and model is not None:
+        raise InputError("--sigma-um and --model: only one can say how well the points were measured")
+
+
 def point_covariance(file: FlankFile, sigma_um: float | None) -> Covariance | None:
     """Covariance of independent points from --sigma-um, or from u_um of the file; None where neither says it."""
     import numpy as np
 
     from gearmath.quality.uncertainty.covariance import independent, stated
 
-    if sigma_um is not None and not 0 < sigma_um <= 1000:
-        raise InputError(f"--sigma-um = {sigma_um:g}: must be greater than 0 and at most 1000 um")
     return stated(file) if sigma_um is None else independent(np.full(len(file), sigma_um / 1000))
 
 

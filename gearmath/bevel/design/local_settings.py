@@ -13,8 +13,8 @@ import casadi as ca
 import numpy as np
 
 from derivations import notation
-from gearmath.bevel.check_flank import FLAT_BLADE
 from gearmath.bevel.generation import Generation
+from gearmath.bevel.root import FLAT_BLADE
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SETTINGS
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from gearmath.bevel.check_flank import FLAT_BLADE
 from gearmath.bevel.design import local_settings as local
 from gearmath.bevel.design.local_settings import FIRST, MOVING, NAMES, Local, Wanted
 from gearmath.bevel.design.request import Request
@@ -16,6 +15,7 @@ from gearmath.bevel.design.rolling import Meeting
 from gearmath.bevel.design.whole_flank import Fitted, WholeFlank, fit
 from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section, turning_sense
 from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.root import FLAT_BLADE
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError
 from gearmath.kernels import kernel

@@ -13,12 +13,13 @@ import numpy as np
 
 from gearmath.bevel.generation import Section
 from gearmath.bevel.method import blade_sections
+from gearmath.bevel.root import Widths
 from gearmath.bevel.tooth import ToothSpace
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
-#: Point width of a fixed-setting cutter of which none is stated, as a part of the root at its widest: more than half,
-#: so that the cuts of both flanks overlap; and the most of the root at its narrowest that it may fill. [1]
-DEFAULT_WIDTH_SHARE, MOST_OF_ROOT = 0.55, 0.95
+#: Point width of a fixed-setting cutter of which none is stated, as a part of the slot at its widest: more than half,
+#: so that the cuts of both flanks overlap; and the most of the slot at its narrowest that it may fill. [1]
+DEFAULT_WIDTH_SHARE, MOST_OF_SLOT = 0.55, 0.95
 #: Stands for a blade that is not there. [mm]
 _AWAY = 1e4
 
@@ -113,7 +114,7 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
     """The tool that cuts ``flanks`` of a member. ``edge_radius`` [mm] is given to blades that state none.
 
     A completing cutter has a blade for each flank. A fixed-setting cutter has the other flank's pressure angle on its
-    other side, at the blade point width of the flank, or where none is stated at 55 % of the widest root of
+    other side, at the blade point width of the flank, or where none is stated at 55 % of the widest slot of
     ``space``; without a space, that side is out of reach.
     """
     own = {flank: member.flank(flank) for flank in flanks}
@@ -125,7 +126,7 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
     if len(flanks) == 1 and space is not None:
         (flank,) = flanks
         other = FLANKS[1 - FLANKS.index(flank)]
-        own[other] = _other_side(own[flank], flank, member.flank(other), point_width(own[flank], space))
+        own[other] = _other_side(own[flank], flank, member.flank(other), point_width(own[flank], space.slots[flank]))
     sections = {flank: blade_sections(_edged(_as_cut(spec), edge_radius), SIDES[flank]) for flank, spec in own.items()}
     toprem = max(sections[flank]["toprem"].upper if "toprem" in sections[flank] else 0.0 for flank in own)
     lowest = [_profile(sections[flank], own[flank], SIDES[flank]) for flank in FLANKS]
@@ -139,23 +140,15 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
     return Cutter(tuple(bodies), height)
 
 
-def point_width(spec: Flank, space: ToothSpace) -> float:
-    """Point width [mm] of a fixed-setting cutter: as stated, or chosen for the root of the space.
+def point_width(spec: Flank, slot: Widths) -> float:
+    """Point width [mm] of a fixed-setting cutter: as stated, or chosen for the ``slot`` of its flank.
 
-    Chosen, it is ``DEFAULT_WIDTH_SHARE`` of the root at its widest, so that two cuts leave no ridge between them, and
-    never more than that part of the room which the root leaves at its narrowest.
+    Chosen, it is ``DEFAULT_WIDTH_SHARE`` of the slot at its widest, so that two cuts leave no ridge between them, and
+    never more than that part of the room which the slot leaves at its narrowest.
     """
     if spec.blade_point_width is not None:
         return spec.blade_point_width
-    narrowest, widest = root_widths(space)
-    return min(DEFAULT_WIDTH_SHARE * widest, MOST_OF_ROOT * narrowest)
-
-
-def root_widths(space: ToothSpace) -> tuple[float, float]:
-    """The root of the space at its narrowest and at its widest place [mm], straight across from flank to flank."""
-    low, high = (surface.point[-1] for surface in space.ordered)
-    across = np.linalg.norm(low[:, None] - high[None], axis=2).min(axis=1)
-    return float(across.min()), float(across.max())
+    return min(DEFAULT_WIDTH_SHARE * slot.most, MOST_OF_SLOT * slot.least)
 
 
 def _other_side(spec: Flank, flank: str, other: Flank, width: float) -> Flank:

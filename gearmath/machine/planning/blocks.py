@@ -233,6 +233,16 @@ def flank_row(member: Member, flank: str, grid: Grid) -> tuple[np.ndarray, np.nd
     return points.contact[order, 2], lines[order]
 
 
+def check_tolerance(tolerance: float, decimals: float = ROUNDING) -> None:
+    """Raises InputError for a tolerance [mm] out of range; ``decimals`` [mm] is what printed ones may take of it."""
+    low, high = TOLERANCES
+    if not low <= tolerance <= high:
+        raise InputError(
+            f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "
+            f"decimals alone may take {decimals * 1000:.3f} um"
+        )
+
+
 def roll_nodes(
     member: Member, cut: Cut, tolerance: float = DEFAULT_TOLERANCE, pivot_height: float = 0.0,
     pivot_offset: np.ndarray | None = None, rounding: float = ROUNDING,
@@ -242,12 +252,7 @@ def roll_nodes(
     Of that, ``rounding`` [mm] is left for the increments of the control, but never more than half.
     Raises InputError for a tolerance out of range.
     """
-    low, high = TOLERANCES
-    if not low <= tolerance <= high:
-        raise InputError(
-            f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "
-            f"decimals alone may take {ROUNDING * 1000:.3f} um"
-        )
+    check_tolerance(tolerance)
     member = on_one_machine(member, cut)
     start, end = roll_range(member, cut)
     exact = Pass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)

@@ -19,9 +19,9 @@ from gearmath.bevel.tooth import ToothSpace, tooth_space
 from gearmath.errors import InputError
 from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.bodies.profiles import widest
-from gearmath.machine.planning.blocks import TOLERANCES, roll_nodes
+from gearmath.machine.planning.blocks import TOLERANCES, check_tolerance, roll_nodes
 from gearmath.machine.planning.clear_space import Room, room_of
-from gearmath.machine.planning.feeds import block_seconds
+from gearmath.machine.planning.feeds import block_seconds, check_feed
 from gearmath.machine.planning.hobbing import hobbing_pass
 from gearmath.machine.planning.passes import Pass, tooth_angles
 from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
@@ -72,6 +72,8 @@ class Job:
             )
         if not len(self.spaces):
             raise InputError("spaces: there is no tooth space to cut")
+        check_tolerance(self.tolerance)
+        check_feed(self.feed)
 
     @property
     def stages(self) -> tuple[tuple[str, float, float], ...]:

@@ -19,6 +19,12 @@ from gearmath.specs.milling_machine import MillingMachine
 SHORTEST = 1e-4
 
 
+def check_feed(feed_mm_min: float) -> None:
+    """Raises InputError for a feed that is not positive."""
+    if not (math.isfinite(feed_mm_min) and feed_mm_min > 0):
+        raise InputError(f"feed = {feed_mm_min} mm/min: must be greater than 0")
+
+
 def block_seconds(axes: np.ndarray, machine: MillingMachine, feed_mm_min: float, tooth: np.ndarray) -> np.ndarray:
     """Duration of the blocks between positions (n,5) of the axes: (n-1,) s.
 
@@ -26,8 +32,7 @@ def block_seconds(axes: np.ndarray, machine: MillingMachine, feed_mm_min: float,
     slower where an axis reaches its highest speed or acceleration. The blocks begin and end at a standstill. Raises
     InputError for a feed that is not positive.
     """
-    if not (math.isfinite(feed_mm_min) and feed_mm_min > 0):
-        raise InputError(f"feed = {feed_mm_min} mm/min: must be greater than 0")
+    check_feed(feed_mm_min)
     (seen,) = kernel("seen_from_tool")(axes, tooth, machine.pivot_height, machine.pivot)
     steps = np.diff(axes, axis=0)
     at_feed = np.linalg.norm(np.diff(seen, axis=0), axis=1) * 60.0 / feed_mm_min

@@ -16,7 +16,7 @@ from gearmath.bevel.method import motion_of
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.blades import Edge, blades_of, crossing
-from gearmath.machine.planning.blocks import ROUNDING, TOLERANCES
+from gearmath.machine.planning.blocks import ROUNDING, check_tolerance
 from gearmath.machine.planning.feeds import paced_seconds
 from gearmath.machine.planning.path import Cut, axis_positions, roll_range, whole_flank
 from gearmath.specs.bevel_set import FLANKS, Flank, Member
@@ -181,12 +181,7 @@ def _check(name: str, machine: MillingMachine, tolerance: float, feed: float, rp
     for what, value, unit in (("feed", feed, "mm/min"), ("spindle speed", rpm, "rpm")):
         if not (math.isfinite(value) and value > 0):
             raise InputError(f"{name}: {what} = {value} {unit}: must be greater than 0")
-    low, high = TOLERANCES
-    if not low <= tolerance <= high:
-        raise InputError(
-            f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "
-            f"decimals alone may take {(ROUNDING + C_ROUNDING) * 1000:.3f} um"
-        )
+    check_tolerance(tolerance, ROUNDING + C_ROUNDING)
 
 
 def _roll(member: Member, cut: Cut, drive: _Drive, scallop: float) -> tuple[float, float, float]:

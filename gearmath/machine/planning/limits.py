@@ -27,11 +27,16 @@ def check_pass(name: str, one: Pass, machine: MillingMachine, retract: float) ->
     _check_speed(name, one, machine)
 
 
-def check_process(name: str, machine: MillingMachine, rpm: float, clearance: float, plunge: float) -> None:
-    """Raises InputError naming program, value and limit of spindle speed, clearance and plunge feed."""
+def check_spindle_speed(name: str, machine: MillingMachine, rpm: float) -> None:
+    """Raises InputError naming program, value and limit of the spindle speed."""
     low, high = machine.spindle_speed_rpm
     if not low <= rpm <= high:
         raise InputError(f"{name}: spindle speed = {rpm} rpm: {machine.name} has {low:g} to {high:g} rpm")
+
+
+def check_process(name: str, machine: MillingMachine, rpm: float, clearance: float, plunge: float) -> None:
+    """Raises InputError naming program, value and limit of spindle speed, clearance and plunge feed."""
+    check_spindle_speed(name, machine, rpm)
     if not (math.isfinite(clearance) and clearance > 0):
         raise InputError(f"{name}: clearance = {clearance} mm: must be greater than 0")
     fastest = machine.axes.Z.max_speed_per_min

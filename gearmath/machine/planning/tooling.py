@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gearmath.bevel.tooth import ToothSpace
-from gearmath.machine.bodies.cutter import cutter_of, point_width, root_widths
+from gearmath.machine.bodies.cutter import cutter_of, point_width
 from gearmath.machine.planning.path import Cut
 from gearmath.specs.bevel_set import Flank, Member
 
@@ -14,8 +14,8 @@ from gearmath.specs.bevel_set import Flank, Member
 class PointWidth:
     """Between the tips of outer and inner blade [mm].
 
-    A cutter for one flank has limits, found at the root of the finished space: where its point is wider than the root
-    is at its narrowest, its other side cuts the other flank; where it is narrower than half of the root at its widest,
+    A cutter for one flank has limits, the slot widths of the finished space: where its point is wider than the slot
+    is at its narrowest, its other side cuts the other flank; where it is narrower than half of the slot at its widest,
     a ridge stays between the two cuts. ``stated`` tells whether the set has the width, or it was chosen here.
     """
 
@@ -56,8 +56,8 @@ def tools_of(member: Member, name: str, space: ToothSpace | None) -> tuple[Tool,
             body = cutter.bodies[0]
             point = PointWidth(body.outer.point_radius - body.inner.point_radius, True)
         else:
-            (spec,) = blades.values()
-            least, most = root_widths(space)
-            point = PointWidth(point_width(spec, space), spec.blade_point_width is not None, most / 2, least)
+            ((flank, spec),) = blades.items()
+            slot, stated = space.slots[flank], spec.blade_point_width is not None
+            point = PointWidth(point_width(spec, slot), stated, slot.most / 2, slot.least)
         found.append(Tool(cut.tool, blades, cutter.height, point))
     return tuple(found)

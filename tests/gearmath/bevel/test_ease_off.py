@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.check_ease_off import check_ease_off
-from gearmath.bevel.ease_off import ease_off, parts
+from gearmath.bevel.ease_off import Parts, ease_off, hollow, parts
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.pair import check_pair, load_pair
@@ -139,3 +139,39 @@ def test_other_number_of_blade_groups_is_refused_as_the_blades_are_not_square_to
     pair = changed("crown_gear_hobbed_14x39", *((f"{member}.blade_groups", groups) for member in ("pinion", "gear")))
     with pytest.raises(InputError):
         check_pair(pair)
+
+
+@pytest.mark.parametrize(
+    ("crowning", "twist", "profile_crowning", "depth"),
+    [
+        (3.0, 0.0, 2.0, 0.0), (3.0, 4.0, 2.0, 0.0),  # 4 < 2 √6: no saddle
+        (3.0, 6.0, 2.0, 1.0),  # at the corner 3 - 6 + 2
+        (-1.0, 0.0, 2.0, 1.0), (1.0, 1.0, -2.0, 2.25),  # x = 1/2 on the edge: 1/4 - 1/2 - 2
+        (-1.0, 0.5, -2.0, 3.5),
+    ],
+)  # fmt: skip
+def test_hollow_is_how_far_the_second_order_falls_below_its_middle(crowning, twist, profile_crowning, depth) -> None:
+    for sign in (1, -1):
+        found = Parts(5.0, -7.0, crowning, sign * twist, profile_crowning, 1.0)
+        assert hollow(found) == pytest.approx(depth, abs=1e-12)
+
+
+OTHER_METHOD = {
+    **{f"{name}: Formate gear": (name, ("gear.generation", "formate")) for name in SETS if "formate" not in name},
+    "Formate gear that is rolled": ("crown_gear_formate_14x39", ("gear.generation", "generated")),
+    "no motions": (
+        "crown_gear_universal_14x39", *((f"pinion.{flank}.motion", {}) for flank in FLANKS)
+    ),
+    "motions turned round": (
+        "crown_gear_universal_14x39",
+        *((f"pinion.{flank}.motion", lambda motion: {key: [-v for v in values] for key, values in motion.items()})
+          for flank in FLANKS),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", OTHER_METHOD)
+def test_pair_made_for_another_method_or_motion_is_refused(case: str) -> None:
+    name, *changes = OTHER_METHOD[case]
+    with pytest.raises(InputError, match="pinion"):
+        check_pair(changed(name, *changes))

@@ -117,8 +117,8 @@ REFUSED = {
         NASA, {"pinion.convex.work_rotation_offset": -30.0}, r"leave a space of -.*turned by 60 degrees",
     ),
     "work rotation in radians": (
-        FORMATE, {"pinion.concave.work_rotation_offset": -5.365469014 * RADIAN},
-        r"pinion: concave\.work_rotation_offset = -0\.0936451, .* a space of 2\.143 mm .* must be at least 2\.57 mm",
+        FORMATE, {"pinion.concave.work_rotation_offset": 1.926909 * RADIAN},
+        r"pinion concave\.work_rotation_offset = 0\.0336309, .* backlash of 1\.0\d+ mm .* between 0 and 0\.471",
     ),
     "too much backlash": (
         NASA, {"pinion.convex.work_rotation_offset": 32.0},
@@ -132,9 +132,9 @@ REFUSED = {
     "point width that is not that of the radii": (
         NASA, {"gear.convex.blade_point_width": 2.5}, r"gear\.convex\.blade_point_width = 2\.5: .* make it 1\.651 mm",
     ),
-    "cutter wider than the root": (
-        NASA, {"pinion.convex.blade_point_width": 3.2},
-        r"pinion\.convex\.blade_point_width = 3\.2: the root of the space is 2\.8\d mm wide at the toe",
+    "cutter wider than the slot": (
+        NASA, {"pinion.convex.blade_point_width": 3.3},
+        r"pinion\.convex\.blade_point_width = 3\.3: the slot is 3\.2\d mm wide at the toe",
     ),
     "edges wider than the tip": (
         NASA, {"gear.convex.blade_edge_radius": 1.4, "gear.concave.blade_edge_radius": 1.4},
@@ -163,10 +163,10 @@ REFUSED = {
         NASA, {"pinion.convex.blade_edge_radius": 2.0},
         r"pinion\.convex\.blade_edge_radius = 2: it rounds the blade up to 1\.18 mm, .* at most 1\.62 mm",
     ),
-    "edges wider than the root of a flank cut alone": (
+    "edges wider than the slot of a flank cut alone": (
         NASA, {f"pinion.{flank}.blade_edge_radius": 1.35 for flank in FLANKS}
         | {"pinion.convex.work_rotation_offset": 26.0},
-        r"pinion\.concave\.blade_edge_radius = 1\.35: the rounded edges of both flanks take 1\.\d+ mm of the root",
+        r"pinion\.concave\.blade_edge_radius = 1\.35: the rounded edges of both flanks take 1\.\d+ mm of the slot",
     ),
     "Toprem that digs under the flank": (
         NASA, {"pinion.convex.toprem_angle": 0.5, "pinion.convex.toprem_height": 1.0},
@@ -198,8 +198,8 @@ REFUSED = {
         r"pinion\.concave\.motion\.work_rotation_offset = \[0\.97, 63\.9\]: .* by 7\.786 degrees, .* at most 5 degrees",
     ),
     "motion that bends the flank": (
-        FORMATE, {"pinion.concave.motion": {"radial_distance": [0.0, 60.0]}},
-        r"pinion\.concave\.motion: it changes the form of the flank by [\d.]+ mm from end to end .* at most 0\.392 mm",
+        NASA, {"pinion.concave.motion": {"radial_distance": [0.0, 60.0]}},
+        r"pinion\.concave\.motion: it changes the form of the flank by [\d.]+ mm from end to end .* at most 0\.427 mm",
     ),
     "blade offset of a face mill": (
         NASA, {"gear.convex.blade_offset_angle": 4.0}, r"gear\.convex\.blade_offset_angle = 4: belongs to face_hobbing",
@@ -218,7 +218,7 @@ REFUSED = {
     ),
     "opposite pressure angles of the flanks": (
         FORMATE, {"gear.concave.blade_pressure_angle": 14.0, "gear.convex.blade_pressure_angle": 26.0},
-        r"pressure angle .* differ by -2\.62 degrees on the first and .* the other way .* between -1\.5 and 4\.88",
+        r"pressure angle .* differ by -2\.0\d degrees on the first and .* the other way .* between -1\.5 and 5\.52",
     ),
     "opposite spiral angles of the flanks": (
         NASA, {"pinion.concave.radial_distance": 73.374171554126, "pinion.convex.radial_distance": 72.646656284,
@@ -235,9 +235,16 @@ REFUSED = {
                for key, value in (("blade_edge_radius", 1.3), ("blade_point_width", 0.5))},
         r"pinion\.concave\.blade_edge_radius = 1\.3: .* both sides take 1\.89 mm of the tip, blade_point_width = 0\.5",
     ),
+    "pitch apex beyond the crossing point": (
+        NASA, {"gear.blank.pitch_apex_beyond_crossing_point": 1.0},
+        r"gear\.blank\.pitch_apex_beyond_crossing_point = 1: with 0 of .* lie 0\.949 mm in each other, .* 0\.085 mm",
+    ),
+    "teeth a little too thick for each other": (
+        NASA, {"pinion.convex.work_rotation_offset": 29.6}, r"backlash of -0\.0\d+ mm .* between 0 and 0\.513 mm",
+    ),
     "cutters that leave a fin": (
         NASA, {f"pinion.{flank}.blade_point_width": 0.1 for flank in FLANKS},
-        r"pinion\.concave\.blade_point_width = 0\.1: with 0\.1 mm .* a fin would stay .* is 3\.3 mm wide at the heel",
+        r"pinion\.concave\.blade_point_width = 0\.1: with 0\.1 mm .* a fin would stay .* is 3\.34 mm wide at the heel",
     ),
     "motion beyond all measure": (
         UNIVERSAL, {f"pinion.{flank}.motion": {"radial_distance": [1000.0]} for flank in FLANKS},
@@ -245,7 +252,7 @@ REFUSED = {
     ),
     "backlash of a fifth of the module": (
         NASA, {"pinion.convex.work_rotation_offset": 31.5},
-        r"backlash of 0\.8\d* mm at the mean point, which must lie between -0\.0427 and 0\.513 mm, -0\.01 and 0\.12 of",
+        r"backlash of 0\.8\d* mm at the mean point, which must lie between 0 and 0\.513 mm, 0 and 0\.12 of",
     ),
     # keys without effect
     "reference height of a straight blade": (
@@ -254,7 +261,7 @@ REFUSED = {
     ),
     "ratio of roll of a Formate member": (
         FORMATE, {f"gear.{flank}.ratio_of_roll": 7.0 for flank in FLANKS},
-        r"gear\.concave\.ratio_of_roll = 7: a Formate cut does not roll, .* no effect; .* 1\.0574 within 3%",
+        r"gear\.concave\.ratio_of_roll = 7: a Formate cut does not roll, .* no effect; .* 1\.0548 within 3%",
     ),
     "motion without coefficients": (
         NASA, {"pinion.convex.motion": {"radial_distance": []}},
@@ -399,12 +406,6 @@ def test_bundled_pair_passes_with_half_of_what_mates_may_differ_by(name: str, mo
 
     monkeypatch.setattr(check, "_MATING", {key: (one / 2, two / 2) for key, (one, two) in check._MATING.items()})
     check_pair(load_bevel_set(bundled(f"{name}.toml")))
-
-
-def test_blades_may_be_corrected_for_the_tilted_root_line() -> None:
-    """Cut at once with blades of one angle, the flanks of the gear get 3.2 degrees apart; 17 and 23 take that away."""
-    changes = {"gear.concave.blade_pressure_angle": 17.0, "gear.convex.blade_pressure_angle": 23.0}
-    check_pair(checked(changed(FORMATE, changes), BevelSet, "set"))
 
 
 def test_corrected_set_passes_with_what_a_correction_changes(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
 from gearmath.specs.flank_csv import join, write_flank_csv
+from gearmath.specs.toml import bundled
 
 SET = "nasa_tp3096_12x36.toml"
 STEP = 1e-4
@@ -109,7 +110,7 @@ def test_table_has_the_figures_of_the_json_and_says_where_they_are_measured(comm
     assert (status, err) == (0, "")
     rows = dict(line.split() for line in out.splitlines() if len(line.split()) == 2)
     for name, value in values.items():
-        if name != "triangles":
+        if name not in ("triangles", "pair"):
             assert float(rows[name]) == pytest.approx(value, abs=5.1e-5), name
     assert "mean_ at the mean point of the pitch cone" in out
     assert f"{values['triangles']} triangles" in out
@@ -117,6 +118,41 @@ def test_table_has_the_figures_of_the_json_and_says_where_they_are_measured(comm
     # 2 π R_m sin δ / z with the published cone distance and pitch angle
     pitch = 2 * math.pi * 81.05 * math.sin(math.radians(71.565)) / 36
     assert values["mean_transverse_pitch_mm"] == pytest.approx(pitch, abs=1e-3)
+
+
+def test_pair_has_its_backlash_angles_and_ease_off(command, tmp_path):
+    """Angles of the mates at the mean point by the closed form of CR-191009, solved by another program (test_pair)."""
+    both = {member: figures(command, tmp_path / "t.stl", member=member) for member in MEMBERS}
+    mates = both["pinion"]["pair"]
+    assert mates == both["gear"]["pair"]
+    angles = {"concave": (19.27384719 - 19.79546867, 35.20926128 - 35.24621333),
+              "convex": (23.70769370 - 24.24966429, 34.69525743 - 34.71717186)}  # fmt: skip
+    for flank, (pressure, spiral) in angles.items():
+        assert mates[flank]["pressure_angle_difference_deg"] == pytest.approx(pressure, abs=1e-7)
+        assert mates[flank]["spiral_angle_difference_deg"] == pytest.approx(spiral, abs=1e-7)
+    teeth = sum(found["mean_transverse_tooth_thickness_mm"] for found in both.values())
+    backlash = both["gear"]["mean_transverse_pitch_mm"] - teeth
+    assert mates["mean_transverse_backlash_mm"] == pytest.approx(backlash, abs=1e-9)
+    # along the normal: cos β cos α_n, with the means of both flanks of the gear
+    normal = backlash * math.cos(math.radians(34.9520)) * math.cos(math.radians(22.0226))
+    assert mates["mean_normal_backlash_mm"] == pytest.approx(normal, abs=1e-6)
+    # half of the difference of the pressure angles over 80 % of the working depth, along the blade
+    height = 0.8 * (4.570064768422 + 2.216780765284 - 0.762) / 2 / math.cos(math.radians(21))
+    for flank in FLANKS:
+        slope = mates[flank]["ease_off_um"]["profile_slope"]
+        assert slope == pytest.approx(1000 * height * math.radians(-angles[flank][0]), rel=0.2)
+    _, out, _ = command("tooth", SET, "--member", "gear", "--columns", 9, "-o", tmp_path / "t.stl")
+    assert f"normal backlash at the mean point: {normal:.4f} mm" in out
+    assert f"{mates['convex']['ease_off_um']['crowning']:+.1f}" in out
+
+
+def test_single_member_has_no_figures_of_a_pair(command, tmp_path, gear_set):
+    alone = tmp_path / "gear.toml"
+    text = bundled(SET).read_text("utf-8")
+    alone.write_text(text[: text.index("[pinion]")] + text[text.index("[gear]") :], "utf-8")
+    status, out, err = command("tooth", alone, "--columns", 9, "--json", "-o", tmp_path / "t.stl")
+    assert (status, err) == (0, "")
+    assert "pair" not in json.loads(out)
 
 
 def facets(path):

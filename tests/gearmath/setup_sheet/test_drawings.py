@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from gearmath.bevel.root import Widths
 from gearmath.bevel.tooth import FlankSurface, ToothSpace
 from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.bodies.profiles import work_profiles
@@ -118,11 +119,12 @@ def test_point_of_a_completing_cutter_is_as_wide_as_its_blades_are_apart(gear_se
     assert {"point width 1.651", "r 77.0255", "r 75.3745", "22.000°"} <= set(words)
 
 
-def test_point_of_a_cutter_for_one_flank_is_limited_by_the_root_that_both_leave(gear_set):
-    """A root that is 3 mm wide at the toe and 5 mm at the heel: at least 2.5 mm, or a ridge stays, and at most 3 mm."""
+def test_point_of_a_cutter_for_one_flank_is_limited_by_the_slot_that_both_leave(gear_set):
+    """A slot that is 3 mm wide at the toe and 5 mm at the heel: at least 2.5 mm, or a ridge stays, and at most 3 mm."""
     low, high = (np.array([[[50.0, sign * 1.5, 0.0], [60.0, sign * 2.5, 9.0]]]) for sign in (-1, 1))
     flanks = [FlankSurface("any", points, points, ("main",), np.ones((1, 2))) for points in (low, high)]
-    space = ToothSpace(*flanks, 0.5)
+    slot = Widths(3.0, 4.0, 5.0, 3.0, 5.0)
+    space = ToothSpace(*flanks, 0.5, slot, dict.fromkeys(("concave", "convex"), slot))
     wanted = gear_set.pinion.concave.model_copy(update={"blade_point_width": 2.0})
     member = gear_set.pinion.model_copy(update={"concave": wanted})
     concave, convex = tools_of(member, "pinion", space)

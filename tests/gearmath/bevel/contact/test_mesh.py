@@ -12,7 +12,7 @@ from gearmath.bevel.contact.mesh import Mesh, mesh
 from gearmath.bevel.contact.report import ARCSEC, SIDES, figures, side_mesh, side_system
 from gearmath.bevel.contact.surface import displaced_surface
 from gearmath.bevel.contact.system import Assembly, pair_system
-from gearmath.specs.bevel_set import FLANKS, BevelSet, load_bevel_set
+from gearmath.specs.bevel_set import FLANKS, BevelSet, Motion, load_bevel_set
 from gearmath.specs.toml import bundled
 
 DISPLACED = {"V": 0.2, "H": -0.15, "J": 0.1, "shaft": math.radians(0.1)}
@@ -128,7 +128,11 @@ def test_formate_gear_with_its_own_generator_touches_along_lines(side: str) -> N
     pair = load_bevel_set(bundled(f"{FORMATE}.toml"))
     mating = FLANKS[1 - FLANKS.index(SIDES[side])]
     spec = pair.gear.flank(mating)
-    conjugate = {**conjugate_generator(spec, 1 if mating == "concave" else -1), "ratio_of_roll": 39 / 14}
+    conjugate = {
+        **conjugate_generator(spec, 1 if mating == "concave" else -1),
+        "ratio_of_roll": 39 / 14,
+        "motion": Motion(),
+    }
     own = pair.pinion.flank(SIDES[side]).model_copy(update=conjugate)
     pinion = pair.pinion.model_copy(update={SIDES[side]: own})
     # a lower gear: the tip of this one would be conjugate to what the untilted pinion undercuts

@@ -1,0 +1,66 @@
+"""What the two members of a set are to each other, as figures: backlash, angles at the mean point, ease-off.
+
+They are those that the check of a set limits (``check_mates``, ``check_ease_off``).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from gearmath.bevel.blank import evaluate
+from gearmath.bevel.check_blank import transverse_module
+from gearmath.bevel.check_ease_off import ease_off_parts
+from gearmath.bevel.check_flank import cut_flank
+from gearmath.bevel.ease_off import hollow
+from gearmath.bevel.method import generation_of
+from gearmath.bevel.tooth import mean_backlash
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet
+
+#: The kind of ``notation.backlash_kind`` that is transverse, at the mean point.
+_MEAN_TRANSVERSE = 3
+
+
+def pair_figures(pair: BevelSet) -> dict[str, Any] | None:
+    """Backlash [mm] at the mean point, and by the pinion's flank what it and its mate differ by, None without a pair.
+
+    Angles [degree] are pinion less gear, both counted as the pinion's. The ease-off [um] is positive where there is a
+    gap, its parts those at the edges of the gear's grid. Raises Misfit where flanks do not meet.
+    """
+    if pair.pinion is None or pair.gear is None:
+        return None
+    cut = {
+        name: {flank: cut_flank(member, name, flank, generation_of(member, flank)) for flank in FLANKS}
+        for name, member in pair.members.items()
+    }
+    transverse = mean_backlash(pair.pinion, pair.gear)
+    figures: dict[str, Any] = {
+        "mean_transverse_backlash_mm": transverse,
+        "mean_normal_backlash_mm": _normal(pair, cut["gear"], transverse),
+    }
+    found = ease_off_parts(pair.pinion, pair.gear, pair.shaft_angle)
+    for flank, mating in zip(FLANKS, reversed(FLANKS), strict=True):
+        own, mate = cut[MEMBERS[0]][flank], cut[MEMBERS[1]][mating]
+        parts = {"slope": "slope", "profile_slope": "profile_slope", "crowning": "crowning", "bias": "twist",
+                 "profile_crowning": "profile_crowning", "rest": "rest"}  # fmt: skip
+        figures[flank] = {
+            "pressure_angle_difference_deg": math.degrees(own.pressure_angle - mate.pressure_angle),
+            "spiral_angle_difference_deg": math.degrees(own.spiral_angle + mate.spiral_angle),
+            "ease_off_um": {name: 1000 * getattr(found[flank], part) for name, part in parts.items()}
+            | {"hollow": 1000 * hollow(found[flank])},
+        }
+    return figures
+
+
+def _normal(pair: BevelSet, gear: dict[str, Any], transverse: float) -> float:
+    """The backlash along the normal of the flanks (13.1)."""
+    assert pair.gear is not None
+    spiral = sum(abs(flank.spiral_angle) for flank in gear.values()) / len(gear)
+    mean = {"cone_distance": pair.gear.blank.mean_cone_distance, "spiral_angle": spiral}
+    values = {
+        "mean_normal_module": transverse_module(pair.gear) * math.cos(spiral), "profile_shift_coefficient": 0.0,
+        "thickness_modification": 0.0, "pressure_angle_drive": gear["convex"].pressure_angle,
+        "pressure_angle_coast": gear["concave"].pressure_angle, "backlash": transverse,
+        "backlash_kind": _MEAN_TRANSVERSE, "mean_cone_distance": mean["cone_distance"], "mean_spiral_angle": spiral,
+    }  # fmt: skip
+    return evaluate("tooth_thickness", values | mean)["mean_normal_backlash"]
