@@ -25,9 +25,10 @@ from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
 from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control import values as nc_values
+from gearmath.machine.control.blocks import Control
 from gearmath.machine.control.executor import MachinePath, execute
 from gearmath.machine.control.reader import read_program
-from gearmath.machine.control.state import Control, Setup
+from gearmath.machine.control.state import Setup
 from gearmath.machine.control.tree import Block, Branch, Command
 from gearmath.machine.judging.collision import collisions, rapid_approaches
 from gearmath.machine.judging.cut import beside_the_path, metal_left
