@@ -53,6 +53,7 @@ class Row(NamedTuple):
     rpm: float
     measuring: bool
     cutter: float
+    coolant: bool
 
 
 class Control(State):
@@ -128,7 +129,17 @@ class Control(State):
         if self.tool is None:
             return None
         position, cutter = tuple(self.position[axis] for axis in AXES), self.position.get(CUTTER_AXIS, math.nan)
-        return Row(position, rapid, self.tool or "", line, seconds, self.rpm, "MEAS" in words, cutter)
+        return Row(
+            position,
+            rapid,
+            self.tool or "",
+            line,
+            seconds,
+            self.rpm,
+            "MEAS" in words,
+            cutter,
+            self.modal.get("coolant") == "M8",
+        )
 
     def _target(self, axis: str, block: Block, value: float, rapid: bool) -> float:
         """Where an axis word takes its axis, in machine coordinates, A counted on."""

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
 
 import numpy as np
 
-from gearmath.machine.control.blocks import Control, Row
+from gearmath.machine.control.blocks import Control
 from gearmath.machine.control.expression import AXES, refuse
 from gearmath.machine.control.reader import read_program
-from gearmath.machine.control.runner import Host, Runner, Stopped
+from gearmath.machine.control.runner import Halt, Host, Runner, Stopped
 from gearmath.machine.control.state import Blind, Deflected, Follower, Probe, Setup
 from gearmath.machine.control.tree import Program
 
 #: Blocks and turns of loops that a program may run through.
 STEP_LIMIT = 1_000_000
+_KEPT: dict[str, Program] = {}
 
 
 @dataclass(frozen=True)
@@ -48,6 +48,10 @@ class MachinePath:
     """Path mode, CTOL [mm] and OTOL [degrees] of feed blocks, with the line of the first."""
     dynamics: dict[tuple[str, str], int] = field(default_factory=dict)
     """Acceleration and feed forward of feed blocks, with the line of the first."""
+    coolant: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    """Whether coolant is on, (n,)."""
+    halts: tuple[Halt, ...] = ()
+    """Where the axes wait: dwells and stops."""
     unset: dict[int, int] = field(default_factory=dict)
     """R parameters that are read before the program sets them, with the line: they keep what another program left."""
 
@@ -69,6 +73,8 @@ class Run:
     """Number and line of the first alarm that the program set, or None."""
     said: tuple[str, ...] = ()
     """What the control showed during each row of the path, empty before the first message."""
+    taken: tuple[int, ...] = ()
+    """Rows of the MEAS blocks whose positions the program read."""
 
 
 #: Tables without offsets and tool lengths.
@@ -84,10 +90,16 @@ def execute(text: str, name: str, setup: Setup = AS_WRITTEN) -> MachinePath:
     return done.path
 
 
-@lru_cache(maxsize=2)
-def _read(text: str, name: str) -> Program:
-    """A program is often run several times, from other states of the control."""
-    return read_program(text, name)
+def parsed(text: str, name: str) -> Program:
+    """The statements of a text, as ``read_program`` reads them.
+
+    A program is often run several times, from other states of the control: the last one is kept.
+    """
+    if text not in _KEPT:
+        program = read_program(text, name)
+        _KEPT.clear()
+        _KEPT[text] = program
+    return _KEPT[text]
 
 
 def run_program(
@@ -109,7 +121,7 @@ def run_program(
     Raises InputError with ``name``, line and column for what a program must not do, and for one that takes more than
     ``step_limit`` steps.
     """
-    program = _read(text, name)
+    program = parsed(text, name)
     runner = Runner(Control(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved)
     runner.holds(files or {})
     try:
@@ -120,12 +132,15 @@ def run_program(
         if not runner.control.ended:
             refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
     files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
-    path = _path(runner.rows, runner.control, runner.unset)
-    return Run(path, files, tuple(runner.messages), runner.parameters, runner.alarm, tuple(runner.said))
+    return Run(
+        _path(runner), files, tuple(runner.messages), runner.parameters, runner.alarm, tuple(runner.said),
+        tuple(sorted(runner.taken)),
+    )  # fmt: skip
 
 
-def _path(rows: list[Row], control: Control, unset: dict[int, int]) -> MachinePath:
+def _path(runner: Runner) -> MachinePath:
     """The rows as arrays, in mm and rad."""
+    rows, control = runner.rows, runner.control
     positions = np.array([row.position for row in rows]).reshape(-1, len(AXES))
     positions[:, 3:] = np.radians(positions[:, 3:])
     tools = tuple(dict.fromkeys(row.tool for row in rows))
@@ -143,5 +158,7 @@ def _path(rows: list[Row], control: Control, unset: dict[int, int]) -> MachinePa
         blind=tuple(control.blind),
         path_modes=dict(control.path_modes),
         dynamics=dict(control.dynamics),
-        unset=unset,
+        coolant=np.array([row.coolant for row in rows], dtype=bool),
+        halts=tuple(runner.halts),
+        unset=runner.unset,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,15 @@ _KILOBYTE = 1000
 HANDED_IN = frozenset((90, 91, 101, 102, 103, 104))
 
 
+class Halt(NamedTuple):
+    """A dwell or a stop, and how many rows of the path, and moves before the position was known, lie before it."""
+
+    line: int
+    stop: bool
+    rows: int
+    blind: int
+
+
 class Stopped(Exception):
     """The program ended before the end of its text: M30 in a branch or in a loop."""
 
@@ -47,10 +57,12 @@ class Runner:
         self.files: dict[str, list[str]] = {}
         self._sizes: dict[str, int] = {}
         self.messages: list[str] = []
+        self.halts: list[Halt] = []
+        self.taken: set[int] = set()
         self.said: list[str] = []
         self.alarm: tuple[int, int] | None = None
         self._pending: dict[int, float] = {}
-        self._limit = step_limit
+        self._limit, self._latched = step_limit, -1
 
     def holds(self, files: Mapping[str, str]) -> None:
         """The files that are there before the program begins."""
@@ -116,6 +128,7 @@ class Runner:
             refuse(self.control.name, line, variable.column, f"{name} without a MEAS block and STOPRE before it")
         if name == "$AC_MEA":
             return float(latch.triggered)
+        self.taken.add(self._latched)
         values = latch.machine if name == "$AA_MM" else latch.work
         if variable.axis not in values:
             what = f"{name}[{variable.axis}]: {variable.axis} was not in the MEAS block, so that it was not latched"
@@ -149,7 +162,12 @@ class Runner:
         if row is not None:
             self.rows.append(row)
             self.said.append(self.messages[-1] if self.messages else "")
+            if row.measuring:
+                self._latched = len(self.rows) - 1
             self.moved(internal(row.position))
+        for key in ("dwell", "program stop"):
+            if key in block.words:
+                self.halts.append(Halt(block.line, key != "dwell", len(self.rows), len(self.control.blind)))
         if "dwell" in block.words and self.host is not None:
             self._pending.update(self.host(dict(self.parameters)))
 

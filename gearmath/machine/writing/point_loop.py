@@ -14,8 +14,9 @@ import numpy as np
 
 from gearmath.machine.planning.clear_space import Room
 from gearmath.machine.planning.pattern import Pattern
+from gearmath.machine.planning.targets import APPROACH_FEED, MEASURING_FEED
 from gearmath.machine.writing import start
-from gearmath.machine.writing.probe_words import APPROACH_FEED, FROM, MEASURING_FEED, TO, Blocks, Plan
+from gearmath.machine.writing.probe_words import FROM, TO, Blocks, Plan
 from gearmath.specs.bevel_set import FLANKS
 
 #: Variables: number of the point, tooth, place of the table, touch of a point; A of the point, and of the way there.
