@@ -19,8 +19,8 @@ from gearmath.machine.judging.outside import outside_faults
 from gearmath.machine.judging.start_state import start_faults
 from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.guards import guard_faults
-from gearmath.machine.measuring.parts import part_faults
-from gearmath.machine.measuring.reactions import reaction_faults
+from gearmath.machine.measuring.parts import part_faults, parts_of
+from gearmath.machine.measuring.reactions import host_faults, reaction_faults
 from gearmath.machine.measuring.records import Place, record_faults
 from gearmath.machine.measuring.ways import Way, at_the_ends, watched
 from gearmath.machine.planning.clear_space import clear_height, room_of
@@ -75,8 +75,15 @@ def _judged(
     size = max((len(content) for content in seen.run.files.values()), default=0) / 1000
     found = [*outside_faults(parsed(text, name)), *guard_faults(seen, machine, clear, free)]
     found += [*record_faults(text, seen, place), *start_faults(text, machine, calibration.length, size)]
-    if not found:  # what follows counts on a program that is right where nothing goes wrong
-        found += [*reaction_faults(text, name, seen, setup, progress), *part_faults(text, name, probe, seen, setup)]
+    if found:  # what follows counts on a program that is right where nothing goes wrong
+        return first_of_each(found)
+    parts = parts_of(text, name, probe, seen, setup)
+    if isinstance(parts, Fault):
+        return [parts]
+    done = set[int]()
+    for part in parts:
+        found += reaction_faults(text, name, part.seen, setup, part.parameters, done, progress)
+    found += [*host_faults(text, name, seen, setup), *part_faults(text, name, probe, seen, parts, setup)]
     return first_of_each(found)
 
 

@@ -6,6 +6,7 @@ The same for cutting programs is :mod:`gearmath.machine.judging.chosen`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,69 +25,84 @@ _ALL = 30
 _OLD = "what was there\n"
 
 
-def part_faults(text: str, name: str, probe: Probe, seen: Watched, setup: Setup) -> Iterator[Fault]:
-    """What is wrong with parts that are run alone; ``seen`` is the whole run."""
-    touches, (file, *_) = [seen.ways[k] for k in seen.touches], [*seen.run.files, ""]
-    lines = touch_lines(seen.run.files.get(file, ""))
+@dataclass(frozen=True)
+class Part:
+    """One part of a program, run alone: its number, and what it does."""
 
-    def run(first: int, last: int) -> Run:
-        return alone(first, last).run
+    number: int
+    seen: Watched
 
-    def alone(first: int, last: int) -> Watched:
-        return watched(text, name, probe, setup, {90: float(first), 91: float(last)}, {file: _OLD})
+    @property
+    def parameters(self) -> dict[int, float]:
+        """R90 and R91 that choose it."""
+        return {90: float(self.number), 91: float(self.number)}
 
-    count, done = _count(alone, len(touches)), 0
-    if not count:
-        yield Fault("with R90=1 R91=1 makes no touch, or is refused", kind="part")
-        return
-    each = len(touches) // count
-    for number in range(1, count + 1):
-        if count > _ALL:
-            if number not in (1, 2, count // 2, count - 1, count):
-                continue
-            done = (number - 1) * each
-        try:
-            found = alone(number, number)
-        except InputError as error:
-            yield Fault(f"with R90={number} R91={number} is refused: {error}", kind="part")
-            return
-        yield from agreed(found.run, number)
-        own = [found.ways[k] for k in found.touches]
-        wanted = touches[done : done + len(own)]
-        alike = len(own) == len(wanted) and all(_same(a.end, b.end) for a, b in zip(own, wanted, strict=True))
-        if not own or not alike or (count > _ALL and len(own) != each):
-            yield Fault(
-                f"with R90={number} R91={number} does not make part {number} of the run, and that alone", kind="part"
-            )
-            return
-        content = found.run.files.get(file, "")
+
+def parts_of(text: str, name: str, probe: Probe, seen: Watched, setup: Setup) -> list[Part] | Fault:
+    """The parts of a program, each run alone, or some of them where there are many; ``seen`` is the whole run.
+
+    A fault where one is not what it is in the whole run.
+    """
+    touches = [seen.ways[k] for k in seen.touches]
+    (file, *_) = [*seen.run.files, ""]
+
+    def alone(number: int) -> Watched:
+        both = float(number)
+        return watched(text, name, probe, setup, {90: both, 91: both}, {file: _OLD})
+
+    try:
+        count = _count(alone, len(touches))
+        each, done, found = len(touches) // max(count, 1), 0, []
+        numbers = range(1, count + 1) if count <= _ALL else (1, 2, count // 2, count - 1, count)
+        for number in numbers:
+            part = Part(number, alone(number))
+            own = [part.seen.ways[k] for k in part.seen.touches]
+            begin = done if count <= _ALL else (number - 1) * each
+            wanted = touches[begin : begin + len(own)]
+            alike = len(own) == len(wanted) and all(_same(a.end, b.end) for a, b in zip(own, wanted, strict=True))
+            if not own or not alike or (count > _ALL and len(own) != each):
+                what = f"does not make part {number} of the run, and that alone"
+                return Fault(f"with R90={number} R91={number} {what}", kind="part")
+            found.append(part)
+            done = begin + len(own)
+    except InputError as error:
+        return Fault(f"with R90 and R91 to choose one part is refused: {error}", kind="part")
+    if not found or done != len(touches):
+        return Fault(f"the {count} parts that R90 and R91 choose do not make the whole program", kind="part")
+    return found
+
+
+def part_faults(text: str, name: str, probe: Probe, seen: Watched, parts: list[Part], setup: Setup) -> Iterator[Fault]:
+    """What is wrong with how parts begin and with what they write."""
+    (file, *_) = [*seen.run.files, ""]
+    lines = [line["point"] for line in touch_lines(seen.run.files.get(file, ""))]
+    for part in parts:
+        number, content = part.number, part.seen.run.files.get(file, "")
+        yield from agreed(part.seen.run, number)
         if content.startswith(_OLD) == (number == 1):
             what = "adds to the file of the last run" if number == 1 else "loses the touches that were made before"
             yield Fault(f"with R90={number} {what}", kind="file")
-        held = f"# {HELD}: {done + 1} to {done + len(own)}"
-        now = touch_lines(content.removeprefix(_OLD))
-        if held not in content or [one.get("point") for one in now] != [
-            one.get("point") for one in lines[done : done + len(own)]
-        ]:
+        now = [line["point"] for line in touch_lines(content.removeprefix(_OLD))]
+        begin = lines.index(now[0]) if now and now[0] in lines else 0
+        held = f"# {HELD}: {begin + 1} to {begin + len(now)}"
+        if held not in content or now != lines[begin : begin + len(now)] or len(now) != len(part.seen.touches):
             yield Fault(f"with R90={number} does not write which touches it makes: {held[2:]}", kind="held")
-        done += len(own)
-    if done != len(touches):
-        yield Fault(f"the {count} parts that R90 and R91 choose do not make the whole program", kind="part")
-    yield from wrong_choices(run, count)
+
+    def run(first: int, last: int) -> Run:
+        return watched(text, name, probe, setup, {90: float(first), 91: float(last)}).run
+
+    yield from wrong_choices(run, parts[-1].number)
 
 
-def _count(alone: Callable[[int, int], Watched], touches: int) -> int:
+def _count(alone: Callable[[int], Watched], touches: int) -> int:
     """How many parts there are: tried one by one, or where all are alike found from the first one."""
-    try:
-        first = len(alone(1, 1).touches)
-        if not first:
-            return 0
-        alike = touches // first
-        if alike > _ALL and touches % first == 0 and not_run(alone(alike + 1, alike + 1).run):
-            return alike
-        return next(k for k in range(1, touches + 1) if not_run(alone(k + 1, k + 1).run))
-    except (InputError, StopIteration):
+    first = len(alone(1).touches)
+    if not first:
         return 0
+    alike = touches // first
+    if alike > _ALL and touches % first == 0 and not_run(alone(alike + 1).run):
+        return alike
+    return next((number for number in range(1, touches + 1) if not_run(alone(number + 1).run)), 0)
 
 
 def _same(one: np.ndarray, other: np.ndarray) -> bool:

@@ -17,7 +17,7 @@ from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Probe, Setup
 from gearmath.machine.judging.faults import Fault
 from gearmath.machine.measuring.collision_check import enough_steps
-from gearmath.machine.measuring.ways import Watched, Way, replayed
+from gearmath.machine.measuring.ways import Watched, Way, acknowledged, replayed
 
 #: Where a way ends that should not have met anything.
 _EARLY = 0.4
@@ -30,22 +30,26 @@ class _GoesOn(Exception):
 
 
 def reaction_faults(
-    text: str, name: str, seen: Watched, setup: Setup, progress: Callable[[int], object] = lambda ways: None
-) -> Iterator[Fault]:
-    """Where the program goes on although it must not; ``progress`` hears of every way that is tried."""
-    touches, lines = set(seen.touches), set[int]()
+    text: str, name: str, seen: Watched, setup: Setup, given: Mapping[int, float], done: set[int],
+    progress: Callable[[int], object] = lambda ways: None,
+) -> Iterator[Fault]:  # fmt: skip
+    """Where the program, with R parameters ``given``, goes on although it must not.
+
+    Every line is tried once, but for those that were ``done`` before; ``progress`` hears of every way that is tried.
+    """
+    touches = set(seen.touches)
     for number, row in enumerate(seen.measuring.tolist()):
         line = int(seen.run.path.line[row])
-        if line in lines:
+        if line in done:
             continue
-        lines.add(line)
-        if _goes_on(text, name, setup, replayed(seen.ways, -1, _missed), number, seen.ways[number].looked):
+        done.add(line)
+        again = replayed(seen.ways, -1, _missed)
+        if _goes_on(text, name, setup, given, again, number, seen.ways[number].looked):
             yield Fault("is reached although the probe is deflected", line, "deflected")
         met, what = (_missed, "nothing is touched") if number in touches else (_early, "something is touched too early")
-        if _goes_on(text, name, setup, replayed(seen.ways, number, met), number + 1, None):
+        if _goes_on(text, name, setup, given, replayed(seen.ways, number, met), number + 1, None):
             yield Fault(f"does not stop the program where {what}", line, "missed")
         progress(1)
-    yield from _waits(text, name, seen, setup)
 
 
 def _early(way: Way) -> np.ndarray:
@@ -56,7 +60,9 @@ def _missed(way: Way) -> None:
     return None
 
 
-def _goes_on(text: str, name: str, setup: Setup, probe: Probe, last: int, deflected: int | None) -> bool:
+def _goes_on(
+    text: str, name: str, setup: Setup, given: Mapping[int, float], probe: Probe, last: int, deflected: int | None
+) -> bool:
     """Whether a program gets to the way of number ``last``, or ends without an alarm.
 
     The probe is ``deflected`` from that look at $A_PROBE on, counted from 1.
@@ -77,7 +83,7 @@ def _goes_on(text: str, name: str, setup: Setup, probe: Probe, last: int, deflec
 
     try:
         run = run_program(
-            text, name, watch, step_limit=enough_steps(text), setup=setup, deflected=is_deflected
+            text, name, watch, acknowledged, given, enough_steps(text), setup, deflected=is_deflected
         )  # fmt: skip
     except _GoesOn:
         return True
@@ -86,7 +92,7 @@ def _goes_on(text: str, name: str, setup: Setup, probe: Probe, last: int, deflec
     return run.alarm is None
 
 
-def _waits(text: str, name: str, seen: Watched, setup: Setup) -> Iterator[Fault]:
+def host_faults(text: str, name: str, seen: Watched, setup: Setup) -> Iterator[Fault]:
     """A host is asked after every touch, and where it does not answer the program waits."""
     asked: list[int] = []
 
@@ -101,13 +107,13 @@ def _waits(text: str, name: str, seen: Watched, setup: Setup) -> Iterator[Fault]
         return {103: parameters.get(101, 0.0)}
 
     def run(host: Callable[[Mapping[int, float]], dict[int, float]]) -> None:
-        probe, given = replayed(seen.ways, -1, _missed), {_HOST: 1.0}
-        run_program(text, name, probe, host, given, enough_steps(text), setup)
+        probe = replayed(seen.ways, -1, _missed)
+        run_program(text, name, probe, host, {_HOST: 1.0}, enough_steps(text), setup)
 
     with contextlib.suppress(_GoesOn):
         run(silent)
     if asked != [1] * _PATIENCE:
-        yield Fault(f"does not wait for a host with R{_HOST}=1", kind="host")
+        yield Fault("does not wait for a host that does not answer", kind="host")
         return
     asked.clear()
     run(answers)

@@ -1,0 +1,291 @@
+"""Probing and calibration programs with one word wrong: each is refused, or seen, or does what the right one does.
+
+What passes the judge is compared with the right program by what it does, run as a control would in states that the
+judge does not choose: parts of the program, a probe that fails somewhere, a control that is set up wrong. Motion must
+be as guarded and as slow, and end where the right one ends, or higher, or nowhere near what there is, by plain
+distances; what is written must be the same within a tenth of a millimetre.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearmath.errors import InputError
+from gearmath.machine.control.executor import run_program
+from gearmath.machine.control.state import Setup
+from gearmath.machine.measuring.artefacts import Artefacts
+from gearmath.machine.measuring.collision_check import approaches
+from gearmath.machine.measuring.judge import judge_calibration, judge_probing
+from gearmath.machine.writing.axis_cycle import axis_program
+from gearmath.machine.writing.calibrating import calibration_program
+from gearmath.machine.writing.probing import probing_program
+from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.calibration import load_calibration
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import bundled
+
+MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
+PROBE = load_calibration(bundled("probe.toml"))
+RING = PROBE.model_copy(update={"sphere": None})
+SET = load_bevel_set(bundled("nasa_tp3096_12x36.toml"))
+RIGHT = Setup.of(MACHINE, PROBE.length)
+#: Lines of touches may differ by this in their positions. [mm, degree]
+ALIKE = 0.1, 0.06
+
+PROGRAMS = {
+    "pitch": lambda: probing_program(SET, "pinion", MACHINE, PROBE, "TT", topography=()),
+    "repeated": lambda: probing_program(SET, "pinion", MACHINE, PROBE, "TT", topography=(), repeat=2),
+    "ring": lambda: calibration_program(MACHINE, RING, "TT"),
+    "tip": lambda: calibration_program(MACHINE, PROBE, "TT"),
+    "axes": lambda: axis_program(MACHINE, PROBE, "TT"),
+}
+
+OPERATORS = {"<>": "==", "==": "<>", ">=": ">", "<=": "<", ">": "<", "<": ">", " AND ": " OR ", " OR ": " AND "}
+
+
+def mutants(line, random):
+    """One numbered line with one thing wrong, in every way but for digits: kind and the lines in its place."""
+    yield "removed block", []
+    yield "doubled block", [line, line]
+    words = line.split(" ")
+    if '"' not in line:
+        for j in range(1, len(words)):
+            yield "removed word", [" ".join(words[:j] + words[j + 1 :])]
+    start = line.index(" ") + 1 if " " in line else len(line)
+    code = re.sub(r'"[^"]*"', lambda text: "#" * len(text[0]), line)  # texts are not code
+    for found in re.finditer(r"<>|==|>=|<=|<<|>|<| AND | OR ", code):
+        if found[0] in OPERATORS:
+            yield "operator", [line[: found.start()] + OPERATORS[found[0]] + line[found.end() :]]
+    for found in re.finditer(r"\bG0\b|\bG1\b", code):
+        other = "G1" if found[0] == "G0" else "G0"
+        yield "G0 for G1", [line[: found.start()] + other + line[found.end() :]]
+    for found in re.finditer(r"\[([XYZAB])\]|(?<![A-Z])([XYZAB])(?==|-?[0-9])", code):
+        at = found.start(1) if found[1] else found.start(2)
+        for letter in random.choice([axis for axis in "XYZAB" if axis != line[at]], 1):
+            yield "axis letter", [line[:at] + letter + line[at + 1 :]]
+    for found in re.finditer(r"[-+](?=[0-9A-Z(])|(?<=[=( XYZAB])(?=[0-9])", code):
+        if found.start() >= start:
+            sign = {"-": "+", "+": "-", "": "-"}[found[0]]
+            yield "sign", [line[: found.start()] + sign + line[found.end() :]]
+    for found in re.finditer(r"[0-9]+", code):
+        if found.start() < start:
+            continue
+        for at in range(found.start(), found.end()):
+            digit = random.choice([d for d in "0123456789" if d != line[at]])
+            yield "digit", [line[:at] + digit + line[at + 1 :]]
+    if (text := re.search(r'"([^"]*)"', line)) and ("WRITE" in line or "T=" in line or "DELETE" in line):
+        at = int(random.integers(text.start(1), max(text.end(1), text.start(1) + 1)))
+        yield "letter of a text", [line[:at] + ("x" if line[at] != "x" else "y") + line[at + 1 :]]
+
+
+def ends(start, end):
+    """A probe that triggers on the ways along a flank, half a millimetre before their ends."""
+    x, y, z, a, b = np.abs(end - start)
+    return end if max(x, y) > 1e-7 and z > 1e-7 and max(a, b) <= 1e-7 else None
+
+
+class Trace:
+    """What a program does: kind, end, feed of its blocks; lines of its file; whether it set an alarm."""
+
+    def __init__(self, text, probe, setup=RIGHT, parameters=None, fails=None, deflected=None, delay=None):
+        self.blocks, self.refused, self.waits = [], False, 0
+        calls = looks = 0
+
+        def touch(start, end):
+            nonlocal calls
+            calls += 1
+            self.commanded = end.copy()
+            met = probe(start, end)
+            if calls == fails:
+                met = None if met is not None else start + 0.3 * (end - start)
+            self.ways.append((start.copy(), end.copy(), met))
+            return met
+
+        def is_deflected(position):
+            nonlocal looks
+            looks += 1
+            return looks == deflected
+
+        def host(given):
+            self.waits += 1
+            return {103: given.get(101, 0.0)} if delay is None or self.waits % delay == 0 else {}
+
+        self.ways = []
+        try:
+            done = run_program(
+                text, "T", touch, host, parameters or {}, setup=setup, deflected=is_deflected,
+                files={"TT_T": "old\n"}, step_limit=200_000,
+            )  # fmt: skip
+        except InputError:
+            self.refused = True
+            return
+        path, n = done.path, 0
+        self.alarm = done.alarm is not None
+        self.lines = [line for text in done.files.values() for line in text.splitlines()]
+        self.halted = [(halt.stop, halt.rows) for halt in path.halts if halt.stop]
+        self.blind = [(one.raised, one.z) for one in path.blind]
+        for k in range(len(path.line)):
+            end = path.axes[k]
+            if path.measuring[k]:
+                end, n = self.ways[n][1], n + 1
+            first = path.axes[k - 1] if k else end
+            way = np.linalg.norm([*(end - first)[:3], *np.degrees(end - first)[3:]])
+            feed = 0.0 if path.rapid[k] or not path.seconds[k] else way / path.seconds[k] * 60.0
+            kind = "M" if path.measuring[k] else "R" if path.rapid[k] else "G"
+            self.blocks.append((kind, first, end, path.axes[k], feed))
+
+
+def differs(one, right, free):
+    """How a trace is worse than the right one, or None."""
+    if one.refused or right.refused:
+        return None if one.refused else "is not refused"
+    if right.alarm and not one.alarm:
+        return "alarm"
+    if one.alarm and not right.alarm:
+        return None  # it stops: seen on the machine, nothing is lost
+    if right.alarm and len(one.blocks) <= len(right.blocks):
+        return None
+    if one.halted[:1] != right.halted[:1] or one.waits < right.waits or one.blind != right.blind:
+        return "stops, waits, blind moves"
+    if [b[0] for b in one.blocks] != [b[0] for b in right.blocks]:
+        kinds = [b for b in one.blocks if np.abs(b[2] - b[1]).max() > 1e-9]
+        if [b[0] for b in kinds] != [b[0] for b in right.blocks if np.abs(b[2] - b[1]).max() > 1e-9]:
+            return "kinds of blocks"
+    for (kind, first, end, real, feed), (_, _, wanted, _, slow) in zip(one.blocks, right.blocks, strict=False):
+        off = end - wanted
+        off[3:] = np.degrees((off[3:] + np.pi) % (2 * np.pi) - np.pi)
+        if feed > slow * 1.002 + 1e-6 and kind != "R":
+            return "feed"
+        near = np.abs(off[:3]).max() <= ALIKE[0] and np.abs(off[3:]).max() <= ALIKE[1]
+        higher = off[2] > 0.0 and np.abs(np.delete(off, 2)).max() < 1e-6
+        if not near and not higher and not free(kind, first, real):
+            return f"position {np.round(off, 3)}"
+    return lines_differ(one.lines, right.lines)
+
+
+def lines_differ(one, right):
+    if len(one) != len(right):
+        return "number of lines"
+    for a, b in zip(one, right, strict=True):
+        cells, wanted = a.split(","), b.split(",")
+        if len(cells) != len(wanted):
+            return "cells"
+        for cell, want in zip(cells, wanted, strict=True):
+            if cell == want:
+                continue
+            try:
+                off = float(cell) - float(want)
+            except ValueError:
+                return f"line {a}"
+            if "." not in want + cell or min(abs(off), abs(abs(off) - 360.0)) > ALIKE[0]:
+                return f"line {a} for {b}"
+    return None
+
+
+class Judged:
+    """One right program, and how a changed one is judged and compared."""
+
+    def __init__(self, name):
+        self.name, self.text = name, PROGRAMS[name]()
+        self.lines = self.text.split("\n")
+        self.member = name in ("pitch", "repeated")
+        self.probe = RING if name == "ring" else PROBE
+        self.scenes = self._scenes(np.random.default_rng(5))
+        self.right = [self.trace(self.text, scene) for scene in self.scenes]
+
+    def _scenes(self, random):
+        whole = Trace(self.text, self._there())
+        ways, parts = len(whole.ways), {"pitch": 26, "repeated": 26, "ring": 2, "tip": 3, "axes": 9}[self.name]
+        first = int(random.integers(1, parts + 1))
+        wrong = [
+            replace(RIGHT, offset=(0, 0, 0.3, 0, 0)), replace(RIGHT, mirrored=(0, 0, 1)), replace(RIGHT, metric=False),
+            replace(RIGHT, turned=(1.0, 0, 0)), replace(RIGHT, scaled=(1, 1, 1.01)),
+            replace(RIGHT, offset=(0.2, 0, 0, 0, 0)), replace(RIGHT, offset=(0, 0, 0, 0, 0.1)),
+            replace(RIGHT, spindle_tool=lambda wanted: "CUTTER"), replace(RIGHT, probe_length=12.0),
+            replace(RIGHT, increments=(1000, 1e9)), replace(RIGHT, increments=(1e9, 1000)),
+            replace(RIGHT, result_file_kB=0.3),
+        ]  # fmt: skip
+        return [
+            {},
+            {"parameters": {90: first, 91: int(random.integers(first, parts + 1))}},
+            {"parameters": {90: parts, 91: 0}},
+            {"parameters": {90: parts + 1}},
+            {"parameters": {104: 1}, "delay": 3},
+            *({"fails": int(k)} for k in random.choice(np.arange(1, ways + 1), 3, replace=False)),
+            *({"deflected": int(k)} for k in random.choice(np.arange(1, ways + 1), 3, replace=False)),
+            *({"setup": one} for one in wrong),
+        ]
+
+    def _there(self):
+        return ends if self.member else Artefacts(MACHINE, self.probe)
+
+    def trace(self, text, scene):
+        return Trace(text, self._there(), **scene)
+
+    def seen(self, text):
+        try:
+            if self.member:
+                return bool(judge_probing(text, "T", SET.pinion, "pinion", MACHINE, PROBE))
+            return bool(judge_calibration(text, "T", MACHINE, self.probe))
+        except InputError:
+            return True
+
+    def harm(self, text, line=0):
+        """What a program that passes does worse; None where it does no harm."""
+        deep = None
+
+        def free(kind, first, end):
+            nonlocal deep
+            if self.member:  # tip, stylus and spindle against the whole member
+                if deep is None:
+                    try:
+                        deep = min(a.distance for a in approaches(text, "T", SET.pinion, "pinion", MACHINE, PROBE,
+                                                                   MACHINE.fixture))  # fmt: skip
+                    except InputError:
+                        return True  # it stops on the nominal member, and gearmath probe says so
+                return deep > 0.0
+            way = first + np.linspace(0, 1, 200)[:, None] * (end - first)
+            return self._clear(way[:-1] if kind == "M" else way)
+
+        for scene, right in zip(self.scenes, self.right, strict=True):
+            if found := differs(self.trace(text, scene), right, free):
+                return found, {k: v for k, v in scene.items() if k != "setup"}
+        return None
+
+    def _clear(self, way):
+        """Whether the tip is out of ring and sphere, by plain distances; nothing is known of the sphere on the work."""
+        tip, r = way[:, :3], self.probe.tip_radius
+        if self.name == "axes":
+            return False
+        sphere, ring = self.probe.sphere, self.probe.ring
+        if sphere and (np.linalg.norm(tip - sphere.center, axis=1) < sphere.diameter / 2 + r - 2e-3).any():
+            return False
+        off = np.linalg.norm(tip[:, :2] - ring.center[:2], axis=1)
+        low = tip[:, 2] - r < ring.face.seat + ring.face.height - 2e-3
+        wall = (off > ring.diameter / 2 - r + 2e-3) & (off < ring.diameter / 2 + ring.face.width + r)
+        return not (low & wall).any()
+
+
+def trial(judged, chosen):
+    """Counts by kind, and those that nobody sees and that do harm."""
+    count, unseen = Counter(), []
+    for kind, line, new in chosen:
+        text = "\n".join([*judged.lines[: line - 1], *new, *judged.lines[line:]])
+        if judged.seen(text):
+            count[kind, "seen"] += 1
+        elif (harm := judged.harm(text)) is None:
+            count[kind, "harmless"] += 1
+        else:
+            unseen.append((kind, harm, f"line {line}: {judged.lines[line - 1]} -> {' | '.join(new)}"))
+    return count, unseen
+
+
+def all_of(judged, random):
+    for number, line in enumerate(judged.lines, 1):
+        if line.startswith("N"):
+            yield from ((kind, number, new) for kind, new in mutants(line, random))
