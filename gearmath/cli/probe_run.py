@@ -84,11 +84,11 @@ def probe(
         pair = load_pair(find(gear_set))
         name, spec = member_of(pair, member, stated_member(text))
         there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
+        count = touch_count(text, str(program), setup)
+        _check_clear(text, program, at_member, milling_machine, shop, 3 * count + text.count("\n"))
         with bar(text.count("MEAS=1"), "block") as progress:
             found = judge_probing(text, str(program), spec, name, milling_machine, known, progress)
         refuse_faults(found, program)
-        count = touch_count(text, str(program), setup)
-        _check_clear(text, program, at_member, milling_machine, shop, 3 * count + text.count("\n"))
     blocks = 3 * count if count is not None else text.count("MEAS=1")
     with bar(blocks, "block") as progress:
         raw = run_touches(text, str(program), there, shop, count, run, progress, setup)

@@ -20,6 +20,7 @@ from gearmath.machine.judging.start_state import start_faults
 from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.guards import guard_faults
 from gearmath.machine.measuring.parts import part_faults, parts_of
+from gearmath.machine.measuring.probe_run import check_ended
 from gearmath.machine.measuring.reactions import host_faults, reaction_faults
 from gearmath.machine.measuring.records import Place, record_faults
 from gearmath.machine.measuring.ways import Way, at_the_ends, watched
@@ -41,7 +42,10 @@ def judge_probing(
     text: str, name: str, member: Member, member_name: str, machine: MillingMachine, calibration: Calibration,
     progress: Callable[[int], object] = lambda ways: None,
 ) -> list[Fault]:  # fmt: skip
-    """Faults of a program that probes a member. Raises InputError for a text that cannot be run."""
+    """Faults of a program that probes a member. Raises InputError for a text that cannot be run.
+
+    Raises ComputationError where it sets an alarm.
+    """
     tip = calibration.length + calibration.tip_radius - calibration.offset[2]
     clear = clear_height(room_of(member, machine, machine.fixture), machine, tip)
     place = _on_flanks(member, member_name, machine, calibration)
@@ -52,7 +56,10 @@ def judge_calibration(
     text: str, name: str, machine: MillingMachine, calibration: Calibration,
     progress: Callable[[int], object] = lambda ways: None,
 ) -> list[Fault]:  # fmt: skip
-    """Faults of a program that touches ring and spheres. Raises InputError for a text that cannot be run."""
+    """Faults of a program that touches ring and spheres. Raises InputError for a text that cannot be run.
+
+    Raises ComputationError where it sets an alarm.
+    """
     there, free = Artefacts(machine, calibration), machine.home
     if calibration.work_sphere is not None and WORK_SPHERE in text:
         sphere = calibration.work_sphere
@@ -68,10 +75,7 @@ def _judged(
 ) -> list[Fault]:  # fmt: skip
     setup = Setup.of(machine, calibration.length)
     seen = watched(text, name, probe, setup)
-    if seen.run.alarm is not None:
-        number, line = seen.run.alarm
-        why = f" ({seen.run.messages[-1]})" if seen.run.messages else ""
-        return [Fault(f"sets alarm {number} on a right work{why}", line)]
+    check_ended(seen.run, name)
     size = max((len(content) for content in seen.run.files.values()), default=0) / 1000
     found = [*outside_faults(parsed(text, name)), *guard_faults(seen, machine, clear, free)]
     found += [*record_faults(text, seen, place), *start_faults(text, machine, calibration.length, size)]

@@ -13,6 +13,8 @@ from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS, planned_touch
 #: A and B may be off by whole turns; positions are written with nine decimals. [mm, degree]
 _SAME = 1e-6
 _AXES = "XYZAB"
+#: Lines before the touches of a whole run: its plan and the columns.
+_HEAD = 2
 
 #: What is wrong with the place that a line names, by its cells and the way of the touch; nothing where it is right.
 Place = Callable[[dict[str, str], Way], str]
@@ -42,6 +44,8 @@ def record_faults(text: str, seen: Watched, place: Place) -> Iterator[Fault]:
         planned = planned_touches(text)
         yield Fault(f"plans {planned} touches, makes {len(touches)} and writes {len(lines)}", kind="count")
         return
+    if len(files[0].splitlines()) != len(lines) + _HEAD:
+        yield Fault("writes more or less into its file than plan, columns and touches", kind="head")
     for number, (cells, k) in enumerate(zip(lines, touches, strict=True), 1):
         line = int(seen.run.path.line[seen.measuring[k]])
         if (cells.get("run"), cells.get("point"), cells.get("triggered")) != ("1", str(number), "1"):
