@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from gearmath.machine.judging.faults import Fault
@@ -20,8 +21,7 @@ def header_faults(text: str, member: Member, name: str, machine: MillingMachine)
                 break
             continue
         said = " ".join(line[1:].split())
-        about, colon, _ = said.partition(":")
-        known = wanted.get(about + colon)
+        known = wanted.get(_about(said))
         if known is not None and said != (known := " ".join(known.split())):
             one, other = _differing(said, known)
             yield Fault(f"says '{one}', the files of set and machine have '{other}'", number, "head")
@@ -34,10 +34,14 @@ def _differing(said: str, known: str) -> tuple[str, str]:
 
 
 def _statements(member: Member, name: str, machine: MillingMachine) -> Iterator[tuple[str, str]]:
-    """What a line begins with, up to its colon, and the whole of it."""
+    """What a line begins with, and the whole of it."""
     notes = [member_note(member, name), z_note(machine), *work_notes(BlankSizes.of(member, machine), machine)]
     for cut in Cut.of(member, name):
         notes += [f"tool {cut.tool}, {flank}: {blade_words(member.flank(flank))}" for flank in cut.flanks]
     for note in notes:
-        about, colon, _ = note.partition(":")
-        yield about + colon, note
+        yield _about(note), note
+
+
+def _about(note: str) -> str:
+    """What a note begins with: all before its colon or its first figure."""
+    return re.split("[:0-9]", note)[0]

@@ -137,7 +137,8 @@ def hobbing_pass(
     """The whole cut: from ``lift`` [mm] above the start of the roll down, through the roll, to a standstill.
 
     ``feed`` [mm/min] is the highest speed of the roll past ``tooth`` (3,), a place of the work as the indexing has
-    turned it when the blade meets it; ``rpm`` is the speed of the cutter; both give way to the axes. Raises InputError for a machine without C, and for tolerance, feed or speed out of range.
+    turned it when the blade meets it; ``rpm`` is the speed of the cutter; both give way to the axes. Raises InputError
+    for a machine without C, and for tolerance, feed or speed out of range.
     """
     _check(name, machine, tolerance, feed, rpm)
     drive, spec, limits = _Drive.of(member, machine), member.flank(cut.flanks[0]), machine.limits(6)

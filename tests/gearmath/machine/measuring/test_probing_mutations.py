@@ -13,13 +13,15 @@ from collections import Counter
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from gearmath.errors import InputError
+from gearmath.errors import ComputationError, InputError
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Setup
 from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.collision_check import approaches
 from gearmath.machine.measuring.judge import judge_calibration, judge_probing
+from gearmath.machine.measuring.probe_run import run_touches
 from gearmath.machine.writing.axis_cycle import axis_program
 from gearmath.machine.writing.calibrating import calibration_program
 from gearmath.machine.writing.probing import probing_program
@@ -235,7 +237,7 @@ class Judged:
             if self.member:
                 return bool(judge_probing(text, "T", SET.pinion, "pinion", MACHINE, PROBE))
             return bool(judge_calibration(text, "T", MACHINE, self.probe))
-        except InputError:
+        except (InputError, ComputationError):
             return True
 
     def harm(self, text, line=0):
@@ -292,3 +294,99 @@ def all_of(judged, random):
     for number, line in enumerate(judged.lines, 1):
         if line.startswith("N"):
             yield from ((kind, number, new) for kind, new in mutants(line, random))
+
+
+#: Mutants in CI of each program; the others were tried once, as CHANGELOG and commit message count.
+SAMPLED = {"pitch": 25, "ring": 40}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SAMPLED)
+def test_no_wrong_word_of_a_probing_program_is_left_unseen(name):
+    judged, random = Judged(name), np.random.default_rng(11)
+    assert not judged.seen(judged.text)
+    found = list(all_of(judged, random))
+    chosen = [found[k] for k in np.sort(random.choice(len(found), SAMPLED[name], replace=False))]
+    count, unseen = trial(judged, chosen)
+    kinds = sorted({kind for kind, _ in count})
+    print(f"\n{name}: {len(chosen)} of {len(found)} mutants, {len(unseen)} unseen; refused or seen + harmless:")
+    print("; ".join(f"{kind} {count[kind, 'seen']} + {count[kind, 'harmless']}" for kind in kinds))
+    assert unseen == []
+    assert sum(count[kind, "seen"] for kind in kinds) > len(chosen) / 3
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_right_program_has_no_faults_and_does_no_harm(name):
+    if name == "axes":  # of the work sphere the dense check knows nothing
+        assert judge_calibration(PROGRAMS[name](), "T", MACHINE, PROBE) == []
+        return
+    judged = Judged(name)
+    assert not judged.seen(judged.text)
+    assert judged.harm(judged.text) is None
+
+
+def faults(text):
+    try:
+        return [str(one) for one in judge_probing(text, "T", SET.pinion, "pinion", MACHINE, PROBE)]
+    except (InputError, ComputationError) as error:
+        return [str(error)]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "wrong", "sentence"),
+    [
+        (r"F100\.000", "F900.000", r"line \d+ touches at 900 mm/min, at most 100 are allowed"),
+        (r"(Z=UWAY\[UPLACE,2\] .*) F800\.000", r"\1 F2500.000", r"moves the probe at 2500 mm/min, at most 800 are"),
+        (r"F3000\.000", "F8000.000", r"moves the probe at \d+ mm/min, at most 3000 are allowed"),
+        (r"FGREF\[A\]=57\.29578", "FGREF[A]=5.729578", r"moves the probe at \d+ mm/min, at most 3000 are allowed"),
+        (r"MEAS=1 G1 X=UWAY\[UPLACE,0\]", "G1 X=UWAY[UPLACE,0]", r"line \d+ moves without MEAS where the probe could"),
+        (
+            r"G1 (X=UWAY\[UPLACE,0\] Y=UWAY\[UPLACE,1\] Z\S+) F800",
+            r"G0 \1 F800",
+            r"line \d+ moves in rapid where the pro",
+        ),
+        (r"IF \$A_PROBE\[1\]<>0\n(?:.*\n)*?.*ENDIF\n(?=MEAS)", "", r"line \d+ measures without a look at \$A_PROBE"),
+        (r"IF \$A_PROBE\[1\]<>0(\n(?:.*\n)*?.*ENDIF\nMEAS)", r"IF $A_PROBE[1]<>1\1", r"sets alarm|ends with alarm"),
+        (r"(SETAL\(65001\)\n)M30\n", r"\1", r"line \d+ does not stop the program where nothing is touched"),
+        (r"(SETAL\(65002\)\n)M30\n", r"\1", r"line \d+ does not stop the program where something is touched too early"),
+        (r"IF R205==0", "IF R205==2", r"line \d+ does not stop the program where nothing is touched"),
+        (r"R200=\$AA_MM\[X\]", "R200=$AA_MM[Y]", r"is not written with the position at which the probe met it"),
+        (r'<<R200<<","<<R201', '<<R201<<","<<R200', r"is not written with the position at which the probe met it"),
+        (r"pinion,concave", "pinion,convex", r"is written as touch \d+: it lies \d"),
+        (r"pinion,concave", "gear,concave", r"is written as touch \d+: there is no such place"),
+        (r"UPOINT>=UFROM", "UPOINT>UFROM", r"plans 26 touches, makes 25 and writes 25"),
+        (r"UPOINT<=UTO", "UPOINT<=UTO+1", r"with R90=1 R91=1 does not make part 1 of the run, and that alone"),
+        (r"R101=\(UFROM-1\)\*1", "R101=UFROM*1", r"with R90=2 does not write which touches it makes: points: 2 to 2"),
+        (r"IF UFROM==1", "IF UFROM>=1", r"with R90=2 loses the touches that were made before"),
+        (r"IF UFROM==1", "IF UFROM==2", r"with R90=1 adds to the file of the last run"),
+        (r"M0\n", "", r"with R90=1 moves before it has waited at M0 for the operator"),
+        (r"WHILE R103<>R101", "WHILE R103>R101", r"does not wait for a host that does not answer"),
+        (r"IF R104==1", "IF R104==2", r"does not wait for a host that does not answer"),
+        (r"IF R104==1", "IF R50==1", r"reads R50 before it sets it"),
+        (r"POINTS:\n", "POINTS:\nIF $AA_IM[X]>10\nG4 F1\nENDIF\n", r"goes on in one way or another by \$AA_IM\[X\]"),
+        (
+            r"IF \$MN_LEN_PROTOCOL_FILE<4",
+            "IF $MN_LEN_PROTOCOL_FILE<0",
+            r"where the control allows no result file that is lo",
+        ),
+        (r'T="PROBE"', 'T="PROBF"', r'moves the tool "PROBF", the probe is "PROBE"|alarm 65013'),
+        (r"G0 SUPA Z900\.00000\n(?=D1)", "", r"moves before Z has gone up to \d+\.\d mm|Z"),
+        (r"26 touches", "27 touches", r"plans 27 touches, makes 26 and writes 26"),
+    ],
+)
+def test_what_a_probing_program_must_not_do_is_said(pattern, wrong, sentence):
+    plain = re.sub(r"(?m)^N\d+ ", "", PROGRAMS["pitch"]())
+    changed, found = re.subn(pattern, wrong, plain, flags=re.MULTILINE)
+    assert found
+    said = faults(changed)
+    assert any(re.search(sentence, one) for one in said), said
+
+
+def test_probe_that_stays_at_the_flank_stays_deflected():
+    """Without the way back after a touch the next look at the probe stops the program."""
+    text = PROGRAMS["ring"]()
+    back = re.sub(r"(?m)^(N\d+ G1 X=R10 Y=R11) F.*$", "", text)
+    there = Artefacts(MACHINE, RING)
+    assert len(run_touches(text, "T", there).splitlines()) == 12
+    with pytest.raises(ComputationError, match=r"alarm 65000 \(the probe is deflected before it is moved\), after 1 "):
+        run_touches(back, "T", there)

@@ -717,3 +717,4 @@ def test_place_of_the_tooth_that_the_feed_counts_at_is_on_the_blade_when_it_is_m
     (seen,) = kernel("seen_from_tool")(axes, tooth_in_roll(spec, cut), vertical.pivot_height, vertical.pivot)
     radius = flank.blade_point_radius + SIDES[cut.flanks[0]] * u * math.tan(math.radians(flank.blade_pressure_angle))
     assert float(np.hypot(*seen[0, :2])) == pytest.approx(radius, abs=0.5)
+    assert float(seen[0, 2]) == pytest.approx(u, abs=1e-9)  # the height over the tips at which it is met
