@@ -17,6 +17,7 @@ from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Probe, Setup
 from gearmath.machine.judging.faults import Fault
 from gearmath.machine.measuring.collision_check import enough_steps
+from gearmath.machine.measuring.records import touch_lines
 from gearmath.machine.measuring.ways import Watched, Way, acknowledged, replayed
 
 #: Where a way ends that should not have met anything.
@@ -43,11 +44,11 @@ def reaction_faults(
         if line in done:
             continue
         done.add(line)
-        again = replayed(seen.ways, -1, _missed)
-        if _goes_on(text, name, setup, given, again, number, seen.ways[number].looked):
+        again, before = replayed(seen.ways, -1, _missed), sum(k < number for k in touches)
+        if _goes_on(text, name, setup, given, again, number, seen.ways[number].looked, before):
             yield Fault("is reached although the probe is deflected", line, "deflected")
         met, what = (_missed, "nothing is touched") if number in touches else (_early, "something is touched too early")
-        if _goes_on(text, name, setup, given, replayed(seen.ways, number, met), number + 1, None):
+        if _goes_on(text, name, setup, given, replayed(seen.ways, number, met), number + 1, None, before):
             yield Fault(f"does not stop the program where {what}", line, "missed")
         progress(1)
 
@@ -61,9 +62,10 @@ def _missed(way: Way) -> None:
 
 
 def _goes_on(
-    text: str, name: str, setup: Setup, given: Mapping[int, float], probe: Probe, last: int, deflected: int | None
-) -> bool:
-    """Whether a program gets to the way of number ``last``, or ends without an alarm.
+    text: str, name: str, setup: Setup, given: Mapping[int, float], probe: Probe, last: int, deflected: int | None,
+    written: int,
+) -> bool:  # fmt: skip
+    """Whether a program gets to the way of number ``last``, writes more touches than ``written``, or sets no alarm.
 
     The probe is ``deflected`` from that look at $A_PROBE on, counted from 1.
     """
@@ -89,7 +91,7 @@ def _goes_on(
         return True
     except InputError:  # the control stops it
         return False
-    return run.alarm is None
+    return run.alarm is None or sum(len(touch_lines(content)) for content in run.files.values()) > written
 
 
 def host_faults(text: str, name: str, seen: Watched, setup: Setup) -> Iterator[Fault]:
