@@ -199,6 +199,22 @@ class Dense:
         found[pose, point] = (radius < r + slope * height) & (radius > hole - inner * height)
         return found
 
+    def within_reach(self, poses, tool, points):
+        """The points (p,3) that the blades can get to: in the middle they are no farther from them than they come.
+
+        A pose moves a point, as the cutter sees it, by no more than X Y Z and its distance from the axes times A and B.
+        """
+        middle = poses[len(poses) // 2]
+        off = np.abs(poses - middle).max(axis=0)
+        comes = off[:3].sum() + off[3:].sum() * float(np.linalg.norm(points, axis=1).max())
+        (centre,), (axis,) = self.witness.vertical_pose(middle[None], self.height)
+        away = points - centre
+        height = -(away @ axis)
+        radius = np.sqrt(np.maximum((away**2).sum(axis=1) - height**2, 0.0))
+        (r, slope), (hole, inner) = self.blades(tool)
+        gap = np.maximum.reduce([-height, radius - r - slope * height, hole - inner * height - radius])
+        return points[gap <= comes * (1.0 + max(slope, inner))]
+
     def harm(self, rows, first, behind, machine=True):
         """The harm done by ``rows`` in the place of the right ones from ``first`` up to ``behind``, or None: to the
         part alone unless ``machine``."""
@@ -281,7 +297,8 @@ class Dense:
                 continue
             steps = int(np.clip(way / 0.04, 9, 400))
             poses = ends[0] + np.linspace(0, 1, steps)[:, None] * (ends[1] - ends[0]) - turn
-            if self.inside(poses, tool, self.under[tool]).any():
+            some = self.within_reach(poses, tool, self.under[tool])
+            if len(some) and self.inside(poses, tool, some).any():
                 return "gouge"
         return None if standing else self.left(new, first, behind)
 
