@@ -98,13 +98,20 @@ def host_faults(text: str, name: str, seen: Watched, setup: Setup) -> Iterator[F
     """A host is asked after every touch, and where it does not answer the program waits."""
     asked: list[int] = []
 
+    def waits(parameters: Mapping[int, float]) -> bool:
+        return parameters.get(101, 0.0) != parameters.get(103, 0.0)
+
     def silent(parameters: Mapping[int, float]) -> dict[int, float]:
+        if not waits(parameters):  # a dwell of another kind
+            return {}
         if len(asked) == _PATIENCE:
             raise _GoesOn
         asked.append(int(parameters.get(101, 0.0)))
         return {}
 
     def answers(parameters: Mapping[int, float]) -> dict[int, float]:
+        if not waits(parameters):
+            return {}
         asked.append(int(parameters.get(101, 0.0)))
         return {103: parameters.get(101, 0.0)}
 

@@ -275,6 +275,35 @@ def test_comments_that_say_nothing_wrong_are_no_faults(text, judged):
     assert judged(re.sub(r"(?m)^; tool .*\n", "", changed)) == []
 
 
+@pytest.mark.parametrize(
+    ("pattern", "wanted"),
+    [
+        (r"^N\d+ (?=G93)", ""),  # no block numbers
+        (r"G93 G1 X(\S+) Y(\S+)", r"G93 G1 Y\2 X\1"),
+        (r"\bG1\b", "G01"),
+        (r"A=DC\((\S+)\)", r"A = DC( \1 )"),
+        (r"^(N\d+ STOPRE)$", r"\1\nSTOPRE"),
+        (r"^(N\d+ M8)$", r"\1\nM8"),
+        (r"^(N\d+ M8)$", r"\1\nG4 F2"),
+        (r"^(N\d+ G94 G0 Z\S+ F\S+)$", r"\1\nM0"),  # the cutter is out of the work
+        (r"^(N\d+ G94 G0 Z\S+ F\S+)$", r"\1\nG4 F1"),
+        (r"^(N\d+ G94 G0 Z\S+ F\S+)$", r'\1\nMSG("space done")'),
+        (r"^(N\d+ TRAFOOF)$", r"R7=3\n\1"),
+        (r"^(N\d+ TRAFOOF)$", r"\1\nTRAFOOF"),
+        (r"SECTION_1:", "ERSTE_LUECKE:"),
+        (r"F200\.000", "F150."),
+        (r"^(N\d+ G93 G1 .*) F(\d\d+\.\d+)$", r"\1 F9.9"),  # slower, all of them
+        (r"^; flank tolerance: 5 um", "; flank tolerance: 9 um"),
+        (r"^; R90", ";r90"),
+        (r"MSG\(", "msg("),
+        (r"^(N\d+ M30)$", "\n; the end\n\\1"),
+        (r"IF \(R90<=1\) AND", "IF (1>=R90) AND"),
+    ],
+)
+def test_what_does_no_harm_is_no_fault(text, judged, pattern, wanted):
+    assert judged(bent(text, pattern, wanted, count=0)) == []
+
+
 def test_dynamics_are_those_of_the_machine_file(text, judged):
     assert any("cuts with FFWOF, the machine file has FFWON" in one for one in judged(text.replace("FFWON", "FFWOF")))
     assert any("cuts with BRISK, the machine file has SOFT" in one for one in judged(text.replace("SOFT", "BRISK")))

@@ -390,6 +390,28 @@ def test_what_a_probing_program_must_not_do_is_said(pattern, wrong, sentence):
     assert any(re.search(sentence, one) for one in said), said
 
 
+@pytest.mark.parametrize(
+    ("pattern", "wanted"),
+    [
+        (r"F100\.000", "F80."),
+        (r"F3000\.000", "F2500"),
+        (r"^POINTS:$", "TEETH:"),
+        (r"^STOPRE$", "STOPRE\nSTOPRE"),
+        (r"^(SPOS=0)$", r"\1\nSPOS=0"),
+        (r"^(SPOS=0)$", r"\1\nG4 F1"),
+        (r"^(R101=R101\+1)$", r"\1\nR77=R101"),
+        (r"^(R101=R101\+1)$", r'\1\nMSG("touched")'),
+        (r"^(G0 Z\S+\nIF R205==0)", r"G4 F0.2\n\1"),
+        (r"IF R205==0", "IF R205<>1"),
+    ],
+)
+def test_what_does_no_harm_is_no_fault(pattern, wanted):
+    plain = re.sub(r"(?m)^N\d+ ", "", PROGRAMS["pitch"]())
+    changed, found = re.subn(pattern, wanted, plain, flags=re.MULTILINE)
+    assert found
+    assert faults(changed) == []
+
+
 def test_probe_that_stays_at_the_flank_stays_deflected():
     """Without the way back after a touch the next look at the probe stops the program."""
     text = PROGRAMS["ring"]()
