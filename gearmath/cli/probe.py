@@ -26,6 +26,7 @@ from gearmath.cli.common import (
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
+    from gearmath.machine.judging.faults import Fault
     from gearmath.machine.measuring.collision_check import Approach
     from gearmath.quality.calibration.axes import AxisCalibration
     from gearmath.quality.calibration.tip import Fit, Tip
@@ -71,6 +72,7 @@ def probe(
     from gearmath.files import write_text
     from gearmath.machine.bodies.profiles import obstacles
     from gearmath.machine.measuring.collision_check import approaches
+    from gearmath.machine.measuring.judge import judge_probing
     from gearmath.machine.planning.targets import teeth_around
     from gearmath.machine.writing.probing import probing_program
     from gearmath.machine.writing.words import block_count
@@ -95,6 +97,8 @@ def probe(
             progress,
         )  # fmt: skip
     clear = clearances(found, target, "the program is not written")
+    judged = judge_probing(text, str(target), spec, member, milling_machine, known)
+    refuse_faults(judged, target, "the program is not written")
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import ProbingJob, probing_sheet
@@ -125,6 +129,12 @@ def clearances(found: list[Approach], program: Path, end: str) -> str:
     return f"least clearance: {', '.join(parts)}"
 
 
+def refuse_faults(found: list[Fault], program: Path, end: str = "it is not run") -> None:
+    """Raise InputError where a program has faults."""
+    if found:
+        raise InputError(f"{program}: {'; '.join(map(str, found))}: {end}")
+
+
 @click.command("calibrate")
 @MACHINE
 @CALIBRATION
@@ -139,6 +149,7 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
     'gearmath probe' runs it on the machine model, 'gearmath calibrate' reads its touches.
     """
     from gearmath.files import write_text
+    from gearmath.machine.measuring.judge import judge_calibration
     from gearmath.machine.writing.axis_cycle import axis_program
     from gearmath.machine.writing.calibrating import calibration_program
     from gearmath.machine.writing.words import block_count
@@ -149,8 +160,11 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
 
     source = find(calibration)
     make = axis_program if cycle == "axes" else calibration_program
+    at, known = load_milling_machine(find(machine)), load_calibration(source)
     with about(source):
-        text = make(load_milling_machine(find(machine)), load_calibration(source), target.stem)
+        text = make(at, known, target.stem)
+    with bar(text.count("MEAS=1"), "block") as progress:
+        refuse_faults(judge_calibration(text, str(target), at, known, progress), target, "the program is not written")
     write_text(target, text)
     click.echo(f"{target}: {planned_touches(text)} touches, {block_count(text)} blocks")
 

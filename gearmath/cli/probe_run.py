@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gearmath.cli.common import MACHINE, MEMBER, about, bar, member_of, output
-from gearmath.cli.probe import CALIBRATION, clearances
+from gearmath.cli.probe import CALIBRATION, clearances, refuse_faults
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ def probe(
     from gearmath.machine.control.text import program_text
     from gearmath.machine.judging.stated import stated_member
     from gearmath.machine.measuring.artefacts import Artefacts
+    from gearmath.machine.measuring.judge import judge_calibration, judge_probing
     from gearmath.machine.measuring.probe_run import run_touches, touch_count, touches_artefacts
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
@@ -75,6 +76,8 @@ def probe(
         if measured is not None:
             raise InputError(f"--measured {measured}: {program} touches ring and spheres, not a member")
         count, there = None, Artefacts(milling_machine, known)
+        with bar(text.count("MEAS=1"), "block") as progress:
+            refuse_faults(judge_calibration(text, str(program), milling_machine, known, progress), program)
     else:
         if gear_set is None:
             raise InputError(f"--set is missing: {program} probes a member")
@@ -83,6 +86,9 @@ def probe(
         there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
         count = touch_count(text, str(program), setup)
         _check_clear(text, program, at_member, milling_machine, shop, 3 * count + text.count("\n"))
+        with bar(text.count("MEAS=1"), "block") as progress:
+            found = judge_probing(text, str(program), spec, name, milling_machine, known, progress)
+        refuse_faults(found, program)
     blocks = 3 * count if count is not None else text.count("MEAS=1")
     with bar(blocks, "block") as progress:
         raw = run_touches(text, str(program), there, shop, count, run, progress, setup)

@@ -33,12 +33,13 @@ _HEAD = """\
 #include <string.h>
 #define LANES {lanes}
 typedef double V __attribute__((vector_size(8 * LANES)));
+typedef long long I __attribute__((vector_size(8 * LANES)));
 #define EACH for (int l = 0; l < LANES; l++)
 #define LIBRARY(name) static inline V v_##name(V x) {{ V y; EACH y[l] = name(x[l]); return y; }}
 #define LIBRARY_2(name) static inline V v_##name(V x, V z) {{ V y; EACH y[l] = name(x[l], z[l]); return y; }}
 #define SCALAR(name, expression) static inline double s_##name(double x) {{ return expression; }}
 #define COMPARE(name, sign) \\
-    static inline V v_##name(V x, V z) {{ V y; EACH y[l] = x[l] sign z[l]; return y; }} \\
+    static inline V v_##name(V x, V z) {{ return (V)((I)(x sign z) & (I)v_all(1.)); }} \\
     static inline double s_##name(double x, double z) {{ return x sign z; }}
 #ifdef __GLIBC__ /* its sincos gives the bits of its sin and cos in less time than both */
 #define SINE_AND_COSINE(x, s, c) sincos(x, &s, &c)
@@ -55,6 +56,25 @@ static inline double not_of(double x) {{ return !x; }}
 static inline double and_of(double x, double z) {{ return x && z; }}
 static inline double or_of(double x, double z) {{ return x || z; }}
 static inline double if_else_zero(double x, double z) {{ return x ? z : 0; }}
+/* the same of all lanes at once, without a branch: masks of ones and zeros, as comparisons make them */
+#define TRUE_OF(x) ((I)((x) != v_all(0.)))
+#define EITHER(mask, x, z) ((V)(((mask) & (I)(x)) | (~(mask) & (I)(z))))
+static inline V v_not_of(V x) {{ return (V)(~TRUE_OF(x) & (I)v_all(1.)); }}
+static inline V v_and_of(V x, V z) {{ return (V)(TRUE_OF(x) & TRUE_OF(z) & (I)v_all(1.)); }}
+static inline V v_or_of(V x, V z) {{ return (V)((TRUE_OF(x) | TRUE_OF(z)) & (I)v_all(1.)); }}
+static inline V v_if_else_zero(V x, V z) {{ return (V)(TRUE_OF(x) & (I)z); }}
+static inline V v_fabs(V x) {{ return (V)((I)x & ~(I)v_all(-0.)); }}
+static inline V v_sign_of(V x)
+{{
+    return EITHER((I)(x < v_all(0.)), v_all(-1.), EITHER((I)(x > v_all(0.)), v_all(1.), x));
+}}
+#if defined(__x86_64__) && defined(__GLIBC__) /* of two zeros its fmin and fmax take the first */
+static inline V v_fmin(V x, V z) {{ return EITHER((I)(x <= z) | (I)(z != z), x, z); }}
+static inline V v_fmax(V x, V z) {{ return EITHER((I)(x >= z) | (I)(z != z), x, z); }}
+#else
+LIBRARY_2(fmin)
+LIBRARY_2(fmax)
+#endif
 """
 
 
@@ -89,8 +109,8 @@ def vector_c(function: ca.Function, many: Sequence[bool]) -> str:
     return "\n".join(
         (
             _HEAD.format(lanes=LANES),
-            *(f"LIBRARY({name})" for name in (*_LIBRARY, "sign_of", "not_of")),
-            *(f"LIBRARY_2({name})" for name in (*_LIBRARY_2, "and_of", "or_of", "if_else_zero")),
+            *(f"LIBRARY({name})" for name in _LIBRARY if name != "fabs"),
+            *(f"LIBRARY_2({name})" for name in _LIBRARY_2 if name not in ("fmin", "fmax")),
             *(f"COMPARE({name}, {sign})" for name, sign in _COMPARISONS.items()),
             *(part.text for part in body.parts.values()),
             _loop(inputs, outputs, many, body.before, body.lines),

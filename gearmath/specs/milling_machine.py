@@ -112,6 +112,15 @@ class MillingMachine(Spec):
     fixture: Fixture = Fixture()
 
     @model_validator(mode="after")
+    def _one_sided_is_for_the_probe(self) -> MillingMachine:
+        if self.axes.C is not None and self.axes.C.one_sided_approach:
+            raise ValueError(
+                f"axes.C.one_sided_approach {self.axes.C.one_sided_approach:g} must be left out: it is for A, which "
+                "turns the work to the probe; C turns the cutter, and stands still where the probe is moved"
+            )
+        return self
+
+    @model_validator(mode="after")
     def _tool_over_the_table(self) -> MillingMachine:
         low, high = self.axes.Z.travel
         if self.pivot_height >= high:

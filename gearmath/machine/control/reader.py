@@ -10,76 +10,22 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from typing import NoReturn
 
-from gearmath.machine.control.expression import (
-    AXES,
-    CUTTER_AXIS,
-    DECIMALS,
-    FUNCTIONS,
-    NUMBER,
-    Constant,
-    Node,
-    Scanner,
-    shown,
-)
+from gearmath.machine.control.expression import AXES, Constant, Node, shown
 from gearmath.machine.control.refused import instead
 from gearmath.machine.control.structure import Keyword, structured
 from gearmath.machine.control.text import check_file_name, check_program_name, divided
-from gearmath.machine.control.tree import Assignment, Block, Command, Definition, Program, Statement, Word
+from gearmath.machine.control.tree import Block, Command, Definition, Program, Statement, Word
+from gearmath.machine.control.vocabulary import COMMANDS, RESERVED, STRUCTURE, TYPES
+from gearmath.machine.control.words import TARGET, WordScanner
 
-#: The codes that are understood, by group. One code of a group at a time, in a block and in force.
-GROUP_OF_CODE = {
-    code: group
-    for group, codes in {
-        "motion": "G0 G1",
-        "dwell": "G4",
-        "plane": "G17",
-        "radius compensation": "G40",
-        "work offset": "G54 G55 G56 G57",
-        "frame suppression": "G53 G153 SUPA",
-        "dimensioning": "G90",
-        "units": "G710",
-        "feed mode": "G93 G94",
-        "stop mode": "G60 G64 G641 G642",
-        "acceleration": "BRISK SOFT",
-        "feed forward": "FFWON FFWOF",
-        "compressor": "COMPCAD COMPOF",
-        "transformation": "TRAFOOF",
-        "diameter programming": "DIAMOF",
-        "buffer": "FIFOCTRL",
-        "spindle": "M3 M4 M5",
-        "tool change": "M6",
-        "coolant": "M8 M9",
-        "program stop": "M0",
-        "program end": "M2 M17 M30 RET",
-    }.items()
-    for code in codes.split()
-}
-_COMMANDS = {"STOPRE", "MSG", "SETAL", "WRITE", "DELETE", "TRANS", "FGROUP", "SPCON", "SPCOF"}
-_TYPES = ("INT", "REAL")
-_BLANK = r"(?=[ \t]|$)"
 _SKIP = re.compile(r"/[0-9]?(?![0-9])")
 _NUMBERED = re.compile(r"[N:]([0-9]+)(?![0-9.=_])")
 _LABEL = re.compile(r"([A-Z_]{2}[A-Z0-9_]*):(?!=)")
-_CODE = re.compile(rf"[GM]0{{0,2}}([0-9]{{1,3}})(?=[ \tA-Z]|$)|[A-Z]{{3,8}}{_BLANK}")
-_CONSTANT = re.compile(rf"([A-Z])[ \t]*([+-]?)({NUMBER})(?=[ \tA-Z]|$)")
-_TOOL = re.compile(r'T[ \t]*=[ \t]*"([A-Za-z0-9_]{1,31})"(?=[ \tA-Z]|$)')
-_ADDRESS = re.compile(rf"([{AXES}{CUTTER_AXIS}FSD]|SPOS|MEAS|ADIS|ADISPOS|CTOL|OTOL|OVR|OVRRAP)[ \t]*=(?!=)[ \t]*")
-_WAY = re.compile(r"(DC|IC|AC|ACP|ACN)\(")
-_GROUP_RADIUS = re.compile(rf"(FGREF|ACC)\[([{AXES}])\][ \t]*=[ \t]*")
 _WORD = re.compile(r"[A-Z]+(?![A-Z0-9_.])")
 _NAME = re.compile(r"[A-Z_]{2}[A-Z0-9_]*")
 _ANY_NAME = re.compile(r"[A-Z0-9_]+")
 _PARAMETERS = re.compile(r"\([A-Z \t,\[\]0-9]*\)")
-_TARGET = re.compile(r"R[0-9]+(?=[ \t]*=[^=])|(?:R(?=\[)|[A-Z_][A-Z0-9_]+)(?=\[|[ \t]*=[^=])")
-_STRUCTURE = ("IF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "FOR", "ENDFOR")
-_LETTERS = frozenset(f"{AXES}{CUTTER_AXIS}FSD")
-_ADDRESSES = ("SPOS", "MEAS", "ADIS", "ADISPOS", "FGREF", "CTOL", "OTOL", "OVR", "OVRRAP", "ACC")
-_RESERVED = frozenset((
-    *GROUP_OF_CODE, *_COMMANDS, *_TYPES, *_STRUCTURE, *_ADDRESSES, *FUNCTIONS,
-    "DEF", "TO", "PROC", "EXTERN", "DIV", "MOD", "AND", "OR", "XOR", "NOT", "DC", "IC", "AC", "ACP", "ACN",
-))  # fmt: skip
 #: Characters of the text of MSG, two lines of the display [unconfirmed].
 _LONGEST_MESSAGE = 124
 _LARGEST_BLOCK_NUMBER = 99_999_999
@@ -111,7 +57,7 @@ def read_program(text: str, name: str) -> Program:
     return Program(name, body, comments, lines)
 
 
-class _AtLine(Scanner):
+class _AtLine(WordScanner):
     """One line of the program."""
 
     def heading(self) -> bool:
@@ -143,7 +89,7 @@ class _AtLine(Scanner):
             if found[0] == "EXTERN":
                 self._extern()
                 return None
-            if skip and found[0] in _STRUCTURE:
+            if skip and found[0] in STRUCTURE:
                 self.refuse(f"/ before {found[0]}: the program would mean something else with it skipped", at)
             read = self._instruction(found[0], at)
             if read is not None:
@@ -152,7 +98,7 @@ class _AtLine(Scanner):
                     self.refuse(instead(self.text[self.at :]) or what)
                 return read
             self.at = at
-        return self._block(words)
+        return self.block(words)
 
     def _mark(self) -> None:
         """Pass over a label, to which nothing jumps, and the blanks around it."""
@@ -161,7 +107,7 @@ class _AtLine(Scanner):
             return
         if (label := self.match(_LABEL)) is not None:
             self.check_length(label[1], label.start())
-            if label[1] in _RESERVED:
+            if label[1] in RESERVED:
                 self.refuse(f"{label[1]} is a word of the language, and no label", label.start())
             self.blanks()
 
@@ -191,7 +137,7 @@ class _AtLine(Scanner):
             return Keyword(word, self.line, column, ())
         if word == "DEF":
             return self._definition(column)
-        if word not in _COMMANDS:
+        if word not in COMMANDS:
             return None
         if word == "STOPRE":
             return Command(self.line, column, word)
@@ -216,7 +162,7 @@ class _AtLine(Scanner):
     def _counting(self) -> tuple:
         self.blanks()
         at = self.at
-        if (name := self.match(_TARGET)) is None:
+        if (name := self.match(TARGET)) is None:
             self.refuse("FOR needs a variable and its first value")
         counter = self.variable(name[0], at)
         self.need("=")
@@ -230,8 +176,8 @@ class _AtLine(Scanner):
         self.blanks()
         at = self.at
         kind = self.match(_WORD)
-        if kind is None or kind[0] not in _TYPES:
-            self.refuse(f"DEF knows {' and '.join(_TYPES)} only", at)
+        if kind is None or kind[0] not in TYPES:
+            self.refuse(f"DEF knows {' and '.join(TYPES)} only", at)
         variables = []
         while True:
             self.blanks()
@@ -239,7 +185,7 @@ class _AtLine(Scanner):
             name = self.match(_NAME)
             if name is None:
                 self.refuse("the name of a variable is missing; it begins with two letters")
-            if name[0] in _RESERVED:
+            if name[0] in RESERVED:
                 self.refuse(f"{name[0]} is a word of the language, and no name of a variable", at)
             sizes = self.variable(name[0], at).index
             if not all(isinstance(size, Constant) and size.value in range(1, 1001) for size in sizes):
@@ -259,7 +205,7 @@ class _AtLine(Scanner):
     def _translation(self) -> tuple[tuple[str, Node], ...]:
         words: dict[str, Node] = {}
         while not self.done:
-            key, word = self._constant() or self._word()
+            key, word = self.constant() or self.word()
             if key not in AXES or word.way:
                 self.refuse(f"TRANS takes axes with a number, not {word.text}", word.column - 1)
             words[key] = word.value
@@ -270,96 +216,3 @@ class _AtLine(Scanner):
         if axes is None:
             self.refuse("FGROUP takes axes with commas between them")
         return tuple((axis, Constant(0.0)) for axis in axes[0] if axis in AXES)
-
-    def _block(self, words: dict[str, Word]) -> Block:
-        assignments: list[Assignment] = []
-        while not self.done:
-            at = self.at
-            if (read := self._constant()) is None:
-                if (assignment := self._assignment()) is not None:
-                    assignments.append(assignment)
-                    continue
-                read = self._word()
-            key, word = read
-            if key in words:
-                self.refuse(f"{word.text} is a second value for {key} in one block", at)
-            words[key] = word
-        return Block(self.line, words, tuple(assignments))
-
-    def _assignment(self) -> Assignment | None:
-        at = self.at
-        name = self.match(_TARGET)
-        if name is None or name[0] in _ADDRESSES:
-            self.at = at
-            return None
-        if (known := instead(self.text[at:])) is not None:
-            self.refuse(known, at)
-        target = self.variable(name[0], at)
-        self.need("=")
-        self.blanks()
-        begin = self.at
-        value = self._value()
-        if target.name == "R" and isinstance(value, Constant):
-            self.check_decimals(self.text[begin : self.at].partition("E")[0], begin, DECIMALS)
-        return Assignment(target, value)
-
-    def _value(self) -> Node:
-        """An expression, and the blank that must follow."""
-        value = self.expression()
-        if not self._ends():
-            self.refuse_exponent()
-            self.refuse(f"{shown(self._rest())} is not understood: a blank may be missing before it")
-        return value
-
-    def _constant(self) -> tuple[str, Word] | None:
-        """Key and content of a letter with its number, the most frequent word; None for others."""
-        at = self.at
-        if (constant := self.match(_CONSTANT)) is None:
-            return None
-        letter, sign, digits = constant.groups()
-        if letter in _LETTERS:
-            if self.at < len(self.text) and self.text[self.at] == "E":
-                self._refuse_exponent(constant.start(2))
-            value = self.number(digits, constant.start(3))
-            return letter, Word(constant[0], Constant(-value if sign == "-" else value), at + 1)
-        if letter == "N" and digits.isdecimal():
-            self.refuse(f"the block number {constant[0]} must be the first word", at)
-        self.at = at
-        return None
-
-    def _word(self) -> tuple[str, Word]:
-        """Key and content of one word."""
-        at, column = self.at, self.at + 1
-        if (code := self.match(_CODE)) is not None:
-            name = f"{code[0][0]}{int(code[1])}" if code[1] else code[0]
-            if name in GROUP_OF_CODE:
-                return GROUP_OF_CODE[name], Word(name, Constant(0.0), column)
-        elif (tool := self.match(_TOOL)) is not None:
-            return "T", Word(tool[1], Constant(0.0), column)
-        elif (radius := self.match(_GROUP_RADIUS)) is not None:
-            return f"{radius[1]} {radius[2]}", Word(radius[0], self._value(), column)
-        elif (address := self.match(_ADDRESS)) is not None:
-            return address[1], self._addressed(address[1], at)
-        self.at = at
-        self.refuse(instead(self.text[at:]) or f"the word {shown(self._rest())} is not understood")
-
-    def _refuse_exponent(self, begin: int) -> NoReturn:
-        """Refuse X1E5 as a wrong exponent, though it could be two words."""
-        self.at = begin
-        self.refuse_exponent()
-        self.refuse(f"the word {shown(self._rest())} is not understood")
-
-    def _ends(self) -> bool:
-        return self.at == len(self.text) or self.text[self.at] in " \t"
-
-    def _addressed(self, address: str, at: int) -> Word:
-        way = self.match(_WAY) if address in AXES + CUTTER_AXIS else None
-        if way is None:
-            value = self._value()
-            return Word(self.text[at : self.at], value, at + 1)
-        self.blanks()
-        value = self.expression()
-        self.need(")")
-        if not self._ends():
-            self.refuse(f"{shown(self._rest())} is not understood: a blank may be missing before it")
-        return Word(self.text[at : self.at], value, at + 1, way[1])

@@ -31,6 +31,21 @@ def motion_faults(
     path: MachinePath, runs: list[Run], member: Member, machine: MillingMachine, stated: Stated
 ) -> Iterator[Fault]:
     """All faults of motion, kind by kind."""
+    yield from states(path, machine)
+    if path.blind:
+        needed = clear_height(room_of(member, machine, machine.fixture), machine, machine.tool_length)
+        yield from blind_motion(path, needed)
+    yield from spindle(path, machine, stated)
+    yield from travel(path, machine)
+    yield from speeds(path, machine)
+    yield from feeds(path, runs, member, machine, stated)
+    yield from waiting(path)
+    if stated.coolant:
+        yield from dry(path)
+
+
+def states(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
+    """Modal states that are not stated, or not as the machine file has them, and parameters that hold anything."""
     if path.unstated:
         yield Fault(f"the program moves before it states {', '.join(path.unstated)}")
     for number, line in path.unset.items():
@@ -38,11 +53,22 @@ def motion_faults(
             f"reads R{number} before it sets it: it has there what another program left, here it counts as 0", line, "R"
         )  # fmt: skip
     yield from path_modes(path, machine)
-    yield from blind_motion(path, member, machine)
-    yield from spindle(path, machine, stated)
-    yield from travel(path, machine)
-    yield from speeds(path, machine)
-    yield from feeds(path, runs, member, machine, stated)
+
+
+def waiting(path: MachinePath) -> Iterator[Fault]:
+    """Dwells and stops with the cutter in the cut: between two feed blocks, and a stop after the last one too."""
+    for halt in path.halts:
+        before, after = halt.rows - 1, halt.rows
+        if before < 0 or path.rapid[before] or path.measuring[before]:
+            continue
+        if halt.stop or (after < len(path.rapid) and not path.rapid[after]):
+            yield Fault("lets the cutter stand in the cut", halt.line, "waiting")
+
+
+def dry(path: MachinePath) -> Iterator[Fault]:
+    """Feed blocks without coolant."""
+    for row in np.flatnonzero(~path.rapid & ~path.coolant)[:1]:
+        yield Fault("cuts without coolant (M8)", int(path.line[row]), "coolant")
 
 
 def path_modes(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
@@ -67,11 +93,12 @@ def path_modes(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
                 yield Fault(f"cuts with {is_there}, the machine file has {should_be}", line, should_be)
 
 
-def blind_motion(path: MachinePath, member: Member, machine: MillingMachine) -> Iterator[Fault]:
-    """Motion from wherever the axes stand, at the start and after a tool change: Z goes home before all else."""
-    if not path.blind:
-        return
-    needed = clear_height(room_of(member, machine, machine.fixture), machine, machine.tool_length) - _HEIGHT_SLACK
+def blind_motion(path: MachinePath, clear: float) -> Iterator[Fault]:
+    """Motion from wherever the axes stand, at the start and after a tool change: Z goes home before all else.
+
+    From Z = ``clear`` [mm] on the tool clears the work however the axes stand.
+    """
+    needed = clear - _HEIGHT_SLACK
     for one in path.blind:
         if one.z is None or (one.raised and one.z < needed):
             yield Fault(

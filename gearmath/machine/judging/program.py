@@ -8,11 +8,15 @@ whole path of a block, and not at its end alone.
 from __future__ import annotations
 
 from gearmath.machine.bodies.profiles import obstacles
-from gearmath.machine.control.executor import MachinePath
+from gearmath.machine.control.executor import MachinePath, parsed
+from gearmath.machine.control.state import Setup
+from gearmath.machine.judging.chosen import chosen_faults, reads_choice
 from gearmath.machine.judging.collision import RAPID_CLEARANCE, collisions, rapid_approaches
 from gearmath.machine.judging.cut import beside_the_path, missing
 from gearmath.machine.judging.faults import Fault, first_of_each
+from gearmath.machine.judging.header import header_faults
 from gearmath.machine.judging.motion import motion_faults
+from gearmath.machine.judging.outside import outside_faults
 from gearmath.machine.judging.start_state import start_faults
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.run import Run
@@ -20,6 +24,9 @@ from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 
 __all__ = ["Fault", "faults_of"]
+
+#: What sentences about a run call the text.
+_NAME = "the program"
 
 
 def faults_of(
@@ -32,8 +39,11 @@ def faults_of(
         *missing(stated, runs, member, name),
         *beside_the_path(runs, member, machine, stated),
     ]
+    asked = [*outside_faults(parsed(text, _NAME)), *header_faults(text, member, name, machine)]
+    if reads_choice(text):
+        asked += chosen_faults(text, _NAME, path, Setup.of(machine))
     started = start_faults(text, machine) if stated.is_ours else ()
-    return [*first_of_each(found), *started, *met(path, runs, member, machine)]
+    return [*first_of_each([*found, *asked]), *started, *met(path, runs, member, machine)]
 
 
 def met(path: MachinePath, runs: list[Run], member: Member, machine: MillingMachine) -> list[Fault]:

@@ -27,9 +27,18 @@ class _Moving(Exception):
     """The program goes on to move."""
 
 
-def start_faults(text: str, machine: MillingMachine) -> Iterator[Fault]:
-    """One fault with all states of the control that the program does not stop for; none where it sees them all."""
-    unseen = [what for what, setup in _wrong(machine) if not _stops(text, setup)]
+def start_faults(
+    text: str, machine: MillingMachine, probe_length: float = 0.0, file_kB: float = 0.0
+) -> Iterator[Fault]:
+    """One fault with all states of the control that the program does not stop for; none where it sees them all.
+
+    ``probe_length`` [mm] is that of the probe that a program moves, ``file_kB`` what its result file takes.
+    """
+    states = [*_wrong(machine, probe_length)]
+    if file_kB:
+        right = Setup.of(machine, probe_length)
+        states.append(("the control allows no result file that is long enough", replace(right, result_file_kB=file_kB)))
+    unseen = [what for what, setup in states if not _stops(text, setup)]
     if unseen:
         yield Fault(f"does not stop before it cuts where {'; or where '.join(unseen)}")
 
@@ -45,16 +54,16 @@ def _stops(text: str, setup: Setup) -> bool:
             raise _Moving
 
     try:
-        return run_program(text, "the program", setup=setup, moved=moved).alarm is not None
+        return run_program(text, "the program", lambda start, end: None, setup=setup, moved=moved).alarm is not None
     except _Moving:
         return False
     except InputError:  # the model does not run on: neither would the control
         return True
 
 
-def _wrong(machine: MillingMachine) -> Iterator[tuple[str, Setup]]:
+def _wrong(machine: MillingMachine, probe_length: float) -> Iterator[tuple[str, Setup]]:
     """A right control with one thing wrong."""
-    right = Setup.of(machine)
+    right = Setup.of(machine, probe_length)
     for k, axis in enumerate(AXES):
         offset = list(right.offset)
         offset[k] += _OFF
@@ -68,5 +77,6 @@ def _wrong(machine: MillingMachine) -> Iterator[tuple[str, Setup]]:
     yield "the control has fewer increments per mm", replace(right, increments=(per_mm / 10, 1e9))
     yield "the control has fewer increments per degree", replace(right, increments=(1e9, per_degree / 10))
     yield "another tool is in the spindle", replace(right, spindle_tool=lambda wanted: f"NOT_{wanted}")
-    length = right.tool_length + (2.0 if machine.z_reference == "tip" else _OFF)
-    yield "length 1 of the tool in the table is wrong", replace(right, tool_length=length)
+    off = 2.0 if machine.z_reference == "tip" else _OFF
+    wrong = replace(right, tool_length=right.tool_length + off, probe_length=right.probe_length + off)
+    yield "length 1 of the tool in the table is wrong", wrong

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 _OURS = re.compile(r"^; gearmath \S+ cutting program", re.MULTILINE)
+_DRY_RUN = re.compile(r"^; dry run: ", re.MULTILINE)
 _TOLERANCE = re.compile(r"^; flank tolerance: ([0-9.]+) um", re.MULTILINE)
 _MEMBER = re.compile(r"^; member: (pinion|gear)\b", re.MULTILINE)
 _FINISH = re.compile(r"^; finish: stock ([0-9.]+) mm", re.MULTILINE)
@@ -28,6 +29,8 @@ class Stated:
     rpm: float | None
     is_ours: bool = False
     """Whether the header says that gearmath wrote it: then it looks at the control before it moves."""
+    coolant: bool = False
+    """Whether it must cut with coolant: it is ours, and no dry run."""
 
     @staticmethod
     def of(text: str) -> Stated:
@@ -43,6 +46,7 @@ class Stated:
             float(spindle[2]) if spindle and spindle[2] else None,
             float(spindle[1]) if spindle else None,
             _OURS.search(text) is not None,
+            _OURS.search(text) is not None and _DRY_RUN.search(text) is None,
         )
 
 

@@ -10,6 +10,7 @@ from gearmath.kernels import kernel
 from gearmath.machine.bodies.probe_tip import probe_height
 from gearmath.specs.calibration import Calibration, Face, Ring, Sphere, WorkSphere
 from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.touch_csv import RING, RING_FACE, SPHERE, WORK_SPHERE
 
 #: Steps in which a way is searched for a touch [mm], and the parts of a step in which it is searched again, twice.
 _STEP, _PARTS, _AGAIN = 0.1, 64, 2
@@ -51,6 +52,17 @@ class Artefacts:
             elif above is not None and probe.ring.face is not None and beyond < probe.ring.face.width:
                 found.append(above)
         return found
+
+    def gap_of(self, target: str) -> Gap | None:
+        """The surface that touch files call ``target``, where the calibration file has it."""
+        probe = self.calibration
+        if target == SPHERE and probe.sphere is not None:
+            return self._of_sphere(probe.sphere)
+        if target == WORK_SPHERE and probe.work_sphere is not None:
+            return self._of_work_sphere(probe.work_sphere)
+        if target == RING_FACE and probe.ring is not None and probe.ring.face is not None:
+            return self._of_face(probe.ring.face)
+        return self._of_bore(probe.ring) if target in RING and probe.ring is not None else None
 
     def _of_sphere(self, sphere: Sphere) -> Gap:
         tip = (self.calibration.tip_offset, self.calibration.tip_radius)

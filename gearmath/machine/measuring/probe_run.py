@@ -7,13 +7,15 @@ from collections.abc import Callable
 import numpy as np
 
 from gearmath.errors import ComputationError, InputError
-from gearmath.machine.control.executor import AS_WRITTEN, run_program
+from gearmath.machine.control.executor import AS_WRITTEN, Run, run_program
 from gearmath.machine.control.state import Probe, Setup
 from gearmath.machine.measuring.collision_check import enough_steps, is_touch
 from gearmath.machine.measuring.probe_errors import ErringProbe
 from gearmath.specs.simulated_machine import SimulatedMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
 
+#: A probe that has triggered is free again where the axes have gone back by this. [mm]
+_BACK = 1e-3
 #: R102 counts the runs of a program.
 _RUN_PARAMETER = 102
 
@@ -49,15 +51,38 @@ def run_touches(
     and column for a text that cannot be run or that writes no touches, ComputationError where it sets an alarm.
     """
     erring = None if shop is None else ErringProbe(probe, shop, touches, run)
+    contact: tuple[np.ndarray, np.ndarray] | None = None
 
     def moved(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+        nonlocal contact
         progress(1)
-        return probe(start, end) if erring is None else erring(start, end)
+        met = probe(start, end) if erring is None else erring(start, end)
+        contact = None if met is None else (met, end - start)
+        return met
+
+    def follow(position: np.ndarray) -> None:
+        """The axes have moved: a probe that has triggered is free again once they have gone back."""
+        nonlocal contact
+        if contact is not None:
+            met, way = contact
+            if float((position - met) @ way) < -_BACK * float(np.linalg.norm(way)):
+                contact = None
+        if erring is not None:
+            erring.follow(position)
 
     done = run_program(
         text, program, moved, parameters={_RUN_PARAMETER: run - 1}, step_limit=enough_steps(text), setup=setup,
-        moved=erring.follow if erring is not None else lambda position: None,
+        deflected=lambda position: contact is not None, moved=follow,
     )  # fmt: skip
+    check_ended(done, program)
+    written = [lines for lines in done.files.values() if _touches(lines)]
+    if len(written) != 1:
+        raise InputError(f"{program}: writes {len(written)} files of touches, must write one: is it a probing program?")
+    return written[0]
+
+
+def check_ended(done: Run, program: str) -> None:
+    """Raise ComputationError where a run has ended with an alarm."""
     if done.alarm is not None:
         number, line = done.alarm
         why = f" ({done.messages[-1]})" if done.messages else ""
@@ -65,10 +90,6 @@ def run_touches(
             f"{program}, line {line}: the run ends with alarm {number}{why}, after "
             f"{sum(len(_touches(lines)) for lines in done.files.values())} touches; nothing is written"
         )
-    written = [lines for lines in done.files.values() if _touches(lines)]
-    if len(written) != 1:
-        raise InputError(f"{program}: writes {len(written)} files of touches, must write one: is it a probing program?")
-    return written[0]
 
 
 def _touches(text: str) -> list[str]:

@@ -16,13 +16,14 @@ import numpy as np
 
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.tooth import ToothSpace, tooth_space
+from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.bodies.profiles import widest
 from gearmath.machine.planning.blocks import TOLERANCES, check_tolerance, roll_nodes
 from gearmath.machine.planning.clear_space import Room, room_of
 from gearmath.machine.planning.feeds import block_seconds, check_feed
-from gearmath.machine.planning.hobbing import hobbing_pass
+from gearmath.machine.planning.hobbing import hobbing_pass, index_ratio
 from gearmath.machine.planning.passes import Pass, tooth_angles
 from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
 from gearmath.machine.planning.rounding import ControlShare, control_share
@@ -173,7 +174,7 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job
         raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
     (cut,) = Cut.of(member, name)
     _check_motions(member, name, cut)
-    tooth, lift = middle_of_tooth(member, cut), _HOBBING_DEPTHS * _depth(member)
+    tooth, lift = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
         one = hobbing_pass(
             member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth
@@ -206,6 +207,12 @@ def _first_pass(
 def middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
     """The middle of the first flank of a pass (3,)."""
     return flank_points(member, cut.flanks[0], blank_grid(member, 1, 1)).point[0]
+
+
+def tooth_in_roll(member: Member, cut: Cut) -> np.ndarray:
+    """The same (3,) of a hobbed member, turned on by the indexing to where the blade meets it in the roll."""
+    points = flank_points(member, cut.flanks[0], blank_grid(member, 1, 1))
+    return turned(points.point[0], index_ratio(member) * float(points.contact[0, 1]))
 
 
 def _depth(member: Member) -> float:

@@ -136,8 +136,9 @@ def hobbing_pass(
 ) -> HobbingPass:  # fmt: skip
     """The whole cut: from ``lift`` [mm] above the start of the roll down, through the roll, to a standstill.
 
-    ``feed`` [mm/min] is the highest speed of the roll past ``tooth`` (3,), ``rpm`` the speed of the cutter; both give
-    way to the axes. Raises InputError for a machine without C, and for tolerance, feed or speed out of range.
+    ``feed`` [mm/min] is the highest speed of the roll past ``tooth`` (3,), a place of the work as the indexing has
+    turned it when the blade meets it; ``rpm`` is the speed of the cutter; both give way to the axes. Raises InputError
+    for a machine without C, and for tolerance, feed or speed out of range.
     """
     _check(name, machine, tolerance, feed, rpm)
     drive, spec, limits = _Drive.of(member, machine), member.flank(cut.flanks[0]), machine.limits(6)
@@ -196,7 +197,7 @@ def _roll(member: Member, cut: Cut, drive: _Drive, scallop: float) -> tuple[floa
 
 
 def _way_past(spec: Flank, theta: np.ndarray, tooth: np.ndarray, pivot: tuple[float, np.ndarray]) -> float:
-    """How far [mm] the roll moves the cutter past the tooth, the indexing left out."""
+    """How far [mm] the roll moves the cutter past the tooth, without the indexing while it rolls."""
     (seen,) = kernel("seen_from_tool")(axis_positions(spec, theta, *pivot), tooth, *pivot)
     return float(np.linalg.norm(np.diff(seen, axis=0), axis=1).sum())
 

@@ -25,6 +25,11 @@ _TURNS = {
     "M3": "M3: clockwise, seen along the spindle towards the work (a right-hand cutter)",
     "M4": "M4: counter-clockwise, seen along the spindle towards the work (a left-hand cutter)",
 }
+#: What Z of a program says.
+_Z_REFERENCE = {
+    "gauge_line": "of the gauge line, length 1 in the tool table 0",
+    "tip": "of the blade tips, length 1 in the tool table",
+}
 NOT_ON_METAL = "no program of this version has run on metal"
 VARIABLES = (
     "names of the system variables in the start checks ($P_ACTFRAME, $TC_TP2, $P_TOOLL, $MN_INT_INCR_PER_MM and _DEG)"
@@ -148,12 +153,38 @@ def _sections(plan: Plan) -> Iterator[Sections]:
 
 def setup_notes(facts: SetupFacts) -> Iterator[str]:
     """The facts in short, as comment lines of a program."""
-    machine, fixture, sizes = facts.plan.machine, facts.plan.machine.fixture, facts.sizes
     for tool in facts.tools:
         for flank, spec in tool.blades.items():
             yield f"tool {tool.name}, {flank}: {blade_words(spec)}"
         yield f"tool {tool.name}: {point_words(tool.point)}, blade height {tool.height:g} mm"
-    yield f"cutter turns {facts.turning}"
+    yield from work_notes(facts.sizes, facts.plan.machine)
+    for load in facts.chips:
+        yield f"chip, {load.flank}: {'; '.join(chip_words(load))}"
+    for one in facts.sections:
+        yield f"cut by {one.numbers}: {one.tool}, {one.span}"
+    for sentence in facts.not_stated:
+        yield f"note: {sentence}"
+    for sentence in facts.unconfirmed:
+        yield f"unconfirmed: {sentence}"
+
+
+def member_note(member: Member, name: str) -> str:
+    """Which member a program is for."""
+    return f"member: {name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}"
+
+
+def z_note(machine: MillingMachine) -> str:
+    """What Z of a cutting program counts."""
+    return (
+        f"Z: {_Z_REFERENCE[machine.z_reference]}; R_d {machine.gauge_line_height:g} is its reading with the gauge line "
+        f"level with the B axis, C_t {machine.tool_length:g} the length of the tool"
+    )
+
+
+def work_notes(sizes: BlankSizes, machine: MillingMachine) -> Iterator[str]:
+    """Sense of the cutter, sizes of the blank and what holds it."""
+    fixture = machine.fixture
+    yield f"cutter turns {_TURNS[machine.cutter_direction]}"
     yield (
         f"blank: outside diameter {sizes.outside_diameter:.3f} mm, face angle {sizes.face_angle:.4f} deg, root angle "
         f"{sizes.root_angle:.4f} deg, pitch apex to crown {sizes.to_crown:.3f} mm"
@@ -164,14 +195,6 @@ def setup_notes(facts: SetupFacts) -> Iterator[str]:
     )
     e = ", ".join(f"{value:g}" for value in machine.pivot_offset)
     yield f"pitch apex: at ({e}) mm from the B axis along x, y, z of the work at A = 0"
-    for load in facts.chips:
-        yield f"chip, {load.flank}: {'; '.join(chip_words(load))}"
-    for one in facts.sections:
-        yield f"cut by {one.numbers}: {one.tool}, {one.span}"
-    for sentence in facts.not_stated:
-        yield f"note: {sentence}"
-    for sentence in facts.unconfirmed:
-        yield f"unconfirmed: {sentence}"
 
 
 def blade_words(spec: Flank) -> str:

@@ -23,6 +23,10 @@ APPROACH = 1.5
 _LEAST_APPROACH = 0.1
 #: Teeth of which a registration wants more than the reference point.
 _AROUND = 8
+#: Between touches, all of it guarded. [mm/min]
+POSITIONING_FEED = 3000.0
+#: Along the normal of a flank, and into the space before that and out of it. [mm/min]
+MEASURING_FEED, APPROACH_FEED = 100.0, 800.0
 #: Height of all sideways motion above the highest point of the member. [mm]
 CLEARANCE = 5.0
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.machine.planning.artefact_targets import FACE_SIDES, PAIRS, sphere_directions
-from gearmath.machine.planning.targets import APPROACH, CLEARANCE
-from gearmath.machine.writing.probe_words import APPROACH_FEED, MEASURING_FEED, STILL, Blocks, Plan
+from gearmath.machine.planning.targets import APPROACH, APPROACH_FEED, CLEARANCE, MEASURING_FEED
+from gearmath.machine.writing.probe_words import STILL, Blocks, Plan
 from gearmath.specs.calibration import Calibration, Face, Ring
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING_FACE, SPHERE

@@ -9,7 +9,7 @@ from gearmath.machine.planning.blocks import ROUNDING
 from gearmath.machine.planning.cut_plan import DRY_LIFT, ONE_SPACE, PLUNGE_FEED, Job, Plan, cutting_plan
 from gearmath.machine.planning.hobbing import C_ROUNDING
 from gearmath.machine.planning.rounding import ControlShare
-from gearmath.machine.planning.setup_facts import SetupFacts, setup_notes
+from gearmath.machine.planning.setup_facts import SetupFacts, member_note, setup_notes, z_note
 from gearmath.machine.writing.program import write_program
 from gearmath.machine.writing.words import plain
 from gearmath.specs.bevel_set import BevelSet, Member, settings_sha256
@@ -18,11 +18,6 @@ from gearmath.version import __version__
 
 #: Retract above the highest pass. [mm]
 CLEARANCE = 40.0
-#: What Z of a program says, for the header.
-_Z_REFERENCE = {
-    "gauge_line": "of the gauge line, length 1 in the tool table 0",
-    "tip": "of the blade tips, length 1 in the tool table",
-}
 #: Tooth spaces that a line of the header lists.
 _LISTED = 30
 
@@ -41,7 +36,7 @@ def program_of(plan: Plan, program_name: str) -> str:
     header = (
         f"gearmath {__version__} cutting program",
         f"set: {plain(plan.title)}",
-        f"member: {name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}",
+        member_note(member, name),
         f"machine settings sha256: {settings_sha256(member)}",
         *_tolerance_notes(member, job, machine, plan.share),
         *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
@@ -51,8 +46,7 @@ def program_of(plan: Plan, program_name: str) -> str:
         *_hobbing_notes(member),
         *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
         f"machine: {plain(machine.name)}",
-        f"Z: {_Z_REFERENCE[machine.z_reference]}; R_d {machine.gauge_line_height:g} is its reading with the gauge line "
-        f"level with the B axis, C_t {machine.tool_length:g} the length of the tool",
+        z_note(machine),
         *map(plain, setup_notes(SetupFacts.of(plan, PLUNGE_FEED))),
         "R90, R91: first and last section to cut, 0 for all; the program asks before it leaves sections out",
         f"time in the cut, without plunges and positioning: {plan.seconds:.1f} s",

@@ -14,14 +14,17 @@ import numpy as np
 
 from gearmath.machine.planning.clear_space import Room
 from gearmath.machine.planning.pattern import Pattern
+from gearmath.machine.planning.targets import APPROACH_FEED, MEASURING_FEED
 from gearmath.machine.writing import start
-from gearmath.machine.writing.probe_words import APPROACH_FEED, FROM, MEASURING_FEED, TO, Blocks, Plan
+from gearmath.machine.writing.probe_words import FROM, TO, Blocks, Plan
 from gearmath.specs.bevel_set import FLANKS
 
 #: Variables: number of the point, tooth, place of the table, touch of a point; A of the point, and of the way there.
 _POINT, _TOOTH, _PLACE, _TOUCH, _A, _BEFORE = "UPOINT", "UTOOTH", "UPLACE", "UTOUCH", "UANGLE", "UBEFORE"
 #: Tables: start and end of a touch and its A in space 0; flank, row, column, least kind; angle of a tooth; its kind.
 _WAY, _WHERE, _TURN, _KIND = "UWAY", "UWHERE", "UTURN", "UKIND"
+#: A stands beside the first tooth by this part of a pitch, while the probe goes down.
+_BESIDE = 0.1
 #: Decimals of the angles in the tables, beyond those of any control.
 _DECIMALS = 8
 
@@ -54,9 +57,11 @@ def point_loop(blocks: Blocks, pattern: Pattern, name: str, plan: Plan, level: f
 def _above_first(pattern: Pattern) -> np.ndarray:
     """Where the probe goes down to the height of sideways motion: over the end of the first touch of space 0.
 
-    Not over its start, for the way to the first point must not be none.
+    Not over its start, for the way to the first point must not be none; and with A beside that of every tooth: a run
+    may begin at the tooth opposite, where half a turn would leave open which way A goes.
     """
-    return pattern.places.end[0] + pattern.turn[0] * np.array([0, 0, 0, 1, 0])
+    beside = _BESIDE * 2.0 * math.pi / (len(pattern.kind) - 1)
+    return pattern.places.end[0] + (pattern.turn[0] + beside) * np.array([0, 0, 0, 1, 0])
 
 
 def _tables(blocks: Blocks, pattern: Pattern) -> Iterator[str]:

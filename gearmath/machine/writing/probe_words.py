@@ -11,6 +11,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.machine.planning.clear_space import Room
+from gearmath.machine.planning.targets import POSITIONING_FEED
 from gearmath.machine.writing import start, words
 from gearmath.machine.writing.chosen import FIRST, LAST, asked, if_chosen
 from gearmath.machine.writing.words import Positions
@@ -26,10 +27,6 @@ STILL = "A=IC(0) B=IC(0)"
 FROM, TO = "UFROM", "UTO"
 #: Touches up to the end of each section.
 _ENDS = "UENDS"
-#: Between touches, all of it guarded. [mm/min]
-POSITIONING_FEED = 3000.0
-#: Along the normal of a flank, and into the space before that. [mm/min]
-MEASURING_FEED, APPROACH_FEED = 100.0, 800.0
 #: FGREF with which a degree counts as a mm.
 _ONE_MM_A_DEGREE = "57.29578"
 #: Characters of the longest line of a touch, with nine decimals in every position; lines of heads, and of one part

@@ -85,3 +85,22 @@ def test_what_scalars_cannot_do_has_no_vector_form() -> None:
     A = ca.MX.sym("A", 3, 3)
     with pytest.raises(NoVectorForm):
         vector_c(ca.Function("inverse", [A], [ca.inv(A, "qr")]), (True,))
+
+
+def test_choices_take_zeros_of_both_signs_infinities_and_nan_as_the_virtual_machine_does(
+    host_compiler: tuple[str, ...],
+) -> None:
+    """Bit by bit: masks instead of branches, in every pair of such numbers."""
+    x, z = ca.SX.sym("x"), ca.SX.sym("z")
+    outputs = [
+        ca.fmin(x, z), ca.fmax(x, z), ca.fabs(x), ca.sign(x), ca.sqrt(ca.fabs(x)), ca.if_else(x, z, 0), x < z, x <= z,
+        ca.eq(x, z), ca.ne(x, z), ca.logic_not(x), ca.logic_and(x, z), ca.logic_or(x, z), ca.if_else(x < z, x, z),
+    ]  # fmt: skip
+    function = ca.Function("choices", [x, z], outputs)
+    values = [0.0, -0.0, 1.0, -2.5, 5e-324, float("inf"), float("-inf"), float("nan")]
+    pairs = np.array([(one, other) for one in values for other in values])
+    found = run(compiled(function, (True, True)), function, [pairs[:, :1].copy(), pairs[:, 1:].copy()], len(pairs))
+    for k, output in enumerate(found):
+        expected = np.array([float(function(*pair)[k]) for pair in pairs])
+        same = output.ravel().view(np.int64) == expected.view(np.int64)
+        assert (same | (np.isnan(output.ravel()) & np.isnan(expected))).all(), outputs[k]

@@ -14,10 +14,11 @@ from hypothesis import strategies as st
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import execute, run_program
 from gearmath.machine.control.expression import FUNCTIONS, Constant, Operation, Variable
-from gearmath.machine.control.reader import GROUP_OF_CODE, read_program
+from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.refused import refused_words
 from gearmath.machine.control.text import decoded, program_text, skip_blocks
 from gearmath.machine.control.values import evaluate
+from gearmath.machine.control.vocabulary import GROUP_OF_CODE
 from gearmath.machine.planning.cut_plan import Job
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.milling_machine import load_milling_machine

@@ -19,8 +19,8 @@ from gearmath.machine.control.tree import Block, Branch, Command, Definition, Lo
 from gearmath.machine.planning.clear_space import Room
 from gearmath.machine.planning.cut_plan import Job
 from gearmath.machine.planning.pattern import Targets
+from gearmath.machine.planning.targets import APPROACH_FEED, MEASURING_FEED
 from gearmath.machine.writing.cutting import cutting_program
-from gearmath.machine.writing.probe_words import APPROACH_FEED, MEASURING_FEED
 from gearmath.machine.writing.probing import probing_program, write_touches
 from gearmath.machine.writing.program import Pass, write_program
 from gearmath.specs.bevel_set import load_bevel_set

@@ -16,9 +16,9 @@ import pytest
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
+from gearmath.machine.control.blocks import Control
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.reader import read_program
-from gearmath.machine.control.state import Control
 from gearmath.machine.control.tree import Block, Branch
 from gearmath.machine.judging.block_check import distances_off_the_way, off_the_way, watch, watched_flanks
 from gearmath.machine.judging.collision import rapid_approaches

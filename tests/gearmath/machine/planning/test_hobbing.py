@@ -28,8 +28,9 @@ from gearmath.machine.milling.mill import expose, mill_member
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.milling.surfaces import nominal_surfaces, surface_states
 from gearmath.machine.planning.clear_space import Room
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import Job, tooth_in_roll
 from gearmath.machine.planning.passes import Pass
+from gearmath.machine.planning.path import Cut, axis_positions, flank_points
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.machine.writing.program import write_program
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES, Motion, Settings, load_bevel_set
@@ -703,3 +704,17 @@ def test_a_wrong_digit_is_refused_or_seen_on_the_flanks_of_all_spaces(hobbed, wr
         assert np.abs(np.fmin(rest, again)).max() > 1e-4, line
     assert demanded > 200
     assert refusals > 0
+
+
+@pytest.mark.parametrize("member", MEMBERS)
+def test_place_of_the_tooth_that_the_feed_counts_at_is_on_the_blade_when_it_is_met(hobbed, vertical, member):
+    """Seen from the cutter's axis it lies on the cone of the blade, up to the offset of the blade."""
+    spec = hobbed.member(member)
+    (cut,) = Cut.of(spec, member)
+    flank = spec.flank(cut.flanks[0])
+    u, _, theta = flank_points(spec, cut.flanks[0], blank_grid(spec, 1, 1)).contact[0]
+    axes = axis_positions(flank, np.array([theta]), vertical.pivot_height, vertical.pivot)
+    (seen,) = kernel("seen_from_tool")(axes, tooth_in_roll(spec, cut), vertical.pivot_height, vertical.pivot)
+    radius = flank.blade_point_radius + SIDES[cut.flanks[0]] * u * math.tan(math.radians(flank.blade_pressure_angle))
+    assert float(np.hypot(*seen[0, :2])) == pytest.approx(radius, abs=0.5)
+    assert float(seen[0, 2]) == pytest.approx(u, abs=1e-9)  # the height over the tips at which it is met
