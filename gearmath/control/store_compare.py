@@ -182,12 +182,14 @@ def _differs(runs: Sequence[EvaluatedRun]) -> Iterator[str]:
     """What of files, program and people was different from each run to the next one."""
     for before, after in pairwise(runs):
         pair = f"runs {before.run.id} and {after.run.id}"
-        if design_sha256(before.member) != design_sha256(after.member):
+        same_design = design_sha256(before.member) == design_sha256(after.member)
+        if not same_design:
             yield f"{pair}: the nominal flanks are not the same: their deviations are from different flanks"
         old, new = before.run.start, after.run.start
         for name in sorted({*old.files, *new.files}):
             if old.files.get(name) != new.files.get(name):
-                yield f"{pair}: {name}: {_file_change(old.files.get(name), new.files.get(name))}"
+                for change in _file_changes(old.files.get(name), new.files.get(name), same_design):
+                    yield f"{pair}: {name}: {change}"
         if old.program_text != new.program_text:
             names = {old.program, new.program}
             yield f"{pair}: the programs are not the same ({', '.join(sorted(names))})"
@@ -196,19 +198,27 @@ def _differs(runs: Sequence[EvaluatedRun]) -> Iterator[str]:
                 yield f"{pair}: {what} {getattr(old, what) or 'not known'}, then {getattr(new, what) or 'not known'}"
 
 
-def _file_change(old: bytes | None, new: bytes | None) -> str:
-    """The keys of a TOML file that changed, with their values; that it changed, where it is no TOML."""
+def _file_changes(old: bytes | None, new: bytes | None, same_design: bool) -> Iterator[str]:
+    """The keys of a TOML file that changed, with their values; that it changed, where it is no TOML.
+
+    A corrected set keeps its nominal settings under ``design``: no change, where the runs have the ``same_design``.
+    """
     if old is None or new is None:
-        return f"is stored with the {'later' if old is None else 'earlier'} run only"
+        yield f"is stored with the {'later' if old is None else 'earlier'} run only"
+        return
     try:
         before, after = (_flat(tomllib.loads(text.decode("utf-8-sig"))) for text in (old, new))
     except ValueError:
-        return "is not the same"
+        yield "is not the same"
+        return
     keys = [key for key in dict.fromkeys([*before, *after]) if before.get(key) != after.get(key)]
+    if same_design:
+        keys = [key for key in keys if ".design." not in key]
     if not keys:
-        return "has the same values, written in another way"
-    shown = [f"{key} {before.get(key, 'none')} -> {after.get(key, 'none')}" for key in keys]
-    return "; ".join(shown)
+        yield "has the same values, written in another way"
+    for key in keys:
+        values = before.get(key, "none"), after.get(key, "none")
+        yield f"{key} {' -> '.join('a list' if isinstance(value, list) else str(value) for value in values)}"
 
 
 def _flat(values: Any, prefix: str = "") -> dict[str, Any]:
