@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import functools
 import json
-import logging
 import os
 import sys
 from collections.abc import Awaitable, Callable, Coroutine
@@ -15,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gearmath.cli.common import JSON, NewFile, bar, echo_json, table
+from gearmath.cli.control_simulate import PASSWORD, quiet, simulate
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.control.opcua import OpcUaControl
     from gearmath.specs.control_connection import ControlConnection
 
-PASSWORD = "GEARMATH_CONTROL_PASSWORD"
 _Work = Callable[["OpcUaControl"], Awaitable[Any]]
 CONNECTION = click.argument("connection", type=click.Path(path_type=Path), metavar="CONTROL.toml")
 INSECURE = click.option(
@@ -36,17 +35,6 @@ def control() -> None:
     CONTROL.toml says where it is and who logs in: docs/control.md. The password is asked for, or read from the
     environment variable GEARMATH_CONTROL_PASSWORD. No command selects or starts a program.
     """
-    quiet()
-
-
-def quiet() -> None:
-    """Only our own sentences: asyncua would log tracebacks."""
-    try:
-        import asyncua  # noqa: F401
-    except ImportError as error:
-        raise InputError("asyncua is missing: install it with pip install 'gearmath[control]'") from error
-    logging.getLogger("asyncua").setLevel(logging.CRITICAL + 1)
-    logging.getLogger("asyncio").setLevel(logging.CRITICAL + 1)
 
 
 def connector(path: Path, insecure: bool, *needed: str) -> Callable[[], Coroutine[Any, Any, OpcUaControl]]:
@@ -61,6 +49,7 @@ def connector(path: Path, insecure: bool, *needed: str) -> Callable[[], Coroutin
 def _connection(path: Path, insecure: bool) -> ControlConnection:
     from gearmath.specs.control_connection import load_control_connection
 
+    quiet()
     known = load_control_connection(path)
     if known.security != "Basic256Sha256" and not insecure:
         raise InputError(f"{path}: security = {known.security!r}: must be 'Basic256Sha256', or --insecure given")
@@ -338,7 +327,5 @@ def measure(
 def _say(sentence: str) -> None:
     click.echo(sentence, err=True)
 
-
-from gearmath.cli.control_simulate import simulate  # noqa: E402
 
 control.add_command(simulate)

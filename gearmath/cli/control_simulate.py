@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import os
 import secrets
 import sys
@@ -16,10 +17,21 @@ from gearmath.errors import InputError
 if TYPE_CHECKING:
     from gearmath.control.simulated.server import SimulatedControl
 
+PASSWORD = "GEARMATH_CONTROL_PASSWORD"
 _HELP = (
     "select NAME.MPF, start, reset, stop (emergency stop), alarm NUMBER TEXT, cut, dead, slow SECONDS, restart, "
     "sessions COUNT, deny RIGHT, grant RIGHT, clock HOURS, files, log, quit"
 )
+
+
+def quiet() -> None:
+    """Only our own sentences: asyncua would log tracebacks. Raises InputError where it is not installed."""
+    try:
+        import asyncua  # noqa: F401
+    except ImportError as error:
+        raise InputError("asyncua is missing: install it with pip install 'gearmath[control]'") from error
+    logging.getLogger("asyncua").setLevel(logging.CRITICAL + 1)
+    logging.getLogger("asyncio").setLevel(logging.CRITICAL + 1)
 
 
 @click.command()
@@ -44,6 +56,7 @@ def simulate(
     a client must not do, select and start, is done here. User 'operator' has the password of the environment variable
     GEARMATH_CONTROL_PASSWORD, or one that is drawn and shown.
     """
+    quiet()
     from gearmath.control.simulated.access import Access, Account
     from gearmath.control.simulated.identity import prepared
     from gearmath.control.simulated.nc import Nc
@@ -58,7 +71,7 @@ def simulate(
     workshop = Workshop(load_milling_machine(find(machine)), load_calibration(find(calibration)), shop)
     for gear_set in gear_sets:
         workshop.load(find(gear_set))
-    password = os.environ.get("GEARMATH_CONTROL_PASSWORD")
+    password = os.environ.get(PASSWORD)
     access = Access({"operator": Account(password or secrets.token_urlsafe(9))})
     control = SimulatedControl(Nc(workshop, speed), access, None, Appearance(unencrypted=unencrypted), port)
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Self
 from urllib.parse import urlsplit
 
 from pydantic import Field, field_validator, model_validator
@@ -14,6 +15,10 @@ from gearmath.specs.toml import Spec, load
 _Axis = Annotated[int, Field(strict=True, ge=1, le=31)]
 #: Policies of OPC UA by their names; only the first is taken without being asked for by --insecure.
 Policy = Literal["Basic256Sha256", "Basic256", "Basic128Rsa15", "none"]
+
+
+class _HasPassword(Exception):
+    """There is a password in a file."""
 
 
 class ControlConnection(Spec):
@@ -33,6 +38,12 @@ class ControlConnection(Spec):
     axes: Annotated[tuple[_Axis, _Axis, _Axis, _Axis, _Axis], Field(strict=False)] = (1, 2, 3, 4, 5)
     """Numbers of the machine axes X Y Z A B."""
 
+    @classmethod
+    def from_file(cls, values: Mapping[str, Any]) -> Self:
+        if "password" in values:
+            raise _HasPassword
+        return super().from_file(values)
+
     @field_validator("url")
     @classmethod
     def _is_opc(cls, url: str) -> str:
@@ -41,10 +52,8 @@ class ControlConnection(Spec):
             usable = parts.scheme == "opc.tcp" and bool(parts.hostname) and (parts.port is None or parts.port > 0)
         except ValueError:
             usable = False
-        if not usable:
+        if not usable and "@" not in url:
             raise ValueError("must be like opc.tcp://192.168.0.10:4840")
-        if parts.username is not None or parts.password is not None:
-            raise ValueError("must hold neither user nor password")
         return url
 
     @model_validator(mode="after")
@@ -62,7 +71,12 @@ class ControlConnection(Spec):
 
 def load_control_connection(path: Path) -> ControlConnection:
     """Read a connection file; its files become paths. Raises InputError naming file, key, value and limit."""
-    connection = load(path, ControlConnection)
+    try:
+        connection = load(path, ControlConnection)
+    except _HasPassword:  # not shown
+        raise InputError(f"{path}: password: must not be in a file; the command asks for it") from None
+    if "@" in connection.url:  # not shown: there may be a password in it
+        raise InputError(f"{path}: url: must hold neither user nor password, and be like opc.tcp://192.168.0.10:4840")
     paths = {}
     for key in ("certificate", "key", "server_certificate"):
         if value := getattr(connection, key):
