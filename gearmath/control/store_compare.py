@@ -113,6 +113,18 @@ class Comparison:
 
 def compare(runs: Sequence[EvaluatedRun]) -> Comparison:
     """Compare runs in the order given. Raises InputError for runs of different members or numbers of teeth."""
+    figures, sure = side_by_side(runs), [_uncertainties(each) for each in runs]
+    rows = tuple(FigureRow(*place, figures[place], tuple(each.get(place) for each in sure)) for place in figures)
+    seats = [each.found.registration for each in runs]
+    noise = tuple(None if seat is None else seat.as_dict()["noise_um"] for seat in seats)
+    return Comparison(tuple(runs), tuple(_differs(runs)), rows, tuple(_changes(runs[0], runs[-1])), noise)
+
+
+def side_by_side(runs: Sequence[EvaluatedRun]) -> dict[tuple[str, str], tuple[float | None, ...]]:
+    """The figures of all runs [µm] by flank and name; None where one is withheld or was not measured.
+
+    Raises InputError for runs of different members or numbers of teeth.
+    """
     first = runs[0]
     for other in runs[1:]:
         if (other.name, other.member.teeth) != (first.name, first.member.teeth):
@@ -120,14 +132,9 @@ def compare(runs: Sequence[EvaluatedRun]) -> Comparison:
                 f"run {other.run.id} is of a {other.name} with {other.member.teeth} teeth, run {first.run.id} of a "
                 f"{first.name} with {first.member.teeth}: they cannot be compared"
             )
-    by_run, sure = [_figures(each) for each in runs], [_uncertainties(each) for each in runs]
-    places = list(dict.fromkeys(place for figures in by_run for place in figures))
-    rows = tuple(
-        FigureRow(*place, *(tuple(each.get(place) for each in known) for known in (by_run, sure))) for place in places
-    )
-    seats = [each.found.registration for each in runs]
-    noise = tuple(None if seat is None else seat.as_dict()["noise_um"] for seat in seats)
-    return Comparison(tuple(runs), tuple(_differs(runs)), rows, tuple(_changes(first, runs[-1])), noise)
+    by_run = [_figures(each) for each in runs]
+    places = dict.fromkeys(place for figures in by_run for place in figures)
+    return {place: tuple(figures.get(place) for figures in by_run) for place in places}
 
 
 def _figures(run: EvaluatedRun) -> dict[tuple[str, str], float | None]:
