@@ -24,7 +24,7 @@ from gearmath.errors import ComputationError
 from gearmath.machine.control import Setup
 
 RIGHTS = (sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS, sinumerik.READ_FILES)
-QUICK = Patience(state=0.1, last_retry=0.3, settle=0.05, give_up=20.0)
+QUICK = Patience(state=0.1, last_retry=0.3, settle=0.05, first=60.0, give_up=60.0)
 #: All 100 take three minutes, nearly all of it waiting: GEARMATH_DISCONNECTS=100.
 SEEDS = range(int(os.environ.get("GEARMATH_DISCONNECTS", "12")))
 Trouble = Callable[[], Awaitable[object]]
@@ -57,7 +57,7 @@ async def _measure(
 
     others = [asyncio.create_task(operator()), asyncio.create_task(trouble())]  # type: ignore[arg-type]
     try:
-        await asyncio.wait_for(one.to_the_end(parts), 60)
+        await asyncio.wait_for(one.to_the_end(parts), 120)
     finally:
         for task in others:
             task.cancel()
