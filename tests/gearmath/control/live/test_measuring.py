@@ -296,6 +296,33 @@ def test_alarms_in_mid_run_are_kept_once_and_do_not_end_a_run_that_goes_on(
     assert [alarm.number for alarm in run.alarms()] == ["700016"]
 
 
+def test_a_run_waits_for_a_control_whose_sessions_or_subscriptions_others_keep(
+    live: Any, ten: RunStart, store: Store
+) -> None:
+    """Left-over subscriptions of lost sessions, and then a full session table, each for a while."""
+    live.load()
+    begin, run = len(live.nc.log), store.begin_run(ten)
+
+    async def work() -> None:
+        other = await live.connect()
+        kept = [await other._client.create_subscription(100, None) for _ in range(10)]
+        task = asyncio.create_task(_measure(live, run))
+        await asyncio.sleep(1.0)
+        assert not live.nc.channel
+        for one in kept:
+            await one.delete()
+        await other.close()
+        await _at(live, 5)
+        live.control.fill_sessions()
+        live.soon(live.control.line.cut)
+        await asyncio.sleep(1.0)
+        live.control.fill_sessions(0)
+        await task
+
+    asyncio.run(work())
+    _check(live, begin, run)
+
+
 def test_no_password_is_in_store_or_sentences(live: Any, ten: RunStart, store: Store, caplog: Any) -> None:
     live.load()
     caplog.set_level("DEBUG", "gearmath")
