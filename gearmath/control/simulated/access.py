@@ -52,7 +52,7 @@ class Access:
         for name, account in self.accounts.items():
             if certificate is not None and account.certificate == certificate:
                 return User(UserRole.User, name)
-        return User(UserRole.Anonymous, None) if self.anonymous else None
+        return User(UserRole.User, None) if self.anonymous else None
 
     def rights(self, user: User) -> frozenset[str]:
         """What a user may do."""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from asyncua import Server, ua
 from asyncua.common.node import Node
@@ -50,6 +52,8 @@ class FileMethods:
             await self._method(node, f"{_PREFIX}{folder.text}.CreateFile", "CreateFile", self._create,
                                [ua.VariantType.String, ua.VariantType.Boolean],
                                [ua.VariantType.NodeId, ua.VariantType.UInt32])  # fmt: skip
+            await self._method(node, f"{_PREFIX}{folder.text}.Delete", "Delete", self._delete,
+                               [ua.VariantType.NodeId], [])  # fmt: skip
         for home in homes:
             place, path = methods, f"/{sinumerik.METHODS.text}"
             if home == "new":
@@ -60,7 +64,7 @@ class FileMethods:
                  [ua.VariantType.String, ua.VariantType.ByteString, ua.VariantType.Boolean], []),
                 (sinumerik.COPY_FROM.text, self._copy_from, [ua.VariantType.String], [ua.VariantType.ByteString]),
             ):  # fmt: skip
-                await self._method(place, f"{path}/{name}", name, call, takes, gives)
+                await self._method(place, f"{path}/{name}", name, call, takes, gives, self.index)
         await self.refresh()
 
     async def refresh(self) -> None:
@@ -78,8 +82,17 @@ class FileMethods:
             node_id(identifier, self.index), ua.QualifiedName(name, self.index), ua.ObjectIds.FolderType
         )
 
-    async def _method(self, parent: Node, identifier: str, name: str, call, takes: list, gives: list) -> None:  # type: ignore[no-untyped-def]
-        """A method whose refusals become status codes."""
+    async def _method(
+        self,
+        parent: Node,
+        identifier: str,
+        name: str,
+        call: Callable[..., Any],
+        takes: list,
+        gives: list,
+        space: int = 0,
+    ) -> None:
+        """A method whose refusals become status codes; those of the standard have their names in its namespace, 0."""
 
         async def answer(_: ua.NodeId, *arguments: ua.Variant) -> ua.CallMethodResult:
             try:
@@ -92,9 +105,7 @@ class FileMethods:
             found = [ua.Variant(value, kind) for value, kind in zip(values, gives, strict=True)]
             return ua.CallMethodResult(OutputArguments=found)
 
-        await parent.add_method(
-            node_id(identifier, self.index), ua.QualifiedName(name, self.index), answer, takes, gives
-        )
+        await parent.add_method(node_id(identifier, self.index), ua.QualifiedName(name, space), answer, takes, gives)
 
     async def _file_object(self, path: str) -> None:
         folder, name = path.rsplit("/", 1)
@@ -120,9 +131,12 @@ class FileMethods:
             ("SetPosition", self._seek, [u32, ua.VariantType.UInt64], []),
         ):
             await self._method(node, f"{identifier}.{method}", method, call, takes, gives)
-        size = await node.add_variable(
-            node_id(f"{identifier}.Size", self.index), ua.QualifiedName("Size", self.index), 0, ua.VariantType.UInt64
+        size = await node.add_property(
+            node_id(f"{identifier}.Size", self.index), ua.QualifiedName("Size", 0), 0, ua.VariantType.UInt64
         )
+        flag, count = ua.VariantType.Boolean, ua.VariantType.UInt16
+        for name, value, kind in (("Writable", True, flag), ("UserWritable", True, flag), ("OpenCount", 0, count)):
+            await node.add_property(node_id(f"{identifier}.{name}", self.index), ua.QualifiedName(name, 0), value, kind)
 
         def measured(nodeid: ua.NodeId, attribute: ua.AttributeIds) -> ua.DataValue:
             return ua.DataValue(ua.Variant(len(self.nc.files.get(path, b"")), ua.VariantType.UInt64))
@@ -158,6 +172,16 @@ class FileMethods:
         self._keep(path, b"")
         await self.refresh()
         return [node_id(_PREFIX + path, self.index), self._opened(path, _WRITE) if opening else 0]
+
+    async def _delete(self, node: ua.NodeId) -> list:
+        self._may_write()
+        path = _checked(str(node.Identifier))
+        self._content(path)
+        if path == self.nc.selected:
+            raise _Refused(_CODES.BadNotWritable)
+        del self.nc.files[path]
+        await self.refresh()
+        return []
 
     def _opened(self, path: str, mode: int) -> int:
         if mode & _WRITE:

@@ -21,7 +21,7 @@ from gearmath.control.simulated.files import FileMethods
 from gearmath.control.simulated.line import Line
 from gearmath.control.simulated.nc import Nc, NcAlarm
 from gearmath.control.simulated.session import ControlServer
-from gearmath.control.simulated.values import first_names
+from gearmath.control.simulated.values import first_names, item
 from gearmath.control.ua_words import node_id, status
 
 _HOST = "127.0.0.1"
@@ -107,12 +107,13 @@ class SimulatedControl:
 
     def set_clock(self, off: timedelta) -> None:
         """The clock of the control is off by so much."""
-        self.clock_off = off
+        self.clock_off = self.inner.variables.clock_off = off
 
     async def _begin(self) -> None:
         caller.set(caller.get())
         self._inner = ControlServer(self.nc, self.access)
         server = self._server = Server(self._inner)
+        server.disable_clock()
         await server.init()
         await server.set_application_uri(URI)
         server.name = "Simulated SINUMERIK 840D sl"
@@ -195,8 +196,13 @@ class SimulatedControl:
                         node_id(path, index), ua.QualifiedName(folder, index), ua.ObjectIds.FolderType
                     )
                 place = areas[path]
-            found = await place.add_variable(node_id(name, index), ua.QualifiedName(last, index), 0.0)
-            self.inner.variables.find(found.nodeid)
+            node = node_id(name, index)
+            if (found := item(name)) is None:
+                continue
+            shown = await place.add_variable(node, ua.QualifiedName(last, index), found.read(self.nc))
+            if found.write is not None:
+                await shown.set_writable()
+            self.inner.variables.find(node)
 
     async def _alarms(self, server: Server, root: Any) -> None:
         """Alarms come from ``Sinumerik``, and so do the brackets of a refresh."""
@@ -250,6 +256,7 @@ class SimulatedControl:
         while True:
             await asyncio.sleep(_TICK)
             try:
+                await self.inner.current_time_node.write_value(datetime.now(UTC) + self.clock_off)
                 await self.inner.variables.publish(shown)
                 assert self._files is not None
                 await self._files.refresh()

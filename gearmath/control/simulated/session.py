@@ -6,6 +6,7 @@ import asyncio
 import time
 from collections import deque
 from collections.abc import Callable, Iterable
+from datetime import UTC, datetime, timedelta
 from typing import TYPE_CHECKING, Any
 
 from asyncua import ua
@@ -34,6 +35,7 @@ class Variables:
     def __init__(self, nc: Nc, space: AddressSpace, index: int) -> None:
         self.nc, self.space, self.index = nc, space, index
         self.items: dict[ua.NodeId, Item] = {}
+        self.clock_off = timedelta()
 
     def find(self, nodeid: ua.NodeId) -> Item | None:
         """The variable behind a node, its node made if need be."""
@@ -51,8 +53,10 @@ class Variables:
         return found
 
     def value(self, nodeid: ua.NodeId, attribute: ua.AttributeIds) -> ua.DataValue:
-        """The value now."""
-        return ua.DataValue(ua.Variant(value := self.items[nodeid].read(self.nc), _kind(value)))
+        """The value now, by the clock of the control."""
+        value = self.items[nodeid].read(self.nc)
+        at: Any = datetime.now(UTC) + self.clock_off
+        return ua.DataValue(ua.Variant(value, _kind(value)), SourceTimestamp=at)
 
     def monitored(self) -> Iterable[ua.NodeId]:
         """The variables that some subscription looks at."""
