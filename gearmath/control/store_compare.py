@@ -224,8 +224,16 @@ def _file_changes(old: bytes | None, new: bytes | None, same_design: bool) -> It
     if not keys:
         yield "has the same values, written in another way"
     for key in keys:
-        values = before.get(key, "none"), after.get(key, "none")
-        yield f"{key} {' -> '.join('a list' if isinstance(value, list) else str(value) for value in values)}"
+        first, last = before.get(key, "none"), after.get(key, "none")
+        by = f" ({last - first:+.6g})" if isinstance(first, float) and isinstance(last, float) else ""
+        yield f"{key} {_shown(first)} -> {_shown(last)}{by}"
+
+
+def _shown(value: Any) -> str:
+    """A value of a file, numbers to eight digits."""
+    if isinstance(value, list):
+        return "a list"
+    return f"{value:.8g}" if isinstance(value, float) else str(value)
 
 
 def _flat(values: Any, prefix: str = "") -> dict[str, Any]:

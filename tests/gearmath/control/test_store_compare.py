@@ -18,12 +18,12 @@ blank_offset = 3.92
 @pytest.mark.parametrize(
     ("new", "same_design", "said"),
     [
-        (SET.replace(b"74.87", b"74.91"), True, ["pinion.concave.radial_distance 74.87 -> 74.91"]),
+        (SET.replace(b"74.87", b"74.91"), True, ["pinion.concave.radial_distance 74.87 -> 74.91 (+0.04)"]),
         (SET.replace(b"74.87", b"74.870"), True, ["has the same values, written in another way"]),
         (
             SET.replace(b"3.92", b"3.95") + b"[pinion.concave.design]\nblank_offset = 3.92\n",
             True,
-            ["pinion.concave.blank_offset 3.92 -> 3.95"],
+            ["pinion.concave.blank_offset 3.92 -> 3.95 (+0.03)"],
         ),
         (
             SET + b"[pinion.concave.design]\nblank_offset = 3.9\n",
