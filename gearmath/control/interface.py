@@ -22,7 +22,7 @@ class ConnectionLost(ComputationError):
 
 
 class NoSession(ConnectionLost):
-    """The control has no session left: those that were lost go after its session time-out."""
+    """The control has no session, or no subscription, left: those that were lost go after its session time-out."""
 
 
 class ChannelState(StrEnum):

@@ -13,7 +13,7 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import dataclass
 
-from gearmath.control.interface import Alarm, ChannelState, ConnectionLost, Control, Handshake, Run
+from gearmath.control.interface import Alarm, ChannelState, ConnectionLost, Control, Handshake, NoSession, Run
 from gearmath.errors import ComputationError, InputError
 
 Connect = Callable[[], Awaitable[Control]]
@@ -93,6 +93,8 @@ class Measuring:
                 except ConnectionLost as error:
                     self._say(f"{error}; connecting again")
                     await _leave(control)
+                    if isinstance(error, NoSession):
+                        await asyncio.sleep(self._patience.last_retry)
                     control = await self._again(self._patience.give_up)
                     self.reconnected += 1
         finally:

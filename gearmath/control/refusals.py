@@ -65,7 +65,7 @@ def refusal(name: str, what: str, code: int, right: str = "") -> ComputationErro
     if code == _CODES.BadUserAccessDenied and right:
         return ComputationError(f"{name}: {what} is refused: the user lacks the right {right}")
     if code == _CODES.BadTooManySubscriptions:
-        return ComputationError(f"{name}: {what} is refused: the control has no subscription left")
+        return NoSession(f"{name}: {what} is refused: the control has no subscription left: wait a minute")
     return ComputationError(f"{name}: {what} is refused: {code_name(code)}")
 
 

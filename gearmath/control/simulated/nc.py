@@ -12,9 +12,10 @@ from gearmath.control import sinumerik
 from gearmath.control.interface import AXES
 from gearmath.control.sinumerik import PROGRAM_ABORTED, PROGRAM_RUNNING
 from gearmath.errors import InputError
+from gearmath.machine.control.blocks import Row
 from gearmath.machine.control.executor import Run, run_program
 from gearmath.machine.control.runner import Moment
-from gearmath.machine.control.state import Deflected, Follower, Probe, Row, Setup
+from gearmath.machine.control.state import Deflected, Follower, Probe, Setup
 from gearmath.machine.control.text import decoded
 
 _OFFERED, _NUMBER, _ACKNOWLEDGED = 101, 102, 103

@@ -1,7 +1,7 @@
 """Whether R90 and R91 choose the parts of a program that they name, whole, and not before the operator has agreed.
 
 Every part is run alone, as somebody does who goes on after an abort: its motion must be that of the whole run, so that
-no run begins within a part, leaves one out, or makes another one. :mod:`gearmath.machine.measuring.measurement.parts` is the same
+no run begins within a part, leaves one out, or makes another one. :mod:`gearmath.machine.measuring.parts` is the same
 for probing.
 """
 

@@ -7,6 +7,7 @@ import os
 import select
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -18,6 +19,7 @@ import pytest
 from gearmath import cli
 from gearmath.control import sinumerik
 from gearmath.control.simulated.nc import NcAlarm
+from gearmath.control.store import Store
 
 Typed = Callable[..., tuple[int, str, str]]
 
@@ -78,6 +80,44 @@ def test_alarms_are_listed(live: Any, typed: Typed) -> None:
     live.nc.raise_alarm(NcAlarm("65001", "touched nothing"))
     (alarm,) = json.loads(typed("alarms", "--json")[1])
     assert (alarm["number"], alarm["text"], alarm["active"]) == ("65001", "touched nothing", True)
+
+
+def test_a_run_that_an_alarm_ended_is_resumed_as_its_sentence_says(live: Any, typed: Typed, tmp_path: Path) -> None:
+    program, store = tmp_path / "TEN.MPF", str(tmp_path / "runs.db")
+    program.write_text(live.TEN)
+    live.load()
+    live.nc.parameters[105] = 4.0  # the program sets its alarm after this point
+    ended = threading.Event()
+
+    def operator() -> None:
+        """Starts the selected program whenever it has been prepared and stands still."""
+        while not ended.wait(0.02):
+            if live.nc.parameters.get(104) == 1.0 and not live.nc.channel and not live.nc.alarms:
+                time.sleep(0.3)
+                live.nc.start()
+                while live.nc.channel and not ended.wait(0.02):
+                    pass
+                live.nc.parameters[104] = 0.0
+
+    person = threading.Thread(target=operator)
+    person.start()
+    try:
+        first = ("measure", str(program), "--set", "nasa_tp3096_12x36.toml", "--store", store, "--acknowledge")
+        status, _, said = typed(*first)
+        assert status == 1
+        sentence = said.splitlines()[-1]
+        assert "(alarm 65001: point 4); 4 of 10 touches are kept in run 1: go on with --resume 1" in sentence
+        live.nc.reset()
+        live.nc.parameters[105] = 0.0
+        status, out, _ = typed("measure", "--resume", "1", "--store", store, "--acknowledge")
+    finally:
+        ended.set()
+        person.join()
+    assert (status, out) == (0, f"{store}: run 1 is complete: 10 touches\n")
+    with Store.open(Path(store), create=False) as kept:
+        touches = kept.run(1).touches()
+    assert list(touches) == list(range(1, 11))
+    assert [touch.number - touches[1].number for touch in touches.values()] == [0] * 4 + [1] * 6
 
 
 @pytest.mark.parametrize(
@@ -165,7 +205,7 @@ def console(tmp_path: Path) -> Iterator[Callable[[str], str]]:
     ]
     environment = os.environ | {"GEARMATH_CONTROL_PASSWORD": "x1"}
     with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=tmp_path, env=environment
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, cwd=tmp_path, env=environment, bufsize=0
     ) as process:
         assert process.stdin is not None
         assert process.stdout is not None

@@ -24,7 +24,7 @@ from gearmath.errors import ComputationError
 from gearmath.machine.control.state import Setup
 
 RIGHTS = (sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS, sinumerik.READ_FILES)
-QUICK = Patience(state=0.1, last_retry=0.3, settle=0.05, give_up=20.0)
+QUICK = Patience(state=0.1, last_retry=0.3, settle=0.05, first=60.0, give_up=60.0)
 #: All 100 take three minutes, nearly all of it waiting: GEARMATH_DISCONNECTS=100.
 SEEDS = range(int(os.environ.get("GEARMATH_DISCONNECTS", "12")))
 Trouble = Callable[[], Awaitable[object]]
@@ -57,7 +57,7 @@ async def _measure(
 
     others = [asyncio.create_task(operator()), asyncio.create_task(trouble())]  # type: ignore[arg-type]
     try:
-        await asyncio.wait_for(one.to_the_end(parts), 60)
+        await asyncio.wait_for(one.to_the_end(parts), 120)
     finally:
         for task in others:
             task.cancel()
@@ -294,6 +294,33 @@ def test_alarms_in_mid_run_are_kept_once_and_do_not_end_a_run_that_goes_on(
     asyncio.run(_measure(live, run, trouble))
     _check(live, begin, run)
     assert [alarm.number for alarm in run.alarms()] == ["700016"]
+
+
+def test_a_run_waits_for_a_control_whose_sessions_or_subscriptions_others_keep(
+    live: Any, ten: RunStart, store: Store
+) -> None:
+    """Left-over subscriptions of lost sessions, and then a full session table, each for a while."""
+    live.load()
+    begin, run = len(live.nc.log), store.begin_run(ten)
+
+    async def work() -> None:
+        other = await live.connect()
+        kept = [await other._client.create_subscription(100, None) for _ in range(10)]
+        task = asyncio.create_task(_measure(live, run))
+        await asyncio.sleep(1.0)
+        assert not live.nc.channel
+        for one in kept:
+            await one.delete()
+        await other.close()
+        await _at(live, 5)
+        live.control.fill_sessions()
+        live.soon(live.control.line.cut)
+        await asyncio.sleep(1.0)
+        live.control.fill_sessions(0)
+        await task
+
+    asyncio.run(work())
+    _check(live, begin, run)
 
 
 def test_no_password_is_in_store_or_sentences(live: Any, ten: RunStart, store: Store, caplog: Any) -> None:
