@@ -96,6 +96,8 @@ def _compare_lines(found: Comparison) -> Iterator[str]:
     first, last = found.runs[0].run.id, found.runs[-1].run.id
     if any(row.beyond_noise is not None for row in found.figures):
         yield f"* a change of more than {COVERAGE:g} u; u is the standard uncertainty by the noise of the touches alone"
+    else:
+        yield "no u: neither repeated touches nor the corners of several teeth tell the noise of the touches"
     for change in found.changes:
         yield (
             f"{change.flank} flank, run {last} less run {first}: rms {change.rms_um:.3f} um, largest "

@@ -113,6 +113,18 @@ class Comparison:
 
 def compare(runs: Sequence[EvaluatedRun]) -> Comparison:
     """Compare runs in the order given. Raises InputError for runs of different members or numbers of teeth."""
+    figures, sure = side_by_side(runs), [_uncertainties(each) for each in runs]
+    rows = tuple(FigureRow(*place, figures[place], tuple(each.get(place) for each in sure)) for place in figures)
+    seats = [each.found.registration for each in runs]
+    noise = tuple(None if seat is None else seat.as_dict()["noise_um"] for seat in seats)
+    return Comparison(tuple(runs), tuple(_differs(runs)), rows, tuple(_changes(runs[0], runs[-1])), noise)
+
+
+def side_by_side(runs: Sequence[EvaluatedRun]) -> dict[tuple[str, str], tuple[float | None, ...]]:
+    """The figures of all runs [µm] by flank and name; None where one is withheld or was not measured.
+
+    Raises InputError for runs of different members or numbers of teeth.
+    """
     first = runs[0]
     for other in runs[1:]:
         if (other.name, other.member.teeth) != (first.name, first.member.teeth):
@@ -120,14 +132,9 @@ def compare(runs: Sequence[EvaluatedRun]) -> Comparison:
                 f"run {other.run.id} is of a {other.name} with {other.member.teeth} teeth, run {first.run.id} of a "
                 f"{first.name} with {first.member.teeth}: they cannot be compared"
             )
-    by_run, sure = [_figures(each) for each in runs], [_uncertainties(each) for each in runs]
-    places = list(dict.fromkeys(place for figures in by_run for place in figures))
-    rows = tuple(
-        FigureRow(*place, *(tuple(each.get(place) for each in known) for known in (by_run, sure))) for place in places
-    )
-    seats = [each.found.registration for each in runs]
-    noise = tuple(None if seat is None else seat.as_dict()["noise_um"] for seat in seats)
-    return Comparison(tuple(runs), tuple(_differs(runs)), rows, tuple(_changes(first, runs[-1])), noise)
+    by_run = [_figures(each) for each in runs]
+    places = dict.fromkeys(place for figures in by_run for place in figures)
+    return {place: tuple(figures.get(place) for figures in by_run) for place in places}
 
 
 def _figures(run: EvaluatedRun) -> dict[tuple[str, str], float | None]:
@@ -182,12 +189,14 @@ def _differs(runs: Sequence[EvaluatedRun]) -> Iterator[str]:
     """What of files, program and people was different from each run to the next one."""
     for before, after in pairwise(runs):
         pair = f"runs {before.run.id} and {after.run.id}"
-        if design_sha256(before.member) != design_sha256(after.member):
+        same_design = design_sha256(before.member) == design_sha256(after.member)
+        if not same_design:
             yield f"{pair}: the nominal flanks are not the same: their deviations are from different flanks"
         old, new = before.run.start, after.run.start
         for name in sorted({*old.files, *new.files}):
             if old.files.get(name) != new.files.get(name):
-                yield f"{pair}: {name}: {_file_change(old.files.get(name), new.files.get(name))}"
+                for change in _file_changes(old.files.get(name), new.files.get(name), same_design):
+                    yield f"{pair}: {name}: {change}"
         if old.program_text != new.program_text:
             names = {old.program, new.program}
             yield f"{pair}: the programs are not the same ({', '.join(sorted(names))})"
@@ -196,19 +205,35 @@ def _differs(runs: Sequence[EvaluatedRun]) -> Iterator[str]:
                 yield f"{pair}: {what} {getattr(old, what) or 'not known'}, then {getattr(new, what) or 'not known'}"
 
 
-def _file_change(old: bytes | None, new: bytes | None) -> str:
-    """The keys of a TOML file that changed, with their values; that it changed, where it is no TOML."""
+def _file_changes(old: bytes | None, new: bytes | None, same_design: bool) -> Iterator[str]:
+    """The keys of a TOML file that changed, with their values; that it changed, where it is no TOML.
+
+    A corrected set keeps its nominal settings under ``design``: no change, where the runs have the ``same_design``.
+    """
     if old is None or new is None:
-        return f"is stored with the {'later' if old is None else 'earlier'} run only"
+        yield f"is stored with the {'later' if old is None else 'earlier'} run only"
+        return
     try:
         before, after = (_flat(tomllib.loads(text.decode("utf-8-sig"))) for text in (old, new))
     except ValueError:
-        return "is not the same"
+        yield "is not the same"
+        return
     keys = [key for key in dict.fromkeys([*before, *after]) if before.get(key) != after.get(key)]
+    if same_design:
+        keys = [key for key in keys if ".design." not in key]
     if not keys:
-        return "has the same values, written in another way"
-    shown = [f"{key} {before.get(key, 'none')} -> {after.get(key, 'none')}" for key in keys]
-    return "; ".join(shown)
+        yield "has the same values, written in another way"
+    for key in keys:
+        first, last = before.get(key, "none"), after.get(key, "none")
+        by = f" ({last - first:+.6g})" if isinstance(first, float) and isinstance(last, float) else ""
+        yield f"{key} {_shown(first)} -> {_shown(last)}{by}"
+
+
+def _shown(value: Any) -> str:
+    """A value of a file, numbers to eight digits."""
+    if isinstance(value, list):
+        return "a list"
+    return f"{value:.8g}" if isinstance(value, float) else str(value)
 
 
 def _flat(values: Any, prefix: str = "") -> dict[str, Any]:

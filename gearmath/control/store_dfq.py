@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from gearmath.control.run_start import MACHINE
-from gearmath.control.store_compare import BOTH, compare
+from gearmath.control.store_compare import BOTH, side_by_side
 from gearmath.control.store_evaluation import EvaluatedRun
 from gearmath.control.store_summary import summary
 from gearmath.exchange.dfq import Characteristic, Measured, Part, dfq
@@ -30,20 +30,20 @@ def runs_dfq(runs: Sequence[EvaluatedRun], grade: int | None = None) -> bytes:
     if grade is not None:
         data = gear_data(member, first.name)
         limits = iso17485(data.mean_normal_module, data.tolerance_diameter, grade).rounded
-    figures = compare(runs).figures
+    figures = side_by_side(runs)
     characteristics = [
         Characteristic(
-            f"{row.flank} {row.name.removesuffix('_um')}", _said(row.flank, row.name), "µm",
-            upper=limits.get(_LIMITED.get(row.name, "")),
+            f"{flank} {name.removesuffix('_um')}", _said(flank, name), "µm", upper=limits.get(_LIMITED.get(name, "")),
         )
-        for row in figures
+        for flank, name in figures
     ]  # fmt: skip
     machine = parse(first.run.start.files[MACHINE].decode("utf-8-sig"), MillingMachine, MACHINE)
     part = Part(
         f"{first.name} {design_sha256(member)[:12]}", f"{first.gear_set.title}, {first.name}, {member.teeth} teeth",
         machine.name, f"probing, {first.run.start.program}",
     )  # fmt: skip
-    measured = [Measured(_measured_at(run), tuple(row.values[k] for row in figures)) for k, run in enumerate(runs)]
+    of_runs = zip(*figures.values(), strict=True)
+    measured = [Measured(_measured_at(run), values) for run, values in zip(runs, of_runs, strict=True)]
     return dfq(part, characteristics, measured)
 
 
