@@ -53,6 +53,8 @@ def asked(name: str, what: str, right: str = "") -> Iterator[None]:
             raise
         raise ConnectionLost(f"{name}: the connection broke ({what})") from None
     except ua.UaError as error:
+        if str(error).startswith("No matching endpoints"):
+            raise ComputationError(f"{name}: {what}: this security is not offered") from error
         raise ComputationError(f"{name}: {what}: {' '.join(str(error).split()) or type(error).__name__}") from error
 
 

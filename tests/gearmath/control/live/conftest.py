@@ -117,9 +117,13 @@ class Live:
         self.control.access.accounts["operator"].rights = self.rights
         self.control.access.operate = True
         self.control.clock_off *= 0
-        self.soon(lambda: self.control.fill_sessions(0))
-        self.soon(lambda: self.control.answer_slowly(0.0))
-        self.soon(self.control.line.cut)
+
+        async def line() -> None:
+            self.control.fill_sessions(0)
+            self.control.answer_slowly(0.0)
+            self.control.line.cut()
+
+        self.call(line())
 
     def load(self, text: str = TEN) -> None:
         """The program of ten touches, selected."""

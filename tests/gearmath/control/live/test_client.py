@@ -277,11 +277,28 @@ def test_a_certificate_out_of_date_by_the_clock_of_the_control_says_so(live: Any
 
 def test_another_control_than_the_one_whose_certificate_was_stored_is_not_talked_to(live: Any) -> None:
     wrong = str(live.folder / "client.der")
-    with pytest.raises(ComputationError) as error:
-        run(live.connect(server_certificate=wrong, seconds=1.0))
-    assert "\n" not in str(error.value)
+    with pytest.raises(ComputationError, match="certificate is another one than"):
+        run(live.connect(server_certificate=wrong, seconds=2.0))
     with pytest.raises(InputError, match="gearmath control trust"):
         run(live.connect(server_certificate=str(live.folder / "none.der")))
+
+
+@pytest.mark.parametrize(("changes", "said"), [
+    ({"security": "Basic256"}, "security Basic256 is not offered, but Basic256Sha256"),
+    ({"security": "none"}, "this security is not offered"),
+    ({"certificate": "trusted"}, "is no certificate in PEM or DER"),
+    ({"key": "control.der"}, "is no private key without a password"),
+    ({"key": "control_key.pem"}, "does not belong to"),
+])  # fmt: skip
+def test_certificates_and_policies_that_cannot_work_are_told_from_a_control_that_is_off(
+    live: Any, tmp_path: Any, changes: dict[str, str], said: str
+) -> None:
+    (live.folder / "rubbish.der").write_bytes(b"rubbish")
+    named = {key: str(live.folder / value.replace("trusted", "rubbish.der")) if "/" not in value and key != "security"
+             else value for key, value in changes.items()}  # fmt: skip
+    with pytest.raises((ComputationError, InputError), match=said) as error:
+        run(live.connect(seconds=2.0, **named))
+    assert "\n" not in str(error.value)
 
 
 def test_a_full_session_table_is_said_and_is_no_wrong_password(live: Any) -> None:
