@@ -5,27 +5,20 @@ from __future__ import annotations
 import asyncio
 import functools
 import json
-import os
-import sys
-from collections.abc import Awaitable, Callable, Coroutine
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import JSON, NewFile, bar, echo_json, table
-from gearmath.cli.control_simulate import PASSWORD, quiet, simulate
+from gearmath.cli.common import JSON, NewFile, echo_json, table
+from gearmath.cli.control_connect import CONNECTION, INSECURE, ask, connection_of
+from gearmath.cli.control_measure import measure
+from gearmath.cli.control_simulate import simulate
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.control.opcua import OpcUaControl
-    from gearmath.specs.control_connection import ControlConnection
-
-_Work = Callable[["OpcUaControl"], Awaitable[Any]]
-CONNECTION = click.argument("connection", type=click.Path(path_type=Path), metavar="CONTROL.toml")
-INSECURE = click.option(
-    "--insecure", is_flag=True, help="Allow what CONTROL.toml says of an older security policy, or of none."
-)
 
 
 @click.group()
@@ -35,49 +28,6 @@ def control() -> None:
     CONTROL.toml says where it is and who logs in: docs/control.md. The password is asked for, or read from the
     environment variable GEARMATH_CONTROL_PASSWORD. No command selects or starts a program.
     """
-
-
-def connector(path: Path, insecure: bool, *needed: str) -> Callable[[], Coroutine[Any, Any, OpcUaControl]]:
-    """What connects to the control of a file, each time anew, with the rights that are needed."""
-    from gearmath.control.opcua import OpcUaControl
-
-    known = _connection(path, insecure)
-    password = _password(known)
-    return lambda: OpcUaControl.connect(known, password, needed)
-
-
-def _connection(path: Path, insecure: bool) -> ControlConnection:
-    from gearmath.specs.control_connection import load_control_connection
-
-    quiet()
-    known = load_control_connection(path)
-    if known.security != "Basic256Sha256" and not insecure:
-        raise InputError(f"{path}: security = {known.security!r}: must be 'Basic256Sha256', or --insecure given")
-    return known
-
-
-def _password(known: ControlConnection) -> str:
-    if not known.user:
-        return ""
-    if (password := os.environ.get(PASSWORD)) is not None:
-        return password
-    if not sys.stdin.isatty():
-        raise InputError(f"the password of {known.user!r} is missing: set the environment variable {PASSWORD}")
-    return click.prompt(f"password of {known.user}", hide_input=True, err=True)
-
-
-def ask(path: Path, insecure: bool, needed: tuple[str, ...], work: _Work) -> Any:
-    """Connect, do one thing, and give the session back."""
-    connect = connector(path, insecure, *needed)
-
-    async def once() -> Any:
-        one = await connect()
-        try:
-            return await work(one)
-        finally:
-            await one.close()
-
-    return asyncio.run(once())
 
 
 def verb(name: str | None = None) -> Callable[[Callable[..., Any]], click.Command]:
@@ -259,7 +209,7 @@ def trust(connection: Path, insecure: bool) -> None:
     from gearmath.control.opcua import PATIENCE
     from gearmath.files import write_bytes
 
-    known = _connection(connection, insecure)
+    known = connection_of(connection, insecure)
     if not known.server_certificate:
         raise InputError(f"{connection}: server_certificate is missing: it names the file to write")
     target = Path(known.server_certificate)
@@ -271,61 +221,5 @@ def trust(connection: Path, insecure: bool) -> None:
     click.echo(" ".join(fingerprint[k : k + 4] for k in range(0, len(fingerprint), 4)))
 
 
-@verb()
-@click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF", required=False)
-@click.option(
-    "--store", "store_path", type=click.Path(path_type=Path), default="runs.db", show_default=True,
-    envvar="GEARMATH_STORE", show_envvar=True, help="The measurement store; made where there is none.",
-)  # fmt: skip
-@click.option("--set", "gear_set", metavar="SET.toml", help="Gear set of the member, to be kept with the run.")
-@click.option("--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine, to be kept too.")
-@click.option("--calibration", default="probe.toml", show_default=True, help="Calibrated probe, to be kept too.")
-@click.option("--acknowledge", is_flag=True,
-              help="Acknowledge the touches: this lets the waiting program move on. It must be given.")  # fmt: skip
-@click.option("--resume", type=click.IntRange(1), metavar="RUN", help="Go on with a run of the store.")
-@click.option("--points", metavar="FIRST-LAST", help="Touch these points only, as a new run.")
-@click.option("--again-of", type=click.IntRange(1), metavar="RUN", help="With --points: the run that they belong to.")
-def measure(
-    connection: Path, insecure: bool, program: Path | None, store_path: Path, gear_set: str | None, machine: str,
-    calibration: str, acknowledge: bool, resume: int | None, points: str | None, again_of: int | None,
-) -> None:  # fmt: skip
-    """Keep every touch of a probing or calibration program in the store, before the program goes on.
-
-    PROGRAM.MPF lies on the control and is selected there, the channel is in reset. This command sets R104, R90 and R91,
-    waits until the operator starts the program, and acknowledges each touch when it is on the disk. After a loss of the
-    connection it goes on by itself; after a reset, with --resume.
-    """
-    from gearmath.control import sinumerik
-    from gearmath.control.measuring import Measuring
-    from gearmath.control.run_start import begun, resumed
-    from gearmath.control.store import Store
-
-    if not acknowledge:
-        raise click.UsageError(
-            "--acknowledge is missing: it lets the program that the operator started move on after each touch"
-        )
-    if (program is None) == (resume is None):
-        raise click.UsageError("either PROGRAM.MPF or --resume RUN must be given")
-    if again_of is not None and points is None:
-        raise click.UsageError("--again-of goes with --points")
-    connect = connector(connection, insecure, sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS,
-                        sinumerik.READ_FILES)  # fmt: skip
-    with Store.open(store_path) as store:
-        if resume is not None:
-            run = store.resume_run(resume)
-            parts = resumed(run)
-        else:
-            assert program is not None
-            start, parts = begun(_connection(connection, insecure).name, program, gear_set, machine, calibration,
-                                 points, again_of)  # fmt: skip
-            run = store.begin_run(start)
-        with bar(len(run.missing()), "touch") as progress:
-            asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(parts))
-        click.echo(f"{store_path}: run {run.id} is complete: {len(run.start.points)} touches")
-
-
-def _say(sentence: str) -> None:
-    click.echo(sentence, err=True)
-
-
+control.add_command(measure)
 control.add_command(simulate)

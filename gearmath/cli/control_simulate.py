@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import logging
 import os
 import secrets
 import sys
@@ -12,26 +11,16 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gearmath.cli.control_connect import PASSWORD, quiet
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.control.simulated.server import SimulatedControl
 
-PASSWORD = "GEARMATH_CONTROL_PASSWORD"
 _HELP = (
     "select NAME.MPF, start, reset, stop (emergency stop), alarm NUMBER TEXT, cut, dead, slow SECONDS, restart, "
     "sessions COUNT, deny RIGHT, grant RIGHT, clock HOURS, files, log, quit"
 )
-
-
-def quiet() -> None:
-    """Only our own sentences: asyncua would log tracebacks. Raises InputError where it is not installed."""
-    try:
-        import asyncua  # noqa: F401
-    except ImportError as error:
-        raise InputError("asyncua is missing: install it with pip install 'gearmath[control]'") from error
-    logging.getLogger("asyncua").setLevel(logging.CRITICAL + 1)
-    logging.getLogger("asyncio").setLevel(logging.CRITICAL + 1)
 
 
 @click.command()

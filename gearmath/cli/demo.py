@@ -19,7 +19,7 @@ import click
 def demo(folder: Path, control: bool) -> None:
     """The whole closed loop on a bundled real gear set and a bundled hobbing machine."""
     if control:
-        from gearmath.cli.control_simulate import quiet
+        from gearmath.cli.control_connect import quiet
 
         quiet()
         from gearmath.control.demo import run_control_demo

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import math
 import time
 from collections.abc import AsyncIterator, Mapping, Sequence
 from typing import Any
@@ -17,21 +16,17 @@ from gearmath.control.alarms import Alarms
 from gearmath.control.file_names import control_name, shown
 from gearmath.control.interface import Alarm, ChannelState, ConnectionLost, Handshake, Status, Touch
 from gearmath.control.login import log_in
+from gearmath.control.r_parameters import check_numbers, check_values, groups_of, parts_of
 from gearmath.control.refusals import asked, code_name
 from gearmath.control.transfer import Transfer
 from gearmath.control.ua_words import node_id
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import ComputationError
 from gearmath.specs.control_connection import ControlConnection
 
 #: R parameters of the handshake: point offered, run, point acknowledged, whether a host is waited for; the touch.
 _OFFERED, _RUN, _ACKNOWLEDGED, _WAITS, _TOUCH = 101, 102, 103, 104, 200
 #: First and last part of a program that its next run makes.
 _FIRST, _LAST = 90, 91
-_RESERVED = frozenset((_OFFERED, _RUN, _ACKNOWLEDGED))
-_LAST_PARAMETER = 999
-#: R parameters of one array.
-_ARRAY = 100
-_LARGEST = 1e8
 #: How long any answer may take. [s]
 PATIENCE = 4.0
 
@@ -105,8 +100,8 @@ class OpcUaControl:
 
     async def read_parameters(self, numbers: Sequence[int]) -> list[float]:
         """R parameters, those that follow each other as one array."""
-        _check_numbers(numbers)
-        groups = _groups(numbers)
+        check_numbers(numbers)
+        groups = groups_of(numbers)
         values = await self._read([self._parameters(first, count) for first, count in groups])
         found: dict[int, float] = {}
         for (first, count), value in zip(groups, values, strict=True):
@@ -118,12 +113,7 @@ class OpcUaControl:
 
     async def write_parameters(self, values: Mapping[int, float]) -> None:
         """Set R parameters other than those of the handshake."""
-        _check_numbers(list(values))
-        for number, value in values.items():
-            if number in _RESERVED:
-                raise InputError(f"R{number} belongs to the handshake: only a measuring run acknowledges")
-            if not (math.isfinite(value) and abs(value) < _LARGEST):
-                raise InputError(f"R{number} = {value}: must be a number between -{_LARGEST:g} and {_LARGEST:g}")
+        check_values(values)
         await self._write(values)
 
     async def watch(self, interval: float) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
@@ -225,7 +215,7 @@ class OpcUaControl:
     async def _read(self, names: Sequence[str]) -> list[Any]:
         """Values by name, in batches that the control takes."""
         values: list[Any] = []
-        for part in _parts(names, self._read_limit):
+        for part in parts_of(names, self._read_limit):
             with asked(self.name, f"reading {part[0]}", sinumerik.READ_STATE):
                 found = await self._client.uaclient.session.read_attributes(
                     [node_id(name, self._index) for name in part], ua.AttributeIds.Value
@@ -236,7 +226,7 @@ class OpcUaControl:
         return values
 
     async def _write(self, values: Mapping[int, float]) -> None:
-        for part in _parts(list(values.items()), self._write_limit):
+        for part in parts_of(list(values.items()), self._write_limit):
             names = [self._parameters(number, 1) for number, _ in part]
             with asked(self.name, f"writing R{part[0][0]}", sinumerik.WRITE_STATE):
                 codes = await self._client.uaclient.session.write_attributes(
@@ -289,28 +279,6 @@ class OpcUaControl:
 
 def _good(code: ua.StatusCode | None) -> bool:
     return code is None or code.is_good()
-
-
-def _parts(items: Sequence[Any], limit: int) -> list[Any]:
-    size = limit or len(items) or 1
-    return [items[k : k + size] for k in range(0, len(items), size)]
-
-
-def _groups(numbers: Sequence[int]) -> list[tuple[int, int]]:
-    """Numbers as first and count of arrays."""
-    groups: list[tuple[int, int]] = []
-    for number in sorted(set(numbers)):
-        if groups and groups[-1][0] + groups[-1][1] == number and groups[-1][1] < _ARRAY:
-            groups[-1] = groups[-1][0], groups[-1][1] + 1
-        else:
-            groups.append((number, 1))
-    return groups
-
-
-def _check_numbers(numbers: Sequence[int]) -> None:
-    for number in numbers:
-        if not 0 <= number <= _LAST_PARAMETER:
-            raise InputError(f"R{number}: R parameters go from 0 to {_LAST_PARAMETER}")
 
 
 def _plain(text: Any) -> str:

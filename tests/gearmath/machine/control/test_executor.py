@@ -258,6 +258,20 @@ def test_what_a_host_writes_is_seen_after_stopre_only():
         run_program(program(*wait[:3], "ENDWHILE"), "P", host=lambda parameters: {103: 1.0}, step_limit=1000)
 
 
+def test_a_watcher_hears_every_statement_before_it_acts_and_every_motion_and_can_end_the_program():
+    text = program("R1=1", "G94 G1 X3 Y4 F300", "R1=2", "R1=3")
+    heard = []
+
+    def watch(moment):
+        heard.append((moment.line, moment.parameters.get(1), None if moment.row is None else moment.row.seconds))
+        if moment.parameters.get(1) == 2.0:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_program(text, "P.MPF", watch=watch)
+    assert heard[-5:] == [(6, None, None), (7, 1.0, None), (7, 1.0, 1.0), (8, 1.0, None), (9, 2.0, None)]
+
+
 def test_files_are_written_line_by_line():
     done = run_program('DEF INT UE\nR1=1.25\nWRITE(UE,"F_1","a;"<<R1)\nWRITE(UE,"F_1","b")\nM30', "P")
     assert done.files == {"F_1": "a;1.25\nb\n"}

@@ -1,0 +1,70 @@
+"""``gearmath control measure``: a measuring run with the handshake, into the measurement store."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+import click
+
+from gearmath.cli.common import bar
+from gearmath.cli.control_connect import CONNECTION, INSECURE, connection_of, connector
+
+
+@click.command()
+@CONNECTION
+@INSECURE
+@click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF", required=False)
+@click.option(
+    "--store", "store_path", type=click.Path(path_type=Path), default="runs.db", show_default=True,
+    envvar="GEARMATH_STORE", show_envvar=True, help="The measurement store; made where there is none.",
+)  # fmt: skip
+@click.option("--set", "gear_set", metavar="SET.toml", help="Gear set of the member, to be kept with the run.")
+@click.option("--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine, to be kept too.")
+@click.option("--calibration", default="probe.toml", show_default=True, help="Calibrated probe, to be kept too.")
+@click.option("--acknowledge", is_flag=True,
+              help="Acknowledge the touches: this lets the waiting program move on. It must be given.")  # fmt: skip
+@click.option("--resume", type=click.IntRange(1), metavar="RUN", help="Go on with a run of the store.")
+@click.option("--points", metavar="FIRST-LAST", help="Touch these points only, as a new run.")
+@click.option("--again-of", type=click.IntRange(1), metavar="RUN", help="With --points: the run that they belong to.")
+def measure(
+    connection: Path, insecure: bool, program: Path | None, store_path: Path, gear_set: str | None, machine: str,
+    calibration: str, acknowledge: bool, resume: int | None, points: str | None, again_of: int | None,
+) -> None:  # fmt: skip
+    """Keep every touch of a probing or calibration program in the store, before the program goes on.
+
+    PROGRAM.MPF lies on the control and is selected there, the channel is in reset. This command sets R104, R90 and R91,
+    waits until the operator starts the program, and acknowledges each touch when it is on the disk. After a loss of the
+    connection it goes on by itself; after a reset, with --resume.
+    """
+    from gearmath.control import sinumerik
+    from gearmath.control.measuring import Measuring
+    from gearmath.control.run_start import begun, resumed
+    from gearmath.control.store import Store
+
+    if not acknowledge:
+        raise click.UsageError(
+            "--acknowledge is missing: it lets the program that the operator started move on after each touch"
+        )
+    if (program is None) == (resume is None):
+        raise click.UsageError("either PROGRAM.MPF or --resume RUN must be given")
+    if again_of is not None and points is None:
+        raise click.UsageError("--again-of goes with --points")
+    connect = connector(connection, insecure, sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS,
+                        sinumerik.READ_FILES)  # fmt: skip
+    with Store.open(store_path) as store:
+        if resume is not None:
+            run = store.resume_run(resume)
+            parts = resumed(run)
+        else:
+            assert program is not None
+            start, parts = begun(connection_of(connection, insecure).name, program, gear_set, machine, calibration,
+                                 points, again_of)  # fmt: skip
+            run = store.begin_run(start)
+        with bar(len(run.missing()), "touch") as progress:
+            asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(parts))
+        click.echo(f"{store_path}: run {run.id} is complete: {len(run.start.points)} touches")
+
+
+def _say(sentence: str) -> None:
+    click.echo(sentence, err=True)
