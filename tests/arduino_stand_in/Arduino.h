@@ -61,6 +61,7 @@ extern volatile uint32_t stand_in_pin_config[64];
 #define STAND_IN_FTM(unit)                                                                                       \
   extern volatile uint32_t FTM##unit##_SC, FTM##unit##_CNT, FTM##unit##_MOD, FTM##unit##_C0SC, FTM##unit##_C1SC, \
       FTM##unit##_CNTIN, FTM##unit##_MODE, FTM##unit##_FILTER, FTM##unit##_QDCTRL;
+extern volatile uint8_t PMC_LVDSC1;
 extern volatile uint16_t WDOG_UNLOCK, WDOG_TOVALH, WDOG_TOVALL, WDOG_PRESC, WDOG_STCTRLH, WDOG_REFRESH;
 STAND_IN_FTM(1)
 STAND_IN_FTM(2)

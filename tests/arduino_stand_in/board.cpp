@@ -222,6 +222,13 @@ int board_refreshed() {
 #endif
   return seen;
 }
+int board_brown_out() {
+#ifdef GM_BOARD_TEENSY_32
+  return PMC_LVDSC1;
+#else
+  return -1;
+#endif
+}
 int board_watchdog_ms() {
 #ifdef GM_BOARD_TEENSY_32
   return WDOG_STCTRLH & 1 ? WDOG_TOVALL : 0; /* STCTRLH bit 0 turns it on, bit 1 would take another clock than 1 kHz */

@@ -15,6 +15,7 @@ volatile uint32_t stand_in_pin_config[64];
 #define FTM(unit)                                                                                         \
   volatile uint32_t FTM##unit##_SC, FTM##unit##_CNT, FTM##unit##_MOD, FTM##unit##_C0SC, FTM##unit##_C1SC, \
       FTM##unit##_CNTIN, FTM##unit##_MODE, FTM##unit##_FILTER, FTM##unit##_QDCTRL;
+volatile uint8_t PMC_LVDSC1;
 volatile uint16_t WDOG_UNLOCK, WDOG_TOVALH, WDOG_TOVALL, WDOG_PRESC, WDOG_STCTRLH, WDOG_REFRESH;
 FTM(1)
 FTM(2)
