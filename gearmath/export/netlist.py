@@ -149,18 +149,18 @@ def _operator(found: Netlist, machine: HobbingMachine) -> None:
     found.join(GROUND, ("H1", "GND"))
     direct = machine.hardware.five_volt_tolerant
     if not direct:
-        found.part("A1", "BSS138 level shifter, board with 2 channels or more", "I2C between 3.3 V and 5 V")
-        found.join(LOGIC, ("A1", "LV"))
-        found.join(PLUS, ("A1", "HV"))
-        found.join(GROUND, ("A1", "GND"))
+        found.part("U6", "BSS138 level shifter, board with 2 channels or more", "I2C between 3.3 V and 5 V")
+        found.join(LOGIC, ("U6", "LV"))
+        found.join(PLUS, ("U6", "HV"))
+        found.join(GROUND, ("U6", "GND"))
     for k, (line, pin) in enumerate((("SDA", pins.sda), ("SCL", pins.scl)), start=1):
         pull_up = found.part(
             f"RP{k}", "4.7 kOhm", f"pull-up of {line} at the board; leave it out if the backpack has one"
         )
         found.join(PLUS if direct else LOGIC, (pull_up, "1"))
-        found.join(line, _board(pin), (pull_up, "2"), ("H1", line) if direct else ("A1", f"LV{k}"))
+        found.join(line, _board(pin), (pull_up, "2"), ("H1", line) if direct else ("U6", f"LV{k}"))
         if not direct:
-            found.join(f"{line}, 5 V", ("A1", f"HV{k}"), ("H1", line))
+            found.join(f"{line}, 5 V", ("U6", f"HV{k}"), ("H1", line))
     if pins.estop is not None:
         found.part(
             "S2", "emergency stop that latches, two normally closed contacts", "11-12 for power, 21-22 for the board"

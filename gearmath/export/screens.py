@@ -130,6 +130,8 @@ def _rows(machine: HobbingMachine) -> Iterator[Row]:
     if machine.pins.index is not None:
         yield ("Checked", "turns in which the index pulse has confirmed the count (third page)")
     yield from _CHECKS
+    if not lathe and machine.feed is None:
+        yield ("Table turns", "since the start of the job; times the feed per turn: the way of the pass (third page)")
     if machine.feed is not None:
         yield ("Feed", "axial feed since the start of the job (third page)")
     yield from _OTHERS
@@ -177,6 +179,12 @@ def _matrix(machine: HobbingMachine) -> Iterator[str]:
     ]
     rows.append(("power lost", STANDS, "runs out without torque", "runs out without torque", "job kept, phase lost"))
     yield from table(("fault", "motor that stands", "that follows", "in a jog or move", "job and phase"), rows)
+    yield from paragraph(
+        "A supply that dips is a loss of power: the board resets, at once or when it is too low to work, and "
+        "everything is "
+        "off until your press. So is a program that has come to a halt: the watchdog resets the processor within "
+        "a second."
+    )
     yield from paragraph(
         "In every one of them the fail-safe output goes off at once and stays off, ENABLE stays on, and a step that "
         "has begun ends at its full length."

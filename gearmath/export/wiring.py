@@ -277,7 +277,7 @@ def _shifters(drawing: Drawing, machine: HobbingMachine, y: float) -> None:
     ground(drawing, (left + 0.7, y - 0.8), "GND", "10")
     ground(drawing, (left + 2.6, y - 0.8), "OE", "19")
     left += 5.4
-    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "A1 BSS138", at=y)
+    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U6 BSS138", at=y)
     supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "LV")
     supply(drawing, (left + 2.6, y + 0.7), "+5 V", "HV")
     ground(drawing, (left + 1.7, y - 0.8), "GND")

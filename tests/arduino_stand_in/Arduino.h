@@ -61,6 +61,7 @@ extern volatile uint32_t stand_in_pin_config[64];
 #define STAND_IN_FTM(unit)                                                                                       \
   extern volatile uint32_t FTM##unit##_SC, FTM##unit##_CNT, FTM##unit##_MOD, FTM##unit##_C0SC, FTM##unit##_C1SC, \
       FTM##unit##_CNTIN, FTM##unit##_MODE, FTM##unit##_FILTER, FTM##unit##_QDCTRL;
+extern volatile uint8_t PMC_LVDSC1;
 extern volatile uint16_t WDOG_UNLOCK, WDOG_TOVALH, WDOG_TOVALL, WDOG_PRESC, WDOG_STCTRLH, WDOG_REFRESH;
 STAND_IN_FTM(1)
 STAND_IN_FTM(2)
@@ -75,7 +76,9 @@ extern volatile uint32_t CCM_CCGR2, CCM_CCGR3, CCM_CCGR4, IOMUXC_XBAR1_IN06_SELE
     IOMUXC_XBAR1_IN08_SELECT_INPUT, IOMUXC_XBAR1_IN09_SELECT_INPUT, IOMUXC_XBAR1_IN14_SELECT_INPUT,
     IOMUXC_XBAR1_IN15_SELECT_INPUT, IOMUXC_XBAR1_IN17_SELECT_INPUT, IOMUXC_XBAR1_IN22_SELECT_INPUT,
     IOMUXC_XBAR1_IN23_SELECT_INPUT;
-extern volatile uint16_t XBARA1_SEL33, XBARA1_SEL38, ENC1_CTRL, ENC1_FILT, ENC1_LPOS, ENC1_UINIT, ENC1_LINIT, ENC3_CTRL,
+extern volatile uint16_t stand_in_crossbar[66];
+#define XBARA1_SEL0 (stand_in_crossbar[0]) /* named up to SEL29 in imxrt.h */
+extern volatile uint16_t ENC1_CTRL, ENC1_FILT, ENC1_LPOS, ENC1_UINIT, ENC1_LINIT, ENC3_CTRL,
     ENC3_FILT, ENC3_LPOS, ENC3_UINIT, ENC3_LINIT;
 #endif
 

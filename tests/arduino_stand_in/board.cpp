@@ -90,7 +90,7 @@ static int input_of(uint8_t pin) {
 }
 static bool connected(uint8_t a, uint8_t b) {
   const bool hob = a == GM_PIN_ENCODER_STEP;
-  const uint16_t chosen = hob ? XBARA1_SEL33 : XBARA1_SEL38;
+  const uint16_t chosen = stand_in_crossbar[hob ? 33 : 38];
   const uint32_t clock = hob ? 3u << 24 : 3u << 28;
   return (CCM_CCGR2 & 3u << 22) == 3u << 22 && (CCM_CCGR4 & clock) == clock && input_of(a) == (chosen & 0xFF) &&
          input_of(b) == chosen >> 8;
@@ -221,6 +221,13 @@ int board_refreshed() {
   WDOG1_WSR = 0;
 #endif
   return seen;
+}
+int board_brown_out() {
+#ifdef GM_BOARD_TEENSY_32
+  return PMC_LVDSC1;
+#else
+  return -1;
+#endif
 }
 int board_watchdog_ms() {
 #ifdef GM_BOARD_TEENSY_32

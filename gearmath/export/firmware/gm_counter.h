@@ -60,9 +60,13 @@ static inline volatile uint32_t *gm_select_input(int input) {
   }
 }
 
-/* Phases A and B of ENC1 are the outputs 66 and 67 of the crossbar, those of ENC3 76 and 77: one register each. */
-#define GM_CROSSBAR_1 XBARA1_SEL33
-#define GM_CROSSBAR_3 XBARA1_SEL38
+/* Phases A and B of ENC1 are the outputs 66 and 67 of the crossbar, those of ENC3 76 and 77: one register each, SEL33 and
+ * SEL38, which imxrt.h has no names for. */
+static inline void gm_lead(int encoder, int input_a, int input_b) {
+  volatile uint16_t *const select = &XBARA1_SEL0;
+  select[encoder == 1 ? 33 : 38] = (uint16_t)(input_a | input_b << 8);
+}
+
 #define GM_ENC(unit, name) GM_JOINED(ENC, unit, _##name)
 #define GM_COUNTER_BEGIN(axis, pin_a, pin_b)                                                                \
   do {                                                                                                      \
@@ -74,7 +78,7 @@ static inline volatile uint32_t *gm_select_input(int input) {
     *portConfigRegister(pin_b) = GM_##axis##_MUX_B;                                                         \
     *gm_select_input(GM_##axis##_CROSSBAR_A) = GM_##axis##_DAISY_A;                                         \
     *gm_select_input(GM_##axis##_CROSSBAR_B) = GM_##axis##_DAISY_B;                                         \
-    GM_JOINED(GM_CROSSBAR_, GM_##axis##_COUNTER, ) = GM_##axis##_CROSSBAR_A | GM_##axis##_CROSSBAR_B << 8;   \
+    gm_lead(GM_##axis##_COUNTER, GM_##axis##_CROSSBAR_A, GM_##axis##_CROSSBAR_B);                            \
     GM_ENC(GM_##axis##_COUNTER, FILT) = GM_ENC_FIVE_SAMPLES | GM_##axis##_FILTER;                            \
     GM_ENC(GM_##axis##_COUNTER, UINIT) = 0;                                                                 \
     GM_ENC(GM_##axis##_COUNTER, LINIT) = 0;                                                                 \

@@ -172,6 +172,13 @@ static void gm_draw_run_checks(gm_ui *ui, const gm_status *status) {
   }
   gm_count(ui, 2, "Steps", status->position, "");
   gm_line(ui, 3, "");
+#if !defined(GM_PROFILE_LATHE) && !GM_HAS_FEED
+  {
+    gm_ratio turns = {status->position, 1};
+    gm_ratio_times(&turns, GM_MOTOR_STEPS_DEN, GM_MOTOR_STEPS);
+    gm_quantity(ui, 3, "Table turns", &turns, 2, "");
+  }
+#endif
 #if GM_HAS_FEED
   {
     gm_ratio feed = {status->edges[GM_FEED], 1};

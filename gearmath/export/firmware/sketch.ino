@@ -462,6 +462,9 @@ static void begin_operator() {
 }
 
 void setup() {
+#ifdef GM_BOARD_TEENSY_32
+  PMC_LVDSC1 = 0x11; /* a supply below 2.56 V resets, before it can disturb the program; a Teensy 4 does so by itself */
+#endif
   gm_core_init(&core);
   put_outputs(gm_core_outputs(&core, GM_IN_ESTOP_OK)); /* the levels stand before the pins drive */
   pinMode(GM_PIN_STEP_OUT, OUTPUT);

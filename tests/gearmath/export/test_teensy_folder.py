@@ -562,6 +562,8 @@ def test_display_that_is_plugged_in_later_is_found(power_up: Callable[..., Board
 def test_watchdog_is_refreshed_only_while_every_part_works(name, timeout, power_up: Callable[..., Board]) -> None:
     board = power_up(machine(name))
     assert board.board.board_watchdog_ms() == timeout
+    # MK20: LVDRE is bit 4, the high one of both thresholds (2.56 V) LVDV = 1
+    assert board.board.board_brown_out() == (0x11 if name == "hobbing_plewes" else -1)
     for _ in range(20):
         board.wait(20)
         assert board.board.board_refreshed()

@@ -40,6 +40,7 @@ typedef struct {
 #define GM_MOTOR_STEPS_DEN 1 /* and denominator */
 #define GM_HOB_STARTS 1 /* starts of the hob */
 #define GM_HOB_LEFT 0 /* 1: left-hand hob */
+#define GM_BACKLASH_STEPS 0 /* motor steps of play that are taken up */
 #define GM_HYSTERESIS 0 /* counts of play of the hob encoder */
 #define GM_WIDE 0 /* 0: gm_wide is int32_t, 1: int64_t */
 
@@ -63,6 +64,8 @@ typedef struct {
 
 /* --- what is wired */
 #define GM_DECODER_LS7184 1 /* 1: pulse and direction, 0: channels A and B */
+#define GM_HOB_COUNTER 0 /* number of the board's counter, 0: interrupts count */
+#define GM_FEED_COUNTER 0 /* number of the board's counter, 0: interrupts count */
 #define GM_HAS_INDEX 0 /* index pulse of the hob */
 #define GM_HAS_FEED 0 /* encoder of the axial feed */
 #define GM_HAS_ENABLE 0 /* enable output of the driver */

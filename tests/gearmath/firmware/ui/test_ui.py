@@ -80,7 +80,7 @@ def test_the_run_shows_speed_place_and_steps(panel):
     p.knob(1)
     shows(p, " 50 teeth      32 DP", "Hob turns      20.00", "Table     144.00 deg", "Tooth             21")
     p.knob(1)
-    shows(p, " 50 teeth      32 DP", "No index pulse", "Steps           6400", "")
+    shows(p, " 50 teeth      32 DP", "No index pulse", "Steps           6400", "Table turns     0.40")
     assert p.position == 6400
 
 
