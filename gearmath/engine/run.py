@@ -48,6 +48,9 @@ class Runner:
         self._function, self._many = function, many
         self._sizes_in = [function.numel_in(k) for k in range(function.n_in())]
         self._sizes_out = [function.numel_out(k) for k in range(function.n_out())]
+        self._dense = all(function.sparsity_in(k).is_dense() for k in range(function.n_in())) and all(
+            function.sparsity_out(k).is_dense() for k in range(function.n_out())
+        )
         self._operations = _operations(function)
         self._spent = 0.0  # operations in the virtual machine; infinite where it is all there is
         self._compiled: ctypes.CDLL | None = None
@@ -85,6 +88,8 @@ class Runner:
                 given = [a[low : low + _BLOCK] if many else a for a, many in zip(arguments, self._many, strict=True)]
                 parts.append(self.interpreted(given, min(_BLOCK, n - low)))
             return [np.concatenate(arrays) for arrays in zip(*parts, strict=True)]
+        if n == 1 and self._dense:
+            return self._interpreted_once(arguments)
         columns = []
         for k, (array, size) in enumerate(zip(arguments, self._sizes_in, strict=True)):
             flat = np.broadcast_to(array, (n, size))
@@ -99,6 +104,20 @@ class Runner:
             height, width = self._function.size_out(k)
             array = np.asarray(result).reshape(height, n, width)
             outputs.append(np.ascontiguousarray(array.transpose(1, 2, 0)).reshape(n, size))
+        return outputs
+
+    def _interpreted_once(self, arguments: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """One point by the virtual machine, on the arrays as they lie: converting them costs more than many functions."""
+        given = [np.ascontiguousarray(array).reshape(-1) for array in arguments]
+        outputs = [np.zeros((1, size)) for size in self._sizes_out]
+        buffer, evaluate = self._function.buffer()  # one of its own for every call: threads share the function
+        for k, array in enumerate(given):
+            buffer.set_arg(k, memoryview(array))
+        for k, array in enumerate(outputs):
+            buffer.set_res(k, memoryview(array.reshape(-1)))
+        evaluate()
+        if buffer.ret():
+            raise RuntimeError(f"{self._function.name()} could not be evaluated")
         return outputs
 
     def _consider(self, work: float) -> None:
