@@ -75,9 +75,12 @@ class Runner:
         return outputs
 
     def _run(self, arguments: Sequence[np.ndarray], outputs: list[np.ndarray], low: int, high: int) -> None:
-        given = [array[low:high] if is_many else array for array, is_many in zip(arguments, self._many, strict=True)]
-        results = [array[low:high] for array in outputs]
-        pointers = [(ctypes.c_void_p * len(arrays))(*(a.ctypes.data for a in arrays)) for arrays in (given, results)]
+        given = [
+            _address(array) + low * array.strides[0] * is_many
+            for array, is_many in zip(arguments, self._many, strict=True)
+        ]
+        results = [_address(array) + low * array.strides[0] for array in outputs]
+        pointers = [(ctypes.c_void_p * len(addresses))(*addresses) for addresses in (given, results)]
         self._compiled.run(ctypes.c_longlong(high - low), *pointers)  # type: ignore[union-attr]
 
     def interpreted(self, arguments: Sequence[np.ndarray], n: int) -> list[np.ndarray]:
@@ -107,14 +110,14 @@ class Runner:
         return outputs
 
     def _interpreted_once(self, arguments: Sequence[np.ndarray]) -> list[np.ndarray]:
-        """One point by the virtual machine, on the arrays as they lie: converting them costs more than many functions."""
+        """One point by the virtual machine, on the arrays as they lie: converting them may cost more."""
         given = [np.ascontiguousarray(array).reshape(-1) for array in arguments]
         outputs = [np.zeros((1, size)) for size in self._sizes_out]
         buffer, evaluate = self._function.buffer()  # one of its own for every call: threads share the function
         for k, array in enumerate(given):
-            buffer.set_arg(k, memoryview(array))
-        for k, array in enumerate(outputs):
-            buffer.set_res(k, memoryview(array.reshape(-1)))
+            buffer.set_arg(k, array.data)  # type: ignore[call-arg]  # its stub has not what it takes
+        for k, result in enumerate(outputs):
+            buffer.set_res(k, result.reshape(-1).data)  # type: ignore[call-arg]
         evaluate()
         if buffer.ret():
             raise RuntimeError(f"{self._function.name()} could not be evaluated")
@@ -140,6 +143,11 @@ class Runner:
 def runner(function: ca.Function, many: tuple[bool, ...]) -> Runner:
     """The Runner of a function for a pattern of arguments."""
     return Runner(function, many)
+
+
+def _address(array: np.ndarray) -> int:
+    """Where the elements lie; asked here for every argument of every call, and ``array.ctypes`` takes its time."""
+    return array.__array_interface__["data"][0]
 
 
 def _operations(function: ca.Function) -> int:
