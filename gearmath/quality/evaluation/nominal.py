@@ -26,6 +26,11 @@ SAME_DEVIATION = 0.001
 SAME_NORMAL = math.cos(math.radians(1.0))
 #: Part of a grid that may be missing.
 MOST_MISSING = 0.2
+#: Points are beside their normals alike where so much of them is, by more than this part of the limit each; beyond this
+#: distance they are of another flank. [mm]
+_MOST_ALIKE, _ALIKE, _SET_UP = 0.8, 0.3, 0.5
+#: What puts touches beside the normals along which they were searched.
+WRONG_SET_UP = "work offset or tool length, or another --machine or --calibration than that of the program"
 
 
 @dataclass(frozen=True)
@@ -167,7 +172,7 @@ def check_points(file: FlankFile, rows: NominalRows) -> None:
         k = int(np.argmax(apart > SAME_POINT))
         raise InputError(
             f"{_place(file, k)}: the measured point lies {apart[k]:.4f} mm beside the nominal normal, the limit is "
-            f"{SAME_POINT} mm; {_likeliest_cause(file, rows)}"
+            f"{SAME_POINT} mm; {_likeliest_cause(file, rows, apart)}"
         )
     turned_away = np.einsum("ij,ij->i", file.normal, rows.normal) < SAME_NORMAL
     if turned_away.any():
@@ -218,8 +223,8 @@ def _shown(vector: np.ndarray) -> str:
     return ", ".join(f"{value:.4f}" for value in vector)
 
 
-def _likeliest_cause(file: FlankFile, rows: NominalRows) -> str:
-    """What would make most of the points fit."""
+def _likeliest_cause(file: FlankFile, rows: NominalRows, apart: np.ndarray) -> str:
+    """What would make most of the points fit that lie (n,) [mm] beside their normals."""
     fits = {
         "the numbers are inches: convert the file to mm": file.point * INCH,
         "the file is of the other hand": file.point * [1, -1, 1],
@@ -228,6 +233,9 @@ def _likeliest_cause(file: FlankFile, rows: NominalRows) -> str:
     for words, point in fits.items():
         if np.median(np.linalg.norm(point - rows.point, axis=1)) < 1.0:
             return words
+    measured = apart[np.isfinite(file.deviation)]
+    if np.mean(measured > _ALIKE * SAME_POINT) >= _MOST_ALIKE and np.median(measured) < _SET_UP:
+        return f"nearly all points are, by {np.median(measured):.3f} mm in the middle: {WRONG_SET_UP}"
     shift = np.linalg.norm(file.point - rows.point, axis=1)
     if np.median(shift) < SAME_POINT:
         return f"{int((shift > SAME_POINT).sum())} of {len(file)} points are off the flank"
