@@ -24,7 +24,7 @@ def spacing_section(page: Page, one: Measurement) -> None:
     """Pitch and runout with tolerance and grade beside each value, then thickness."""
     found = one.evaluation
     rows = [
-        [f"{words}, {flank}", *_graded(found.verdict, name, value, one.uncertain(flank, figure))]
+        [f"{words}, {flank}", *_graded(found.verdict, flank, name, value, one.uncertain(flank, figure))]
         for name, (figure, words) in _SPACING.items()
         for flank, value in _values(found, name)
     ]
@@ -63,16 +63,19 @@ def _interval(known: Uncertain | None) -> str:
     return "" if known is None else "{} to {}".format(*map(micro, known.interval))
 
 
-def _graded(verdict: Verdict | None, name: str, value: float, known: Uncertain | None) -> list[str]:
+def _graded(verdict: Verdict | None, flank: str, name: str, value: float, known: Uncertain | None) -> list[str]:
     """Value [mm], interval, grade and its tolerance; the grade with that of either end of the interval, if it differs.
 
-    Over data with a gap there is neither value nor grade; outside of the scope of the formulas there is no grade.
+    Over data with a gap there is neither value nor grade; outside of the scope of the formulas there is no grade, nor
+    where the verdict withholds it.
     """
     if not np.isfinite(value):
         return ["withheld", "", "withheld", ""]
     shown = [micro(value), _interval(known)]
     if verdict is None or verdict.data.outside is not None:
         return [*shown, "", ""]
+    if name in verdict.withheld and name not in verdict.flanks.get(flank, {}):
+        return [*shown, "withheld", ""]
     data = verdict.data
     grade = finest_grade(data, name, value * 1000)
     words = _grade_words(grade)
