@@ -82,7 +82,7 @@ def _by_columns(array: np.ndarray, n: int, quantity: Quantity) -> np.ndarray:
     """Elements (n, size) of a quantity at n points as CasADi has them, column by column."""
     if len(quantity.shape) == 2:
         array = array.reshape(n, *quantity.shape).transpose(0, 2, 1)
-    return np.ascontiguousarray(array).reshape(n, -1)
+    return np.ascontiguousarray(array).reshape(n, quantity.size)
 
 
 def _by_rows(array: np.ndarray, quantity: Quantity) -> np.ndarray:

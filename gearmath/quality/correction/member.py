@@ -112,7 +112,7 @@ def correct(
     columns = rotation_columns(list(targets.values()), measured)
     how = {"objective": objective, "root_limit": root_limit, "bounds": bounds}
     fit = CorrectionFit({flank: _wanted(target) for flank, target in targets.items()}, groups, names, columns, how)
-    identified, rotation = fit.solve(fit.chosen(noise) if few else dict.fromkeys(groups, names), noise)
+    identified, rotation = fit.solve_few(noise) if few else fit.solve(dict.fromkeys(groups, names), noise)
     wanted, of_work = fit.turned(rotation.shift), replace(rotation, angles=-rotation.angles)
     judged, as_measured = without_shift(targets, of_work.shift), _turned_best(targets, columns)
     progress(1)
