@@ -27,7 +27,7 @@ from gearmath.quality.correction.own_index import LEAST_OFF, near_the_median, te
 from gearmath.quality.correction.representative import representative_tooth
 from gearmath.quality.correction.target import blade_curve, flank_target, nominal_curvature
 from gearmath.quality.correction.unknown_rotation import UnknownRotation, rotation_columns
-from gearmath.quality.evaluation.nominal import check_belongs
+from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.pitch import evaluate_pitch, index_correction
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile

@@ -13,15 +13,9 @@ from gearmath.errors import InputError
 from gearmath.quality.evaluation.closing import Closing, close_run
 from gearmath.quality.evaluation.completeness import cut_off, missing_points, silent_points
 from gearmath.quality.evaluation.drift import Drift, untold_drift, without_drift
+from gearmath.quality.evaluation.file_checks import check_belongs, check_phase, check_points
 from gearmath.quality.evaluation.grades import grade_member
-from gearmath.quality.evaluation.nominal import (
-    at_one_place,
-    check_belongs,
-    check_phase,
-    check_points,
-    completed,
-    nominal_rows,
-)
+from gearmath.quality.evaluation.nominal import at_one_place, completed, nominal_rows
 from gearmath.quality.evaluation.outliers import find_outliers
 from gearmath.quality.evaluation.pitch import Pitch, evaluate_pitch, pitch_uncertainties
 from gearmath.quality.evaluation.registration import Registration, register, stated_noise
@@ -188,7 +182,7 @@ def evaluate_member(
     full nor pitch was measured, or if its phase is not as its header says.
     """
     check_belongs(member, name, file)
-    check_points(file, nominal_rows(file, member, name))
+    check_points(file, nominal_rows(file, member, name), member, name)
     complete, absent = completed(file, member, name)
     closing = close_run(complete, member.teeth)
     outliers = find_outliers(closing.straightened(complete), member.teeth)

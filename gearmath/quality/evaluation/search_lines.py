@@ -15,7 +15,7 @@ import numpy as np
 from gearmath.bevel.flank import Grid
 from gearmath.errors import InputError
 from gearmath.machine.planning.targets import targets_of_space
-from gearmath.quality.evaluation.nominal import SAME_POINT, WRONG_SET_UP
+from gearmath.quality.evaluation.file_checks import SAME_POINT, WRONG_SET_UP
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine

@@ -14,7 +14,7 @@ from gearmath.bevel.nominal_file import flank_header
 from gearmath.bevel.turning import half_turn, turned
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.quality.evaluation.nominal import SAME_POINT
+from gearmath.quality.evaluation.file_checks import SAME_POINT
 from gearmath.quality.foreign.gaps import (
     fractions,
     gap_words,
