@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from gearmath.bevel.grid import blank_fractions
 from gearmath.errors import InputError
 from gearmath.quality.evaluation.outliers import flag_outliers
 from gearmath.quality.evaluation.robust import limit_of, off_the_fit
-from gearmath.quality.foreign.lattice import Lattice
+from gearmath.quality.foreign.lattice import Lattice, find_lattice
 from gearmath.quality.foreign.points import LARGEST_FORM, Laid, Part
 from gearmath.specs.bevel_set import Member
 
@@ -23,6 +23,8 @@ _LEAST_NOTICED = 0.004
 #: So many points tell the fifteen terms of a surface of fourth degree and their noise; more than so many are no single
 #: points.
 _LEAST_TO_NOTICE, _MOST_NOTICED = 30, 2
+#: Points are at one place within this part of the mean step from point to point; of more points nobody made two grids.
+_SAME_PLACE, _MOST_TO_COMPARE = 0.05, 2000
 _FOURTH_DEGREE = [5 * i + j for i in range(5) for j in range(5 - i)]
 
 
@@ -109,6 +111,35 @@ def gap_words(one: Laid, lattice: Lattice | None, member: Member) -> Iterator[st
             low, high = 100 * part.min(), 100 * part.max()
             where = f"from {low:.0f} to {high:.0f} % only"
             yield f"{one.part.name}: its points cover the {what} {where}: is the file whole?"
+
+
+def unlike_words(laid: Sequence[Laid], member: Member) -> Iterator[str]:
+    """What to say of parts whose points form grids, but not of one size: one of them may not be whole."""
+    found = {one.part.name: find_lattice(*fractions(one, member)) for one in laid}
+    sizes = {name: f"{grid.rows}x{grid.columns}" for name, grid in found.items() if grid is not None}
+    if len(set(sizes.values())) > 1:
+        (first, size), *others = sizes.items()
+        other, unlike = next(each for each in others if each[1] != size)
+        yield f"{first} holds a grid of {size}, {other} one of {unlike}: are both whole?"
+
+
+def repeated_words(one: Laid, member: Member) -> Iterator[str]:
+    """What to say of points half of which and more have another one at their place: two runs in one file."""
+    n = len(one.kept)
+    if not _LEAST_TO_NOTICE <= n <= _MOST_TO_COMPARE:
+        return
+    place = np.stack(fractions(one, member), axis=1)
+    apart = np.linalg.norm(place[:, None] - place, axis=2) + np.diag(np.full(n, np.inf))
+    nearest = np.argmin(apart, axis=1)
+    mine = np.arange(n)
+    pairs = (nearest[nearest] == mine) & (apart[mine, nearest] < _SAME_PLACE / np.sqrt(n)) & (mine < nearest)
+    if 2 * pairs.sum() < n / 2:
+        return
+    off = (one.deviation[nearest] - one.deviation)[pairs] * 1000
+    yield (
+        f"{one.part.name}: {int(pairs.sum())} places were measured twice, the later points {off.mean():+.1f} um off "
+        f"the earlier ones on average, {np.abs(off).max():.1f} um at most: two runs in one file?"
+    )
 
 
 def _row(part: Part, k: int) -> str:

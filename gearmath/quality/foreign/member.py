@@ -22,7 +22,9 @@ from gearmath.quality.foreign.gaps import (
     noticeable,
     only,
     outlier_words,
+    repeated_words,
     standing_out,
+    unlike_words,
 )
 from gearmath.quality.foreign.lattice import Lattice, find_lattice
 from gearmath.quality.foreign.misplaced import check_placed, kept_words
@@ -110,7 +112,9 @@ def foreign_file(
         said = np.zeros(0) if lattice is None else np.where(far, far, noticeable(one, lattice, member))
         bad, less = outlier_words(one, said)
         gaps += [*bad, *gap_words(one, lattice, member)]
-        doubts += [*less, *lost_words(one)]
+        doubts += [*less, *lost_words(one), *repeated_words(one, member)]
+    if len(parts) > 1 and not any(lattices):
+        doubts += unlike_words(laid, member)
     if leave_out:
         laid = [only(one, far == 0.0) for one, far in zip(laid, off, strict=True)]
         lattices = _lattices(laid, member)
@@ -256,7 +260,7 @@ def _on_grid(
     nominal = solve_flank(member, name, one.part.flank, blank_grid(member, _ROWS, _COLUMNS, margin))
     deviation = np.array([_smooth(across[~off], up[~off], one.deviation[~off], each) for each in place])
     row, col = (each.ravel() for each in np.indices((_ROWS, _COLUMNS)))
-    words = f"{len(across)} points form no grid: deviations interpolated on {_ROWS}x{_COLUMNS}, margins {margin:g}"
+    words = f"{len(across)} points form no grid that all share: deviations on {_ROWS}x{_COLUMNS}, margins {margin:g}"
     lost = [f"{int(off.sum())} points stand out from the others, left out"] if off.any() else []
     return row, col, nominal.point, nominal.normal, deviation, [words, *lost]
 

@@ -557,3 +557,22 @@ def test_points_kept_as_they_stand_are_said_to_be_turned(gear_set):
     assert [float(one[2]) for one in said] == pytest.approx([1.0, 1.0], abs=0.01)  # the form of the flanks takes part
     little = both_flanks(gear_set.pinion, "pinion", lambda point: around(point, 0.02 / 40))
     assert not any("kept so" in doubt for doubt in foreign_file(little, PLAIN, gear_set, "pinion", "kept").doubts)
+
+
+@pytest.mark.parametrize("drift", [0.0, 0.03])
+def test_two_runs_in_one_file_are_said_with_what_they_differ_by(gear_set, drift):
+    """Two grids one after the other, the second with 0.5 um of noise and moved along the normals."""
+    point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth() / 4)
+    off = drift + 5e-4 * np.random.default_rng(6).standard_normal(45)
+    both = np.concatenate([point, point + off[:, None] * normal])
+    doubts = foreign_file([Part("c.txt", "concave", 0, both)], PLAIN, gear_set, "pinion").doubts
+    (said,) = [doubt for doubt in doubts if "two runs in one file?" in doubt]
+    size = re.match(r"c\.txt: 45 places were measured twice, the later points ([+-]\d+\.\d) um off the earlier", said)
+    assert float(size[1]) == pytest.approx(1000 * drift, abs=0.4)
+
+
+def test_grids_of_unlike_size_are_said_to_be(gear_set):
+    one, other = both_flanks(gear_set.pinion, "pinion")
+    less = replace(one, point=one.point.reshape(5, 9, 3)[:, 1:].reshape(-1, 3))
+    doubts = foreign_file([less, other], PLAIN, gear_set, "pinion").doubts
+    assert "concave.txt holds a grid of 5x8, convex.txt one of 5x9: are both whole?" in doubts
