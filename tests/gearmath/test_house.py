@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import json
 import re
 import subprocess
@@ -17,8 +18,9 @@ from tests.arrows import arrows_of, circles
 
 ROOT = Path(__file__).parents[2]
 TOP_LEVEL = {
-    ".ci", ".editorconfig", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md",
-    "LICENSE", "Makefile", "README.md", "derivations", "docs", "gearmath", "notebooks", "pyproject.toml", "tests",
+    ".ci", ".editorconfig", ".github", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff",
+    "CONTRIBUTING.md", "LICENSE", "Makefile", "README.md", "derivations", "docs", "gearmath", "notebooks",
+    "pyproject.toml", "tests",
 }  # fmt: skip
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 
@@ -60,6 +62,18 @@ def test_no_folder_imports_in_a_circle() -> None:
     _, arrows, upward = arrows_of()
     assert not circles(arrows)
     assert not upward
+
+
+def test_walks_of_contributing_have_at_most_eight_stations_and_all_of_them_exist() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8").split("## Three walks")[1].split("\n## ")[0]
+    walks = [walk for walk in text.split("\n\n") if "→" in walk]
+    assert len(walks) == 3
+    for walk in walks:
+        stations = re.findall(r"`((?:\w+\.)+\w+)`", walk)
+        assert 5 <= len(stations) <= 8
+        for station in stations:
+            module, _, name = (station if station.startswith("derivations.") else f"gearmath.{station}").rpartition(".")
+            assert hasattr(importlib.import_module(module), name), station
 
 
 def test_contributing_shows_the_layers_of_the_contract() -> None:

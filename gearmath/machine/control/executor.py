@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,6 +18,21 @@ from gearmath.machine.control.values import evaluate, indices, number
 
 #: What a host does while the program waits: it sees the R parameters, and returns those that it writes.
 Host = Callable[[Mapping[int, float]], Mapping[int, float]]
+
+
+class Moment(NamedTuple):
+    """Where a program stands, for who watches it run; the tables are those of the program, and go on changing."""
+
+    line: int
+    parameters: Mapping[int, float]
+    messages: list[str]
+    files: Mapping[str, list[str]]
+    row: Row | None
+    """The motion that has been made, at the end of its block; None before a statement."""
+
+
+#: Hears of every statement before it acts, and of every motion; what it raises ends the program.
+Watch = Callable[[Moment], object]
 
 #: Blocks and turns of loops that a program may run through.
 STEP_LIMIT = 1_000_000
@@ -113,16 +129,18 @@ def run_program(
     files: Mapping[str, str] | None = None,
     deflected: Deflected = lambda position: False,
     moved: Follower = lambda position: None,
+    watch: Watch | None = None,
 ) -> Run:
     """Run a program as the control would, with a ``probe`` for its MEAS blocks and a ``host`` that answers.
 
     ``parameters`` are the R parameters at the start; others are 0. ``setup`` is how the control stands, ``files`` are
-    the texts of those that WRITE adds to. ``deflected`` says what $A_PROBE shows; ``moved`` hears of every motion.
+    the texts of those that WRITE adds to. ``deflected`` says what $A_PROBE shows; ``moved`` hears of every motion, and
+    ``watch`` of every statement too.
     Raises InputError with ``name``, line and column for what a program must not do, and for one that takes more than
     ``step_limit`` steps.
     """
     program = _read(text, name)
-    runner = _Runner(Control(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved)
+    runner = _Runner(Control(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved, watch)
     runner.holds(files or {})
     try:
         runner.all(program.body)
@@ -145,11 +163,11 @@ class _Runner:
 
     def __init__(
         self, control: Control, host: Host | None, parameters: dict[int, float], step_limit: int, deflected: Deflected,
-        moved: Follower,
+        moved: Follower, watch: Watch | None,
     ) -> None:  # fmt: skip
         self.unset: dict[int, int] = {}
         self.control, self.host, self.parameters, self.steps_left = control, host, parameters, step_limit
-        self.deflected, self.moved = deflected, moved
+        self.deflected, self.moved, self.watch = deflected, moved, watch
         self.variables: dict[tuple[str, tuple[int, ...]], float] = {}
         self.integer: dict[str, bool] = {}
         self.rows: list[Row] = []
@@ -169,6 +187,7 @@ class _Runner:
     def all(self, body: tuple[Statement, ...]) -> None:
         for statement in body:
             self._step(statement.line)
+            self._watched(statement.line)
             if isinstance(statement, Block):
                 self._block(statement)
             elif isinstance(statement, Command):
@@ -236,6 +255,10 @@ class _Runner:
         if self.steps_left < 0:
             refuse(self.control.name, line, 1, f"the program is not at its end after {self._limit} steps")
 
+    def _watched(self, line: int, row: Row | None = None) -> None:
+        if self.watch is not None:
+            self.watch(Moment(line, self.parameters, self.messages, self.files, row))
+
     def _number(self, node: Node, line: int, column: int) -> float:
         return number(node, self, self.control.name, line, column)
 
@@ -259,6 +282,7 @@ class _Runner:
             self.rows.append(row)
             self.said.append(self.messages[-1] if self.messages else "")
             self.moved(_internal(row.position))
+            self._watched(block.line, row)
         if "dwell" in block.words and self.host is not None:
             self._pending.update(self.host(dict(self.parameters)))
 

@@ -1,0 +1,1 @@
+"""Files that other programs read: each a module, without what computes."""
