@@ -96,8 +96,8 @@ def compensate(
     from gearmath.bevel.pair import check_pair, load_pair
     from gearmath.cli.compensate_text import correction_values, say_analysis, say_changes, say_result, verdict
     from gearmath.cli.uncertainty import noise_of_points
+    from gearmath.quality.correction import member as correcting
     from gearmath.quality.correction.member import ROOT_LIMIT, correct
-    from gearmath.quality.correction.member import member as correcting
     from gearmath.quality.correction.thickness import with_thickness
     from gearmath.quality.evaluation.member import STAGES, evaluate_member
     from gearmath.specs.flank_csv import read_flank_csv
