@@ -843,3 +843,15 @@ synthesized_curvature = Quantity(
     "synthesized_curvature", "D_11, D_12, D_22 that give path, parabola and ellipse as wanted", "1/mm", "D",
     shape=(3,), scale=1e5,
 )  # fmt: skip
+
+# --- design -------------------------------------------------------------------------------------------------------
+addendum_constant = _factor("addendum_constant", "k_1", 0.1, 0.3, "part of the addendum factor that no ratio changes")
+addendum_share = _factor("addendum_share", "k_2", 0.1, 0.3, "part of the addendum factor over the square of the ratio")
+transmission_amplitude = _angle(
+    "transmission_amplitude", "A", 0.0, 5e-4, "transmission error wanted half a pitch from the vertex"
+)
+signed_lever = _length("signed_lever", r"\rho_2", -200.0, 200.0, "lever of the contact normal about the gear's axis")
+gear_path_angle = _angle(
+    "gear_path_angle", r"\eta_2", 0.2, 2.9, "direction of the path on the gear, from its root line towards the tip"
+)
+along_tooth = _length("along_tooth", r"\xi", -20.0, 20.0, "place along the tooth, from the mean point")

@@ -20,6 +20,7 @@ VERBS = {
     "demo": ("demo", "The whole closed loop on a bundled gear set and a bundled hobbing machine."),
     "gearbox": ("gearbox", "Electronic gearbox of a hobbing machine: plan a job, simulate the rule."),
     "blank": ("blank", "The blank of a pair from its design data, as table, JSON or part of a gear set."),
+    "design": ("design", "A pair from a few design data: blank and settings that run as asked."),
     "flank": ("bevel", "Nominal points and outward normals of one flank."),
     "tooth": ("bevel", "Whole teeth of a member: figures, and an STL of a space or of the whole member."),
     "contact": ("contact", "How a pair runs: path of contact, transmission error, V-H check."),

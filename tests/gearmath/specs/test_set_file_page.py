@@ -1,4 +1,4 @@
-"""docs/set_file.md and docs/machine_files.md say what the models of the files take: keys, units, ranges, defaults.
+"""docs/set_file.md, machine_files.md, design.md say what the models of the files take: keys, units, ranges, defaults.
 
 Where a model changes, the failing test prints the rows as they must read; what a key means is written by hand.
 """
@@ -15,7 +15,7 @@ import pytest
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from gearmath.specs import bevel_set, blank_data, calibration, measurement, milling_machine, simulated_machine
+from gearmath.specs import bevel_set, blank_data, calibration, design, measurement, milling_machine, simulated_machine
 from gearmath.specs.sheet import unit_of
 from gearmath.specs.toml import bundled, parse
 
@@ -86,10 +86,10 @@ def rows(model: type[BaseModel]) -> dict[str, tuple[str, str, str]]:
     return found | BESIDES.get(model, {})
 
 
-def printed(heading: str) -> dict[str, tuple[str, str, str]]:
-    """The rows under a heading of the page."""
-    begin = PAGE.index(f" {heading}\n")
-    section = re.split(r"\n#+ ", PAGE[begin:], maxsplit=1)[0]
+def printed(heading: str, page: str = PAGE) -> dict[str, tuple[str, str, str]]:
+    """The rows under a heading of a page."""
+    begin = page.index(f" {heading}\n")
+    section = re.split(r"\n#+ ", page[begin:], maxsplit=1)[0]
     lines = [line for line in section.splitlines() if line.startswith("| `")]
     cells = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
     assert all(len(row) == 5 and row[4] for row in cells), "every row has key, unit, range, default and meaning"
@@ -121,6 +121,27 @@ def test_example_of_the_page_is_a_set():
     for flank in bevel_set.FLANKS:
         vector = made.member("gear").flank(flank).vector
         assert vector == pytest.approx(ours.flank(flank).vector, abs=2e-6)
+
+
+DESIGN_PAGE = (Path(__file__).parents[3] / "docs" / "design.md").read_text("utf-8")
+DESIGN_TABLES: dict[str, type[BaseModel]] = {
+    "Design data": design.DesignData,
+    "`[cutter]`": design.DesignCutter,
+    "`[pinion]`": design.PinionMethod,
+    "`[gear]`": design.GearMethod,
+    "`[drive]` and `[coast]`": design.Contact,
+    "`[shop]`": design.Shop,
+}
+
+
+@pytest.mark.parametrize("heading", DESIGN_TABLES)
+def test_design_page_has_every_key_with_unit_range_and_default(heading):
+    assert printed(heading, DESIGN_PAGE) == rows(DESIGN_TABLES[heading])
+
+
+def test_example_of_the_design_page_is_a_design():
+    (example,) = re.findall(r"```toml\n(.*?)```", DESIGN_PAGE, re.DOTALL)
+    assert parse(example, design.DesignData, "example").pinion_teeth == 12
 
 
 MACHINE_PAGE = (Path(__file__).parents[3] / "docs" / "machine_files.md").read_text("utf-8")

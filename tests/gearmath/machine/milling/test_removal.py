@@ -9,8 +9,8 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.machine.bodies.cutter import Body, Cutter, Profile
+from gearmath.machine.milling import removal as milling
 from gearmath.machine.milling.removal import Blade, entry_along_block, remaining
-from gearmath.machine.milling.removal import removal as milling
 from gearmath.specs.bevel_set import SIDES
 
 RADIUS, ALPHA, HEIGHT = 60.0, math.radians(20.0), 500.0

@@ -12,8 +12,8 @@ import pytest
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Setup
+from gearmath.machine.measuring import collision_check as probe_check
 from gearmath.machine.measuring.artefacts import Artefacts
-from gearmath.machine.measuring.measurement import collision_check as probe_check
 from gearmath.machine.measuring.probe import ProbeMachine
 from gearmath.machine.measuring.probe_errors import ErringProbe
 from gearmath.machine.measuring.probe_run import touch_count

@@ -1,0 +1,47 @@
+"""Backlash of a pair at the mean point, by turning the flanks of the pinion apart."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gearmath.bevel.design.rounding import to_step
+from gearmath.bevel.generation import solve_section
+from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.tooth import mean_backlash, mean_pitch_radius
+from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.specs.toml import checked
+
+
+def with_backlash(pinion: Member, gear: Member, backlash: float, like: Member, step: float = 0.0) -> Member:
+    """The pinion with its flanks turned about the work axis until the pair has a transverse backlash [mm].
+
+    That is the pitch less both tooth thicknesses at the mean point of the pitch cones. The space stays where it is in
+    ``like``, a pinion with about the same one. ``step`` [degree] is that of the work rotation offset.
+    """
+    turns = {flank: math.degrees(_azimuth(like, flank) - _azimuth(pinion, flank)) for flank in FLANKS}
+    placed = _turned(pinion, turns)
+    missing = backlash - mean_backlash(placed, gear)
+    half = math.degrees(missing / (2 * mean_pitch_radius(pinion)))
+    hand = -1 if pinion.hand == "right" else 1
+    # a wider space: each flank away from the middle of it
+    return _turned(placed, {flank: hand * SIDES[flank] * half for flank in FLANKS}, step)
+
+
+def _turned(member: Member, turns: dict[str, float], step: float = 0.0) -> Member:
+    """The member with work rotation offsets, in steps, that turn its flanks by angles [degree] about z_w."""
+    values = member.model_dump()
+    for flank, turn in turns.items():
+        offset = values[flank]["work_rotation_offset"] - turn
+        values[flank]["work_rotation_offset"] = math.remainder(to_step(offset, step), 360.0)
+    return checked(values, Member, "pinion")
+
+
+def _azimuth(member: Member, flank: str) -> float:
+    """Angle about z_w [rad] of a flank at the mean point of the pitch cone."""
+    delta, mean = math.radians(member.blank.pitch_angle), member.blank.mean_cone_distance
+    section = blade_sections(member.flank(flank), SIDES[flank])["main"]
+    place = np.array([mean * math.cos(delta)]), np.array([mean * math.sin(delta)])
+    (point,) = solve_section(generation_of(member, flank), section, *place).point
+    return math.atan2(point[1], point[0])

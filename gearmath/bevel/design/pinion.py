@@ -1,0 +1,204 @@
+"""The pinion's flank that a side asks for: from the crown gear by homotopy, then over its whole flank."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from gearmath.bevel.check_flank import FLAT_BLADE
+from gearmath.bevel.design import local_settings as local
+from gearmath.bevel.design.local_settings import FIRST, MOVING, NAMES, Local, Wanted
+from gearmath.bevel.design.request import Request
+from gearmath.bevel.design.rolling import Meeting
+from gearmath.bevel.design.whole_flank import Fitted, WholeFlank, fit
+from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section, turning_sense
+from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.turning import turned
+from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
+from gearmath.specs.bevel_set import SETTINGS, SIDES, Member
+from gearmath.specs.cut import ANGULAR
+from gearmath.specs.toml import checked
+
+#: Bounds of what is left free: pressure angle [rad]; 2C and 6D; motion of the sliding base [mm/rad]; tilt [rad].
+_ANGLES = math.radians(10), math.radians(30)
+_ROLL = 0.15, 1.0
+_HELICAL = 15.0
+_TILT = math.radians(15)
+_EXTRA = {
+    "blade_pressure_angle": ("blade_pressure_angle",), "modified_roll": ("modified_roll_2", "modified_roll_3"),
+    "cutter_tilt": ("cutter_tilt", "cutter_swivel"),
+    "helical_motion": ("helical_motion",),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class PinionFlank:
+    """One flank of the pinion as it was found: settings as x of ``local_settings.NAMES``, and how well they fit.
+
+    ``contact`` is where the first solution is cut, ``share`` the part of the gear's places that the blade reaches:
+    there it was fitted.
+    """
+
+    name: str
+    request: Request
+    problem: WholeFlank
+    contact: np.ndarray
+    fitted: Fitted
+    share: float
+
+    @property
+    def x(self) -> np.ndarray:
+        return self.fitted.local.x
+
+
+def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]) -> PinionFlank:
+    """The flank of the pinion from that of the crown gear, ``start``.
+
+    Raises ComputationError where the settings cannot be followed that far.
+    """
+    how, section = generation_of(start, name), blade_sections(start.flank(name), SIDES[name])["main"]
+    x, begin = _crown_gear(start, how, section, asked)
+    end = Wanted(asked.roll.point, asked.roll.normal, asked.roll.basis, asked.curvature,
+                 _root(start)[1], begin.cone, asked.own_path)  # fmt: skip
+    extra = tuple(extra for name in free for extra in _EXTRA[name])
+    found = local.followed(how, x, begin, end, (*local.UNKNOWN, *extra))
+    if found is None:
+        raise ComputationError(
+            f"pinion {name} flank: no settings were found that give the {asked.side} side its path, parabola and "
+            "pattern at the mean point; ask for a path nearer to 90 degrees, a smaller transmission error, or less "
+            "crowning"
+        )
+    bounds = _bounds(extra, found.x)
+
+    def problem(among: np.ndarray) -> WholeFlank:
+        meeting = Meeting(*(array[among] for array in vars(asked.meeting).values()))
+        return WholeFlank(how, end, meeting, asked.gap[among], local.UNKNOWN, extra, bounds)
+
+    # first the middle of the flank: on the way from there, no place comes to lie beyond a singular line
+    kept, contact = _reached(how, section, found, asked, asked.inner)
+    first = fit(problem(kept), found, contact)
+    near = found if first is None else first.local
+    kept, contact = _reached(how, section, near, asked, np.ones_like(kept))
+    whole = problem(kept)
+    fitted = fit(whole, near, contact)
+    if fitted is None:
+        raise ComputationError(
+            f"pinion {name} flank: the settings for the mean point leave parts of the flank uncut; ask for less of the "
+            "flank, or for a smaller transmission error"
+        )
+    return PinionFlank(name, asked, whole, contact, fitted, float(kept.mean()))
+
+
+def refitted(flank: PinionFlank, name: str, value: float) -> PinionFlank:
+    """The flank with a setting of the blade at a value [mm, rad], all others found anew.
+
+    One that was left free is held; for another the contact ellipse gives way, path and parabola stay (26.6).
+    Raises ComputationError where there is none.
+    """
+    problem, x = flank.problem, flank.x.copy()
+    if name in problem.extra:
+        problem = _without(problem, name)
+    elif name in problem.free:
+        problem = replace(problem, free=[*(one for one in problem.free if one != name), local.ACROSS])
+    x[NAMES.index(name)] = value
+    found = local.solve(problem.how, x, problem.wanted, problem.free)
+    fitted = None if found is None else fit(problem, found, flank.contact)
+    if fitted is None:
+        raise ComputationError(
+            f"pinion {flank.name} flank: no settings were found with {name} in steps of the shop, {value:.6g}"
+        )
+    return replace(flank, problem=problem, fitted=fitted)
+
+
+def _without(problem: WholeFlank, name: str) -> WholeFlank:
+    kept = [k for k, one in enumerate(problem.extra) if one != name]
+    return replace(problem, extra=tuple(problem.extra[k] for k in kept), bounds=problem.bounds[kept])
+
+
+def _crown_gear(member: Member, how: Generation, section: Section, asked: Request) -> tuple[np.ndarray, Wanted]:
+    """The crown gear's flank turned to the wanted point, at θ = 0 there: x, and what it has."""
+    P = asked.roll.point
+    at = solve_section(how, section, P[2:3], np.array([math.hypot(P[0], P[1])]))
+    if not at.converged.all():
+        raise ComputationError(f"{asked.side}: the crown gear's flank has no point where contact is wanted")
+    turn = math.atan2(P[1], P[0]) - math.atan2(at.point[0, 1], at.point[0, 0])
+    u, beta, theta = at.contact[0]
+    x = np.zeros(len(NAMES))
+    x[:2], x[FIRST : FIRST + len(SETTINGS)] = (u, beta), how.settings
+    x[NAMES.index("cradle_angle")] += theta
+    x[NAMES.index("work_rotation_offset")] += x[NAMES.index("ratio_of_roll")] * theta - turn
+    cone, depth = _root(member)
+    flat = Section(0.0, 1.0, float(how.settings[-2]), FLAT_BLADE)
+    direction, around = (math.cos(cone[0]), math.sin(cone[0])), np.array([[0.0, beta, theta]] * 2)
+    root = solve_curve(how, flat, np.zeros(2), direction, cone[1:], around)
+    x[2:6] = (root.contact[:, 1:] - [0.0, theta]).ravel()
+    there = Wanted(P, turned(at.normal, turn)[0], asked.roll.basis, asked.curvature, depth, cone, asked.own_path)
+    begin = local.between(there, there, 0.0)
+    return x, replace(begin, curvature=local.curvature(how, x, begin), depth=local.depth(how, x, begin))
+
+
+def _root(member: Member) -> tuple[np.ndarray, np.ndarray]:
+    """Pitch angle and cone distances of toe and heel (3,), and the depths (2,) of the blank's root there."""
+    blank = member.blank
+    delta = math.radians(blank.pitch_angle)
+    axial, radial = kernel("flank_place")(blank.vector, np.array([0.0, 1.0]), np.zeros(2))
+    along, depth = kernel("root_place")(np.stack([radial, 0 * radial, axial], axis=1), delta)
+    return np.array([delta, *along]), depth + blank.clearance
+
+
+def _reached(
+    how: Generation, section: Section, found: Local, asked: Request, among: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which conjugate places (n,) the blade reaches above its tip, not undercut, and where it cuts them (m,3)."""
+    moved = local.generation(how, found)
+    places = asked.meeting.point[:, 2], np.hypot(*asked.meeting.point[:, :2].T)
+    blade = Section(section.lower, section.upper, float(found.settings[-2]), float(found.settings[-1]))
+    at = solve_section(moved, blade, *places)
+    mean = turning_sense(moved, blade, np.array([[*found.x[:2], 0.0]]))
+    kept = among & at.converged & (at.contact[:, 0] >= section.lower) & (np.sign(at.sense) == np.sign(mean))
+    return kept, at.contact[kept]
+
+
+def _bounds(extra: tuple[str, ...], x: np.ndarray) -> np.ndarray:
+    """Least and largest values (p,2) of what is left free."""
+    ratio = x[NAMES.index("ratio_of_roll")]
+    table = {"blade_pressure_angle": _ANGLES, "helical_motion": (-_HELICAL, _HELICAL),
+             "cutter_tilt": (-_TILT, _TILT), "cutter_swivel": (-math.pi, math.pi)}  # fmt: skip
+    for name, most in zip(("modified_roll_2", "modified_roll_3"), roll_rows(ratio, _ROLL), strict=True):
+        table[name] = (-abs(most), abs(most))
+    return np.array([table[name] for name in extra]).reshape(-1, 2)
+
+
+def roll_rows(ratio: float, coefficients: tuple[float, ...]) -> np.ndarray:
+    """Coefficients of θ², θ³ of the work's rotation for 2C, 6D (10.7)."""
+    (row,) = kernel("modified_roll")(ratio, np.pad(np.array(coefficients), (0, 4 - len(coefficients))))
+    return np.asarray(row).ravel()[1 : 1 + len(coefficients)]
+
+
+def settings_table(x: np.ndarray) -> dict[str, Any]:
+    """Settings and motion of one flank as its file has them, mm and degrees."""
+    values = {
+        name: math.degrees(value) if name in ANGULAR else float(value)
+        for name, value in zip(SETTINGS, x[FIRST : FIRST + len(SETTINGS)], strict=True)
+    }
+    values["work_rotation_offset"] = math.remainder(values["work_rotation_offset"], 360.0)
+    values["cradle_angle"] = math.remainder(values["cradle_angle"], 360.0)
+    moving = dict(zip(MOVING, x[FIRST + len(SETTINGS) :], strict=False))
+    motion: dict[str, tuple[float, ...]] = {}
+    rows = np.array([moving["modified_roll_2"], moving["modified_roll_3"]])
+    if rows.any():
+        motion["modified_roll"] = tuple((rows / roll_rows(values["ratio_of_roll"], (1.0, 1.0))).tolist())
+    if moving["helical_motion"]:
+        motion["sliding_base"] = (float(moving["helical_motion"]),)
+    return {**values, "motion": motion}
+
+
+def with_flank(member: Member, name: str, x: np.ndarray) -> Member:
+    """The member with the settings of one flank."""
+    values = member.model_dump()
+    values[name] = {**values[name], **settings_table(x)}
+    return checked(values, Member, f"pinion {name} flank")

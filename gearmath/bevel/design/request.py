@@ -1,0 +1,169 @@
+"""What one side of a pair asks of its pinion: the place of the contact, its curvature, the gap over the whole flank."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.contact.local import MARKING
+from gearmath.bevel.contact.report import ARCSEC
+from gearmath.bevel.contact.surface import Surface
+from gearmath.bevel.design.rolling import GearFlank, Meeting, Roll
+from gearmath.errors import InputError
+from gearmath.kernels import kernel
+from gearmath.specs.bevel_set import Member
+from gearmath.specs.design import Contact
+
+#: Rows and columns of the gear's flank on which the gap is wanted, and heights at which its mate's tip is sought.
+_ROWS, _COLUMNS, _HEIGHTS = 7, 13, 41
+#: Parts of the height at which the vertex is tried, from, to and how many.
+_TRIED = (0.2, 0.8, 7)
+#: The middle of a flank reaches so far to either side, in parts of its width and of its height.
+_INNER = 0.3
+#: Path on the gear where none is asked for [degree]: it leans as lets one pair of teeth touch longest.
+_PATH = {"drive": 50.0, "coast": 130.0}
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is wanted of the pinion's flank of one ``side``.
+
+    ``place`` z_w, r_w of the vertex on the gear [mm]; ``parabola`` m' [rad/rad²]; ``path_angle`` on the gear,
+    ``own_path`` on the pinion [rad]; ``semi_axis`` [mm]; ``difference`` D (3,) and ``curvature`` K_2 + D (2,2) [1/mm];
+    ``roll`` of chapter 26; ``meeting`` and ``gap`` [mm] at places (n,) of the gear's flank that the pinion's tip
+    reaches; ``inner`` (n,) are those about the middle.
+    """
+
+    side: str
+    gear: GearFlank
+    roll: Roll
+    place: tuple[float, float]
+    parabola: float
+    path_angle: float
+    own_path: float
+    semi_axis: float
+    difference: np.ndarray
+    curvature: np.ndarray
+    meeting: Meeting
+    gap: np.ndarray
+    inner: np.ndarray
+
+
+def request(side: str, asked: Contact, gear: GearFlank, teeth: int, tip: np.ndarray) -> Request:
+    """What is asked of a side. ``tip`` (4,) is the pinion's border there (25.4).
+
+    Raises InputError where no pinion touches the gear as is asked, with the limit.
+    """
+    blank, surface = gear.surface.blank.vector, gear.surface
+    path = math.radians(_PATH[side] if asked.path_angle is None else asked.path_angle)
+    across = 0.5 if asked.position is None else asked.position[0]
+    lowest = _reached(gear, across, tip)
+    part = _middle(gear, across, lowest, path) if asked.position is None else asked.position[1]
+    up = lowest + (1 - lowest) * part
+    axial, radial = (float(value) for value in kernel("flank_place")(blank, across, up))
+    roll = gear.roll(axial, radial)
+    w = roll.vector
+    parabola = _parabola(side, asked.transmission_error / ARCSEC, teeth, roll)
+    semi_axis = asked.pattern_length * surface.blank.face_width / 2
+    given = (w, roll.acceleration, roll.lever)
+    (own,) = kernel("path_on_pinion")(*given, roll.sliding, parabola, path)
+    (D,) = kernel("synthesis")(*given, own, parabola, semi_axis, MARKING)
+    _check_ellipse(side, asked, matrix(D), float(own), surface.blank.face_width)
+    meeting, along, inner = _flank(gear, roll, lowest)
+    lever = np.full(len(along), abs(roll.lever))
+    (gap,) = kernel("wanted_gap")(meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever)
+    return Request(side, gear, roll, (axial, radial), parabola, path, float(own), semi_axis, D,
+                   roll.gear_curvature + matrix(D), meeting, gap, inner)  # fmt: skip
+
+
+def matrix(components: np.ndarray) -> np.ndarray:
+    """The symmetric matrix (2,2) of its three components."""
+    return components[[0, 1, 1, 2]].reshape(2, 2)
+
+
+def _reached(gear: GearFlank, across: float, tip: np.ndarray) -> float:
+    """The part of the gear's working depth from which on the pinion's tip reaches its flank."""
+    up = np.linspace(0.0, 1.0, _HEIGHTS)
+    places = kernel("flank_place")(gear.surface.blank.vector, np.full(_HEIGHTS, across), up)
+    inside = _inside(gear.meeting(places[0], places[1], 0.0), tip)
+    if not (inside > 0).any():
+        return 0.0
+    first = int(np.argmax(inside > 0))
+    if first == 0:
+        return 0.0
+    below, above = inside[first - 1 : first + 1]
+    return float(up[first - 1] + (up[first] - up[first - 1]) * below / (below - above))
+
+
+def _middle(gear: GearFlank, across: float, lowest: float, path: float) -> float:
+    """How high the vertex lies on the flank that the mate reaches so that both halves of a straight path last as long.
+
+    Each height is tried: how far the pinion turns from there to the tip, and to the lower end, along the path.
+    """
+    blank, parts = gear.surface.blank, np.linspace(*_TRIED)
+    places = kernel("flank_place")(blank.vector, np.full(2, across), np.array([lowest, 1.0]))
+    depth = math.hypot(*(float(place[1] - place[0]) for place in places))
+    lean = depth / math.tan(path) / blank.face_width
+    ups = np.concatenate([lowest + (1 - lowest) * parts, np.ones_like(parts), np.full_like(parts, lowest)])
+    shifts = np.concatenate([0 * parts, (1 - parts) * lean, -parts * lean])
+    rotation = gear.meeting(*_place(blank.vector, across + shifts, ups), 0.0).rotation
+    here, high, low = np.unwrap(rotation).reshape(3, -1)
+    balance = high + low - 2 * here
+    if not np.isfinite(balance).all() or balance[0] * balance[-1] >= 0:
+        return 0.5
+    order = np.argsort(balance)
+    return float(np.interp(0.0, balance[order], parts[order]))
+
+
+def _place(blank: np.ndarray, across: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    axial, radial = kernel("flank_place")(blank, across, up)
+    return axial, radial
+
+
+def _inside(meeting: Meeting, tip: np.ndarray) -> np.ndarray:
+    """Distance (n,) from the pinion's tip [mm], inside where positive."""
+    return tip[1] * meeting.point[:, 2] + tip[2] * np.hypot(*meeting.point[:, :2].T) + tip[3]
+
+
+def _flank(gear: GearFlank, roll: Roll, lowest: float) -> tuple[Meeting, np.ndarray, np.ndarray]:
+    """Conjugate places of the gear's flank above ``lowest``, and how far along the tooth each lies [mm]."""
+    up, across = (
+        one.ravel() for one in np.meshgrid(np.linspace(lowest, 1, _ROWS), np.linspace(0, 1, _COLUMNS), indexing="ij")
+    )
+    found = gear.meeting(*_place(gear.surface.blank.vector, across, up), roll.turn)
+    kept = np.isfinite(found.point).all(axis=1)
+    found = Meeting(*(array[kept] for array in vars(found).values()))
+    inner = (np.abs(across - 0.5) < _INNER) & (np.abs((up - lowest) / (1 - lowest) - 0.5) < _INNER)
+    return found, (found.point - roll.point) @ roll.basis[:, 0], inner[kept]
+
+
+def _parabola(side: str, amplitude: float, teeth: int, roll: Roll) -> float:
+    """m' [rad/rad²] for an amplitude [rad]. Raises InputError where no contact has such a parabola."""
+    found, unit = (float(kernel("wanted_parabola")(one, teeth, roll.lever)[0]) for one in (amplitude, 1.0))
+    most = roll.acceleration / (unit * roll.lever)  # there s of (26.6) vanishes
+    if not amplitude < most:
+        raise InputError(
+            f"{side}: transmission_error = {amplitude * ARCSEC:g}: must be below {most * ARCSEC:.4g} arcsec, where the "
+            "flanks would no longer roll on each other"
+        )
+    return found
+
+
+def _check_ellipse(side: str, asked: Contact, D: np.ndarray, own: float, face_width: float) -> None:
+    """The path needs a curvature along it, and the ellipse must be longer than that alone makes it."""
+    along = np.array([math.cos(own), math.sin(own)])
+    least = 2 * math.sqrt(2 * MARKING / float(along @ D @ along)) / face_width
+    if not asked.pattern_length > least:
+        raise InputError(
+            f"{side}: pattern_length = {asked.pattern_length:g}: must be above {least:.4g} with this path and "
+            f"transmission_error = {asked.transmission_error:g}; the path may come nearer to 90 degrees instead"
+        )
+
+
+def gear_flank(surface: Surface, pinion: Member, shaft_angle: float) -> GearFlank:
+    """The gear's flank in its pair; ``shaft_angle`` in degrees."""
+    blank = pinion.blank
+    return GearFlank(surface, math.radians(shaft_angle), pinion.teeth / surface.teeth, math.radians(blank.pitch_angle),
+                     blank.mean_cone_distance, blank.pitch_apex_beyond_crossing_point)  # fmt: skip

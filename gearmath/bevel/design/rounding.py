@@ -1,0 +1,64 @@
+"""The steps to which a shop sets machine and cutter: the gear first, then the pinion that goes with the rounded gear.
+
+Of the pinion, blade angle and point radius are rounded one after the other, and what is still free is fitted again to
+each; the rest is rounded as it is. What the numbers then give is told by the contact analysis of the rounded set.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from gearmath.bevel.design.local_settings import NAMES
+from gearmath.bevel.design.pinion import PinionFlank, refitted
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member
+from gearmath.specs.cut import ANGULAR, RATIO
+from gearmath.specs.design import Shop
+from gearmath.specs.toml import checked
+
+_BLADE = {"blade_pressure_angle": "blade_angle_step", "blade_point_radius": "blade_radius_step"}
+
+
+def to_step(value: float, step: float) -> float:
+    """The whole multiple of a step that is nearest to a value; the value itself where there is no step."""
+    return round(value / step) * step if step else value
+
+
+def step_of(name: str, shop: Shop) -> float:
+    """The step of a setting [mm, degree]."""
+    if name in _BLADE:
+        return float(getattr(shop, _BLADE[name]))
+    if name == RATIO:
+        return shop.ratio_step
+    return shop.angle_step if name in ANGULAR else shop.length_step
+
+
+def rounded_gear(gear: Member, shop: Shop) -> Member:
+    """The gear with all of its settings in steps."""
+    values = gear.model_dump()
+    for flank in FLANKS:
+        for name in SETTINGS:
+            values[flank][name] = to_step(values[flank][name], step_of(name, shop))
+    return checked(values, Member, "gear")
+
+
+def rounded_pinion(flank: PinionFlank, shop: Shop) -> PinionFlank:
+    """A flank of the pinion with all of its settings in steps but the work rotation offset, which sets the backlash."""
+    found = flank
+    for name in _BLADE:
+        if step := step_of(name, shop):
+            found = refitted(found, name, _to_step(found, name, step))
+    x = found.x.copy()
+    for name in SETTINGS:
+        step = step_of(name, shop)
+        if step and name != "work_rotation_offset":
+            x[NAMES.index(name)] = _to_step(found, name, step)
+    if (x == found.x).all():
+        return found
+    local = replace(found.fitted.local, x=x)
+    return replace(found, fitted=replace(found.fitted, local=local))
+
+
+def _to_step(flank: PinionFlank, name: str, step: float) -> float:
+    value = float(flank.x[NAMES.index(name)])
+    return math.radians(to_step(math.degrees(value), step)) if name in ANGULAR else to_step(value, step)

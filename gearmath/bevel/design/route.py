@@ -1,0 +1,98 @@
+"""The route of a design: blank, gear in closed form, pinion by local synthesis and least squares, steps of the shop."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gearmath.bevel.blank import BevelBlank
+from gearmath.bevel.contact.report import SIDES as OWN
+from gearmath.bevel.contact.surface import nominal_surface
+from gearmath.bevel.crown_gear import Method, crown_gear_set
+from gearmath.bevel.design.backlash import with_backlash
+from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, with_flank
+from gearmath.bevel.design.request import gear_flank, request
+from gearmath.bevel.design.rounding import rounded_gear, rounded_pinion
+from gearmath.bevel.design.start import blank_for, edge_radius
+from gearmath.bevel.slots import slots_of
+from gearmath.bevel.tooth import mean_backlash
+from gearmath.errors import InputError
+from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
+from gearmath.specs.blank_data import BlankData
+from gearmath.specs.design import DesignData
+
+
+@dataclass(frozen=True)
+class Designed:
+    """A pair, the data of its blank, how each flank of its pinion was found, by side, and the backlash wanted [mm]."""
+
+    data: DesignData
+    pair: BevelSet
+    flanks: dict[str, PinionFlank]
+    backlash: float
+    blank_data: BlankData
+
+
+def design(data: DesignData, name: str = "design data", given: BevelSet | None = None) -> Designed:
+    """A pair from the data of a design, to the gear of a ``given`` set or to one of its own.
+
+    ``name`` is the data's file in messages. Raises InputError naming key, value and limit of what cannot be,
+    ComputationError where no settings are found.
+    """
+    if data.pinion.cutting != "fixed_setting":
+        raise InputError(
+            f"{name}: pinion.cutting = 'completing': a pinion is so far designed with 'fixed_setting' only"
+        )
+    if data.cutter.process != "face_milling":
+        raise InputError(f"{name}: cutter.process = 'face_hobbing': pairs are so far designed face milled only")
+    blank_data, blank = blank_for(data, name)
+    start = crown_gear_set(
+        blank_data, Method("fixed_setting", tilt=_tilt(data, blank), tilt_direction=math.pi / 2),
+        Method("completing", data.gear.generation), data.hand,
+    )  # fmt: skip
+    backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
+    pinion = _with_edge(
+        start.member("pinion"), edge_radius(data.pinion.blade_edge_radius, slots.pinion, blank.clearance)
+    )
+    gear = _with_edge(start.member("gear"), edge_radius(data.gear.blade_edge_radius, slots.wheel, blank.clearance))
+    gear = rounded_gear(gear, data.shop)
+    if given is not None:
+        pinion, gear = _on_blank_of(given.member("pinion"), pinion, name), given.member("gear")
+        if data.backlash is None:
+            backlash = mean_backlash(given.member("pinion"), gear)
+    flanks: dict[str, PinionFlank] = {}
+    found: Member = pinion
+    for side, own in OWN.items():
+        mating = nominal_surface(gear, FLANKS[1 - FLANKS.index(own)])
+        tip = nominal_surface(pinion, own).borders[0]
+        facing = gear_flank(mating, pinion, start.shaft_angle)
+        asked = request(side, data.contact(side), facing, pinion.teeth, tip)
+        flanks[side] = rounded_pinion(pinion_flank(pinion, own, asked, data.pinion.free), data.shop)
+        found = with_flank(found, own, flanks[side].x)
+    found = with_backlash(found, gear, backlash, pinion, data.shop.angle_step)
+    pair = start.model_copy(update={"pinion": found, "gear": gear})
+    return Designed(data, pair, flanks, backlash, blank_data)
+
+
+def _tilt(data: DesignData, blank: BevelBlank) -> float:
+    """Tilt of the pinion's cutter [rad]: as given, or for a Formate gear square to the gear's root line.
+
+    The gear's cutter stands square to that; a pinion cut by one that stands alike is nearly conjugate to it.
+    """
+    if data.pinion.cutter_tilt is not None:
+        return math.radians(data.pinion.cutter_tilt)
+    return blank.dedendum_angle_sum if data.gear.generation == "formate" else 0.0
+
+
+def _with_edge(member: Member, radius: float) -> Member:
+    """The member with an edge radius [mm] on the blades of both flanks."""
+    edged = {flank: member.flank(flank).model_copy(update={"blade_edge_radius": radius}) for flank in FLANKS}
+    return member.model_copy(update=edged)
+
+
+def _on_blank_of(given: Member, start: Member, name: str) -> Member:
+    """The crown gear's pinion on the blank of a given one. Raises InputError where the data are of another pair."""
+    for key, of_data, of_set in (("pinion_teeth", start.teeth, given.teeth), ("hand", start.hand, given.hand)):
+        if of_data != of_set:
+            raise InputError(f"{name}: {key} = {of_data!r}: must be {of_set!r}, as the set has it")
+    return start.model_copy(update={"blank": given.blank})

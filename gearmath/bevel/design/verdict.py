@@ -1,0 +1,181 @@
+"""What a design has come to: the exact contact of both sides, teeth, backlash; and what of it cannot be accepted."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gearmath.bevel.contact.local import Local, local
+from gearmath.bevel.contact.mesh import Mesh
+from gearmath.bevel.contact.report import ARCSEC, side_mesh
+from gearmath.bevel.contact.system import Assembly, Touch
+from gearmath.bevel.contact.thread import Thread, zero
+from gearmath.bevel.design.route import Designed
+from gearmath.bevel.pair import check_pair
+from gearmath.bevel.tooth import mean_backlash, tooth_space
+from gearmath.errors import InputError
+from gearmath.kernels import kernel
+from gearmath.specs.bevel_set import Member
+
+#: Least top land, in mean normal modules.
+LEAST_LAND = 0.2
+#: Second derivative of the transmission error at the vertex: what it may be off, unless the shop's steps make it so.
+PARABOLA = 0.02
+_PLACES = ("toe", "mean", "heel")
+#: The vertex is sought among so many rotations of a thread.
+_SOUGHT = 41
+
+
+@dataclass(frozen=True)
+class Vertex:
+    """Where the gear runs furthest ahead within both flanks, and by how much it lags half a pitch on either side [rad].
+
+    NaN where the contact has left both flanks there.
+    """
+
+    touch: Touch
+    local: Local
+    lag: tuple[float, float]
+    place: tuple[float, float]
+
+
+def vertex(run: Mesh) -> Vertex | None:
+    """The vertex of the parabola of a pair of teeth, None where the contact within both flanks has none."""
+    system, best = run.system, None
+    for thread, segment in run.interior:
+        rotations = np.linspace(*segment.ends, _SOUGHT)
+        lead = system.sense * thread.errors(system, rotations)
+        if np.isnan(lead).all():
+            continue
+        k = int(np.nanargmax(lead))
+        found = _flat(run, thread, rotations[max(k - 1, 0)], rotations[min(k + 1, _SOUGHT - 1)])
+        if found is not None and (best is None or run.lead(found) > run.lead(best[1])):
+            best = (thread, found)
+    if best is None:
+        return None
+    thread, touch = best
+    lags = []
+    for way in (-1, 1):
+        there = thread.at(system, touch.rotation + way * system.pitch / 2)
+        lags.append(math.nan if there is None else run.lead(touch) - run.lead(there))
+    place = system.gear_place(touch.x)
+    return Vertex(touch, local(system, touch, run.assembly), (lags[0], lags[1]), place)
+
+
+def _flat(run: Mesh, thread: Thread, low: float, high: float) -> Touch | None:
+    """The contact between two rotations at which the transmission has the slope of the ratio."""
+    system = run.system
+    return zero(lambda at: thread.at(system, at), lambda touch: float(touch.tangent[6]) + system.ratio, low, high)
+
+
+def top_land(member: Member, name: str) -> dict[str, float]:
+    """Normal top land [mm] at toe, mean and heel."""
+    space = tooth_space(member, name)
+    flank = space.concave
+    delta = math.radians(member.blank.pitch_angle)
+    _, spiral, _, _ = kernel("flank_angles")(delta, flank.point[0], flank.normal[0])
+    land = space.top_land * np.cos(spiral)
+    return dict(zip(_PLACES, (float(land[k]) for k in (0, len(land) // 2, -1)), strict=True))
+
+
+def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
+    """The figures of a design by name, and the contact of both sides.
+
+    Raises InputError with the limit that is broken: the pair is none, runs on edges, or has too thin a tooth.
+    """
+    try:
+        check_pair(made.pair)
+    except InputError as error:
+        said = re.sub(r"; (no single setting|the setting that alone).*", "", str(error))
+        raise InputError(
+            f"the pair that was found is refused: {said}; another mean_addendum_factor, thickness_factor, pressure "
+            "angle, cutter_radius or method of the gear is needed"
+        ) from error
+    runs = {side: side_mesh(made.pair, side, Assembly()) for side in made.flanks}
+    pinion, gear = made.pair.member("pinion"), made.pair.member("gear")
+    module = mean_module(made)
+    lands = {name: top_land(member, name) for name, member in (("pinion", pinion), ("gear", gear))}
+    for name, land in lands.items():
+        place = min(land, key=lambda one: land[one])
+        if not land[place] >= LEAST_LAND * module:
+            raise InputError(
+                f"{name}: top land of {land[place]:.3g} mm at the {place}: must be at least {LEAST_LAND * module:.3g} "
+                f"mm, {LEAST_LAND:g} of the mean normal module; thickness_factor or mean_addendum_factor must change"
+            )
+    figures: dict[str, Any] = {
+        "cutter_radius_mm": made.blank_data.cutter.cutter_radius,
+        "mean_normal_module_mm": module,
+        "data_type_2": None if made.blank_data.data_type_2 is None else made.blank_data.data_type_2.model_dump(),
+        "backlash_mm": {"asked": made.backlash, "found": mean_backlash(pinion, gear)},
+        "top_land_mm": lands,
+    }
+    stepped = any(made.data.shop.model_dump().values())
+    for side, run in runs.items():
+        figures[side] = _side(made, side, run, stepped)
+    return figures, runs
+
+
+def mean_module(made: Designed) -> float:
+    """Mean normal module [mm] of the pair."""
+    gear = made.pair.member("gear")
+    blank, teeth = gear.blank, gear.teeth
+    transverse = 2 * blank.mean_cone_distance * math.sin(math.radians(blank.pitch_angle)) / teeth
+    return transverse * math.cos(math.radians(made.data.mean_spiral_angle))
+
+
+def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]:
+    """The figures of one side. Raises InputError where it does not run as asked."""
+    flank, asked = made.flanks[side], made.data.contact(side)
+    found = vertex(run)
+    if run.outcome == "interior contact" and found is None:
+        raise InputError(
+            f"{side}: transmission_error = {asked.transmission_error:g} arcsec: the parabola has no vertex within both "
+            "flanks; position must be given, or the path come nearer to 90 degrees"
+        )
+    if run.outcome != "interior contact" or found is None:
+        raise InputError(
+            f"{side}: {run.outcome}, with a contact ratio of {run.contact_ratio:.3g} within the flanks, which must let "
+            "one pair of teeth take over from the next: a path nearer to the length of the tooth "
+            f"(path_angle, now {math.degrees(flank.request.path_angle):.4g}), a smaller transmission_error (now "
+            f"{asked.transmission_error:g}) or a shorter pattern_length (now {asked.pattern_length:g}) is needed"
+        )
+    second, wanted = found.local.second_derivative, flank.request.parabola
+    if not stepped and not abs(second - wanted) <= PARABOLA * abs(wanted):
+        raise InputError(
+            f"{side}: transmission_error = {asked.transmission_error:g} arcsec: the second derivative at the vertex is "
+            f"{second / wanted:.1%} of the one that belongs to it, which must be within {PARABOLA:.0%}"
+        )
+    spread = run.leads.peak_to_peak
+    lag = [None if math.isnan(one) else one * ARCSEC for one in found.lag]
+    return {
+        "outcome": run.outcome,
+        "contact_ratio": run.contact_ratio,
+        "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
+        "second_derivative": {"asked": wanted, "found": second},
+        "lag_half_a_pitch_from_vertex_arcsec": lag,
+        "vertex": {
+            "gear_cone_distance_mm": found.place[0],
+            "gear_height_mm": found.place[1],
+            "asked_mm": list(_asked_place(made, side)),
+        },
+        "path_angle_deg": {
+            "asked": math.degrees(flank.request.path_angle),
+            "found": math.degrees(found.local.path_angle),
+        },
+        "semi_axes_mm": {"asked_major": flank.request.semi_axis, "found": list(found.local.semi_axes)},
+        "ease_off_rms_um": flank.fitted.rms * 1000,
+        "share_of_flank": flank.share,
+        "bounds_reached": list(flank.fitted.active),
+    }
+
+
+def _asked_place(made: Designed, side: str) -> tuple[float, float]:
+    """Cone distance and height on the gear [mm] at which the vertex was asked for."""
+    axial, radial = made.flanks[side].request.place
+    delta = math.radians(made.pair.member("gear").blank.pitch_angle)
+    along, deep = kernel("root_place")(np.array([radial, 0.0, axial]), delta)
+    return float(along), -float(deep)

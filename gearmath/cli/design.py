@@ -1,0 +1,93 @@
+"""``gearmath design``: a pair from the few data of a designer, or a pinion to a given gear."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from gearmath.cli.common import JSON, about, bar, echo_json, output, plot, save_plot, table
+
+
+@click.command()
+@click.argument("data", metavar="DESIGN.toml")
+@output("gear set, TOML")
+@click.option(
+    "--from", "given", metavar="SET.toml", help="Design the pinion to the gear of this set: file, or bundled."
+)
+@JSON
+@plot("transmission error, path and pattern of both sides")
+def design(data: str, target: Path, given: str | None, as_json: bool, picture: Path | None) -> None:
+    """A spiral bevel pair from tooth counts, module, face width, spiral angle and cutter: blank and settings.
+
+    DESIGN.toml is a file of design data, or a bundled one such as design_7x43.toml; every key is in docs/design.md.
+    What is asked of the contact is met at the mean point and checked by the exact contact of the rounded settings;
+    what cannot be is refused, with the limit that binds.
+    """
+    from gearmath.bevel.design.route import design as designed
+    from gearmath.bevel.design.verdict import verdict
+    from gearmath.bevel.pair import load_pair
+    from gearmath.errors import InputError
+    from gearmath.files import write_text
+    from gearmath.specs.design import load_design
+    from gearmath.specs.set_text import set_text
+    from gearmath.specs.toml import find
+
+    path = find(data)
+    asked = load_design(path)
+    gear = None if given is None else load_pair(find(given))
+    if gear is not None and len(gear.members) < 2:
+        raise InputError(f"{given}: a set with both members is needed: the blank of the pinion is taken from it")
+    with bar(2, "step", quiet=as_json) as done, about(path):
+        made = designed(asked, str(path), gear)
+        done(1)
+        figures, runs = verdict(made)
+        done(1)
+    write_text(target, set_text(made.pair))
+    if picture is not None:
+        from gearmath.plot.contact import contact_figure
+
+        save_plot(contact_figure(runs), picture, as_json)
+    if as_json:
+        echo_json({"set": str(target), **figures})
+        return
+    click.echo(_text(asked.title, figures))
+    click.echo(f"{target}: written")
+
+
+def _text(title: str, figures: dict[str, Any]) -> str:
+    """The figures of a design for people."""
+    backlash, lands = figures["backlash_mm"], figures["top_land_mm"]
+    rows = [
+        ["cutter radius", f"{figures['cutter_radius_mm']:g} mm"],
+        ["mean normal module", f"{figures['mean_normal_module_mm']:.4f} mm"],
+        ["backlash at the mean point, transverse", f"{backlash['found']:.4f} mm, asked {backlash['asked']:.4f}"],
+        *([f"top land of the {name}, normal, toe mean heel", " ".join(f"{one:.3f}" for one in land.values()) + " mm"]
+          for name, land in lands.items()),
+    ]  # fmt: skip
+    parts = [title, table(["figure", "value"], rows)]
+    for side in ("drive", "coast"):
+        parts.append(_side(side, figures[side]))
+    return "\n\n".join(parts)
+
+
+def _side(side: str, found: dict[str, Any]) -> str:
+    second, path, axes = found["second_derivative"], found["path_angle_deg"], found["semi_axes_mm"]
+    lag = ["left the flanks" if one is None else f"{one:.3f}" for one in found["lag_half_a_pitch_from_vertex_arcsec"]]
+    vertex, bounds = found["vertex"], ", ".join(found["bounds_reached"]) or "none"
+    rows = [
+        ["second derivative at the vertex", f"{second['found']:.5g}, asked {second['asked']:.5g} rad/rad^2"],
+        ["lag half a pitch before and after it", f"{lag[0]} and {lag[1]} arcsec"],
+        ["transmission error, peak to peak", f"{found['peak_to_peak_arcsec']:.3f} arcsec"],
+        ["contact ratio within the flanks", f"{found['contact_ratio']:.3f}"],
+        ["vertex on the gear", f"cone distance {vertex['gear_cone_distance_mm']:.3f}, height "
+         f"{vertex['gear_height_mm']:+.3f} mm"],
+        ["path from root line towards tip", f"{path['found']:.2f}, asked {path['asked']:.2f} degrees"],
+        ["half axes of the ellipse", f"{axes['found'][0]:.3f} and {axes['found'][1]:.3f} mm, asked "
+         f"{axes['asked_major']:.3f}"],
+        ["ease-off less the wanted one", f"{found['ease_off_rms_um']:.2f} um RMS on {found['share_of_flank']:.0%} of "
+         "the places its mate reaches"],
+        ["bounds reached", bounds],
+    ]  # fmt: skip
+    return f"{side}: {found['outcome']}\n" + table(["figure", "value"], rows)

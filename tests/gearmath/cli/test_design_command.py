@@ -1,0 +1,112 @@
+"""``gearmath design``: its JSON and text, the set that it writes, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from gearmath.bevel.pair import load_pair
+from gearmath.specs.design import DesignData
+from gearmath.specs.toml import bundled, parse
+
+DATA = """
+title = "12 x 36"
+pinion_teeth = 12
+wheel_teeth = 36
+outer_transverse_module = 4.96
+face_width = 25.4
+{more}
+
+[cutter]
+cutter_radius = {cutter}
+"""
+
+
+@pytest.fixture
+def written(tmp_path):
+    """A file of design data with more keys at the top, another cutter, and text at its end."""
+
+    def write(more: str = "", cutter: str = "76.2", end: str = ""):
+        path = tmp_path / "design.toml"
+        path.write_text(DATA.format(more=more, cutter=cutter) + end, "utf-8")
+        return path
+
+    return write
+
+
+def test_set_that_is_written_is_a_pair_with_the_figures_of_the_json(command, tmp_path):
+    target = tmp_path / "set.toml"
+    status, out, err = command("design", "design_7x43.toml", "-o", target, "--json")
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    pair = load_pair(target)
+    assert (pair.member("pinion").teeth, pair.member("gear").teeth) == (7, 43)
+    status, out, _ = command("contact", target, "--json")
+    contact = json.loads(out)
+    for side in ("drive", "coast"):
+        assert contact[side]["outcome"] == found[side]["outcome"] == "interior contact"
+        assert contact[side]["peak_to_peak_arcsec"] == pytest.approx(found[side]["peak_to_peak_arcsec"], abs=1e-3)
+
+
+def test_7x43_pair_is_what_the_data_ask_for(command, tmp_path):
+    """No undercut (the set is a pair), top land, backlash, parabola within 5 %, path within the flank, rounded."""
+    status, out, _ = command("design", "design_7x43.toml", "-o", tmp_path / "set.toml", "--json")
+    assert status == 0
+    found = json.loads(out)
+    for land in found["top_land_mm"].values():
+        assert min(land.values()) >= 0.2 * found["mean_normal_module_mm"]
+    assert found["backlash_mm"]["found"] == pytest.approx(found["backlash_mm"]["asked"], abs=0.001)
+    for side in ("drive", "coast"):
+        second = found[side]["second_derivative"]
+        assert second["found"] == pytest.approx(second["asked"], rel=0.05)
+        assert None not in found[side]["lag_half_a_pitch_from_vertex_arcsec"]
+
+
+def test_text_says_what_was_asked_and_found(command, written, tmp_path):
+    status, out, _ = command("design", written(), "-o", tmp_path / "set.toml", "--plot", tmp_path / "contact.png")
+    assert status == 0
+    assert "asked 50.00 degrees" in out
+    assert (tmp_path / "contact.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("more", "cutter", "end", "sentence"),
+    [
+        ("hypoid_offset = 20.0", "76.2", "", r"hypoid_offset = 20: must be 0"),
+        ("", "20.0", "", r"cutter\.cutter_radius = 20: .* must be at least \d"),
+        ("", "80.0\nradii = [63.5, 76.2]", "", r"cutter_radius 80 is not on the list of radii: 63\.5, 76\.2"),
+        ("", "76.2", "[drive]\npath_angle = 16.0\npattern_length = 0.1\n", r"drive: pattern_length = 0\.1: .*above"),
+        ("", "76.2", "[coast]\npath_angle = 50.0\n", r"coast: edge contact.*path_angle, now 50"),
+        ("", "76.2", "[coast]\npath_angle = 5.0\n", r"coast\.path_angle = 5.*at least 15"),
+        ("face_widht = 3", "76.2", "", r"face_widht"),
+        ("", "76.2", '[pinion]\ncutting = "completing"\n', r"pinion\.cutting = 'completing'"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_what_binds(refused, written, tmp_path, more, cutter, end, sentence):
+    target = tmp_path / "set.toml"
+    refused(rf"design\.toml.*(?:{sentence})", "design", written(more, cutter, end), "-o", target)
+    assert not target.exists()
+
+
+def test_gear_of_another_pair_is_refused(refused, written, tmp_path):
+    refused(
+        r"pinion_teeth = 12: must be 7", "design", written(), "--from", "crown_gear_7x43.toml", "-o", tmp_path / "s"
+    )
+
+
+def test_cutter_nearest_to_the_mean_cone_distance_is_chosen_from_the_list(command, written, tmp_path):
+    path = written(cutter="0")
+    path.write_text(path.read_text("utf-8").replace("cutter_radius = 0", "radii = [63.5, 76.2, 114.3]"), "utf-8")
+    status, out, _ = command("design", path, "-o", tmp_path / "set.toml", "--json")
+    assert status == 0
+    assert json.loads(out)["cutter_radius_mm"] == 76.2  # mean cone distance 81.4
+
+
+def test_factors_that_nobody_has_chosen_are_those_of_the_standards_sample():
+    """ISO 23509:2016, table F.2: 14 x 39 has 0.24737 and 0.0915 printed."""
+    text = bundled("blank_iso23509_sample1.toml").read_text("utf-8")
+    head = text.split("[data_type_2]")[0].split("[taper]")[0].replace('process = "face_milling"', "")
+    data = parse(head, DesignData, "sample").blank_data(114.3).data_type_2
+    assert data.mean_addendum_factor == pytest.approx(0.24737, abs=5e-6)
+    assert data.thickness_factor == pytest.approx(0.0915, abs=5e-5)
