@@ -14,6 +14,10 @@ import pytest
 from gearmath import cli
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.nominal_file import nominal_flank
+from gearmath.plot import evaluation_figure
+from gearmath.quality.evaluation.member import evaluate_member
+from gearmath.report.charts import flank_charts
+from gearmath.report.measurement import Measurement
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import join, read_flank_csv, write_flank_csv
 from gearmath.specs.toml import bundled
@@ -287,6 +291,17 @@ def test_no_uncertainty_on_the_sheet_is_zero(page):
         for row in rows[1:]:
             for name, cell in zip(rows[0], row, strict=False):
                 assert not (name == "u" and cell and not re.search("[1-9]", cell)), (caption, row)
+
+
+@pytest.mark.parametrize("seat", [SEAT, 0 * SEAT], ids=["clamped", "in a good seat"])
+def test_sheet_and_picture_take_the_same_off_at_the_ring(gear_set, tmp_path, seat):
+    """Whether or not a clamping was taken out: the rotation that both flanks have in common is in neither."""
+    file = written(tmp_path / "m.csv", gear_set, seat)
+    found = evaluate_member(read_flank_csv(file), gear_set.pinion, "pinion")
+    sheet = flank_charts(Measurement("t", "m.csv", gear_set.pinion, found, None), {})
+    words = [unescape(re.search(r">([^<]*taken off there[^<]*)<", svg)[1]) for svg, _ in sheet]
+    labels = [axes.get_xlabel() for axes in evaluation_figure("t", found).axes]
+    assert [label.partition(": after; ")[2] or label for label in labels if "taken off" in label] == words
 
 
 @pytest.mark.slow
