@@ -120,7 +120,8 @@ def _member_machine(
     """The machine with the member on it, nominal or as ``measured`` says, clamped as the shop does."""
     from gearmath.machine.measuring.probe import ProbeMachine
     from gearmath.machine.milling.milled_surface import MilledSurface
-    from gearmath.quality.evaluation.nominal import check_belongs, check_points, nominal_rows
+    from gearmath.quality.evaluation.file_checks import check_belongs, check_points
+    from gearmath.quality.evaluation.nominal import nominal_rows
     from gearmath.specs.flank_csv import read_flank_csv
 
     seat = shop.measuring_clamp(member) if shop else None
@@ -129,6 +130,6 @@ def _member_machine(
     file = read_flank_csv(measured)
     with about(measured):
         check_belongs(spec, member, file)
-        check_points(file, nominal_rows(file, spec, member))
+        check_points(file, nominal_rows(file, spec, member), spec, member)
         metal = MilledSurface(file, spec, member, str(measured))
     return ProbeMachine(spec, member, machine, calibration, metal, metal.lowest, seat)

@@ -143,7 +143,8 @@ def _grades(tolerance: dict[str, Any]) -> Iterator[str]:
         yield f"grades: {_list(known)} (m_mn {module:.3f} mm, d_T {diameter:.2f} mm)"
     if tolerance["withheld"]:
         for flank, grades in tolerance["grades_of_flanks"].items():
-            yield f"grades of the {flank} flank alone: {_list(grades)}"
+            if grades:
+                yield f"grades of the {flank} flank alone: {_list(grades)}"
         reasons: dict[str, list[str]] = {}
         for name, why in tolerance["withheld"].items():
             reasons.setdefault(why, []).append(name)

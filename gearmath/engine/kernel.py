@@ -63,7 +63,7 @@ class Kernel:
         for array, is_many, quantity in zip(arrays, many, self.inputs, strict=True):
             if array.shape != (*((n,) if is_many else ()), *quantity.shape):
                 raise ValueError(f"{self.name}: {quantity.name} has shape {array.shape}, expected {quantity.shape}")
-            flats.append(_by_columns(array.reshape(n if is_many else 1, *quantity.shape), quantity))
+            flats.append(_by_columns(array, n if is_many else 1, quantity))
         if not any(many):
             many[:] = [True] * len(many)
         results = runner(self.function, tuple(many))(flats, n) if n else [np.empty((0, q.size)) for q in self.outputs]
@@ -78,11 +78,11 @@ class Kernel:
         return Kernel(self.function.expand(), self.description, self.inputs, self.outputs, self.source, self.requires)
 
 
-def _by_columns(array: np.ndarray, quantity: Quantity) -> np.ndarray:
-    """Elements (n, size) of a quantity as CasADi has them, column by column."""
+def _by_columns(array: np.ndarray, n: int, quantity: Quantity) -> np.ndarray:
+    """Elements (n, size) of a quantity at n points as CasADi has them, column by column."""
     if len(quantity.shape) == 2:
-        array = array.transpose(0, 2, 1)
-    return np.ascontiguousarray(array).reshape(len(array), quantity.size)
+        array = array.reshape(n, *quantity.shape).transpose(0, 2, 1)
+    return np.ascontiguousarray(array).reshape(n, quantity.size)
 
 
 def _by_rows(array: np.ndarray, quantity: Quantity) -> np.ndarray:

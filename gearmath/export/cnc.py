@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 from gearmath.bevel.flank import flank_point
-from gearmath.bevel.identify.least_squares import compensation_step
+from gearmath.bevel.identify.bounded_step import compensation_step
 from gearmath.bevel.identify.on_line import flank_on_line
 from gearmath.engine.kernel import Kernel
 from gearmath.export.c import double_kernel

@@ -23,18 +23,25 @@ def member_figure(
     after: Mapping[str, Topography],
     pitch_before: Sequence[Pitch] = (),
     pitch_after: Sequence[Pitch] = (),
+    taken: Mapping[str, float] | None = None,
 ) -> Figure:
-    """Both flanks of a member before and after, at one scale, and its pitch, in one picture."""
-    drawn = _topographies(before, after, {})
+    """Both flanks of a member before and after, at one scale, and its pitch, in one picture.
+
+    ``taken`` [mm] of each flank is what was taken off ``before`` at the reference point, where it was turned to zero.
+    """
+    drawn = _topographies(before, after, taken or {})
     if pitch_before:
         drawn.append(partial(draw_pitch, before=pitch_before, after=pitch_after))
     return _together(title, drawn)
 
 
 def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
-    """A measured member: flanks as measured and as registered, pitch polygons, runout; what the clamping was."""
+    """A measured member: flanks as measured and as registered, pitch polygons, runout; what the clamping was.
+
+    Where no clamping was taken out, they are as they are judged, without the rotation that both flanks have in common.
+    """
     registered = evaluation.taken_out is not None
-    before, after = evaluation.as_measured, evaluation.flanks if registered else {}
+    before, after = (evaluation.as_measured, evaluation.flanks) if registered else (evaluation.flanks, {})
     first, last = ({k: f.chart for k, f in each.items() if f.chart is not None} for each in (before, after))
     shown = after or before
     taken = {k: f.mean.at_reference for k, f in shown.items() if f.mean is not None}

@@ -78,8 +78,11 @@ def pictures(measurement: Measurement, after: Mapping[str, Topography]) -> dict[
     if after:
         words = "both measured" if measurement.again else "measured, and expected after the correction"
         before = means(found) if measurement.again else first(found)
+        later = (measurement.again or found).file
         figure = member_figure(
-            f"{found.member}: {words}", before, after, pitches(found), pitches_after(measurement)
+            f"{found.member}: {words}", {flank: zeroed(each, found.file) for flank, each in before.items()},
+            {flank: zeroed(each, later) for flank, each in after.items()}, pitches(found), pitches_after(measurement),
+            {flank: each.at_reference for flank, each in (after if before.keys() == after.keys() else before).items()},
         )  # fmt: skip
         drawn["corrected"] = png(figure)
     return drawn

@@ -79,3 +79,19 @@ def micro(value: float) -> str:
     if not np.isfinite(value):
         return ""
     return f"{0.0 if abs(value) < 1e-6 else value * 1000:.2f}"
+
+
+def unsure(value: float) -> str:
+    """A standard uncertainty in mm as µm: none is zero."""
+    return "< 0.01" if 0 < value < 5e-6 else micro(value)
+
+
+def taken_out(found: Evaluation) -> str:
+    """What was taken out of the deviations before they were judged, in words."""
+    parts = ["drift"] * bool(found.drifts) + ["clamping"] * (found.taken_out is not None)
+    parts += ["the rotation that both flanks have in common"] * (found.rotation is not None)
+    return (
+        f"{' and '.join([', '.join(parts[:-1]), parts[-1]] if parts[1:] else parts)} taken out"
+        if parts
+        else ("nothing taken out")
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -12,14 +12,14 @@ from gearmath.bevel.identify.variables import reading
 from gearmath.page import Page
 from gearmath.quality.correction.analysis import Analysis, weak_words
 from gearmath.quality.correction.member import Correction, setting_changes
-from gearmath.report.measurement import Measurement, in_words, micro
+from gearmath.report.measurement import Measurement, in_words, micro, taken_out
 
 
 def settings_sections(page: Page, measurement: Measurement) -> None:
     """The settings that change, and what is not corrected, where there is a correction."""
     if measurement.correction is not None:
         _settings_section(page, measurement, measurement.correction)
-        _limits_section(page, measurement.correction, measurement.caused)
+        _limits_section(page, measurement, measurement.correction)
 
 
 def _settings_section(page: Page, measurement: Measurement, correction: Correction) -> None:
@@ -31,41 +31,53 @@ def _settings_section(page: Page, measurement: Measurement, correction: Correcti
         u = standard.get((flank, name), math.nan)
         values = (f"{value * factor:.6f}" for value in (old, new, new - old))
         setting = f"{flank}: {name.replace('_', ' ')}"
-        rows.append([setting, *values, f"{u * factor:.6f}" if math.isfinite(u) else "", unit])
+        rows.append([setting, *values, _sure(u * factor), unit])
     page.table("Settings that change", ["setting", "old", "new", "change", "u", "unit"], rows)
     if correction.index is not None:
         size = math.degrees(np.ptp(correction.index)) * 3600
         page.paragraph(f"The indexing of every tooth is corrected as well, within a range of {size:.1f} arcseconds.")
 
 
-def _limits_section(page: Page, correction: Correction, caused: Mapping[str, float]) -> None:
+def _sure(u: float) -> str:
+    """A standard uncertainty with six digits, or fewer significant ones: none is zero."""
+    return "" if not math.isfinite(u) else f"{u:.6f}" if u >= 5e-7 or u == 0 else f"{u:.1e}"
+
+
+def _limits_section(page: Page, measurement: Measurement, correction: Correction) -> None:
     page.subheading("What is not corrected, and why")
     rows = []
     for group, result in correction.identified.items():
         values = (correction.measured_rms(group), correction.reachable[group], result.rms_after)
         rows.append([" and ".join(group), *map(micro, values)])
     head = ["flanks", "RMS measured", "best that settings reach", "expected"]
-    page.table("RMS of the flanks / µm", head, rows)
+    turned = ", turned so that least is left" if correction.rotation.angles.any() else ""
+    page.table(
+        f"RMS of the flanks / µm: of the tooth that was corrected, {taken_out(measurement.evaluation)}{turned}, not "
+        "zeroed at the reference point",
+        head, rows,
+    )  # fmt: skip
     for group, analysis in correction.analysis.items():
         result = correction.identified[group]
-        for sentence in _limits(" and ".join(group), analysis, result, correction.reachable[group]):
+        for sentence in _limits(" and ".join(group), analysis, result, correction, group):
             page.paragraph(sentence)
     for flank, count in correction.left_out.items():
         if count:
             page.paragraph(f"{flank} flank: {count} points of the grid took no part in the correction.", warning=True)
-    for flank, rms in caused.items():
+    for flank, rms in measurement.caused.items():
         page.paragraph(f"{flank} flank: errors of the measurement itself will leave {rms * 1000:.2f} µm RMS.")
     for flank, moved in correction.root.items():
         toe, heel = moved * 1000
         page.paragraph(f"{flank} flank: the root line moves by {toe:+.1f} µm at the toe, {heel:+.1f} µm at the heel.")
 
 
-def _limits(flanks: str, analysis: Analysis, found: Identification, reachable: float) -> Iterator[str]:
+def _limits(
+    flanks: str, analysis: Analysis, found: Identification, correction: Correction, group: tuple[str, ...]
+) -> Iterator[str]:  # fmt: skip
     """Sentences on what holds a correction back."""
-    names = ", ".join(analysis.names)
+    names, reachable, measured = ", ".join(analysis.names), correction.reachable[group], correction.measured_rms(group)
     yield (
         f"{flanks}: what {names} cannot do within their bounds stays, {reachable * 1000:.2f} µm RMS of "
-        f"{analysis.rms * 1000:.2f} µm."
+        f"{measured * 1000:.2f} µm."
     )
     if not found.converged:
         yield f"{flanks}: the fit stopped after {found.iterations} steps without converging: less may remain."

@@ -67,6 +67,9 @@ def _left_out(page: Page, members: Sequence[Measurement]) -> None:
         others = [text for text in found.remarks if text not in found.first]
         texts = [*absent, *found.first, *found.withheld, *others, *one.remarks]
         sentences += [f"{found.member}: {in_words(text)}." for text in texts]
+        if one.again is not None:
+            later = [*one.again.first, *one.again.withheld]
+            sentences += [f"{found.member}, measured again: {in_words(text)}." for text in later]
     if sentences:
         page.first("Left out, withheld, or not known", sentences)
 

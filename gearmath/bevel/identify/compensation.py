@@ -14,7 +14,7 @@ import numpy as np
 from gearmath.bevel.identify.deviation_surface import surface_map
 from gearmath.bevel.identify.flank_target import FlankTarget, located
 from gearmath.bevel.identify.identification import Identification
-from gearmath.bevel.identify.least_squares import compensation_step, minimize
+from gearmath.bevel.identify.least_squares import minimize
 from gearmath.bevel.identify.problem import Problem
 from gearmath.bevel.identify.variables import FREE, Bounds, variables_of
 
@@ -44,8 +44,8 @@ def identify(
     weighting = surface_map(targets, weights) if objective == "surface" else None
     problem = Problem(targets, variables, weighting, root_limit, noise)
     lower, upper = problem.bounds
-    step, p = compensation_step(len(lower)), len(variables)
-    found = minimize(problem, lower, upper, step, _MATTERS * noise**2)
+    p = len(variables)
+    found = minimize(problem, lower, upper, _MATTERS * noise**2)
     v, slack = found.variables[:p], found.variables[p:]
     residual, jacobian = problem.deviations(v)  # type: ignore[misc]
     rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (problem.measured, residual))

@@ -1,9 +1,7 @@
-"""Bounded, scaled Levenberg-Marquardt with a trust region: one step as a Kernel, and the iteration that judges steps.
+"""Bounded, scaled Levenberg-Marquardt with a trust region: the iteration that judges steps.
 
-The variables are scaled by their bounds, so that a change is as large as the part of its bound that it takes. A step
-solves, by passes that fix what has reached its bound,
-
-    (JᵀJ + λ μ I) s = -Jᵀr,   lower <= v + s <= upper,   μ the mean of the diagonal of JᵀJ
+The variables are scaled by their bounds, so that a change is as large as the part of its bound that it takes. The step
+is that of :mod:`gearmath.bevel.identify.bounded_step`, with the damping λ.
 
 λ is the trust region: it falls where the exact residual follows the prediction, and grows where it does not, or where
 there is no residual at all. A step along a curved valley leaves its floor: where it does not keep its promise, it is
@@ -16,18 +14,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 
-import casadi as ca
 import numpy as np
 
-from derivations import Quantity
-from gearmath.engine.kernel import Kernel
+from gearmath.bevel.identify.bounded_step import FLOOR, bounded_step
 
-#: Least damping, against the mean of the diagonal of JᵀJ: the square of the singular value that still counts.
-FLOOR = 1e-13
-#: Stands for infinity in the way to a bound.
-_FAR = 1e30
 #: The first step trusts the model this far. Until a step has not kept its promise λ falls fast, afterwards at most by
 #: the slow factor; where nothing is gained it grows.
 _FIRST, _FAST, _SLOW, _REFUSED = 1e-9, 100, 3, 8
@@ -36,8 +27,9 @@ _MOST_ITERATIONS = 120
 #: A step that keeps less of its promise says that the valley is curved: at most so many steps lead it back to the
 #: floor, each damped so many times more, a further one only if the one before left less than this part.
 _KEPT, _BACK, _STIFFER, _FALLS = 0.75, 2, 100.0, 0.25
-#: So many steps one after the other that gain less than this part of the sum of squares each: nothing more to gain.
-_STALLED, _IDLE = 3, 1e-3
+#: So many steps one after the other that gain next to nothing each: less than this in the RMS [mm], which no probe
+#: shows; but never less than the first part of the RMS, nor more than the second. More is not worth larger changes.
+_STALLED, _UNSEEN, _IDLE_PARTS = 3, 2.5e-6, (5e-4, 1.5e-3)
 #: Converged: an undamped step would change the residual by less than this in the RMS, and less than this part. [mm]
 _STILL, _STILL_PART = 1e-10, 1e-7
 #: Where a fit stops for another reason, so little in the RMS is nothing that is left. [mm]
@@ -48,88 +40,7 @@ _ROUNDING = 1e-13
 Fit = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray] | None]
 
 
-def _quantity(name: str, description: str, latex: str, domain: tuple[float, float], *shape: int) -> Quantity:
-    return Quantity(name, description, "mixed", latex, domain, shape=shape)
-
-
-@cache
-def compensation_step(p: int) -> Kernel:
-    """Kernel: one damped least-squares step of p scaled variables within their bounds, and what it promises.
-
-    ``promised`` is what the linear model says that the sum of squared residuals falls by.
-    """
-    matrix, fixed = ca.SX.sym("matrix", p, p), ca.SX.sym("fixed", p)
-    right, place = ca.SX.sym("right", p), ca.SX.sym("place", p)
-    keep = 1 - fixed
-    masked = matrix * (keep @ keep.T) + ca.diag(fixed)
-    # what is fixed has its place, and pulls at the others through the matrix
-    solved = _solve(masked, keep * (right - matrix @ (fixed * place)) + fixed * place)
-    solve = ca.Function("solve", [matrix, fixed, right, place], [solved])
-    quantities = (
-        _quantity(
-            "normal_matrix", "transposed Jacobian times Jacobian of the residuals, scaled", "J^TJ", (-1e4, 1e4), p, p
-        ),
-        _quantity("gradient", "transposed Jacobian times residuals, scaled", "J^Tr", (-1e4, 1e4), p),
-        _quantity("variables", "scaled variables now", r"\mathbf{v}", (-1.0, 1.0), p),
-        _quantity(
-            "lower",
-            "least scaled variables; as the greatest where a variable is not free",
-            r"\mathbf{v}_-",
-            (-1.0, 1.0),
-            p,
-        ),
-        _quantity("upper", "greatest scaled variables", r"\mathbf{v}_+", (-1.0, 1.0), p),
-        Quantity("damping", "damping against the mean of the diagonal", "1", r"\lambda", (0.0, 1e9)),
-    )
-    A, g, v, lower, upper, damping = (ca.MX.sym(q.name, *(q.shape or (1,))) for q in quantities)
-    damped = A + damping * (ca.trace(A) / p + 1e-300) * ca.MX.eye(p)
-    low, high = lower - v, upper - v
-    fixed_now = ca.logic_or(ca.logic_and(low >= 0, g >= 0), ca.logic_and(high <= 0, g <= 0))
-    step = ca.fmin(ca.fmax(0, low), high)
-    for _ in range(p):
-        # towards the solution as far as the first bound, which then holds; nothing on the way is worse
-        way = solve(damped, fixed_now, -g, step) - step
-        room = ca.if_else(way > 0, high - step, ca.if_else(way < 0, low - step, _FAR))
-        ratio = ca.fmax(0, room / ca.if_else(way == 0, 1, way))
-        part = ca.fmin(1, ca.mmin(ratio))
-        step = ca.fmin(ca.fmax(step + part * way, low), high)
-        fixed_now = ca.logic_or(fixed_now, ca.logic_and(ratio <= part, part < 1))
-    function = ca.Function(
-        "compensation_step", [A, g, v, lower, upper, damping],
-        [step, -(2 * ca.dot(g, step) + ca.bilin(A, step, step))],
-        [quantity.name for quantity in quantities], ["step", "promised"],
-    )  # fmt: skip
-    return Kernel(
-        function,
-        f"One bounded Levenberg-Marquardt step of {p} scaled settings, and the fall of the sum of squares it promises.",
-        quantities,
-        (
-            _quantity("step", "change of the scaled variables", r"\mathbf{s}", (-2.0, 2.0), p),
-            Quantity("promised", "fall of the sum of squares by the linear model", "mm2", "p"),
-        ),
-        "Levenberg-Marquardt in scaled variables, primal active set of bounds",
-    )
-
-
-def _solve(matrix: ca.SX, right: ca.SX) -> ca.SX:
-    """The solution (p,) of a symmetric definite system by factors L D Lᵀ, without pivots and roots."""
-    p = right.shape[0]
-    L, D = ca.SX.eye(p), ca.SX.zeros(p)
-    for k in range(p):
-        scaled = [L[k, j] * D[j] for j in range(k)]
-        D[k] = matrix[k, k] - sum((scaled[j] * L[k, j] for j in range(k)), ca.SX(0))
-        for i in range(k + 1, p):
-            L[i, k] = (matrix[i, k] - sum((scaled[j] * L[i, j] for j in range(k)), ca.SX(0))) / D[k]
-    x = [right[k] for k in range(p)]
-    for k in range(p):
-        x[k] = x[k] - sum((L[k, j] * x[j] for j in range(k)), ca.SX(0))
-    x = [x[k] / D[k] for k in range(p)]
-    for k in reversed(range(p)):
-        x[k] = x[k] - sum((L[j, k] * x[j] for j in range(k + 1, p)), ca.SX(0))
-    return ca.vertcat(*x)
-
-
-def enough(possible: np.ndarray, cost: np.ndarray | float, residuals: int, matters: float = 0.0) -> np.ndarray:
+def enough(possible: np.ndarray | float, cost: np.ndarray | float, residuals: int, matters: float = 0.0) -> np.ndarray:
     """Whether the gradient is as good as zero: what an undamped step could still gain of the sum of squares is noise.
 
     In the metric of the Jacobian, so that weak directions count by what they do to the residuals.
@@ -171,36 +82,32 @@ class Minimum(Place):
     converged: bool
 
 
-def minimize(
-    fit: Fit, lower: np.ndarray, upper: np.ndarray, step: Callable | None = None, matters: float = 0.0
-) -> Minimum:
+def minimize(fit: Fit, lower: np.ndarray, upper: np.ndarray, matters: float = 0.0) -> Minimum:
     """The variables within their bounds at which the residuals of ``fit`` are least, found from zero on.
 
     ``fit`` returns residuals (m,) and their Jacobian (m,p), or None where the surface cannot be found; it must succeed
-    at the start. ``step`` is the Kernel of the step, compiled or not. A step is taken only if the exact residual falls,
-    and none is sought that makes the sum of squares fall by no more than ``matters``; there are at most
-    ``_MOST_ITERATIONS`` steps. It has converged where the linear model has nothing to gain, where ``_STALLED`` steps
-    one after the other gained next to nothing, or where less than ``_NOTHING`` is left.
+    at the start. A step is taken only if the exact residual falls, and none is sought that makes the sum of squares
+    fall by no more than ``matters``; there are at most ``_MOST_ITERATIONS`` steps. It has converged where the linear
+    model has nothing to gain, where ``_STALLED`` steps one after the other gained next to nothing, or where less than
+    ``_NOTHING`` is left.
     """
-    step = step or compensation_step(len(lower))
     damping, iterations, curved, idle = _FIRST, 0, False, 0
     at = _place(fit, np.zeros(len(lower)), lower, upper)
     if at is None:
         raise ValueError("there is no residual at the start")
     while iterations < _MOST_ITERATIONS:
         normal = at.jacobian.T @ at.jacobian, at.jacobian.T @ at.residual
-        _, possible = step(*normal, at.variables, lower, upper, FLOOR)
-        if enough(possible, at.cost, len(at.residual), matters) or idle >= _STALLED:
+        change, promised = bounded_step(*normal, at.variables, lower, upper, damping)
+        if idle >= _STALLED or _nothing_to_gain(at, normal, lower, upper, promised, matters):
             return Minimum(**vars(at), iterations=iterations, converged=True)
         iterations += 1
-        change, promised = step(*normal, at.variables, lower, upper, damping)
-        wanted = at.cost - _KEPT * float(promised)
-        there = _followed(fit, step, at.variables + change, wanted, lower, upper, damping)
+        wanted = at.cost - _KEPT * promised
+        there = _followed(fit, at.variables + change, wanted, lower, upper, damping)
         gained = -np.inf if there is None else at.cost - there.cost
         curved = curved or bool(gained < _KEPT * promised)
         damping = next_damping(damping, gained, promised, curved)
         if there is not None and gained > 0:
-            idle = idle + 1 if gained < _IDLE * at.cost else 0
+            idle = idle + 1 if _is_idle(at, there) else 0
             at = there
         elif damping > _LARGEST:
             break
@@ -208,8 +115,26 @@ def minimize(
     return Minimum(**vars(at), iterations=iterations, converged=converged)
 
 
+def _nothing_to_gain(
+    at: Place, normal: tuple[np.ndarray, np.ndarray], lower: np.ndarray, upper: np.ndarray, promised: float,
+    matters: float,
+) -> bool:  # fmt: skip
+    """Whether an undamped step promises nothing; it promises more than the damped one, which is looked at first."""
+    if not enough(promised, at.cost, len(at.residual), matters):
+        return False
+    _, possible = bounded_step(*normal, at.variables, lower, upper, FLOOR)
+    return bool(enough(possible, at.cost, len(at.residual), matters))
+
+
+def _is_idle(before: Place, after: Place) -> bool:
+    """Whether a step gained next to nothing."""
+    first, second = (float(np.sqrt(place.cost / len(place.residual))) for place in (before, after))
+    least, most = (part * first for part in _IDLE_PARTS)
+    return first - second < min(max(_UNSEEN, least), most)
+
+
 def _followed(
-    fit: Fit, step: Callable, there: np.ndarray, wanted: float, lower: np.ndarray, upper: np.ndarray, damping: float
+    fit: Fit, there: np.ndarray, wanted: float, lower: np.ndarray, upper: np.ndarray, damping: float
 ) -> Place | None:
     """Where a step leads to, led back to the floor of its valley where more is left than ``wanted``."""
     found = _place(fit, there, lower, upper)
@@ -217,7 +142,7 @@ def _followed(
         if found is None or found.cost <= wanted:
             break
         normal = found.jacobian.T @ found.jacobian, found.jacobian.T @ found.residual
-        back, _ = step(*normal, found.variables, lower, upper, _STIFFER * damping)
+        back, _ = bounded_step(*normal, found.variables, lower, upper, _STIFFER * damping)
         nearer = _place(fit, found.variables + back, lower, upper)
         if nearer is None or nearer.cost >= found.cost:
             break

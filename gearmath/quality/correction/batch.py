@@ -14,9 +14,10 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity
+from gearmath.bevel.identify.bounded_step import FLOOR, compensation_step
 from gearmath.bevel.identify.deviation_surface import surface_map
 from gearmath.bevel.identify.flank_target import FlankTarget, located
-from gearmath.bevel.identify.least_squares import FLOOR, compensation_step, enough, next_damping
+from gearmath.bevel.identify.least_squares import enough, next_damping
 from gearmath.bevel.identify.on_line import flank_on_line
 from gearmath.bevel.identify.problem import Problem
 from gearmath.bevel.identify.variables import FREE, variables_of

@@ -15,7 +15,7 @@ from gearmath.bevel.grid import file_grid
 from gearmath.errors import ComputationError
 from gearmath.kernels import kernel
 from gearmath.quality.correction.target import flank_target
-from gearmath.quality.evaluation.nominal import check_belongs
+from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member
 from gearmath.specs.flank_csv import FlankFile
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -21,6 +21,8 @@ _ROUNDING = 1e-6
 _TURNS, _AT_REST = 6, 1e-7
 #: Trials of the noise, each at most half of the one before.
 _NOISE_TRIALS = 6
+#: So often other settings are tried in place of those that meet a bound.
+_NEXT_BEST = 3
 #: A rotation that is left open moves the points by at most so many times the largest deviation measured.
 _ROTATION_PART = 3.0
 
@@ -41,8 +43,13 @@ class CorrectionFit:
             analyse([self.targets[flank] for flank in group], self.names, self.how["bounds"]) for group in self.groups
         ]
 
-    def chosen(self, noise: float | None) -> dict[tuple[str, ...], tuple[str, ...]]:
-        """The fewest settings of all groups together that explain both flanks, with the rotation for nothing."""
+    def chosen(
+        self, noise: float | None, without: Set[tuple[tuple[str, ...], str]] = frozenset()
+    ) -> dict[tuple[str, ...], tuple[str, ...]]:
+        """The fewest settings of all groups together that explain both flanks, with the rotation for nothing.
+
+        ``without`` are groups and names of settings that are not taken.
+        """
         ends = np.cumsum([0, *(len(one.deviation) for one in self.analysis)])
         columns = {}
         for k, (group, one) in enumerate(zip(self.groups, self.analysis, strict=True)):
@@ -50,10 +57,32 @@ class CorrectionFit:
                 block = one.jacobian[:, [variable.name == name for variable in one.variables]]
                 whole_block = np.zeros((ends[-1], block.shape[1]))
                 whole_block[ends[k] : ends[k + 1]] = block
-                columns[group, name] = whole_block
+                if (group, name) not in without:
+                    columns[group, name] = whole_block
         measured = np.concatenate([one.deviation for one in self.analysis])
         taken, _ = fewest(columns, measured, self.columns, noise)
         return {group: tuple(name for one, name in taken if one == group) for group in self.groups}
+
+    def solve_few(
+        self, noise: float | None
+    ) -> tuple[dict[tuple[str, ...], Identification], UnknownRotation]:  # fmt: skip
+        """By the fewest settings; where one of them meets its bound, by the next best few, if these leave less.
+
+        What is chosen to first order knows no bounds.
+        """
+        taken, without = self.chosen(noise), set()
+        found, rotation = self.solve(taken, noise)
+        for _ in range(_NEXT_BEST):
+            held = {(group, name) for group, one in found.items() for name in taken[group] if _is_held(one, name)}
+            if not held:
+                break
+            without |= held
+            others = self.chosen(noise, without)
+            there, turned = self.solve(others, noise)
+            if _squares(there) >= _squares(found):
+                break
+            taken, found, rotation = others, there, turned
+        return found, rotation
 
     def turned(self, shift: np.ndarray) -> dict[str, FlankTarget]:
         """The targets without what a rotation makes of their points (m,) [mm]."""
@@ -99,6 +128,15 @@ class CorrectionFit:
         if moved <= most:
             return UnknownRotation(angles, self.columns, gain)
         return UnknownRotation(angles * most / moved, self.columns, np.zeros_like(gain))
+
+
+def _is_held(found: Identification, name: str) -> bool:
+    """Whether a setting stands at a bound, of any flank."""
+    return any(variable.name == name and variable.label in found.active for variable in found.variables)
+
+
+def _squares(found: dict[tuple[str, ...], Identification]) -> float:
+    return float(sum(one.residual @ one.residual for one in found.values()))
 
 
 def without_shift(targets: dict[str, FlankTarget], shift: np.ndarray) -> dict[str, FlankTarget]:

@@ -27,7 +27,7 @@ from gearmath.quality.correction.own_index import LEAST_OFF, near_the_median, te
 from gearmath.quality.correction.representative import representative_tooth
 from gearmath.quality.correction.target import blade_curve, flank_target, nominal_curvature
 from gearmath.quality.correction.unknown_rotation import UnknownRotation, rotation_columns
-from gearmath.quality.evaluation.nominal import check_belongs
+from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.pitch import evaluate_pitch, index_correction
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
@@ -112,7 +112,7 @@ def correct(
     columns = rotation_columns(list(targets.values()), measured)
     how = {"objective": objective, "root_limit": root_limit, "bounds": bounds}
     fit = CorrectionFit({flank: _wanted(target) for flank, target in targets.items()}, groups, names, columns, how)
-    identified, rotation = fit.solve(fit.chosen(noise) if few else dict.fromkeys(groups, names), noise)
+    identified, rotation = fit.solve_few(noise) if few else fit.solve(dict.fromkeys(groups, names), noise)
     wanted, of_work = fit.turned(rotation.shift), replace(rotation, angles=-rotation.angles)
     judged, as_measured = without_shift(targets, of_work.shift), _turned_best(targets, columns)
     progress(1)

@@ -14,7 +14,8 @@ import numpy as np
 
 from gearmath.errors import ComputationError, InputError
 from gearmath.kernels import kernel
-from gearmath.quality.evaluation.nominal import check_belongs, check_points, nominal_rows
+from gearmath.quality.evaluation.file_checks import check_belongs, check_points
+from gearmath.quality.evaluation.nominal import nominal_rows
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
 
@@ -50,7 +51,7 @@ def share_stock(member: Member, name: str, measured: FlankFile, advance: bool = 
     remains somewhere.
     """
     check_belongs(member, name, measured)
-    check_points(measured, nominal_rows(measured, member, name))
+    check_points(measured, nominal_rows(measured, member, name), member, name)
     kept = measured.pick(~np.isnan(measured.deviation))
     for flank in FLANKS:
         if not (kept.flank == flank).any():

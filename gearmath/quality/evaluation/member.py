@@ -13,20 +13,15 @@ from gearmath.errors import InputError
 from gearmath.quality.evaluation.closing import Closing, close_run
 from gearmath.quality.evaluation.completeness import cut_off, missing_points, silent_points
 from gearmath.quality.evaluation.drift import Drift, untold_drift, without_drift
-from gearmath.quality.evaluation.nominal import (
-    at_one_place,
-    check_belongs,
-    check_phase,
-    check_points,
-    completed,
-    nominal_rows,
-)
+from gearmath.quality.evaluation.file_checks import check_belongs, check_phase, check_points
+from gearmath.quality.evaluation.grades import grade_member
+from gearmath.quality.evaluation.nominal import at_one_place, completed, nominal_rows
 from gearmath.quality.evaluation.outliers import find_outliers
-from gearmath.quality.evaluation.pitch import Pitch, evaluate_pitch
+from gearmath.quality.evaluation.pitch import Pitch, evaluate_pitch, pitch_uncertainties
 from gearmath.quality.evaluation.registration import Registration, register, stated_noise
 from gearmath.quality.evaluation.rotation import Rotation, common_rotation
 from gearmath.quality.evaluation.spaces import Runout, Thickness, evaluate_runout, evaluate_thickness
-from gearmath.quality.evaluation.tolerance import Verdict, iso17485, judge
+from gearmath.quality.evaluation.tolerance import Verdict
 from gearmath.quality.evaluation.topography import (
     Orders,
     Topography,
@@ -187,7 +182,7 @@ def evaluate_member(
     full nor pitch was measured, or if its phase is not as its header says.
     """
     check_belongs(member, name, file)
-    check_points(file, nominal_rows(file, member, name))
+    check_points(file, nominal_rows(file, member, name), member, name)
     complete, absent = completed(file, member, name)
     closing = close_run(complete, member.teeth)
     outliers = find_outliers(closing.straightened(complete), member.teeth)
@@ -231,7 +226,8 @@ def evaluate_member(
     spaces = cut or closing.spaces_withheld
     runout = runout and replace(runout, reason=spaces)
     thickness = thickness and replace(thickness, reason=spaces)
-    verdict = _verdict(member, name, flanks, runout, closing)
+    pitches = {flank: figures.pitch for flank, figures in flanks.items() if figures.pitch is not None}
+    verdict = grade_member(member, name, pitches, runout, closing, pitch_uncertainties(judged, member.teeth, noise))
     progress(1)
     return Evaluation(
         name, judged, flanks, as_measured, runout, before, thickness, drifts, closing, seat, turn, verdict, left_out,
@@ -270,41 +266,3 @@ def _silent(flanks: dict[str, FlankFigures]) -> Iterator[str]:
     for flank, figures in flanks.items():
         if not figures.topographies and figures.pitch is None:
             yield f"{flank} flank: neither a tooth in full nor two reference points have readings; not judged"
-
-
-def _verdict(
-    member: Member, name: str, flanks: dict[str, FlankFigures], runout: Runout | None, closing: Closing
-) -> Verdict | None:
-    """The grade of pitch and runout, of what is known of every tooth; None where pitch was not measured.
-
-    A drift that was taken out and is larger than the tolerance of the grade leaves none.
-    """
-    pitches = {flank: figures.pitch for flank, figures in flanks.items() if figures.pitch is not None}
-    if not pitches:
-        return None
-    whole = {flank: pitch for flank, pitch in pitches.items() if pitch.withheld is None}
-    of_flanks = {flank: {"f_pt": pitch.largest_single, "F_p": pitch.total} for flank, pitch in whole.items()}
-    measured, withheld = {}, {}
-    gaps = [
-        pitches[flank].withheld or "" if flank in pitches else f"{flank} flank: pitch was not measured"
-        for flank in FLANKS
-        if flank not in whole
-    ]
-    for key in ("f_pt", "F_p"):
-        if gaps:
-            withheld[key] = "; ".join(dict.fromkeys(gaps))
-        else:
-            measured[key] = max(one[key] for one in of_flanks.values())
-    if runout is None or runout.withheld is not None:
-        withheld["F_r"] = "no two spaces have readings on both flanks" if runout is None else str(runout.withheld)
-    else:
-        measured["F_r"] = runout.total
-    verdict = judge(member, name, measured, withheld, of_flanks)
-    grade, drift = verdict.grades.get("F_p"), closing.arc * 1000
-    if closing.kind != "steady" or grade is None:
-        return verdict
-    limit = iso17485(verdict.data.mean_normal_module, verdict.data.tolerance_diameter, grade).rounded["F_p"]
-    if drift <= limit:
-        return verdict
-    why = f"the drift of {drift:.1f} um that was taken out is larger than F_p {limit:g} um of grade {grade}"
-    return judge(member, name, {}, dict.fromkeys(("f_pt", "F_p", "F_r"), why))

@@ -11,19 +11,12 @@ from gearmath.bevel.flank import Grid, nominal_points, solve_flank
 from gearmath.bevel.grid import feet, file_grid, has_own_places
 from gearmath.bevel.newton import TOLERANCE
 from gearmath.bevel.turning import turned
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import ComputationError
 from gearmath.quality.evaluation.pitch import reference_point
 from gearmath.quality.evaluation.topography import grid_shape
-from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
+from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
-from gearmath.specs.ratio import INCH
 
-#: A measured point may lie this far beside its nominal normal. [mm]
-SAME_POINT = 0.01
-#: Its deviation and its place may differ by this much: files that are rounded to the micrometre. [mm]
-SAME_DEVIATION = 0.001
-#: Least cosine between the normal of a row and the nominal one, 1 degree.
-SAME_NORMAL = math.cos(math.radians(1.0))
 #: Part of a grid that may be missing.
 MOST_MISSING = 0.2
 
@@ -153,95 +146,3 @@ def completed(file: FlankFile, member: Member, name: str) -> tuple[FlankFile, tu
     added = join(missing)
     nominal = nominal_rows(added, member, name)
     return join([file, replace(added, point=nominal.point, normal=nominal.normal)]), tuple(remarks)
-
-
-def check_points(file: FlankFile, rows: NominalRows) -> None:
-    """Raise InputError, with the likeliest cause, where a row is none of its nominal point.
-
-    The normal must be the nominal one, the measured point lie on it, and as far along it as the deviation says.
-    """
-    off = file.point - rows.point
-    along = np.einsum("ij,ij->i", off, file.normal)
-    apart = np.where(np.isfinite(file.deviation), np.linalg.norm(off - along[:, None] * file.normal, axis=1), 0.0)
-    if (apart > SAME_POINT).any():
-        k = int(np.argmax(apart > SAME_POINT))
-        raise InputError(
-            f"{_place(file, k)}: the measured point lies {apart[k]:.4f} mm beside the nominal normal, the limit is "
-            f"{SAME_POINT} mm; {_likeliest_cause(file, rows)}"
-        )
-    turned_away = np.einsum("ij,ij->i", file.normal, rows.normal) < SAME_NORMAL
-    if turned_away.any():
-        k = int(np.argmax(turned_away))
-        inward = int((np.einsum("ij,ij->i", file.normal, rows.normal) < -SAME_NORMAL).sum())
-        why = f"{inward} of {len(file)} normals point into the metal" if inward else "is the file of this set and hand?"
-        raise InputError(
-            f"{_place(file, k)}: nx, ny, nz = {_shown(file.normal[k])}: must be the outward normal, "
-            f"{_shown(rows.normal[k])}, within {math.degrees(math.acos(SAME_NORMAL)):.1f} degrees; {why}"
-        )
-    wrong = np.nan_to_num(np.abs(along - file.deviation))
-    if (wrong > SAME_DEVIATION).any():
-        k = int(np.argmax(wrong > SAME_DEVIATION))
-        raise InputError(
-            f"{_place(file, k)}: deviation_um = {file.deviation[k] * 1000:.3f}: x, y, z lie {along[k] * 1000:.3f} um "
-            f"out of the nominal flank; both must agree within {SAME_DEVIATION * 1000:g} um"
-        )
-
-
-def check_phase(file: FlankFile) -> None:
-    """Raise InputError where a file says that the phase of each flank was set to zero, and its reference points do not.
-
-    Either the first tooth of a flank has no deviation there, or the mean of its teeth; points without a reading, which
-    are NaN, say nothing.
-    """
-    if file.header["phase_zeroed"].lower() != "true":
-        return
-    row, col = reference_point(file)
-    for flank in FLANKS:
-        here = (file.flank == flank) & (file.row == row) & (file.col == col) & np.isfinite(file.deviation)
-        if not here.any():
-            continue
-        at, u = file.deviation[here], np.nan_to_num(file.uncertainty[here][0])
-        limit = SAME_DEVIATION + 3 * u
-        if min(abs(at[0]), abs(at.mean())) > limit:
-            raise InputError(
-                f"phase_zeroed = true: the reference point of the {flank} flank, tooth {file.tooth[here][0]}, deviates "
-                f"by {at[0] * 1000:+.2f} um, must be 0 within {limit * 1000:g} um: was the flank turned to it? else "
-                "write false"
-            )
-
-
-def _place(file: FlankFile, k: int) -> str:
-    return f"{file.flank[k]} flank, tooth {file.tooth[k]}, row {file.row[k]}, col {file.col[k]}"
-
-
-def _shown(vector: np.ndarray) -> str:
-    return ", ".join(f"{value:.4f}" for value in vector)
-
-
-def _likeliest_cause(file: FlankFile, rows: NominalRows) -> str:
-    """What would make most of the points fit."""
-    fits = {
-        "the numbers are inches: convert the file to mm": file.point * INCH,
-        "the file is of the other hand": file.point * [1, -1, 1],
-        "x and y are exchanged": file.point[:, [1, 0, 2]],
-    }
-    for words, point in fits.items():
-        if np.median(np.linalg.norm(point - rows.point, axis=1)) < 1.0:
-            return words
-    shift = np.linalg.norm(file.point - rows.point, axis=1)
-    if np.median(shift) < SAME_POINT:
-        return f"{int((shift > SAME_POINT).sum())} of {len(file)} points are off the flank"
-    return "is the file of this set, member, hand and grid, in mm?"
-
-
-def check_belongs(member: Member, name: str, measured: FlankFile) -> None:
-    """Raise InputError unless the file is a measurement of this member of this set."""
-    if measured.member != name:
-        raise InputError(f"member = {measured.member!r} in the measured file: must be {name!r}")
-    if measured.header["member_teeth"] != str(member.teeth):
-        raise InputError(f"member_teeth = {measured.header['member_teeth']}: the {name} of the set has {member.teeth}")
-    if measured.header["settings_sha256"] != design_sha256(member):
-        raise InputError(
-            f"settings_sha256 = {measured.header['settings_sha256'][:12]}...: the file was measured against other "
-            f"nominal settings than those of the set ({design_sha256(member)[:12]}...)"
-        )

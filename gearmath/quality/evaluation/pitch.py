@@ -18,6 +18,7 @@ from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.quality.evaluation.drift import without_drift
+from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile, join
 
 #: How many teeth without a reading are named.
@@ -102,6 +103,20 @@ def evaluate_pitch(file: FlankFile, teeth: int, flank: str) -> Pitch | None:
         (_, moved) = kernel("flank_turning")(drifts[flank].closure, points.point[0], points.normal[0])
         drift = float(moved)
     return Pitch(flank, turning - turning[start], arc - arc[start], drift)
+
+
+def pitch_uncertainties(file: FlankFile, teeth: int, noise: float) -> dict[str, float]:
+    """Standard uncertainty [mm] of the pitch from one tooth to another, of each flank, by ``noise`` [mm] of a point.
+
+    Without what taking out the clamping adds to it or takes off.
+    """
+    found = {}
+    for flank in FLANKS:
+        points = reference_rows(file, teeth, flank)
+        if points is not None:
+            _, arc = kernel("flank_turning")(np.ones(teeth), points.point, points.normal)
+            found[flank] = float(np.sqrt(2) * noise * np.abs(arc).max())
+    return found
 
 
 def reference_rows(file: FlankFile, teeth: int, flank: str) -> FlankFile | None:

@@ -18,13 +18,8 @@ import numpy as np
 from gearmath.errors import ComputationError
 from gearmath.kernels import kernel
 from gearmath.quality.evaluation.axial import Axial, axial_shift
-from gearmath.quality.evaluation.nominal import (
-    NominalRows,
-    check_points,
-    deviations_of,
-    nominal_rows,
-    with_deviations,
-)
+from gearmath.quality.evaluation.file_checks import check_points
+from gearmath.quality.evaluation.nominal import NominalRows, deviations_of, nominal_rows, with_deviations
 from gearmath.quality.evaluation.seat_model import SEAT, SeatModel, check_teeth, seat_model, sizes
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
@@ -152,7 +147,7 @@ def register(file: FlankFile, member: Member, name: str, untold: np.ndarray | No
     a single flank, or points that do not tell the eccentricity; ComputationError if no seat explains them.
     """
     rows = nominal_rows(file, member, name)
-    check_points(file, rows)
+    check_points(file, rows, member, name)
     check_teeth(file, rows, member)
     used = np.isfinite(file.deviation)
     columns = kernel("motion_sensitivity")(rows.point, rows.normal)[0]

@@ -15,6 +15,7 @@ import numpy as np
 from gearmath.bevel.flank import Grid
 from gearmath.errors import InputError
 from gearmath.machine.planning.targets import targets_of_space
+from gearmath.quality.evaluation.file_checks import SAME_POINT, WRONG_SET_UP
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
@@ -25,8 +26,10 @@ from gearmath.specs.touch_csv import Touches
 BESIDE = 0.2
 #: The same for A and B. [rad]
 _TURNED = math.radians(0.05)
-#: All touches beside their lines alike by more than this are worth a word. [mm]
-_WORTH_A_WORD = 0.02
+#: A or B off alike by more than this are worth a word: a control rounds to less. [rad]
+_TURNED_WORD = math.radians(0.002)
+#: All touches beside their lines alike by more than this are worth a word: a control rounds each to less. [mm]
+_WORTH_A_WORD = 0.004
 #: Touches are off alike where so much of them is, and so many of them are there.
 _MOST, _LEAST_TOUCHES = 0.8, 4
 #: A component of less than this part of the whole is not named.
@@ -45,7 +48,7 @@ def check_search_lines(
     start, end = _lines(touches, member, name, grid, machine, calibration)
     turned = touches.axes[:, 3:] - start[:, 3:]
     turned -= 2 * math.pi * np.round(turned / (2 * math.pi))
-    _check_turned(touches, turned)
+    said = _check_turned(touches, turned)
     way = end[:, :3] - start[:, :3]
     length = np.linalg.norm(way, axis=1)
     along = way / length[:, None]
@@ -66,7 +69,10 @@ def check_search_lines(
             f"{touches.name_of(k)}: the touch lies {distance[k]:.3f} mm from the line along which it was searched, "
             f"the limit is {BESIDE} mm"
         )
-    return f"{who} {_words(common)} from the planned lines: {_causes(common)}" if alike and size > _WORTH_A_WORD else ""
+    if alike and size > _WORTH_A_WORD:
+        said = f"{who} {_words(common)} from the planned lines: {_causes(common)}"
+        said += f"; evaluate takes points up to {SAME_POINT} mm beside their normals only" if size > SAME_POINT else ""
+    return said
 
 
 def _lines(
@@ -85,24 +91,29 @@ def _lines(
     return start, end
 
 
-def _check_turned(touches: Touches, turned: np.ndarray) -> None:
-    """Raise InputError where A or B do not stand as planned: all alike, or one touch."""
+def _check_turned(touches: Touches, turned: np.ndarray) -> str:
+    """What to say of A or B that stand beside the plan all alike, by little; or nothing.
+
+    Raises InputError where they are far off alike, or one touch is.
+    """
+    said = ""
     for axis, off in zip("AB", turned.T, strict=True):
         middle = float(np.median(off))
         alike = np.abs(off - middle) <= _TURNED
+        who = f"all touches stand {math.degrees(middle):+.4f} degrees in {axis} from the planned positions"
+        cause = "a work offset, or another set or --machine than that of the program"
         if abs(middle) > _TURNED and len(off) >= _LEAST_TOUCHES and alike.mean() >= _MOST:
-            raise InputError(
-                f"all touches stand {math.degrees(middle):+.4f} degrees in {axis} from the planned positions, the "
-                f"limit is {math.degrees(_TURNED):.2f} degrees: a work offset, or another set or --machine than that "
-                "of the program"
-            )
+            raise InputError(f"{who}, the limit is {math.degrees(_TURNED):.2f} degrees: {cause}")
         if not (far := np.abs(off) > _TURNED).any():
+            if abs(middle) > _TURNED_WORD and len(off) >= _LEAST_TOUCHES:
+                said = f"{who}: {cause}"
             continue
         k = int(np.argmax(far))
         raise InputError(
             f"{touches.name_of(k)}: {axis} stands {math.degrees(off[k]):+.4f} degrees from where the program searches, "
             f"the limit is {math.degrees(_TURNED):.2f} degrees"
         )
+    return said
 
 
 def _beside(along: np.ndarray, vector: np.ndarray) -> np.ndarray:
@@ -131,5 +142,6 @@ def _words(offset: np.ndarray) -> str:
 
 
 def _causes(offset: np.ndarray) -> str:
-    length = " or tool length" if any(axis == "Z" for axis, _ in _named(offset)) else ""
-    return f"work offset{length}, or another --machine or --calibration than that of the program"
+    if any(axis == "Z" for axis, _ in _named(offset)):
+        return WRONG_SET_UP
+    return WRONG_SET_UP.replace(" or tool length", "")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -11,12 +11,21 @@ import numpy as np
 from gearmath.bevel.grid import blank_fractions
 from gearmath.errors import InputError
 from gearmath.quality.evaluation.outliers import flag_outliers
-from gearmath.quality.foreign.lattice import Lattice
+from gearmath.quality.evaluation.robust import limit_of, off_the_fit
+from gearmath.quality.foreign.lattice import Lattice, find_lattice
 from gearmath.quality.foreign.points import LARGEST_FORM, Laid, Part
 from gearmath.specs.bevel_set import Member
 
 #: A file whose points cover less than this part of face width or depth may have been cut off.
 _LEAST_COVERED = 0.6
+#: A point is said to be off from here on, where it is by six standard deviations of the others. [mm]
+_LEAST_NOTICED = 0.004
+#: So many points tell the fifteen terms of a surface of fourth degree and their noise; more than so many are no single
+#: points.
+_LEAST_TO_NOTICE, _MOST_NOTICED = 30, 2
+#: Points are at one place within this part of the mean step from point to point; of more points nobody made two grids.
+_SAME_PLACE, _MOST_TO_COMPARE = 0.05, 2000
+_FOURTH_DEGREE = [5 * i + j for i in range(5) for j in range(5 - i)]
 
 
 def fractions(one: Laid, member: Member) -> tuple[np.ndarray, np.ndarray]:
@@ -35,6 +44,31 @@ def standing_out(one: Laid, member: Member) -> np.ndarray:
         flags, off = flag_outliers(across - across.mean(), up - up.mean(), one.deviation)
         found[one.kept[flags]] = off[flags]
     return found
+
+
+def noticeable(one: Laid, lattice: Lattice, member: Member) -> np.ndarray:
+    """How far points (n,) of a grid are off the surface of fourth degree through the others, by their noise [mm].
+
+    They are said, and kept: an outlier is told by the noise of the others, but less than a form is never left out.
+    """
+    found = np.zeros(len(one.part.point))
+    if len(one.kept) < _LEAST_TO_NOTICE:
+        return found
+    across, up = (2 * part - 1 for part in fractions(one, member))
+    surface = np.polynomial.polynomial.polyvander2d(across, up, (4, 4))[:, _FOURTH_DEGREE]
+    off = off_the_fit(surface, one.deviation, _LEAST_NOTICED)
+    alone = _alone(np.abs(off) > limit_of(off, _LEAST_NOTICED), off, lattice)
+    if alone.sum() <= _MOST_NOTICED:
+        found[one.kept[alone]] = off[alone]
+    return found
+
+
+def _alone(flags: np.ndarray, off: np.ndarray, lattice: Lattice) -> np.ndarray:
+    """The flagged points (n,) beside which none is off to the same side by a third: neighbors together are form."""
+    row, col = lattice.row, lattice.col
+    near = (np.abs(row[:, None] - row) <= 1) & (np.abs(col[:, None] - col) <= 1) & ~np.eye(len(row), dtype=bool)
+    alike = near & (off[:, None] * off > 0) & (np.abs(off) > np.abs(off[:, None]) / 3)
+    return flags & ~alike.any(axis=1)
 
 
 def only(one: Laid, keep: np.ndarray) -> Laid:
@@ -77,6 +111,35 @@ def gap_words(one: Laid, lattice: Lattice | None, member: Member) -> Iterator[st
             low, high = 100 * part.min(), 100 * part.max()
             where = f"from {low:.0f} to {high:.0f} % only"
             yield f"{one.part.name}: its points cover the {what} {where}: is the file whole?"
+
+
+def unlike_words(laid: Sequence[Laid], member: Member) -> Iterator[str]:
+    """What to say of parts whose points form grids, but not of one size: one of them may not be whole."""
+    found = {one.part.name: find_lattice(*fractions(one, member)) for one in laid}
+    sizes = {name: f"{grid.rows}x{grid.columns}" for name, grid in found.items() if grid is not None}
+    if len(set(sizes.values())) > 1:
+        (first, size), *others = sizes.items()
+        other, unlike = next(each for each in others if each[1] != size)
+        yield f"{first} holds a grid of {size}, {other} one of {unlike}: are both whole?"
+
+
+def repeated_words(one: Laid, member: Member) -> Iterator[str]:
+    """What to say of points half of which and more have another one at their place: two runs in one file."""
+    n = len(one.kept)
+    if not _LEAST_TO_NOTICE <= n <= _MOST_TO_COMPARE:
+        return
+    place = np.stack(fractions(one, member), axis=1)
+    apart = np.linalg.norm(place[:, None] - place, axis=2) + np.diag(np.full(n, np.inf))
+    nearest = np.argmin(apart, axis=1)
+    mine = np.arange(n)
+    pairs = (nearest[nearest] == mine) & (apart[mine, nearest] < _SAME_PLACE / np.sqrt(n)) & (mine < nearest)
+    if 2 * pairs.sum() < n / 2:
+        return
+    off = (one.deviation[nearest] - one.deviation)[pairs] * 1000
+    yield (
+        f"{one.part.name}: {int(pairs.sum())} places were measured twice, the later points {off.mean():+.1f} um off "
+        f"the earlier ones on average, {np.abs(off).max():.1f} um at most: two runs in one file?"
+    )
 
 
 def _row(part: Part, k: int) -> str:

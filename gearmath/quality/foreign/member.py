@@ -14,12 +14,23 @@ from gearmath.bevel.nominal_file import flank_header
 from gearmath.bevel.turning import half_turn, turned
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.quality.evaluation.nominal import SAME_POINT
-from gearmath.quality.foreign.gaps import fractions, gap_words, lost_words, only, outlier_words, standing_out
+from gearmath.quality.evaluation.file_checks import SAME_POINT
+from gearmath.quality.foreign.gaps import (
+    fractions,
+    gap_words,
+    lost_words,
+    noticeable,
+    only,
+    outlier_words,
+    repeated_words,
+    standing_out,
+    unlike_words,
+)
 from gearmath.quality.foreign.lattice import Lattice, find_lattice
-from gearmath.quality.foreign.misplaced import check_placed
+from gearmath.quality.foreign.misplaced import check_placed, kept_words
 from gearmath.quality.foreign.points import (
     LEAST_FIT,
+    SAME_TOOTH,
     Frame,
     Laid,
     Part,
@@ -40,8 +51,6 @@ _LEAST_POINTS = 6
 _NEAR_STEPS = 0.8
 #: Turning until the reference points stand still. [rad]
 _STEPS, _STILL = 8, 1e-13
-#: Flanks further apart than this part of a pitch are of different teeth.
-_SAME_TOOTH = 0.25
 #: A surface of third degree is taken through so many of the nearest points, where there are enough.
 _NEAREST, _CUBIC, _QUADRATIC, _PLANE = 30, 10, 6, 3
 #: A step of the depth counts like this part of the face width.
@@ -78,6 +87,7 @@ def foreign_file(
     not of their flank, or parts not of their tooth.
     """
     member = gear_set.member(name)
+    kept: list[str] = []
     for part in parts:
         if len(part.point) < _LEAST_POINTS:
             raise InputError(f"{part.name}: holds {len(part.point)} points, at least {_LEAST_POINTS} are needed")
@@ -86,7 +96,8 @@ def foreign_file(
         turns.append(turn_of(part, frame, gear_set, name))
         progress(1)
     if phase == "kept":
-        _check_kept(parts, turns, member)
+        told = [kept_words(part, turn, frame, member) for part, turn in zip(parts, turns, strict=True)]
+        kept = [words for words in told if words]
         turns = [0.0] * len(parts)
     elif phase == "common":
         turns = [_common(parts, turns, member)] * len(parts)
@@ -96,11 +107,14 @@ def foreign_file(
         turns, laid = _zeroed(laid, lattices, turns, frame, member, phase == "common")
         lattices = _lattices(laid, member)
     off = [standing_out(one, member) for one in laid]
-    gaps, doubts = [], []
+    gaps, doubts = [], kept
     for one, lattice, far in zip(laid, lattices, off, strict=True):
-        bad, less = outlier_words(one, far) if lattice is not None else ([], [])
+        said = np.zeros(0) if lattice is None else np.where(far, far, noticeable(one, lattice, member))
+        bad, less = outlier_words(one, said)
         gaps += [*bad, *gap_words(one, lattice, member)]
-        doubts += [*less, *lost_words(one)]
+        doubts += [*less, *lost_words(one), *repeated_words(one, member)]
+    if len(parts) > 1 and not any(lattices):
+        doubts += unlike_words(laid, member)
     if leave_out:
         laid = [only(one, far == 0.0) for one, far in zip(laid, off, strict=True)]
         lattices = _lattices(laid, member)
@@ -114,8 +128,8 @@ def foreign_file(
     for one, lattice, turn in zip(laid, lattices, turns, strict=True):
         file, found = _file(one, lattice, member, name)
         files.append(file)
-        said = (*found, check_normals(one, frame, member, turn))
-        remarks += [f"{one.part.name}: {each}" for each in said if each]
+        words = (*found, check_normals(one, frame, member, turn))
+        remarks += [f"{one.part.name}: {each}" for each in words if each]
         progress(1)
     zeroed = phase == "each" or (phase == "common" and len({part.flank for part in parts}) == 1)
     header = _header(member, name, files, frame, zeroed)
@@ -129,11 +143,11 @@ def _common(parts: Sequence[Part], turns: Sequence[float], member: Member) -> fl
     pitch = 2 * math.pi / member.teeth
     apart = half_turn(np.array(turns) - turns[0])
     for part, angle in zip(parts, apart, strict=True):
-        if abs(angle) > _SAME_TOOTH * pitch:
+        if abs(angle) > SAME_TOOTH * pitch:
             teeth = round(angle / pitch)
             off = angle - teeth * pitch
             other = f"tooth {(part.tooth + teeth) % member.teeth}"
-            is_other = teeth and abs(off) <= _SAME_TOOTH * pitch
+            is_other = teeth and abs(off) <= SAME_TOOTH * pitch
             raise InputError(
                 f"{part.name}: its {part.flank} flank is turned by {math.degrees(angle):.3f} degrees against that of "
                 f"{parts[0].name}, the pitch is {math.degrees(pitch):.3f}: "
@@ -141,15 +155,6 @@ def _common(parts: Sequence[Part], turns: Sequence[float], member: Member) -> fl
                 + "; --phase each turns every file by itself"
             )
     return turns[0] + float(np.median(apart))
-
-
-def _check_kept(parts: Sequence[Part], turns: Sequence[float], member: Member) -> None:
-    for part, turn in zip(parts, turns, strict=True):
-        if abs(turn) > _SAME_TOOTH * 2 * math.pi / member.teeth:
-            raise InputError(
-                f"{part.name}: its {part.flank} flank is turned by {math.degrees(turn):.3f} degrees against tooth "
-                f"{part.tooth} of the set: --phase kept needs points that stand as the set has them"
-            )
 
 
 def _lattices(laid: Sequence[Laid], member: Member) -> list[Lattice | None]:
@@ -255,7 +260,7 @@ def _on_grid(
     nominal = solve_flank(member, name, one.part.flank, blank_grid(member, _ROWS, _COLUMNS, margin))
     deviation = np.array([_smooth(across[~off], up[~off], one.deviation[~off], each) for each in place])
     row, col = (each.ravel() for each in np.indices((_ROWS, _COLUMNS)))
-    words = f"{len(across)} points form no grid: deviations interpolated on {_ROWS}x{_COLUMNS}, margins {margin:g}"
+    words = f"{len(across)} points form no grid that all share: deviations on {_ROWS}x{_COLUMNS}, margins {margin:g}"
     lost = [f"{int(off.sum())} points stand out from the others, left out"] if off.any() else []
     return row, col, nominal.point, nominal.normal, deviation, [words, *lost]
 

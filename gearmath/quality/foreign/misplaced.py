@@ -2,7 +2,8 @@
 
 A flank that was cut right has a form of some micrometres. Where points are farther off than that once they are turned,
 and a tip radius, a shift or a tilt of the axis takes most of that away, it is named. One flank does not tell these from
-its form; both flanks of a tooth do.
+its form; both flanks of a tooth do. A scale of the lengths is named beside the form, too, where either flank by itself
+asks for about the same size: by chance two flanks hardly do; another radial distance makes flanks nearly like it.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ import numpy as np
 
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
-from gearmath.quality.foreign.points import Frame, Part, lay
-from gearmath.specs.bevel_set import Member
+from gearmath.quality.foreign.points import LARGEST_FORM, SAME_TOOTH, Frame, Part, lay
+from gearmath.specs.bevel_set import FLANKS, Member
 
 #: Points that are farther off than this, in RMS, are said to be; those of both flanks from the smaller one on, where a
 #: cause explains them. [mm]
@@ -24,6 +25,10 @@ LARGEST_RMS, _LEAST_RMS = 0.01, 0.004
 #: leaves, as the form of the flanks does not tell those apart. Less than a form does is explained where no more than
 #: so much is left of it. No tip is smaller than the last [mm].
 _LEAVES, _NEARLY_BEST, _EXPLAINED, _LEAST_TIP = 0.6, 1.5, 0.4, 0.1
+#: A scale is named beside the form of the flanks where it leaves this part of the RMS, and at most so many times what
+#: another cause leaves; where either flank by itself asks for at least this part of what the other does; and from this
+#: size on: no temperature of a shop makes so much.
+_SCALE_LEAVES, _SCALE_NEARLY_BEST, _SCALE_ALIKE, _LEAST_SCALE = 0.75, 1.2, 0.4, 5e-4
 #: No tooth is measured with so much stock on both flanks: the radius of the tip was forgotten. [mm]
 _LARGEST_STOCK = 0.5
 #: Fits of a cause, and least-squares steps within each to least absolute values.
@@ -65,12 +70,37 @@ def check_placed(parts: Sequence[Part], turns: Sequence[float], frame: Frame, me
         )
     # a form of few micrometres, and teeth that are too thick by so little, are none of the clamping
     if before.rms <= LARGEST_RMS and (best > _EXPLAINED * before.rms or set(named) <= {"tip"}):
-        return ""
+        return _scale_words(parts, turns, frame, member, before, fits) if both else ""
     if not named:
         return f"{far}: is it of this set, and does it stand on the axis of the file?"
     words = " or ".join(_words(cause, fits[cause], frame) for cause in named)
     why = "how was the work clamped?" if both else "one flank does not tell this from its form, both flanks do"
     return f"{far}; {words} would leave {fits[named[0]].rms * 1000:.1f} um: {why}"
+
+
+def _scale_words(
+    parts: Sequence[Part], turns: Sequence[float], frame: Frame, member: Member, before: _Fit, fits: dict[str, _Fit]
+) -> str:  # fmt: skip
+    """What to say of a scale that both flanks ask for beside their form; nothing where another cause leaves less."""
+    scale = fits["scale"]
+    others = min(one.rms for cause, one in fits.items() if cause != "tip")
+    if scale.rms > min(_SCALE_LEAVES * before.rms, _SCALE_NEARLY_BEST * others):
+        return ""
+    sizes = []
+    for flank in FLANKS:
+        mine = [k for k, part in enumerate(parts) if part.flank == flank]
+        fit = _fit([parts[k] for k in mine], [turns[k] for k in mine], frame, member, _CAUSES["scale"])
+        sizes.append(float(fit.motion[_SCALE]))
+    least, most = sorted(sizes, key=abs)
+    if abs(scale.motion[_SCALE]) < _LEAST_SCALE or least / most < _SCALE_ALIKE:
+        return ""
+    by_flank = " and ".join(f"the {flank} one {size * 100:+.2f} %" for flank, size in zip(FLANKS, sizes, strict=True))
+    return (
+        f"{parts[0].name} and {len(parts) - 1} more: after turning, points lie {before.rms * 1000:.1f} um RMS off the "
+        f"nominal flank, {scale.rms * 1000:.1f} um with points that are too far from the origin by "
+        f"{scale.motion[_SCALE] * 100:+.2f} %; either flank says so by itself, {by_flank}: are the lengths of the file "
+        "true, or was the work cut with other settings?"
+    )
 
 
 def _words(cause: str, fit: _Fit, frame: Frame) -> str:
@@ -119,3 +149,20 @@ def _least_absolute(terms: np.ndarray, off: np.ndarray) -> tuple[np.ndarray, np.
         left = off - terms @ change
         weight = 1 / np.sqrt(np.maximum(np.abs(left), 1e-6))
     return change, left
+
+
+def kept_words(part: Part, turn: float, frame: Frame, member: Member) -> str:
+    """What to say of a part that is kept as it stands, but turned against the set by more than a tooth is off.
+
+    Raises InputError where it would be of another tooth.
+    """
+    against = (
+        f"{part.name}: its {part.flank} flank is turned by {np.degrees(turn):.3f} degrees against tooth {part.tooth} "
+        "of the set"
+    )
+    if abs(turn) > SAME_TOOTH * 2 * np.pi / member.teeth:
+        raise InputError(f"{against}: --phase kept needs points that stand as the set has them")
+    off = float(np.median(np.abs(turn * lay(part, frame, member, turn).lever)))
+    if off < LARGEST_FORM:
+        return ""
+    return f"{against}, by {off * 1000:.0f} um on the flank: it is kept so; --phase common takes the rotation out"

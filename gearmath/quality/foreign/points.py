@@ -40,6 +40,8 @@ _NORMAL_WITHIN = math.radians(15)
 #: demanded where that is larger than the form of a flank is [mm].
 _WORTH_A_HINT, _MUCH_LESS, LARGEST_FORM = 0.02, 5.0, 0.1
 _AXIAL_STEPS = 6
+#: Flanks further apart than this part of a pitch are of different teeth.
+SAME_TOOTH = 0.25
 #: Apex offsets that are tried over two face widths.
 _TRIED = 81
 

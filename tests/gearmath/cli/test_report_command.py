@@ -14,6 +14,10 @@ import pytest
 from gearmath import cli
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.nominal_file import nominal_flank
+from gearmath.plot import evaluation_figure
+from gearmath.quality.evaluation.member import evaluate_member
+from gearmath.report.charts import flank_charts
+from gearmath.report.measurement import Measurement
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import join, read_flank_csv, write_flank_csv
 from gearmath.specs.toml import bundled
@@ -184,6 +188,10 @@ def test_a_grade_stands_beside_its_tolerance_and_the_caveat_and_never_in_a_headl
     assert [row[0].split(",")[0] for row in rows] == ["f_pt", "f_pt", "F_p", "F_p", "F_r"]
     for row in rows:
         value, grade, tolerance = (row[header.index(name)] for name in ("value", "grade", "tolerance"))
+        if row[0].startswith("F_r"):  # 0.25 um of noise, and nothing else: see test_grades
+            assert (grade, tolerance) == ("withheld", "")
+            assert "grade of F_r: noise of the points alone gives F_r" in text
+            continue
         assert 2 <= int(grade.split()[0]) <= 11
         assert float(value) <= float(tolerance)
     headlines = re.findall(r"<(?:h\d|title)[^>]*>(.*?)</", text)
@@ -246,8 +254,58 @@ def test_free_text_of_set_and_options_cannot_become_markup(second_page):
     assert "<b>" not in second_page
 
 
+def _check_values_again(found, command, again):
+    """Every figure of the second measurement as a value, the same as evaluate says of that file."""
+    _, out, _ = command("evaluate", again, "--set", SET, "--json")
+    figures = json.loads(out[out.index("{") :])
+    (spacing,) = (rows for caption, rows in found.items() if caption.startswith("Single pitch"))
+    assert spacing[0][5:] == ["measured again", "grade then"]
+    later = {row[0]: row[5] for row in spacing[1:]}
+    assert {flank: float(later[f"F_p, {flank}"]) for flank in FLANKS} == pytest.approx(
+        {flank: figures["flanks"][flank]["F_p_um"] for flank in FLANKS}, abs=0.006
+    )
+    assert float(later["F_r, both"]) == pytest.approx(figures["runout"]["F_r_um"], abs=0.006)
+    (thick,) = (rows for caption, rows in found.items() if caption.startswith("Tooth thickness on the transverse"))
+    assert float(thick[1][3]) == pytest.approx(figures["thickness"]["arc_deviation_um"], abs=0.006)
+    (orders,) = (
+        rows for caption, rows in found.items() if caption.startswith("Measured again: deviations of the mean")
+    )
+    rows = {row[0]: [float(value) for value in row[1:]] for row in orders[1:]}
+    assert rows["mean"] == pytest.approx([figures["flanks"][f]["orders"]["mean_um"] for f in FLANKS], abs=0.006)
+
+
+def test_every_rms_says_what_was_taken_out_of_it(page):
+    """Of the mean before and after it is zeroed, and of the tooth that is corrected: each in its own table or row."""
+    found = tables(page.read_text("utf-8"))
+    taken = "clamping and the rotation that both flanks have in common taken out"
+    captions = [caption for caption, rows in found.items() if any("RMS" in row[0] for row in rows) or "RMS" in caption]
+    assert captions
+    assert all(taken in caption or caption.startswith("Values") for caption in captions), captions
+    (sentence,) = set(re.findall(r"concave: what .*? stays, \S+ µm RMS of (\S+) µm", page.read_text("utf-8")))
+    (rms,) = (rows for caption, rows in found.items() if caption.startswith("RMS"))
+    assert sentence == rms[1][1]
+
+
+def test_no_uncertainty_on_the_sheet_is_zero(page):
+    for caption, rows in tables(page.read_text("utf-8")).items():
+        for row in rows[1:]:
+            for name, cell in zip(rows[0], row, strict=False):
+                assert not (name == "u" and cell and not re.search("[1-9]", cell)), (caption, row)
+
+
+@pytest.mark.parametrize("seat", [SEAT, 0 * SEAT], ids=["clamped", "in a good seat"])
+def test_sheet_and_picture_take_the_same_off_at_the_ring(gear_set, tmp_path, seat):
+    """Whether or not a clamping was taken out: the rotation that both flanks have in common is in neither."""
+    file = written(tmp_path / "m.csv", gear_set, seat)
+    found = evaluate_member(read_flank_csv(file), gear_set.pinion, "pinion")
+    sheet = flank_charts(Measurement("t", "m.csv", gear_set.pinion, found, None), {})
+    words = [unescape(re.search(r">([^<]*taken off there[^<]*)<", svg)[1]) for svg, _ in sheet]
+    labels = [axes.get_xlabel() for axes in evaluation_figure("t", found).axes]
+    assert [label.partition(": after; ")[2] or label for label in labels if "taken off" in label] == words
+
+
 @pytest.mark.slow
-def test_both_members_stand_on_one_sheet_with_what_is_known_of_each(measured, gear_set, tmp_path):
+def test_both_members_stand_on_one_sheet_with_what_is_known_of_each(command, measured, gear_set, tmp_path):
     mate, again = tmp_path / "gear.csv", tmp_path / "again.csv"
     written(mate, gear_set, 0.5 * SEAT, member="gear")
     comments = "# Part number: 0815-G\n# operator: K. <i>Lee</i>\n# probe: 2 mm ruby\n"
@@ -270,6 +328,8 @@ def test_both_members_stand_on_one_sheet_with_what_is_known_of_each(measured, ge
     assert re.findall(r"<h2[^>]*>(.*?)</h2>", text) == ["Pinion", "Gear"]
     pinion, gear = text[text.index("Pinion</h2>") : text.index("Gear</h2>")], text[text.index("Gear</h2>") :]
     assert "concave flank, measured again" in drawings(pinion)
+    _check_values_again(tables(pinion), command, again)
+    assert not any("again" in caption.lower() for caption in tables(gear))
     assert "concave flank, expected after the correction" in drawings(gear)
     assert {path.name for path in tmp_path.iterdir() if path.suffix == ".png"} == {
         f"sheet_{name}.png" for name in ("measured", "corrected", "gear_measured", "gear_corrected")

@@ -316,6 +316,31 @@ def test_metal_along_the_search_is_measured_and_a_small_common_offset_is_said(
     assert "raw.csv: all touches lie +0.050 mm in Z from the planned lines: work offset or tool length" in err
 
 
+@pytest.mark.parametrize("size", [0.006, 0.015, 0.05])
+@pytest.mark.parametrize("axis", ["Y", "Z"])
+def test_offset_that_evaluate_refuses_is_said_by_both_in_the_same_words(command, raw, tmp_path, axis, size):
+    """Said from 4 um on; up to 10 um beside their normals points are taken, and beyond evaluate names the set-up."""
+    path, out = tmp_path / "raw.csv", tmp_path / "m.csv"
+    path.write_text(shifted(raw, **{axis: size}))
+    status, _, err = command("touches", path, "--set", SET, "-o", out)
+    cause = "work offset" + " or tool length" * (axis == "Z") + ", or another --machine or --calibration"
+    assert status == 0
+    assert f"raw.csv: all touches lie +{size:.3f} mm in {axis} from the planned lines: {cause}" in err
+    refused = "evaluate takes points up to 0.01 mm beside their normals only" in err
+    status, _, err = command("evaluate", out, "--set", SET)
+    assert refused == (size > 0.01) == (status == 2)
+    if refused:
+        assert "nearly all points are, by" in err
+        assert "work offset or tool length, or another --machine or --calibration than that of the program" in err
+
+
+def test_touches_turned_alike_are_said(command, raw, tmp_path):
+    path = tmp_path / "raw.csv"
+    path.write_text(shifted(raw, A=0.03))
+    _, _, err = command("touches", path, "--set", SET, "-o", tmp_path / "m.csv")
+    assert "all touches stand +0.0300 degrees in A from the planned positions: a work offset, or" in err
+
+
 def test_touch_that_met_nothing_is_one_missing_point_and_costs_only_what_needs_it(command, raw, tmp_path):
     """The reference point of tooth 5 on one flank, and one point of a grid: named, all other figures stand."""
     path, out = tmp_path / "raw.csv", tmp_path / "m.csv"

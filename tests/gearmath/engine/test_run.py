@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from gearmath.engine import cache, compiler, run
+from gearmath.kernels import kernel
 
 
 @pytest.fixture
@@ -110,3 +111,14 @@ def test_a_process_with_kept_kernels_loads_no_sympy(place: Path) -> None:
     assert said[0].split()[1] == "True"
     assert said[1].split()[1] == "False"
     assert said[0].split()[::2] == said[1].split()[::2]
+
+
+def test_kernel_of_no_points_gives_no_points_and_of_one_what_the_map_gives() -> None:
+    """One point goes to the virtual machine without a map and without conversion: the same bits."""
+    function = rolling()
+    one = run.Runner(function, (True, False))(given(1), 1)
+    mapped = function.map(1)(given(1)[0].T, given(1)[1].reshape(2, 3, order="F"))
+    for ours, theirs in zip(one, mapped, strict=True):
+        np.testing.assert_array_equal(ours[0], np.asarray(theirs).ravel(order="F"))
+    nothing = kernel("flank_turning")(np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3)))
+    assert [each.shape[0] for each in nothing] == [0, 0]

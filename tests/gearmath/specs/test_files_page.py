@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from gearmath.quality.evaluation.nominal import check_belongs, check_points, nominal_rows
+from gearmath.quality.evaluation.file_checks import check_belongs, check_points
+from gearmath.quality.evaluation.nominal import nominal_rows
 from gearmath.specs import flank_csv, point_text, touch_csv
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.toml import bundled
@@ -62,7 +63,7 @@ def test_example_of_measured_points_is_of_the_bundled_set_that_it_names(tmp_path
     file = flank_csv.read_flank_csv(example(section("Flank CSV"), tmp_path))
     pinion = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).member("pinion")
     check_belongs(pinion, "pinion", file)
-    check_points(file, nominal_rows(file, pinion, "pinion"))
+    check_points(file, nominal_rows(file, pinion, "pinion"), pinion, "pinion")
 
 
 def test_example_of_a_point_text_is_read_to_the_points_of_the_flank_csv(tmp_path):

@@ -16,7 +16,7 @@
  * source: Levenberg-Marquardt in scaled variables, primal active set of bounds
  * ops: 21782 (add 6587, and 156, div 1081, eq 144, fmax 300, fmin 300, if_else_zero 864, le 180, lt 299, mul
  *     9349, neg 1, not 432, or 144, sq 144, sub 1800, twice 1)
- * work memory: 431 doubles and 0 integers, on the stack
+ * work memory: 572 doubles and 0 integers, on the stack
  * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
  */
 #ifndef GM_COMPENSATION_STEP_H

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from gearmath.bevel.identify.least_squares import FLOOR, compensation_step, minimize
+from gearmath.bevel.identify.bounded_step import FLOOR, bounded_step, compensation_step
+from gearmath.bevel.identify.least_squares import minimize
 
 
 def problem(seed):
@@ -40,3 +41,15 @@ def test_one_undamped_step_reaches_the_bounded_minimum_of_a_linear_problem():
         # no bound is let go within a step: the next one does that
         assert expected.cost <= left @ left / 2 * (1 + 1e-9)
         assert left @ left / 2 <= 1.05 * expected.cost
+
+
+def test_step_that_stops_early_is_that_of_all_passes():
+    """The loop in Python stops after the first pass that meets no bound; the Kernel for C makes all of them."""
+    for seed in range(20):
+        slope, aim = problem(seed)
+        given = (slope.T @ slope, -slope.T @ aim, np.zeros(7), -np.ones(7), np.ones(7))
+        for damping in (FLOOR, 1e-6, 1.0):
+            step, promised = bounded_step(*given, damping)
+            every, said = compensation_step(7)(*given, damping)
+            np.testing.assert_allclose(step, every, rtol=0, atol=1e-12)
+            assert promised == pytest.approx(said, rel=1e-12)

@@ -158,3 +158,15 @@ def test_flank_that_a_common_correction_makes_worse_is_refused_with_figures():
         r"convex 0\.\d+ to [\d.]+ um\); nothing is written",
     ):
         correct(NASA.gear, "gear", file, ("machine_root_angle", "ratio_of_roll"))
+
+
+def test_where_the_few_meet_a_bound_the_next_best_few_are_taken_if_they_leave_less():
+    """A ratio of roll off by more than its bound of 0.02: fewer than all seven settings, none of them at a limit."""
+    file = measured("pinion", {key: {"ratio_of_roll": 0.021} for key in FLANKS})
+    found = correct(NASA.pinion, "pinion", file, few=True)
+    for group, one in found.identified.items():
+        names = [variable.name for variable in one.variables]
+        assert "ratio_of_roll" not in names
+        assert len(names) < 7
+        assert one.active == ()
+        assert one.rms_after < 0.02 * found.measured_rms(group)

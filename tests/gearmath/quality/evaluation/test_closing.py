@@ -124,7 +124,7 @@ def test_large_steady_drift_is_said_first_and_leaves_no_grade(measured, gear_set
     assert found.flanks["convex"].pitch.total == pytest.approx(clean.flanks["convex"].pitch.total, abs=2 * UM)
     assert found.verdict.grade is None
     assert "that was taken out is larger than F_p " in found.verdict.withheld["F_p"]
-    assert clean.verdict.grade is not None
+    assert clean.verdict.grades["F_p"] is not None
 
 
 def test_small_motion_costs_no_grade_where_the_pitch_is_larger(measured, gear_set):

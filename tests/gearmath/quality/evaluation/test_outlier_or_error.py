@@ -190,7 +190,7 @@ def test_tooth_0_measured_again_confirms_a_single_point(gear_set, measured):
     once = evaluate_member(off(file, second, 0.08), gear_set.gear, "gear")
     (line,) = once.left_out
     assert line.startswith("concave flank, tooth 36, row 2, col 4: ")
-    assert once.verdict.withheld == {}
+    assert set(once.verdict.withheld) <= {"F_r"}  # of 0.5 um of noise, and nothing else
 
 
 def test_many_single_points_off_are_uneven_pitch(gear_set, measured):

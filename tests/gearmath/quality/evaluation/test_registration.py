@@ -10,8 +10,9 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.nominal_file import flank_header
-from gearmath.errors import InputError
+from gearmath.errors import ComputationError, InputError
 from gearmath.machine.measuring.measurement import measure_member
+from gearmath.quality.evaluation import registration
 from gearmath.quality.evaluation.axial import TWIN
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.quality.evaluation.pitch import evaluate_pitch
@@ -316,3 +317,12 @@ def test_eccentricity_of_20_um_under_noise_is_taken_out_to_99_percent(gear_set):
     for flank, judged in found.flanks.items():
         assert found.as_measured[flank].pitch.total > 25 * UM  # 20 um from side to side, by the slope of the flank
         assert judged.pitch.total < 0.5 * UM  # range of 12 readings with 0.05 um, by the slope
+
+
+def test_no_seat_is_given_that_still_moves(clamped, monkeypatch):
+    """Status 1 rather than figures of a clamping that was not found to the end."""
+    member = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
+    file = clamped(member, "pinion", SEAT, around(member), FIVE)
+    monkeypatch.setattr(registration, "_ITERATIONS", 1)
+    with pytest.raises(ComputationError, match="no seat of the pinion explains its points: after 1 steps it moves on"):
+        register(file, member, "pinion")

@@ -496,3 +496,83 @@ def test_scale_and_apex_are_named_by_size_where_both_flanks_show_them(gear_set, 
     """Beside the others that the form of the flanks, 6 um RMS, does not tell from them."""
     (doubt,) = foreign_file(both_flanks(gear_set.pinion, "pinion", moved), PLAIN, gear_set, "pinion").doubts
     assert re.search(words, doubt), doubt
+
+
+@pytest.mark.parametrize("scale", [1.001, 0.999])
+def test_a_scale_is_told_from_form_where_both_flanks_ask_for_it(gear_set, scale):
+    """3.4 um of form beside it, as a polynomial that differs from flank to flank; without the scale nothing is said."""
+    row, col = np.divmod(np.arange(45), 9)
+    y, x = row / 2 - 1, col / 4 - 1
+    forms = [0.005 * (x * y - 0.6 * x**2), 0.005 * (0.7 * y**3 + x**3 - 0.6 * x)]
+    said = []
+    for factor in (scale, 1.0):
+        parts = [
+            Part(f"{flank}.txt", flank, 0, factor * on_flank(gear_set.pinion, "pinion", flank, form)[0])
+            for flank, form in zip(FLANKS, forms, strict=True)
+        ]
+        said.append(foreign_file(parts, PLAIN, gear_set, "pinion").doubts)
+    assert said[1] == ()
+    (doubt,) = said[0]
+    size = float(re.search(r"too far from the origin by ([+-]\d\.\d\d) %", doubt)[1])
+    assert size == pytest.approx(100 * (scale - 1), abs=0.04)
+
+
+@pytest.mark.parametrize("k", [17, 0, 8, 22, 40])
+def test_single_point_off_by_twelve_times_the_noise_is_named_and_kept(gear_set, k):
+    """6 um at 0.5 um of noise, inside, at corners and edges: less than a form, so that it is said and nothing more."""
+    rng = np.random.default_rng(4)
+    parts = []
+    for flank in FLANKS:
+        deviation = smooth() / 4 + 5e-4 * rng.standard_normal(45)
+        deviation[k] += 0.006 * (flank == "convex")
+        parts.append(Part(f"{flank}.txt", flank, 0, on_flank(gear_set.pinion, "pinion", flank, deviation)[0]))
+    found = foreign_file(parts, PLAIN, gear_set, "pinion")
+    (doubt,) = found.doubts
+    assert float(re.match(rf"convex\.txt, point {k + 1}: the point is (\d+\.\d) um off", doubt)[1]) > 4
+    assert (len(found.file), found.gaps) == (90, ())
+
+
+def test_noise_and_waves_name_no_point(gear_set):
+    """0.5 um of noise, and half a wave less than a face width of 4 um on it: neighbors together are form."""
+    rng = np.random.default_rng(7)
+    _, col = np.divmod(np.arange(45), 9)
+    for wave in (0.0, 0.004):
+        parts = [
+            Part(
+                flank, flank, 0,
+                on_flank(gear_set.pinion, "pinion", flank, wave * np.sin(col) + 5e-4 * rng.standard_normal(45))[0],
+            )
+            for flank in FLANKS
+        ]  # fmt: skip
+        assert foreign_file(parts, PLAIN, gear_set, "pinion").doubts == ()
+
+
+def test_points_kept_as_they_stand_are_said_to_be_turned(gear_set):
+    """1 degree is 0.3 mm along the normal; what a tooth is indexed or cut wrong, 20 um, is what is kept."""
+    parts = both_flanks(gear_set.pinion, "pinion", lambda point: around(point, np.radians(1.0)))
+    doubts = foreign_file(parts, PLAIN, gear_set, "pinion", "kept").doubts
+    words = r"(.*)\.txt: its \1 flank is turned by (\S+) degrees against tooth 0 of the set, .*; --phase common takes"
+    said = [re.match(words, doubt) for doubt in doubts]
+    assert [one[1] for one in said] == list(FLANKS)
+    assert [float(one[2]) for one in said] == pytest.approx([1.0, 1.0], abs=0.01)  # the form of the flanks takes part
+    little = both_flanks(gear_set.pinion, "pinion", lambda point: around(point, 0.02 / 40))
+    assert not any("kept so" in doubt for doubt in foreign_file(little, PLAIN, gear_set, "pinion", "kept").doubts)
+
+
+@pytest.mark.parametrize("drift", [0.0, 0.03])
+def test_two_runs_in_one_file_are_said_with_what_they_differ_by(gear_set, drift):
+    """Two grids one after the other, the second with 0.5 um of noise and moved along the normals."""
+    point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth() / 4)
+    off = drift + 5e-4 * np.random.default_rng(6).standard_normal(45)
+    both = np.concatenate([point, point + off[:, None] * normal])
+    doubts = foreign_file([Part("c.txt", "concave", 0, both)], PLAIN, gear_set, "pinion").doubts
+    (said,) = [doubt for doubt in doubts if "two runs in one file?" in doubt]
+    size = re.match(r"c\.txt: 45 places were measured twice, the later points ([+-]\d+\.\d) um off the earlier", said)
+    assert float(size[1]) == pytest.approx(1000 * drift, abs=0.4)
+
+
+def test_grids_of_unlike_size_are_said_to_be(gear_set):
+    one, other = both_flanks(gear_set.pinion, "pinion")
+    less = replace(one, point=one.point.reshape(5, 9, 3)[:, 1:].reshape(-1, 3))
+    doubts = foreign_file([less, other], PLAIN, gear_set, "pinion").doubts
+    assert "concave.txt holds a grid of 5x8, convex.txt one of 5x9: are both whole?" in doubts

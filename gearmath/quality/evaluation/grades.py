@@ -1,0 +1,79 @@
+"""The grades of a member: of what is known of every tooth, and surer than the step from one grade to the next."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from gearmath.quality.evaluation.closing import Closing
+from gearmath.quality.evaluation.pitch import Pitch
+from gearmath.quality.evaluation.spaces import Runout
+from gearmath.quality.evaluation.tolerance import GRADES, Verdict, iso17485, judge
+from gearmath.specs.bevel_set import FLANKS, Member
+
+
+def grade_member(
+    member: Member, name: str, pitches: Mapping[str, Pitch], runout: Runout | None, closing: Closing,
+    uncertainties: Mapping[str, float],
+) -> Verdict | None:  # fmt: skip
+    """The grade of pitch and runout, of what is known of every tooth; None where pitch was not measured.
+
+    There is none where a drift that was taken out is larger than the tolerance of the grade, none of a runout that
+    noise of the points alone makes as large, and none of a figure whose standard uncertainty (``uncertainties`` of the
+    pitch of each flank [mm]) is larger than the step to the next grade.
+    """
+    if not pitches:
+        return None
+    whole = {flank: pitch for flank, pitch in pitches.items() if pitch.withheld is None}
+    of_flanks = {flank: {"f_pt": pitch.largest_single, "F_p": pitch.total} for flank, pitch in whole.items()}
+    measured, withheld = {}, {}
+    gaps = [
+        pitches[flank].withheld or "" if flank in pitches else f"{flank} flank: pitch was not measured"
+        for flank in FLANKS
+        if flank not in whole
+    ]
+    for key in ("f_pt", "F_p"):
+        if gaps:
+            withheld[key] = "; ".join(dict.fromkeys(gaps))
+        else:
+            measured[key] = max(one[key] for one in of_flanks.values())
+    if runout is None or runout.withheld is not None:
+        withheld["F_r"] = "no two spaces have readings on both flanks" if runout is None else str(runout.withheld)
+    elif runout.of_noise[0] >= runout.total > 0:
+        withheld["F_r"] = (
+            f"noise of the points alone gives F_r {runout.of_noise[0] * 1000:.2f} um, and {runout.total * 1000:.2f} um "
+            "were read"
+        )
+    else:
+        measured["F_r"] = runout.total
+    verdict = judge(member, name, measured, withheld, of_flanks)
+    grade, drift = verdict.grades.get("F_p"), closing.arc * 1000
+    if closing.kind == "steady" and grade is not None and drift > (limit := _tolerance(verdict, "F_p", grade)):
+        why = f"the drift of {drift:.1f} um that was taken out is larger than F_p {limit:g} um of grade {grade}"
+        return judge(member, name, {}, dict.fromkeys(("f_pt", "F_p", "F_r"), why))
+    of_pitch = max((value for value in uncertainties.values() if math.isfinite(value)), default=math.nan)
+    unsure = {"f_pt": of_pitch, "F_p": of_pitch, "F_r": math.nan if runout is None else runout.uncertainty}
+    for key in tuple(measured):
+        if why := _too_unsure(verdict, key, unsure[key] * 1000):
+            withheld[key] = why
+            del measured[key]
+            of_flanks = {flank: {k: v for k, v in one.items() if k != key} for flank, one in of_flanks.items()}
+    return judge(member, name, measured, withheld, of_flanks)
+
+
+def _too_unsure(verdict: Verdict, key: str, u: float) -> str:
+    """Why a figure of standard uncertainty ``u`` [um] has no grade; nothing where it has one, or u is not known."""
+    grade = verdict.grades.get(key)
+    if grade is None or not math.isfinite(u):
+        return ""
+    fine, coarse = (grade, grade + 1) if grade < GRADES[-1] else (grade - 1, grade)
+    step = _tolerance(verdict, key, coarse) - _tolerance(verdict, key, fine)
+    if u <= step:
+        return ""
+    return (
+        f"its standard uncertainty of {u:.1f} um is larger than the step of {step:g} um from grade {fine} to {coarse}"
+    )
+
+
+def _tolerance(verdict: Verdict, key: str, grade: int) -> float:
+    return iso17485(verdict.data.mean_normal_module, verdict.data.tolerance_diameter, grade).rounded[key]
