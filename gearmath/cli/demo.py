@@ -22,7 +22,7 @@ def demo(folder: Path, control: bool) -> None:
         from gearmath.cli.control_connect import quiet
 
         quiet()
-        from gearmath.control.demo import run_control_demo
+        from gearmath.control_demo import run_control_demo
 
         run_control_demo(folder, click.echo)
         return

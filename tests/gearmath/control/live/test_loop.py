@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.pair import load_pair
-from gearmath.control.demo import run_control_demo
 from gearmath.control.store import Store
+from gearmath.control_demo import run_control_demo
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.measuring.probe import ProbeMachine
