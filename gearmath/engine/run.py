@@ -116,16 +116,21 @@ class Runner:
         return outputs
 
     def _in_blocks(self, arguments: Sequence[np.ndarray], n: int) -> list[np.ndarray]:
-        size = 1 if n == 1 else _FEW
-        free = self._blocks[size]
-        try:
-            block = free.pop()
-        except IndexError:
-            block = _Block(_mapped(self._function, size), size)
+        """Blocks of a few points, and what is left point by point."""
         outputs = [np.empty((n, count)) for count in self._sizes_out]
-        for low in range(0, n, size):
-            block.run(arguments, outputs, low, min(size, n - low))
-        free.append(block)
+        low = 0
+        for size in (_FEW, 1):
+            if n - low < size:
+                continue
+            free = self._blocks[size]
+            try:
+                block = free.pop()
+            except IndexError:
+                block = _Block(_mapped(self._function, size), size)
+            while n - low >= size:
+                block.run(arguments, outputs, low, size)
+                low += size
+            free.append(block)
         return outputs
 
     def _consider(self, work: float) -> None:
@@ -157,13 +162,13 @@ class _Block:
                 memory: Any = array.reshape(-1)
                 give(k, memoryview(memory))
 
-    def run(self, arguments: Sequence[np.ndarray], outputs: Sequence[np.ndarray], low: int, count: int) -> None:
-        """The points from ``low`` on; those that fill the block up are the ones of the call before."""
+    def run(self, arguments: Sequence[np.ndarray], outputs: Sequence[np.ndarray], low: int, size: int) -> None:
+        """The points from ``low`` on, as many as the block has; an argument of one point is that of all."""
         for array, argument in zip(self._inputs, arguments, strict=True):
-            array[:count] = argument[low : low + count] if len(argument) > 1 else argument
+            array[:] = argument[low : low + size] if len(argument) > 1 else argument
         self._evaluate()
         for array, output in zip(self._outputs, outputs, strict=True):
-            output[low : low + count] = array[:count]
+            output[low : low + size] = array
 
 
 @lru_cache(maxsize=1024)

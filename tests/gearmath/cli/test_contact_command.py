@@ -84,17 +84,6 @@ def test_displacement_of_the_pinion_moves_the_contact_as_its_sensitivity_says(na
         assert moved == pytest.approx(per_mm, rel=0.1)
 
 
-def test_tolerance_of_the_pair_is_printed_and_in_the_json(command, tmp_path):
-    status, out, err = command("contact", SET, "--step", 15, "--tolerance", "--json")
-    assert (status, err) == (0, "")
-    for side in json.loads(out).values():
-        found = side["tolerance_mm"]
-        assert found["reached"] == ["pinion tip"]  # it runs there
-        for name in ("v", "h"):
-            assert found[name]["minus"]["value"] < 0 < found[name]["plus"]["value"]
-            assert found[name]["minus"]["edge"] not in (None, "pinion tip")
-
-
 def test_picture_is_written(command, tmp_path):
     target = tmp_path / "contact.png"
     status, out, err = command("contact", SET, "--step", 15, "--tolerance", "--plot", target)

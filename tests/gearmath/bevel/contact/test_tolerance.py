@@ -12,9 +12,9 @@ from gearmath.bevel.contact.marked import marked_area
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.misalignment import sensitivities
 from gearmath.bevel.contact.pattern import pattern
-from gearmath.bevel.contact.report import SIDES, side_mesh
+from gearmath.bevel.contact.report import SIDES, side_mesh, tolerance_figures
 from gearmath.bevel.contact.system import Assembly
-from gearmath.bevel.contact.tolerance import EDGES, clearances, tolerance
+from gearmath.bevel.contact.tolerance import EDGES, Limit, Tolerance, clearances, tolerance
 from gearmath.specs.bevel_set import BevelSet
 
 #: Rim of a grid (root to tip, toe to heel) that an edge of the gear is.
@@ -38,9 +38,8 @@ def test_area_under_a_plane_is_exact_on_a_coarse_grid() -> None:
     assert marked_area(x, y, np.full_like(x, np.nan), 1.0).share == 0
 
 
-@pytest.mark.parametrize(("side", "radius"), [("drive", 106.0), ("coast", 94.0)])
-def test_pattern_comes_to_the_named_edge_at_the_limit_and_not_before(side: str, radius: float, uniform_pair) -> None:
-    run = side_mesh(uniform_pair(radius, -800.0), side, Assembly())
+def test_pattern_comes_to_the_named_edge_at_the_limit_and_not_before(uniform_pair) -> None:
+    run = side_mesh(uniform_pair(94.0, -800.0), "coast", Assembly())
     found = tolerance(run)
     checked = 0
     for name, both in found.limits.items():
@@ -84,3 +83,13 @@ def test_crowned_pair_reaches_its_ends_where_its_sensitivity_says(uniform_pair) 
 
 def test_flanks_that_touch_along_lines_have_no_tolerance(uniform_pair) -> None:
     assert tolerance(side_mesh(uniform_pair(), "drive", Assembly())) is None
+
+
+def test_json_names_displacement_sense_value_and_edge() -> None:
+    both = Limit(-0.2, "gear toe"), Limit(5.0, None)
+    found = tolerance_figures(Tolerance(("pinion tip",), {"V": both, "H": both}))
+    assert found is not None
+    assert list(found) == ["reached", "v", "h"]
+    assert found["reached"] == ["pinion tip"]
+    assert found["v"] == {"minus": {"value": -0.2, "edge": "gear toe"}, "plus": {"value": 5.0, "edge": None}}
+    assert tolerance_figures(None) is None
