@@ -14,7 +14,8 @@ from gearmath.specs.toml import checked
 _LAND = 0.3
 #: Most that the thickness factor may be changed for it, and the least thickness left to the gear, in modules.
 _MOST, _THINNEST = 0.15, 0.95
-_TENTH = 0.1
+#: Edge radii come in tenths [mm], and take at most this part of the narrowest slot.
+_TENTH, _OF_SLOT = 0.1, 0.5
 
 
 def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
@@ -45,6 +46,9 @@ def chosen_radius(data: DesignData, name: str) -> float:
 
 
 def edge_radius(asked: float | None, slots: MemberSlots, clearance: float) -> float:
-    """Edge radius of a member's blades [mm]: as asked, or the largest in tenths that AGMA 929 and clearance allow."""
-    largest = min(slots.maximum_edge_radius, clearance)
+    """Edge radius of a member's blades [mm]: as asked, or the largest in tenths that AGMA 929 and clearance allow.
+
+    A cutter for one flank takes little more than half of the slot, and its edge must fit on that.
+    """
+    largest = min(slots.maximum_edge_radius, clearance, _OF_SLOT * min(slots.slot_width))
     return max(math.floor(largest / _TENTH) * _TENTH, 0.0) if asked is None else asked
