@@ -37,6 +37,12 @@ Engaged at speed, the motor overtakes what it has missed: it goes on to w + u, a
 u is that with t_u = 0, or w_max - w where this is less. On the pitch circle of diameter d one count and one step are
 
     δ_e = π d k/(G N_encoder),   δ_p = π d/N_motor                                             (7.13)
+
+A counter of the board that is read as c and then, m counts on, as c' = (c + m) mod M, M = 2^16, tells
+
+    m = c' - c - s M,   s = [c' - c ≥ M/2] - [c' - c < -M/2],   for -M/2 ≤ m < M/2             (7.14)
+
+wherever it has run over in between: added up in 64 bits, its counts go on for ever.
 """
 
 from __future__ import annotations
@@ -183,6 +189,24 @@ def encoder_hysteresis() -> Expression:
         ((q.passed_edge, passed), (q.next_play, moved - passed)),
         requires=(q.hysteresis.symbol + 1 - q.play.symbol,),
         source="mechanical backlash, in counts",
+    )
+
+
+#: Readings of the counters of (7.14).
+COUNTER_RANGE = sp.Integer(2) ** 16
+
+
+@cache
+def counter_motion() -> Expression:
+    """(7.14) as an Expression."""
+    apart = q.count_now.symbol - q.count_before.symbol
+    wraps = truth(apart >= COUNTER_RANGE / 2) - truth(apart < -COUNTER_RANGE / 2)
+    return Expression(
+        "counter_motion",
+        "Counts between two readings of a 16-bit counter that may have run over in between (7.14).",
+        (q.count_before, q.count_now),
+        ((q.counted, apart - wraps * COUNTER_RANGE),),
+        source="arithmetic modulo 2^16",
     )
 
 
@@ -336,6 +360,15 @@ def prove_play_neither_makes_nor_loses_counts() -> None:
         for state in range(width + 1):
             for edge in (1, -1):
                 assert 0 <= rule["next_play"].subs({x: state, d: edge, H: width}) <= width
+
+
+def prove_a_counter_that_runs_over_tells_every_motion_of_less_than_half_its_range() -> None:
+    """(7.14) c' = c + m + k M with c' from 0 to M - 1 leaves m - k M for c' - c: k = -1, 0, 1 and both ends of each."""
+    motion, M, H = counter_motion()["counted"], int(COUNTER_RANGE), int(COUNTER_RANGE) // 2
+    edges = set(range(-H, H, 997)) | {-H, -H + 1, -1, 0, 1, H - 1}
+    for before in (0, 1, H - 1, H, H + 1, M - 2, M - 1):
+        for moved in edges:
+            assert motion.subs({q.count_before.symbol: before, q.count_now.symbol: (before + moved) % M}) == moved
 
 
 def prove_any_ratio_is_at_most_half_a_step_off() -> None:

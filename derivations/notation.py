@@ -347,6 +347,10 @@ passed_edge = Quantity(
     "passed_edge", "edge that is passed on: +1, 0 or -1", "1", "d'", (-1, 1), kind="int", values=(-1, 0, 1)
 )
 
+count_before = _count("count_before", "c", 0, 65_535, "reading of a 16-bit counter at the time before")
+count_now = _count("count_now", "c'", 0, 65_535, "reading of a 16-bit counter now")
+counted = _count("counted", "m", -32_768, 32_767, "counts between two readings")
+
 step_rate = Quantity("step_rate", "steps per second while the motor follows at speed", "1/s", "w", (1.0, 1e6))
 step_acceleration = Quantity("step_acceleration", "acceleration of the motor", "1/s^2", "a", (1.0, 1e7))
 top_rate = Quantity("top_rate", "most steps per second", "1/s", r"w_{max}", (1.0, 1e6))

@@ -31,6 +31,7 @@ myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
 nb_execution_mode = "off"  # `prepare` takes them as `make notebooks` ran them, and runs what is missing
 nb_merge_streams = True
+nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # no script from elsewhere: sliders stand still on the page
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from gearmath.engine.kernel import Kernel as Kernel
     from gearmath.errors import ComputationError as ComputationError
     from gearmath.errors import InputError as InputError
+    from gearmath.front.contact import Contact as Contact
+    from gearmath.front.contact import contact as contact
     from gearmath.front.exports import export_c as export_c
     from gearmath.front.exports import export_cnc as export_cnc
     from gearmath.front.exports import export_teensy as export_teensy
@@ -45,6 +47,7 @@ _HOMES = {
     "gearmath.front.programs": ("Program",),
     "gearmath.front.measured": ("load_measurement", "Measurement", "Evaluation", "Correction"),
     "gearmath.front.gearbox": ("plan", "Job"),
+    "gearmath.front.contact": ("contact", "Contact"),
     "gearmath.front.exports": ("export_c", "export_teensy", "export_cnc"),
     "gearmath.kernels": ("kernel",),
     "gearmath.engine.kernel": ("Kernel",),

@@ -24,14 +24,15 @@ from gearmath.files import write_text
 from gearmath.gearbox.simulation import Simulation, simulate
 from gearmath.gearbox.train import GearboxPlan, plan
 from gearmath.kernels import kernel
-from gearmath.machine.control import Setup
-from gearmath.machine.cutting import Job, cutting_program
-from gearmath.machine.executor import execute
-from gearmath.machine.mill import mill_member
+from gearmath.machine.control.executor import execute
+from gearmath.machine.control.state import Setup
+from gearmath.machine.milling.mill import mill_member
+from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.writing.cutting import cutting_program
 from gearmath.plot import member_figure, save
-from gearmath.quality.correction import correct
-from gearmath.quality.pitch import Pitch, evaluate_pitch
-from gearmath.quality.topography import Topography, evaluate_topography
+from gearmath.quality.correction.member import correct
+from gearmath.quality.evaluation.pitch import Pitch, evaluate_pitch
+from gearmath.quality.evaluation.topography import Topography, evaluate_topography
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
 from gearmath.specs.hobbing import load_hobbing_machine

@@ -31,7 +31,7 @@ def space_triangles(space: ToothSpace) -> np.ndarray:
 def member_triangles(member: Member, space: ToothSpace) -> np.ndarray:
     """A whole member: closed, every triangle (n,3,3) counter-clockwise seen from outside."""
     ring = _ring(space, member.teeth)
-    inner = _rim(member, ring)
+    inner = rim(member, ring)
     surface = _skin(ring, closed=True)
     toe, heel = (_skin(np.stack([inner[k], ring[k]]), closed=True) for k in (0, -1))
     inside = _skin(inner, closed=True)  # column by column: the teeth wind around the axis, and so do the polygons
@@ -61,7 +61,7 @@ def _space_profile(space: ToothSpace) -> np.ndarray:
     """Points (columns, n, 3) across space 0, in the order of their angle: down one flank, up the other."""
     low, high = (surface.point.transpose(1, 0, 2) for surface in space.ordered)
     fractions = np.linspace(0, 1, _ROOT_POINTS + 2)[1:-1]
-    root = _between(low[:, -1], high[:, -1], fractions)
+    root = between(low[:, -1], high[:, -1], fractions)
     return np.concatenate([low, root, high[:, ::-1]], axis=1)
 
 
@@ -69,12 +69,12 @@ def _ring(space: ToothSpace, teeth: int) -> np.ndarray:
     """Closed polygons (columns, n, 3) around the member, in the order of their angle."""
     profile = _space_profile(space)
     following = turned(profile[:, 0], space.pitch)
-    land = _between(profile[:, -1], following, np.linspace(0, 1, _TIP_POINTS + 2)[1:-1])
+    land = between(profile[:, -1], following, np.linspace(0, 1, _TIP_POINTS + 2)[1:-1])
     tooth = np.concatenate([profile, land], axis=1)
     return np.concatenate([turned(tooth, k * space.pitch) for k in range(teeth)], axis=1)
 
 
-def _between(first: np.ndarray, last: np.ndarray, fractions: np.ndarray) -> np.ndarray:
+def between(first: np.ndarray, last: np.ndarray, fractions: np.ndarray) -> np.ndarray:
     """Points (columns, n, 3) between two (columns, 3), by angle, radius and height about z_w."""
     a, b = (_cylindrical(points) for points in (first, last))
     turn = half_turn(b[:, 0] - a[:, 0])
@@ -83,8 +83,8 @@ def _between(first: np.ndarray, last: np.ndarray, fractions: np.ndarray) -> np.n
     return np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=2)
 
 
-def _rim(member: Member, ring: np.ndarray) -> np.ndarray:
-    """Polygons like those of ``ring``, at its angles, on the cone inside the root that bounds the solid."""
+def rim(member: Member, ring: np.ndarray) -> np.ndarray:
+    """Points like those of ``ring`` (..., 3), at their angles, on the cone inside the root that bounds the solid."""
     blank, delta = member.blank, math.radians(member.blank.pitch_angle)
     lowest = -blank.mean_dedendum - _RIM * (blank.mean_addendum + blank.mean_dedendum)
     angle, radius, z = np.moveaxis(_cylindrical(ring), -1, 0)

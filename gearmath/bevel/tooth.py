@@ -23,7 +23,8 @@ from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 #: A blade without edge radius is taken to have this one: no edge that cuts is sharper. [mm]
 SHARP_EDGE = 0.02
 DEFAULT_COLUMNS = 25
-_ROWS = {"main": 17, "toprem": 5, "edge": 9}
+#: Rows of the parts of a blade that cut a flank.
+_ROWS = (("main", 17), ("toprem", 5), ("edge", 9))
 
 
 @dataclass(frozen=True)
@@ -81,16 +82,20 @@ class ToothSpace:
 
 
 @lru_cache(maxsize=16)
-def tooth_space(member: Member, name: str, columns: int = DEFAULT_COLUMNS) -> ToothSpace:
-    """Space 0 of a member, whatever the method that cuts it.
+def tooth_space(
+    member: Member, name: str, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
+) -> ToothSpace:
+    """Space 0 of a member, whatever the method that cuts it; ``rows`` by part of the blade.
 
     Raises InputError naming member, flank, section, row and column of the first point without a solution.
     """
-    surfaces = [flank_surface(member, name, flank, columns) for flank in FLANKS]
+    surfaces = [flank_surface(member, name, flank, columns, rows) for flank in FLANKS]
     return ToothSpace(surfaces[0], surfaces[1], 2 * math.pi / member.teeth)
 
 
-def flank_surface(member: Member, name: str, flank: str, columns: int = DEFAULT_COLUMNS) -> FlankSurface:
+def flank_surface(
+    member: Member, name: str, flank: str, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
+) -> FlankSurface:
     """One flank of space 0 from the face cone to the bottom of its fillet."""
     spec = member.flank(flank)
     sharp = _edged(spec)
@@ -109,7 +114,7 @@ def flank_surface(member: Member, name: str, flank: str, columns: int = DEFAULT_
     for part in reversed(sections):
         section = sections[part]
         first, last = _ends(section, top if part == "main" else None, columns)
-        count = _ROWS[part]
+        count = dict(rows)[part]
         for fraction in np.linspace(0.0, 1.0, count)[0 if part == "main" else 1 :]:
             u = first + fraction * (last - first)
             if part == "edge" and section.arc is not None:

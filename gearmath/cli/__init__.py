@@ -35,7 +35,10 @@ VERBS = {
     "stock": ("compensate", "How a precut blank must stand so that both flanks share its stock."),
     "report": ("report", "The inspection sheet of a measured member, or of both: charts, figures, settings."),
     "uncertainty": ("uncertainty", "How sure the figures of a measured member are."),
-    "export": ("export", "C for the microcontroller and for the CNC post-processor."),
+    "control": ("control", "The machine control over OPC UA: state, files, alarms, measuring; a simulated one."),
+    "runs": ("runs", "The measurement store: list, show, export, compare and resume runs."),
+    "rexs": ("rexs", "A gear set out of a REXS file."),
+    "export": ("export", "C for the machines; STEP, STL, REXS and points for other programs."),
 }
 
 

@@ -40,8 +40,8 @@ def flank(
     """Nominal points and outward normals of one flank, as a flank CSV."""
     from gearmath.bevel.flank import blank_grid
     from gearmath.bevel.grid import listed_grid
+    from gearmath.bevel.nominal_file import nominal_flank
     from gearmath.bevel.pair import load_pair
-    from gearmath.machine.mill import nominal_flank
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.places import read_places
     from gearmath.specs.toml import find

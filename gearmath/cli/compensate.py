@@ -25,10 +25,10 @@ from gearmath.cli.common import (
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
-    from gearmath.quality.correction import Correction
-    from gearmath.quality.evaluation import Evaluation
-    from gearmath.quality.thickness import By
-    from gearmath.quality.variables import Bounds
+    from gearmath.bevel.identify.variables import Bounds
+    from gearmath.quality.correction.member import Correction
+    from gearmath.quality.correction.thickness import By
+    from gearmath.quality.evaluation.member import Evaluation
     from gearmath.specs.bevel_set import BevelSet, Member
     from gearmath.specs.flank_csv import FlankFile
 
@@ -96,10 +96,10 @@ def compensate(
     from gearmath.bevel.pair import check_pair, load_pair
     from gearmath.cli.compensate_text import correction_values, say_analysis, say_changes, say_result, verdict
     from gearmath.cli.uncertainty import noise_of_points
-    from gearmath.quality import correction as correcting
-    from gearmath.quality.correction import ROOT_LIMIT, correct
-    from gearmath.quality.evaluation import STAGES, evaluate_member
-    from gearmath.quality.thickness import with_thickness
+    from gearmath.quality.correction import member as correcting
+    from gearmath.quality.correction.member import ROOT_LIMIT, correct
+    from gearmath.quality.correction.thickness import with_thickness
+    from gearmath.quality.evaluation.member import STAGES, evaluate_member
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.set_text import save_corrected
     from gearmath.specs.toml import find
@@ -155,8 +155,8 @@ def _uncertainty(
 ) -> dict[str, Any]:  # fmt: skip
     """Standard uncertainties of the corrected settings, and what errors of measurement do to the flanks."""
     from gearmath.cli.uncertainty import effects_um, point_covariance
-    from gearmath.quality.judging import judged_by_measured
-    from gearmath.quality.setting_uncertainty import uncertain_settings
+    from gearmath.quality.uncertainty.judged import judged_by_measured
+    from gearmath.quality.uncertainty.settings import uncertain_settings
 
     covariance = point_covariance(file, noise_um or None)
     if covariance is None:
@@ -183,8 +183,8 @@ def _free(names: str) -> tuple[str, ...] | None:
 
 
 def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, registered: bool) -> dict[str, Any]:
-    from gearmath.quality.ease_off import moved_to_mate
-    from gearmath.quality.evaluation import evaluate_member
+    from gearmath.quality.correction.ease_off import moved_to_mate
+    from gearmath.quality.evaluation.member import evaluate_member
     from gearmath.specs.bevel_set import MEMBERS
     from gearmath.specs.flank_csv import read_flank_csv
 
@@ -208,8 +208,8 @@ def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, register
 def stock(measured: Path, gear_set: str, member: str | None, advance: bool, least: float, as_json: bool) -> None:
     """How a precut blank must stand so that both flanks share its stock: probe it, then turn it by this."""
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.completeness import missing_points
-    from gearmath.quality.stock import share_stock
+    from gearmath.quality.correction.stock import share_stock
+    from gearmath.quality.evaluation.completeness import missing_points
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 

@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from gearmath.bevel.identify.variables import reading
 from gearmath.cli.common import table
 from gearmath.cli.uncertainty import effects_text
-from gearmath.quality.analysis import Analysis, weak_words
-from gearmath.quality.correction import Correction, setting_changes
-from gearmath.quality.variables import reading
+from gearmath.quality.correction.analysis import Analysis, weak_words
+from gearmath.quality.correction.member import Correction, setting_changes
 from gearmath.specs.bevel_set import Member
 
 

@@ -14,13 +14,18 @@ from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.bevel.contact.mesh import Mesh
-    from gearmath.bevel.contact.system import Assembly
-    from gearmath.specs.bevel_set import BevelSet
+    from gearmath.bevel.contact.system import Assembly, System
 
 _FINEST, _COARSEST = 0.01, 15.0
 #: Displacements [mm] and change of the shaft angle [degree] beyond which no assembly is meant.
 _MOST_MM, _MOST_DEG = 50.0, 10.0
 _LIMIT_TRIALS = 10
+#: Figures of a measured pair with an uncertainty: key, words and unit.
+_SURE = (
+    ("peak_to_peak_arcsec", "the transmission error", "arcsec"),
+    ("center_cone_distance_mm", "the pattern's center, cone distance", "mm"),
+    ("center_height_mm", "the pattern's center, height", "mm"),
+)
 
 
 @click.command()
@@ -30,19 +35,32 @@ _LIMIT_TRIALS = 10
 @click.option("--j", "j", type=float, default=0.0, show_default=True, help="Gear withdrawn along its axis X, mm.")
 @click.option("--shaft", type=float, default=0.0, show_default=True, help="Growth of the shaft angle, degrees.")
 @click.option("--step", type=float, default=1.0, show_default=True, help="Positions of the path, degrees of pinion.")
+@click.option(
+    "--tolerance", "with_tolerance", is_flag=True,
+    help="Also V and H, from the assembly as given, at which the pattern reaches an edge.",
+)  # fmt: skip
+@click.option(
+    "--measured-pinion", type=click.Path(path_type=Path), metavar="CSV", help="Measured flank CSV of the pinion."
+)
+@click.option("--measured-gear", type=click.Path(path_type=Path), metavar="CSV", help="Measured flank CSV of the gear.")
 @JSON
-@plot("transmission error, path and pattern of both sides")
+@plot("transmission error, path, pattern and V-H diagram of both sides")
 def contact(
-    gear_set: str, v: float, h: float, j: float, shaft: float, step: float, as_json: bool, picture: Path | None
+    gear_set: str, v: float, h: float, j: float, shaft: float, step: float, with_tolerance: bool,
+    measured_pinion: Path | None, measured_gear: Path | None, as_json: bool, picture: Path | None,
 ) -> None:  # fmt: skip
     """How a pair runs: path of contact, transmission error, V-H check, of drive (pinion concave) and coast side.
 
     The contact is exact: flanks, edges of tip, toe and heel, and corners, of one pair of teeth and its neighbors. The
-    path is that of one pair of teeth over three pitches. Rotation 0: both mean points on the pitch line.
+    path is that of one pair of teeth over three pitches. Rotation 0: both mean points on the pitch line. With measured
+    flanks, of either member or both, the pair runs on these: clamping and rotation of the work are taken out first.
     """
-    from gearmath.bevel.contact.report import SIDES, figures, side_mesh
+    from gearmath.bevel.contact.mesh import mesh
+    from gearmath.bevel.contact.report import SIDES, figures, tolerance_figures
     from gearmath.bevel.contact.system import Assembly
+    from gearmath.bevel.contact.tolerance import SEARCHES, tolerance
     from gearmath.bevel.pair import load_pair
+    from gearmath.quality.contact.pair import measured_pair
     from gearmath.specs.toml import find
 
     _check(v, h, j, shaft, step)
@@ -53,20 +71,30 @@ def contact(
     given = Assembly(v, h, j, math.radians(shaft))
     results: dict[str, Any] = {}
     runs: dict[str, Mesh] = {}
-    with bar(len(SIDES), "side", quiet=as_json) as done, about(source):
+    searches = SEARCHES if with_tolerance else 0
+    files = {"pinion": measured_pinion, "gear": measured_gear}
+    with bar(len(SIDES) * (1 + searches), "step", quiet=as_json) as done:
+        measured = measured_pair(pair, {name: file for name, file in files.items() if file is not None})
         for side in SIDES:
-            runs[side] = side_mesh(pair, side, given)
+            with about(source):
+                system = measured.system(side)
+            runs[side] = mesh(system, given)
             if runs[side].outcome == "contact lost" and given != Assembly():
-                raise InputError(_lost(pair, side, given))
-            results[side] = figures(runs[side], math.radians(step))
+                raise InputError(f"{source}: {_lost(system, side, given)}")
+            results[side] = figures(runs[side], math.radians(step)) | measured.figures(side, runs[side])
             done(1)
+            if with_tolerance:
+                results[side]["tolerance_mm"] = tolerance_figures(tolerance(runs[side], progress=done))
     if picture is not None:
         from gearmath.plot.contact import contact_figure
 
-        save_plot(contact_figure(runs), picture, as_json)
+        limits = {side: result.get("tolerance_mm") for side, result in results.items()}
+        save_plot(contact_figure(runs, limits), picture, as_json)
     if as_json:
         echo_json(results)
         return
+    for remark in measured.remarks:
+        click.echo(remark)
     for side, result in results.items():
         click.echo(_text(side, SIDES[side], result))
 
@@ -82,12 +110,9 @@ def _check(v: float, h: float, j: float, shaft: float, step: float) -> None:
         raise InputError(f"--step {step:g}: must lie between {_FINEST:g} and {_COARSEST:g} degrees")
 
 
-def _lost(pair: BevelSet, side: str, given: Assembly) -> str:
+def _lost(system: System, side: str, given: Assembly) -> str:
     """Which displacement takes the flanks out of contact, and how far it may go."""
     from gearmath.bevel.contact.mesh import mesh
-    from gearmath.bevel.contact.report import side_system
-
-    system = side_system(pair, side)
 
     def keeps(assembly: Assembly) -> bool:
         return mesh(system, assembly).outcome != "contact lost"
@@ -138,9 +163,21 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
             ["center of the pattern", f"cone distance {found['center_cone_distance_mm']:.2f}, height "
              f"{found['center_height_mm']:+.2f} mm"],
         ]  # fmt: skip
+    for name, values in result.get("measured", {}).items():
+        text = (
+            "nominal: this flank was not measured in full"
+            if values is None
+            else (f"{values['rms_um']:.2f} um RMS off nominal, {values['spline_residual_um']:.2f} of it smoothed")
+        )
+        rows.append([f"{name} as measured", text])
+    if (sure := result.get("uncertainty")) is not None:
+        rows += [[f"standard uncertainty of {words}", f"{sure[key]:.3g} {unit}"] for key, words, unit in _SURE
+                 if sure[key] is not None]  # fmt: skip
     for place, found in result["v_h_mm"].items():
         rows.append([f"V and H for contact at {place}",
                      "none" if found is None else f"{found[0]:+.4f} and {found[1]:+.4f} mm"])  # fmt: skip
+    if "tolerance_mm" in result:
+        rows += _tolerance_rows(result["tolerance_mm"])
     lines.append(table(["figure", "value"], rows))
     if result["path"]:
         head = ["pinion deg", "kind", "error arcsec", "cone distance mm", "height mm"]
@@ -151,3 +188,18 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
         ]  # fmt: skip
         lines += ["path of one pair of teeth:", table(head, cells)]
     return "\n".join(lines) + "\n"
+
+
+def _tolerance_rows(found: dict[str, Any] | None) -> list[list[str]]:
+    """V and H to both senses, and the edge that the pattern reaches there."""
+    if found is None:
+        return [["V and H to the edges", "none: no pattern with edges of its own"]]
+    rows = []
+    for name in ("v", "h"):
+        for sense in ("minus", "plus"):
+            value, edge = found[name][sense]["value"], found[name][sense]["edge"]
+            text = f"{value:+.3f} mm: no edge up to there" if edge is None else f"{value:+.3f} mm: {edge}"
+            rows.append([f"{name.upper()} to the {sense} side", text])
+    if found["reached"]:
+        rows.append(["reached as it stands", ", ".join(found["reached"])])
+    return rows

@@ -24,8 +24,8 @@ from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from gearmath.bevel.tooth import ToothSpace
-    from gearmath.machine.executor import MachinePath
-    from gearmath.machine.run import Run
+    from gearmath.machine.control.executor import MachinePath
+    from gearmath.machine.milling.run import Run
     from gearmath.specs.bevel_set import Member
     from gearmath.specs.flank_csv import FlankFile
     from gearmath.specs.milling_machine import MillingMachine
@@ -71,13 +71,14 @@ def cut(
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.tooth import tooth_space
     from gearmath.files import write_text
-    from gearmath.machine.control import Setup
-    from gearmath.machine.cutting import PLUNGE_FEED, Job, cutting_plan, pass_count, program_of
-    from gearmath.machine.executor import execute
-    from gearmath.machine.judge import faults_of
-    from gearmath.machine.setup_facts import SetupFacts
-    from gearmath.machine.timing import timing
-    from gearmath.machine.words import block_count, check_name
+    from gearmath.machine.control.executor import execute
+    from gearmath.machine.control.state import Setup
+    from gearmath.machine.judging.program import faults_of
+    from gearmath.machine.judging.timing import timing
+    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, Job, cutting_plan, pass_count
+    from gearmath.machine.planning.setup_facts import SetupFacts
+    from gearmath.machine.writing.cutting import program_of
+    from gearmath.machine.writing.words import block_count, check_name
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
@@ -140,12 +141,12 @@ def mill(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.tooth import tooth_space
-    from gearmath.machine.control import Setup
-    from gearmath.machine.executor import execute
-    from gearmath.machine.judge import faults_of
-    from gearmath.machine.judge_cut import REPORTED
-    from gearmath.machine.nc_text import program_text, skip_blocks
-    from gearmath.machine.stated import Stated, stated_member
+    from gearmath.machine.control.executor import execute
+    from gearmath.machine.control.state import Setup
+    from gearmath.machine.control.text import program_text, skip_blocks
+    from gearmath.machine.judging.cut import REPORTED
+    from gearmath.machine.judging.program import faults_of
+    from gearmath.machine.judging.stated import Stated, stated_member
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
@@ -199,7 +200,7 @@ def _right_runs(
 ) -> list[Run]:
     """The tools of a program on a machine without errors, with blades as sharp as there are."""
     from gearmath.bevel.tooth import SHARP_EDGE
-    from gearmath.machine.run import runs_of
+    from gearmath.machine.milling.run import runs_of
 
     return runs_of(path, spec, member, machine, None, space, SHARP_EDGE)
 
@@ -212,12 +213,12 @@ def _milled(
     them."""
     from dataclasses import replace
 
-    from gearmath.machine.cutter import cutter_of
-    from gearmath.machine.measuring import measure_member
-    from gearmath.machine.metal import metal
-    from gearmath.machine.mill import mill_member
-    from gearmath.machine.probing import teeth_around
-    from gearmath.machine.run import runs_of
+    from gearmath.machine.bodies.cutter import cutter_of
+    from gearmath.machine.measuring.measurement import measure_member
+    from gearmath.machine.milling.metal import metal
+    from gearmath.machine.milling.mill import mill_member
+    from gearmath.machine.milling.run import runs_of
+    from gearmath.machine.planning.targets import teeth_around
 
     narrowest = None if spec.cutting == "completing" else space
     if simulated is not None or space is None:
@@ -240,9 +241,9 @@ def _judge_hobbed(
 
     ``worst`` [mm] is how far they do from the design, on a machine without errors where that is ``right``.
     """
-    from gearmath.machine.judge_cut import as_cut, hobbed
-    from gearmath.machine.mill import mill_member
-    from gearmath.machine.stated import Stated
+    from gearmath.machine.judging.cut import as_cut, hobbed
+    from gearmath.machine.judging.stated import Stated
+    from gearmath.machine.milling.mill import mill_member
 
     made = as_cut(spec)
     if not right or made != spec:
@@ -258,8 +259,8 @@ def _judge_metal(
     import math
 
     from gearmath.bevel.tooth import tooth_space
-    from gearmath.machine.judge_cut import as_cut, metal_left
-    from gearmath.machine.stated import Stated
+    from gearmath.machine.judging.cut import as_cut, metal_left
+    from gearmath.machine.judging.stated import Stated
 
     made = as_cut(spec)
     with bar(1, "space") as progress:
@@ -284,7 +285,7 @@ def _write_report(
     import json
 
     from gearmath.files import write_text
-    from gearmath.machine.report import milling_report
+    from gearmath.machine.judging.report import milling_report
 
     with bar(5 * spec.teeth, "surface") as progress:
         found = milling_report(path, spec, member, machine, errors, tolerance,

@@ -66,8 +66,8 @@ def points(
     deviations are those along the normals of the nominal flank. The result is read by evaluate, compensate and report.
     """
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.foreign import foreign_file
-    from gearmath.quality.points import Frame, Part
+    from gearmath.quality.foreign.member import foreign_file
+    from gearmath.quality.foreign.points import Frame, Part
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.point_text import read_point_text
     from gearmath.specs.toml import find

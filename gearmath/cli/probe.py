@@ -26,9 +26,9 @@ from gearmath.cli.common import (
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from gearmath.machine.probe_check import Approach
-    from gearmath.quality.axis_calibration import AxisCalibration
-    from gearmath.quality.calibration import Fit, Tip
+    from gearmath.machine.measuring.collision_check import Approach
+    from gearmath.quality.calibration.axes import AxisCalibration
+    from gearmath.quality.calibration.tip import Fit, Tip
     from gearmath.specs.calibration import Calibration
     from gearmath.specs.touch_csv import CalibrationTouches, Touches
 
@@ -69,10 +69,11 @@ def probe(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
-    from gearmath.machine.bodies import obstacles
-    from gearmath.machine.probe_check import approaches
-    from gearmath.machine.probing import probing_program, teeth_around
-    from gearmath.machine.words import block_count
+    from gearmath.machine.bodies.profiles import obstacles
+    from gearmath.machine.measuring.collision_check import approaches
+    from gearmath.machine.planning.targets import teeth_around
+    from gearmath.machine.writing.probing import probing_program
+    from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
@@ -138,9 +139,9 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
     'gearmath probe' runs it on the machine model, 'gearmath calibrate' reads its touches.
     """
     from gearmath.files import write_text
-    from gearmath.machine.axis_cycle import axis_program
-    from gearmath.machine.calibrating import calibration_program
-    from gearmath.machine.words import block_count
+    from gearmath.machine.writing.axis_cycle import axis_program
+    from gearmath.machine.writing.calibrating import calibration_program
+    from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -167,9 +168,9 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
 
     from gearmath.bevel.flank import blank_grid
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.completeness import missed_points, missing_touches, taken_for
-    from gearmath.quality.search_lines import check_search_lines
-    from gearmath.quality.touches import check_on_grid, measured_member
+    from gearmath.quality.evaluation.completeness import missed_points, missing_touches, taken_for
+    from gearmath.quality.evaluation.search_lines import check_search_lines
+    from gearmath.quality.evaluation.touches import check_on_grid, measured_member
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
@@ -214,7 +215,7 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
 
     Touches of ``nc calibrate --cycle axes`` make a new machine file of that of --machine.
     """
-    from gearmath.quality.completeness import missing_calibration
+    from gearmath.quality.evaluation.completeness import missing_calibration
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -261,7 +262,7 @@ def _check_whole(
 def _calibrate_tip(
     raw: Path, found: CalibrationTouches, calibration: str, lobing: bool, target: Path
 ) -> Iterator[str]:  # fmt: skip
-    from gearmath.quality.calibration import calibrate_on_ring, calibrate_on_sphere
+    from gearmath.quality.calibration.tip import calibrate_on_ring, calibrate_on_sphere
     from gearmath.specs.calibration import load_calibration, save_calibration
     from gearmath.specs.toml import find
     from gearmath.specs.touch_csv import SPHERE
@@ -284,7 +285,7 @@ def _calibrate_tip(
 def _calibrate_axes(
     raw: Path, found: CalibrationTouches, calibration: str, machine: str, target: Path
 ) -> Iterator[str]:  # fmt: skip
-    from gearmath.quality.axis_calibration import calibrate_axes
+    from gearmath.quality.calibration.axes import calibrate_axes
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine, save_axes
     from gearmath.specs.toml import find

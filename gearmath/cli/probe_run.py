@@ -12,8 +12,8 @@ from gearmath.cli.probe import CALIBRATION, clearances
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from gearmath.machine.control import Probe
-    from gearmath.machine.probe_machine import ProbeMachine
+    from gearmath.machine.control.state import Probe
+    from gearmath.machine.measuring.probe import ProbeMachine
     from gearmath.specs.bevel_set import Member
     from gearmath.specs.calibration import Calibration
     from gearmath.specs.milling_machine import MillingMachine
@@ -55,11 +55,11 @@ def probe(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
-    from gearmath.machine.artefacts import Artefacts
-    from gearmath.machine.control import Setup
-    from gearmath.machine.nc_text import program_text
-    from gearmath.machine.probe_run import run_touches, touch_count, touches_artefacts
-    from gearmath.machine.stated import stated_member
+    from gearmath.machine.control.state import Setup
+    from gearmath.machine.control.text import program_text
+    from gearmath.machine.judging.stated import stated_member
+    from gearmath.machine.measuring.artefacts import Artefacts
+    from gearmath.machine.measuring.probe_run import run_touches, touch_count, touches_artefacts
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
@@ -95,8 +95,8 @@ def _check_clear(
     text: str, program: Path, there: ProbeMachine, machine: MillingMachine, shop: SimulatedMachine | None, steps: int
 ) -> None:  # fmt: skip
     """Raise InputError where the program moves the probe into a nominal member, or touches what it does not have."""
-    from gearmath.machine.bodies import obstacles
-    from gearmath.machine.probe_check import approaches
+    from gearmath.machine.bodies.profiles import obstacles
+    from gearmath.machine.measuring.collision_check import approaches
 
     head, fixture = obstacles(machine, shop)
     with bar(steps, "step") as progress:
@@ -112,10 +112,9 @@ def _member_machine(
     shop: SimulatedMachine | None,
 ) -> ProbeMachine:  # fmt: skip
     """The machine with the member on it, nominal or as ``measured`` says, clamped as the shop does."""
-    from gearmath.machine.milled_surface import MilledSurface
-    from gearmath.machine.probe_machine import ProbeMachine
-    from gearmath.quality.correction import check_belongs
-    from gearmath.quality.nominal import check_points, nominal_rows
+    from gearmath.machine.measuring.probe import ProbeMachine
+    from gearmath.machine.milling.milled_surface import MilledSurface
+    from gearmath.quality.evaluation.nominal import check_belongs, check_points, nominal_rows
     from gearmath.specs.flank_csv import read_flank_csv
 
     seat = shop.measuring_clamp(member) if shop else None

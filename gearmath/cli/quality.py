@@ -34,7 +34,7 @@ def evaluate(
     Grades are by formulas that are not confirmed against ISO 17485: no conformity is claimed.
     """
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.evaluation import STAGES, evaluate_member
+    from gearmath.quality.evaluation.member import STAGES, evaluate_member
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 

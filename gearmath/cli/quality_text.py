@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from gearmath.cli.common import table
-from gearmath.quality.evaluation import Evaluation
-from gearmath.quality.uncertainty import Uncertain
+from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.uncertainty.propagation import Uncertain
 
 _FIGURES = ("max_deviation_um", "rms_um", "cubic_surface_residual_um", "F_p_um", "max_f_pt_um")
 _ORDERS = (

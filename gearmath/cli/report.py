@@ -14,7 +14,7 @@ from gearmath.cli.uncertainty import MODEL, SIGMA, covariance_of, uncertain_corr
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from gearmath.quality.evaluation import Evaluation
+    from gearmath.quality.evaluation.member import Evaluation
     from gearmath.report import Measurement
     from gearmath.specs.bevel_set import BevelSet
     from gearmath.specs.flank_csv import FlankFile
@@ -66,7 +66,7 @@ def report(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_bytes, write_text
-    from gearmath.quality.evaluation import STAGES
+    from gearmath.quality.evaluation.member import STAGES
     from gearmath.report import STEPS, inspection_sheet
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
@@ -99,9 +99,9 @@ def _measurement(
     sure: tuple[float | None, str | None, str, str], progress: Progress,
 ) -> Measurement:  # fmt: skip
     """One member evaluated, with its uncertainties and its correction."""
-    from gearmath.quality.evaluation import evaluate_member
-    from gearmath.quality.figures import figures_of
-    from gearmath.quality.uncertainty import uncertain_figures
+    from gearmath.quality.evaluation.member import evaluate_member
+    from gearmath.quality.uncertainty.figures import figures_of
+    from gearmath.quality.uncertainty.propagation import uncertain_figures
     from gearmath.report import Measurement, head_of
 
     member = pair.member(file.member)
@@ -133,7 +133,7 @@ def _share(progress: Progress) -> Progress:
 
 def _again(paths: tuple[Path, ...], pair: BevelSet, wanted: set[str], progress: Progress) -> dict[str, Evaluation]:
     """Second measurements by member."""
-    from gearmath.quality.evaluation import evaluate_member
+    from gearmath.quality.evaluation.member import evaluate_member
     from gearmath.specs.flank_csv import read_flank_csv
 
     found: dict[str, Evaluation] = {}

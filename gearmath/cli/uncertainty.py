@@ -29,11 +29,11 @@ from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
-    from gearmath.quality.correction import Correction
-    from gearmath.quality.covariance import Covariance
-    from gearmath.quality.evaluation import Evaluation
-    from gearmath.quality.setting_uncertainty import Effect
-    from gearmath.quality.uncertainty import Uncertain
+    from gearmath.quality.correction.member import Correction
+    from gearmath.quality.evaluation.member import Evaluation
+    from gearmath.quality.uncertainty.covariance import Covariance
+    from gearmath.quality.uncertainty.propagation import Uncertain
+    from gearmath.quality.uncertainty.settings import Effect
     from gearmath.specs.bevel_set import Member
     from gearmath.specs.flank_csv import FlankFile
 
@@ -75,9 +75,9 @@ def uncertainty(
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
 
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.evaluation import evaluate_member
-    from gearmath.quality.figures import figures_of
-    from gearmath.quality.uncertainty import uncertain_figures
+    from gearmath.quality.evaluation.member import evaluate_member
+    from gearmath.quality.uncertainty.figures import figures_of
+    from gearmath.quality.uncertainty.propagation import uncertain_figures
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
@@ -130,9 +130,9 @@ def uncertain_correction(
     """The correction of an evaluated member as ``compensate`` writes it, its settings with uncertainties, what errors
     of measurement do to each flank, and remarks: where there is no correction, why.
     """
-    from gearmath.quality.correction import correct
-    from gearmath.quality.judging import judged_by_measured
-    from gearmath.quality.setting_uncertainty import uncertain_settings
+    from gearmath.quality.correction.member import correct
+    from gearmath.quality.uncertainty.judged import judged_by_measured
+    from gearmath.quality.uncertainty.settings import uncertain_settings
 
     name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))
     try:
@@ -152,8 +152,8 @@ def noise_of_points(file: FlankFile, member: Member, found: Evaluation, sigma_um
 
     None where neither says it: then it is what the settings leave.
     """
-    from gearmath.quality.judging import judged_by_measured
-    from gearmath.quality.setting_uncertainty import noise_of
+    from gearmath.quality.uncertainty.judged import judged_by_measured
+    from gearmath.quality.uncertainty.settings import noise_of
 
     if sigma_um == 0:
         return 0.0
@@ -194,7 +194,7 @@ def covariance_of(
     known = point_covariance(file, sigma_um)
     if known is not None and model is None:
         return known, "u_um of the file" if sigma_um is None else f"{sigma_um:g} um at every point"
-    from gearmath.quality.touch_model import touch_covariance
+    from gearmath.quality.uncertainty.touch_model import touch_covariance
 
     how = load_measurement(find(model or _BUNDLED))
     spindle, probe = load_milling_machine(find(machine)), load_calibration(find(calibration))
@@ -207,7 +207,7 @@ def point_covariance(file: FlankFile, sigma_um: float | None) -> Covariance | No
     """Covariance of independent points from --sigma-um, or from u_um of the file; None where neither says it."""
     import numpy as np
 
-    from gearmath.quality.covariance import independent, stated
+    from gearmath.quality.uncertainty.covariance import independent, stated
 
     if sigma_um is not None and not 0 < sigma_um <= 1000:
         raise InputError(f"--sigma-um = {sigma_um:g}: must be greater than 0 and at most 1000 um")
@@ -219,8 +219,8 @@ def quick_figures(file: FlankFile, member: Member, found: Evaluation, sigma_um: 
     covariance = point_covariance(file, sigma_um)
     if covariance is None:
         return []
-    from gearmath.quality.figures import figures_of
-    from gearmath.quality.uncertainty import uncertain_figures
+    from gearmath.quality.uncertainty.figures import figures_of
+    from gearmath.quality.uncertainty.propagation import uncertain_figures
 
     return uncertain_figures(figures_of(file, member, found), covariance, _FEW_DRAWS)
 

@@ -17,6 +17,7 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import cache, lru_cache
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -37,6 +38,8 @@ _COMPILE = 5e7
 _UNKNOWN = 10_000
 #: Points of one call of the virtual machine: mapped, it copies what they share for each of them.
 _BLOCK = 20_000
+#: Points of a smaller call run in blocks of this size over memory that is kept: to map and convert takes longer.
+_SMALL, _FEW = 512, 16
 #: Operations of a batch from which it is spread over threads.
 _SPREAD = 2e6
 
@@ -49,6 +52,14 @@ class Runner:
         self._sizes_in = [function.numel_in(k) for k in range(function.n_in())]
         self._sizes_out = [function.numel_out(k) for k in range(function.n_out())]
         self._operations = _operations(function)
+        self._is_dense = all(
+            sparsity.is_dense()
+            for sparsity in (
+                *(function.sparsity_in(k) for k in range(function.n_in())),
+                *(function.sparsity_out(k) for k in range(function.n_out())),
+            )
+        )
+        self._blocks: dict[int, list[_Block]] = {1: [], _FEW: []}  # those that no thread runs just now
         self._spent = 0.0  # operations in the virtual machine; infinite where it is all there is
         self._compiled: ctypes.CDLL | None = None
         self._name: str | None = None  # of the library in the cache
@@ -79,6 +90,8 @@ class Runner:
 
     def interpreted(self, arguments: Sequence[np.ndarray], n: int) -> list[np.ndarray]:
         """The same by CasADi's virtual machine, whatever is compiled."""
+        if 0 < n <= _SMALL and self._is_dense:
+            return self._in_blocks(arguments, n)
         if n > _BLOCK:
             parts = []
             for low in range(0, n, _BLOCK):
@@ -101,6 +114,19 @@ class Runner:
             outputs.append(np.ascontiguousarray(array.transpose(1, 2, 0)).reshape(n, size))
         return outputs
 
+    def _in_blocks(self, arguments: Sequence[np.ndarray], n: int) -> list[np.ndarray]:
+        size = 1 if n == 1 else _FEW
+        free = self._blocks[size]
+        try:
+            block = free.pop()
+        except IndexError:
+            block = _Block(_mapped(self._function, size), size)
+        outputs = [np.empty((n, count)) for count in self._sizes_out]
+        for low in range(0, n, size):
+            block.run(arguments, outputs, low, min(size, n - low))
+        free.append(block)
+        return outputs
+
     def _consider(self, work: float) -> None:
         """Whether to go on in the virtual machine, to load what was compiled before, or to compile."""
         with self._lock:
@@ -115,6 +141,28 @@ class Runner:
                 self._compiled = _looked_up(self._name)
             if self._compiled is None and self._spent >= _COMPILE:
                 self._compiled, self._spent = _compiled(self._name, self._function, self._many), np.inf
+
+
+class _Block:
+    """A function mapped to a few points, which reads and writes memory that stays where it is."""
+
+    def __init__(self, function: ca.Function, size: int) -> None:
+        self._buffer: Any
+        self._buffer, self._evaluate = function.buffer()
+        self._inputs = [np.zeros((size, function.numel_in(k) // size)) for k in range(function.n_in())]
+        self._outputs = [np.zeros((size, function.numel_out(k) // size)) for k in range(function.n_out())]
+        for arrays, give in ((self._inputs, self._buffer.set_arg), (self._outputs, self._buffer.set_res)):
+            for k, array in enumerate(arrays):
+                memory: Any = array.reshape(-1)
+                give(k, memoryview(memory))
+
+    def run(self, arguments: Sequence[np.ndarray], outputs: Sequence[np.ndarray], low: int, count: int) -> None:
+        """The points from ``low`` on; those that fill the block up are the ones of the call before."""
+        for array, argument in zip(self._inputs, arguments, strict=True):
+            array[:count] = argument[low : low + count] if len(argument) > 1 else argument
+        self._evaluate()
+        for array, output in zip(self._outputs, outputs, strict=True):
+            output[low : low + count] = array[:count]
 
 
 @lru_cache(maxsize=1024)

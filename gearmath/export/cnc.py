@@ -7,13 +7,13 @@ from functools import cache
 from pathlib import Path
 
 from gearmath.bevel.flank import flank_point
+from gearmath.bevel.identify.least_squares import compensation_step
+from gearmath.bevel.identify.on_line import flank_on_line
 from gearmath.engine.kernel import Kernel
 from gearmath.export.c import double_kernel
 from gearmath.export.folder import write_folder
 from gearmath.export.header import comment, plain, versions
 from gearmath.kernels import kernel
-from gearmath.quality.least_squares import compensation_step
-from gearmath.quality.on_line import flank_on_line
 from gearmath.specs.bevel_set import SETTINGS
 
 _MAKEFILE = """\

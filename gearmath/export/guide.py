@@ -5,9 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import astuple
 
+from gearmath.export.building import (
+    chain,
+    connections,
+    encoder_outputs,
+    first_cut,
+    order,
+    parts_chapter,
+    scope,
+    switches,
+    underside,
+)
 from gearmath.export.header import versions
 from gearmath.export.machine_header import PIN_SENTENCES
 from gearmath.export.markdown import bullets, escaped, paragraph, table
+from gearmath.export.memory import memory
 from gearmath.export.screens import faults, screens
 from gearmath.specs.hobbing import HobbingMachine
 
@@ -25,7 +37,11 @@ _LIBRARIES = {
 _FILES = (
     ("`gm_machine.h`", "this machine as whole numbers"),
     ("`gm_core.*`", "the gearbox while it runs: step timer, phase, faults"),
-    ("`gm_gearbox_edge.h`, `gm_encoder_hysteresis.h`", "generated kernels: the step rule, the encoder's play"),
+    (
+        "`gm_gearbox_edge.h`, `gm_encoder_hysteresis.h`, `gm_counter_motion.h`",
+        "generated kernels: the step rule, the encoder's play, a counter that runs over",
+    ),
+    ("`gm_counter.h`", "the board's own counters"),
     ("`gm_job.*`, `gm_gear.c`, `gm_exact.*`", "from teeth or pitch to the exact ratio; the numbers of the blank"),
     ("`gm_ui.*`, `gm_edit.c`, `gm_screen.c`, `gm_draw.*`, `gm_format.*`", "the operator's pages"),
     ("`gm_store.*`", "the last job in the EEPROM, with its check sum"),
@@ -37,8 +53,9 @@ _FILES = (
 def guide(machine: HobbingMachine, sketch: str) -> str:
     """Markdown text for ``<sketch>.ino``."""
     chapters = (
-        _head(machine, sketch), _flashing(machine, sketch), _pins(machine), _decoder(machine), _parts(machine),
-        _wiring(machine), _timing(machine), _commissioning(machine), screens(machine), faults(machine),
+        _head(machine, sketch), parts_chapter(machine), _wiring(machine), _pins(machine), _decoder(machine),
+        _timing(machine), _flashing(machine, sketch), _commissioning(machine), first_cut(machine),
+        screens(machine), faults(machine),
     )  # fmt: skip
     return "\n".join(line for chapter in chapters for line in chapter).rstrip("\n") + "\n"
 
@@ -57,6 +74,7 @@ def _head(machine: HobbingMachine, sketch: str) -> Iterator[str]:
         "All of it counts in whole numbers, without a floating-point constant, and the motor's place is the whole step "
         "nearest to the exact one, however long it runs and however often it reverses."
     )
+    yield from order(machine)
 
 
 def _flashing(machine: HobbingMachine, sketch: str) -> Iterator[str]:
@@ -74,6 +92,7 @@ def _flashing(machine: HobbingMachine, sketch: str) -> Iterator[str]:
         f"Tools, CPU Speed: {speed}. Tools, Optimize: Faster. Upload.",
     ]
     yield from bullets(steps, numbered=True)
+    yield from memory(machine)
 
 
 def _pins(machine: HobbingMachine) -> Iterator[str]:
@@ -83,6 +102,7 @@ def _pins(machine: HobbingMachine) -> Iterator[str]:
     rows = [(str(number), f"`{name}`", PIN_SENTENCES[name]) for name, number in used]
     yield from table(("pin", "name in the machine file", "what hangs on it"), rows)
     title = machine.hardware.title
+    yield from underside(machine)
     if machine.hardware.five_volt_tolerant:
         yield from paragraph(f"The pins of a {title} take 5 V. Its outputs give 3.3 V.")
     else:
@@ -94,6 +114,11 @@ def _pins(machine: HobbingMachine) -> Iterator[str]:
 def _decoder(machine: HobbingMachine) -> Iterator[str]:
     yield "## Encoder and decoder"
     yield ""
+    yield from _decoder_words(machine)
+    yield from encoder_outputs(machine)
+
+
+def _decoder_words(machine: HobbingMachine) -> Iterator[str]:
     yield from paragraph(
         f"{machine.encoder.lines} lines, of each {machine.encoder.edges_per_line} edges counted: "
         f"{machine.encoder.counts_per_shaft} counts per turn."
@@ -105,10 +130,9 @@ def _decoder(machine: HobbingMachine) -> Iterator[str]:
             f"{'spindle' if machine.profile == 'lathe' else 'hob'}, which are exactly {machine.encoder_counts} "
             f"counts.{index}"
         )
-    if machine.encoder.decoder == "hardware":
-        yield from paragraph(
-            "Channels A and B go to the board itself, whose pin interrupts see every edge (library Encoder)."
-        )
+    if not machine.encoder.has_ls7184:
+        by = "whose counter sees" if machine.hob_counter else "whose pin interrupts see (library Encoder)"
+        yield from paragraph(f"Channels A and B go to the board itself, {by} every edge.{_counter_words(machine)}")
         return
     jumper = {
         1: "to ground: the jumper joins pins 2 and 3 of its terminal",
@@ -121,53 +145,25 @@ def _decoder(machine: HobbingMachine) -> Iterator[str]:
     )
     longest = 1_000_000_000 // (_UNEVEN * machine.max_edge_rate)
     yield from paragraph(
-        "RBIAS, pin 1, sets the length of the output pulse, and the chip is blind while it lasts. Take the resistor "
-        "from the chart of its data sheet for a pulse of 1 us to 2 us. At this machine's "
+        "RBIAS, pin 1, sets the length of the output pulse, and the chip is blind while it lasts. **The value of RB1 "
+        "(RB2) is not given here: take it from the chart of the data sheet of your LS7184N, for a pulse of 1 us "
+        "to 2 us, "
+        "and look at pin 8 with an oscilloscope.** At this machine's "
         f"{machine.max_edge_rate} edges/s the pulse must stay below {longest} ns, since the edges of a real encoder "
         f"come up to {_UNEVEN} times closer than on the average."
     )
+    if machine.hob_counter:
+        yield from paragraph(f"A counter of the board counts those pulses.{_counter_words(machine)}")
 
 
-def parts(machine: HobbingMachine) -> list[tuple[str, str]]:
-    """Name in the wiring diagram, and what to buy."""
-    channels = "5 V, channels A and B" + " and an index pulse Z" * (machine.pins.index is not None)
-    rows = [(machine.hardware.title, "the board"), (f"encoder, {machine.encoder.lines} lines", channels)]
-    if machine.feed is not None:
-        rows.append(("feed encoder", f"{machine.feed.counts_per_mm} counts per mm after its decoder, channels A and B"))
-    if machine.encoder.decoder != "hardware":
-        two = machine.feed is not None
-        rows.append((f"{1 + two} x LS7184N", f"decoder, with RBIAS resistor RB1{', RB2' if two else ''}: see above"))
-    rows += _transistors(machine)
-    if not machine.hardware.five_volt_tolerant:
-        shifted = 2 * (1 + (machine.feed is not None)) + (machine.pins.index is not None)
-        rows.append((f"74LVC245, {shifted} channels", "5 V to 3.3 V, fed with 3.3 V; fast enough for pulses of 200 ns"))
-        rows.append(("BSS138 level shifter, 2 channels", "I2C between 3.3 V and 5 V"))
-    chip = {"adafruit292": "Adafruit 292 (MCP23008)", "pcf8574": "PCF8574"}[machine.display.kind]
-    rows.append(("LCD, 4 x 20 characters", f"with backpack {chip}, address 0x{machine.display.i2c_address:02X}"))
-    rows.append(("rotary knob with button", "20 detents, 4 edges a detent (PEC11R-4220F)"))
-    if machine.pins.estop is not None:
-        rows.append(("emergency stop", "with a second, normally closed contact"))
-    rows.append(("LM7805, C1 and C2 10 uF", "5 V from 7 to 12 V DC"))
-    return rows
-
-
-def _transistors(machine: HobbingMachine) -> Iterator[tuple[str, str]]:
-    signals = 2 + (machine.pins.enable is not None)
-    opened, relay = machine.driver.output == "open_collector", machine.pins.healthy is not None
-    numbers = [*range(1, signals + 1)] * opened + [signals + 1] * relay
-    for number, signal in zip(numbers, (["STEP", "DIR", "ENABLE"][:signals]) * opened + ["K1"] * relay, strict=True):
-        yield f"T{number} 2N2222, R{number} 1 kOhm", f"open collector for {signal}, with its base resistor"
-    if opened:
-        yield f"RL1 to RL{signals}", "optional, see below"
-    if relay:
-        yield "C3 2.2 uF, C4 10 uF, D1 and D2 1N5819", "charge pump: only a square wave of the board holds K1"
-        yield "K1, 5 V relay of at most 50 mA, with diode", "holds the contactor of the motor"
-
-
-def _parts(machine: HobbingMachine) -> Iterator[str]:
-    yield "## Parts"
-    yield ""
-    yield from table(("part", "what for"), parts(machine))
+def _counter_words(machine: HobbingMachine) -> str:
+    """Which counter of the board counts the hob, and what its filter ignores."""
+    reached = machine.hob_counter
+    if reached is None:
+        return ""
+    kind = "FTM" if machine.board == "teensy32" else "ENC"
+    _, filtered = machine.counter_filter(machine.max_edge_rate)
+    return f" It is {kind}{reached.unit}, and pulses shorter than {filtered:.0f} ns are ignored as noise."
 
 
 def _wiring(machine: HobbingMachine) -> Iterator[str]:
@@ -176,6 +172,8 @@ def _wiring(machine: HobbingMachine) -> Iterator[str]:
     yield "![wiring diagram](wiring.svg)"
     yield ""
     yield from bullets(_advice(machine))
+    yield from connections(machine)
+    yield from chain(machine)
 
 
 def _advice(machine: HobbingMachine) -> Iterator[str]:
@@ -226,6 +224,8 @@ def _timing(machine: HobbingMachine) -> Iterator[str]:
         f"the encoder, {machine.move_max_rate} steps/s a jog; {machine.limits.lag_steps} waiting steps are a fault."
     )
     yield from paragraph(_enable(machine))
+    yield from switches(machine)
+    yield from scope(machine)
 
 
 def _enable(machine: HobbingMachine) -> str:

@@ -12,6 +12,7 @@ from fractions import Fraction
 from derivations import notation
 from gearmath.errors import InputError
 from gearmath.export.header import comment, plain, versions
+from gearmath.specs.counters import Counter
 from gearmath.specs.hob import DEPTH_RULES
 from gearmath.specs.hobbing import HobbingMachine
 
@@ -101,6 +102,7 @@ def _train(machine: HobbingMachine) -> list[Macro]:
         ("GM_MOTOR_STEPS_DEN", steps.denominator, "and denominator"),
         ("GM_HOB_STARTS", int(starts), notation.hob_starts.description),
         ("GM_HOB_LEFT", int(machine.hob_hand == "left"), "1: left-hand hob"),
+        ("GM_BACKLASH_STEPS", machine.drive.backlash_steps, "motor steps of play that are taken up"),
         ("GM_HYSTERESIS", machine.encoder.hysteresis, "counts of play of the hob encoder"),
         ("GM_WIDE", int(machine.wide), "0: gm_wide is int32_t, 1: int64_t"),
     ]
@@ -152,9 +154,11 @@ def _wired(machine: HobbingMachine) -> list[Macro]:
     return [
         (
             "GM_DECODER_LS7184",
-            int(machine.encoder.decoder != "hardware"),
+            int(machine.encoder.has_ls7184),
             "1: pulse and direction, 0: channels A and B",
         ),
+        *_counter("HOB", machine.hob_counter, machine.counter_filter(machine.max_edge_rate)[0]),
+        *_counter("FEED", machine.feed_counter, machine.counter_filter(machine.hardware.highest_edge_rate)[0]),
         ("GM_HAS_INDEX", int(pins.index is not None), "index pulse of the hob"),
         ("GM_HAS_FEED", int(machine.feed is not None), "encoder of the axial feed"),
         ("GM_HAS_ENABLE", int(pins.enable is not None), "enable output of the driver"),
@@ -166,6 +170,21 @@ def _wired(machine: HobbingMachine) -> list[Macro]:
         ("GM_HAS_RESET", int(pins.reset is not None), "reset output to the driver"),
         ("GM_HAS_HEALTHY", int(pins.healthy is not None), "fail-safe output"),
     ]
+
+
+def _counter(axis: str, reached: Counter | None, filter_value: int) -> list[Macro]:
+    """The counter of an encoder: its number, or 0 for interrupts, and how its pins are connected with it."""
+    macros: list[Macro] = [
+        (f"GM_{axis}_COUNTER", reached.unit if reached else 0, "number of the board's counter, 0: interrupts count")
+    ]
+    if reached is not None:
+        for k, channel in enumerate("AB"):
+            macros.append((f"GM_{axis}_MUX_{channel}", reached.mux[k], "multiplexer of that pin"))
+            if reached.crossbar[k]:
+                macros.append((f"GM_{axis}_CROSSBAR_{channel}", reached.crossbar[k], "input of the crossbar"))
+                macros.append((f"GM_{axis}_DAISY_{channel}", reached.daisy[k], "pad of that input"))
+        macros.append((f"GM_{axis}_FILTER", filter_value, "setting of the counter's filter"))
+    return macros
 
 
 #: What hangs on each pin; the README's table says the same.

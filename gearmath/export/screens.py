@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from gearmath.export.markdown import paragraph, table
+from gearmath.export.markdown import bullets, paragraph, table
 from gearmath.specs.hobbing import HobbingMachine
 
 Row = tuple[str, str]
@@ -50,6 +50,7 @@ _RUN_OF_A_THREAD: tuple[Row, ...] = (
     ("Lag", "motor steps that the carriage is behind: it waits for its phase, or is catching up. Do not cut then"),
     ("Turns", "of the spindle since the start of the job (second page)"),
     ("Place", "travel of the carriage since the start of the job (second page)"),
+    ("Shoulder in", "time until the carriage stops at the shoulder, at the present speed (second page)"),
 )
 _CHECKS: tuple[Row, ...] = (("Steps", "motor steps since the start of the job (third page)"),)
 _OTHERS: tuple[Row, ...] = (
@@ -57,6 +58,11 @@ _OTHERS: tuple[Row, ...] = (
     ("Moved", "sum of the detents since then"),
     ("Counted, Wanted", "encoder counts of the test, and what one turn must give"),
     ("Turn", "motor steps of the one-turn test"),
+)
+_READOUT: tuple[Row, ...] = (
+    ("Divide by", "divisions of a full turn; where the spindle stands becomes 0"),
+    ("Angle", "of the spindle, turned by hand"),
+    ("Beside it", "how far the spindle is beside the nearest division"),
 )
 _DIVIDE: tuple[Row, ...] = (
     ("Divide by", "divisions of a full turn; where the table stands becomes 0"),
@@ -80,9 +86,39 @@ def screens(machine: HobbingMachine) -> Iterator[str]:
         "that is engaged while the other side turns speeds up and overtakes what it has missed; only then the display "
         "says that it is in phase."
     )
+    yield from bullets(_helps(machine))
     yield "### What every number means"
     yield ""
     yield from table(("label", "meaning"), _quoted(_rows(machine)))
+
+
+def _helps(machine: HobbingMachine) -> Iterator[str]:
+    """What else the pages do for the worker."""
+    yield (
+        "`Only set the phase`, the third answer to `Start?`, lets nothing move. So a thread or a gear is picked "
+        "up after the "
+        "power was off: jog the tool (the hob) into the groove with the spindle standing, enter the same job, and set "
+        "the phase there. Draw the tool out, jog clear, and `run on`."
+    )
+    if machine.profile == "lathe":
+        yield (
+            "`shoulder is here`, with the carriage jogged there after `Stop?`: each pass brakes so that it ends "
+            "just before "
+            "this place, on the side of the start. The same entry at the same place takes it away, a new job too. "
+            "`SHOULDER: tool out` says that it has stopped; draw the tool out, then `back to start`, then `run on`."
+        )
+        yield "`divide` shows where the spindle stands between divisions of a turn, for indexing by hand."
+    if machine.drive.backlash_steps:
+        returns = ", `back to start`" if machine.profile == "lathe" else ""
+        yield (
+            f"Play of {machine.drive.backlash_steps} steps is taken up: `divide`{returns} comes to its place "
+            "forwards, and `run "
+            "on` goes back and forth first where the last motion was backwards."
+        )
+    yield (
+        "Turn the knob while the button is held: the display begins anew, where it shows garbage. It does so by itself "
+        "after it was away. Nothing else changes."
+    )
 
 
 def _rows(machine: HobbingMachine) -> Iterator[Row]:
@@ -97,8 +133,7 @@ def _rows(machine: HobbingMachine) -> Iterator[Row]:
     if machine.feed is not None:
         yield ("Feed", "axial feed since the start of the job (third page)")
     yield from _OTHERS
-    if not lathe:
-        yield from _DIVIDE
+    yield from _READOUT if lathe else _DIVIDE
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,7 @@ def teensy_files(machine: HobbingMachine, sketch: str = "gearbox") -> dict[str, 
     files[f"{sketch}.ino"] = files.pop(_SKETCH)
     files |= integer_kernel(kernel("gearbox_edge"), bits=64 if machine.wide else 32, inline=True).files
     files |= integer_kernel(kernel("encoder_hysteresis"), inline=True).files
+    files |= integer_kernel(kernel("counter_motion"), inline=True).files
     files["gm_machine.h"] = machine_header(machine)
     files["wiring.svg"] = wiring_svg(machine)
     files["README.md"] = guide(machine, sketch)

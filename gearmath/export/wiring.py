@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from schemdraw import Drawing, elements
 
+from gearmath.export.contactor import contactor
 from gearmath.export.diagram import TEXT, TITLE, Point, box, ground, line, pin_down, small, supply, text, titled
+from gearmath.export.netlist import netlist
 from gearmath.specs.hobbing import HobbingMachine
 
 #: Left and right edge of what stands in one column.
@@ -27,6 +29,7 @@ def wiring_svg(machine: HobbingMachine) -> str:
     right = _outputs(drawing, machine)
     bottom = min(left, right)
     box(drawing, _BOARD, 1.0, bottom, machine.hardware.title)
+    contactor(drawing, machine, bottom - 4.6)
     _regulator(drawing, machine)
     supply(drawing, (_BOARD[0] + 1.5, 1.0), "+5 V", "Vin")
     ground(drawing, (_BOARD[0] + 1.5, bottom), "GND")
@@ -68,12 +71,12 @@ def _encoder(drawing: Drawing, machine: HobbingMachine, y: float, title: str, pi
     for name, (height, pin) in rows.items():
         assert pin is not None
         text(drawing, (_SENSOR[1] - 0.2, height), name, align="right")
-        if name == "Z" or machine.encoder.decoder == "hardware":
+        if name == "Z" or not machine.encoder.has_ls7184:
             _to_pin(drawing, (_SENSOR[1], height), pin, machine)
             continue
         line(drawing, (_SENSOR[1], height), (_DECODER[0], height))
         _to_pin(drawing, (_DECODER[1], height), pin, machine)
-    if machine.encoder.decoder != "hardware":
+    if machine.encoder.has_ls7184:
         _decoder(drawing, machine, y, "RB2" if title.startswith("feed") else "RB1")
         return y - 7.0
     return y - 5.4
@@ -89,6 +92,7 @@ def _decoder(drawing: Drawing, machine: HobbingMachine, y: float, bias: str) -> 
         small(drawing, (left - 0.25, height + 0.25), str(number))
         small(drawing, (right + 0.25, height + 0.25), str(output))
     supply(drawing, (left + 1.5, y - 0.9), "+5 V", "VDD", "2")
+    small(drawing, (left + 2.6, y - 1.25), "U4" if bias == "RB2" else "U3")
     bottom = y - 4.2
     ground(drawing, (left + 0.5, bottom), "VSS", "3")
     pin_down(drawing, (left + 1.5, bottom), "RBIAS", "1")
@@ -126,9 +130,19 @@ def _to_pin(drawing: Drawing, start: Point, pin: int, machine: HobbingMachine | 
     if machine is not None and not machine.hardware.five_volt_tolerant:
         line(drawing, start, (_SHIFTER[0], height))
         _shift(drawing, height, "74LVC245")
+        k = _channel(machine, pin)
+        small(drawing, (_SHIFTER[0] - 0.45, height + 0.28), f"{2 + k} A{k + 1}")
+        small(drawing, (_SHIFTER[1] + 0.45, height + 0.28), f"{18 - k} B{k + 1}")
         start = (_SHIFTER[1], height)
     line(drawing, start, (_BOARD[0], height))
     text(drawing, (_BOARD[0] + 0.2, height), f"pin {pin}", align="left")
+
+
+def _channel(machine: HobbingMachine, pin: int) -> int:
+    """Which channel of the 74LVC245 leads to a pin of the board: that of the netlist."""
+    nets = netlist(machine).nets.values()
+    (end,) = (end for net in nets if ("U1", str(pin)) in net for end in net if end[0] == "U5")
+    return int(end[1].split(" B")[1]) - 1
 
 
 def _shift(drawing: Drawing, height: float, chip: str, edges: Point = _SHIFTER) -> None:
@@ -162,12 +176,13 @@ def _outputs(drawing: Drawing, machine: HobbingMachine) -> float:
         supply(drawing, (_DRIVER[1] - 1.2, top + 1.9), "+5 V to all + inputs")
     else:
         ground(drawing, (_DRIVER[1] - 0.7, last - 0.9), "")
-    y = last - 3.2
+    y = last - 3.4
     if pins.healthy is not None:
         _pump(drawing, y, pins.healthy, f"T{len(signals) + 1}")
-        box(drawing, _DRIVER, y + 1.5, y - 0.6, "relay K1, with diode", at=y + 0.0)
-        supply(drawing, (_DRIVER[1] - 0.7, y + 1.5), "+5 V")
-        y -= 3.4
+        box(drawing, _DRIVER, y + 1.2, y - 0.9, "relay K1", at=y - 0.1)
+        small(drawing, ((_DRIVER[0] + _DRIVER[1]) / 2, y - 0.6), "D3 1N4148 across its coil")
+        supply(drawing, (_DRIVER[1] - 0.7, y + 1.2), "+5 V")
+        y -= 3.6
     return _display(drawing, machine, y)
 
 
@@ -241,7 +256,7 @@ def _display(drawing: Drawing, machine: HobbingMachine, y: float) -> float:
 def _regulator(drawing: Drawing, machine: HobbingMachine) -> None:
     """Regulator with its capacitors, above everything else."""
     y = 5.2
-    text(drawing, (0.0, y + 0.45), "7 to 12 V DC", align="left")
+    text(drawing, (0.0, y + 0.45), "9 V DC", align="left")
     line(drawing, (0.0, y), (3.0, y))
     _capacitor(drawing, (1.0, y), "C1")
     box(drawing, (3.0, 5.6), y + 0.7, y - 0.8, "LM7805")
@@ -250,9 +265,24 @@ def _regulator(drawing: Drawing, machine: HobbingMachine) -> None:
     _capacitor(drawing, (6.4, y), "C2")
     supply(drawing, (8.0, y), "+5 V")
     if not machine.hardware.five_volt_tolerant:
-        text(drawing, (_SHIFTER[0], y + 0.6), "74LVC245 and the low side of the BSS138 shifter:", align="left")
-        text(drawing, (_SHIFTER[0], y + 0.1), "fed from the 3.3 V pin of the board. No pin of the", align="left")
-        text(drawing, (_SHIFTER[0], y - 0.4), f"{machine.hardware.title} may ever see 5 V.", align="left")
+        _shifters(drawing, machine, y)
+
+
+def _shifters(drawing: Drawing, machine: HobbingMachine, y: float) -> None:
+    """Supplies of the level shifters; their channels stand in the lines."""
+    left = 11.0
+    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U5 74LVC245", at=y)
+    supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "VCC", "20")
+    supply(drawing, (left + 2.6, y + 0.7), "+3.3 V", "DIR", "1")
+    ground(drawing, (left + 0.7, y - 0.8), "GND", "10")
+    ground(drawing, (left + 2.6, y - 0.8), "OE", "19")
+    left += 5.4
+    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "A1 BSS138", at=y)
+    supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "LV")
+    supply(drawing, (left + 2.6, y + 0.7), "+5 V", "HV")
+    ground(drawing, (left + 1.7, y - 0.8), "GND")
+    text(drawing, (left + 4.2, y + 0.35), "+3.3 V is the 3.3 V pin of the board.", align="left")
+    text(drawing, (left + 4.2, y - 0.25), f"No pin of the {machine.hardware.title} may ever see 5 V.", align="left")
 
 
 def _capacitor(drawing: Drawing, top: Point, name: str) -> None:

@@ -14,10 +14,10 @@ from gearmath.bevel.pair import check_pair
 from gearmath.errors import InputError
 from gearmath.front.sets import GearSet, Member, load_set
 from gearmath.front.tables import html_table
-from gearmath.quality.correction import Correction as Corrected
-from gearmath.quality.correction import correct, setting_changes
-from gearmath.quality.evaluation import Evaluation as Found
-from gearmath.quality.evaluation import evaluate_member
+from gearmath.quality.correction.member import Correction as Corrected
+from gearmath.quality.correction.member import correct, setting_changes
+from gearmath.quality.evaluation.member import Evaluation as Found
+from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
 from gearmath.specs.set_text import save_corrected
 
@@ -174,9 +174,9 @@ class Correction:
 def deviations(member: Member, grid: tuple[int, int], margin: float) -> Measurement:
     """The flanks that the settings of a member cut, as deviations from the nominal ones."""
     from gearmath.bevel.flank import blank_grid, solve_flank
-    from gearmath.machine.mill import flank_header
-    from gearmath.quality.flank_target import predicted
-    from gearmath.quality.target import target_of
+    from gearmath.bevel.identify.flank_target import predicted
+    from gearmath.bevel.nominal_file import flank_header
+    from gearmath.quality.correction.target import target_of
     from gearmath.specs.bevel_set import FLANKS
     from gearmath.specs.flank_csv import flank_file
 

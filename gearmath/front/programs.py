@@ -12,14 +12,15 @@ from gearmath.files import write_text
 from gearmath.front.machines import Machine, load_machine
 from gearmath.front.measured import Measurement
 from gearmath.front.sets import Member
-from gearmath.machine.control import Setup
-from gearmath.machine.cutting import Job, cutting_program
-from gearmath.machine.executor import execute
-from gearmath.machine.mill import mill_member
+from gearmath.machine.control.executor import execute
+from gearmath.machine.control.state import Setup
+from gearmath.machine.milling.mill import mill_member
+from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 if TYPE_CHECKING:
-    from gearmath.machine.executor import MachinePath
+    from gearmath.machine.control.executor import MachinePath
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Program:
     @property
     def blocks(self) -> int:
         """How many blocks the control runs."""
-        from gearmath.machine.words import block_count
+        from gearmath.machine.writing.words import block_count
 
         return block_count(self.text)
 
@@ -56,8 +57,8 @@ class Program:
     def faults(self) -> list[str]:
         """What the machine must not run: travel, speed, collisions, modes left as they were; empty where it may."""
         from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-        from gearmath.machine.judge import faults_of
-        from gearmath.machine.run import runs_of
+        from gearmath.machine.judging.program import faults_of
+        from gearmath.machine.milling.run import runs_of
 
         spec, name, machine = self.member.spec, self.member.name, self.machine.spec
         space = None if spec.process == "face_hobbing" else tooth_space(spec, name, 7)

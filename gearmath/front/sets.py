@@ -137,7 +137,7 @@ class Member:
         (5, 9, 3)
         """
         from gearmath.bevel.flank import blank_grid, solve_flank
-        from gearmath.machine.mill import nominal_flank
+        from gearmath.bevel.nominal_file import nominal_flank
 
         _check_flank(flank)
         places = blank_grid(self.spec, *grid, margin)

@@ -93,20 +93,23 @@ def two_terms(hob: Fraction, feed: Fraction, feed_counts: Fraction, turn: int = 
     return JobRatio(denominator, (int(hob * denominator), size if feed > 0 else -size))
 
 
-def convergent(value: Fraction, needed: int) -> Fraction:
-    """The first convergent p/q of a continued fraction that is known to be within 1/``needed`` of ``value``.
+def simplest(value: Fraction, needed: int) -> Fraction:
+    """The fraction of the least denominator within 1/``needed`` of ``value`` > 1/``needed``, as the firmware takes it.
 
-    Known from |value - p/q| <= 1/(q q'), where q' is the next denominator; the firmware chooses in the same way.
+    Continued fractions of both ends of that interval, as long as they agree. Their ends have nothing to do with the
+    value, unlike the convergents of the value itself: a value that is nearly rational has two that are next to each
+    other, and its last digit would decide which one is met first.
     """
-    before, now, rest = (0, 1), (1, 0), value
+    low, high = value - Fraction(1, needed), value + Fraction(1, needed)
+    before, now = (0, 1), (1, 0)
     while True:
-        whole, rest = divmod(rest, 1)
-        before, now = now, (int(whole) * now[0] + before[0], int(whole) * now[1] + before[1])
-        if rest == 0:
+        whole = math.ceil(low)
+        last = whole <= high
+        digit = whole if last else math.floor(low)
+        before, now = now, (digit * now[0] + before[0], digit * now[1] + before[1])
+        if last:
             return Fraction(*now)
-        rest = 1 / rest
-        if now[1] * (math.floor(rest) * now[1] + before[1]) > needed:
-            return Fraction(*now)
+        low, high = 1 / (high - digit), 1 / (low - digit)
 
 
 @dataclass(frozen=True)
@@ -160,6 +163,6 @@ def _fed(machine: HobbingMachine, teeth: int, starts: int, module: float, helix:
         float(helix.feed), float(machine.encoder_counts), float(machine.motor_steps),
     )  # fmt: skip
     counts = Fraction(TRAVEL * teeth * machine.encoder_counts) / helix.feed
-    found = convergent(abs(exact), math.ceil(2 * PART * counts))
+    found = simplest(abs(exact), math.ceil(2 * PART * counts))
     rounding = Rounding(1 / (2 * PART * starts), float(abs(abs(exact) - found) * counts / starts))
     return one_term(found if exact > 0 else -found, machine.encoder_counts.denominator), rounding

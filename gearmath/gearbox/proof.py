@@ -10,6 +10,9 @@ The instructions of the CasADi function are walked into z3 integer terms, one te
 of whatever axis keeps p D + a - Σ N_j e_j, so |p - Σ N_j e_j/D| ≤ 1/2 for every history of the edges of all axes.
 
 ``encoder_hysteresis``, 0 ≤ x ≤ H: the play stays in 0 ≤ x' ≤ H, no count is made or lost, what passes is 0 or the edge.
+
+``counter_motion``, any reading c and motion -M/2 ≤ m < M/2: the result is m, however often the counter ran over. So the
+sum of the results is the true count, for every history of readings that are less than M/2 counts apart.
 """
 
 from __future__ import annotations
@@ -141,6 +144,25 @@ def prove_hysteresis(function: ca.Function, limit: int = int(hysteresis.domain[1
         ("an edge passes exactly where the play is used up", (passed == 0) == z3.And(x + d >= 0, x + d <= H)),
     ]
     return _prove_for_both_edges(z3, d, claims, [x >= 0, x <= H, limit >= H])
+
+
+def prove_counter(function: ca.Function, reach: int = 2**15) -> tuple[str, ...]:
+    """Prove the claims of this module for ``counter_motion`` and motions -reach <= m < reach, as the others do."""
+    import z3
+
+    M = 2**16
+    c, now, m, k, total = z3.Ints("count_before count_now motion wraps total")
+    graph = walk(function, {"count_before": c, "count_now": now})
+    counted = graph.outputs["counted"]
+    given = [c >= 0, c < M, now == c + m - k * M, now >= 0, now < M, m >= -reach, m < reach]
+    claims = [
+        *_within(z3, graph, 32),
+        ("what is counted is the motion", counted == m),
+        ("the sum goes on as the true count", total + counted == total + m),
+    ]
+    for what, claim in claims:
+        _prove(z3, what, claim, given)
+    return tuple(what for what, _ in claims)
 
 
 def _within(z3: Any, graph: Walk, bits: int) -> list[tuple[str, Any]]:

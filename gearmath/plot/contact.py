@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,6 +14,7 @@ from matplotlib.patches import Patch, Polygon
 from gearmath.bevel.contact.local import local
 from gearmath.bevel.contact.mesh import REACH, Mesh
 from gearmath.bevel.contact.pattern import Pattern, envelope, pattern
+from gearmath.bevel.contact.report import v_h
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 
 _ARCSEC = math.degrees(1) * 3600
@@ -23,15 +25,55 @@ _SAMPLES, _ELLIPSES = 361, 9
 _SHOWN = 4.0
 
 
-def contact_figure(runs: Mapping[str, Mesh]) -> Figure:
-    """A row for each side: transmission error, path on the projected tooth of the gear, pattern over the ease-off."""
-    figure = Figure(figsize=(13.0, 3.7 * len(runs)), layout="constrained")
-    for places, (side, run) in zip(figure.subplots(len(runs), 3, squeeze=False), runs.items(), strict=True):
+def contact_figure(runs: Mapping[str, Mesh], tolerances: Mapping[str, Any] | None = None) -> Figure:
+    """A row for each side: transmission error, path on the projected tooth, pattern over the ease-off, V-H diagram.
+
+    ``tolerances`` by side are the objects ``tolerance_mm`` of the JSON.
+    """
+    figure = Figure(figsize=(15.5, 3.7 * len(runs)), layout="constrained")
+    widths = {"width_ratios": [1, 1, 1, 0.6]}
+    rows = figure.subplots(len(runs), 4, squeeze=False, gridspec_kw=widths)
+    for places, (side, run) in zip(rows, runs.items(), strict=True):
         found = pattern(run)
         _draw_error(places[0], run, f"{side}: {run.outcome}")
         _draw_path(places[1], run, found)
         _draw_pattern(places[2], run, found)
+        _draw_v_h(places[3], run, (tolerances or {}).get(side))
     return figure
+
+
+def patterns_figure(states: Mapping[str, Mapping[str, Mesh]]) -> Figure:
+    """Patterns of one pair in several states (nominal, measured, corrected): a column a state, a row a side."""
+    sides = list(next(iter(states.values())))
+    figure = Figure(figsize=(4.6 * len(states), 2.2 * len(sides)), layout="constrained")
+    rows = figure.subplots(len(sides), len(states), squeeze=False, sharex=True, sharey=True)
+    for places, side in zip(rows, sides, strict=True):
+        for axes, (state, runs) in zip(places, states.items(), strict=True):
+            _draw_pattern(axes, runs[side], pattern(runs[side]))
+            axes.set_title(f"{state}, {side}", fontsize=8, loc="left")
+    return figure
+
+
+def _draw_v_h(axes: Axes, run: Mesh, limits: dict[str, Any] | None) -> None:
+    """V and H for contact at toe, mean and heel, the assembly as it stands, and how far from it an edge is reached."""
+    found = {name: at for name, at in v_h(run).items() if at is not None}
+    if found:
+        line = np.array(list(found.values()))
+        axes.plot(line[:, 0], line[:, 1], "o-", color=AFTER, markersize=4, linewidth=1.2)
+        for name, place in found.items():
+            axes.annotate(name, (place[0], place[1]), textcoords="offset points", xytext=(5, 4), fontsize=7)
+    V, H = run.assembly[:2]
+    axes.plot([V], [H], "+", color=INK, markersize=9)
+    for name, along in (("v", (1.0, 0.0)), ("h", (0.0, 1.0))):
+        for at in (limits or {}).get(name, {}).values():
+            value, edge = at["value"], at["edge"]
+            end = V + value * along[0], H + value * along[1]
+            axes.plot([V, end[0]], [H, end[1]], color=BEFORE, linewidth=1.2, marker="|" if along[0] else "_")
+            axes.annotate(edge or "none", end, fontsize=6, color=BEFORE, ha="center")
+    axes.axhline(0, color=NOMINAL, linewidth=0.5)
+    axes.axvline(0, color=NOMINAL, linewidth=0.5)
+    axes.margins(0.25)
+    _label(axes, "V-H diagram" + (": to the edges" if limits else ""), "V / mm", "H / mm")
 
 
 def _draw_error(axes: Axes, run: Mesh, title: str) -> None:

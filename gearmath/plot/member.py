@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from gearmath.plot.pitch import draw_pitch, draw_runout
 from gearmath.plot.style import signed
 from gearmath.plot.topography import draw_topography, um_per_row
-from gearmath.quality.evaluation import Evaluation
-from gearmath.quality.pitch import Pitch
-from gearmath.quality.registration import Registration
-from gearmath.quality.topography import Topography
+from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.evaluation.pitch import Pitch
+from gearmath.quality.evaluation.registration import Registration
+from gearmath.quality.evaluation.topography import Topography
 
 
 def member_figure(

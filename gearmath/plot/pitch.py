@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL, or_withheld
-from gearmath.quality.pitch import Pitch
-from gearmath.quality.spaces import Runout
+from gearmath.quality.evaluation.pitch import Pitch
+from gearmath.quality.evaluation.spaces import Runout
 
 #: Less than this [µm] is not enlarged.
 _LEAST_UM = 1.0

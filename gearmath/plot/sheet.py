@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from gearmath.plot.pitch import draw_cumulative, draw_runout, draw_single_pitch
 from gearmath.plot.tooth import ToothFlank, draw_tooth
 from gearmath.plot.topography import draw_topography
-from gearmath.quality.pitch import Pitch
-from gearmath.quality.spaces import Runout
-from gearmath.quality.topography import Topography
+from gearmath.quality.evaluation.pitch import Pitch
+from gearmath.quality.evaluation.spaces import Runout
+from gearmath.quality.evaluation.topography import Topography
 
 #: Width of a chart [inch], half of A4 between its margins: letters of 8 pt are 8 pt on paper.
 _WIDTH = 3.64

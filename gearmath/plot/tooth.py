@@ -12,7 +12,7 @@ from matplotlib.colors import LinearSegmentedColormap
 
 from gearmath.bevel.turning import turned
 from gearmath.plot.style import INK, NOMINAL, round_length, signed
-from gearmath.quality.topography import Topography
+from gearmath.quality.evaluation.topography import Topography
 from gearmath.specs.flank_csv import FlankFile
 
 #: Darker from missing to left on, so that a print without color shows the sign as well.

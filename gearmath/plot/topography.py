@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from gearmath.plot.style import BEFORE, INK, LESS, MORE, NOMINAL, round_length, signed
-from gearmath.quality.topography import Topography
+from gearmath.quality.evaluation.topography import Topography
 
 #: The net is drawn aslant: each row begins so many columns farther right than the one below it.
 _SLANT = 0.22

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
-from gearmath.quality.uncertainty import Uncertain
+from gearmath.quality.uncertainty.propagation import Uncertain
 
 #: Color and marker of each flank, and of what belongs to both.
 _LOOKS = {"concave": (BEFORE, "o"), "convex": (AFTER, "s")}

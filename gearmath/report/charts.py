@@ -12,11 +12,11 @@ from gearmath.plot.pitch import pitch_limits
 from gearmath.plot.sheet import pitch_chart, runout_chart, tooth_chart, topography_chart
 from gearmath.plot.tooth import enlargement, tooth_flanks
 from gearmath.plot.topography import um_per_row
-from gearmath.quality.correction import Correction
-from gearmath.quality.evaluation import Evaluation
-from gearmath.quality.pitch import Pitch, index_correction, reference_rows
-from gearmath.quality.target import flank_target
-from gearmath.quality.topography import Topography, grid_shape, zeroed
+from gearmath.quality.correction.member import Correction
+from gearmath.quality.correction.target import flank_target
+from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.evaluation.pitch import Pitch, index_correction, reference_rows
+from gearmath.quality.evaluation.topography import Topography, grid_shape, zeroed
 from gearmath.report.measurement import Measurement
 from gearmath.specs.bevel_set import Member
 

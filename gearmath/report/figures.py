@@ -7,10 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearmath.page import Page
-from gearmath.quality.evaluation import Evaluation, FlankFigures
-from gearmath.quality.tolerance import Verdict, finest_grade, iso17485
-from gearmath.quality.topography import ORDERS
-from gearmath.quality.uncertainty import Uncertain
+from gearmath.quality.evaluation.member import Evaluation, FlankFigures
+from gearmath.quality.evaluation.tolerance import Verdict, finest_grade, iso17485
+from gearmath.quality.evaluation.topography import ORDERS
+from gearmath.quality.uncertainty.propagation import Uncertain
 from gearmath.report.measurement import Measurement, in_words, micro
 
 #: Figures that have a grade: name in the verdict, that of the figure of a flank, and in words.

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gearmath.quality.correction import Correction
-from gearmath.quality.evaluation import Evaluation
-from gearmath.quality.uncertainty import Uncertain
+from gearmath.quality.correction.member import Correction
+from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.uncertainty.propagation import Uncertain
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
 

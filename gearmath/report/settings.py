@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from gearmath.bevel.identify.identification import Identification
+from gearmath.bevel.identify.variables import reading
 from gearmath.page import Page
-from gearmath.quality.analysis import Analysis, weak_words
-from gearmath.quality.correction import Correction, setting_changes
-from gearmath.quality.identification import Identification
-from gearmath.quality.variables import reading
+from gearmath.quality.correction.analysis import Analysis, weak_words
+from gearmath.quality.correction.member import Correction, setting_changes
 from gearmath.report.measurement import Measurement, in_words, micro
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from gearmath.page import Page
-from gearmath.quality.topography import Topography
+from gearmath.quality.evaluation.topography import Topography
 from gearmath.report import charts
 from gearmath.report.figures import clamping_section, flank_section, spacing_section, uncertainty_section
 from gearmath.report.measurement import FIELDS, Measurement, Report, counted, in_words

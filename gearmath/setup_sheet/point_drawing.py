@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from gearmath.machine.cutter import Cutter
+from gearmath.machine.bodies.cutter import Cutter
 from gearmath.setup_sheet.svg import LETTER, WIDTH, Drawing
 
 #: Width of the steel at the upper end of the blades, and room for words above and below. [px]

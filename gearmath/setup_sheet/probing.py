@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearmath.machine.bodies import work_profiles
-from gearmath.machine.probe_words import APPROACH_FEED, MEASURING_FEED
-from gearmath.machine.probing import APPROACH
-from gearmath.machine.setup_facts import NOT_ON_METAL, PROBING, R_D, VARIABLES, BlankSizes
+from gearmath.machine.bodies.profiles import work_profiles
+from gearmath.machine.planning.setup_facts import NOT_ON_METAL, PROBING, R_D, VARIABLES, BlankSizes
+from gearmath.machine.planning.targets import APPROACH
+from gearmath.machine.writing.probe_words import APPROACH_FEED, MEASURING_FEED
 from gearmath.page import Page
 from gearmath.setup_sheet.machine_drawing import Ring, machine_drawing
 from gearmath.setup_sheet.references import references

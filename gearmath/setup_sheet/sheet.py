@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from gearmath.machine.bodies import head_radius, work_profiles
-from gearmath.machine.chip_load import Bite
-from gearmath.machine.cutter import Cutter, cutter_of
-from gearmath.machine.cutting import DRY_LIFT
-from gearmath.machine.path import Cut
-from gearmath.machine.setup_facts import R_D, SetupFacts
-from gearmath.machine.timing import Timing
-from gearmath.machine.tooling import Tool
+from gearmath.machine.bodies.cutter import Cutter, cutter_of
+from gearmath.machine.bodies.profiles import head_radius, work_profiles
+from gearmath.machine.judging.timing import Timing
+from gearmath.machine.planning.chip_load import Bite
+from gearmath.machine.planning.cut_plan import DRY_LIFT
+from gearmath.machine.planning.path import Cut
+from gearmath.machine.planning.setup_facts import R_D, SetupFacts
+from gearmath.machine.planning.tooling import Tool
 from gearmath.page import Page
 from gearmath.setup_sheet.machine_drawing import CUTTER_TIP, Ring, machine_drawing
 from gearmath.setup_sheet.point_drawing import point_drawing

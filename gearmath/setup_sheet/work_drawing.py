@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from gearmath.machine.setup_facts import BlankSizes
+from gearmath.machine.planning.setup_facts import BlankSizes
 from gearmath.setup_sheet.silhouette import KINDS, silhouettes
 from gearmath.setup_sheet.svg import LETTER, WIDTH, Drawing
 from gearmath.specs.obstacles import Fixture

@@ -45,7 +45,8 @@ DISPLAYS = {
 class Pins(Spec):
     """Digital pins. Those of the source text unless given; what is not wired is left out.
 
-    With an LS7184 the encoder pins take its pulse and its direction, with hardware quadrature the channels A and B.
+    With an LS7184 the encoder pins take its pulse and its direction, otherwise the channels A and B. Only some pins
+    reach a counter of the board; ``gearmath.specs.counters`` knows them, and the encoder's where none are given.
     """
 
     knob_a: int = Field(default=2, ge=0)

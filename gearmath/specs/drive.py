@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from typing import Literal
 
@@ -15,8 +16,8 @@ from gearmath.specs.toml import Spec
 class Encoder(Spec):
     """Encoder on the hob (the spindle of a lathe), and how many of its quadrature edges the decoder counts.
 
-    ``hardware`` is the board's own quadrature, which counts all four. ``hysteresis`` is the play, in counts, that keeps
-    a trembling hob from stepping.
+    ``hardware`` is the board's own quadrature counter, ``interrupts`` its pins in software; both count all four edges.
+    ``hysteresis`` is the play, in counts, that keeps a trembling hob from stepping.
     """
 
     lines: int = Field(ge=1, le=1_000_000)
@@ -27,13 +28,31 @@ class Encoder(Spec):
     """Whether the counts go down as the hob turns forward: instead of exchanging its channels."""
     index_active: Literal["high", "low"] = "high"
     """Level of the index pulse at the board's pin."""
-    decoder: Literal["ls7184_x1", "ls7184_x2", "ls7184_x4", "hardware"]
+    decoder: Literal["ls7184_x1", "ls7184_x2", "ls7184_x4", "hardware", "interrupts"]
+    counter: Literal["interrupts", "hardware"] | None = None
+    """What counts the pulses of an LS7184: interrupts unless given, or the board's counter of pulse and direction."""
     hysteresis: int = Field(default=0, ge=0, le=int(notation.hysteresis.domain[1]))
 
     @property
     def edges_per_line(self) -> int:
         """1, 2 or 4."""
-        return 4 if self.decoder == "hardware" else int(self.decoder[-1])
+        return int(self.decoder[-1]) if self.has_ls7184 else 4
+
+    @property
+    def has_ls7184(self) -> bool:
+        """Whether pulse and direction come from that chip, not channels A and B from the encoder."""
+        return self.decoder.startswith("ls7184")
+
+    @property
+    def wants_counter(self) -> bool:
+        """Whether a counter of the board is asked for."""
+        return self.decoder == "hardware" or self.counter == "hardware"
+
+    @model_validator(mode="after")
+    def _one_counter(self) -> Encoder:
+        if self.counter is not None and not self.has_ls7184:
+            raise ValueError(f"counter = {self.counter!r}: has no meaning with decoder = {self.decoder!r}")
+        return self
 
     @property
     def counts_per_shaft(self) -> int:
@@ -56,6 +75,18 @@ class Drive(Spec):
     microsteps: int | None = Field(default=None, ge=1, le=1_024)
     pulses: Pulses | None = None
     belt: Rational
+    backlash: float = Field(default=0.0, ge=0.0, le=5.0)
+    """Play between motor and table [degrees] or carriage [mm], taken up by dividing, a return and a restart."""
+
+    @property
+    def backlash_steps(self) -> int:
+        """That play in motor steps, rounded up."""
+        return math.ceil(Fraction(str(self.backlash)) * self.steps_per_turn / self._turn)
+
+    @property
+    def _turn(self) -> Fraction:
+        """A turn of the table [degrees], or of the lead screw [mm]."""
+        return Fraction(360)
 
     @property
     def pulses_per_turn(self) -> Fraction:
@@ -111,6 +142,10 @@ class LeadScrew(Drive):
     """Step motor of a lathe's lead screw, and the pitch of that screw [mm], from text in mm or tpi."""
 
     pitch: Pitch
+
+    @property
+    def _turn(self) -> Fraction:
+        return self.pitch
 
 
 class Feed(Spec):

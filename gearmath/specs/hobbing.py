@@ -10,12 +10,20 @@ import math
 import re
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, AliasChoices, Field, model_validator
 
 from derivations import notation
 from gearmath.specs.board import BOARDS, Board, BoardName, Display, Pins
+from gearmath.specs.counters import (
+    DEFAULT_PINS,
+    LS7184_FILTER,
+    Counter,
+    counter,
+    filter_setting,
+    pins_in_words,
+)
 from gearmath.specs.drive import Encoder, Feed, LeadScrew, Table
 from gearmath.specs.drivers import Driver
 from gearmath.specs.hob import Hob
@@ -75,6 +83,19 @@ class HobbingMachine(Spec):
     limits: Limits
     hobs: tuple[Hob, ...] = Field(default=(), strict=False)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _pins_of_the_counter(cls, data: Any) -> Any:
+        """Where a counter is asked for and no pins of the encoder are given, those of the board's counter."""
+        try:
+            encoder, pins, (first, second) = data["encoder"], data.get("pins", {}), DEFAULT_PINS[data["board"]]
+            wanted = encoder["decoder"] == "hardware" or encoder.get("counter") == "hardware"
+            if wanted and not {"encoder_step", "encoder_dir"} & set(pins):
+                return {**data, "pins": {**pins, "encoder_step": first, "encoder_dir": second}}
+        except (AttributeError, KeyError, TypeError):
+            pass  # what is wrong with it is said where the section is read
+        return data
+
     @model_validator(mode="after")
     def _fits_together(self) -> HobbingMachine:
         self._check_profile()
@@ -116,6 +137,28 @@ class HobbingMachine(Spec):
 
         if self.pins.reset is not None and self.pins.alarm is None:
             raise ValueError("pins.reset has no meaning without pins.alarm")
+        if self.encoder.wants_counter:
+            self._check_counters()
+
+    def _check_counters(self) -> None:
+        instead = "leave counter out" if self.encoder.has_ls7184 else 'write decoder = "interrupts"'
+        pins = self.pins
+        used: list[int] = []
+        for name, reached in (("encoder", self.hob_counter), ("feed", self.feed_counter)):
+            if name == "feed" and self.feed is None:
+                continue
+            first, second = (getattr(pins, f"{name}_{end}") for end in ("step", "dir"))
+            if reached is None:
+                raise ValueError(
+                    f"pins.{name}_step = {first} and pins.{name}_dir = {second}: no counter of a {self.hardware.title} "
+                    f"reaches these pins in this order; it takes {pins_in_words(self.board)}; or {instead}"
+                )
+            if self.board == "teensy32" and reached.unit in used:
+                raise ValueError(f"pins.feed_step = {first}: its counter FTM{reached.unit} is that of the hob already")
+            shared = set(reached.crossbar) & set(used)
+            if self.board != "teensy32" and shared:
+                raise ValueError(f"pins.feed_step = {first} and pins.feed_dir = {second}: 0 and 5 share one input")
+            used += [reached.unit] if self.board == "teensy32" else list(reached.crossbar)
 
     def _check_edges(self) -> None:
         most = int(notation.encoder_counts.domain[1])
@@ -206,6 +249,27 @@ class HobbingMachine(Spec):
         return BOARDS[self.board]
 
     @property
+    def hob_counter(self) -> Counter | None:
+        """The board's counter of the hob encoder, None where interrupts count it."""
+        pins = (self.pins.encoder_step, self.pins.encoder_dir)
+        return counter(self.board, pins, feed=False) if self.encoder.wants_counter else None
+
+    @property
+    def feed_counter(self) -> Counter | None:
+        """The board's counter of the feed encoder."""
+        first, second = self.pins.feed_step, self.pins.feed_dir
+        if self.feed is None or first is None or second is None or not self.encoder.wants_counter:
+            return None
+        return counter(self.board, (first, second), feed=True)
+
+    def counter_filter(self, edge_rate: float) -> tuple[int, float]:
+        """Register value and time [ns] of a counter's filter that passes every edge at ``edge_rate`` per second.
+
+        Real edges come at half their mean distance and more; a quarter of it is ignored. The LS7184's pulse is short.
+        """
+        return filter_setting(self.board, LS7184_FILTER if self.encoder.has_ls7184 else 1e9 / (4 * edge_rate))
+
+    @property
     def tick_ns(self) -> int:
         """Period of the step timer."""
         return self.hardware.tick_ns
@@ -244,7 +308,7 @@ class HobbingMachine(Spec):
     def edge_rate_limit(self) -> int:
         """Encoder edges per second that board and decoder carry."""
         board = self.hardware.highest_edge_rate
-        return board if self.encoder.decoder == "hardware" else min(board, LS7184_EDGE_RATE)
+        return min(board, LS7184_EDGE_RATE) if self.encoder.has_ls7184 else board
 
     @property
     def max_step_rate(self) -> int:

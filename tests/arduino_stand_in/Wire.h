@@ -7,6 +7,8 @@
 class TwoWire {
  public:
   void begin();
+  void beginTransmission(uint8_t address);
+  uint8_t endTransmission();
   void setClock(uint32_t frequency);
 };
 

@@ -24,6 +24,12 @@ struct stand_in_board {
   int lcd_row;
   int lcd_column;
   int lcd_writes;
+  int lcd_starts;
+  void (*software)(void);
+  int pended;
+  uint8_t priority_of_software;
+  void (*bus_waits)(void); /* what the time passes with while the bus is stuck */
+  int display_off;
 };
 
 extern stand_in_board stand_in;

@@ -15,14 +15,14 @@ import pytest
 from scipy.optimize import fsolve, least_squares
 
 from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.identify.compensation import identify, with_deviations
+from gearmath.bevel.identify.identification import spread
+from gearmath.bevel.identify.on_line import flank_on_line
+from gearmath.bevel.identify.problem import Problem
+from gearmath.bevel.identify.variables import FREE, variables_of
 from gearmath.export.host import compile_kernel
 from gearmath.kernels import kernel
-from gearmath.quality.compensation import identify, with_deviations
-from gearmath.quality.identification import spread
-from gearmath.quality.on_line import flank_on_line
-from gearmath.quality.problem import Problem
-from gearmath.quality.target import target_of
-from gearmath.quality.variables import FREE, variables_of
+from gearmath.quality.correction.target import target_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, load_bevel_set
 from gearmath.specs.toml import bundled
 

@@ -49,7 +49,7 @@ def test_seven_equations_by_fsolve_within_the_flanks(benchmark, systems) -> None
         for system, start in zip(systems, starts, strict=True):
             x = start.x
             for rotation in np.linspace(start.rotation, start.rotation + math.radians(25), POSITIONS):
-                x = fsolve(lambda x, at=rotation, of=system: of.equations(x, at, STILL)[0][:7, 0], x, xtol=1e-13)
+                x = fsolve(lambda x, at=rotation, of=system: of.equations.at(x, at, STILL)[0][:7, 0], x, xtol=1e-13)
 
     benchmark(run)
 

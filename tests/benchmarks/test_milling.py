@@ -8,8 +8,8 @@ import timeit
 import numpy as np
 import pytest
 
-from gearmath.machine.cutter import Body, Cutter, Profile
-from gearmath.machine.milling import REACH, annulus_entry, removal
+from gearmath.machine.bodies.cutter import Body, Cutter, Profile
+from gearmath.machine.milling.removal import REACH, annulus_entry, removal
 
 POSES, LINES = 3000, 40
 HEIGHT = 500.0

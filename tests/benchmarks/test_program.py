@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from gearmath.machine.cutting import Job, cutting_program
+from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.quality.batch import compensation_kernel
-from gearmath.quality.compensation import identify, with_deviations
-from gearmath.quality.covariance import independent
-from gearmath.quality.flank_target import predicted
-from gearmath.quality.study import monte_carlo, run
-from gearmath.quality.target import target_of
+from gearmath.bevel.identify.compensation import identify, with_deviations
+from gearmath.bevel.identify.flank_target import predicted
+from gearmath.quality.correction.batch import compensation_kernel
+from gearmath.quality.correction.target import target_of
+from gearmath.quality.uncertainty.covariance import independent
+from gearmath.quality.uncertainty.study import monte_carlo, run
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.simulated_machine import load_simulated_machine
 from gearmath.specs.toml import bundled

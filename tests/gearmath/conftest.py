@@ -17,10 +17,11 @@ import numpy as np
 import pytest
 
 from gearmath import cli
-from gearmath.machine.cutting import Job, cutting_program
-from gearmath.machine.executor import MachinePath, execute
-from gearmath.machine.mill import mill_member
-from gearmath.machine.path import DEFAULT_TOLERANCE
+from gearmath.machine.control.executor import MachinePath, execute
+from gearmath.machine.milling.mill import mill_member
+from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.path import DEFAULT_TOLERANCE
+from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, BevelSet, Design, Member, Settings, load_bevel_set
 from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine

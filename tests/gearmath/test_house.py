@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 import json
 import re
 import subprocess
@@ -13,11 +14,13 @@ from pathlib import Path
 import pytest
 
 from gearmath.cli import VERBS
+from tests.arrows import arrows_of, circles
 
 ROOT = Path(__file__).parents[2]
 TOP_LEVEL = {
-    ".ci", ".editorconfig", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md",
-    "LICENSE", "Makefile", "README.md", "derivations", "docs", "gearmath", "notebooks", "pyproject.toml", "tests",
+    ".ci", ".editorconfig", ".github", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff",
+    "CONTRIBUTING.md", "LICENSE", "Makefile", "README.md", "derivations", "docs", "gearmath", "notebooks",
+    "pyproject.toml", "tests",
 }  # fmt: skip
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 
@@ -55,8 +58,26 @@ def test_layers_hold() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def test_no_folder_imports_in_a_circle() -> None:
+    _, arrows, upward = arrows_of()
+    assert not circles(arrows)
+    assert not upward
+
+
+def test_walks_of_contributing_have_at_most_eight_stations_and_all_of_them_exist() -> None:
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8").split("## Three walks")[1].split("\n## ")[0]
+    walks = [walk for walk in text.split("\n\n") if "→" in walk]
+    assert len(walks) == 3
+    for walk in walks:
+        stations = re.findall(r"`((?:\w+\.)+\w+)`", walk)
+        assert 5 <= len(stations) <= 8
+        for station in stations:
+            module, _, name = (station if station.startswith("derivations.") else f"gearmath.{station}").rpartition(".")
+            assert hasattr(importlib.import_module(module), name), station
+
+
 def test_contributing_shows_the_layers_of_the_contract() -> None:
-    (layers,) = (c["layers"] for c in pyproject()["tool"]["importlinter"]["contracts"] if c["type"] == "layers")
+    layers = next(c["layers"] for c in pyproject()["tool"]["importlinter"]["contracts"] if c["type"] == "layers")
     drawn = "\n".join(line.removeprefix("gearmath.").replace(" | gearmath.", " | ") for line in layers)
     text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
     assert drawn in "\n".join(line.strip() for line in text.splitlines())

@@ -40,7 +40,7 @@ def corner(element: Quantity, rng: random.Random) -> float:
 def exactly(expression: Expression, values: list[sp.Basic]) -> Callable[[Point], list]:
     """SymPy's own value of ``values`` in 50 digits, as a function of a point."""
     symbols = [symbol for quantity in expression.inputs for symbol in quantity.symbols]
-    function = sp.lambdify(symbols, values, "mpmath")
+    function = sp.lambdify(symbols, values, "mpmath", cse=True)  # SymPy's own, and ten times as fast
 
     def evaluate(point: Point) -> list:
         with mpmath.workdps(DIGITS):

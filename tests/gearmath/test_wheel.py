@@ -1,4 +1,4 @@
-"""The wheel works by itself: in an empty environment, in a folder that is not the repository."""
+"""What is released works by itself: the wheel, made from the source archive, in an empty environment elsewhere."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def run(folder: Path, *command: str | Path) -> str:
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
-    run(ROOT, sys.executable, "-m", "build", "--wheel", "--no-isolation", "--outdir", folder)
+    run(ROOT, sys.executable, "-m", "build", "--no-isolation", "--outdir", folder)  # the archive, and the wheel from it
     (built,) = folder.glob("gearmath-*-py3-none-any.whl")
     return built
 

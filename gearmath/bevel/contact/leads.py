@@ -22,10 +22,14 @@ _SAME_LEAD, _TRIALS = 1e-12, 40
 
 @dataclass(frozen=True)
 class Leads:
-    """The first contact over a pitch: the kinds that occur, largest less smallest error; None where there is none."""
+    """The first contact over a pitch: the kinds that occur, largest less smallest error; None where there is none.
+
+    ``borders`` are those of both flanks that it runs on.
+    """
 
     kinds: tuple[str, ...]
     peak_to_peak: float | None
+    borders: frozenset[int] = frozenset()
 
 
 def leads_over_a_pitch(run: Mesh) -> Leads:
@@ -44,11 +48,13 @@ def leads_over_a_pitch(run: Mesh) -> Leads:
         return Leads((), None)
     leads = np.where(np.isnan(leads), -np.inf, leads)
     first = leads.argmax(axis=0)
-    kinds = set()
+    kinds, borders = set(), set()
     for index in np.unique(first):
         thread, k = runners[index]
         for rotation in samples[first == index] - k * pitch:
-            kinds.add(next(part.kind for part in thread.segments if part.ends[0] <= rotation <= part.ends[1]))
+            part = next(part for part in thread.segments if part.ends[0] <= rotation <= part.ends[1])
+            kinds.add(part.kind)
+            borders.update(part.active)
 
     def value(index: int, rotation: float) -> float:
         thread, k = runners[index]
@@ -70,7 +76,7 @@ def leads_over_a_pitch(run: Mesh) -> Leads:
             if first[left] != first[left + 1]:
                 candidates.append(_crossing(value, first[left], first[left + 1], samples[left], samples[left + 1]))
         extremes.append([one for one in candidates if math.isfinite(one)])
-    return Leads(tuple(sorted(kinds)), max(extremes[0]) - min(extremes[1]))
+    return Leads(tuple(sorted(kinds)), max(extremes[0]) - min(extremes[1]), frozenset(borders))
 
 
 def _crossing(value: Callable[[int, float], float], one: int, other: int, low: float, high: float) -> float:

@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from gearmath.bevel.contact.system import System, Touch
+from gearmath.engine.points import Points
 from gearmath.kernels import kernel
 
 #: Separation at the border of the contact ellipse: thickness of the marking compound [mm].
@@ -37,7 +38,7 @@ class Local:
 
 
 @lru_cache(maxsize=16)
-def roll(system: System) -> ca.Function:
+def roll(system: System) -> Points:
     """x, φ_1, assembly -> w, β_c, D, lever, sliding (chapter 26), in the basis of the gear's root cone.
 
     Last how cone distance and depth on the gear change along the basis (2,2).
@@ -66,12 +67,13 @@ def roll(system: System) -> ca.Function:
     lever, _ = kernel("transmission").function(point, normal, *place)
     D = curvatures[0] - curvatures[1]
     found = ca.vertcat(D[0, 0], (D[0, 1] + D[1, 0]) / 2, D[1, 1])
-    return ca.Function("local", [x, rotation, assembly], ca.cse([w, beta, found, lever, sliding, ca.densify(seen)]))
+    outputs = ca.cse([w, beta, found, lever, sliding, ca.densify(seen)])
+    return Points(ca.Function("local", [x, rotation, assembly], [ca.densify(one) for one in outputs]), shared=(2,))
 
 
 def local(system: System, touch: Touch, assembly: np.ndarray, separation: float = MARKING) -> Local:
     """Curvature and motion at a contact within both flanks, its ellipse at a ``separation`` [mm]."""
-    *found, seen = (np.asarray(one) for one in roll(system)(touch.x, touch.rotation, assembly))
+    *found, seen = roll(system).at(touch.x, touch.rotation, assembly)
     w, beta, D, lever, sliding = (one.ravel() for one in found)
     velocity, second = kernel("contact_motion")(w, beta[0], D, lever[0])
     (axes,) = kernel("contact_ellipse")(D, separation)

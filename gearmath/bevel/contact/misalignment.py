@@ -12,6 +12,7 @@ import numpy as np
 from gearmath.bevel.contact.local import local
 from gearmath.bevel.contact.system import TOLERANCE, System, Touch
 from gearmath.bevel.turning import half_turn
+from gearmath.engine.points import Points
 from gearmath.kernels import kernel
 
 _STEPS = 25
@@ -31,7 +32,7 @@ class VH:
 
 
 @lru_cache(maxsize=16)
-def _wanted(system: System) -> ca.Function:
+def _wanted(system: System) -> Points:
     """y = (x, φ_1, V, H), J, ΔΣ, cone distance -> contact, place on the pitch cone and slope (10,), by y (10,10)."""
     y, J, shaft, distance = ca.SX.sym("y", 10), ca.SX.sym("J"), ca.SX.sym("shaft"), ca.SX.sym("distance")
     x, assembly = y[:7], ca.vertcat(y[8], y[9], J, shaft)
@@ -41,7 +42,8 @@ def _wanted(system: System) -> ca.Function:
     point, normal = system.placed(1, own, normal, x[6], assembly)
     _, slope = kernel("transmission").function(point, normal, system.shaft_angle, system.offset, assembly)
     wanted = ca.vertcat(every[:7], along - distance, depth, _SLOPE_SCALE * (slope + system.ratio))
-    return ca.Function("wanted", [y, J, shaft, distance], [wanted, ca.densify(ca.jacobian(wanted, y))])
+    function = ca.Function("wanted", [y, J, shaft, distance], [wanted, ca.densify(ca.jacobian(wanted, y))])
+    return Points(function)
 
 
 def contact_at(system: System, distance: float, J: float = 0.0, shaft: float = 0.0) -> VH | None:
@@ -58,7 +60,7 @@ def contact_at(system: System, distance: float, J: float = 0.0, shaft: float = 0
     y = np.concatenate([starts[0].contact[0], starts[1].contact[0], [turns[1], turns[0], 0.0, 0.0]])
     function = _wanted(system)
     for _ in range(_STEPS):
-        residual, by_y = (np.asarray(one) for one in function(y, J, shaft, distance))
+        residual, by_y = function.at(y, J, shaft, distance)
         if not np.isfinite(by_y).all():
             return None
         if np.abs(residual).max() < 10 * TOLERANCE:
@@ -78,12 +80,12 @@ def contact_at(system: System, distance: float, J: float = 0.0, shaft: float = 0
 
 
 @lru_cache(maxsize=16)
-def _displaced(system: System) -> ca.Function:
+def _displaced(system: System) -> Points:
     """x, φ_1, assembly -> the conditions of a contact within both flanks by x (7,7) and by the assembly (7,4)."""
     x, rotation, assembly = ca.SX.sym("x", 7), ca.SX.sym("rotation"), ca.SX.sym("assembly", 4)
     every, _ = system.equations.function(x, rotation, assembly)
     rates = [ca.densify(ca.jacobian(every[:7], by)) for by in (x, assembly)]
-    return ca.Function("displaced", [x, rotation, assembly], rates)
+    return Points(ca.Function("displaced", [x, rotation, assembly], rates), shared=(2,))
 
 
 def sensitivities(system: System, touch: Touch, assembly: np.ndarray) -> np.ndarray:
@@ -91,6 +93,6 @@ def sensitivities(system: System, touch: Touch, assembly: np.ndarray) -> np.ndar
 
     Rows: cone distance and height on the gear [mm], and φ_2 [rad].
     """
-    by_x, by_assembly = (np.asarray(one) for one in _displaced(system)(touch.x, touch.rotation, assembly))
+    by_x, by_assembly = _displaced(system).at(touch.x, touch.rotation, assembly)
     moved = np.linalg.solve(by_x, -by_assembly)
     return np.vstack([system.place_rates(touch.x) @ moved, moved[6:7]])

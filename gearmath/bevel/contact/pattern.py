@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.contact.local import MARKING
+from gearmath.bevel.contact.marked import marked_area
 from gearmath.bevel.contact.mesh import Mesh
-from gearmath.bevel.contact.places import places
+from gearmath.bevel.contact.places import Places, places
 
 _ROWS, _COLUMNS = 21, 41
 
@@ -25,13 +26,14 @@ class Pattern:
     """The gear's flank on a grid, rows root to tip, columns toe to heel: cone distance, height above the pitch cone,
     ease-off and least gap in the mesh (rows, columns) [mm]; NaN where the flanks have no common point.
 
-    ``marked`` where the gap is within the ``thickness`` [mm].
+    ``marked`` where the gap is within the ``thickness`` [mm]; ``common`` where both flanks have a point.
     """
 
     cone_distance: np.ndarray
     height: np.ndarray
     ease_off: np.ndarray
     gap: np.ndarray
+    common: np.ndarray
     thickness: float
 
     @property
@@ -41,17 +43,16 @@ class Pattern:
 
     @property
     def figures(self) -> dict[str, float]:
-        """Part of the flank's width and of all its points that is marked, and the center of the pattern [mm]."""
-        marked = self.marked
-        thickness = {"thickness_mm": self.thickness, "share": float(marked.mean())}
-        if not marked.any():
+        """Part of the flank's area and width that is marked, and the center of the pattern [mm]."""
+        area = marked_area(self.cone_distance, self.height, self.gap, self.thickness)
+        thickness = {"thickness_mm": self.thickness, "share": area.share}
+        if not area.share:
             return thickness
-        across = self.cone_distance[marked]
         return {
             **thickness,
-            "length_share": float(np.ptp(across) / np.ptp(self.cone_distance)),
-            "center_cone_distance_mm": float(across.mean()),
-            "center_height_mm": float(self.height[marked].mean()),
+            "length_share": area.length / float(np.ptp(self.cone_distance)),
+            "center_cone_distance_mm": float(area.center[0]),
+            "center_height_mm": float(area.center[1]),
         }
 
 
@@ -73,12 +74,19 @@ def envelope(run: Mesh, rotations: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(first), first, np.nan)
 
 
+def gaps(run: Mesh, found: Places) -> np.ndarray:
+    """The least gap (rows, columns) [mm] in the mesh at places of the gear, beyond the borders of either flank too."""
+    first = envelope(run, found.rotation.ravel()).reshape(found.rotation.shape)
+    return np.abs(found.lever) * (first - run.system.sense * found.error)
+
+
 def pattern(run: Mesh, thickness: float = MARKING, rows: int = _ROWS, columns: int = _COLUMNS) -> Pattern:
     """The pattern at a marking ``thickness`` [mm], on the whole flank of the gear."""
     found = places(run.system, run.assembly, rows, columns)
     lead = np.where(found.common, run.system.sense * found.error, np.nan)
-    size = np.abs(found.lever)
-    gap = size * (envelope(run, found.rotation.ravel()).reshape(lead.shape) - lead)
+    gap = np.where(found.common, gaps(run, found), np.nan)
     middle = lead[rows // 2, columns // 2]
     reference = middle if np.isfinite(middle) else float(np.nanmax(lead)) if np.isfinite(lead).any() else math.nan
-    return Pattern(found.cone_distance, found.height, size * (reference - lead), gap, thickness)
+    return Pattern(
+        found.cone_distance, found.height, np.abs(found.lever) * (reference - lead), gap, found.common, thickness
+    )

@@ -10,6 +10,7 @@ from gearmath.bevel.contact.misalignment import contact_at, sensitivities
 from gearmath.bevel.contact.pattern import pattern
 from gearmath.bevel.contact.surface import nominal_surface
 from gearmath.bevel.contact.system import Assembly, System, pair_system
+from gearmath.bevel.contact.tolerance import Tolerance
 from gearmath.specs.bevel_set import FLANKS, BevelSet
 
 #: The flank of the pinion that works on each side; the gear's is the other one.
@@ -53,7 +54,7 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
         ],
         "pattern": pattern(run).figures,
         "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
-        "v_h_mm": _v_h(run),
+        "v_h_mm": v_h(run),
     }
 
 
@@ -78,7 +79,7 @@ def _at_mean(run: Mesh) -> dict[str, Any] | None:
     }
 
 
-def _v_h(run: Mesh) -> dict[str, list[float] | None]:
+def v_h(run: Mesh) -> dict[str, list[float] | None]:
     """V and H that bring the contact to toe, mean and heel, the other displacements as they are."""
     if run.is_line:
         return dict.fromkeys(("toe", "mean", "heel"))
@@ -86,3 +87,17 @@ def _v_h(run: Mesh) -> dict[str, list[float] | None]:
     places = {"toe": toe, "mean": run.system.gear.blank.mean_cone_distance, "heel": heel}
     found = {name: contact_at(run.system, at, *run.assembly[2:]) for name, at in places.items()}
     return {name: None if one is None else [one.V, one.H] for name, one in found.items()}
+
+
+def tolerance_figures(found: Tolerance | None) -> dict[str, Any] | None:
+    """The JSON object ``tolerance_mm`` of one side: limits to both senses, by displacement."""
+    if found is None:
+        return None
+    limits = {
+        name.lower(): {
+            sense: {"value": limit.value, "edge": limit.edge}
+            for sense, limit in zip(("minus", "plus"), both, strict=True)
+        }
+        for name, both in found.limits.items()
+    }
+    return {"reached": list(found.reached), **limits}

@@ -10,11 +10,11 @@ from functools import cache, cached_property
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.contact.fast import Mapped
 from gearmath.bevel.generation import Generation, Section, solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.newton import FlankPoints
 from gearmath.engine.kernel import Kernel
+from gearmath.engine.points import Points
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SIDES, Blank, Member
 
@@ -67,8 +67,8 @@ class Surface:
         return ca.Function("limits", [w], [ca.vertcat(*distances)])
 
     @cached_property
-    def _mapped_limits(self) -> Mapped:
-        return Mapped(self.limits)
+    def _mapped_limits(self) -> Points:
+        return Points(self.limits)
 
     def distances(self, w: np.ndarray) -> np.ndarray:
         """Distances (n,4) from the borders [mm] at w (n,3)."""
@@ -154,13 +154,13 @@ def _slowly(how: Generation, section: Section, axial: np.ndarray, radial: np.nda
     return FlankPoints(*arrays)
 
 
-def _newton(function: ca.Function) -> Mapped:
+def _newton(function: ca.Function) -> Points:
     """w and place -> how far w is off the place and the flank (3,), its derivatives (3,3), point and normal."""
     w, place = ca.SX.sym("w", 3), ca.SX.sym("place", 2)
     point, normal, condition, _ = function(w)
     off = ca.vertcat(point[2] - place[0], ca.sqrt(point[0] ** 2 + point[1] ** 2) - place[1], condition)
     outputs = ca.cse([off, ca.densify(ca.jacobian(off, w)), point, normal])
-    return Mapped(ca.Function("on_place", [w, place], outputs))
+    return Points(ca.Function("on_place", [w, place], outputs))
 
 
 def _borders(member: Member, section: Section) -> np.ndarray:

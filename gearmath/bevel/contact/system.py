@@ -15,9 +15,9 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.contact.fast import Fast, Mapped
 from gearmath.bevel.contact.surface import BORDERS, Surface
 from gearmath.bevel.turning import half_turn
+from gearmath.engine.points import Points
 from gearmath.errors import ComputationError
 from gearmath.kernels import kernel
 
@@ -99,7 +99,7 @@ class System:
         )
 
     @cached_property
-    def equations(self) -> Fast:
+    def equations(self) -> Points:
         """x, φ_1, assembly -> every condition (23,) and its derivatives by x and φ_1 (23,8).
 
         In this order: common point (3), f of both (2), alignment (2), tangency of the edges (8), their distance (8).
@@ -121,7 +121,7 @@ class System:
         aligned = kernel("alignment").function(points[1], normals[1], normals[0])
         every = ca.vertcat(points[0] - points[1], *conditions, aligned, *touching, *distances)
         outputs = ca.cse([every, ca.densify(ca.jacobian(every, ca.vertcat(x, rotation)))])
-        return Fast(ca.Function("contact", [x, rotation, assembly], outputs))
+        return Points(ca.Function("contact", [x, rotation, assembly], outputs), shared=(2,))
 
     def solve(
         self, x: np.ndarray, rotation: float, active: tuple[int, ...], assembly: np.ndarray, steps: int = _STEPS
@@ -129,7 +129,7 @@ class System:
         """The contact near ``x`` at a rotation of the pinion, None where Newton's method does not get there."""
         rows = _rows(active)
         for _ in range(steps):
-            every, by_all = self.equations(x, rotation, assembly)
+            every, by_all = self.equations.at(x, rotation, assembly)
             r, J = every[rows, 0], by_all[rows]
             if not np.isfinite(J).all():
                 return None
@@ -148,7 +148,7 @@ class System:
         """The contact at ``active`` borders that comes to one more border: x (7,) and the rotation of the pinion."""
         rows, y = [*_rows(active), 7 + COUNT + border], np.append(x, rotation)
         for _ in range(_STEPS):
-            every, by_all = self.equations(y[:7], y[7], assembly)
+            every, by_all = self.equations.at(y[:7], y[7], assembly)
             r, J = every[rows, 0], by_all[rows]
             if not np.isfinite(J).all():
                 return None
@@ -180,7 +180,7 @@ class System:
         rows, n, found = _rows(active), len(x), x.copy()
         done = np.zeros(n, dtype=bool)
         for _ in range(_STEPS):
-            r, J = self._mapped(found, rotation, assembly)
+            r, J = self.equations(found, rotation[:, None], assembly)
             r, J = r[:, rows, 0], J[:, rows, :7]
             done = np.abs(r).max(axis=1) < TOLERANCE
             good = np.isfinite(J).all(axis=(1, 2)) & (np.abs(np.linalg.det(np.nan_to_num(J))) > 0)
@@ -191,10 +191,6 @@ class System:
             found += step / np.maximum(1.0, (np.abs(step) / _LIMITS).max(axis=1))[:, None]
         found[~done] = np.nan
         return found
-
-    @cached_property
-    def _mapped(self) -> Mapped:
-        return Mapped(self.equations.function, shared=(2,))
 
     @cached_property
     def sense(self) -> float:
@@ -212,29 +208,25 @@ class System:
         return float(touch.x[6] + self.ratio * touch.rotation)
 
     @cached_property
-    def _gear_place(self) -> Fast:
+    def _gear_place(self) -> Points:
         """x -> cone distance and depth on the gear, and their derivatives."""
         x = ca.SX.sym("x", 7)
         point, *_ = self.gear.function(x[3:6])
         place = ca.vertcat(*kernel("root_place").function(point, self.gear.pitch_angle))
-        return Fast(ca.Function("gear_place", [x], ca.cse([place, ca.densify(ca.jacobian(place, x))])))
+        return Points(ca.Function("gear_place", [x], ca.cse([place, ca.densify(ca.jacobian(place, x))])))
 
     def gear_place(self, x: np.ndarray) -> tuple[float, float]:
         """Cone distance and height above the pitch cone of the gear [mm], of a contact ``x`` (7,)."""
-        (distance, depth), _ = self._gear_place(x)
+        (distance, depth), _ = self._gear_place.at(x)
         return float(distance[0]), -float(depth[0])
 
     def gear_places(self, x: np.ndarray) -> np.ndarray:
         """Cone distances and heights (n,2) on the gear [mm] of contacts ``x`` (n,7)."""
-        return self._gear_places(x)[0][:, :, 0] * [1.0, -1.0]
-
-    @cached_property
-    def _gear_places(self) -> Mapped:
-        return Mapped(self._gear_place.function)
+        return self._gear_place(x)[0][:, :, 0] * [1.0, -1.0]
 
     def place_rates(self, x: np.ndarray) -> np.ndarray:
         """How both change with ``x`` (2,7)."""
-        along, deep = self._gear_place(x)[1]
+        along, deep = self._gear_place.at(x)[1]
         return np.stack([along, -deep])
 
 

@@ -15,10 +15,10 @@ from gearmath.bevel.design import local_settings as local
 from gearmath.bevel.design.local_settings import MOVING, NAMES, Local, Wanted
 from gearmath.bevel.design.rolling import Meeting
 from gearmath.bevel.generation import Generation
+from gearmath.bevel.identify.flank_target import FlankTarget, locate
+from gearmath.bevel.identify.least_squares import minimize
+from gearmath.bevel.identify.variables import NAMES as WHOLE
 from gearmath.bevel.newton import FlankPoints
-from gearmath.quality.flank_target import FlankTarget, locate
-from gearmath.quality.least_squares import minimize
-from gearmath.quality.variables import NAMES as WHOLE
 from gearmath.specs.bevel_set import SETTINGS
 
 #: Places of NAMES in the whole vector (83,) of a flank.

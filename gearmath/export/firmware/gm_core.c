@@ -11,11 +11,12 @@
 #define GM_LARGEST_BASE 64
 #define GM_LARGEST_HYSTERESIS 16
 
-/* Overspeed: every edge adds one to a bucket that runs out at GM_MAX_EDGE_RATE and 1 %. It trips when GM_BURST edges
- * too many are in it, so that at any speed GM_OVERSPEED comes before GM_LAG where GM_BURST N/D < GM_MAX_LAG. */
-#define GM_BURST 24u
-#define GM_ONE_EDGE 65536u
-#define GM_LEAK ((uint32_t)((uint64_t)GM_MAX_EDGE_RATE * 101u * GM_TICK_NS * GM_ONE_EDGE / 100000000000u + 1u))
+/* Overspeed: every edge adds its sign to a bucket that runs out at GM_MAX_EDGE_RATE and 1 %. It trips when GM_BURST edges
+ * too many of one direction are in it, so that at any speed GM_OVERSPEED comes before GM_LAG where GM_BURST N/D <
+ * GM_MAX_LAG, while noise on one channel, which counts to and fro, does not fill it. */
+#define GM_BURST 24
+#define GM_ONE_EDGE 65536
+#define GM_LEAK ((int32_t)((uint64_t)GM_MAX_EDGE_RATE * 101u * GM_TICK_NS * GM_ONE_EDGE / 100000000000u + 1u))
 
 /* Milliseconds, windows of 100 ms, and the second of edge_rate. */
 #define GM_MILLISECOND_TICKS (1000000u / GM_TICK_NS)
@@ -58,6 +59,7 @@
 /* A table that is so many turns of the hob behind will never be in phase. */
 #define GM_HOPELESS_TURNS 64
 
+#define GM_INDEX_QUIET_TICKS (2u * GM_MILLISECOND_TICKS) /* of an index pulse that is none of a burst of noise */
 #define GM_ESTOP_TICKS ((uint32_t)GM_ESTOP_MS * GM_MILLISECOND_TICKS)
 #define GM_ALARM_TICKS (2u * GM_MILLISECOND_TICKS) /* more on than off */
 #define GM_RESET_MS 200u
@@ -259,8 +261,9 @@ void gm_core_edge(gm_core *core, int axis, int edge)
   int32_t passed = edge;
   core->edges[axis] += edge;
   if (axis == GM_HOB) {
-    if (core->bucket < GM_BURST * GM_ONE_EDGE) {
-      core->bucket += GM_ONE_EDGE;
+    const int32_t bucket = core->bucket + edge * GM_ONE_EDGE;
+    if (bucket <= GM_BURST * GM_ONE_EDGE && bucket >= -GM_BURST * GM_ONE_EDGE) {
+      core->bucket = bucket;
     } else if (core->has_job) {
       trip(core, GM_OVERSPEED);
     }
@@ -308,47 +311,97 @@ static int stray(uint32_t *mark, uint32_t here, int32_t tolerance, int32_t *rest
   return *rest > tolerance || *rest < -tolerance;
 }
 
+/* Whether a pulse at this place is the index: near all earlier ones, and where the hob has turned since the last one, very
+ * near those on which it came from the same side. */
+static int is_index(gm_core *core, uint32_t here, int32_t *turns)
+{
+  uint32_t mark = core->index_last;
+  int32_t rest;
+  int side;
+  *turns = turns_since(&mark, here, &rest);
+  if (stray(&core->index_first, here, GM_INDEX_WIDTH, &rest)) return 0;
+  if (*turns == 0) return 1;
+  side = *turns > 0;
+  return !core->index_side_known[side] || !stray(&core->index_side[side], here, GM_INDEX_TOLERANCE, &rest);
+}
+
 void gm_core_index(gm_core *core)
 {
-  uint32_t here = hob_count(core);
-  int32_t turns, rest, error = 0;
-  int side, wrong;
+  const uint32_t here = hob_count(core);
   if (!GM_HAS_INDEX || !core->has_job) return;
+  core->index_alone = core->now - core->index_at > GM_INDEX_QUIET_TICKS;
+  core->index_at = core->now;
+  core->index_here = here;
+  core->index_is_good = 0;
+  if (core->index_known && is_index(core, here, &core->index_travel)) {
+    core->index_is_good = core->index_good = 1;
+    core->index_last = here;
+    core->index_turns += magnitude(core->index_travel);
+  }
+}
+
+static void accuse(gm_core *core, int32_t error)
+{
+  core->index_error = error;
+  trip(core, GM_ENCODER);
+}
+
+/* A pulse that has stood alone: the first one is the mark; others show from where it is seen on either side, that the hob
+ * does not turn at all, or that edges were lost or invented, if the index did not come where it should have. */
+static void judge_index(gm_core *core)
+{
+  int32_t apart;
+  int side;
+  if (!core->index_alone || core->now - core->index_at <= GM_INDEX_QUIET_TICKS) return;
+  core->index_alone = 0;
   if (!core->index_known) {
     core->index_known = 1;
-    core->index_first = core->index_last = here;
+    core->index_first = core->index_last = core->index_zone = core->index_here;
     return;
   }
-  turns = turns_since(&core->index_last, here, &rest);
-  core->index_last = here;
-  wrong = stray(&core->index_first, here, GM_INDEX_WIDTH, &error);
-  if (turns == 0) {
-    ++core->index_visits;
-    if (core->mode == GM_RUN && core->index_visits >= GM_INDEX_VISITS) {
-      wrong = 1;
-      error = -GM_ENCODER_COUNTS;
-    }
+  if (!core->index_is_good) {
+    (void)stray(&core->index_first, core->index_here, 0, &apart);
+    side = core->index_travel > 0;
+    if (core->index_side_known[side]) (void)stray(&core->index_side[side], core->index_here, 0, &apart);
+    apart = core->index_travel < 0 ? -apart : apart;
+    if (!core->index_stray || magnitude(apart) < magnitude(core->index_apart)) core->index_apart = apart;
+    core->index_stray = 1;
+    if (core->index_missed) accuse(core, core->index_apart);
+  } else if (core->index_travel == 0) {
+    if (++core->index_visits >= GM_INDEX_VISITS && core->mode == GM_RUN) accuse(core, -GM_ENCODER_COUNTS);
   } else {
     core->index_visits = 0;
-    for (side = 0; side < 2; ++side) {
-      int32_t apart = 0;
-      int off = stray(&core->index_side[side], here, GM_INDEX_TOLERANCE, &apart);
-      if (side != (turns > 0)) continue; /* the mark of the other side only kept near */
-      if (!core->index_side_known[side]) {
-        core->index_side_known[side] = 1;
-        core->index_side[side] = here;
-      } else if (off) {
-        wrong = 1;
-        error = apart;
-      }
+    side = core->index_travel > 0;
+    if (!core->index_side_known[side]) {
+      core->index_side_known[side] = 1;
+      core->index_side[side] = core->index_here;
     }
-    if (turns < 0) error = -error;
-    if (!wrong) core->index_turns += magnitude(turns);
   }
-  if (wrong) {
-    core->index_error = error;
-    trip(core, GM_ENCODER);
+}
+
+/* Once a millisecond: whether the hob has passed the mark from one side to the other, and the index came. */
+static void watch_index(gm_core *core)
+{
+  const int32_t travel = (int32_t)(hob_count(core) - core->index_zone);
+  const int32_t turns = travel / GM_ENCODER_COUNTS - (travel % GM_ENCODER_COUNTS < 0);
+  const int32_t beyond = travel - turns * GM_ENCODER_COUNTS;
+  if (!core->index_known) { /* none has come yet, since the start of the job */
+    const uint32_t all = magnitude((int32_t)hob_count(core));
+    if (all > (uint32_t)GM_INDEX_MISSING * GM_ENCODER_COUNTS + GM_INDEX_WIDTH) accuse(core, (int32_t)all);
+    return;
   }
+  if (beyond <= GM_INDEX_WIDTH || beyond >= GM_ENCODER_COUNTS - GM_INDEX_WIDTH) return;
+  core->index_zone += (uint32_t)(turns * GM_ENCODER_COUNTS);
+  if (turns != 0) {
+    core->index_missed = core->index_good ? 0 : core->index_missed + magnitude(turns);
+    if (core->index_missed && core->index_stray) {
+      accuse(core, core->index_apart);
+    } else if (core->index_missed >= GM_INDEX_MISSING) {
+      accuse(core, (int32_t)magnitude((int32_t)(hob_count(core) - core->index_last)));
+    }
+    core->index_stray = 0;
+  }
+  core->index_good = 0;
 }
 
 /* --- the step timer ----------------------------------------------------------------------------------------- */
@@ -415,19 +468,13 @@ static void try_lock(gm_core *core)
   }
 }
 
-static void watch_index(gm_core *core)
-{
-  uint32_t travel = magnitude((int32_t)(hob_count(core) - core->index_last));
-  if (travel > (uint32_t)GM_INDEX_MISSING * GM_ENCODER_COUNTS + GM_INDEX_WIDTH) {
-    core->index_error = (int32_t)travel;
-    trip(core, GM_ENCODER);
-  }
-}
-
 /* What every millisecond brings, one thing a tick, so that no tick is long. */
 static void end_millisecond(gm_core *core)
 {
   switch (core->duties--) {
+    case 4:
+      if (GM_HAS_INDEX && core->has_job) judge_index(core);
+      break;
     case 3:
       if (core->has_job) measure(core);
       break;
@@ -458,6 +505,20 @@ static void watch_alarm(gm_core *core, unsigned inputs)
   }
 }
 
+/* Whether braking must begin to stop before the shoulder: over the way of the present speed, that until the next look, and
+ * a step for each rounding. */
+static int near_shoulder(const gm_core *core)
+{
+  const int side = core->shoulder > 0 ? 1 : -1;
+  const int64_t follows = core->rate * side, moves = core->speed * side;
+  const int64_t speed = follows > moves ? follows : moves;
+  int64_t room = (core->shoulder - core->position - core->pending) * side;
+  if (speed <= 0) return 0;
+  room -= 3 + (int64_t)(3 * GM_STEER_TICKS * speed / GM_ONE_STEP);
+  if (room > 16000) return 0;
+  return room <= 0 || room * 65536 * GM_BRAKING_ROOM <= squared(speed < GM_FOLLOW_SPEED ? speed : GM_FOLLOW_SPEED);
+}
+
 /* Sets the speed of the motion within the acceleration: towards where the rule (or the move) wants it, so that braking
  * with three quarters of the acceleration ends there, at the speed of that place; a move, whose end stands, with nearly
  * all of it. */
@@ -479,6 +540,11 @@ static void steer(gm_core *core)
   if (core->engaged && !core->locked) {
     watch_lag(core);
     if (core->braking) return;
+  }
+  if (core->shoulder != 0 && core->engaged && near_shoulder(core)) {
+    core->at_shoulder = 1;
+    brake(core);
+    return;
   }
   apart = core->mode == GM_MOVE ? -core->speed : core->rate - core->speed;
   way = squared(apart);
@@ -580,10 +646,10 @@ static void beat(gm_core *core)
 
 unsigned gm_core_outputs(gm_core *core, unsigned inputs)
 {
-  const uint32_t leak = core->engaged ? core->leak : GM_LEAK;
+  const int32_t leak = core->engaged ? core->leak : GM_LEAK;
   unsigned levels = GM_OUT_ENABLE;
   ++core->now;
-  core->bucket = core->bucket > leak ? core->bucket - leak : 0;
+  core->bucket = core->bucket > leak ? core->bucket - leak : core->bucket < -leak ? core->bucket + leak : 0;
   if (GM_HAS_ESTOP) watch_estop(core, inputs);
   if (GM_HAS_ALARM) watch_alarm(core, inputs);
   drive(core);
@@ -602,7 +668,7 @@ void gm_core_think(gm_core *core)
 {
   if (--core->millisecond_ticks == 0) {
     core->millisecond_ticks = GM_MILLISECOND_TICKS;
-    core->duties = 3;
+    core->duties = 4;
     if (++core->milliseconds == GM_WINDOW_MILLISECONDS) end_window(core);
   }
   if (--core->steer_wait == 0) {
@@ -698,7 +764,7 @@ static void set_limits(gm_core *core)
   const uint64_t leak = steps * GM_TURN_COUNTS / turn;
   gm_wide whole = core->job.denominator;
   int32_t edge = core->job.base[GM_HOB];
-  core->leak = leak < GM_LEAK ? (uint32_t)leak + 1u : GM_LEAK;
+  core->leak = leak < (uint64_t)GM_LEAK ? (int32_t)leak + 1 : GM_LEAK;
   core->part_shift = 0;
   while (whole > 32767) {
     whole >>= 1;
@@ -727,10 +793,12 @@ int gm_core_set_job(gm_core *core, const gm_job *job)
   core->window_mark -= hob_count(core); /* the counts begin anew, the hob turns on */
   core->second_mark -= hob_count(core);
   core->edges[GM_HOB] = core->edges[GM_FEED] = 0;
-  core->position = 0;
+  core->position = core->shoulder = 0;
+  core->at_shoulder = 0;
   core->index_known = 0;
-  core->index_last = 0;
-  core->index_visits = core->index_turns = 0;
+  core->index_alone = core->index_good = core->index_stray = 0;
+  core->index_at = core->now - GM_INDEX_QUIET_TICKS - 1u;
+  core->index_visits = core->index_turns = core->index_missed = 0;
   core->index_error = 0;
   for (side = 0; side < 2; ++side) core->index_side_known[side] = 0;
   return 0;
@@ -741,10 +809,16 @@ int gm_core_run(gm_core *core)
   if (core->mode != GM_IDLE || !core->has_job) return -1;
   core->mode = GM_RUN;
   core->waiting = 1;
+  core->at_shoulder = 0;
   core->index_visits = 0;
   core->edge_at = core->now;
   if (core->away == 0) engage(core);
   return 0;
+}
+
+void gm_core_set_shoulder(gm_core *core, int64_t place)
+{
+  core->shoulder = core->has_job ? place : 0;
 }
 
 void gm_core_stop(gm_core *core)
@@ -776,7 +850,7 @@ int gm_core_acknowledge(gm_core *core)
     core->reset = GM_RESET_MS * GM_MILLISECOND_TICKS;
     return -1; /* held once more when the driver is ready */
   }
-  if (core->fault == GM_OVERSPEED && core->bucket > GM_BURST * GM_ONE_EDGE / 2) return -1;
+  if (core->fault == GM_OVERSPEED && magnitude(core->bucket) > GM_BURST * GM_ONE_EDGE / 2u) return -1;
   core->mode = GM_IDLE;
   core->fault = GM_NO_FAULT;
   return 0;
@@ -809,4 +883,7 @@ void gm_core_status(const gm_core *core, gm_status *status)
   status->in_phase = core->engaged && core->locked;
   status->has_job = core->has_job;
   status->armed = core->armed;
+  status->dir = core->dir;
+  status->shoulder = core->shoulder;
+  status->at_shoulder = core->at_shoulder;
 }

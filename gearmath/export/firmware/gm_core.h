@@ -34,12 +34,13 @@
  * It needs the operator's act (gm_core_arm), the inputs read and no fault, and the main program (gm_core_alive) at
  * least every GM_ALIVE_MS: a main program or an interrupt that hangs lets the hob go.
  *
- * Index. While a job is loaded, an index pulse must find a whole number of turns since earlier pulses: within
- * GM_INDEX_TOLERANCE counts of the earlier pulses on which the hob came from the same side, and within GM_INDEX_WIDTH
- * of all of them, since a pulse begins at its other end when the hob turns back. All earlier pulses count, so that
- * edges lost one at a time are found. Turns are those of the encoder's shaft, GM_ENCODER_COUNTS each, where a belt drives
- * it. GM_INDEX_VISITS pulses in a row without a turn while running (an encoder line is
- * broken), or GM_INDEX_MISSING turns without a pulse (the index line is), end in GM_ENCODER as well.
+ * Index. While a job is loaded, the index pulse must come after whole numbers of turns: within GM_INDEX_TOLERANCE counts
+ * of the earlier pulses on which the hob came from the same side, and within GM_INDEX_WIDTH of all of them, since a pulse
+ * begins at its other end when the hob turns back. All earlier pulses count, so that edges lost one at a time are found.
+ * Turns are those of the encoder's shaft, GM_ENCODER_COUNTS each, where a belt drives it. A pulse elsewhere is noise as
+ * long as the index itself comes: GM_ENCODER needs a mark that was passed without it, and a pulse that stood alone for
+ * 2 ms elsewhere, which no burst of noise does. GM_INDEX_VISITS such pulses in a row without a turn while running (an
+ * encoder line is broken), or GM_INDEX_MISSING turns without the index (its line is), end in GM_ENCODER as well.
  */
 #ifndef GM_CORE_H
 #define GM_CORE_H
@@ -131,6 +132,9 @@ typedef struct {
   int in_phase;           /* 1 while the table takes every step of the rule at once */
   int has_job;            /* 1 while a job is loaded and its phase known */
   int armed;              /* 1 while the healthy output may be on */
+  int dir;                /* of the last step: +1 or -1 */
+  int64_t shoulder;       /* 0: none is set */
+  int at_shoulder;        /* 1 where the last run has ended at the shoulder */
 } gm_status;
 
 typedef struct gm_core gm_core; /* complete below, for static storage; its members are private */
@@ -140,6 +144,9 @@ void gm_core_init(gm_core *core);
 int gm_core_set_job(gm_core *core, const gm_job *job);
 int gm_core_run(gm_core *core);                   /* from GM_IDLE with a job; -1 otherwise */
 void gm_core_stop(gm_core *core);                 /* brakes, then GM_IDLE; the phase is kept */
+/* A shoulder: the table brakes so that it stops before this place (steps since the start of the job) as it follows towards
+ * it from the side of the start; 0, which is the start itself, is none. A new job has none. */
+void gm_core_set_shoulder(gm_core *core, int64_t place);
 int gm_core_move(gm_core *core, int32_t steps);   /* from GM_IDLE, hob standing (not on a lathe): ramped; or -1 */
 /* Of a driver's alarm it resets the driver for GM_RESET_MS, too. */
 int gm_core_acknowledge(gm_core *core);           /* from GM_FAULT, cause gone and motor at rest: GM_IDLE; or -1 */
@@ -164,12 +171,12 @@ struct gm_core {
   gm_wide remainder;
   int32_t pending;
   int32_t play;
-  uint32_t bucket;     /* hob edges beyond the highest rate, times 2^16 */
+  int32_t bucket;      /* hob edges beyond the highest rate, signed, times 2^16 */
   uint32_t now;        /* ticks, for differences only */
   uint32_t edge_at;    /* now of the last hob edge that was followed */
   uint32_t gap;        /* ticks from step to step, 0: as fast as the driver takes them */
   uint32_t pace;       /* ticks of it that are left */
-  uint32_t leak;       /* of the bucket: the hob's limit, or that of the steps of this job */
+  int32_t leak;        /* of the bucket: the hob's limit, or that of the steps of this job */
   int engaged;         /* the table follows: GM_RUN, not waiting for the phase, not stopping */
   int locked;          /* ... and takes every step at once */
   int has_job;
@@ -201,6 +208,8 @@ struct gm_core {
   uint32_t steer_wait;
   uint32_t duties; /* left of this millisecond */
   int braking;
+  int64_t shoulder;
+  int at_shoulder;
   int was_locked; /* in this run */
   uint32_t steady; /* milliseconds that it has kept up */
   uint32_t hopeless; /* steps behind that are never overtaken */
@@ -223,7 +232,7 @@ struct gm_core {
   uint32_t windows;
   uint32_t second_mark;
   uint32_t edge_rate;
-  /* index: hob counts at the last pulse, at the first one, and at the first one of a turn in each direction */
+  /* index: hob counts at the last good pulse, at the first one, and at the first one of a turn in each direction */
   uint32_t index_last;
   uint32_t index_first;
   uint32_t index_side[2];
@@ -232,6 +241,18 @@ struct gm_core {
   uint32_t index_visits;
   uint32_t index_turns;
   int32_t index_error;
+  /* the last pulse: its time and place, turns since the one before, whether it stood alone and was the index; the mark
+   * behind the hob, and since it was passed: whether the index came, and a pulse elsewhere; marks passed without it */
+  uint32_t index_at;
+  uint32_t index_here;
+  int32_t index_travel;
+  int index_alone;
+  int index_is_good;
+  uint32_t index_zone;
+  int index_good;
+  int index_stray;
+  int32_t index_apart;
+  uint32_t index_missed;
 };
 
 #ifdef __cplusplus

@@ -3,6 +3,7 @@
 
 #define GM_ONE ((uint64_t)1 << 61)                /* 1 of the sine's fixed point */
 #define GM_PI UINT64_C(7244019458077122842)       /* pi 2^61 */
+enum { GM_COARSE = 16 };                          /* units of a value that its own rounding may take of a bound */
 enum { GM_SINE_TERMS = 13 };                      /* (pi/2)^28 / 28! is far below 2^-61 */
 
 uint64_t gm_magnitude(int64_t value) {
@@ -75,28 +76,36 @@ int gm_ratio_times(gm_ratio *ratio, int64_t numerator, int64_t denominator) {
   return 0;
 }
 
-int gm_convergent(uint64_t value, uint64_t needed, uint64_t limit, gm_ratio *ratio) {
-  uint64_t up = value, down = (uint64_t)1 << 57;
+int gm_simplest(uint64_t value, uint64_t one, uint64_t needed, uint64_t limit, gm_ratio *ratio) {
+  const uint64_t apart = one / needed;
+  uint64_t low = value - apart, low_one = one, high = value + apart, high_one = one;
   uint64_t p = 1, q = 0, before_p = 0, before_q = 1;
+  if (apart < GM_COARSE || apart >= value) {
+    return -1;
+  }
   for (;;) {
-    uint64_t digit = up / down, rest = up % down, next_p, next_q;
+    uint64_t digit = low / low_one, next_p, next_q;
+    uint64_t rest = low % low_one;
+    const int last = rest == 0 || high / high_one > digit; /* a whole number lies between */
+    digit += last && rest != 0;
     if (gm_muldiv(digit, p, before_p, 1, &next_p) || gm_muldiv(digit, q, before_q, 1, &next_q) ||
         next_q > limit || next_p >> 62) {
       return -1;
     }
     before_p = p, before_q = q;
     p = next_p, q = next_q;
-    ratio->numerator = (int64_t)p;
-    ratio->denominator = (int64_t)q;
-    if (rest == 0) {
+    if (last) {
+      ratio->numerator = (int64_t)p;
+      ratio->denominator = (int64_t)q;
       return 0;
     }
-    up = down;
-    down = rest;
-    /* |value/2^57 - p/q| <= 1 / (q q'), where q' = (up/down) q + ... is the next denominator */
-    if (gm_muldiv(up / down, q, before_q, 1, &next_q) || q > needed / next_q) {
-      return 0;
-    }
+    /* what is left of both, turned over, so that the higher one is now the lower */
+    high %= high_one;
+    low = high_one;
+    high_one = rest;
+    rest = high;
+    high = low_one;
+    low_one = rest;
   }
 }
 

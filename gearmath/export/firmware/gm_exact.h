@@ -21,8 +21,9 @@ int gm_multiply(int64_t a, int64_t b, int64_t *product); /* 0, or -1 where it do
 int gm_muldiv(uint64_t a, uint64_t b, uint64_t add, uint64_t c, uint64_t *quotient);
 /* ratio *= numerator / denominator, in lowest terms; 0, or -1 where it does not fit or denominator <= 0. */
 int gm_ratio_times(gm_ratio *ratio, int64_t numerator, int64_t denominator);
-/* The first convergent p/q of value/2^57 with |value/2^57 - p/q| <= 1/needed; 0, or -1 where q would exceed limit. */
-int gm_convergent(uint64_t value, uint64_t needed, uint64_t limit, gm_ratio *ratio);
+/* The fraction p/q of the least q with |value/one - p/q| <= 1/needed, value and one below 2^63; 0, or -1 where q would
+ * exceed limit, or value/one is too coarse to tell. */
+int gm_simplest(uint64_t value, uint64_t one, uint64_t needed, uint64_t limit, gm_ratio *ratio);
 
 enum { GM_RIGHT_ANGLE = 9000 };
 /* sin(angle) 2^61, angle in 1/100 degree from 0 to 9000; at most 8 of 2^61 away (tests measure it with mpmath). */

@@ -151,19 +151,21 @@ static gm_refusal gm_fed_ratio(const gm_settings *settings, gm_ratio *ratio) {
   const int negative = ratio->numerator < 0;
   const uint64_t down = (uint64_t)ratio->denominator;
   gm_ratio factor = {settings->feed, 1000};
-  uint64_t turn, value, counts, one = (uint64_t)1 << 62;
+  uint64_t turn, value, counts, whole, unit, one = (uint64_t)1 << 62;
   if (gm_over_lead(settings, factor, 62, &turn) || turn >= one / 4) {
     return GM_BAD_FEED;
   }
   turn = against ? one + turn : one - turn;
-  if (gm_muldiv(gm_magnitude(ratio->numerator), (uint64_t)1 << GM_POINT, down / 2, down, &value) ||
-      gm_muldiv(value, one, turn / 2, turn, &value) || value >> 63) {
+  unit = one;
+  for (whole = gm_magnitude(ratio->numerator) / down; whole; whole >>= 1) unit >>= 1; /* value below 2^62, times 4/3 */
+  if (unit < (uint64_t)1 << (GM_POINT - 2) || gm_muldiv(gm_magnitude(ratio->numerator), unit, down / 2, down, &value) ||
+      gm_muldiv(value, one, turn / 2, turn, &value)) {
     return GM_TOO_STEEP;
   }
   /* hob counts of the travel: travel/f turns of the table, z/k of the hob each */
   if (gm_muldiv((uint64_t)GM_HELIX_TRAVEL_MM * 1000 * settings->teeth, 2 * GM_HELIX_PART * (uint64_t)GM_TURN_COUNTS,
                 (uint64_t)settings->feed * GM_TURN_COUNTS_DEN, (uint64_t)settings->feed * GM_TURN_COUNTS_DEN, &counts) ||
-      gm_convergent(value, counts, GM_WIDEST / GM_TURN_COUNTS_DEN, ratio)) {
+      gm_simplest(value, unit, counts, GM_WIDEST / GM_TURN_COUNTS_DEN, ratio)) {
     return GM_TOO_WIDE;
   }
   if (negative) {

@@ -18,6 +18,9 @@
 #ifndef GM_MOTOR_STEPS_DEN /* steps per turn of the table are GM_MOTOR_STEPS/GM_MOTOR_STEPS_DEN */
 #define GM_MOTOR_STEPS_DEN 1
 #endif
+#ifndef GM_BACKLASH_STEPS /* play between motor and table or carriage, in motor steps */
+#define GM_BACKLASH_STEPS 0
+#endif
 #ifndef GM_HYSTERESIS
 #define GM_HYSTERESIS 0
 #endif

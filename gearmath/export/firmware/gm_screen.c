@@ -95,7 +95,13 @@ static void gm_draw_start(gm_ui *ui) {
   }
   gm_count(ui, 1, gm_is_lathe() ? "Max speed" : "Hob max", ui->facts.max_rpm, "rpm");
   gm_line(ui, 2, ui->phase ? "OLD PHASE WILL GO" : "PHASE STARTS HERE");
+  if (ui->turning && !gm_is_lathe()) {
+    gm_line(ui, 2, "HOB TURNS: KEEP FREE");
+  }
   gm_answer(ui, "Start?");
+  if (ui->choice == GM_START_SET) {
+    gm_line(ui, 3, ">Only set the phase<");
+  }
 }
 
 static void gm_draw_run_speed(gm_ui *ui, const gm_status *status) {
@@ -116,6 +122,24 @@ static void gm_draw_run_speed(gm_ui *ui, const gm_status *status) {
   }
 }
 
+#ifdef GM_PROFILE_LATHE
+/* Until the shoulder, at the present speed. */
+static void gm_time_left(gm_ui *ui, int row, const gm_status *status) {
+  gm_ratio left = {status->shoulder - status->position, 1};
+  if (status->shoulder == 0 || status->edge_rate == 0 || ui->loaded_ratio.numerator == 0) {
+    return;
+  }
+  /* steps over steps per edge and edges per second */
+  if (left.numerator < 0) {
+    left.numerator = -left.numerator;
+  }
+  if (gm_ratio_times(&left, ui->loaded_ratio.denominator, (int64_t)gm_magnitude(ui->loaded_ratio.numerator)) == 0 &&
+      gm_ratio_times(&left, 1, status->edge_rate) == 0) {
+    gm_quantity(ui, row, "Shoulder in", &left, 1, "s");
+  }
+}
+#endif
+
 /* Where hob and table stand, since the start of the job. */
 static void gm_draw_run_place(gm_ui *ui, const gm_status *status) {
   const gm_ratio turns = {status->edges[GM_HOB] * GM_TURN_COUNTS_DEN, GM_TURN_COUNTS};
@@ -127,6 +151,7 @@ static void gm_draw_run_place(gm_ui *ui, const gm_status *status) {
     const int bad = gm_ratio_times(&place, GM_SCREW_STEPS_DEN, GM_SCREW_STEPS_NUM);
     gm_quantity(ui, 2, "Place", bad ? &none : &place, 3, "mm");
     gm_line(ui, 3, "");
+    gm_time_left(ui, 3, status);
   }
 #else
   {
@@ -181,14 +206,14 @@ static void gm_draw_stop(gm_ui *ui, const gm_status *status) {
 }
 
 static void gm_draw_stopped(gm_ui *ui, const gm_status *status) {
-  static const char *const entries[] = {"wait", "run on, same phase", "jog", "new job", "next start"};
-  const int count = gm_is_lathe() && ui->loaded.starts > 1 ? GM_STOPPED_ENTRIES : GM_STOPPED_NEXT;
-  gm_draw_choice(ui, status->mode == GM_RUN ? "STOPPING" : "STOPPED, phase kept", entries, count);
+  static const char *const entries[] = {"wait", "run on, same phase", "jog", "new job", "shoulder is here",
+                                        "back to start", "next start"};
+  gm_draw_choice(ui, status->mode == GM_RUN ? "STOPPING" : "STOPPED, phase kept", entries, gm_stopped_entries(ui));
 }
 
 static void gm_draw_menu(gm_ui *ui) {
   static const char *const entries[] = {"job", "jog", "test hob encoder", "test one turn", "divide"};
-  gm_draw_choice(ui, "Menu", entries, gm_is_lathe() ? GM_MENU_DIVIDE : GM_MENU_ENTRIES);
+  gm_draw_choice(ui, "Menu", entries, GM_MENU_ENTRIES);
 }
 
 static void gm_draw_jog(gm_ui *ui) {
@@ -219,6 +244,23 @@ static void gm_draw_divide(gm_ui *ui) {
   gm_count(ui, 1, "Go to", ui->target, "");
   gm_quantity(ui, 2, "Angle", &angle, 4, "deg");
   gm_line(ui, 3, "Press: go  Hold: end");
+}
+
+/* Lathe: where the spindle stands, by hand or indexing pin: the nearest division, and how far it is away. */
+static void gm_draw_readout(gm_ui *ui, const gm_status *status) {
+  const int64_t turned = (status->edges[GM_HOB] - ui->counted) * GM_TURN_COUNTS_DEN % GM_TURN_COUNTS;
+  const int64_t place = turned < 0 ? turned + GM_TURN_COUNTS : turned;
+  const int64_t nearest = (place * ui->divisions + GM_TURN_COUNTS / 2) / GM_TURN_COUNTS;
+  gm_ratio angle = {place, 1}, away = {place * ui->divisions - nearest * GM_TURN_COUNTS, 1};
+  gm_ratio_times(&angle, 360, GM_TURN_COUNTS);
+  gm_ratio_times(&away, 360, GM_TURN_COUNTS);
+  gm_ratio_times(&away, 1, ui->divisions);
+  gm_line(ui, 0, "At         of");
+  gm_number(ui, 0, 3, 7, nearest % ui->divisions);
+  gm_number(ui, 0, 14, 6, ui->divisions);
+  gm_quantity(ui, 1, "Angle", &angle, 3, "deg");
+  gm_quantity(ui, 2, "Beside it", &away, 3, "deg");
+  gm_line(ui, 3, "Press: 0  Hold: end");
 }
 
 /* Counts of one turn, to the nearest. */
@@ -346,6 +388,7 @@ static void gm_draw_page(gm_ui *ui, const gm_status *status) {
     case GM_PAGE_JOG: gm_draw_jog(ui); break;
     case GM_PAGE_DIVIDE:
     case GM_PAGE_DIVIDE_GO: gm_draw_divide(ui); break;
+    case GM_PAGE_READOUT: gm_draw_readout(ui, status); break;
     case GM_PAGE_TEST_HOB: gm_draw_test_hob(ui, status); break;
     case GM_PAGE_TEST_TABLE: gm_draw_test_table(ui); break;
     case GM_PAGE_FAULT: gm_draw_fault(ui, status); break;

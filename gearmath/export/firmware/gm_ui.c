@@ -28,6 +28,20 @@ static void gm_arm_output(const gm_ui *ui) {
   gm_unmask();
 }
 
+/* A move that ends forwards (in the sense of `forward`, +1 or -1), beyond its place and back where it would not. */
+static int gm_move_forward(gm_ui *ui, int32_t steps, int forward) {
+  const int32_t play = GM_BACKLASH_STEPS * forward;
+  ui->then = 0;
+  if (GM_BACKLASH_STEPS == 0 || (int64_t)steps * forward > 0) {
+    return gm_move(ui, steps);
+  }
+  if (gm_move(ui, steps - play)) {
+    return -1;
+  }
+  ui->then = play;
+  return 0;
+}
+
 static int gm_far(int64_t a, int64_t b) {
   return a - b > GM_STANDING_COUNTS || b - a > GM_STANDING_COUNTS;
 }
@@ -77,15 +91,16 @@ static int32_t gm_factor(gm_ui *ui, int event, uint32_t now) {
 /* "yes" on the page "Start?": the only place where a job goes to the core. */
 static unsigned gm_start(gm_ui *ui, const gm_status *status) {
   int refused;
+  const int only_set = ui->choice == GM_START_SET;
   if (ui->refusal != GM_JOB_OK) {
     return 0;
   }
-  if (status->mode != GM_IDLE || (!gm_is_lathe() && gm_hob_turns(ui, status))) {
-    ui->message = "Stop the hob first";
+  if (status->mode != GM_IDLE) {
+    ui->message = "Not now: table moves";
     return 0;
   }
   gm_mask();
-  refused = gm_core_set_job(ui->core, &ui->job) || gm_core_run(ui->core);
+  refused = gm_core_set_job(ui->core, &ui->job) || (!only_set && gm_core_run(ui->core));
   gm_unmask();
   if (refused) {
     ui->message = "Refused by the core";
@@ -97,14 +112,28 @@ static unsigned gm_start(gm_ui *ui, const gm_status *status) {
   ui->phase = 1;
   ui->thread = 0;
   ui->watched = 0; /* the counts start anew */
-  gm_go(ui, GM_PAGE_RUN);
+  gm_go(ui, only_set ? GM_PAGE_STOPPED : GM_PAGE_RUN);
+  if (only_set) {
+    ui->message = "Phase is set here";
+  }
   return GM_UI_SAVE;
+}
+
+/* The sense in which the job turns the motor while the hob turns forward. */
+static int gm_forward(const gm_ui *ui) {
+  return ui->loaded_ratio.numerator < 0 ? -1 : 1;
 }
 
 static void gm_run_on(gm_ui *ui, const gm_status *status) {
   int refused;
-  if (status->mode != GM_IDLE || (!gm_is_lathe() && gm_hob_turns(ui, status))) {
-    ui->message = "Stop the hob first";
+  if (status->mode != GM_IDLE) {
+    ui->message = "Not now: table moves";
+    return;
+  }
+  if (GM_BACKLASH_STEPS > 0 && status->dir != gm_forward(ui) && (gm_is_lathe() || !gm_hob_turns(ui, status))) {
+    if (!gm_move_forward(ui, 0, gm_forward(ui))) { /* a hob that turns is caught up forwards anyway */
+      ui->then_run = 1;
+    }
     return;
   }
   gm_mask();
@@ -142,6 +171,9 @@ static void gm_end_shift(gm_ui *ui, const gm_status *status) {
   if (!refused) {
     gm_mask();
     refused = gm_core_set_job(ui->core, &job);
+    if (!refused && status->shoulder != 0) { /* places are counted from here now */
+      gm_core_set_shoulder(ui->core, status->shoulder - status->position);
+    }
     gm_unmask();
   }
   if (refused) {
@@ -155,8 +187,33 @@ static void gm_end_shift(gm_ui *ui, const gm_status *status) {
   ui->message = "Next start is ready";
 }
 
+/* Lathe: the shoulder is where the carriage stands, or is taken away there. */
+static void gm_set_shoulder(gm_ui *ui, const gm_status *status) {
+  const int64_t place = status->shoulder != 0 && status->shoulder == status->position ? 0 : status->position;
+  gm_mask();
+  gm_core_set_shoulder(ui->core, place);
+  gm_unmask();
+  ui->message = place != 0 ? "Shoulder is set" : "No shoulder";
+}
+
+/* Lathe: the carriage returns to where the job began, with the tool drawn out. */
+static void gm_go_back(gm_ui *ui, const gm_status *status) {
+  if (status->mode != GM_IDLE || status->position > INT32_MAX / 2 || status->position < -(INT32_MAX / 2)) {
+    ui->message = "Too far: jog";
+  } else if (status->position != 0) {
+    (void)gm_move_forward(ui, (int32_t)-status->position, gm_forward(ui));
+  }
+}
+
+/* The last entries are for a lathe, the very last for threads of several starts. */
+int gm_stopped_entries(const gm_ui *ui) {
+  return !gm_is_lathe() ? (int)GM_STOPPED_GEAR_ENTRIES : ui->loaded.starts > 1 ? (int)GM_STOPPED_ENTRIES : (int)GM_STOPPED_NEXT;
+}
+
 static void gm_press_stopped(gm_ui *ui, const gm_status *status) {
   switch (ui->choice) {
+    case GM_STOPPED_SHOULDER: gm_set_shoulder(ui, status); break;
+    case GM_STOPPED_BACK: gm_go_back(ui, status); break;
     case GM_STOPPED_RUN_ON: gm_run_on(ui, status); break;
     case GM_STOPPED_JOG: gm_go(ui, GM_PAGE_JOG); break;
     case GM_STOPPED_NEW: gm_go(ui, gm_edit_first()); break;
@@ -199,7 +256,7 @@ static void gm_divide(gm_ui *ui) {
   int64_t steps;
   way = way > ui->divisions / 2 ? way - ui->divisions : way < -(ui->divisions / 2) ? way + ui->divisions : way;
   steps = gm_division_step(ui->at + way, ui->divisions) - gm_division_step(ui->at, ui->divisions);
-  if (!gm_move(ui, (int32_t)steps)) {
+  if (!gm_move_forward(ui, (int32_t)steps, 1)) {
     ui->at += way;
     ui->target = (ui->target + 1) % ui->divisions;
   }
@@ -224,14 +281,15 @@ static void gm_knob(gm_ui *ui, int event, uint32_t now) {
   const int direction = event == GM_UI_KNOB_UP ? 1 : -1;
   const int32_t factor = gm_factor(ui, event, now);
   switch (ui->page) {
-    case GM_PAGE_START:
+    case GM_PAGE_START: gm_choose(ui, direction, GM_START_ANSWERS); break;
+    case GM_PAGE_READOUT: break;
     case GM_PAGE_STOP:
     case GM_PAGE_TEST_TABLE: gm_choose(ui, direction, 2); break;
     case GM_PAGE_RUN: gm_choose(ui, direction, GM_RUN_VIEWS); break;
     case GM_PAGE_STOPPED:
-      gm_choose(ui, direction, gm_is_lathe() && ui->loaded.starts > 1 ? GM_STOPPED_ENTRIES : GM_STOPPED_NEXT);
+      gm_choose(ui, direction, gm_stopped_entries(ui));
       break;
-    case GM_PAGE_MENU: gm_choose(ui, direction, gm_is_lathe() ? GM_MENU_DIVIDE : GM_MENU_ENTRIES); break;
+    case GM_PAGE_MENU: gm_choose(ui, direction, GM_MENU_ENTRIES); break;
     case GM_PAGE_JOG:
       if (ui->armed) {
         gm_jog(ui, direction, now);
@@ -275,10 +333,12 @@ static unsigned gm_press(gm_ui *ui, const gm_status *status, uint32_t now) {
     case GM_PAGE_MENU: gm_press_menu(ui); break;
     case GM_PAGE_JOG: gm_arm(ui, now); break;
     case GM_PAGE_DIVIDE:
-      gm_go(ui, GM_PAGE_DIVIDE_GO);
+      gm_go(ui, gm_is_lathe() ? GM_PAGE_READOUT : GM_PAGE_DIVIDE_GO);
       ui->at = 0;
       ui->target = 1;
+      ui->counted = status->edges[GM_HOB];
       break;
+    case GM_PAGE_READOUT: ui->counted = status->edges[GM_HOB]; break;
     case GM_PAGE_DIVIDE_GO: gm_divide(ui); break;
     case GM_PAGE_TEST_HOB: gm_test_hob(ui, status); break;
     case GM_PAGE_TEST_TABLE:
@@ -321,6 +381,7 @@ static void gm_long_press(gm_ui *ui) {
     case GM_PAGE_POWER_UP:
     case GM_PAGE_START: gm_go(ui, gm_edit_first()); break;
     case GM_PAGE_MENU: gm_go_home(ui); break;
+    case GM_PAGE_READOUT:
     case GM_PAGE_DIVIDE_GO: gm_go(ui, GM_PAGE_DIVIDE); break;
     default: gm_go(ui, gm_edit_before(ui)); break;
   }
@@ -341,10 +402,30 @@ static int gm_follow(gm_ui *ui, const gm_status *status, uint32_t now) {
     gm_go(ui, GM_PAGE_RUN);
   } else if (status->mode == GM_IDLE && (page == GM_PAGE_RUN || page == GM_PAGE_STOP)) {
     gm_go(ui, GM_PAGE_STOPPED);
+    if (status->at_shoulder) {
+      ui->message = "SHOULDER: tool out";
+    }
   }
   if (ui->shifting && status->mode == GM_IDLE) {
     gm_end_shift(ui, status);
     return 1;
+  }
+  if (status->mode == GM_IDLE && status->fault == GM_NO_FAULT) {
+    if (ui->then != 0) {
+      const int32_t steps = ui->then;
+      ui->then = 0;
+      if (gm_move(ui, steps)) {
+        ui->then_run = 0;
+      }
+      return 1;
+    }
+    if (ui->then_run) {
+      ui->then_run = 0;
+      gm_run_on(ui, status);
+      return 1;
+    }
+  } else if (status->mode != GM_MOVE) {
+    ui->then = ui->then_run = 0;
   }
   if (ui->armed && (uint32_t)(now - ui->armed_at) > GM_ARMED_MS) {
     ui->armed = 0;
@@ -368,6 +449,7 @@ static void gm_break_off(gm_ui *ui) {
   }
   ui->armed = 0;
   ui->jog = 0;
+  ui->then = ui->then_run = 0;
   ui->test = GM_TEST_READY;
   ui->message = "Move stopped";
 }

@@ -2,8 +2,10 @@
  *
  * The job on the screens (edit) is apart from the job that runs: it goes to the core only through the page that asks
  * "Start?", which answers "no" until the knob is turned to "yes". The table never moves but by
- *   "Start?" yes, "run on" (after a stop), "next start" (lathe), a knob turn on the armed jog page, a press on
- *   "Press: go" (dividing) or "Turn the table?" yes. A press during a move stops it.
+ *   "Start?" yes, "run on" (after a stop), "back to start" and "next start" (lathe), a knob turn on the armed jog page, a
+ *   press on "Press: go" (dividing) or "Turn the table?" yes. A press during a move stops it.
+ * Play. Where GM_BACKLASH_STEPS are given, dividing and "back to start" come to their place forwards, and "run on" after a
+ * motion backwards first goes back and forth by so many steps, so that the play is on the same side as in the cut.
  * While running, the knob turns pages and a press asks "Stop?". Faults take the screen whatever it shows. A message
  * takes the last line; the next press only takes the message away, since it may hide an answer.
  *
@@ -47,6 +49,7 @@ typedef enum {
   GM_PAGE_JOG,
   GM_PAGE_DIVIDE,
   GM_PAGE_DIVIDE_GO,
+  GM_PAGE_READOUT,
   GM_PAGE_TEST_HOB,
   GM_PAGE_TEST_TABLE,
   GM_PAGE_FAULT,
@@ -55,7 +58,9 @@ typedef enum {
 
 /* Entries of the pages that choose. */
 enum { GM_MENU_JOB = 0, GM_MENU_JOG, GM_MENU_TEST_HOB, GM_MENU_TEST_TABLE, GM_MENU_DIVIDE, GM_MENU_ENTRIES };
-enum { GM_STOPPED_WAIT = 0, GM_STOPPED_RUN_ON, GM_STOPPED_JOG, GM_STOPPED_NEW, GM_STOPPED_NEXT, GM_STOPPED_ENTRIES };
+enum { GM_STOPPED_WAIT = 0, GM_STOPPED_RUN_ON, GM_STOPPED_JOG, GM_STOPPED_NEW, GM_STOPPED_GEAR_ENTRIES,
+       GM_STOPPED_SHOULDER = GM_STOPPED_GEAR_ENTRIES, GM_STOPPED_BACK, GM_STOPPED_NEXT, GM_STOPPED_ENTRIES };
+enum { GM_START_NO = 0, GM_START_YES, GM_START_SET, GM_START_ANSWERS };
 enum { GM_JOG_SIZES = 4, GM_RUN_VIEWS = 3, GM_MAX_DIVISIONS = 9999, GM_MAX_JOGS = 1000000 };
 enum { GM_ARMED_MS = 60000, GM_WATCH_MS = 150 };
 enum { GM_TEST_READY = 0, GM_TEST_COUNTING, GM_TEST_DONE };
@@ -77,6 +82,8 @@ typedef struct {
   int64_t jog_done; /* motor steps given for them */
   int32_t divisions;
   int32_t target; /* division to go to */
+  int32_t then;   /* motor steps of a second move, forward, that takes up the play */
+  int then_run;   /* and after it the run goes on */
   int32_t at;     /* division where the table stands, counted on beyond a turn */
   int test;
   int64_t counted; /* edges at the start of the test, then in it */
@@ -114,6 +121,7 @@ gm_page gm_edit_first(void);
 gm_page gm_edit_next(const gm_ui *ui);
 gm_page gm_edit_before(const gm_ui *ui);
 int gm_is_lathe(void);
+int gm_stopped_entries(const gm_ui *ui);
 
 #ifdef __cplusplus
 }

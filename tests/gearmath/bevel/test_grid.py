@@ -7,10 +7,10 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.grid import file_grid, listed_grid
+from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.errors import InputError
-from gearmath.machine.mill import nominal_flank
-from gearmath.quality.nominal import completed, nominal_rows
-from gearmath.quality.target import flank_target
+from gearmath.quality.correction.target import flank_target
+from gearmath.quality.evaluation.nominal import completed, nominal_rows
 from gearmath.specs.flank_csv import read_flank_csv, write_flank_csv
 from gearmath.specs.margins import Margins
 from gearmath.specs.places import read_places

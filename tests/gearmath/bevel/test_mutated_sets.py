@@ -279,8 +279,8 @@ BAD = {
 @pytest.fixture(scope="module")
 def files(tmp_path_factory) -> dict[str, Path]:
     """A measured file, touches and a program of the pinion, which are good."""
+    from gearmath.bevel.nominal_file import nominal_flank
     from gearmath.bevel.pair import load_pair
-    from gearmath.machine.mill import nominal_flank
     from gearmath.specs.flank_csv import join, write_flank_csv
     from gearmath.specs.touch_csv import COLUMNS
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
+from gearmath.bevel.identify.flank_target import predicted
+from gearmath.bevel.identify.variables import NAMES, whole
 from gearmath.bevel.method import cut_generation_of
-from gearmath.machine.mill import flank_header
-from gearmath.quality.flank_target import predicted
-from gearmath.quality.target import target_of
-from gearmath.quality.variables import NAMES, whole
+from gearmath.bevel.nominal_file import flank_header
+from gearmath.quality.correction.target import target_of
 from gearmath.specs.bevel_set import FLANKS, design_sha256, load_bevel_set, settings_sha256
 from gearmath.specs.flank_csv import flank_file, join, write_flank_csv
 from gearmath.specs.toml import bundled

@@ -84,9 +84,22 @@ def test_displacement_of_the_pinion_moves_the_contact_as_its_sensitivity_says(na
         assert moved == pytest.approx(per_mm, rel=0.1)
 
 
+def test_tolerance_of_the_pair_is_printed_and_in_the_json(command, tmp_path):
+    status, out, err = command("contact", SET, "--step", 15, "--tolerance", "--json")
+    assert (status, err) == (0, "")
+    for side in json.loads(out).values():
+        found = side["tolerance_mm"]
+        assert found["reached"] == ["pinion tip"]  # it runs there
+        for name in ("v", "h"):
+            assert found[name]["minus"]["value"] < 0 < found[name]["plus"]["value"]
+            assert found[name]["minus"]["edge"] not in (None, "pinion tip")
+
+
 def test_picture_is_written(command, tmp_path):
     target = tmp_path / "contact.png"
-    status, out, err = command("contact", SET, "--step", 15, "--plot", target)
+    status, out, err = command("contact", SET, "--step", 15, "--tolerance", "--plot", target)
+    assert "V to the minus side" in out
+    assert "reached as it stands" in out
     assert (status, err) == (0, "")
     assert str(target) in out
     assert target.read_bytes().startswith(b"\x89PNG")
@@ -169,3 +182,59 @@ def uniform_set() -> str:
                 "blade_pressure_angle = 20.0", "blade_profile_height = 17.0",
             ]  # fmt: skip
     return "\n".join(lines) + "\n"
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory):
+    """Measured files of both members, off by 3 µm, each point known to 0.5 µm."""
+    from dataclasses import replace
+
+    import numpy as np
+
+    import gearmath as gm
+
+    files, folder = {}, tmp_path_factory.mktemp("measured")
+    for name, change in (("pinion", {"radial_distance": 0.03}), ("gear", {"machine_root_angle": 0.01})):
+        member = gm.load_set(SET).member(name).with_settings(concave=change, convex=change)
+        off = member.deviations()
+        file = replace(off.file, uncertainty=np.full(len(off.file), 0.0005))
+        files[name] = replace(off, file=file).to_csv(folder / f"{name}.csv")
+    return files
+
+
+def test_measured_flanks_move_the_contact_and_have_uncertainties(nasa, command, measured):
+    status, out, err = command(
+        "contact", SET, "--step", 15, "--json", "--measured-pinion", measured["pinion"], "--measured-gear",
+        measured["gear"],
+    )  # fmt: skip
+    assert (status, err) == (0, "")
+    for name, side in json.loads(out).items():
+        assert set(side["measured"]) == {"pinion", "gear"}
+        assert all(0.5 < one["rms_um"] < 20 for one in side["measured"].values())
+        assert all(0 < value < 10 for value in side["uncertainty"].values())
+        assert side["peak_to_peak_arcsec"] != nasa[name]["peak_to_peak_arcsec"]
+
+
+def test_flanks_without_stated_uncertainty_have_none_and_nominal_ones_change_nothing(nasa, command, tmp_path):
+    import gearmath as gm
+
+    nominal = gm.load_set(SET).pinion.deviations().to_csv(tmp_path / "nominal.csv")
+    status, out, err = command("contact", SET, "--json", "--measured-pinion", nominal)
+    assert (status, err) == (0, "")
+    for name, side in json.loads(out).items():
+        assert side["uncertainty"] is None
+        assert list(side["measured"]) == ["pinion"]
+        assert side["peak_to_peak_arcsec"] == pytest.approx(nasa[name]["peak_to_peak_arcsec"], abs=1e-3)
+
+
+def test_measurement_of_the_other_member_is_refused(refused, measured):
+    refused(r"pinion\.csv: member = pinion: the measurement of the gear is wanted", "contact", SET, "--measured-gear",
+            measured["pinion"])  # fmt: skip
+
+
+def test_measurement_without_a_whole_tooth_is_refused(refused, measured, tmp_path):
+    lines = measured["pinion"].read_text("utf-8").splitlines()
+    few = [line for line in lines if not line.startswith("pinion,") or ",2,4," in line[:24]]
+    short = tmp_path / "short.csv"
+    short.write_text("\n".join(few) + "\n", "utf-8")
+    refused(r"short\.csv: ", "contact", SET, "--measured-pinion", short)

@@ -8,8 +8,8 @@ import re
 import numpy as np
 import pytest
 
-from gearmath.machine.cutting import cutting_program
-from gearmath.machine.executor import execute
+from gearmath.machine.control.executor import execute
+from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.flank_csv import read_flank_csv
 from gearmath.specs.toml import bundled
 

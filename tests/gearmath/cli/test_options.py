@@ -34,7 +34,7 @@ def options(command: click.Command) -> dict[str, click.Parameter]:
 
 READ_A_SET = [
     "flank", "tooth", "nc cut", "nc probe", "mill", "probe", "touches", "points", "evaluate", "compensate", "stock",
-    "report", "uncertainty", "contact",
+    "report", "uncertainty", "contact", "control measure", "control simulate",
 ]  # fmt: skip
 
 

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from gearmath.quality.pitch import evaluate_pitch
+from gearmath.quality.evaluation.pitch import evaluate_pitch
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.flank_csv import read_flank_csv, write_flank_csv
 from gearmath.specs.toml import bundled

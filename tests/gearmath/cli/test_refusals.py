@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.errors import InputError
-from gearmath.machine.mill import nominal_flank
-from gearmath.quality.target import flank_target
+from gearmath.quality.correction.target import flank_target
 from gearmath.specs.flank_csv import write_flank_csv
 from gearmath.specs.toml import bundled
 

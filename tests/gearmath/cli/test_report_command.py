@@ -13,7 +13,7 @@ import pytest
 
 from gearmath import cli
 from gearmath.bevel.flank import blank_grid
-from gearmath.machine.mill import nominal_flank
+from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import join, read_flank_csv, write_flank_csv
 from gearmath.specs.toml import bundled

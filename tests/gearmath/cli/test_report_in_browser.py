@@ -15,8 +15,8 @@ from gearmath.plot import svg
 from gearmath.plot.pitch import pitch_limits
 from gearmath.plot.sheet import pitch_chart, topography_chart
 from gearmath.plot.topography import um_per_row
-from gearmath.quality.pitch import Pitch
-from gearmath.quality.topography import Topography
+from gearmath.quality.evaluation.pitch import Pitch
+from gearmath.quality.evaluation.topography import Topography
 
 #: Measures the page in a frame of 420 px: its width, and of every word of the drawings the height and the right end.
 MEASURE = """

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid
-from gearmath.machine.mill import nominal_flank
+from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
 from gearmath.specs.flank_csv import join, write_flank_csv
 

@@ -12,11 +12,11 @@ import re
 import numpy as np
 import pytest
 
-from gearmath.machine.artefacts import Artefacts
-from gearmath.machine.calibrating import calibration_program
-from gearmath.machine.probe_run import run_touches
-from gearmath.machine.probing import probe_targets
-from gearmath.quality.completeness import missing_touches
+from gearmath.machine.measuring.artefacts import Artefacts
+from gearmath.machine.measuring.probe_run import run_touches
+from gearmath.machine.planning.targets import probe_targets
+from gearmath.machine.writing.calibrating import calibration_program
+from gearmath.quality.evaluation.completeness import missing_touches
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.flank_csv import read_flank_csv
 from gearmath.specs.toml import bundled

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.machine.mill import nominal_flank
-from gearmath.quality.correction import correct
-from gearmath.quality.covariance import independent
-from gearmath.quality.evaluation import evaluate_member
-from gearmath.quality.flank_target import predicted
-from gearmath.quality.judging import judged_by_measured
-from gearmath.quality.setting_uncertainty import noise_of
-from gearmath.quality.target import target_of
+from gearmath.bevel.identify.flank_target import predicted
+from gearmath.bevel.nominal_file import nominal_flank
+from gearmath.quality.correction.member import correct
+from gearmath.quality.correction.target import target_of
+from gearmath.quality.evaluation.member import evaluate_member
+from gearmath.quality.uncertainty.covariance import independent
+from gearmath.quality.uncertainty.judged import judged_by_measured
+from gearmath.quality.uncertainty.settings import noise_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, load_bevel_set
 from gearmath.specs.flank_csv import join, read_flank_csv, write_flank_csv
 from gearmath.specs.toml import bundled

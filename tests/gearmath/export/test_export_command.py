@@ -24,6 +24,7 @@ def test_teensy_folder_is_a_whole_sketch(tmp_path: Path, capsys: pytest.CaptureF
     written = {path.name for path in (tmp_path / "hobber").iterdir()}
     assert {
         "hobber.ino", "gm_machine.h", "gm_core.h", "gm_core.c", "gm_gearbox_edge.h", "gm_encoder_hysteresis.h",
+        "gm_counter.h", "gm_counter_motion.h",
         "gm_job.c", "gm_ui.c", "gm_store.c", "wiring.svg", "README.md", "manifest.json",
     } <= written  # fmt: skip
     constants = (tmp_path / "hobber" / "gm_machine.h").read_text()

@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 from elftools.elf.elffile import ELFFile
 
@@ -22,7 +23,7 @@ from gearmath.errors import InputError
 from gearmath.export.teensy import export_teensy, teensy_files
 from gearmath.specs.drive import Feed
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
-from gearmath.specs.toml import bundled
+from gearmath.specs.toml import bundled, parse
 
 STAND_IN = Path(__file__).parents[2] / "arduino_stand_in"
 MACHINES = ("hobbing_plewes", "hobbing_metric", "hobbing_helical", "lathe_example")
@@ -135,6 +136,39 @@ def test_bundled_machine_links_without_any_floating_call(name: str, tmp_path: Pa
         names = {symbol.name for symbol in ELFFile(stream).get_section_by_name(".symtab").iter_symbols()}
     assert {"gm_core_tick", "gm_ui_event", "main"} <= names
     assert [symbol for symbol in names if _FLOATING.fullmatch(symbol)] == []
+
+
+@pytest.mark.parametrize("name", ["hobbing_plewes", "hobbing_default", "hobbing_helical", "lathe_example"])
+def test_flash_and_ram_of_the_readme_are_those_of_the_compiled_files(name: str, tmp_path: Path, arm: str) -> None:
+    given = machine(name)
+    defines, processor, _ = BOARDS[given.board]
+    folder = write(teensy_files(given), tmp_path / "gearbox")
+    common = (*processor, "-mthumb", "-O2", "-ffunction-sections", "-fdata-sections", "-c")
+    run(folder, f"{arm}gcc", *common, "-std=c99", *c_files(folder))
+    run(folder, f"{arm}g++", *common, *CXX, *defines, f"-I{STAND_IN}", "sketch.cpp")
+    sizes = subprocess.run(
+        [f"{arm}size", *sorted(path.name for path in folder.glob("*.o"))], cwd=folder, capture_output=True
+    )
+    text, data, bss = (sum(column) for column in zip(*(
+        [int(number) for number in line.split()[:3]] for line in sizes.stdout.decode().splitlines()[1:]
+    ), strict=True))  # fmt: skip
+    stated = re.search(
+        r"take\s+about\s+([\d.]+)\s+kB\s+of\s+flash\s+and\s+([\d.]+)\s+kB", teensy_files(given)["README.md"]
+    )
+    assert stated is not None
+    assert float(stated[1]) * 1000 == pytest.approx(text + data, rel=0.1)
+    assert float(stated[2]) * 1000 == pytest.approx(data + bss, rel=0.1)
+
+
+@pytest.mark.parametrize("level", ["-O1", "-O2", "-O3", "-Os"])
+def test_no_level_of_optimization_brings_a_warning_on_this_computer(level: str, tmp_path: Path) -> None:
+    if shutil.which("g++") is None or shutil.which("gcc") is None:
+        pytest.skip("needs g++")
+    given = machine("hobbing_default")
+    folder = write(teensy_files(given), tmp_path / "gearbox")
+    run(folder, "gcc", level, "-Wall", "-Wextra", "-Werror", "-std=c99", "-c", *c_files(folder))
+    flags = (level, "-Wall", "-Wextra", "-Werror", *CXX, *BOARDS[given.board][0], f"-I{STAND_IN}")
+    run(folder, "g++", *flags, "-c", "sketch.cpp")
 
 
 def test_the_search_for_floating_calls_finds_them() -> None:
@@ -256,8 +290,10 @@ def test_open_collector_inverts_the_level_at_the_pin() -> None:
 class Board:
     """One board in memory, in the hands of an operator."""
 
-    def __init__(self, library: Path, eeprom: bytes = b"") -> None:
+    def __init__(self, library: Path, eeprom: bytes = b"", display_off: bool = False) -> None:
         self.board = ctypes.CDLL(str(library))
+        self.board.board_press_and_count.restype = ctypes.c_long
+        self.board.board_display_off(int(display_off))
         self.board.board_position.restype = ctypes.c_long
         self.board.board_bad_pulses.restype = ctypes.c_long
         self.board.board_power_up(eeprom, ctypes.c_long(len(eeprom)))
@@ -304,13 +340,13 @@ def power_up(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Board]:
         pytest.skip("needs g++")
     built: dict[str, Path] = {}
 
-    def make(given: HobbingMachine, eeprom: bytes = b"") -> Board:
+    def make(given: HobbingMachine, eeprom: bytes = b"", display_off: bool = False) -> Board:
         key = given.model_dump_json()
         if key not in built:
             built[key] = _build(given, tmp_path_factory.mktemp("sketch"))
         fresh = tmp_path_factory.mktemp("power") / "board.so"  # another file is another memory
         shutil.copy(built[key], fresh)
-        return Board(fresh, eeprom)
+        return Board(fresh, eeprom, display_off)
 
     return make
 
@@ -350,6 +386,100 @@ def test_channels_of_the_boards_own_decoder_follow_too(power_up: Callable[..., B
     assert board.board.board_position() == round(11500 * Fraction(16000, 24 * 4096))
 
 
+COUNTERS = {
+    "FTM1, channels": ("teensy32", {"decoder": '"hardware"'}, ""),
+    "FTM1 on its other pins": (
+        "teensy32", {"decoder": '"hardware"'}, "encoder_step = 3\nencoder_dir = 4\nknob_b = 5\nbutton = 9"
+    ),
+    "FTM2, channels": ("teensy32", {"decoder": '"hardware"'}, "encoder_step = 32\nencoder_dir = 25"),
+    "FTM1, LS7184": ("teensy32", {"decoder": '"ls7184_x4"\ncounter = "hardware"'}, ""),
+    "ENC1, channels": ("teensy41", {"decoder": '"hardware"'}, ""),
+    "ENC1 on other pins": ("teensy40", {"decoder": '"hardware"'}, "encoder_step = 33\nencoder_dir = 0"),
+    "ENC1, LS7184": ("teensy40", {"decoder": '"ls7184_x4"\ncounter = "hardware"'}, ""),
+}  # fmt: skip
+
+
+def with_counter(name: str, base: str = "hobbing_plewes") -> HobbingMachine:
+    board, changes, pins = COUNTERS[name]
+    text = bundled(f"{base}.toml").read_text("utf-8")
+    for key, value in {"board": f'"{board}"', **changes}.items():
+        text = re.sub(rf"^{key} = .*$", f"{key} = {value}", text, count=1, flags=re.MULTILINE)
+    return parse(text.replace("[pins]\n", f"[pins]\n{pins}\n"), HobbingMachine, name)
+
+
+@pytest.mark.parametrize("name", COUNTERS)
+def test_counter_of_the_board_loses_nothing_where_it_runs_over(name: str, power_up: Callable[..., Board]) -> None:
+    """Registers as the reference manuals describe them: over 0 and 65536 both ways, and to and fro on both; read after
+    every edge, and after as many as come between two ticks or more."""
+    given = at_once(with_counter(name))
+    board = power_up(given)
+    board.start()
+    steps_per_edge = Fraction(16000, 24 * 4096)
+    random, turned = np.random.default_rng(7), 0
+
+    def drive(edges: int, ticks: int) -> None:
+        nonlocal turned
+        board.hob(abs(edges), edges > 0, ticks)
+        turned += edges
+
+    def check() -> None:
+        board.wait(20)
+        assert abs(board.board.board_position() - turned * steps_per_edge) <= Fraction(1, 2), turned
+
+    tick_us = given.tick_ns // 1000
+    for place in (-3, 65533, 131_070, 65_540, 2, -65_538):
+        drive(place - turned, 20 // tick_us)
+        check()
+        for edges in random.integers(-9, 10, 60).tolist():
+            if edges:
+                drive(edges, int(random.choice([0, 1, 5])))  # 0: all of them between two readings
+                board.board.board_pass(1)
+        drive(place - turned, 20 // tick_us)
+        check()
+    assert board.board.board_bad_pulses() == 0
+
+
+@pytest.mark.parametrize("name", ["FTM2, channels", "FTM1, LS7184", "ENC1, LS7184"])
+def test_counters_compile_for_their_board(name: str, tmp_path: Path, arm: str) -> None:
+    given = with_counter(name)
+    folder = write(teensy_files(given), tmp_path / "gearbox")
+    defines, processor, _ = BOARDS[given.board]
+    run(
+        folder,
+        f"{arm}g++",
+        *processor,
+        "-mthumb",
+        *CXX,
+        *STRICT,
+        *defines,
+        f"-I{STAND_IN}",
+        "-fsyntax-only",
+        "sketch.cpp",
+    )
+
+
+def test_feed_has_a_counter_of_its_own(power_up: Callable[..., Board]) -> None:
+    text = bundled("hobbing_helical.toml").read_text("utf-8").replace('"ls7184_x4"', '"hardware"')
+    given = parse(text.replace("feed_step = 10\nfeed_dir = 11", "feed_step = 30\nfeed_dir = 31"), HobbingMachine, "m")
+    assert (given.hob_counter.unit, given.feed_counter.unit) == (1, 3)
+    board = power_up(given)
+    for _ in range(12):
+        if board.display()[0].startswith("Helix none"):
+            break
+        board.press()
+    board.knob(8)
+    board.start()
+    up = int(not given.feed_climbs)
+    board.board.board_feed(ctypes.c_long(70_000), up, ctypes.c_long(10))
+    board.wait(5)
+    # 0.08 degrees (the knob's 8 detents): 16 steps/mm over the lead, 70 mm of feed
+    there = board.board.board_position()
+    assert there > 0
+    board.board.board_feed(ctypes.c_long(70_000), 1 - up, ctypes.c_long(10))
+    board.wait(5)
+    assert board.board.board_position() == 0
+
+
 def test_feed_counts_turn_the_table_forward_in_a_conventional_cut(power_up: Callable[..., Board]) -> None:
     """Right-hand helix, right-hand hob: T = (k/z) H / (1 - f/L), so travel in the conventional direction adds."""
     given = machine("hobbing_helical")
@@ -370,10 +500,85 @@ def test_feed_counts_turn_the_table_forward_in_a_conventional_cut(power_up: Call
     assert board.board.board_position() == 0
 
 
+@pytest.mark.parametrize(("name", "after"), [("hobbing_plewes", 37), ("hobbing_plewes", 598), ("lathe_example", 411)])
+def test_a_stuck_display_delays_neither_a_stop_nor_the_job(
+    name: str, after: int, power_up: Callable[..., Board]
+) -> None:
+    """Every call to the display lasts 600 ms; the press is obeyed in 20 ms of debouncing and 5 ms, 50 at most."""
+    given = at_once(machine(name))
+    board = power_up(given)
+    board.start()
+    tick_us = given.tick_ns // 1000
+    board.board.board_turn_hob(ctypes.c_long(200 // tick_us))  # 5000 edges/s
+    board.wait(300)
+    assert board.display()[3].startswith("In phase: lag")
+    board.press()
+    board.knob(1)
+    assert board.display()[3].startswith("Stop?     no  >yes<")
+    board.board.board_bus(1)
+    assert 10 <= board.board.board_press_and_count(ctypes.c_long(after), ctypes.c_long(1500)) <= 50
+    board.board.board_bus(0)
+    board.board.board_turn_hob(ctypes.c_long(0))
+    board.wait(1500)
+    assert board.display()[0] == "STOPPED, phase kept"
+    assert board.board.board_bad_pulses() == 0
+
+
+def test_display_is_begun_anew_while_the_job_runs(power_up: Callable[..., Board]) -> None:
+    """Garbage: by turning the knob while the button is held; a display that was away: by itself. The phase stays."""
+    board = power_up(at_once(machine("hobbing_plewes")))
+    board.start()
+    board.board.board_turn_hob(ctypes.c_long(40))
+    board.wait(300)
+    shown, starts = board.display(), board.board.board_starts()
+    board.board.board_garbage()
+    assert board.display() != shown
+    board.board.board_button(1)
+    board.wait(60)
+    board.knob(1)
+    board.board.board_button(0)
+    board.wait(600)
+    assert board.display()[0] == shown[0]
+    assert board.display()[3].startswith("In phase: lag")  # the page did not change either
+    assert board.board.board_starts() == starts + 1
+    board.board.board_display_off(1)
+    board.wait(2500)
+    board.board.board_garbage()
+    board.board.board_display_off(0)
+    board.wait(2500)
+    assert board.display()[0] == shown[0]
+    assert board.display()[3].startswith("In phase: lag")
+
+
+def test_display_that_is_plugged_in_later_is_found(power_up: Callable[..., Board]) -> None:
+    board = power_up(machine("lathe_example"), display_off=True)
+    assert not any("PHASE" in line for line in board.display())
+    board.board.board_display_off(0)
+    board.wait(2500)
+    assert board.display()[2] == "PHASE IS LOST"
+
+
+@pytest.mark.parametrize(("name", "timeout"), [("hobbing_plewes", 500), ("lathe_example", 1000)])
+def test_watchdog_is_refreshed_only_while_every_part_works(name, timeout, power_up: Callable[..., Board]) -> None:
+    board = power_up(machine(name))
+    assert board.board.board_watchdog_ms() == timeout
+    for _ in range(20):
+        board.wait(20)
+        assert board.board.board_refreshed()
+    for part in (1, 2, 3):  # step timer, operator, loop; the last may wait 8 s for a display
+        board.board.board_hang(part, ctypes.c_long(8100 if part == 3 else 50))
+        board.board.board_refreshed()
+        board.board.board_hang(part, ctypes.c_long(1000))
+        assert not board.board.board_refreshed()
+        board.wait(50)
+        assert board.board.board_refreshed()
+
+
 def test_edges_and_ticks_have_one_priority(power_up: Callable[..., Board]) -> None:
     for name in ("hobbing_plewes", "hobbing_helical"):
         board, given = power_up(machine(name)), machine(name)
         assert board.board.board_priority(0) == board.board.board_priority(1) == 16
+        assert board.board.board_priority(2) == 208  # knob, button and pages: below everything else
         assert board.board.board_tick_us() * 1000 == given.tick_ns
         for pin in (given.pins.step_out, given.pins.dir_out):
             assert board.board.board_mode(pin) == 1  # OUTPUT

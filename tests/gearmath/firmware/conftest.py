@@ -79,6 +79,7 @@ typedef struct {
 void probe_init(void) { gm_core_init(&core); }
 int probe_run(void) { return gm_core_run(&core); }
 void probe_stop(void) { gm_core_stop(&core); }
+void probe_shoulder(int place) { gm_core_set_shoulder(&core, place); }
 int probe_move(int32_t steps) { return gm_core_move(&core, steps); }
 int probe_arm(void) { gm_core_alive(&core); return gm_core_arm(&core); }
 int probe_acknowledge(void) { return gm_core_acknowledge(&core); }

@@ -477,9 +477,17 @@ def test_broken_encoder_line_is_found_though_every_turn_counts_zero(hob):
     """One channel stuck: the decoder counts one forward, one back; the index pulses find no edges at all."""
     it = hob()
     it.turn(2 * COUNTS - it.place)  # onto the mark
-    script = np.tile([1, 0, 0, -1, 0, 0], 4000)
+    script = np.tile([1, 0, 0, -1, 0, 0], 5000)
     it.core.play(script, index=np.arange(len(script)) % 3000 == 0)
     assert (it.core.status.fault, it.core.status.index_error) == (ENCODER, -COUNTS)
+
+
+def test_index_that_never_comes_is_found_after_four_turns(hob):
+    it = hob()
+    it.turn(4 * COUNTS, index=False)
+    assert it.core.status.fault == NO_FAULT
+    it.turn(COUNTS, index=False)
+    assert (it.core.status.fault, it.core.status.mode) == (ENCODER, FAULT)
 
 
 def test_missing_index_is_found_after_four_turns(hob):

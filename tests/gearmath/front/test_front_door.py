@@ -28,6 +28,22 @@ def test_ten_lines_from_a_set_to_corrected_settings(tmp_path: Path) -> None:
     assert correction.rms["concave"][1] < 1e-3 * correction.rms["concave"][0]
 
 
+def test_contact_of_a_pair_as_it_is_and_as_it_was_measured() -> None:
+    pair = gm.load_set("nasa_tp3096_12x36.toml")
+    off = pair.pinion.with_settings(concave={"machine_root_angle": 0.05}).deviations()
+    nominal, measured = (gm.contact(pair, *files, sides=("drive",)) for files in ((), (off,)))
+    before, after = (found.to_dict(step=15)["drive"] for found in (nominal, measured))
+    assert before["peak_to_peak_arcsec"] != after["peak_to_peak_arcsec"]
+    assert after["measured"]["pinion"]["rms_um"] > 1
+    with pytest.raises(gm.InputError, match="sides: 'left': must be of drive, coast"):
+        gm.contact(pair, sides=("left",))
+    other = pair.with_member(pair.pinion.with_settings(concave={"machine_root_angle": 0.05}))
+    bare = gm.GearSet(other.spec.model_copy(update={"pinion": other.spec.pinion.model_copy(
+        update={"concave": other.spec.pinion.concave.model_copy(update={"design": None})})}))  # fmt: skip
+    with pytest.raises(gm.InputError, match=r"pinion\.concave: was measured against other nominal settings"):
+        gm.contact(bare, off)
+
+
 def test_a_change_and_its_opposite_leave_the_flank_as_it_was() -> None:
     pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion
     there = pinion.with_settings(concave={"radial_distance": 0.05}, convex={"cradle_angle": -0.01})

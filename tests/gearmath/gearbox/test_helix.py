@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from gearmath.errors import InputError
 from gearmath.export.host import run_axes
-from gearmath.gearbox.helix import PART, TRAVEL, Helix, JobRatio, convergent, helical_ratio, one_term, two_terms
+from gearmath.gearbox.helix import PART, TRAVEL, Helix, JobRatio, helical_ratio, one_term, simplest, two_terms
 from gearmath.gearbox.train import plan
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
 from gearmath.specs.toml import bundled, parse
@@ -50,15 +50,23 @@ def test_published_roundings_err_as_published(ratio, error):
     assert exact.limit_denominator(ratio.denominator) == ratio
 
 
-def test_convergent_is_the_first_that_is_near_enough():
-    """π = 3, 22/7, 333/106, 355/113, 103993/33102 ...; 10093/173828 is one of the published ratio above."""
+def test_simplest_fraction_of_pi_is_the_one_of_the_tables():
+    """Best approximations of π, OEIS A063674/A063673: 3, 13/4, 16/5, 19/6, 22/7, 179/57, 201/64 ... 355/113."""
     pi = Fraction("3.14159265358979323846264338327950288")
-    near = [convergent(pi, needed) for needed in (6, 100, 10_000, 10**6)]
-    assert near == [3, Fraction(22, 7), Fraction(333, 106), Fraction(355, 113)]
-    assert all(abs(pi - value) * needed <= 1 for value, needed in zip(near, (6, 100, 10_000, 10**6), strict=True))
-    assert convergent(Fraction(355, 113), 10**9) == Fraction(355, 113)
-    published = Fraction(10093, 173828)
-    assert convergent(steps_per_count(30, 1.0, 20.0), 173828**2) == published
+    near = [simplest(pi, needed) for needed in (6, 10, 100, 1000, 10**4, 10**6)]
+    assert near == [3, Fraction(16, 5), Fraction(22, 7), Fraction(201, 64), Fraction(333, 106), Fraction(355, 113)]
+    assert simplest(Fraction(355, 113), 10**9) == Fraction(355, 113)
+
+
+@settings(max_examples=300, deadline=None)
+@given(value=st.fractions(Fraction(1, 50), 30, max_denominator=10**9), needed=st.integers(51, 10**5))
+def test_no_fraction_of_a_smaller_denominator_is_as_near(value, needed):
+    """By trial of every denominator: the nearest numerator of each is too far away."""
+    found = simplest(value, needed)
+    assert abs(found - value) * needed <= 1
+    smaller = np.arange(1, found.denominator)
+    nearest = np.round(smaller * float(value))
+    assert (np.abs(nearest / smaller - float(value)) * needed > 1 - 1e-6).all()
 
 
 @settings(max_examples=200, deadline=None)

@@ -10,7 +10,7 @@ from fractions import Fraction
 from importlib import resources
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from gearmath.engine.compiler import compile_library
@@ -127,6 +127,8 @@ def test_two_term_jobs(helical, teeth, hundredths, left, size):
     teeth=st.integers(6, 999), hundredths=st.integers(1, 4500), left=st.integers(0, 1), climb=st.integers(0, 1),
     feed=st.integers(50, 2000),
 )  # fmt: skip
+@example(teeth=250, hundredths=1, left=0, climb=1, feed=50)  # nearly 1/64: two convergents lie side by side
+@example(teeth=250, hundredths=1, left=1, climb=1, feed=50)
 def test_jobs_at_a_fixed_feed(plewes, teeth, hundredths, left, climb, feed):
     machine, make = plewes
     hand, cut = "left" if left else "right", "climb" if climb else "conventional"

@@ -3,9 +3,9 @@
 import casadi as ca
 import pytest
 
-from derivations.gearbox import encoder_hysteresis, gearbox_edge
+from derivations.gearbox import counter_motion, encoder_hysteresis, gearbox_edge
 from gearmath.errors import ComputationError
-from gearmath.gearbox.proof import WIDEST, prove_edge_rule, prove_hysteresis, prove_step_rule
+from gearmath.gearbox.proof import WIDEST, prove_counter, prove_edge_rule, prove_hysteresis, prove_step_rule
 from gearmath.lowering import lower
 
 
@@ -121,3 +121,13 @@ def test_hysteresis_that_loses_a_count_is_not_proved():
         prove_hysteresis(broken)
     with pytest.raises(ComputationError, match="hysteresis = 2147483648"):
         prove_hysteresis(lower(encoder_hysteresis()).function, 2**31)
+
+
+def test_counter_of_the_board_is_proved_for_every_reading_and_motion():
+    function = lower(counter_motion()).function
+    assert "what is counted is the motion" in prove_counter(function)
+
+
+def test_half_the_range_of_the_counter_is_tight():
+    with pytest.raises(ComputationError, match=r"not true: what is counted is the motion; .*motion = (-32769|32768)"):
+        prove_counter(lower(counter_motion()).function, 2**15 + 1)

@@ -11,7 +11,7 @@ from derivations.single_blades import cradle_tool_frame, tool_frame
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.lowering import lower
-from gearmath.machine.path import axis_positions
+from gearmath.machine.planning.path import axis_positions
 from gearmath.specs.bevel_set import Motion
 
 N = 100_000

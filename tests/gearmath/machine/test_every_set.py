@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-from gearmath.machine.collision import collisions
-from gearmath.machine.cutting import Job, cutting_program
-from gearmath.machine.executor import execute
-from gearmath.machine.mill import expose, mill_member
-from gearmath.machine.run import runs_of
-from gearmath.machine.stock import left_by_exact_motion, nominal_surfaces, surface_states
+from gearmath.machine.control.executor import execute
+from gearmath.machine.judging.collision import collisions
+from gearmath.machine.milling.mill import expose, mill_member
+from gearmath.machine.milling.run import runs_of
+from gearmath.machine.milling.surfaces import left_by_exact_motion, nominal_surfaces, surface_states
+from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, load_bevel_set
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.toml import bundled

@@ -13,19 +13,19 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from gearmath.bevel.flank import blank_grid
-from gearmath.machine.mill import nominal_flank
+from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.plot import evaluation_figure, uncertainty_figure
 from gearmath.plot.pitch import pitch_limits
 from gearmath.plot.sheet import pitch_chart, runout_chart, tooth_chart, topography_chart
 from gearmath.plot.style import round_length, signed
 from gearmath.plot.tooth import _SHADES, draw_tooth, tooth_flanks
 from gearmath.plot.topography import draw_topography, um_per_row
-from gearmath.quality.evaluation import evaluate_member
-from gearmath.quality.figures import Figure as Named
-from gearmath.quality.pitch import Pitch
-from gearmath.quality.spaces import Runout
-from gearmath.quality.topography import Topography
-from gearmath.quality.uncertainty import Uncertain
+from gearmath.quality.evaluation.member import evaluate_member
+from gearmath.quality.evaluation.pitch import Pitch
+from gearmath.quality.evaluation.spaces import Runout
+from gearmath.quality.evaluation.topography import Topography
+from gearmath.quality.uncertainty.figures import Figure as Named
+from gearmath.quality.uncertainty.propagation import Uncertain
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import join
 

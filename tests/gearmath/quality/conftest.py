@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.machine.mill import flank_header
-from gearmath.quality.flank_target import FlankTarget
+from gearmath.bevel.identify.flank_target import FlankTarget
+from gearmath.bevel.nominal_file import flank_header
 from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SIDES, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.flank_csv import FlankFile, flank_file, join

@@ -10,13 +10,13 @@ from scipy.optimize import lsq_linear
 
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import solve_section
+from gearmath.bevel.identify.compensation import identify, with_deviations
+from gearmath.bevel.identify.flank_target import predicted
+from gearmath.bevel.identify.identification import spread
+from gearmath.bevel.identify.variables import BOUNDS, NAMES, SIZE, Variable, free_settings, variables_of
 from gearmath.bevel.method import blade_sections
-from gearmath.quality.batch import identify_many
-from gearmath.quality.compensation import identify, with_deviations
-from gearmath.quality.flank_target import predicted
-from gearmath.quality.identification import spread
-from gearmath.quality.target import target_of
-from gearmath.quality.variables import BOUNDS, NAMES, SIZE, Variable, free_settings, variables_of
+from gearmath.quality.correction.batch import identify_many
+from gearmath.quality.correction.target import target_of
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, load_bevel_set
 from gearmath.specs.toml import bundled
 

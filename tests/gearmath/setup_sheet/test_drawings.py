@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.tooth import FlankSurface, ToothSpace
-from gearmath.machine.bodies import work_profiles
-from gearmath.machine.cutter import cutter_of
-from gearmath.machine.setup_facts import BlankSizes
-from gearmath.machine.tooling import PointWidth, tools_of
+from gearmath.machine.bodies.cutter import cutter_of
+from gearmath.machine.bodies.profiles import work_profiles
+from gearmath.machine.planning.setup_facts import BlankSizes
+from gearmath.machine.planning.tooling import PointWidth, tools_of
 from gearmath.setup_sheet.machine_drawing import Ring, machine_drawing
 from gearmath.setup_sheet.point_drawing import point_drawing
 from gearmath.setup_sheet.svg import LETTER, WIDTH

@@ -11,11 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from gearmath.machine.control import Setup
-from gearmath.machine.cutting import PLUNGE_FEED, Job, cutting_plan, program_of
-from gearmath.machine.executor import execute
-from gearmath.machine.setup_facts import R_D, SetupFacts
-from gearmath.machine.timing import timing
+from gearmath.machine.control.executor import execute
+from gearmath.machine.control.state import Setup
+from gearmath.machine.judging.timing import timing
+from gearmath.machine.planning.cut_plan import PLUNGE_FEED, Job, cutting_plan
+from gearmath.machine.planning.setup_facts import R_D, SetupFacts
+from gearmath.machine.writing.cutting import program_of
 from gearmath.setup_sheet import setup_sheet
 from gearmath.specs.bevel_set import design_sha256, settings_sha256
 from gearmath.specs.toml import bundled

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from gearmath.quality.correction import check_belongs
-from gearmath.quality.nominal import check_points, nominal_rows
+from gearmath.quality.evaluation.nominal import check_belongs, check_points, nominal_rows
 from gearmath.specs import flank_csv, point_text, touch_csv
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.toml import bundled

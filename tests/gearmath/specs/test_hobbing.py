@@ -241,3 +241,61 @@ def test_unknown_driver_takes_the_level_of_the_file():
     for level, low in (("low", False), ("high", True)):  # a transistor turns the level round
         machine = changed(text, 'step_active = "low"', f'step_active = "low"\nenable_active = "{level}"')
         assert machine.enable_active_low == low
+
+
+# --- counters of the board ------------------------------------------------------------------------------------------
+HARDWARE, PULSES = ('"ls7184_x4"', '"hardware"'), ('"ls7184_x4"', '"ls7184_x4"\ncounter = "hardware"')
+
+
+def with_changes(text: str, *pairs: tuple[str, str]) -> HobbingMachine:
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new, 1)
+    return parse(text, HobbingMachine, "m.toml")
+
+
+@pytest.mark.parametrize(
+    ("board", "pins", "unit", "mux"),
+    [
+        # Teensy 3.2: PTB0, PTB1 (ALT6) and PTA12, PTA13 (ALT7) are FTM1's, PTB18, PTB19 (ALT6) FTM2's phases
+        ("teensy32", "", 1, (6, 6)), ("teensy32", "encoder_step = 32\nencoder_dir = 25", 2, (6, 6)),
+        ("teensy40", "", 1, (3, 1)), ("teensy41", "encoder_step = 31\nencoder_dir = 30", 1, (1, 1)),
+    ],
+)  # fmt: skip
+def test_encoder_is_led_to_a_counter_of_the_board(board, pins, unit, mux):
+    machine = with_changes(PLEWES, HARDWARE, ('"teensy32"', f'"{board}"'), ("[pins]\n", f"[pins]\n{pins}\n"))
+    assert machine.hob_counter is not None
+    assert (machine.hob_counter.unit, machine.hob_counter.mux) == (unit, mux)
+
+
+@pytest.mark.parametrize(
+    ("pairs", "words"),
+    [
+        ((HARDWARE, ("[pins]\n", "[pins]\nencoder_step = 6\nencoder_dir = 7\n")),
+         r"pins.encoder_step = 6 .* 16 and 17, 3 and 4, 32 and 25; or write decoder = \"interrupts\""),
+        ((HARDWARE, ("[pins]\n", "[pins]\nencoder_step = 17\nencoder_dir = 16\n")), "in this order"),
+        ((HARDWARE, ('"teensy32"', '"teensy40"'), ("[pins]\n", "[pins]\nencoder_step = 5\nencoder_dir = 0\n")),
+         "but 0 with 5"),
+        ((('"ls7184_x4"', '"hardware"\ncounter = "hardware"'),), "counter = 'hardware': has no meaning"),
+        ((PULSES, ("[pins]\n", "[pins]\nencoder_step = 6\nencoder_dir = 7\n")), "or leave counter out"),
+    ],
+)  # fmt: skip
+def test_pins_that_reach_no_counter_are_refused_with_those_that_do(pairs, words):
+    with pytest.raises(InputError, match=words):
+        with_changes(PLEWES, *pairs)
+
+
+def test_old_way_of_reading_channels_stays():
+    machine = with_changes(PLEWES, ('"ls7184_x4"', '"interrupts"'))
+    assert (machine.hob_counter, machine.encoder_counts, machine.pins.encoder_step) == (None, 4096, 6)
+
+
+def test_filter_of_a_counter_passes_every_real_edge_at_the_highest_speed():
+    """800 rpm x 4096 counts: 18.3 us between edges, half of it at the worst; at 36 MHz 15 x 4 clocks are 1.67 us."""
+    for board, register, time in (("teensy32", 15, 1667), ("teensy40", 137, 4567)):
+        machine = with_changes(PLEWES, HARDWARE, ('"teensy32"', f'"{board}"'))
+        setting, filtered = machine.counter_filter(machine.max_edge_rate)
+        assert (setting, round(filtered)) == (register, time)  # 137 x 5 / 150 MHz = 4567 ns
+        assert filtered < 1e9 / machine.max_edge_rate / 2
+        pulsed = with_changes(PLEWES, PULSES, ('"teensy32"', f'"{board}"'))
+        assert pulsed.counter_filter(pulsed.max_edge_rate)[1] <= 250  # a pulse is 1 us at least

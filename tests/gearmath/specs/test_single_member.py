@@ -7,8 +7,8 @@ import re
 import pytest
 
 from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.errors import InputError
-from gearmath.machine.mill import nominal_flank
 from gearmath.specs.bevel_set import FLANKS, BevelSet, design_sha256, load_bevel_set
 from gearmath.specs.flank_csv import join, write_flank_csv
 from gearmath.specs.set_text import save_corrected, set_text

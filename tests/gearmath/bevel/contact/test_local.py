@@ -156,7 +156,7 @@ def test_path_and_parabola_of_two_quadrics_are_those_of_differences(offset: floa
     values = np.linalg.eigvalsh(bend[0] - bend[1])
     assert found.semi_axes == pytest.approx(list(np.sqrt(2 * MARKING / values)), rel=1e-9)
     # the way back: from the direction of the path, the parabola and the ellipse to the curvatures
-    w, beta, D, lever, *_ = (np.asarray(one).ravel() for one in roll(system)(touch.x, 0.0, still))
+    w, beta, D, lever, *_ = (one.ravel() for one in roll(system).at(touch.x, 0.0, still))
     velocity, second = kernel("contact_motion")(w, beta[0], D, lever[0])
     direction = math.atan2(velocity[1], velocity[0])
     (back,) = kernel("synthesis")(w, beta[0], lever[0], direction, second, found.semi_axes[0], MARKING)

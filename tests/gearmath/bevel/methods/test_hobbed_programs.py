@@ -7,9 +7,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from gearmath.machine.cutting import Job, cutting_program
-from gearmath.machine.executor import execute
-from gearmath.machine.mill import mill_member
+from gearmath.machine.control.executor import execute
+from gearmath.machine.milling.mill import mill_member
+from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import MEMBERS, BevelSet
 from gearmath.specs.milling_machine import MillingMachine
 

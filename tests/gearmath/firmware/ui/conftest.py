@@ -69,6 +69,7 @@ void board_edges(int axis, long n, int edge, long ticks)
   }
 }
 
+void board_shoulder(int place) { gm_core_set_shoulder(&core, place); }
 void board_estop(int open) { estop_open = open; }
 void board_screen(char *text) { memcpy(text, ui.screen, sizeof ui.screen); }
 int board_mode(void) { gm_status status; status_of(&status); return (int)status.mode; }

@@ -1,0 +1,110 @@
+"""The root line of a flank: where the tip of the blade leaves it, at toe and heel, and how settings move it.
+
+    h(u) = 0,   L(R) = L_0,   f(u, β, θ; x) = 0    →    depth D below the pitch cone     (20.3, 20.4)
+
+Flanks hardly show the depth of a cut. So a fit that is free to do so buys topography with depth; here it is watched.
+That line lies above the deepest one of the space, and moves with it within some ten percent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import casadi as ca
+import numpy as np
+
+from derivations import Quantity, notation
+from gearmath.bevel.generation import Generation
+from gearmath.bevel.identify.on_line import INPUTS, family, symbols
+from gearmath.bevel.identify.variables import parts
+from gearmath.bevel.newton import contact_guess, newton_step, residual_size
+from gearmath.engine.kernel import Kernel
+from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
+
+#: Newton steps at once, and how often they are made until the root is found: at most 24.
+_NEWTON_STEPS, _ROUNDS = 3, 8
+_STEP_LIMITS = (2.0, 0.1, 0.1)
+_TOLERANCE = 1e-9
+
+_depth_gradient = Quantity(
+    "depth_gradient", "depth gained per unit of every setting, of every coefficient of the motion and of the curvature",
+    "mixed", r"\partial D/\partial\mathbf{x}", shape=(83,),
+)  # fmt: skip
+
+
+@cache
+def root_depth() -> Kernel:
+    """Kernel: depth of the root line below the pitch cone at a cone distance, and its gradient, for any blade."""
+    w, given, delta, distance = ca.SX.sym("w", 3), symbols("curved"), ca.SX.sym("delta"), ca.SX.sym("distance")
+    at = family("curved", w, given, ca.SX([0, 0, 1]))
+    along, depth = kernel("root_place").function(at.point, delta)
+    residual = ca.vertcat(at.height, along - distance, at.meshing)
+    arguments = [w, *given, delta, distance]
+    step = ca.Function("root_newton_step", arguments, [newton_step(residual, w, _STEP_LIMITS)])
+    multipliers = ca.SX.sym("multipliers", 3)
+    lagrangian = depth - ca.dot(multipliers, residual)
+    by_motion = ca.densify(ca.gradient(lagrangian, given[1]).T)
+    by_curvature = ca.gradient(lagrangian, given[4])
+    gradient = ca.vertcat(ca.gradient(lagrangian, given[0]), ca.vec(by_motion), ca.densify(by_curvature))
+    slope = ca.Function("root_slope", [multipliers, *arguments], [gradient])
+    solved = ca.solve(ca.jacobian(residual, w).T, ca.jacobian(depth, w).T)
+    final = ca.Function("root_at", arguments, [depth, solved, ca.norm_2(residual)])
+    quantities = (contact_guess, *INPUTS["curved"], notation.pitch_angle, notation.cone_distance)
+    guess, *others = (ca.MX.sym(quantity.name, *(quantity.shape or (1,))) for quantity in quantities)
+    solution = guess
+    for _ in range(_NEWTON_STEPS):
+        solution = step(solution, *others)
+    found, lagrange, left = final(solution, *others)
+    function = ca.Function(
+        "root_depth", [guess, *others],
+        [solution, found, slope(lagrange, solution, *others), left],
+        [quantity.name for quantity in quantities], ["contact", "cone_depth", "depth_gradient", "residual_size"],
+    )  # fmt: skip
+    return Kernel(
+        function,
+        "Depth of the root line below the pitch cone at a cone distance, with its gradient by settings and motion.",
+        quantities,
+        (notation.contact, notation.cone_depth, _depth_gradient, residual_size),
+        "(20.3, 20.4) and meshing; implicit function theorem",
+    )
+
+
+@dataclass(frozen=True)
+class RootLine:
+    """Where the root of a flank is watched: cone distances (2,) [mm] of toe and heel, and starts (2,3) for u, β, θ."""
+
+    how: Generation
+    reference_height: float
+    pitch_angle: float
+    distances: np.ndarray
+    start: np.ndarray
+
+    def depth(self, vector: np.ndarray, start: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Contact (2,3), depth (2,) [mm] and its gradient (2,83) for settings, motion and curvature (83,).
+
+        ``start`` (2,3) is the contact of settings nearby. Raises ComputationError if the tip of the blade does not
+        reach the flank there.
+        """
+        blade = (self.how.blade_offset_angle, float(vector[-1]), self.reference_height)
+        contact, depths = self.start if start is None else start, root_depth()
+        for _ in range(_ROUNDS):
+            contact, depth, gradient, residual = depths(
+                contact,
+                *parts(vector),
+                self.how.index_ratio,
+                *blade,
+                self.how.side,
+                float(self.how.rolling),
+                self.pitch_angle,
+                self.distances,
+            )
+            if (residual <= _TOLERANCE).all():
+                return contact, depth, gradient
+        raise ComputationError("the tip of the blade does not reach the root of the flank")
+
+    def sunk(self, before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """How much deeper (2,) [mm] the root lies after a change, at toe and heel, and its gradient (2,83)."""
+        _, depth, gradient = self.depth(after)
+        return depth - self.depth(before)[1], gradient

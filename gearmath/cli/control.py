@@ -1,0 +1,331 @@
+"""``gearmath control``: the machine control over OPC UA. It never selects or starts a program."""
+
+from __future__ import annotations
+
+import asyncio
+import functools
+import json
+import os
+import sys
+from collections.abc import Awaitable, Callable, Coroutine
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gearmath.cli.common import JSON, NewFile, bar, echo_json, table
+from gearmath.cli.control_simulate import PASSWORD, quiet, simulate
+from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    from gearmath.control.opcua import OpcUaControl
+    from gearmath.specs.control_connection import ControlConnection
+
+_Work = Callable[["OpcUaControl"], Awaitable[Any]]
+CONNECTION = click.argument("connection", type=click.Path(path_type=Path), metavar="CONTROL.toml")
+INSECURE = click.option(
+    "--insecure", is_flag=True, help="Allow what CONTROL.toml says of an older security policy, or of none."
+)
+
+
+@click.group()
+def control() -> None:
+    """The machine control over OPC UA: a SINUMERIK 840D sl, or the simulated one.
+
+    CONTROL.toml says where it is and who logs in: docs/control.md. The password is asked for, or read from the
+    environment variable GEARMATH_CONTROL_PASSWORD. No command selects or starts a program.
+    """
+
+
+def connector(path: Path, insecure: bool, *needed: str) -> Callable[[], Coroutine[Any, Any, OpcUaControl]]:
+    """What connects to the control of a file, each time anew, with the rights that are needed."""
+    from gearmath.control.opcua import OpcUaControl
+
+    known = _connection(path, insecure)
+    password = _password(known)
+    return lambda: OpcUaControl.connect(known, password, needed)
+
+
+def _connection(path: Path, insecure: bool) -> ControlConnection:
+    from gearmath.specs.control_connection import load_control_connection
+
+    quiet()
+    known = load_control_connection(path)
+    if known.security != "Basic256Sha256" and not insecure:
+        raise InputError(f"{path}: security = {known.security!r}: must be 'Basic256Sha256', or --insecure given")
+    return known
+
+
+def _password(known: ControlConnection) -> str:
+    if not known.user:
+        return ""
+    if (password := os.environ.get(PASSWORD)) is not None:
+        return password
+    if not sys.stdin.isatty():
+        raise InputError(f"the password of {known.user!r} is missing: set the environment variable {PASSWORD}")
+    return click.prompt(f"password of {known.user}", hide_input=True, err=True)
+
+
+def ask(path: Path, insecure: bool, needed: tuple[str, ...], work: _Work) -> Any:
+    """Connect, do one thing, and give the session back."""
+    connect = connector(path, insecure, *needed)
+
+    async def once() -> Any:
+        one = await connect()
+        try:
+            return await work(one)
+        finally:
+            await one.close()
+
+    return asyncio.run(once())
+
+
+def verb(name: str | None = None) -> Callable[[Callable[..., Any]], click.Command]:
+    """A verb whose first argument is the connection file."""
+
+    def decorate(function: Callable[..., Any]) -> click.Command:
+        @functools.wraps(function)
+        def command(**values: Any) -> Any:
+            return function(**values)
+
+        return control.command(name)(CONNECTION(INSECURE(command)))
+
+    return decorate
+
+
+@verb()
+@JSON
+def status(connection: Path, insecure: bool, as_json: bool) -> None:
+    """Channel, mode, selected program, message, position, rights of the user."""
+    from gearmath.control.interface import AXES
+    from gearmath.control.sinumerik import READ_STATE
+
+    async def work(one: OpcUaControl) -> tuple[Any, list[str]]:
+        return await one.status(), sorted(one.rights)
+
+    found, rights = ask(connection, insecure, (READ_STATE,), work)
+    position = dict(zip(AXES, found.position, strict=True))
+    values = {"channel": str(found.channel), "mode": found.mode, "selected": found.selected, "message": found.message,
+              "position": position, "rights": rights}  # fmt: skip
+    if as_json:
+        echo_json(values)
+        return
+    click.echo(f"channel   {found.channel}\nmode      {found.mode}\nselected  {found.selected or 'none'}")
+    click.echo(f"message   {found.message or 'none'}")
+    unit = {"A": "degrees", "B": "degrees"}
+    click.echo("\n".join(f"{axis}         {value:.5f} {unit.get(axis, 'mm')}" for axis, value in position.items()))
+    click.echo(f"rights    {', '.join(rights) or 'none'}")
+
+
+@verb()
+@click.option("--interval", type=click.FloatRange(0.1, 5.0), default=0.1, show_default=True, help="Seconds.")
+@click.option("--seconds", type=click.FloatRange(0.1, 86_400.0), help="How long.  [default: until Ctrl-C]")
+@JSON
+def watch(connection: Path, insecure: bool, interval: float, seconds: float | None, as_json: bool) -> None:
+    """Positions X Y Z A B as they change, a line each time; with --json a JSON object a line."""
+    from gearmath.control.interface import AXES
+    from gearmath.control.sinumerik import READ_STATE
+
+    async def work(one: OpcUaControl) -> None:
+        begin: float | None = None
+        async for at, position in one.watch(interval):
+            begin = at if begin is None else begin
+            if as_json:
+                values = dict(zip(AXES, position, strict=True))
+                click.echo(json.dumps({"seconds": round(at - begin, 3), "position": values}))
+            else:
+                click.echo(f"{at - begin:9.2f} s  " + "  ".join(
+                    f"{axis} {value:11.5f}" for axis, value in zip(AXES, position, strict=True)))  # fmt: skip
+            if seconds is not None and at - begin >= seconds:
+                return
+
+    ask(connection, insecure, (READ_STATE,), work)
+
+
+@verb()
+@click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF")
+@click.option("--replace", is_flag=True, help="Write over a program of this name.")
+def put(connection: Path, insecure: bool, program: Path, replace: bool) -> None:
+    """Write a program to the control and read it back.
+
+    Refused while the channel is active, and for the program that is selected.
+    """
+    from gearmath.control.file_names import control_name
+    from gearmath.control.sinumerik import READ_FILES, READ_STATE, WRITE_FILES
+    from gearmath.errors import ComputationError
+    from gearmath.files import read_bytes
+
+    content, name = read_bytes(program), control_name(program.name)
+
+    async def work(one: OpcUaControl) -> bytes:
+        await one.put(name, content, replace)
+        return await one.get(name)
+
+    if ask(connection, insecure, (READ_STATE, READ_FILES, WRITE_FILES), work) != content:
+        raise ComputationError(f"{name} on the control is not what {program} holds: write it again")
+    click.echo(f"{name}: {len(content)} bytes on the control, read back alike")
+
+
+@verb()
+@click.argument("name", metavar="NAME.MPF")
+@click.option("-o", "--output", "target", type=NewFile(), help="File to write.  [default: NAME.MPF here]")
+def get(connection: Path, insecure: bool, name: str, target: Path | None) -> None:
+    """Read a program or result file from the control."""
+    from gearmath.control.file_names import control_name
+    from gearmath.control.sinumerik import READ_FILES
+    from gearmath.files import check_place, write_bytes
+
+    name = control_name(name)
+    target = target or Path(name)
+    check_place(target)
+    content = ask(connection, insecure, (READ_FILES,), lambda one: one.get(name))
+    write_bytes(target, content)
+    click.echo(f"{target}: {len(content)} bytes of {name}")
+
+
+@verb()
+@click.argument("parameters", nargs=-1, required=True, metavar="R10 R20-R25 R30=1.5 ...")
+@JSON
+def rparam(connection: Path, insecure: bool, parameters: tuple[str, ...], as_json: bool) -> None:
+    """Read R parameters, or set those that are written with a value.
+
+    Those of the handshake (R101 to R103) are not set: only a measuring run acknowledges.
+    """
+    from gearmath.control.sinumerik import READ_STATE, WRITE_STATE
+
+    reading, writing = _parameters(parameters)
+    numbers = [*dict.fromkeys([*writing, *reading])]
+
+    async def work(one: OpcUaControl) -> list[float]:
+        if writing:
+            await one.write_parameters(writing)
+        return await one.read_parameters(numbers)
+
+    found = ask(connection, insecure, (READ_STATE, *((WRITE_STATE,) if writing else ())), work)
+    if as_json:
+        echo_json({f"R{number}": value for number, value in zip(numbers, found, strict=True)})
+        return
+    click.echo("\n".join(f"R{number} = {value:.10g}" for number, value in zip(numbers, found, strict=True)))
+
+
+def _parameters(words: tuple[str, ...]) -> tuple[list[int], dict[int, float]]:
+    """Numbers to read, and values to write."""
+    import re
+
+    reading: list[int] = []
+    writing: dict[int, float] = {}
+    for word in words:
+        match = re.fullmatch(r"[Rr]?(\d{1,4})(?:-[Rr]?(\d{1,4})|=(\S+))?", word, re.ASCII)
+        if match is None:
+            raise InputError(f"{word!r}: must be like R10, R20-R25 or R30=1.5")
+        first, last = int(match[1]), int(match[2] or match[1])
+        if match[3] is None:
+            if last < first:
+                raise InputError(f"{word!r}: the last R parameter comes before the first")
+            reading += range(first, last + 1)
+            continue
+        try:
+            writing[first] = float(match[3])
+        except ValueError:
+            raise InputError(f"{word!r}: {match[3]!r} must be a number") from None
+    return reading, writing
+
+
+@verb()
+@JSON
+def alarms(connection: Path, insecure: bool, as_json: bool) -> None:
+    """The alarms that are active now, each once."""
+    from dataclasses import asdict
+
+    from gearmath.control.sinumerik import READ_ALARMS
+
+    found = ask(connection, insecure, (READ_ALARMS,), lambda one: one.alarms())
+    if as_json:
+        echo_json([asdict(alarm) for alarm in found])
+    elif found:
+        rows = [(alarm.number, alarm.severity, alarm.time, alarm.text) for alarm in found]
+        click.echo(table(("alarm", "severity", "since", "text"), rows))
+    else:
+        click.echo("no alarm is active")
+
+
+@verb()
+def trust(connection: Path, insecure: bool) -> None:
+    """Store the control's own certificate, once, where CONTROL.toml names it; compare its fingerprint there.
+
+    From then on only this control is talked to.
+    """
+    from gearmath.control.login import server_certificate
+    from gearmath.control.opcua import PATIENCE
+    from gearmath.files import write_bytes
+
+    known = _connection(connection, insecure)
+    if not known.server_certificate:
+        raise InputError(f"{connection}: server_certificate is missing: it names the file to write")
+    target = Path(known.server_certificate)
+    if target.exists():
+        raise InputError(f"{target}: is there already: delete it first if the control has a new certificate")
+    certificate, fingerprint = asyncio.run(server_certificate(known, PATIENCE))
+    write_bytes(target, certificate)
+    click.echo(f"{target}: the certificate of {known.url}; compare its SHA-256 with that which the control shows:")
+    click.echo(" ".join(fingerprint[k : k + 4] for k in range(0, len(fingerprint), 4)))
+
+
+@verb()
+@click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF", required=False)
+@click.option(
+    "--store", "store_path", type=click.Path(path_type=Path), default="runs.db", show_default=True,
+    envvar="GEARMATH_STORE", show_envvar=True, help="The measurement store; made where there is none.",
+)  # fmt: skip
+@click.option("--set", "gear_set", metavar="SET.toml", help="Gear set of the member, to be kept with the run.")
+@click.option("--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine, to be kept too.")
+@click.option("--calibration", default="probe.toml", show_default=True, help="Calibrated probe, to be kept too.")
+@click.option("--acknowledge", is_flag=True,
+              help="Acknowledge the touches: this lets the waiting program move on. It must be given.")  # fmt: skip
+@click.option("--resume", type=click.IntRange(1), metavar="RUN", help="Go on with a run of the store.")
+@click.option("--points", metavar="FIRST-LAST", help="Touch these points only, as a new run.")
+@click.option("--again-of", type=click.IntRange(1), metavar="RUN", help="With --points: the run that they belong to.")
+def measure(
+    connection: Path, insecure: bool, program: Path | None, store_path: Path, gear_set: str | None, machine: str,
+    calibration: str, acknowledge: bool, resume: int | None, points: str | None, again_of: int | None,
+) -> None:  # fmt: skip
+    """Keep every touch of a probing or calibration program in the store, before the program goes on.
+
+    PROGRAM.MPF lies on the control and is selected there, the channel is in reset. This command sets R104, R90 and R91,
+    waits until the operator starts the program, and acknowledges each touch when it is on the disk. After a loss of the
+    connection it goes on by itself; after a reset, with --resume.
+    """
+    from gearmath.control import sinumerik
+    from gearmath.control.measuring import Measuring
+    from gearmath.control.run_start import begun, resumed
+    from gearmath.control.store import Store
+
+    if not acknowledge:
+        raise click.UsageError(
+            "--acknowledge is missing: it lets the program that the operator started move on after each touch"
+        )
+    if (program is None) == (resume is None):
+        raise click.UsageError("either PROGRAM.MPF or --resume RUN must be given")
+    if again_of is not None and points is None:
+        raise click.UsageError("--again-of goes with --points")
+    connect = connector(connection, insecure, sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS,
+                        sinumerik.READ_FILES)  # fmt: skip
+    with Store.open(store_path) as store:
+        if resume is not None:
+            run = store.resume_run(resume)
+            parts = resumed(run)
+        else:
+            assert program is not None
+            start, parts = begun(_connection(connection, insecure).name, program, gear_set, machine, calibration,
+                                 points, again_of)  # fmt: skip
+            run = store.begin_run(start)
+        with bar(len(run.missing()), "touch") as progress:
+            asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(parts))
+        click.echo(f"{store_path}: run {run.id} is complete: {len(run.start.points)} touches")
+
+
+def _say(sentence: str) -> None:
+    click.echo(sentence, err=True)
+
+
+control.add_command(simulate)

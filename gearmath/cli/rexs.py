@@ -1,0 +1,32 @@
+"""``gearmath rexs``: a gear set out of a REXS file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from gearmath.cli.common import output
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path), metavar="FILE.rexs")
+@output("gear set, TOML")
+def rexs(file: Path, target: Path) -> None:
+    """The set of the bevel stage in a REXS 2.0.0 file (XML), as 'gearmath export rexs' or another program writes it.
+
+    Says what of the file has no place in a set and was left aside. The names: docs/exchange.md.
+    """
+    from gearmath.bevel.pair import check_pair
+    from gearmath.cli.common import about
+    from gearmath.exchange.rexs import read_rexs
+    from gearmath.files import write_text
+    from gearmath.specs.set_text import set_text
+
+    pair, left_aside = read_rexs(file)
+    with about(file):
+        check_pair(pair)
+    write_text(target, set_text(pair))
+    for text in left_aside:
+        click.echo(f"left aside: {text}")
+    click.echo(f"{target}: {pair.title}")

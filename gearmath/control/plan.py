@@ -1,0 +1,77 @@
+"""What a probing or calibration program will offer, found by running its text: every point, and where it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.errors import InputError
+from gearmath.machine.control.executor import run_program
+from gearmath.machine.control.state import Setup
+from gearmath.machine.measuring.collision_check import enough_steps, is_touch
+from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
+
+_FIRST, _LAST = 90, 91
+_POSITION = ("X", "Y", "Z", "A", "B", "triggered")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The touches of a program: columns of its file, and for each point the cells that say where it is."""
+
+    columns: tuple[str, ...]
+    points: dict[int, tuple[str, ...]]
+
+    def part_of(self, point: int) -> int:
+        """The number by which R90 and R91 call the place of a point, touched once or several times."""
+        part, before = 0, None
+        for number, place in self.points.items():
+            part += place != before
+            before = place
+            if number == point:
+                return part
+        raise InputError(f"point {point}: the program makes points {min(self.points)} to {max(self.points)}")
+
+
+def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0) -> Plan:
+    """The plan of the parts from R90 = ``first`` to R91 = ``last`` (0, 0: all).
+
+    Raises InputError for a text that cannot be run, that makes no touches, or that refuses these parts.
+    """
+
+    def trigger(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+        return end if is_touch(start, end) else None
+
+    run = run_program(
+        text, program, trigger, parameters={_FIRST: float(first), _LAST: float(last)}, step_limit=enough_steps(text),
+        setup=setup,
+    )  # fmt: skip
+    if run.alarm is not None:
+        why = f": {run.messages[-1]}" if run.messages else ""
+        raise InputError(f"{program}, line {run.alarm[1]}: the program sets alarm {run.alarm[0]}{why}")
+    for content in run.files.values():
+        lines = [line.split(",") for line in content.splitlines() if line and not line.startswith("#")]
+        if lines and tuple(lines[0]) in (COLUMNS, CALIBRATION_COLUMNS):
+            columns = tuple(lines[0])
+            points = {int(cells[1]): tuple(cells[2 : -len(_POSITION)]) for cells in lines[1:]}
+            if points:
+                return Plan(columns, points)
+    raise InputError(f"{program}: offers no touches to a host: is it a program of 'nc probe' or 'nc calibrate'?")
+
+
+def resuming(text: str, program: str, setup: Setup, plan: Plan, missing: list[int]) -> tuple[int, int]:
+    """R90 and R91 with which a program makes the points that are missing, and as few others as it can."""
+    if list(plan.points) == missing:
+        return 0, 0
+    low, high = plan.part_of(missing[0]), plan.part_of(missing[-1])
+    if set(missing) <= set(planned(text, program, setup, low, high).points):
+        return low, high
+    # sections of a calibration hold several places: the last one that begins early enough
+    for first in range(low, 0, -1):
+        try:
+            if set(missing) <= set(planned(text, program, setup, first, 0).points):
+                return first, 0
+        except InputError:
+            continue
+    return 0, 0

@@ -1,0 +1,63 @@
+"""What a measuring run begins with: the program, its points, and the files that it was made from."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from gearmath.control.file_names import control_name
+from gearmath.control.interface import RunStart
+from gearmath.control.plan import Plan, planned, resuming
+from gearmath.control.store_run import Run
+from gearmath.control.store_summary import parts
+from gearmath.errors import InputError
+from gearmath.files import read_bytes
+from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import decoded
+from gearmath.machine.measuring.probe_run import touches_artefacts
+from gearmath.specs.calibration import load_calibration
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import find
+
+#: Names under which the store keeps the files.
+SET, MACHINE, CALIBRATION = "set.toml", "machine.toml", "calibration.toml"
+
+
+def begun(
+    control: str, program: Path, gear_set: str | None, machine: str, calibration: str, points: str | None = None,
+    refers_to: int | None = None,
+) -> tuple[RunStart, tuple[int, int]]:  # fmt: skip
+    """A new run of a program, and the R90 and R91 with which it makes these ``points`` (``FIRST-LAST``; None: all).
+
+    Raises InputError where the program offers no touches, or has not these points.
+    """
+    content, name = read_bytes(program), control_name(program.name)
+    text = decoded(content, str(program))
+    paths = {MACHINE: find(machine), CALIBRATION: find(calibration)}
+    if gear_set is not None:
+        paths[SET] = find(gear_set)
+    elif not touches_artefacts(text):
+        raise InputError(f"--set is missing: {program} probes a member")
+    setup = Setup.of(load_milling_machine(paths[MACHINE]), load_calibration(paths[CALIBRATION]).length)
+    plan, parts = planned(text, str(program), setup), (0, 0)
+    if points is not None:
+        wanted = _chosen(points, plan)
+        parts = resuming(text, str(program), setup, plan, wanted)
+        plan = Plan(plan.columns, planned(text, str(program), setup, *parts).points)
+    files = {key: read_bytes(path) for key, path in paths.items()}
+    settings = {key: path.name for key, path in paths.items()}
+    return RunStart(control, name, content, plan.columns, plan.points, files, settings, refers_to=refers_to), parts
+
+
+def resumed(run: Run) -> tuple[int, int]:
+    """R90 and R91 with which the program of a run makes the first stretch of what is missing."""
+    missing = run.missing()
+    return parts(run, missing)[0] if missing else (0, 0)
+
+
+def _chosen(points: str, plan: Plan) -> list[int]:
+    match = re.fullmatch(r"(\d{1,6})-(\d{1,6})", points, re.ASCII)
+    first, last = (int(match[1]), int(match[2])) if match else (0, 0)
+    if not min(plan.points) <= first <= last <= max(plan.points):
+        raise InputError(f"--points {points}: must be FIRST-LAST within {min(plan.points)} to {max(plan.points)}")
+    return list(range(first, last + 1))

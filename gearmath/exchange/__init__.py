@@ -1,0 +1,1 @@
+"""Sets and members for other programs: STEP, STL of a pair, REXS, plain point files."""

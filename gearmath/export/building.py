@@ -1,0 +1,270 @@
+"""The chapters of the README that build the machine: parts, connections, power, switches, scope check, first cut."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from gearmath.export.markdown import bullets, paragraph, table
+from gearmath.export.netlist import GROUND, LOGIC, PLUS, Netlist, netlist
+from gearmath.specs.hobbing import HobbingMachine
+
+#: Junction of an LM7805 at most, room, and thermal resistance: to air without a heat sink, to the case with its pad.
+_HOT, _ROOM, _BARE, _PAD = 125.0, 40.0, 65.0, 6.0
+_SUPPLIES = (9.0, 12.0)
+#: Pins that are pads on the underside of the board.
+_UNDERSIDE = {"teensy32": range(24, 34), "teensy40": range(24, 40), "teensy41": range(42, 55)}
+
+
+def order(machine: HobbingMachine) -> Iterator[str]:
+    """From parts to the first gear: the chapters in the order of the work."""
+    work = "thread" if machine.profile == "lathe" else "gear"
+    yield from paragraph(f"From parts to the first {work}, chapter by chapter:")
+    yield from bullets(
+        (
+            "Parts: buy them, every one is in the list.",
+            "Wiring: solder by the diagram, tick off every connection, measure. U1 is not in its socket yet: "
+            "with 9 V on, "
+            "its socket must have 5 V between Vin and GND.",
+            "Encoder and decoder: the resistor of the LS7184N, the mode jumper, the output of your encoder."
+            if machine.encoder.has_ls7184
+            else "Encoder and decoder: the output of your encoder.",
+            "Step motor driver: switches and current; motor power stays off.",
+            "Flashing: U1 by USB alone, out of its socket; then into it.",
+            "Commissioning: encoder, motor, directions, emergency stop, one after the other.",
+            f"The first cut, and what the display shows meanwhile: Using it. What stops the {work}: Faults.",
+        ),
+        numbered=True,
+    )
+
+
+def parts_chapter(machine: HobbingMachine) -> Iterator[str]:
+    """Every part with its value, by the name in diagram and tables."""
+    yield "## Parts"
+    yield ""
+    found = netlist(machine)
+    yield from table(("part", "what to buy", "what for"), [(p.name, p.what, p.purpose) for p in found.parts.values()])
+    yield from _power(found)
+
+
+def _power(found: Netlist) -> Iterator[str]:
+    current = found.current / 1000
+    watts = {volts: (volts - 5.0) * current for volts in _SUPPLIES}
+    words = ", ".join(f"{watts[volts]:.1f} W at {volts:g} V" for volts in _SUPPLIES)
+    bare = (_HOT - _ROOM) / _BARE
+    sinks = [
+        f"at most {(_HOT - _ROOM) / watts[volts] - _PAD:.0f} K/W at {volts:g} V"
+        for volts in _SUPPLIES
+        if watts[volts] > bare and (_HOT - _ROOM) / watts[volts] > _PAD
+    ]
+    heat = f"It needs a heat sink of {', '.join(sinks)}, its pad counted in." if sinks else "It needs no heat sink."
+    yield from paragraph(
+        f"Supply: 9 V DC, {math.ceil(current * 15) / 10:.1f} A, of its own, not that of the motor. The parts take "
+        f"{found.current} mA from +5 V at the most, so that U2 has to get rid of {words}; without a heat sink it "
+        "stands "
+        f"{bare:.1f} W in a cabinet at {_ROOM:g} degrees C. {heat} The metal of U2 is 0 V."
+    )
+
+
+def connections(machine: HobbingMachine) -> Iterator[str]:
+    """Every net as a row, to tick off while soldering."""
+    found = netlist(machine)
+    yield "### Every connection"
+    yield ""
+    yield from paragraph(
+        "One row is one net: join all that stands in it, and nothing else. `U5 2 A1` is pin 2 of U5, which its "
+        "data sheet "
+        "calls A1. Tick the rows off, then check every row and its neighbors with a meter before power comes on."
+    )
+    order = [name for name in found.nets if name not in (PLUS, LOGIC, GROUND)]
+    rows = [
+        (name, ", ".join(f"{part} {pin}" for part, pin in found.nets[name]))
+        for name in (*order, PLUS, LOGIC, GROUND)
+        if name in found.nets
+    ]
+    yield from table(("net", "joins"), rows)
+    if machine.driver.output != "open_collector":
+        return
+    yield from paragraph(
+        "T: a 2N2222 in a plastic case of the TO-92 kind is made with two orders of its legs (E B C and C B E): "
+        "look into "
+        "the data sheet of yours. The ring of a diode is its cathode."
+    )
+
+
+def encoder_outputs(machine: HobbingMachine) -> Iterator[str]:
+    """Which outputs encoders have, and what each needs in front of the input."""
+    chip = (
+        "LS7184N"
+        if machine.encoder.has_ls7184
+        else ("74LVC245" if not machine.hardware.five_volt_tolerant else "board")
+    )
+    yield "### Outputs of encoders"
+    yield ""
+    yield from paragraph(f"What the label on the encoder says, and what stands between it and the {chip}:")
+    rows = [
+        ("voltage output, TTL, push-pull, 5 V", "nothing: A, B and Z straight"),
+        ("open collector, NPN (E6B2-CWZ6C), fed with 5 V",
+         "1 kOhm from each of A, B, Z to +5 V; 5 mA, quick enough for 100 kHz on 3 m of cable"),
+        ("open collector, NPN, fed with 12 to 24 V",
+         "the same 1 kOhm to +5 V, never to the 24 V; the encoder's brown wire to its own 24 V, the 0 V joined"),
+        ("line driver, RS-422, A and /A (E6B2-CWZ1X)",
+         "a receiver AM26LS32 (5 V), 120 Ohm across each pair at the receiver; the pairs twisted"),
+        ("push-pull (HTL), 10 to 30 V",
+         "a fast opto-coupler 6N137 for each: 2.2 kOhm 1 W in front of its diode at 24 V, 1 kOhm from its output "
+         "to +5 V"),
+    ]  # fmt: skip
+    yield from table(("output", "in front of the input"), rows)
+    yield from paragraph(
+        "An opto-coupler turns the levels round. For A and B that changes nothing; for Z the machine file then says "
+        '`index_active = "low"` under `[encoder]`.'
+    )
+    yield from bullets(
+        (
+            "Cable: shielded, twisted, not in one duct with that of the motor; 100 mm away at least, crossings "
+            "at right "
+            "angles. The shield goes to 0 V at the end of the board only, the other end stays open and taped.",
+            "The frame of the motor, the table and the cabinet go to the protective earth, 0 V of the logic to "
+            "it at one "
+            "point: the terminal of U2.",
+            "The cable of the motor: shielded too, its shield on the frame of the driver.",
+        )
+    )
+
+
+def chain(machine: HobbingMachine) -> Iterator[str]:
+    """The circuit of the contactor, which holds the power of the spindle."""
+    pins = machine.pins
+    yield "### Contactor, latch and emergency stop"
+    yield ""
+    relay, stop = pins.healthy is not None, pins.estop is not None
+    links = ["F1"] + ["S2 11-12"] * stop + ["S3"] + ["K1 COM-NO"] * relay
+    yield "```"
+    yield "L --" + "--".join(f"[{link}]" for link in links) + "--+--[S4]-----+--[KM1 A1-A2]-- N"
+    lead = " " * len("L --" + "--".join(f"[{link}]" for link in links) + "--")
+    yield lead + "|            |"
+    yield lead + "+-[KM1 13-14]+"
+    yield "```"
+    yield ""
+    what = [
+        "F1: fuse of the control circuit, 1 A. Best is 24 V from a transformer of its own; mains only by an "
+        "electrician.",
+        "S3: stop, normally closed, red. S4: start, normally open, green.",
+        "KM1: contactor of the motor, its main contacts in the motor's lines, its normally open contact 13-14 "
+        "across S4: "
+        "this is the latch. Whatever opens the chain lets KM1 fall, and only a press on S4 brings it back.",
+        "An RC element (100 nF and 100 Ohm, made for it) across the coil of KM1, for 24 V DC a 1N4007, ring to +.",
+    ]
+    if stop:
+        what.append(
+            "S2 opens the chain by itself, whatever the board does. Its contact 21-22 only tells the board, so "
+            "that the "
+            "table follows until the hob stands; the driver of the step motor keeps its power."
+        )
+    if relay:
+        what.append(
+            "K1: contacts for 250 V AC and 2 A at least. Check once: it must fall when the wire to the board is "
+            "pulled off "
+            "while the machine runs empty."
+        )
+    if not relay or not stop:
+        what.append(
+            "This machine has " + ("no emergency stop" if not stop else "no fail-safe relay") + " in the chain."
+        )
+    yield from bullets(what)
+
+
+def switches(machine: HobbingMachine) -> Iterator[str]:
+    """Motor, its supply, and the switches of the driver."""
+    drive = machine.drive
+    yield "### Motor, supply and switches of the driver"
+    yield ""
+    pulses = drive.pulses_per_turn
+    steps = (
+        f"{pulses} pulses per turn of the motor ({drive.full_steps} full steps x {drive.microsteps} microsteps)"
+        if drive.pulses is None
+        else f"{pulses} command pulses per turn of the motor, by its electronic gearing"
+    )
+    yield from bullets(
+        (
+            f"Set the driver to {steps}. The table is printed on the housing; names of the switches differ "
+            "between makes. "
+            "`test one turn` below shows whether it is right.",
+            "Current: what the plate of the motor says per phase. A driver that is set in peak current wants 1.4 times "
+            "the RMS value.",
+            "Half current at standstill: off. The table has to hold against the hob.",
+            "Supply of the motor: near the highest voltage of the driver less 10 %, since motors of deep "
+            "inductance lose "
+            "their torque with speed; never the supply of the logic. Its minus goes to the driver only.",
+            "Never plug the motor in or out under power: it destroys the driver.",
+        )
+    )
+
+
+def underside(machine: HobbingMachine) -> Iterator[str]:
+    """Which pins of the machine are pads on the underside of the board."""
+    pads = [f"{number} (`{name}`)" for name, number in machine.pins.used() if number in _UNDERSIDE[machine.board]]
+    if pads:
+        yield from paragraph(
+            f"Pads on the underside of a {machine.hardware.title}, to be soldered before it goes into its socket: "
+            f"{', '.join(pads)}."
+        )
+
+
+def scope(machine: HobbingMachine) -> Iterator[str]:
+    """What STEP and DIR look like on an oscilloscope."""
+    high, low, setup, hold = (ticks * machine.tick_ns / 1000 for ticks in machine.timing_ticks)
+    step = "low" if machine.step_active_low else "high"
+    at = f"pins {machine.pins.step_out} and {machine.pins.dir_out} of the board"
+    yield "### STEP and DIR on an oscilloscope"
+    yield ""
+    unit = "mm" if machine.profile == "lathe" else "degrees"
+    rest = f"A logic analyzer does as well. Motor power off, jog armed, one detent at a time of 10 {unit}."
+    yield from paragraph(f"Probes on {at}, ground at its GND. {rest}")
+    rows = [
+        ("STEP", f"{step} for {high:g} us, then the other level for {low:g} us at least"),
+        ("DIR", f"changes {setup:g} us at least before the first pulse, and {hold:g} us at least after the last one"),
+        ("levels", "0 V and 3.3 V; at the driver, behind a transistor, 5 V and below 0.4 V, and upside down"),
+        ("jog", f"intervals fall to {1e6 / machine.move_max_rate:.0f} us and rise again: a ramp, no jump"),
+    ]
+    yield from table(("signal", "must be"), rows)
+
+
+def first_cut(machine: HobbingMachine) -> Iterator[str]:
+    """Advice for the first cut, with the figures of this machine."""
+    lathe = machine.profile == "lathe"
+    yield "## The first cut"
+    yield ""
+    acceleration = machine.limits.acceleration_hz_per_s
+    common = (
+        f"The motor speeds up by {acceleration:g} steps/s every second. `gearmath gearbox plan` tells for each "
+        "job how long "
+        "the run-up takes, and after how long a running machine is caught up. Do not cut before `In phase`."
+    )
+    advice = (common, *(_THREAD if lathe else _GEAR))
+    yield from bullets(advice, numbered=True)
+
+
+_GEAR = (
+    "Take brass or a hard plastic, 30 to 60 teeth, and a blank of the diameter that the page `Blank` shows.",
+    "Swivel the hob head by the lead angle of the hob (stamped on it), for helical teeth by helix less lead "
+    "angle where "
+    "both have one hand, by their sum where not.",
+    "Touch the blank with the turning hob, go beside it, and set the whole depth of the page `Depth`. Cut it in "
+    "one pass: "
+    "a shallow first pass lets the hob drag the blank round.",
+    "Feed 0.1 to 0.3 mm per turn of the table for small modules. Conventional cut where the feed has play, climb "
+    "cut where "
+    "it has none.",
+    "Start hob and gearbox clear of the blank, wait for `In phase`, then feed in. At the end feed clear of the "
+    "blank before "
+    "you answer `Stop?`.",
+    "Count the teeth, and measure the span that `gearmath gearbox plan` gives. Too thick by s: deeper by s/(2 sin 20).",
+)
+_THREAD = (
+    "Take brass or aluminum, a relief groove of two pitches at the end of the thread, and a slow spindle.",
+    "First a scratch of 0.05 mm: measure ten pitches with a rule or a thread gauge before you go deeper.",
+    "Keep the half nut closed for the whole thread: the gearbox finds the thread again, the half nut would not.",
+    "At the end draw the tool out first, then answer `Stop?`; jog back, and `run on` waits for the same groove.",
+    "Take the play of the lead screw out by coming back further than the start of the thread, then forward.",
+)

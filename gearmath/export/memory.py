@@ -1,0 +1,26 @@
+"""How much of a board's memory the sketch takes: measured on its compiled files, by board; a test measures again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from gearmath.export.markdown import paragraph
+from gearmath.specs.hobbing import HobbingMachine
+
+#: kB of flash and RAM of the sketch's own files, GCC 12 -O2 ("Faster"), Cortex-M4 and M7.
+OWN = {"teensy32": (23.0, 0.9), "teensy40": (24.0, 0.9), "teensy41": (24.0, 0.9)}
+#: kB that the board has.
+_HAS = {"teensy32": (256, 64), "teensy40": (1984, 1024), "teensy41": (7936, 1024)}
+
+
+def memory(machine: HobbingMachine) -> Iterator[str]:
+    """What the chapter about flashing says of flash and RAM."""
+    flash, ram = OWN[machine.board]
+    most, fast = _HAS[machine.board]
+    yield from paragraph(
+        f"The files of this folder take about {flash:g} kB of flash and {ram:g} kB of RAM (arm-none-eabi-gcc 12, "
+        "-O2), of "
+        f"the {most} kB and {fast} kB of a {machine.hardware.title}. The core of Teensyduino and its libraries "
+        "come on top; "
+        "they were not measured here, and the IDE prints the sum when it compiles."
+    )

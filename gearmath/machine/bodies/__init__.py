@@ -1,0 +1,1 @@
+"""The solids that meet: cutters, blades, blanks, the probe."""

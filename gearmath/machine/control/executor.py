@@ -1,0 +1,417 @@
+"""Runs NC programs as the control would: the path they command, the probe they move, the files they write."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from gearmath.machine.control.expression import AXES, Node, Value, Variable, refuse
+from gearmath.machine.control.reader import read_program
+from gearmath.machine.control.state import Blind, Control, Deflected, Follower, Probe, Row, Setup
+from gearmath.machine.control.tree import Block, Branch, Command, Definition, Loop, Program, Statement
+from gearmath.machine.control.values import evaluate, indices, number
+
+#: What a host does while the program waits: it sees the R parameters, and returns those that it writes.
+Host = Callable[[Mapping[int, float]], Mapping[int, float]]
+
+
+class Moment(NamedTuple):
+    """Where a program stands, for who watches it run; the tables are those of the program, and go on changing."""
+
+    line: int
+    parameters: Mapping[int, float]
+    messages: list[str]
+    files: Mapping[str, list[str]]
+    row: Row | None
+    """The motion that has been made, at the end of its block; None before a statement."""
+
+
+#: Hears of every statement before it acts, and of every motion; what it raises ends the program.
+Watch = Callable[[Moment], object]
+
+#: Blocks and turns of loops that a program may run through.
+STEP_LIMIT = 1_000_000
+_LAST_PARAMETER = 999
+#: What $AA_IM shows where the program is run from an unknown position: clear of everything.
+_UP_AND_AWAY = 1e5
+_ALARMS = (65000, 69999)
+#: What WRITE and DELETE report [unconfirmed].
+_NO_SUCH_FILE, _FILE_FULL = 3.0, 10.0
+_KILOBYTE = 1000
+
+
+@dataclass(frozen=True)
+class MachinePath:
+    """What a program commands, one row for each motion block that ends at a known position of all five axes."""
+
+    axes: np.ndarray
+    """Positions X Y Z A B at the ends of the blocks, (n, 5) mm and rad; A counted on as the control turns it."""
+    rapid: np.ndarray
+    """Whether the block is a G0 block, (n,). The first row, and the first after a tool change, is always one."""
+    tool: np.ndarray
+    """Index into ``tools``, (n,)."""
+    tools: tuple[str, ...]
+    line: np.ndarray
+    """Line number in the text, from 1, (n,)."""
+    seconds: np.ndarray
+    """Duration, (n,) s; 0 for a rapid block, whose speed is the machine's and not the program's."""
+    rpm: np.ndarray
+    """Speed of the spindle, (n,) turns per minute: negative with M4, 0 where it stands or is an axis."""
+    measuring: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    """Whether the block is a MEAS block, which ends where the probe triggers, (n,)."""
+    cutter: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Position of the cutter's axis C at the ends, (n,) rad, counted on; NaN while the spindle is no axis."""
+    unstated: tuple[str, ...] = ()
+    """What the program leaves as it was when its first motion begins, in words of the program."""
+    blind: tuple[Blind, ...] = ()
+    """Motion while the position of an axis is unknown: at the start, and after a tool change."""
+    path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
+    """Path mode, CTOL [mm] and OTOL [degrees] of feed blocks, with the line of the first."""
+    dynamics: dict[tuple[str, str], int] = field(default_factory=dict)
+    """Acceleration and feed forward of feed blocks, with the line of the first."""
+    unset: dict[int, int] = field(default_factory=dict)
+    """R parameters that are read before the program sets them, with the line: they keep what another program left."""
+
+    @property
+    def spindle_on(self) -> np.ndarray:
+        """Whether the spindle turns, (n,)."""
+        return self.rpm != 0.0
+
+
+@dataclass(frozen=True)
+class Run:
+    """All that a program did: its path, the texts of its files, its messages, the R parameters at its end."""
+
+    path: MachinePath
+    files: dict[str, str]
+    messages: tuple[str, ...]
+    parameters: dict[int, float]
+    alarm: tuple[int, int] | None
+    """Number and line of the first alarm that the program set, or None."""
+    said: tuple[str, ...] = ()
+    """What the control showed during each row of the path, empty before the first message."""
+
+
+#: R parameters that operator and host set before a program, or that it counts on from run to run.
+HANDED_IN = frozenset((90, 91, 101, 102, 103, 104))
+#: Tables without offsets and tool lengths.
+AS_WRITTEN = Setup()
+
+
+def execute(text: str, name: str, setup: Setup = AS_WRITTEN) -> MachinePath:
+    """The path of a program. Raises InputError with ``name``, line and column for what it must not do."""
+    done = run_program(text, name, setup=setup)
+    if done.alarm is not None:
+        why = f": {done.messages[-1]}" if done.messages else ""
+        refuse(name, done.alarm[1], 1, f"the program sets alarm {done.alarm[0]}{why}")
+    return done.path
+
+
+@lru_cache(maxsize=2)
+def _read(text: str, name: str) -> Program:
+    """A program is often run several times, from other states of the control."""
+    return read_program(text, name)
+
+
+def run_program(
+    text: str,
+    name: str,
+    probe: Probe | None = None,
+    host: Host | None = None,
+    parameters: Mapping[int, float] | None = None,
+    step_limit: int = STEP_LIMIT,
+    setup: Setup = AS_WRITTEN,
+    files: Mapping[str, str] | None = None,
+    deflected: Deflected = lambda position: False,
+    moved: Follower = lambda position: None,
+    watch: Watch | None = None,
+) -> Run:
+    """Run a program as the control would, with a ``probe`` for its MEAS blocks and a ``host`` that answers.
+
+    ``parameters`` are the R parameters at the start; others are 0. ``setup`` is how the control stands, ``files`` are
+    the texts of those that WRITE adds to. ``deflected`` says what $A_PROBE shows; ``moved`` hears of every motion, and
+    ``watch`` of every statement too.
+    Raises InputError with ``name``, line and column for what a program must not do, and for one that takes more than
+    ``step_limit`` steps.
+    """
+    program = _read(text, name)
+    runner = _Runner(Control(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved, watch)
+    runner.holds(files or {})
+    try:
+        runner.all(program.body)
+    except _Stopped:
+        pass
+    else:
+        if not runner.control.ended:
+            refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
+    files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
+    path = _path(runner.rows, runner.control, runner.unset)
+    return Run(path, files, tuple(runner.messages), runner.parameters, runner.alarm, tuple(runner.said))
+
+
+class _Stopped(Exception):
+    """The program ended before the end of its text: M30 in a branch or in a loop."""
+
+
+class _Runner:
+    """Statements in the order in which they act."""
+
+    def __init__(
+        self, control: Control, host: Host | None, parameters: dict[int, float], step_limit: int, deflected: Deflected,
+        moved: Follower, watch: Watch | None,
+    ) -> None:  # fmt: skip
+        self.unset: dict[int, int] = {}
+        self.control, self.host, self.parameters, self.steps_left = control, host, parameters, step_limit
+        self.deflected, self.moved, self.watch = deflected, moved, watch
+        self.variables: dict[tuple[str, tuple[int, ...]], float] = {}
+        self.integer: dict[str, bool] = {}
+        self.rows: list[Row] = []
+        self.files: dict[str, list[str]] = {}
+        self._sizes: dict[str, int] = {}
+        self.messages: list[str] = []
+        self.said: list[str] = []
+        self.alarm: tuple[int, int] | None = None
+        self._pending: dict[int, float] = {}
+        self._limit = step_limit
+
+    def holds(self, files: Mapping[str, str]) -> None:
+        """The files that are there before the program begins."""
+        self.files = {file: content.splitlines() for file, content in files.items()}
+        self._sizes = {file: len(content) for file, content in files.items()}
+
+    def all(self, body: tuple[Statement, ...]) -> None:
+        for statement in body:
+            self._step(statement.line)
+            self._watched(statement.line)
+            if isinstance(statement, Block):
+                self._block(statement)
+            elif isinstance(statement, Command):
+                self._command(statement)
+            elif isinstance(statement, Branch):
+                truth = self._truth(statement.condition, statement.line, statement.column)
+                self._inner(statement.then if truth else statement.otherwise)
+            elif isinstance(statement, Loop):
+                self._loop(statement)
+            else:
+                self._define(statement)
+
+    def read(self, variable: Variable, index: tuple[int, ...], line: int) -> Value:
+        """The value of a variable, for :func:`evaluate`."""
+        name, column = variable.name, variable.column
+        if name == "R":
+            if index[0] > _LAST_PARAMETER:
+                refuse(self.control.name, line, column, f"R{index[0]}: R parameters go from 0 to {_LAST_PARAMETER}")
+            if index[0] not in self.parameters and index[0] not in HANDED_IN:
+                self.unset.setdefault(index[0], line)
+            return self.parameters.get(index[0], 0.0)
+        if name.startswith("$"):
+            return self._system(variable, line)
+        if (name, index) not in self.variables:
+            self._unknown(variable, index, line)
+        return self.variables[name, index]
+
+    def _unknown(self, variable: Variable, index: tuple[int, ...], line: int) -> None:
+        where = f"[{','.join(map(str, index))}]" if index else ""
+        refuse(self.control.name, line, variable.column, f"the variable {variable.name}{where} is not defined")
+
+    def _system(self, variable: Variable, line: int) -> Value:
+        latch, name, control = self.control.latch, variable.name, self.control
+        setup = control.setup
+        if name == "$A_PROBE":
+            return float(bool(self.rows) and self.deflected(_internal(self.rows[-1].position)))
+        if name == "$AA_IM":
+            if setup.position is None:
+                return _UP_AND_AWAY
+            return control.position[variable.axis] + setup.zero[AXES.index(variable.axis)]
+        tables: dict[str, Callable[[], Value]] = {
+            "$P_ACTFRAME": lambda: control.frame_part(*variable.axis.split(",")),
+            "$P_TOOLL": lambda: control.length,
+            "$P_TOOLNO": lambda: 0.0 if control.fetched is None else 1.0,
+            "$TC_TP2": lambda: control.fetched or "",
+            "$MN_SCALING_SYSTEM_IS_METRIC": lambda: float(setup.metric),
+            "$MN_INT_INCR_PER_MM": lambda: setup.increments[0],
+            "$MN_INT_INCR_PER_DEG": lambda: setup.increments[1],
+            "$MN_LEN_PROTOCOL_FILE": lambda: setup.result_file_kB,
+        }
+        if name in tables:
+            return tables[name]()
+        if latch is None or not latch.synchronised:
+            refuse(self.control.name, line, variable.column, f"{name} without a MEAS block and STOPRE before it")
+        if name == "$AC_MEA":
+            return float(latch.triggered)
+        values = latch.machine if name == "$AA_MM" else latch.work
+        if variable.axis not in values:
+            what = f"{name}[{variable.axis}]: {variable.axis} was not in the MEAS block, so that it was not latched"
+            refuse(self.control.name, line, variable.column, what)
+        return values[variable.axis]
+
+    def _step(self, line: int) -> None:
+        self.steps_left -= 1
+        if self.steps_left < 0:
+            refuse(self.control.name, line, 1, f"the program is not at its end after {self._limit} steps")
+
+    def _watched(self, line: int, row: Row | None = None) -> None:
+        if self.watch is not None:
+            self.watch(Moment(line, self.parameters, self.messages, self.files, row))
+
+    def _number(self, node: Node, line: int, column: int) -> float:
+        return number(node, self, self.control.name, line, column)
+
+    def _truth(self, node: Node, line: int, column: int) -> bool:
+        value = evaluate(node, self, self.control.name, line)
+        if not isinstance(value, bool):
+            refuse(self.control.name, line, column, "a condition is needed here, such as R1==2")
+        return value
+
+    def _inner(self, body: tuple[Statement, ...]) -> None:
+        """A body within a structure; M30 in it ends the program."""
+        self.all(body)
+        if self.control.ended:
+            raise _Stopped
+
+    def _block(self, block: Block) -> None:
+        for target, value in block.assignments:
+            self._assign(target, self._number(value, block.line, target.column), block.line)
+        row = self.control.run(block, lambda node, column: self._number(node, block.line, column))
+        if row is not None:
+            self.rows.append(row)
+            self.said.append(self.messages[-1] if self.messages else "")
+            self.moved(_internal(row.position))
+            self._watched(block.line, row)
+        if "dwell" in block.words and self.host is not None:
+            self._pending.update(self.host(dict(self.parameters)))
+
+    def _assign(self, target: Variable, value: float, line: int) -> None:
+        index = indices(target, self, self.control.name, line)
+        if target.name == "R":
+            self.parameters.setdefault(index[0], value)  # to be written, not read
+        self.read(target, index, line)
+        if target.name == "R":
+            self.parameters[index[0]] = value
+        else:
+            self.variables[target.name, index] = _whole(value) if self.integer[target.name] else value
+
+    def _loop(self, loop: Loop) -> None:
+        if loop.counter is None or loop.first is None or loop.last is None:
+            while loop.condition is not None and self._truth(loop.condition, loop.line, loop.column):
+                self._step(loop.line)
+                self._inner(loop.body)
+            return
+        count = self._number(loop.first, loop.line, loop.column)
+        self._assign(loop.counter, count, loop.line)
+        while count <= self._number(loop.last, loop.line, loop.column):
+            self._step(loop.line)
+            self._inner(loop.body)
+            count = self._number(loop.counter, loop.line, loop.column) + 1.0
+            self._assign(loop.counter, count, loop.line)
+
+    def _define(self, definition: Definition) -> None:
+        if self.rows:
+            refuse(self.control.name, definition.line, definition.column, "DEF after the first motion")
+        for name, sizes, node in definition.variables:
+            if name in self.integer:
+                refuse(self.control.name, definition.line, definition.column, f"{name} is defined twice")
+            value = self._number(node, definition.line, definition.column)
+            self.integer[name] = definition.integer
+            for index in np.ndindex(*sizes):
+                self.variables[name, index] = _whole(value) if definition.integer else value
+
+    def _command(self, command: Command) -> None:
+        control, line, column = self.control, command.line, command.column
+        if command.name == "STOPRE":
+            if control.latch is not None:
+                control.latch.synchronised = True
+            self.parameters.update(self._pending)
+            self._pending = {}
+        elif command.name == "TRANS":
+            if any(axis not in "XYZ" for axis, _ in command.words):
+                refuse(control.name, line, column, "TRANS of a rotary axis is not understood")
+            control.modal["frames"] = "TRANS"
+            control.shift = {axis: self._number(node, line, column) for axis, node in command.words}
+        elif command.name == "FGROUP":
+            control.modal["path axes"] = "FGROUP"
+            control.feed_axes = "".join(axis for axis, _ in command.words)
+        elif command.name in ("SPCON", "SPCOF"):
+            self._arguments(command, 0)
+        else:
+            self._say(command)
+
+    def _arguments(self, command: Command, *counts: int) -> list[Value]:
+        if len(command.arguments) not in counts:
+            what = f"{command.name} with {len(command.arguments)} arguments is not understood"
+            refuse(self.control.name, command.line, command.column, what)
+        return [evaluate(node, self, self.control.name, command.line) for node in command.arguments]
+
+    def _say(self, command: Command) -> None:
+        """MSG, SETAL, DELETE and WRITE."""
+        name, line, column = self.control.name, command.line, command.column
+        if command.name == "MSG":
+            self.messages += [str(value) for value in self._arguments(command, 0, 1)]
+            return
+        if command.name == "SETAL":
+            (alarm,) = self._arguments(command, 1)
+            if not (isinstance(alarm, float) and alarm == int(alarm) and _ALARMS[0] <= alarm <= _ALARMS[1]):
+                refuse(name, line, column, f"SETAL({alarm}): alarms of users go from {_ALARMS[0]} to {_ALARMS[1]}")
+            self.alarm = self.alarm or (int(alarm), line)
+            return
+        self._file(command)
+
+    def _file(self, command: Command) -> None:
+        """WRITE adds a line to a file, DELETE removes one; both report into a variable."""
+        name, line, column = self.control.name, command.line, command.column
+        _, file, *texts = self._arguments(command, 2 if command.name == "DELETE" else 3)
+        error = command.arguments[0]
+        if not (isinstance(error, Variable) and self.integer.get(error.name)):
+            refuse(name, line, column, f"the first argument of {command.name} must be a variable of DEF INT")
+        if not (isinstance(file, str) and all(isinstance(text, str) for text in texts)):
+            refuse(name, line, column, f"{command.name} takes the name of a file{' and a text' if texts else ''}")
+        if command.name == "DELETE":
+            self._assign(error, 0.0 if self.files.pop(file, None) is not None else _NO_SUCH_FILE, line)
+            self._sizes.pop(file, None)
+            return
+        (text,) = map(str, texts)
+        size = self._sizes.get(file, 0) + len(text) + 1
+        if size > _KILOBYTE * self.control.setup.result_file_kB:
+            self._assign(error, _FILE_FULL, line)
+            return
+        self._assign(error, 0.0, line)
+        self._sizes[file] = size
+        self.files.setdefault(file, []).append(text)
+
+
+def _whole(value: float) -> float:
+    """A number as a variable of DEF INT keeps it: halves go up."""
+    return float(math.floor(value + 0.5))
+
+
+def _internal(position: tuple[float, ...]) -> np.ndarray:
+    """A position X Y Z A B in mm and rad."""
+    return np.array([*position[:3], *map(math.radians, position[3:])])
+
+
+def _path(rows: list[Row], control: Control, unset: dict[int, int]) -> MachinePath:
+    """The rows as arrays, in mm and rad."""
+    positions = np.array([row.position for row in rows]).reshape(-1, len(AXES))
+    positions[:, 3:] = np.radians(positions[:, 3:])
+    tools = tuple(dict.fromkeys(row.tool for row in rows))
+    return MachinePath(
+        axes=positions,
+        rapid=np.array([row.rapid for row in rows], dtype=bool),
+        tool=np.array([tools.index(row.tool) for row in rows], dtype=int),
+        tools=tools,
+        line=np.array([row.line for row in rows], dtype=int),
+        seconds=np.array([row.seconds for row in rows]),
+        rpm=np.array([row.rpm for row in rows]),
+        measuring=np.array([row.measuring for row in rows], dtype=bool),
+        cutter=np.radians(np.array([row.cutter for row in rows])),
+        unstated=control.unstated or (),
+        blind=tuple(control.blind),
+        path_modes=dict(control.path_modes),
+        dynamics=dict(control.dynamics),
+        unset=unset,
+    )

@@ -1,0 +1,1 @@
+"""Whether a machine may run a program, and whether the part is right."""

@@ -1,0 +1,202 @@
+"""Every block of a program watched where it generates: lines on the flanks so close together that none cuts unseen.
+
+The lines lie along tip and foot of the flanks and along toe and heel, some for every block that the pass has.
+Every line of contact crosses these curves at both of its ends, and a tool that is moved anywhere on it is moved most at
+one of them, as a rigid body. :func:`watch` says what metal is left; :func:`off_the_way` where a tool stands beside its
+way although its neighbours cut the flank clean.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.method import motion_of
+from gearmath.bevel.turning import turned
+from gearmath.kernels import kernel
+from gearmath.machine.milling.axis_errors import roll_position
+from gearmath.machine.milling.mill import expose, thickness
+from gearmath.machine.milling.removal import REACH, annulus_entry
+from gearmath.machine.milling.run import Run
+from gearmath.machine.planning.blocks import flank_curve, foot_curves, on_one_machine
+from gearmath.machine.planning.passes import tooth_angles
+from gearmath.machine.planning.path import axis_positions, flank_points, roll_range
+from gearmath.specs.bevel_set import FLANKS, Member
+from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.simulated_machine import SimulatedMachine
+
+#: Lines on each curve for a block of mean length.
+_PER_BLOCK = 2.0
+#: Where curves lie along the tooth, as parts of the working depth, and up the tooth, as parts of the face width.
+_UP, _ACROSS = (1.0,), (0.0, 1.0)
+#: X and Y so far off the path are wrong wherever the flank is. [mm]
+_FAR_ASIDE = 0.05
+
+
+@dataclass(frozen=True)
+class WatchedFlank:
+    """Lines on one flank of space 0: points and outward normals (n,3), where they begin (n,) [mm], cradle rotation."""
+
+    flank: str
+    point: np.ndarray
+    normal: np.ndarray
+    start: np.ndarray
+    theta: np.ndarray
+
+
+@dataclass(frozen=True)
+class Watch:
+    """What all blocks leave: number of lines, extremes [mm] with space, flank and line of the text; ``uncut`` lines.
+
+    Where nothing is cut ``lowest`` is infinite, and ``highest`` minus infinite.
+    """
+
+    lines: int
+    lowest: float
+    lowest_at: tuple[int, str, int]
+    highest: float
+    highest_at: tuple[int, str, int]
+    uncut: int
+
+    @property
+    def worst(self) -> tuple[float, tuple[int, str, int]]:
+        """The larger extreme and where it is."""
+        return max((self.lowest, self.lowest_at), (self.highest, self.highest_at), key=lambda found: abs(found[0]))
+
+
+def watched_flanks(member: Member, runs: list[Run]) -> list[WatchedFlank]:
+    """Lines on all flanks that the tools of a program cut, as many as their blocks ask for."""
+    found = []
+    for run in runs:
+        blocks = int(np.bincount(np.cumsum(~run.cutting)[run.cutting]).max())
+        for flank in run.cut.flanks:
+            theta, point, normal = _lines(member, run, flank, blocks)
+            (other,) = (each for each in FLANKS if each != flank)
+            opposite = flank_points(member, other, blank_grid(member, 5, 9)).point
+            start = -0.5 * thickness(point, opposite, member.teeth)
+            found.append(WatchedFlank(flank, point, normal, start, theta))
+    return found
+
+
+def _lines(member: Member, run: Run, flank: str, blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    if member.generation == "formate":
+        points = flank_points(member, flank, blank_grid(member, 5, 17, 0.0))
+        return points.contact[:, 2], points.point, points.normal
+    shared = on_one_machine(member, run.cut)
+    first, last = roll_range(shared, run.cut)
+    wanted = np.arange(first, last, (last - first) / (_PER_BLOCK * blocks))
+    curves = [flank_curve(shared, flank, up=up) for up in _UP]
+    curves += [flank_curve(shared, flank, across=across) for across in _ACROSS]
+    chosen = []
+    for theta, lines in (*curves, *foot_curves(shared, flank)):
+        here = wanted[(wanted > theta.min()) & (wanted < theta.max())]
+        at = np.unique(np.r_[0, np.searchsorted(theta, here), len(theta) - 1])
+        chosen.append(np.column_stack([theta[at], lines[at, :6]]))
+    together = np.concatenate(chosen)
+    return together[:, 0], together[:, 1:4], together[:, 4:7]
+
+
+def watch(
+    runs: list[Run], member: Member, machine: MillingMachine, errors: SimulatedMachine | None = None,
+    progress: Callable[[int], object] = lambda _: None,
+    groups: Mapping[int, list[int]] | None = None,
+) -> Watch:  # fmt: skip
+    """What the passes of every space leave on the flanks of that space, the ``runs`` with rounded blades.
+
+    The flanks are those that the settings cut, indexed as they are corrected, whatever they are corrected for.
+
+    Rapid blocks that end as low as the tool cuts take metal away like the others, in every space.
+
+    ``progress`` is called for every space exposed. ``groups`` are spaces known to be cut alike, by the one that is
+    exposed for all of them; where rapid motion takes metal away, it is every space.
+    """
+    flanks = watched_flanks(member, runs)
+    numbers = np.concatenate([run.line for run in runs])
+    rows: list[tuple[float, float, int, int, int, str, int]] = []
+    turns = tooth_angles(member.teeth, member.index_correction)
+    every = {space: [space] for space in sorted({number for run in runs for number in run.spaces})}
+    exposed = every if groups is None or any(_rapid_in_metal(run).any() for run in runs) else groups
+    for space, like in exposed.items():
+        own = [replace(run, cutting=(run.cutting & (run.space == space)) | _rapid_in_metal(run)) for run in runs]
+        angle = turns[space]
+        for one in flanks:
+            lines = (turned(one.point, angle), turned(one.normal, angle), one.start)
+            left = expose(own, machine, errors, *lines)
+            met = np.isfinite(left.distance)
+            low = int(np.argmin(np.where(met, left.distance, np.inf)))
+            high = int(np.argmax(np.where(met, left.distance, -np.inf)))
+            rows.append((
+                float(left.distance[low]) if met.any() else np.inf,
+                float(left.distance[high]) if met.any() else -np.inf, int(numbers[left.block[low]]),
+                int(numbers[left.block[high]]), int((~met).sum()) * len(like), one.flank, space,
+            ))  # fmt: skip
+        progress(1)
+    deep, full = min(rows, key=lambda row: row[0]), max(rows, key=lambda row: row[1])
+    return Watch(
+        lines=len(every) * sum(len(one.point) for one in flanks),
+        lowest=deep[0], lowest_at=(deep[6], deep[5], deep[2]), highest=full[1], highest_at=(full[6], full[5], full[3]),
+        uncut=sum(row[4] for row in rows),
+    )  # fmt: skip
+
+
+def _rapid_in_metal(run: Run) -> np.ndarray:
+    """Rapid blocks (n,) that end no higher than the tool cuts: a right program has none."""
+    return ~run.cutting & (run.axes[:, 2] <= run.axes[run.cutting, 2].max(initial=-np.inf))
+
+
+def off_the_way(
+    runs: list[Run], member: Member, machine: MillingMachine,
+    flanks: list[WatchedFlank] | None = None,
+) -> tuple[float, tuple[int, str, int]]:  # fmt: skip
+    """The largest distance [mm] along a flank normal between the tool at the end of a block and where it belongs.
+
+    With it come space, flank and line of the text. The cradle rotation of an end is that whose X and Y are nearest;
+    the tool is compared there on the watched lines that it touches at that moment. That counts even where other blocks
+    take away what this one leaves. Only for generated flanks, and for programs that leave no stock. ``flanks`` are the
+    watched lines, if they are known.
+    """
+    flanks = watched_flanks(member, runs) if flanks is None else flanks
+    worst = 0.0, (0, "", 0)
+    for run in runs:
+        for flank in run.cut.flanks:
+            (lines,) = (one for one in flanks if one.flank == flank)
+            distance = distances_off_the_way(run, lines, member, machine)
+            row = int(np.argmax(distance))
+            if distance[row] > worst[0]:
+                worst = float(distance[row]), (int(run.space[row]), flank, int(run.line[row]))
+    return worst
+
+
+def in_space_0(run: Run, member: Member) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (m,) of a run that cut in a space, and their positions (m,5) as they are in space 0."""
+    rows = np.flatnonzero(run.cutting & (run.space >= 0))
+    axes = run.axes[rows].copy()
+    axes[:, 3] -= tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+    return rows, axes
+
+
+def distances_off_the_way(run: Run, lines: WatchedFlank, member: Member, machine: MillingMachine) -> np.ndarray:
+    """How far the tool is off its path (n,) [mm] on one flank at every row of a run.
+
+    Where it touches no line, as where it plunges, that is how far its X and Y are off the path.
+    """
+    spec, off = member.flank(run.cut.flanks[0]), np.zeros(len(run.axes))
+    rows, axes = in_space_0(run, member)
+    theta, aside = roll_position()(spec.vector, axes[:, 0], axes[:, 1], machine.pivot, motion_of(spec))
+    steps = np.diff(theta)
+    node, line = np.nonzero(np.abs(theta[:, None] - lines.theta) <= np.median(steps[steps > 0]) / 2)
+    touches = np.isin(np.arange(len(rows)), node)
+    off[rows] = np.where((aside > _FAR_ASIDE) | ~touches, aside, 0.0)
+    meant = axis_positions(spec, theta, machine.pivot_height, machine.pivot)
+    body = run.cutter.bodies[-1]
+    entry, found = annulus_entry(), []
+    for where in (axes, meant):
+        center, axis = kernel("tool_pose")(where, machine.pivot_height, machine.pivot)
+        raised = center - body.base * axis
+        given = (lines.point[line], lines.normal[line], lines.start[line])
+        found.append(entry(raised[node], axis[node], *given, body.annulus)[0])
+    np.maximum.at(off, rows[node], np.minimum(np.abs(found[0] - found[1]), REACH))
+    return off

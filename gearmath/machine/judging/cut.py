@@ -1,0 +1,176 @@
+"""What a program leaves of the metal, judged: blocks off the path, spaces left out, stock and gouges everywhere."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.method import motion_of
+from gearmath.bevel.tooth import ToothSpace
+from gearmath.machine.judging.alike import alike
+from gearmath.machine.judging.block_check import Watch, watch
+from gearmath.machine.judging.faults import Fault
+from gearmath.machine.judging.stated import Stated
+from gearmath.machine.milling.axis_errors import roll_position
+from gearmath.machine.milling.run import Run
+from gearmath.machine.milling.surfaces import DEFAULT_COLUMNS, surface_states
+from gearmath.machine.milling.surfaces import DEFAULT_TOLERANCE as REPORTED
+from gearmath.machine.planning.hobbing import index_ratio, spindle_phase
+from gearmath.machine.planning.passes import tooth_angles
+from gearmath.machine.planning.path import Cut, axis_positions
+from gearmath.machine.planning.rounding import FROM_AXIS, FROM_CUTTER
+from gearmath.specs.bevel_set import FLANKS, Member
+from gearmath.specs.milling_machine import MillingMachine
+
+
+def allowed(stated: Stated) -> float:
+    """How far flanks may deviate [mm]: as the program states, or where it states nothing as a report counts it."""
+    return REPORTED if stated.tolerance is None else stated.tolerance
+
+
+def missing(stated: Stated, runs: list[Run], member: Member, name: str) -> Iterator[Fault]:
+    """Spaces that the program says it cuts and does not, with any of the tools of the member; all if it says none."""
+    wanted = set(stated.spaces or range(member.teeth))
+    cut = {run.cut.tool: set(run.spaces) for run in runs}
+    for one in Cut.of(member, name):
+        lacking, more = sorted(wanted - cut.get(one.tool, set())), sorted(cut.get(one.tool, set()) - wanted)
+        if lacking:
+            yield Fault(f"space {lacking[0]} is not cut with {one.tool}, {len(lacking)} of {len(wanted)} are not")
+        if more:
+            yield Fault(f"space {more[0]} is cut with {one.tool}, and should not be")
+
+
+def beside_the_path(runs: list[Run], member: Member, machine: MillingMachine, stated: Stated) -> Iterator[Fault]:
+    """Feed blocks that end where the settings have no position: X Y A B beside their path, or Z below it, or above.
+
+    Above it only where it rolls, between the first and the last block of a pass, by its median: a stock raises all of
+    it.
+    """
+    half = machine.control.half_increments
+    rounding = math.sqrt(3) * half[0] + (2 * FROM_AXIS + FROM_CUTTER) * half[3]
+    limit = max(allowed(stated), 2.0 * rounding)
+    for run in runs:
+        rows, off = off_the_path(run, member, machine)
+        aside = np.abs(off * np.array([1.0, 1.0, 0.0, 1.0, 1.0])).sum(axis=1)
+        below = np.maximum(-off[:, 2], 0.0)
+        number = np.cumsum(~run.cutting)[rows]
+        rolls = np.append(False, np.diff(run.axes[:, :2], axis=0).any(axis=1)) & run.cutting
+        inner = rolls[rows] & np.append(run.cutting[1:], False)[rows] & run.cutting[rows - 1]
+        above = np.zeros(len(rows))
+        if member.generation == "generated":
+            for one in np.unique(number[inner]):
+                own = inner & (number == one)
+                above[own] = np.abs(off[own, 2] - np.median(off[own, 2]))
+        aside = np.maximum(np.hypot(aside, below), above)
+        for k in np.flatnonzero(aside > limit):
+            yield Fault(f"ends {aside[k]:.6f} mm beside the path of these settings", int(run.line[rows[k]]), "beside")
+
+
+def off_the_path(run: Run, member: Member, machine: MillingMachine) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (m,) of a run that cut, and how far X Y Z A B are off the path (m,5), rotations in mm at the flank.
+
+    The cradle rotation is that whose X and Y are nearest. In face hobbing A belongs to C besides, and goes on with it.
+    """
+    spec = member.flank(run.cut.flanks[0])
+    reach = float(member.blank.mean_cone_distance + member.blank.face_width / 2)
+    rows = np.flatnonzero(run.cutting & ((run.space >= 0) | (run.blades is not None)))
+    axes = run.axes[rows].copy()
+    if run.blades is None:
+        axes[:, 3] -= tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+    theta = np.zeros(len(rows))
+    if member.generation == "generated":
+        theta, _ = roll_position()(spec.vector, axes[:, 0], axes[:, 1], machine.pivot, motion_of(spec))
+    off = axes - axis_positions(spec, theta, machine.pivot_height, machine.pivot)
+    period = 2 * math.pi
+    if run.blades is not None:
+        off[:, 3] += index_ratio(member) * (run.turned[rows] - spindle_phase(spec, theta))
+        period /= member.teeth
+    off[:, 3] -= period * np.round((off[:1, 3] if run.blades is not None else off[:, 3]) / period)
+    off[:, 3:] *= reach
+    return rows, off
+
+
+@dataclass(frozen=True)
+class MetalLeft:
+    """What is left on the flanks, and the spaces that stand for all of them."""
+
+    watch: Watch
+    faults: tuple[Fault, ...]
+
+
+def metal_left(
+    runs: list[Run], member: Member, name: str, machine: MillingMachine, stated: Stated, space: ToothSpace,
+    progress: Callable[[int], object] = lambda _: None,
+) -> MetalLeft:  # fmt: skip
+    """Stock and gouges that a face milling program leaves on flanks, fillets and root, the work of its settings.
+
+    Spaces that are cut alike are exposed once. ``runs`` are those of a machine without errors, with sharp blades;
+    ``space`` is the space that the settings cut. ``progress`` is called for every space exposed.
+    """
+    groups = alike(runs, member, machine)
+    found = watch(runs, member, machine, None, progress, groups)
+    tolerance, stock = allowed(stated), stated.stock
+    flattest = min(member.flank(flank).blade_pressure_angle for run in runs for flank in run.cut.flanks)
+    # the cutter is withdrawn by this along its axis, and leaves as much at the foot of the flanks
+    most = stock / math.sin(math.radians(flattest))
+    faults = []
+    says = "the program states" if stated.tolerance is not None else "allowed are"
+    for value, (number, flank, line), wrong in (
+        (found.lowest, found.lowest_at, found.lowest < stock - tolerance),
+        (found.highest, found.highest_at, found.highest > most + tolerance),
+    ):
+        if wrong:
+            faults.append(Fault(
+                f"of the program (space {number}, {flank} flank) leaves {value * 1000:+.3f} um, {says} "
+                + (f"{stock * 1000:g} um of stock within " if stock else "") + f"{tolerance * 1000:g} um", line,
+                "leaves",
+            ))  # fmt: skip
+    if found.uncut:
+        faults.append(Fault(f"{found.uncut} of {found.lines} normals on the flanks are not cut at all"))
+    states = surface_states(
+        None, member, name, machine, None, _exposed(groups, member), tolerance + REPORTED, DEFAULT_COLUMNS, runs,
+        progress, space,
+    )  # fmt: skip
+    deepest = min(states, key=lambda state: state.lowest)
+    least, greatest = stock - tolerance - REPORTED, tolerance + REPORTED
+    if deepest.lowest < least:
+        what = f"gouges the {deepest.surface} of space {deepest.space}: {deepest.lowest * 1000:+.3f} um, "
+        faults.append(Fault(f"{what}the limit is {least * 1000:+g} um", deepest.line, "gouge"))
+    fullest = max(states, key=lambda state: state.highest)
+    if stock == 0.0 and fullest.highest > greatest:
+        faults.append(Fault(
+            f"the {fullest.surface} of space {fullest.space} keeps {fullest.highest * 1000:+.3f} um, "
+            f"the limit is {greatest * 1000:+g} um"
+        ))  # fmt: skip
+    uncut = sum(state.unmet for state in states)
+    if uncut and not found.uncut:
+        faults.append(Fault(f"{uncut} points of fillets and roots are not cut at all"))
+    return MetalLeft(found, tuple(faults))
+
+
+def _exposed(groups: dict[int, list[int]], member: Member) -> list[int]:
+    """Spaces to look at: one of each kind, and those beside every space that is unlike most."""
+    most = max(groups.values(), key=len, default=[])
+    known = {space for group in groups.values() for space in group}
+    chosen = set(groups)
+    for space in known - set(most):
+        chosen |= {(space + off) % member.teeth for off in (-1, 0, 1)} & known
+    return sorted(chosen)
+
+
+def hobbed(deviation: float, stated: Stated) -> Iterator[Fault]:
+    """What the largest deviation [mm] of hobbed flanks from those of their settings says."""
+    if not deviation <= stated.stock + allowed(stated):
+        yield Fault(
+            f"the flanks deviate by up to {deviation * 1000:.3f} um, the program states {allowed(stated) * 1000:g} um"
+        )
+
+
+def as_cut(member: Member) -> Member:
+    """The member that its settings make, whatever it was corrected from."""
+    return member.model_copy(
+        update={flank: member.flank(flank).model_copy(update={"design": None}) for flank in FLANKS}
+    )

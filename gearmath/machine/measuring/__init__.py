@@ -1,0 +1,1 @@
+"""The simulated machine with its probe: programs run, touches made."""

@@ -1,0 +1,77 @@
+"""A probing or calibration program run on the machine model: the touches that it writes, as the control would."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from gearmath.errors import ComputationError, InputError
+from gearmath.machine.control.executor import AS_WRITTEN, run_program
+from gearmath.machine.control.state import Probe, Setup
+from gearmath.machine.measuring.collision_check import enough_steps, is_touch
+from gearmath.machine.measuring.probe_errors import ErringProbe
+from gearmath.specs.simulated_machine import SimulatedMachine
+from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
+
+#: R102 counts the runs of a program.
+_RUN_PARAMETER = 102
+
+
+def touches_artefacts(text: str) -> bool:
+    """Whether a program writes touches on ring and spheres, and not on a member."""
+    return ",".join(CALIBRATION_COLUMNS) in text
+
+
+def touch_count(text: str, program: str, setup: Setup = AS_WRITTEN) -> int:
+    """How many touches a probing program makes, where every one of them triggers."""
+    count = 0
+
+    def trigger(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+        nonlocal count
+        if not is_touch(start, end):
+            return None
+        count += 1
+        return end
+
+    run_program(text, program, trigger, step_limit=enough_steps(text), setup=setup)
+    return count
+
+
+def run_touches(
+    text: str, program: str, probe: Probe, shop: SimulatedMachine | None = None, touches: int | None = None,
+    run: int = 1, progress: Callable[[int], object] = lambda blocks: None, setup: Setup = AS_WRITTEN,
+) -> str:  # fmt: skip
+    """What a program writes into its file of touches, moving ``probe``, with the errors of a shop.
+
+    ``touches`` is how many the run has, over which the work drifts evenly; ``run`` is the number that the program
+    gives to its run, and each has its own noise. ``progress`` hears of every MEAS block. Raises InputError with line
+    and column for a text that cannot be run or that writes no touches, ComputationError where it sets an alarm.
+    """
+    erring = None if shop is None else ErringProbe(probe, shop, touches, run)
+
+    def moved(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+        progress(1)
+        return probe(start, end) if erring is None else erring(start, end)
+
+    done = run_program(
+        text, program, moved, parameters={_RUN_PARAMETER: run - 1}, step_limit=enough_steps(text), setup=setup,
+        moved=erring.follow if erring is not None else lambda position: None,
+    )  # fmt: skip
+    if done.alarm is not None:
+        number, line = done.alarm
+        why = f" ({done.messages[-1]})" if done.messages else ""
+        raise ComputationError(
+            f"{program}, line {line}: the run ends with alarm {number}{why}, after "
+            f"{sum(len(_touches(lines)) for lines in done.files.values())} touches; nothing is written"
+        )
+    written = [lines for lines in done.files.values() if _touches(lines)]
+    if len(written) != 1:
+        raise InputError(f"{program}: writes {len(written)} files of touches, must write one: is it a probing program?")
+    return written[0]
+
+
+def _touches(text: str) -> list[str]:
+    """The touches in the text of a file; none where its first line is not the column line of touches."""
+    head, *lines = [line for line in text.splitlines() if not line.startswith("#")] or [""]
+    return lines if head in (",".join(COLUMNS), ",".join(CALIBRATION_COLUMNS)) else []

@@ -1,0 +1,1 @@
+"""Virtual milling: what the cutter leaves of the metal."""

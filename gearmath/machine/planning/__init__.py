@@ -1,0 +1,1 @@
+"""What is to be done: paths, blocks, passes, touches; no words of a control."""

@@ -1,0 +1,288 @@
+"""G1 blocks for a pass: as few as the flank allows.
+
+G1 moves all axes linearly from node to node, and the nodes lie on the exact path. Between them the cutter leaves it.
+What counts is what that does to the flank, measured along the tooth normal: at every flank point, the distance at
+which the normal enters the swept blade has one smallest value within the block, and that value is the deviation which
+the block leaves there. A part of a block deviates less than the block, so that the longest feasible block, again and
+again, gives the fewest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+import casadi as ca
+import numpy as np
+
+from derivations import Quantity, notation
+from gearmath.bevel.flank import Grid
+from gearmath.bevel.method import blade_sections
+from gearmath.engine.kernel import Kernel
+from gearmath.errors import InputError
+from gearmath.kernels import kernel
+from gearmath.machine.planning.path import (
+    DEFAULT_TOLERANCE,
+    Cut,
+    axis_positions,
+    below_the_flank,
+    flank_points,
+    roll_range,
+)
+from gearmath.specs.bevel_set import MACHINE_SETTINGS, SIDES, Flank, Member
+
+#: What five printed decimals of X Y Z [mm] and six of A B [deg], at 100 mm from either axis, may do to the flank.
+ROUNDING = 0.5e-5 * math.sqrt(3) + 2 * math.radians(0.5e-6) * 100.0
+#: Tolerances that can be asked for. [mm]
+TOLERANCES = (2e-5, 0.1)
+_COLUMNS = 801
+#: The points go beyond the flank by this part of it: a machine that is off its settings cuts the flank's edges at
+#: other cradle rotations, and must not find a long block of the overrun there.
+_BEYOND = 0.02
+_UP, _ACROSS = (0.25, 0.5, 0.75, 1.0, 1 + _BEYOND), (-_BEYOND, 0.0, 1.0, 1 + _BEYOND)
+#: At toe and heel they go this part of the working depth below it, as far as the blade reaches.
+_DEEP = 0.3
+#: Where along a block each row of flank points is looked at: its middle, where most is left, among them.
+_FRACTIONS = np.array([-0.3, -0.07, *np.linspace(0.0, 1.0, 9), 1.07, 1.3])
+#: Blocks from this roll on [rad] are compared with one in so many points of the flanks, at these parts of the block.
+_LONG, _SOME, _INNER = math.radians(0.7), 15, np.linspace(0.1, 0.9, 9)
+#: A point that the exact path comes this near to, or nearer, is still one of the flank. [mm]
+_UNTOUCHED = 1e-5
+#: So many of the lowest and of the highest points of a block are looked at twice.
+_REFINED = 40
+#: What is looked at may be less than what lies between by this factor.
+_BETWEEN = 0.975
+#: A block is long enough when it uses this part of the tolerance; no block rolls further than this [rad].
+_USED, _LONGEST = 0.96, math.radians(3.0)
+#: Nearer to the end of the blade than this [mm] a point belongs to the fillet.
+_TIP = 0.05
+
+
+@cache
+def entry_within_block() -> Kernel:
+    """Kernel: distance of entry at a fraction of a block, with its first and second derivative by the fraction."""
+    first, last = (
+        Quantity(name, text, "mixed", name, shape=(5,), components=notation.axes.components)
+        for name, text in (("axes_first", "axis positions at the start of the block"), ("axes_last", "at its end"))
+    )
+    fraction = Quantity("fraction", "0 at the start of the block, 1 at its end", "1", "s", (0.0, 1.0))
+    slope = Quantity("slope", "derivative of the distance by the fraction", "mm", "t'")
+    curvature = Quantity("curvature", "second derivative of the distance by the fraction", "mm", "t''")
+    rest = kernel("line_entry").inputs[1:]
+    a, b, s, *others = (ca.SX.sym(q.name, max(q.size, 1)) for q in (first, last, fraction, *rest))
+    distance = kernel("line_entry").function(a + s * (b - a), *others)
+    second, gradient = ca.hessian(distance, s)
+    function = ca.Function(
+        "entry_within_block", [a, b, s, *others], [distance, gradient, second],
+        ["axes_first", "axes_last", "fraction", *(q.name for q in rest)], ["line_distance", "slope", "curvature"],
+    )  # fmt: skip
+    return Kernel(
+        function, "Entry of a line into the swept blade along a straight block.", (first, last, fraction, *rest),
+        (notation.line_distance, slope, curvature), "line_entry (6.4) along a G1 block",
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Pass:
+    """The exact path of one pass, and rows of flank points that it generates.
+
+    ``theta`` holds the cradle rotations of all rows, one behind the other and rising within each; ``rows`` holds where
+    each begins, and the rotations halfway between its points. ``lines`` has the same order: point, normal, point
+    radius, pressure angle and side of the blade (or of the straight blade that touches an arc blade there).
+    """
+
+    flank: Flank
+    pivot_height: float
+    pivot_offset: np.ndarray
+    theta: np.ndarray
+    lines: np.ndarray
+    rows: tuple[tuple[int, np.ndarray], ...]
+
+    @staticmethod
+    def of(member: Member, cut: Cut, pivot_height: float, pivot_offset: np.ndarray) -> Pass:
+        """Points over the whole flanks of a pass, down to the root."""
+        found = [row for flank in cut.flanks for row in (*_rows(member, flank), *foot_curves(member, flank))]
+        theta, lines = [at for at, _ in found], [row for _, row in found]
+        begin = np.cumsum([0, *(len(at) for at in theta)]).tolist()
+        rows = tuple((k, (at[1:] + at[:-1]) / 2) for k, at in zip(begin, theta, strict=False) if len(at))
+        spec = member.flank(cut.flanks[0])
+        return Pass(spec, pivot_height, pivot_offset, np.concatenate(theta), np.concatenate(lines), rows)
+
+    def deviation(self, start: float, end: float) -> float:
+        """The largest deviation [mm] that a block leaves: on points within its roll, and as gouges beside it."""
+        wanted = start + _FRACTIONS * (end - start)
+        chosen = np.concatenate([first + np.searchsorted(halfway, wanted) for first, halfway in self.rows])
+        left = self._smallest(start, end, chosen)
+        # what the exact path takes away at an end of the block, beyond the ends of the flank, is not the block's doing
+        low = np.flatnonzero(left < -_UNTOUCHED)
+        ends = axis_positions(self.flank, np.array([start, end]), self.pivot_height, self.pivot_offset)
+        left[low[self._at(ends, chosen[low]).min(axis=1) < -_UNTOUCHED]] = 0.0
+        inside = (self.theta[chosen] >= start) & (self.theta[chosen] <= end)
+        lowest = float(left.min()) if end - start < _LONG else min(float(left.min()), self._elsewhere(start, end))
+        return max(-lowest, float(left[inside].max(initial=0.0)))
+
+    def _elsewhere(self, start: float, end: float) -> float:
+        """Smallest distance [mm] that a long block has from points all over the flanks, its ends left out.
+
+        The tool may come near to a point twice, and Newton's steps from its contact see one of these times. Points that
+        the exact path takes away there, beyond the ends of the flank, do not count.
+        """
+        last = [*(first for first, _ in self.rows[1:]), len(self.theta)]
+        some = np.union1d(np.arange(0, len(self.theta), _SOME), np.array(last) - 1)
+        theta = np.concatenate([[start], start + _INNER * (end - start), [end]])
+        exact = axis_positions(self.flank, theta, self.pivot_height, self.pivot_offset)
+        straight = exact[0] + _INNER[:, None] * (exact[-1] - exact[0])
+        block, path = (self._at(axes, some) for axes in (straight, exact[1:-1]))
+        kept = path.min(axis=1) > -_UNTOUCHED
+        return float(block[kept].min(initial=math.inf))
+
+    def _at(self, axes: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+        """Distances (n, k) of entry of n points at k positions of the axes."""
+        lines = np.repeat(self.lines[chosen], len(axes), axis=0)
+        points, normals, radius, angle, side = np.split(lines, [3, 6, 7, 8], axis=1)
+        (distance,) = kernel("line_entry")(
+            np.tile(axes, (len(chosen), 1)), self.pivot_height, points, normals, radius[:, 0], angle[:, 0], side[:, 0],
+            self.pivot_offset,
+        )  # fmt: skip
+        return distance.reshape(len(chosen), len(axes))
+
+    def _smallest(self, start: float, end: float, chosen: np.ndarray) -> np.ndarray:
+        """Smallest distance of entry (n,) within a block: Newton from the contact on the exact path.
+
+        What is left of the slope after a step is taken off as if the curvature held: t - t'²/(2 t''). The second step
+        is made only where the first one shows the extremes, until these are among what was looked at twice.
+        """
+        ends = axis_positions(self.flank, np.array([start, end]), self.pivot_height, self.pivot_offset)
+        s = np.clip((self.theta[chosen] - start) / (end - start), 0.0, 1.0)
+        at_contact, smallest, change = self._step(ends, s, chosen)
+        once = np.ones(len(chosen), dtype=bool)
+        while once[(order := np.argsort(smallest))[[0, -1]]].any():
+            again = np.union1d(order[:_REFINED], order[-_REFINED:])
+            again = again[once[again]]
+            there, found, _ = self._step(ends, (s + change)[again], chosen[again])
+            # a line at the foot of the flank that has left the blade by its tip tells nothing of the flank any more
+            smallest[again] = np.where(there <= at_contact[again], found, at_contact[again])
+            once[again] = False
+        return smallest
+
+    def _step(self, ends: np.ndarray, s: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Distance (n,) at fractions ``s`` (n,) of the block, the smallest as seen from there, the way there."""
+        points, normals, radius, angle, side = np.split(self.lines[chosen], [3, 6, 7, 8], axis=1)
+        distance, slope, curvature = entry_within_block()(
+            ends[0], ends[1], s, self.pivot_height, points, normals, radius[:, 0], angle[:, 0], side[:, 0],
+            self.pivot_offset,
+        )  # fmt: skip
+        curved = np.where(curvature > 0, curvature, math.inf)
+        change = np.clip(s - slope / curved, 0.0, 1.0) - s
+        return distance, np.minimum(distance, distance + (slope + curvature * change / 2) * change), change
+
+
+def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    for grid in _curves(member):
+        yield flank_row(member, flank, grid)
+
+
+def flank_curve(
+    member: Member, flank: str, up: float | None = None, across: float | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``."""
+    share = np.linspace(0.0, 1.0, _COLUMNS)
+    place = (share if across is None else np.full(_COLUMNS, across), share if up is None else np.full(_COLUMNS, up))
+    axial, radial = kernel("flank_place")(member.blank.vector, *place)
+    return flank_row(member, flank, Grid(axial[None], radial[None]))
+
+
+def foot_curves(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """The same for the lower ends of the flank, along the tooth. What the edge cuts lies between flank and root."""
+    for part, points, blade in below_the_flank(member, flank, np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS // 2)):
+        if part == "edge":
+            return
+        kept = np.flatnonzero(points.converged)
+        order = kept[np.argsort(points.contact[kept, 2], kind="stable")]
+        side = np.full((len(order), 1), float(SIDES[flank]))
+        yield points.contact[order, 2], np.hstack([points.point[order], points.normal[order], blade[order], side])
+
+
+def _curves(member: Member) -> Iterator[Grid]:
+    """Lines on the flank that every line of contact crosses at its ends and between: along the tooth, toe, heel."""
+    everywhere = np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS)
+    depth = np.linspace(-_DEEP, 1 + _BEYOND, _COLUMNS)
+    along = [(everywhere, np.full(_COLUMNS, up)) for up in _UP]
+    ends = [(np.full(_COLUMNS, across), depth) for across in _ACROSS]
+    for across, up in (*along, *ends):
+        axial, radial = kernel("flank_place")(member.blank.vector, across, up)
+        yield Grid(axial[None], radial[None])
+
+
+def flank_row(member: Member, flank: str, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """Cradle rotations (n,), rising, and lines (n,9) of the points of one row that lie on the blade."""
+    spec, side = member.flank(flank), SIDES[flank]
+    section = blade_sections(spec.model_copy(update={"design": None}), side)["main"]
+    points = flank_points(member, flank, grid)
+    u = points.contact[:, 0]
+    if section.arc is None:
+        on_blade = (u > section.lower + _TIP) & (u < section.upper)
+        blade = np.broadcast_to([spec.blade_point_radius, math.radians(spec.blade_pressure_angle)], (len(u), 2))
+    else:
+        on_blade = (u > section.lower) & (u < section.upper)
+        blade = np.column_stack(kernel("touching_blade")(u, np.array(section.arc), side))
+    lines = np.hstack([points.point, points.normal, blade, np.full((len(u), 1), float(side))])
+    order = np.flatnonzero(on_blade)[np.argsort(points.contact[on_blade, 2], kind="stable")]
+    return points.contact[order, 2], lines[order]
+
+
+def roll_nodes(
+    member: Member, cut: Cut, tolerance: float = DEFAULT_TOLERANCE, pivot_height: float = 0.0,
+    pivot_offset: np.ndarray | None = None, rounding: float = ROUNDING,
+) -> np.ndarray:  # fmt: skip
+    """Cradle rotations (n,) [rad] of the block ends: the fewest blocks that keep the flanks within the tolerance [mm].
+
+    Of that, ``rounding`` [mm] is left for the increments of the control, but never more than half.
+    Raises InputError for a tolerance out of range.
+    """
+    low, high = TOLERANCES
+    if not low <= tolerance <= high:
+        raise InputError(
+            f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "
+            f"decimals alone may take {ROUNDING * 1000:.3f} um"
+        )
+    member = on_one_machine(member, cut)
+    start, end = roll_range(member, cut)
+    exact = Pass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)
+    budget = _BETWEEN * (tolerance - min(rounding, tolerance / 2))
+    nodes, width = [start], _LONGEST / 10
+    while nodes[-1] < end:
+        width = _longest(exact, nodes[-1], width, budget)
+        nodes.append(min(nodes[-1] + width, end))
+    return np.array(nodes)
+
+
+def on_one_machine(member: Member, cut: Cut) -> Member:
+    """The member with all flanks of a pass at the machine settings of its first, which are what the pass runs at."""
+    first = member.flank(cut.flanks[0])
+    shared = {name: getattr(first, name) for name in MACHINE_SETTINGS}
+    return member.model_copy(update={name: member.flank(name).model_copy(update=shared) for name in cut.flanks})
+
+
+def _longest(exact: Pass, start: float, guess: float, budget: float) -> float:
+    """Roll [rad] of the longest block from ``start``: deviations grow with the square of the block, then bisection."""
+    feasible, infeasible, width = 0.0, math.inf, min(guess, _LONGEST)
+    for _ in range(40):
+        used = exact.deviation(start, start + width) / budget
+        if used <= 1.0:
+            feasible = width
+            if used >= _USED or width >= _LONGEST or infeasible - width < 1e-3 * width:
+                break
+        else:
+            infeasible = width
+        wanted = width * math.sqrt((1 + _USED) / 2 / max(used, 0.05))
+        if not feasible < wanted < infeasible:
+            wanted = (feasible + infeasible) / 2
+        width = min(wanted, _LONGEST)
+    if feasible == 0.0:
+        raise InputError(
+            f"at cradle angle {math.degrees(start):.3f} deg no block keeps the flank within {budget * 1000:g} um"
+        )
+    return feasible

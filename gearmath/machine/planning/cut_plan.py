@@ -1,0 +1,226 @@
+"""All passes of a cutting job on a member, planned: tool by tool, roughing before finishing, space by space.
+
+A stock is left by withdrawing the cutter along its own axis, which is Z: a cone that moves along its axis by d stands
+parallel to itself at d sin(pressure angle), so that the flanks keep the same stock everywhere, and the root d. Where
+one cutter has two pressure angles, the smaller one sets d, and the other flank keeps somewhat more.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.tooth import ToothSpace, tooth_space
+from gearmath.errors import InputError
+from gearmath.machine.bodies.cutter import cutter_of
+from gearmath.machine.bodies.profiles import widest
+from gearmath.machine.planning.blocks import TOLERANCES, roll_nodes
+from gearmath.machine.planning.clear_space import Room, room_of
+from gearmath.machine.planning.feeds import block_seconds
+from gearmath.machine.planning.hobbing import hobbing_pass
+from gearmath.machine.planning.passes import Pass, tooth_angles
+from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
+from gearmath.machine.planning.rounding import ControlShare, control_share
+from gearmath.specs.bevel_set import BevelSet, Member
+from gearmath.specs.milling_machine import MillingMachine
+
+#: Speed of the cutter past the tooth while it generates. [mm/min]
+DEFAULT_FEED = 300.0
+DEFAULT_SPINDLE_RPM = 120.0
+#: Speed of Z on the way to the work, and into it. [mm/min]
+PLUNGE_FEED = 200.0
+#: A dry run keeps the cutter this far above its cut. [mm]
+DRY_LIFT = 60.0
+_MOST_STOCK = 5.0
+#: A roughing pass may deviate by this part of its stock.
+_ROUGH_SHARE = 0.05
+#: A plunge starts this many tooth depths above the bottom, and a bit [mm]; at the bottom the cutter turns this often.
+_PLUNGE_DEPTHS, _PLUNGE_MARGIN, _SPARK_OUT_TURNS = 2.0, 5.0, 1.5
+#: Turning, in face hobbing, it starts nearer: it goes down slowly.
+_HOBBING_DEPTHS = 1.5
+
+
+@dataclass(frozen=True)
+class Job:
+    """What a program does: tooth spaces, tolerance and stocks [mm] along the tooth normal, feed [mm/min] at the tooth.
+
+    ``roughing_stock`` above ``finishing_stock`` adds a roughing pass of all spaces before the finishing one;
+    ``finishing_stock`` is what stays on the finished flanks. A dry run cuts air above the work, without coolant.
+    """
+
+    spaces: Sequence[int] = (0,)
+    tolerance: float = DEFAULT_TOLERANCE
+    feed: float = DEFAULT_FEED
+    spindle_rpm: float = DEFAULT_SPINDLE_RPM
+    roughing_stock: float = 0.0
+    finishing_stock: float = 0.0
+    dry_run: bool = False
+
+    def __post_init__(self) -> None:
+        for key in ("roughing_stock", "finishing_stock"):
+            if not 0.0 <= getattr(self, key) <= _MOST_STOCK:
+                raise InputError(f"{key} = {getattr(self, key)} mm: must lie between 0 and {_MOST_STOCK:g} mm")
+        if 0.0 < self.roughing_stock <= self.finishing_stock:
+            raise InputError(
+                f"roughing_stock = {self.roughing_stock} mm: must be more than the finishing_stock "
+                f"{self.finishing_stock} mm, or 0 for no roughing"
+            )
+        if not len(self.spaces):
+            raise InputError("spaces: there is no tooth space to cut")
+
+    @property
+    def stages(self) -> tuple[tuple[str, float, float], ...]:
+        """Name, stock and tolerance [mm] of each turn through all spaces."""
+        finish = ("finish", self.finishing_stock, self.tolerance)
+        if self.roughing_stock == 0.0:
+            return (finish,)
+        coarse = min(max(self.tolerance, _ROUGH_SHARE * self.roughing_stock), TOLERANCES[1])
+        return ("rough", self.roughing_stock, coarse), finish
+
+
+ONE_SPACE = Job()
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A job on one member, planned: all that its program and its set-up sheet say.
+
+    ``tool_radius`` [mm] is the widest of cutter, head and spindle, ``space`` the tooth space where each flank has a
+    cutter of its own.
+    """
+
+    title: str
+    name: str
+    member: Member
+    machine: MillingMachine
+    job: Job
+    passes: tuple[Pass, ...]
+    share: ControlShare
+    space: ToothSpace | None
+    room: Room
+    tool_radius: float
+
+    @property
+    def seconds(self) -> float:
+        """Time in the cut [s]; approaches and rapid motion are not in it."""
+        return float(sum(one.seconds.sum() + one.dwell for one in self.passes))
+
+
+def cutting_plan(
+    bevel_set: BevelSet, name: str, machine: MillingMachine, job: Job = ONE_SPACE,
+    progress: Callable[[int], object] = lambda passes: None,
+) -> Plan:  # fmt: skip
+    """All passes of a job on one member; ``progress`` hears of those that are planned.
+
+    Raises InputError for singular poses, travel and speed limits, a tolerance out of range, and a face hobbed member
+    whose spaces are not all cut, or whose machine has no axis C.
+    """
+    member = bevel_set.member(name)
+    head, space = machine.cutter_head, None if member.cutting == "completing" else tooth_space(member, name, 7)
+    room = room_of(member, machine, machine.fixture)
+    radius = max(widest(cutter_of(member, cut.flanks, space, 0.0), head) for cut in Cut.of(member, name))
+    share = control_share(member, name, machine)
+    passes: list[Pass] = []
+    for one in _passes(member, name, machine, job, share):
+        passes.append(one)
+        progress(1)
+    return Plan(bevel_set.title, name, member, machine, job, tuple(passes), share, space, room, radius)
+
+
+def pass_count(member: Member, name: str, job: Job) -> int:
+    """How many passes the program of a job has: in face hobbing one a stage, else one a tool, stage and space."""
+    hobbed = member.process == "face_hobbing"
+    return len(job.stages) * (1 if hobbed else len(Cut.of(member, name)) * len(job.spaces))
+
+
+def _passes(member: Member, name: str, machine: MillingMachine, job: Job, share: ControlShare) -> Iterator[Pass]:
+    """All passes in their order: tool by tool, roughing before finishing, space by space."""
+    if member.process == "face_hobbing":
+        yield from _hobbing_passes(member, name, machine, job)
+        return
+    angles = tooth_angles(member.teeth, member.index_correction)
+    if not all(0 <= space < member.teeth for space in job.spaces):
+        raise InputError(f"{name}: spaces = {list(job.spaces)}: must be numbers from 0 to {member.teeth - 1}")
+    stands = None
+    for cut in Cut.of(member, name):
+        _check_motions(member, name, cut)
+        for stage, stock, tolerance in job.stages:
+            theta, first = _first_pass(member, cut, machine, replace(job, tolerance=tolerance), share)
+            first.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
+            for space in job.spaces:
+                label = f"space {space} {' and '.join(cut.flanks)}" + (f" {stage}" if len(job.stages) > 1 else "")
+                indexed = first.axes + np.array([0, 0, 0, angles[space], 0])
+                axes = within_travel(indexed, theta, machine, f"{name}, {label}", stands)
+                stands = axes[-1]
+                yield replace(first, label=label, tooth=int(space), axes=axes)
+
+
+def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job) -> Iterator[Pass]:
+    """One pass a stage, through all spaces at once."""
+    if sorted(set(job.spaces)) != list(range(member.teeth)):
+        raise InputError(
+            f"{name}: spaces = {_short(job.spaces)}: face hobbing cuts all spaces in one roll: it must be all "
+            f"{member.teeth}"
+        )
+    if any(member.index_correction):
+        raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
+    (cut,) = Cut.of(member, name)
+    _check_motions(member, name, cut)
+    tooth, lift = middle_of_tooth(member, cut), _HOBBING_DEPTHS * _depth(member)
+    for stage, stock, tolerance in job.stages:
+        one = hobbing_pass(
+            member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth
+        )  # fmt: skip
+        one.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
+        label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
+        axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
+        yield Pass(cut.tool, label, 0, axes, one.seconds, theta=one.theta)
+
+
+def _first_pass(
+    member: Member, cut: Cut, machine: MillingMachine, job: Job, share: ControlShare
+) -> tuple[np.ndarray, Pass]:
+    """Cradle rotations and the pass through space 0: rolled, or for Formate plunged at cradle rotation zero."""
+    flank = member.flank(cut.flanks[0])
+    tooth = middle_of_tooth(member, cut)
+    if member.generation == "formate":
+        theta = np.zeros(2)
+        axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
+        axes[0, 2] += _PLUNGE_DEPTHS * _depth(member) + _PLUNGE_MARGIN
+        dwell = _SPARK_OUT_TURNS * 60.0 / job.spindle_rpm if job.spindle_rpm > 0 else 0.0
+    else:
+        theta = roll_nodes(member, cut, job.tolerance, machine.pivot_height, machine.pivot, share.rounding)
+        axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
+        dwell = 0.0
+    return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell, theta)
+
+
+@lru_cache(maxsize=32)
+def middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
+    """The middle of the first flank of a pass (3,)."""
+    return flank_points(member, cut.flanks[0], blank_grid(member, 1, 1)).point[0]
+
+
+def _depth(member: Member) -> float:
+    """The whole depth of the tooth [mm] in the middle."""
+    return member.blank.mean_addendum + member.blank.mean_dedendum
+
+
+def _short(spaces: Sequence[int]) -> str:
+    listed = ", ".join(map(str, spaces[:5]))
+    return f"[{listed}]" if len(spaces) <= 5 else f"[{listed}, ...]"
+
+
+def _flattest(member: Member, cut: Cut) -> float:
+    """The smaller pressure angle [rad] of the blades of a pass."""
+    return min(math.radians(member.flank(flank).blade_pressure_angle) for flank in cut.flanks)
+
+
+def _check_motions(member: Member, name: str, cut: Cut) -> None:
+    if len({repr(member.flank(flank).motion) for flank in cut.flanks}) > 1:
+        raise InputError(f"{name}: motion: one cutter cuts both flanks at once, so that both must have the same motion")

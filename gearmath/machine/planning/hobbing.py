@@ -1,0 +1,226 @@
+"""Face hobbing on six axes: plunge and one slow generating roll, cutter and work turning in their ratio all the while.
+
+All tooth spaces are cut in the one roll. Each is visited once in a turn of the work, so that the flank keeps scallops
+(17.4); the roll takes as many turns as their height allows, beside what straight blocks and printed decimals take.
+X Y Z B depend on the cradle rotation alone, A and C on it and, linearly, on the turn: blocks are straight in both.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearmath.bevel.method import motion_of
+from gearmath.errors import InputError
+from gearmath.kernels import kernel
+from gearmath.machine.bodies.blades import Edge, blades_of, crossing
+from gearmath.machine.planning.blocks import ROUNDING, TOLERANCES
+from gearmath.machine.planning.feeds import paced_seconds
+from gearmath.machine.planning.path import Cut, axis_positions, roll_range, whole_flank
+from gearmath.specs.bevel_set import FLANKS, Flank, Member
+from gearmath.specs.milling_machine import AxisLimits, MillingMachine
+
+#: No block turns A or C further than this: DC goes the short way.
+_MOST_TURN = math.radians(170.0)
+#: Part of the tolerance that straight blocks may take; the decimals take ROUNDING, the scallops the rest.
+_CHORD_SHARE = 0.1
+#: What six decimals of C may do at the blade. [mm]
+C_ROUNDING = math.radians(0.5e-6) * 250.0
+#: The approach of a blade to its contact is measured this far before and behind it. [rad]
+_BESIDE = 2e-3
+#: Most that the cutter goes down, and past the tooth, in a turn of the work: a blade cuts each space once. [mm]
+_PLUNGE_PER_TURN, _ROLL_PER_TURN = 0.2, 3.0
+#: No roll takes more turns of the work than this.
+_MOST_TURNS = 20_000
+#: The parabola of (17.4) may be too low by this part; turns of the work at the bottom, where nothing rolls.
+_PARABOLA_MARGIN, _FORMATE_TURNS = 1.05, 1.25
+
+
+@dataclass(frozen=True)
+class HobbingPass:
+    """Positions X Y Z A B C (n,6) at the block ends, their cradle rotations (n,) and times (n-1,) s.
+
+    ``turns`` is the number of turns of the work in the roll.
+    """
+
+    axes: np.ndarray
+    theta: np.ndarray
+    seconds: np.ndarray
+    turns: float
+
+
+@dataclass(frozen=True)
+class _Drive:
+    """How cutter and work turn: the sense of C, and the turn of the work for one of the cutter."""
+
+    sense: int
+    index_ratio: float
+
+    @staticmethod
+    def of(member: Member, machine: MillingMachine) -> _Drive:
+        """M3 turns clockwise as seen along the spindle towards the work: right-handed about the tool axis, as C."""
+        return _Drive(1 if machine.cutter_direction == "M3" else -1, index_ratio(member))
+
+    def seconds_per_turn(self, limits: AxisLimits, rpm: float) -> float:
+        """Shortest time [s] of a turn of the work, at a speed of the cutter that A and C can follow."""
+        speed = min(2 * math.pi * rpm / 60, limits.max_speed[5], limits.max_speed[3] / abs(self.index_ratio))
+        return 2 * math.pi / abs(self.index_ratio) / speed
+
+    def beta(self, turns: np.ndarray) -> np.ndarray:
+        """Cutter angle after turns of the work (17.3)."""
+        return self.sense * 2 * math.pi * turns / abs(self.index_ratio)
+
+
+def index_ratio(member: Member) -> float:
+    """The turn of the work for one of the cutter."""
+    return member.indexing_sign * (member.blade_groups or 1) / member.teeth
+
+
+def spindle_phase(flank: Flank, theta: np.ndarray) -> np.ndarray:
+    """ψ (5.8) at cradle rotations (n,), moving settings included, continuous."""
+    settings, motion = flank.vector, motion_of(flank)
+    if motion.any():
+        (settings,) = kernel("moved_settings")(settings, motion, theta)
+    (psi,) = kernel("cutter_phase")(settings, theta)
+    return np.unwrap(psi)
+
+
+def six_axes(
+    flank: Flank, theta: np.ndarray, beta: np.ndarray, index_ratio: float, pivot_height: float, pivot: np.ndarray
+) -> np.ndarray:
+    """X Y Z A B C (n,6) at cradle rotations and cutter angles (n,); A and C count on."""
+    axes = axis_positions(flank, theta, pivot_height, pivot)
+    axes[:, 3] -= index_ratio * beta
+    return np.column_stack([axes, beta + spindle_phase(flank, theta)])
+
+
+def approach_curvature(member: Member, flank: str, index_ratio: float) -> np.ndarray:
+    """c (n,) [mm/rad²] of (17.4) over the whole flank, on the exact path: how blades come near a point and leave it.
+
+    Every point is met by the blade at its contact (zero), and a bit before and behind it.
+    """
+    spec, points = member.flank(flank), whole_flank(member, flank)
+    edge = next(edge for edge in blades_of(member).edges if (edge.flank, edge.part) == (flank, "main"))
+    u, beta, theta = points.contact.T
+    distance = [
+        _distance(spec, edge, index_ratio, (u, beta, theta + off), points.point, points.normal)
+        for off in (-_BESIDE, 0.0, _BESIDE)
+    ]
+    return (distance[0] - 2 * distance[1] + distance[2]) / _BESIDE**2
+
+
+def _distance(
+    spec: Flank, edge: Edge, index_ratio: float, contact: tuple[np.ndarray, ...], point: np.ndarray, normal: np.ndarray
+) -> np.ndarray:
+    """Where lines (n,) are cut while the cradle stands still near their contact, and cutter and work turn."""
+    u, beta, theta = contact
+    order = np.argsort(theta, kind="stable")  # ψ and A are made continuous from row to row
+    ends = []
+    for off in (-0.2, 0.2):
+        axes = np.empty((len(u), 6))
+        axes[order] = six_axes(spec, theta[order], beta[order] + off, index_ratio, 0.0, np.zeros(3))
+        ends.append(axes)
+    first, last = ends
+    start = np.column_stack([u, np.full(len(u), 0.5), np.zeros(len(u))])
+    found, _ = crossing(edge.is_arc)(
+        start, first[:, :5], last[:, :5], first[:, 5], last[:, 5], 0.0, np.zeros(3), *edge.arguments, point, normal
+    )
+    return found[:, 2]
+
+
+def hobbing_pass(
+    member: Member, name: str, cut: Cut, machine: MillingMachine, tolerance: float, feed: float, rpm: float,
+    lift: float, plunge_feed: float, tooth: np.ndarray,
+) -> HobbingPass:  # fmt: skip
+    """The whole cut: from ``lift`` [mm] above the start of the roll down, through the roll, to a standstill.
+
+    ``feed`` [mm/min] is the highest speed of the roll past ``tooth`` (3,), ``rpm`` the speed of the cutter; both give
+    way to the axes. Raises InputError for a machine without C, and for tolerance, feed or speed out of range.
+    """
+    _check(name, machine, tolerance, feed, rpm)
+    drive, spec, limits = _Drive.of(member, machine), member.flank(cut.flanks[0]), machine.limits(6)
+    pivot, per_turn = (machine.pivot_height, machine.pivot), drive.seconds_per_turn(limits, rpm)
+    start, end, turns = _roll(member, cut, drive, (1 - _CHORD_SHARE) * tolerance - ROUNDING - C_ROUNDING)
+    if end > start:
+        way = _way_past(spec, np.linspace(start, end, 200), tooth, pivot)
+        turns = max(turns, way / min(feed * per_turn / 60.0, _ROLL_PER_TURN))
+    if turns > _MOST_TURNS:
+        raise InputError(
+            f"{name}: feed = {feed} mm/min: asks for {turns:.0f} turns of the work in the roll, {_MOST_TURNS} at most"
+        )
+    down = lift / min(plunge_feed * per_turn / 60.0, _PLUNGE_PER_TURN)
+    parts = _parts(drive, machine)
+    plunge = np.linspace(0.0, 1.0, max(2, math.ceil(down * parts)) + 1)
+    roll = _roll_parts(spec, start, end, max(2, math.ceil(turns * parts)), _CHORD_SHARE * tolerance, pivot)
+    turned = np.concatenate([down * plunge, down + turns * roll[1:]])
+    theta = np.concatenate([np.full(len(plunge), start), start + (end - start) * roll[1:]])
+    axes = six_axes(spec, theta, drive.beta(turned), drive.index_ratio, *pivot)
+    axes[: len(plunge), 2] += lift * (1.0 - plunge)
+    seconds = paced_seconds(
+        np.diff(axes, axis=0), np.diff(turned) * per_turn, limits.max_speed, limits.max_acceleration
+    )  # fmt: skip
+    return HobbingPass(axes, theta, seconds, turns)
+
+
+def _roll_parts(
+    spec: Flank, start: float, end: float, count: int, chord: float, pivot: tuple[float, np.ndarray]
+) -> np.ndarray:
+    """Parts of the roll (n+1,), from 0 to 1, where blocks end: ``count`` or more, for chords [mm] as small as that."""
+    while end > start and _chord(spec, np.linspace(start, end, count + 1), pivot) > chord:
+        count *= 2
+    return np.linspace(0.0, 1.0, count + 1)
+
+
+def _check(name: str, machine: MillingMachine, tolerance: float, feed: float, rpm: float) -> None:
+    if machine.axes.C is None:
+        raise InputError(
+            f"{name}: is face hobbed, which turns the cutter as the sixth axis C: {machine.name} has no [axes.C]"
+        )
+    for what, value, unit in (("feed", feed, "mm/min"), ("spindle speed", rpm, "rpm")):
+        if not (math.isfinite(value) and value > 0):
+            raise InputError(f"{name}: {what} = {value} {unit}: must be greater than 0")
+    low, high = TOLERANCES
+    if not low <= tolerance <= high:
+        raise InputError(
+            f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "
+            f"decimals alone may take {(ROUNDING + C_ROUNDING) * 1000:.3f} um"
+        )
+
+
+def _roll(member: Member, cut: Cut, drive: _Drive, scallop: float) -> tuple[float, float, float]:
+    """Cradle rotations of start and end, half a turn's roll beyond what generates the flanks; turns of the work."""
+    if member.generation == "formate":
+        return 0.0, 0.0, _FORMATE_TURNS
+    curvature = max(float(approach_curvature(member, flank, drive.index_ratio).max()) for flank in FLANKS)
+    (step,) = kernel("roll_per_turn")(scallop, curvature * _PARABOLA_MARGIN)
+    low, high = roll_range(member, cut)
+    low, high = low - float(step) / 2, high + float(step) / 2
+    return low, high, (high - low) / float(step)
+
+
+def _way_past(spec: Flank, theta: np.ndarray, tooth: np.ndarray, pivot: tuple[float, np.ndarray]) -> float:
+    """How far [mm] the roll moves the cutter past the tooth, the indexing left out."""
+    (seen,) = kernel("seen_from_tool")(axis_positions(spec, theta, *pivot), tooth, *pivot)
+    return float(np.linalg.norm(np.diff(seen, axis=0), axis=1).sum())
+
+
+def _parts(drive: _Drive, machine: MillingMachine) -> float:
+    """Blocks in a turn of the work: so many that a modulo axis goes less than half a turn in one of them."""
+    turns = []
+    if machine.axes.A.modulo:
+        turns.append(2 * math.pi)
+    if machine.axes.C is not None and machine.axes.C.modulo:
+        turns.append(2 * math.pi / abs(drive.index_ratio))
+    return max([turn / _MOST_TURN for turn in turns], default=1.0)
+
+
+def _chord(spec: Flank, theta: np.ndarray, pivot: tuple[float, np.ndarray]) -> float:
+    """How far [mm] straight blocks leave the exact path at most: positions, and angles at the reach of the cutter."""
+    middle = (theta[1:] + theta[:-1]) / 2
+    every = np.sort(np.concatenate([theta, middle]))
+    path = six_axes(spec, every, np.zeros(len(every)), 0.0, *pivot)
+    off = np.abs(path[1:-1:2] - (path[:-2:2] + path[2::2]) / 2)
+    reach = np.linalg.norm(spec.vector[[0, 10]])
+    return float((np.linalg.norm(off[:, :3], axis=1) + reach * off[:, 3:].sum(axis=1)).max())

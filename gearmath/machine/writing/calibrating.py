@@ -1,0 +1,147 @@
+"""Calibration programs: a ring for radius and offset of the tip, its face for that in Z, a sphere for all of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from gearmath.errors import InputError
+from gearmath.machine.planning.artefact_targets import FACE_SIDES, PAIRS, sphere_directions
+from gearmath.machine.planning.targets import APPROACH, CLEARANCE
+from gearmath.machine.writing.probe_words import APPROACH_FEED, MEASURING_FEED, STILL, Blocks, Plan
+from gearmath.specs.calibration import Calibration, Face, Ring
+from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
+from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING_FACE, SPHERE
+from gearmath.version import __version__
+
+
+def calibration_program(machine: MillingMachine, calibration: Calibration, program_name: str) -> str:
+    """The program that touches ring and sphere, as far as the calibration file has them.
+
+    Raises InputError if it has neither, and for positions out of travel.
+    """
+    if calibration.ring is None and calibration.sphere is None:
+        raise InputError("the calibration file has neither ring nor sphere: there is nothing to touch")
+    blocks = Blocks(program_name, machine, calibration.length)
+    header = (f"gearmath {__version__} calibration program", f"machine: {machine.name}", f"probe: {calibration.name}")
+
+    level, top = _level(machine, calibration), blocks.length("Z", float(machine.travel[2, 1]))
+    ring, sphere, sections = calibration.ring, calibration.sphere, []
+    if ring is not None:
+        sections.append(("ring", len(PAIRS) * 2 + 2, _ring(blocks, calibration, ring, level)))
+        if ring.face is not None:
+            sections.append(("face of the ring", len(FACE_SIDES), _face(blocks, calibration, ring, ring.face, level)))
+    if sphere is not None:
+        center, directions = np.array(sphere.center) - calibration.tip_offset, sphere_directions()
+        touches = touch_sphere(blocks, calibration, center, sphere.diameter, directions, level, SPHERE)
+        sections.append(("sphere", len(directions), touches))
+    plan = Plan.of_sections([count for _, count, _ in sections])
+
+    def body() -> Iterator[str]:
+        yield from blocks.start(plan, CALIBRATION_COLUMNS)
+        yield f"G0 {top}"
+        yield f"G0 {' '.join(blocks.axes(np.zeros(5))[3:])}"
+        for number, (what, _, touches) in enumerate(sections, 1):
+            yield from blocks.section(plan, number, what, (*touches, f"G0 {top}"))
+        yield from blocks.end()
+
+    return blocks.text(header, body())
+
+
+def _level(machine: MillingMachine, calibration: Calibration) -> float:
+    """Z of all sideways motion: well above ring and sphere. Raises InputError where the travel does not allow it."""
+    ring, sphere = calibration.ring, calibration.sphere
+    heights = [0.0 if ring is None else ring.center[2] + calibration.stylus_length]
+    if ring is not None and ring.face is not None:
+        heights.append(ring.face.seat + ring.face.height + calibration.tip_radius + CLEARANCE)
+    if sphere is not None:
+        heights.append(sphere.center[2] + sphere.diameter / 2 + calibration.tip_radius + CLEARANCE)
+    level = max(heights) - min(calibration.offset[2], 0.0)
+    low, high = machine.travel.T
+    for place in (ring, sphere):
+        if place is None:
+            continue
+        reach = place.diameter / 2 + calibration.tip_radius + APPROACH
+        if isinstance(place, Ring) and place.face is not None:
+            reach = max(reach, (place.diameter + place.face.width) / 2)
+        for axis, (least, most) in enumerate(
+            ((place.center[0] - reach, place.center[0] + reach), (place.center[1] - reach, place.center[1] + reach),
+             (place.center[2], level))
+        ):  # fmt: skip
+            if least < low[axis] or most > high[axis]:
+                scale = UNITS_PER_INTERNAL[axis]
+                raise InputError(
+                    f"{type(place).__name__.lower()}: axis {AXES[axis]} = {least:.3f} to {most:.3f} {UNITS[axis]}: "
+                    f"{machine.name} travels {low[axis] * scale:g} to {high[axis] * scale:g} {UNITS[axis]}"
+                )
+    return level
+
+
+def _ring(blocks: Blocks, calibration: Calibration, ring: Ring, level: float) -> Iterator[str]:
+    """Touches along X, along Y through the middle found, and along X again through the middle of these."""
+    x, y, z = np.array(ring.center) - calibration.tip_offset
+    reach = ring.diameter / 2 - calibration.tip_radius + calibration.overtravel
+    yield f"G0 {blocks.length('X', x)} {blocks.length('Y', y)}"
+    yield from blocks.lowered(blocks.length("Z", level))
+    yield from blocks.guarded(blocks.length("Z", z), APPROACH_FEED, level)
+    yield f"R10={_number(x)} R11={_number(y)}"
+    for axis, parameter, pair in (("X", 200, PAIRS[0]), ("Y", 201, PAIRS[1]), ("X", 200, PAIRS[0])):
+        center = "R10" if axis == "X" else "R11"
+        for sign, store, target in (("-", "R12", pair[0]), ("+", "R13", pair[1])):
+            to = f"{axis}={center}{sign}{_number(reach)}"
+            end = f"{to} Y=IC(0) Z=IC(0)" if axis == "X" else f"X=IC(0) {to} Z=IC(0)"
+            yield from blocks.touch(end, "X=R10 Y=R11", MEASURING_FEED, APPROACH_FEED, level, up=False)
+            yield f"{store}=R{parameter}"
+            yield from blocks.hand_over(target)
+        yield f"{center}=(R12+R13)/2"
+        yield f"G1 X=R10 Y=R11 F{APPROACH_FEED:.3f}"
+
+
+def _face(blocks: Blocks, calibration: Calibration, ring: Ring, face: Face, level: float) -> Iterator[str]:
+    """Touches from above in the middle of the wall, at the four sides of the bore."""
+    x, y, _ = np.array(ring.center) - calibration.tip_offset
+    height = face.seat + face.height + calibration.tip_radius - calibration.tip_offset[2]
+    away = (ring.diameter + face.width) / 2
+    for number, (to_x, to_y) in enumerate(FACE_SIDES):
+        place = f"{blocks.length('X', x + to_x * away)} {blocks.length('Y', y + to_y * away)}"
+        start = blocks.length("Z", height + APPROACH)
+        if number:
+            yield from blocks.aside(f"{place} {STILL}")
+        else:  # from the top of Z
+            yield f"G0 {place}"
+            yield from blocks.lowered(blocks.length("Z", level))
+        yield from blocks.guarded(start, APPROACH_FEED, level)
+        end = f"X=IC(0) Y=IC(0) {blocks.length('Z', height - calibration.overtravel)}"
+        yield from blocks.touch(end, start, MEASURING_FEED, APPROACH_FEED, level)
+        yield from blocks.hand_over(RING_FACE)
+
+
+def touch_sphere(
+    blocks: Blocks, calibration: Calibration, center: np.ndarray, diameter: float, directions: np.ndarray, level: float,
+    target: str,
+) -> Iterator[str]:  # fmt: skip
+    """Touches along the normals of a sphere; from the top of Z, and down to each of them outside of the sphere.
+
+    ``center`` (3,) is X Y Z with the tip's centre in that of the sphere; ``level`` is the Z of sideways motion.
+    """
+    reach = diameter / 2 + calibration.tip_radius
+    place = " ".join(blocks.axes(np.array([*center, 0.0, 0.0]))[:2])
+    yield f"G0 {place}"
+    yield from blocks.lowered(blocks.length("Z", level))
+    for direction in directions:
+        start, end = (center + (reach + off) * direction for off in (APPROACH, -calibration.overtravel))
+        x, y, z, *_ = blocks.axes(np.array([*start, 0.0, 0.0]))
+        if f"{x} {y}" != place:
+            place = f"{x} {y}"
+            yield from blocks.aside(f"{place} {STILL}")
+        yield from blocks.guarded(z, APPROACH_FEED, level)
+        way = " ".join(blocks.axes(np.array([*end, 0.0, 0.0]))[:3])
+        yield from blocks.touch(way, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level)
+        yield from blocks.hand_over(target)
+
+
+def _number(value: float) -> str:
+    """A number in an expression; a negative one in parentheses."""
+    text = f"{value:.5f}"
+    return f"({text})" if value < 0 else text

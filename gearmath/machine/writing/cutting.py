@@ -1,0 +1,105 @@
+"""The text of a cutting program from its plan: header, sections, and what the header says of the flanks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+from gearmath.machine.planning.blocks import ROUNDING
+from gearmath.machine.planning.cut_plan import DRY_LIFT, ONE_SPACE, PLUNGE_FEED, Job, Plan, cutting_plan
+from gearmath.machine.planning.hobbing import C_ROUNDING
+from gearmath.machine.planning.rounding import ControlShare
+from gearmath.machine.planning.setup_facts import SetupFacts, setup_notes
+from gearmath.machine.writing.program import write_program
+from gearmath.machine.writing.words import plain
+from gearmath.specs.bevel_set import BevelSet, Member, settings_sha256
+from gearmath.specs.milling_machine import MillingMachine
+from gearmath.version import __version__
+
+#: Retract above the highest pass. [mm]
+CLEARANCE = 40.0
+#: What Z of a program says, for the header.
+_Z_REFERENCE = {
+    "gauge_line": "of the gauge line, length 1 in the tool table 0",
+    "tip": "of the blade tips, length 1 in the tool table",
+}
+#: Tooth spaces that a line of the header lists.
+_LISTED = 30
+
+
+def cutting_program(
+    bevel_set: BevelSet, name: str, machine: MillingMachine, program_name: str, job: Job = ONE_SPACE,
+    progress: Callable[[int], object] = lambda passes: None,
+) -> str:  # fmt: skip
+    """The text of the program of a job on one member. Raises InputError as ``cutting_plan`` does."""
+    return program_of(cutting_plan(bevel_set, name, machine, job, progress), program_name)
+
+
+def program_of(plan: Plan, program_name: str) -> str:
+    """The text of a planned program. Raises InputError as the writer does."""
+    name, member, machine, job = plan.name, plan.member, plan.machine, plan.job
+    header = (
+        f"gearmath {__version__} cutting program",
+        f"set: {plain(plan.title)}",
+        f"member: {name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}",
+        f"machine settings sha256: {settings_sha256(member)}",
+        *_tolerance_notes(member, job, machine, plan.share),
+        *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
+        f"feed: {job.feed:g} mm/min at the tooth",
+        f"spindle: {job.spindle_rpm:g} rpm {machine.cutter_direction}, plunge: {PLUNGE_FEED:g} mm/min",
+        *_space_notes(job),
+        *_hobbing_notes(member),
+        *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
+        f"machine: {plain(machine.name)}",
+        f"Z: {_Z_REFERENCE[machine.z_reference]}; R_d {machine.gauge_line_height:g} is its reading with the gauge line "
+        f"level with the B axis, C_t {machine.tool_length:g} the length of the tool",
+        *map(plain, setup_notes(SetupFacts.of(plan, PLUNGE_FEED))),
+        "R90, R91: first and last section to cut, 0 for all; the program asks before it leaves sections out",
+        f"time in the cut, without plunges and positioning: {plan.seconds:.1f} s",
+    )
+    return write_program(
+        program_name, header, plan.passes, machine, job.spindle_rpm, CLEARANCE, plan.room, plan.tool_radius,
+        PLUNGE_FEED, coolant=not job.dry_run,
+    )  # fmt: skip
+
+
+def _tolerance_notes(member: Member, job: Job, machine: MillingMachine, share: ControlShare) -> tuple[str, ...]:
+    """What the header says of the flanks: how far they may deviate with the increments of this control."""
+    wanted = job.tolerance * 1000
+    if member.process == "face_hobbing":
+        blocks, rounding = wanted, max(share.rounding - ROUNDING - C_ROUNDING, 0.0) * 1000
+    else:
+        rounding = share.rounding * 1000
+        blocks = wanted - min(rounding, wanted / 2)
+    control = machine.control
+    total = max(wanted, blocks + rounding)
+    return (
+        f"flank tolerance: {_upwards(total)} um along the tooth normal, by straight blocks and rounding",
+        f"of which rounding to {control.increments_per_mm} increments per mm and {control.increments_per_degree} per "
+        f"degree: up to {_upwards(share.rounding * 1000)} um",
+        f"path mode {control.path_mode}" + (
+            f" adds up to {_upwards(share.path_mode * 1000)} um" if control.path_mode == "G642" else ": exact stop"
+        ),
+    )  # fmt: skip
+
+
+def _space_notes(job: Job) -> Iterator[str]:
+    """The spaces of the program, in lines of thirty: what virtual milling looks for."""
+    spaces = list(job.spaces)
+    for k in range(0, len(spaces), _LISTED):
+        yield "spaces: " + ",".join(str(space) for space in spaces[k : k + _LISTED])
+
+
+def _upwards(um: float) -> str:
+    """A limit in um, rounded up."""
+    return f"{math.ceil(um * 1e4 - 1e-6) / 1e4:g}"
+
+
+def _hobbing_notes(member: Member) -> tuple[str, ...]:
+    """What the header says of face hobbing."""
+    if member.process != "face_hobbing":
+        return ()
+    return (
+        f"face hobbing: {member.blade_groups} blade groups, all spaces in one roll",
+        "C: cutter spindle as an axis after SPOS=0 [unconfirmed: whether M70 is needed, and the sense of C]",
+    )

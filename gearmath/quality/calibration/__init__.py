@@ -1,0 +1,1 @@
+"""Tip of the probe, and rotary axes, from touches on artefacts."""

@@ -1,0 +1,1 @@
+"""Contact of measured flanks: surfaces of them, the pair, and how sure its pattern is."""

@@ -1,0 +1,149 @@
+"""From a measured file to the target of a fit: one flank with its nominal points, and what was measured there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gearmath.bevel.flank import solve_flank
+from gearmath.bevel.generation import Generation
+from gearmath.bevel.grid import file_grid
+from gearmath.bevel.identify.flank_target import FlankTarget
+from gearmath.bevel.identify.root_line import RootLine
+from gearmath.bevel.method import cut_generation_of
+from gearmath.bevel.newton import FlankPoints
+from gearmath.bevel.turning import turned
+from gearmath.errors import InputError
+from gearmath.kernels import kernel
+from gearmath.quality.correction.representative import representative_tooth
+from gearmath.quality.evaluation.pitch import reference_point
+from gearmath.quality.evaluation.topography import grid_shape, local_coordinates
+from gearmath.specs.bevel_set import Flank, Member
+from gearmath.specs.flank_csv import FlankFile
+
+#: Points of the file and of the set must agree this well, or the file belongs to another set. [mm]
+_SAME_POINT = 0.01
+#: The root line is watched at this part of the face width from either end.
+_ROOT_MARGIN = 0.1
+
+
+def flank_target(
+    member: Member, name: str, flank: str, measured: FlankFile, tooth: int | None = None,
+    excluded: np.ndarray | None = None,
+) -> FlankTarget:  # fmt: skip
+    """One flank of a file with the nominal points of the set, of a tooth that has most points if none is given.
+
+    Points that the file does not have, that have no deviation, or that ``excluded`` (points of the file,) marks are
+    left out. Raises InputError if nothing is left, if points lie outside of the grid or are there twice, or if they are
+    not those of the set.
+    """
+    kept = np.ones(len(measured), dtype=bool) if excluded is None else ~excluded
+    points, kept = measured.select(flank), kept[measured.flank == flank]
+    if tooth is None and len(points):
+        tooth = representative_tooth(points, flank)
+    here = points.tooth == tooth
+    points, kept = points.select(flank, tooth), kept[here]
+    rows, columns = grid_shape(measured)
+    place = points.row * columns + points.col
+    _check_grid(flank, points, rows, columns)
+    if np.isnan(points.deviation).all():
+        raise InputError(f"{flank} flank: deviation_um is empty; is this a nominal file?")
+    kept &= ~np.isnan(points.deviation)
+    if not kept.any():
+        raise InputError(f"{flank} flank: every point is excluded")
+    order = np.argsort(place)
+    order = order[kept[order]]
+    at = place[order]
+    nominal = solve_flank(member, name, flank, file_grid(measured, member, flank, tooth))
+    deviation = points.deviation[order]
+    _check_places(flank, points.point[order], deviation, nominal, at, int(points.tooth[0]) / member.teeth, columns)
+    used = np.zeros(rows * columns, dtype=bool)
+    used[at] = True
+    along, up = local_coordinates(nominal.point.reshape(rows, columns, 3), reference_point(measured))
+    return target_of(member, flank, nominal, np.stack([along.ravel(), up.ravel()], axis=1), used, deviation)
+
+
+def target_of(
+    member: Member, flank: str, nominal: FlankPoints, place: np.ndarray | None = None,
+    used: np.ndarray | None = None, deviation: np.ndarray | None = None,
+) -> FlankTarget:  # fmt: skip
+    """A target at the ``used`` ones (grid,) of nominal points, with the settings that the machine is set to."""
+    spec, how = member.flank(flank), cut_generation_of(member, flank)
+    nominal = by_foot(spec, nominal)
+    used = np.ones(len(nominal.point), dtype=bool) if used is None else used
+    return FlankTarget(
+        how,
+        FlankPoints(nominal.contact[used], nominal.point[used], nominal.normal[used]),
+        np.zeros(int(used.sum())) if deviation is None else deviation,
+        *blade_curve(spec),
+        None if place is None else place[used],
+        root_line(member, flank, how, nominal),
+        used,
+        FlankPoints(nominal.contact[~used], nominal.point[~used], nominal.normal[~used]),
+    )
+
+
+def blade_curve(spec: Flank) -> tuple[float, float]:
+    """Curvature [1/mm] of the blade of a flank, zero where it is straight, and its reference height [mm]."""
+    return 0.0 if spec.blade_spheric_radius is None else 1 / spec.blade_spheric_radius, spec.blade_reference_height
+
+
+def nominal_curvature(spec: Flank) -> float:
+    """Curvature [1/mm] of the blade that the nominal flank is cut by."""
+    return 0.0 if spec.nominal_spheric_radius is None else 1 / spec.nominal_spheric_radius
+
+
+def by_foot(spec: Flank, nominal: FlankPoints) -> FlankPoints:
+    """Points of a flank with the height of the foot (10.9) as the blade parameter, as the kernels on a line take it."""
+    if spec.nominal_spheric_radius is None:
+        return nominal
+    (foot,) = kernel("arc_foot")(
+        nominal.contact[:, 0], spec.nominal.vector[-1], spec.nominal_spheric_radius, spec.blade_reference_height
+    )
+    return replace(nominal, contact=np.column_stack([foot, nominal.contact[:, 1:]]))
+
+
+def root_line(member: Member, flank: str, how: Generation, nominal: FlankPoints) -> RootLine:
+    """The root line of a flank, watched near toe and heel; the starts are the nominal points nearest to them.
+
+    ``nominal`` is as ``by_foot`` has it.
+    """
+    blank = member.blank
+    half = (0.5 - _ROOT_MARGIN) * blank.face_width
+    distances = blank.mean_cone_distance + half * np.array([-1.0, 1.0])
+    cone = np.linalg.norm(nominal.point, axis=1)
+    # of the lowest points, as the blade counts, that nearest in cone distance
+    height = np.argsort(nominal.contact[:, 0])
+    lowest = height[: max(2, len(height) // 5)]
+    start = np.array([nominal.contact[lowest[np.argmin(np.abs(cone[lowest] - one))]] for one in distances])
+    start[:, 0] = 0.0
+    return RootLine(how, member.flank(flank).blade_reference_height, np.radians(blank.pitch_angle), distances, start)
+
+
+def _check_grid(flank: str, points: FlankFile, rows: int, columns: int) -> None:
+    """Raise InputError unless there are points, each in the grid and there once."""
+    if not len(points):
+        raise InputError(f"{flank} flank: 0 points were measured, the grid {rows}x{columns} needs them")
+    seen: set[tuple[int, int]] = set()
+    for row, col in zip(points.row.tolist(), points.col.tolist(), strict=True):
+        if row >= rows or col >= columns:
+            raise InputError(f"{flank} flank: row {row}, col {col} lies outside of the grid {rows}x{columns}")
+        if (row, col) in seen:
+            raise InputError(f"{flank} flank: row {row}, col {col} was measured twice")
+        seen.add((row, col))
+
+
+def _check_places(
+    flank: str, points: np.ndarray, deviation: np.ndarray, nominal: FlankPoints, at: np.ndarray, turn: float,
+    columns: int,
+) -> None:  # fmt: skip
+    """Raise InputError unless measured points (n,3) lie on the nominal normals at ``at`` (n,), turned by ``turn``."""
+    touched = turned(points, -2 * np.pi * turn) - deviation[:, None] * nominal.normal[at]
+    apart = np.linalg.norm(touched - nominal.point[at], axis=1)
+    if apart.max() > _SAME_POINT:
+        k = int(np.argmax(apart))
+        raise InputError(
+            f"{flank} flank, row {at[k] // columns}, col {at[k] % columns}: the measured point lies {apart[k]:.4f} mm "
+            f"beside the nominal normal, the limit is {_SAME_POINT} mm; is the file in mm, and of this set and hand?"
+        )

@@ -1,0 +1,1 @@
+"""From touches to figures: what was measured, judged as a metrologist does."""

@@ -1,0 +1,247 @@
+"""The nominal flanks behind a measured file: which point each row means, and how far a point lies from its flank."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearmath.bevel.flank import Grid, nominal_points, solve_flank
+from gearmath.bevel.grid import feet, file_grid, has_own_places
+from gearmath.bevel.newton import TOLERANCE
+from gearmath.bevel.turning import turned
+from gearmath.errors import ComputationError, InputError
+from gearmath.quality.evaluation.pitch import reference_point
+from gearmath.quality.evaluation.topography import grid_shape
+from gearmath.specs.bevel_set import FLANKS, Member, design_sha256
+from gearmath.specs.flank_csv import FlankFile, flank_file, join
+from gearmath.specs.ratio import INCH
+
+#: A measured point may lie this far beside its nominal normal. [mm]
+SAME_POINT = 0.01
+#: Its deviation and its place may differ by this much: files that are rounded to the micrometre. [mm]
+SAME_DEVIATION = 0.001
+#: Least cosine between the normal of a row and the nominal one, 1 degree.
+SAME_NORMAL = math.cos(math.radians(1.0))
+#: Part of a grid that may be missing.
+MOST_MISSING = 0.2
+
+
+@dataclass(frozen=True)
+class NominalRows:
+    """What the n rows of a file mean: nominal points and outward normals (n,3), and the turn (n,) [rad] of each tooth.
+
+    ``tooth`` counts tooth 0 measured again as tooth 0.
+    """
+
+    point: np.ndarray
+    normal: np.ndarray
+    turn: np.ndarray
+    tooth: np.ndarray
+
+
+def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
+    """The nominal point and normal of every row, in the work frame.
+
+    Raises ComputationError if the grid does not lie on the flank.
+    """
+    columns, own = grid_shape(file)[1], has_own_places(file)
+    point, normal = np.empty((len(file), 3)), np.empty((len(file), 3))
+    tooth = file.tooth % member.teeth
+    turn = 2 * math.pi * tooth / member.teeth
+    for flank in FLANKS:
+        here = file.flank == flank
+        if here.any():
+            if own:
+                grid, place = Grid(*feet(file.pick(here)).T[:, None]), np.arange(int(here.sum()))
+            else:
+                grid = file_grid(file, member, flank)
+                place = file.row[here] * columns + file.col[here]
+            solved = solve_flank(member, name, flank, grid)
+            point[here] = turned(solved.point[place], turn[here])
+            normal[here] = turned(solved.normal[place], turn[here])
+    return NominalRows(point, normal, turn, tooth)
+
+
+def distance_from_flank(
+    member: Member, flank: str, point: np.ndarray, turn: np.ndarray, normal: np.ndarray, expected: np.ndarray
+) -> np.ndarray:
+    """Signed distance (n,) [mm] of points (n,3) from the nominal flank of their teeth, positive out of the metal.
+
+    ``normal`` (n,3) and ``expected`` (n,) say roughly where the foot of each point is. The tangent plane of the
+    surface at the foot's z_w and radius is as good as the surface: the foot lies within a µm of where it touches.
+    Raises ComputationError where the surface has no such place.
+    """
+    at = turned(point, -turn)
+    foot = at - expected[:, None] * turned(normal, -turn)
+    place = Grid(foot[:, 2], np.hypot(foot[:, 0], foot[:, 1]))
+    surface, residual = nominal_points(member, flank, place)
+    if not (residual <= TOLERANCE).all():
+        k = int(np.argmax(~(residual <= TOLERANCE)))
+        raise ComputationError(f"{flank} flank: the nominal surface does not reach the point at {point[k].round(3)} mm")
+    return np.sum((at - surface.point) * surface.normal, axis=1)
+
+
+def deviations_of(
+    file: FlankFile, member: Member, rows: NominalRows, point: np.ndarray, expected: np.ndarray
+) -> np.ndarray:
+    """Deviations (n,) [mm] of points (n,3) against the exact nominal surface, roughly ``expected`` (n,).
+
+    NaN where the file has none.
+    """
+    deviation = np.full(len(file), np.nan)
+    for flank in FLANKS:
+        here = (file.flank == flank) & np.isfinite(file.deviation)
+        deviation[here] = distance_from_flank(
+            member, flank, point[here], rows.turn[here], rows.normal[here], expected[here]
+        )
+    return deviation
+
+
+def with_deviations(file: FlankFile, rows: NominalRows, deviation: np.ndarray) -> FlankFile:
+    """The file with other deviations (n,) [mm] at its nominal points; there themselves where one is NaN."""
+    return replace(file, point=rows.point + np.nan_to_num(deviation)[:, None] * rows.normal, deviation=deviation)
+
+
+def at_one_place(file: FlankFile, member: Member, name: str) -> FlankFile:
+    """The reference points of a file whose points have their own places, both flanks brought to the same place.
+
+    Between flanks and teeth these places differ by what the measuring machine was off the commanded ones: deviations
+    hardly change over that, the thickness of the tooth does. Files of even margins stay as they are.
+    """
+    row, col = reference_point(file)
+    points = file.pick((file.row == row) & (file.col == col))
+    if not has_own_places(file) or not len(points):
+        return file
+    axial, radial = feet(points).mean(axis=0)
+    point, normal = np.empty((len(points), 3)), np.empty((len(points), 3))
+    for flank in np.unique(points.flank):
+        here = points.flank == flank
+        turn = 2 * math.pi * (points.tooth[here] % member.teeth) / member.teeth
+        solved = solve_flank(member, name, str(flank), Grid(np.array([[axial]]), np.array([[radial]])))
+        point[here] = turned(np.repeat(solved.point, len(turn), axis=0), turn)
+        normal[here] = turned(np.repeat(solved.normal, len(turn), axis=0), turn)
+    moved = np.nan_to_num(points.deviation)[:, None] * normal
+    return replace(points, point=point + moved, normal=normal)
+
+
+def completed(file: FlankFile, member: Member, name: str) -> tuple[FlankFile, tuple[str, ...]]:
+    """The file with the points that are missing in grids measured nearly in full, nominal and silent; and who they are.
+
+    A tooth is taken as measured in full where no more than a fifth of its points are missing.
+    """
+    missing, remarks = [], []
+    for flank in FLANKS:
+        points = file.select(flank)
+        for tooth in np.unique(points.tooth):
+            one = points.pick(points.tooth == tooth)
+            there = set(zip(one.row.tolist(), one.col.tolist(), strict=True))
+            absent = [place for place in np.ndindex(*grid_shape(file)) if place not in there]
+            if absent and len(absent) <= MOST_MISSING * (len(absent) + len(there)):
+                row, col = np.array(absent).T
+                nowhere = np.zeros((len(absent), 3))
+                if has_own_places(file):
+                    grid = file_grid(file, member, flank, int(tooth))
+                    nowhere[:, 0], nowhere[:, 2] = grid.radial[row, col], grid.axial[row, col]
+                missing.append(flank_file(file.header, name, flank, int(tooth), row, col, nowhere, nowhere))
+                remarks += [
+                    f"{flank} flank, tooth {tooth}, row {r}, col {c}: not measured; left out" for r, c in absent
+                ]
+    if not missing:
+        return file, ()
+    added = join(missing)
+    nominal = nominal_rows(added, member, name)
+    return join([file, replace(added, point=nominal.point, normal=nominal.normal)]), tuple(remarks)
+
+
+def check_points(file: FlankFile, rows: NominalRows) -> None:
+    """Raise InputError, with the likeliest cause, where a row is none of its nominal point.
+
+    The normal must be the nominal one, the measured point lie on it, and as far along it as the deviation says.
+    """
+    off = file.point - rows.point
+    along = np.einsum("ij,ij->i", off, file.normal)
+    apart = np.where(np.isfinite(file.deviation), np.linalg.norm(off - along[:, None] * file.normal, axis=1), 0.0)
+    if (apart > SAME_POINT).any():
+        k = int(np.argmax(apart > SAME_POINT))
+        raise InputError(
+            f"{_place(file, k)}: the measured point lies {apart[k]:.4f} mm beside the nominal normal, the limit is "
+            f"{SAME_POINT} mm; {_likeliest_cause(file, rows)}"
+        )
+    turned_away = np.einsum("ij,ij->i", file.normal, rows.normal) < SAME_NORMAL
+    if turned_away.any():
+        k = int(np.argmax(turned_away))
+        inward = int((np.einsum("ij,ij->i", file.normal, rows.normal) < -SAME_NORMAL).sum())
+        why = f"{inward} of {len(file)} normals point into the metal" if inward else "is the file of this set and hand?"
+        raise InputError(
+            f"{_place(file, k)}: nx, ny, nz = {_shown(file.normal[k])}: must be the outward normal, "
+            f"{_shown(rows.normal[k])}, within {math.degrees(math.acos(SAME_NORMAL)):.1f} degrees; {why}"
+        )
+    wrong = np.nan_to_num(np.abs(along - file.deviation))
+    if (wrong > SAME_DEVIATION).any():
+        k = int(np.argmax(wrong > SAME_DEVIATION))
+        raise InputError(
+            f"{_place(file, k)}: deviation_um = {file.deviation[k] * 1000:.3f}: x, y, z lie {along[k] * 1000:.3f} um "
+            f"out of the nominal flank; both must agree within {SAME_DEVIATION * 1000:g} um"
+        )
+
+
+def check_phase(file: FlankFile) -> None:
+    """Raise InputError where a file says that the phase of each flank was set to zero, and its reference points do not.
+
+    Either the first tooth of a flank has no deviation there, or the mean of its teeth; points without a reading, which
+    are NaN, say nothing.
+    """
+    if file.header["phase_zeroed"].lower() != "true":
+        return
+    row, col = reference_point(file)
+    for flank in FLANKS:
+        here = (file.flank == flank) & (file.row == row) & (file.col == col) & np.isfinite(file.deviation)
+        if not here.any():
+            continue
+        at, u = file.deviation[here], np.nan_to_num(file.uncertainty[here][0])
+        limit = SAME_DEVIATION + 3 * u
+        if min(abs(at[0]), abs(at.mean())) > limit:
+            raise InputError(
+                f"phase_zeroed = true: the reference point of the {flank} flank, tooth {file.tooth[here][0]}, deviates "
+                f"by {at[0] * 1000:+.2f} um, must be 0 within {limit * 1000:g} um: was the flank turned to it? else "
+                "write false"
+            )
+
+
+def _place(file: FlankFile, k: int) -> str:
+    return f"{file.flank[k]} flank, tooth {file.tooth[k]}, row {file.row[k]}, col {file.col[k]}"
+
+
+def _shown(vector: np.ndarray) -> str:
+    return ", ".join(f"{value:.4f}" for value in vector)
+
+
+def _likeliest_cause(file: FlankFile, rows: NominalRows) -> str:
+    """What would make most of the points fit."""
+    fits = {
+        "the numbers are inches: convert the file to mm": file.point * INCH,
+        "the file is of the other hand": file.point * [1, -1, 1],
+        "x and y are exchanged": file.point[:, [1, 0, 2]],
+    }
+    for words, point in fits.items():
+        if np.median(np.linalg.norm(point - rows.point, axis=1)) < 1.0:
+            return words
+    shift = np.linalg.norm(file.point - rows.point, axis=1)
+    if np.median(shift) < SAME_POINT:
+        return f"{int((shift > SAME_POINT).sum())} of {len(file)} points are off the flank"
+    return "is the file of this set, member, hand and grid, in mm?"
+
+
+def check_belongs(member: Member, name: str, measured: FlankFile) -> None:
+    """Raise InputError unless the file is a measurement of this member of this set."""
+    if measured.member != name:
+        raise InputError(f"member = {measured.member!r} in the measured file: must be {name!r}")
+    if measured.header["member_teeth"] != str(member.teeth):
+        raise InputError(f"member_teeth = {measured.header['member_teeth']}: the {name} of the set has {member.teeth}")
+    if measured.header["settings_sha256"] != design_sha256(member):
+        raise InputError(
+            f"settings_sha256 = {measured.header['settings_sha256'][:12]}...: the file was measured against other "
+            f"nominal settings than those of the set ({design_sha256(member)[:12]}...)"
+        )

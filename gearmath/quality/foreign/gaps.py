@@ -1,0 +1,83 @@
+"""What is wrong with single points of another measuring machine, and what its files do not have, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+from dataclasses import replace
+
+import numpy as np
+
+from gearmath.bevel.grid import blank_fractions
+from gearmath.errors import InputError
+from gearmath.quality.evaluation.outliers import flag_outliers
+from gearmath.quality.foreign.lattice import Lattice
+from gearmath.quality.foreign.points import LARGEST_FORM, Laid, Part
+from gearmath.specs.bevel_set import Member
+
+#: A file whose points cover less than this part of face width or depth may have been cut off.
+_LEAST_COVERED = 0.6
+
+
+def fractions(one: Laid, member: Member) -> tuple[np.ndarray, np.ndarray]:
+    """Parts of face width and working depth (n,) at the feet of the points."""
+    return blank_fractions(member, one.foot[:, 2], np.hypot(one.foot[:, 0], one.foot[:, 1]))
+
+
+def standing_out(one: Laid, member: Member) -> np.ndarray:
+    """How far the points (n,) of a part stand out from a smooth surface through the others [mm].
+
+    Zero where they do not, and where many do: those are no single bad points, and the evaluation says so.
+    """
+    across, up = fractions(one, member)
+    found = np.zeros(len(one.part.point))
+    with suppress(InputError):
+        flags, off = flag_outliers(across - across.mean(), up - up.mean(), one.deviation)
+        found[one.kept[flags]] = off[flags]
+    return found
+
+
+def only(one: Laid, keep: np.ndarray) -> Laid:
+    """The points of a part for which ``keep`` (points of the part,) is true."""
+    here = keep[one.kept]
+    return replace(
+        one, kept=one.kept[here], foot=one.foot[here], normal=one.normal[here], deviation=one.deviation[here]
+    )
+
+
+def outlier_words(one: Laid, off: np.ndarray) -> tuple[list[str], list[str]]:
+    """Sentences on the points that stand out by ``off`` (n,) [mm]: farther than a form does, or less."""
+    far: list[str] = []
+    near: list[str] = []
+    for k in np.flatnonzero(off):
+        words = f"{_row(one.part, int(k))}: the point is {abs(off[k]) * 1000:.1f} um off the surface through the others"
+        (far if abs(off[k]) > LARGEST_FORM else near).append(words)
+    return far, near
+
+
+def lost_words(one: Laid) -> Iterator[str]:
+    """What to say of points that have no foot on the flank."""
+    lost = np.setdiff1d(np.arange(len(one.part.point)), one.kept)
+    if len(lost):
+        lines = "" if one.part.line is None else f" (first of them line {one.part.line[lost[0]]})"
+        yield f"{one.part.name}: {len(lost)} points lie beyond the flank or far off it{lines}, left out"
+
+
+def gap_words(one: Laid, lattice: Lattice | None, member: Member) -> Iterator[str]:
+    """What to say of points that leave places of their grid empty, or much of the flank: the file may not be whole."""
+    if lattice is not None and (empty := lattice.rows * lattice.columns - len(lattice.row)):
+        there = set(zip(lattice.row.tolist(), lattice.col.tolist(), strict=True))
+        row, col = next(place for place in np.ndindex(lattice.rows, lattice.columns) if place not in there)
+        yield (
+            f"{one.part.name}: its {len(lattice.row)} points leave {empty} of {lattice.rows}x{lattice.columns} places "
+            f"of the grid empty, the first of them row {row}, col {col}: is the file whole?"
+        )
+    for part, what in zip(fractions(one, member), ("face width", "working depth"), strict=True):
+        if np.ptp(part) < _LEAST_COVERED:
+            low, high = 100 * part.min(), 100 * part.max()
+            where = f"from {low:.0f} to {high:.0f} % only"
+            yield f"{one.part.name}: its points cover the {what} {where}: is the file whole?"
+
+
+def _row(part: Part, k: int) -> str:
+    return f"{part.name}, " + (f"point {k + 1}" if part.line is None else f"line {part.line[k]}")

@@ -1,0 +1,1 @@
+"""How sure figures and settings are."""

@@ -1,0 +1,250 @@
+"""A wrong digit in a program: every digit of every axis word of every cutting block of whole programs, all values.
+
+What a mutation does is found by what has to be found anew: the real reader and the real control run the changed block
+and the next one from the state before it, and only these two are milled again.
+"""
+
+from __future__ import annotations
+
+import copy
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+from gearmath.errors import InputError
+from gearmath.machine.control.executor import execute
+from gearmath.machine.control.reader import read_program
+from gearmath.machine.control.state import Control
+from gearmath.machine.control.tree import Block, Branch
+from gearmath.machine.judging.block_check import distances_off_the_way, off_the_way, watch, watched_flanks
+from gearmath.machine.judging.collision import rapid_approaches
+from gearmath.machine.judging.stated import stated_tolerance
+from gearmath.machine.milling.removal import entry_along_block
+from gearmath.machine.milling.run import runs_of
+from gearmath.machine.planning.blocks import roll_nodes
+from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.path import Cut, flank_points
+from gearmath.machine.planning.rounding import control_share
+from gearmath.machine.writing.cutting import cutting_program
+
+TOLERANCE = 1e-4
+SAMPLES = np.linspace(0.0, 1.0, 9)
+#: Lines this many blocks away on either side are looked at.
+NEAR = 2.5
+
+
+def number(node, column):
+    return node.value
+
+
+def snapshot(control):
+    """The control as it stands, to go on from twice."""
+    kept = copy.copy(control)
+    kept.modal, kept.position, kept.shift = dict(control.modal), dict(control.position), dict(control.shift)
+    return kept
+
+
+def mutations(line):
+    """The line with one digit of one axis word changed, for every digit and every other value of it."""
+    for word in re.finditer(r"(?:[XYZB]|A=DC\()(-?[0-9.]+)", line):
+        for at in range(word.start(1), word.end(1)):
+            for digit in "0123456789" if line[at].isdecimal() else "":
+                if digit != line[at]:
+                    yield line[:at] + digit + line[at + 1 :]
+
+
+def rigid_moves(witness, before, after, point, normal, height):
+    """How far the tool, as a rigid body, takes points (p,3) along their normals: (m,p), from one pose to others (m,5).
+
+    By the machine of the witness: the cutter's centre moves, and its axis turns the short way.
+    """
+    (c0, k0), (c1, k1) = witness.vertical_pose(before, height), witness.vertical_pose(after, height)
+    turn = np.cross(np.broadcast_to(k0, k1.shape), k1)
+    arm = point[None] - c0
+    moved = (c1 - c0)[:, None] + np.cross(turn[:, None], arm)
+    return np.einsum("mpk,pk->mp", moved, normal)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("member", "index"), [("pinion", 0), ("pinion", 1), ("gear", 0)])
+def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_compiler, member, index):
+    """Demanded: the tool moves by more than 1 um along a normal where it touches the flank at the end of the block.
+
+    The contacts are 80 x 321 points over the whole flank, those within a tenth of a block of the node. Seen: a line
+    that ``gearmath mill`` watches is left outside of the 0.1 um that the program states, or, where the blocks before
+    and after it cut the flank clean, the tool stands more than that off its way.
+    """
+    spec, height = gear_set.member(member), vertical.pivot_height
+    cut = Cut.of(spec, member)[index]
+    text = cutting_program(gear_set, member, vertical, "CUT", Job((0,), TOLERANCE))
+    path = execute(text, "CUT")
+    runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 7))
+    run = runs[index]
+    rounding = control_share(spec, member, vertical).rounding
+    theta = roll_nodes(spec, cut, TOLERANCE, height, rounding=rounding)
+    lines = text.split("\n")
+    cutting = [k for k in run.line.tolist() if " G93 " in lines[k - 1]]
+    nodes = np.vstack([run.axes[run.line == k] for k in [cutting[0] - 1, *cutting]])
+    assert len(nodes) == len(theta)
+
+    flanks = [one for one in watched_flanks(spec, runs) if one.flank in cut.flanks]
+    point, normal, start, at = (
+        np.concatenate([getattr(one, part) for one in flanks]) for part in ("point", "normal", "start", "theta")
+    )
+    contacts = [flank_points(spec, flank, blank_grid(spec, 80, 321, 0.0)) for flank in cut.flanks]
+    touch = np.concatenate([one.contact[:, 2] for one in contacts])
+    touched, outward = (np.concatenate([getattr(one, part) for one in contacts]) for part in ("point", "normal"))
+
+    entry, body = entry_along_block(True), run.cutter.bodies[0]
+
+    def left(first, last, which):
+        """What blocks (b,5) to (b,5) leave on lines (w,): (b, w), the smallest of some samples."""
+        b, w = len(first), len(which)
+        k, j, s = (part.ravel() for part in np.meshgrid(np.arange(b), which, SAMPLES, indexing="ij"))
+        (found,) = entry(
+            first[k], last[k], s, height, vertical.pivot, 0.0, point[j], normal[j], start[j], body.annulus,
+            body.outer.vector, body.inner.vector,
+        )  # fmt: skip
+        return found.reshape(b, w, len(SAMPLES)).min(axis=2)
+
+    program = read_program(text, "CUT")
+    control, states = Control("CUT"), {}
+    for block in blocks_of(program.body):
+        if block.line in cutting:
+            states[block.line] = snapshot(control), block
+        control.run(block, number)
+    demanded = refused = cleaned = 0
+    unseen = []
+    for n, line in enumerate(cutting, start=1):
+        following = states[cutting[n]][1] if n < len(cutting) else None
+        axes, texts = [], []
+        for changed in mutations(lines[line - 1]):
+            try:
+                (block,) = read_program(changed, "CUT").body
+                state = snapshot(states[line][0])
+                row = state.run(block, number)
+                after = state.run(following, number) if following is not None else None
+            except InputError:
+                refused += 1
+                continue
+            end = nodes[n + 1] * [1, 1, 1, 180 / np.pi, 180 / np.pi] if after is None and following else None
+            axes.append((row.position, after.position if after is not None else row.position if end is None else end))
+            texts.append(changed)
+        poses = np.array(axes)
+        poses[..., 3:] = np.radians(poses[..., 3:])
+        width = np.minimum(theta[n] - theta[n - 1], theta[min(n + 1, len(theta) - 1)] - theta[n] or np.inf)
+        here = np.abs(touch - theta[n]) < 0.1 * width
+        if not here.any():
+            continue
+        moved = np.abs(rigid_moves(witness, nodes[n], poses[:, 0], touched[here], outward[here], height)).max(axis=1)
+        wanted = moved > 1e-3
+        demanded += int(wanted.sum())
+        span = np.median(np.diff(theta))
+        which = np.flatnonzero(np.abs(at - theta[n]) < NEAR * span)
+        others = [k for k in range(1, len(nodes)) if k not in (n, n + 1) and abs(k - n) < 6]
+        rest = left(nodes[[k - 1 for k in others]], nodes[others], which).min(axis=0)
+        before = np.broadcast_to(nodes[n - 1], poses[:, 0].shape)
+        again = left(before, poses[:, 0], which)
+        if following is not None:
+            again = np.minimum(again, left(poses[:, 0], poses[:, 1], which))
+        deviation = np.abs(np.minimum(rest, again)).max(axis=1)
+        rest = np.flatnonzero(wanted & ~(deviation > TOLERANCE))
+        cleaned += len(rest)
+        row = int(np.flatnonzero(run.line == line)[0])
+        among = np.r_[np.arange(len(run.axes)), np.full(len(rest), row)]
+        tried = replace(
+            run, axes=np.vstack([run.axes, poses[rest, 0]]), cutting=run.cutting[among], space=run.space[among],
+            line=run.line[among],
+        )  # fmt: skip
+        off = np.max([distances_off_the_way(tried, one, spec, vertical) for one in flanks], axis=0)
+        unseen += [texts[k] for k, far in zip(rest, off[len(run.axes) :], strict=True) if far <= TOLERANCE]
+        if n % 40 == 20:
+            check_in_full(gear_set, spec, member, vertical, text, line, texts, deviation, wanted)
+    print(f"\n{cut.tool}: {demanded} demanded, {refused} refused, {cleaned} not in metal, {len(unseen)} unseen")
+    assert demanded > 10_000
+    assert refused > 100
+    assert unseen == []
+
+
+def blocks_of(body):
+    """The blocks that act where nothing stops the program, sections included: no branch that ends or halts it."""
+    for part in body:
+        if isinstance(part, Block):
+            yield part
+        elif isinstance(part, Branch):
+            inside = list(blocks_of(part.then))
+            if not any({"program end", "program stop"} & set(block.words) for block in inside):
+                yield from inside
+
+
+def check_in_full(gear_set, spec, member, vertical, text, line, texts, deviation, wanted):
+    """The first demanded mutation of a block through reader, executor and the watch of ``gearmath mill``: the same."""
+    lines = text.split("\n")
+    k = int(np.flatnonzero(wanted)[len(texts) // 3 % wanted.sum()])
+    lines[line - 1] = texts[k]
+    path = execute("\n".join(lines), "CUT")
+    runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 7), SHARP_EDGE)
+    found, (off, _) = watch(runs, spec, vertical, None), off_the_way(runs, spec, vertical)
+    assert max(abs(found.worst[0]), off) > TOLERANCE, texts[k]
+    if deviation[k] < 5e-3:
+        assert abs(found.worst[0]) >= deviation[k] - 3e-6  # mm: the samples, and blades that are not quite sharp
+
+
+@pytest.mark.parametrize("member", ["pinion", "gear"])
+def test_right_program_leaves_no_more_than_it_states_and_stays_on_its_way(gear_set, vertical, host_compiler, member):
+    spec = gear_set.member(member)
+    text = cutting_program(gear_set, member, vertical, "CUT", Job((0, 2)))
+    assert stated_tolerance(text) == TOLERANCE
+    runs = runs_of(execute(text, "CUT"), spec, member, vertical, None, tooth_space(spec, member, 7), SHARP_EDGE)
+    found = watch(runs, spec, vertical, None)
+    assert found.uncut == 0
+    assert -TOLERANCE <= found.lowest <= found.highest <= TOLERANCE
+    assert found.lines > 2 * text.count("G93") / 2
+    off, _ = off_the_way(runs, spec, vertical)
+    assert off < 2e-5  # mm: five printed decimals, six of a degree at 100 mm
+
+
+def test_block_that_stands_off_its_way_is_named_with_what_it_is_off_by(gear_set, vertical, host_compiler):
+    """By hand: Z too high by 2 um is off by 2 sin(pressure angle) along the normal, on both flanks."""
+    spec = gear_set.gear
+    path = execute(cutting_program(gear_set, "gear", vertical, "CUT", Job((0,))), "CUT")
+    (run,) = runs_of(path, spec, "gear", vertical, None, tooth_space(spec, "gear", 7), SHARP_EDGE)
+    axes, row = run.axes.copy(), len(run.axes) // 2
+    axes[row, 2] += 2e-3
+    off, (space, _, line) = off_the_way([replace(run, axes=axes)], spec, vertical)
+    assert off == pytest.approx(2e-3 * np.sin(np.radians(22.0)), abs=2e-5)
+    assert (space, line) == (0, run.line[row])
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("G94 G0 Z540.00000", "G94 G0 Z440.00000"),  # the retract of space 0 goes down
+        ("G0 Z540.00000\n", "G0 Z500.00000\n"),  # the way to space 1 begins within the metal
+        ("G94 G1 Z500.00000", "G94 G1 Z400.00000"),  # the plunge into space 1 is too deep
+        ("G0 X-52.28712 Y50.42840", "G0 X-52.28712 Y50.40840"),  # and stands aside
+        ("G0 X-52.28712 Y50.42840", "G0 X-52.08712 Y50.42840"),
+        ("A=DC(26.060021)", "A=DC(26.160021)"),
+        ("B67.683333\n", "B67.083333\n"),
+    ],
+)
+def test_wrong_digit_of_approach_plunge_or_retract_is_seen(gear_set, vertical, host_compiler, right, wrong):
+    """On the way from space 0 to space 1; rapid blocks through the metal too. More than 1 um is left out or off."""
+    spec = gear_set.gear
+    text = cutting_program(gear_set, "gear", vertical, "CUT", Job((0, 1)))
+    begin = text.index("G94 G0 Z")
+    head, rest = text[:begin], text[begin:]
+    assert right in rest
+    path = execute(head + rest.replace(right, wrong, 1), "CUT")
+    runs = runs_of(path, spec, "gear", vertical, None, tooth_space(spec, "gear", 7), SHARP_EDGE)
+    gouge = watch(runs, spec, vertical, None).lowest
+    assert gouge < -1e-3 or off_the_way(runs, spec, vertical)[0] > 1e-3 or rapid_approaches(runs, spec, vertical)
+
+
+def test_program_that_leaves_stock_promises_nothing(gear_set, vertical):
+    assert stated_tolerance(cutting_program(gear_set, "gear", vertical, "CUT", Job(finishing_stock=0.1))) is None
+    assert stated_tolerance("M30") is None

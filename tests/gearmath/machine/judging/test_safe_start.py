@@ -1,0 +1,186 @@
+"""From wherever the axes stand, and whatever the control has active: up to its first cut no program touches anything.
+
+Work and tool are typed here afresh, from the blank and the machine file: the work as points on what its face cone, its
+back and its fixture sweep about the work axis, the tool as a column of its widest radius from its tip upwards. Every
+motion is followed in steps of 3 mm and 1 degree.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import re
+from functools import cache
+
+import numpy as np
+import pytest
+
+from gearmath.machine.control.executor import run_program
+from gearmath.machine.control.state import Setup
+from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.writing.calibrating import calibration_program
+from gearmath.machine.writing.cutting import cutting_program
+from gearmath.machine.writing.probing import probing_program
+from gearmath.specs.bevel_set import MEMBERS, load_bevel_set
+from gearmath.specs.calibration import load_calibration
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import bundled
+
+MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
+COUNTING = MACHINE.model_copy(update={"axes": MACHINE.axes.model_copy(update={
+    "A": MACHINE.axes.A.model_copy(update={"modulo": False, "travel": (-720.0, 7200.0)})})})  # fmt: skip
+SHIFTED = MACHINE.model_copy(update={
+    "z_reference": "tip", "work_offset_values": (-250.0, 12.5, -900.0, 5.0, 0.25)})  # fmt: skip
+PROBE = load_calibration(bundled("probe.toml"))
+SETS = ("nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_universal_14x39", "crown_gear_formate_14x39",
+        "crown_gear_hobbed_14x39")  # fmt: skip
+STARTS = 48
+_STEP_MM, _STEP_DEG = 3.0, 1.0
+
+
+@cache
+def gear_set(name):
+    return load_bevel_set(bundled(f"{name}.toml"))
+
+
+@cache
+def text_of(name, member, kind):
+    one, machine = gear_set(name), {"counting": COUNTING, "shifted": SHIFTED}.get(kind, MACHINE)
+    spaces = range(one.member(member).teeth) if one.member(member).process == "face_hobbing" else (0, 1)
+    if kind in ("probing", "again"):
+        return machine, probing_program(one, member, machine, PROBE, "START", topography=())
+    if kind == "calibration":
+        return machine, calibration_program(machine, PROBE, "START")
+    return machine, cutting_program(one, member, machine, "START", Job(spaces, 1e-2))
+
+
+def work_points(member):
+    """Points (n,3) all around the work axis: face cone with its ends, back, shank and fixture."""
+    blank, delta = member.blank, math.radians(member.blank.pitch_angle)
+    face = math.radians(blank.face_angle)
+    middle, width = blank.mean_cone_distance, blank.face_width
+    outer = middle + width / 2
+    corners = []
+    for distance in (outer - width, outer):
+        up = blank.mean_addendum + (distance - middle) * math.tan(face - delta)
+        z, r = distance * math.cos(delta) - up * math.sin(delta), distance * math.sin(delta) + up * math.cos(delta)
+        corners.append((z, r))
+    depth = blank.mean_addendum + blank.mean_dedendum
+    root = np.add(corners[1], 2 * depth * np.array([math.sin(delta), -math.cos(delta)]))
+    fixture = MACHINE.fixture
+    shank = 0.5 * root[1]
+    end = root[0] + fixture.shank_length
+    profile = [(corners[0][0], 0.0), *corners, tuple(root), (root[0], shank), (end, shank), (end, fixture.radius),
+               (end + fixture.length, fixture.radius)]  # fmt: skip
+    dense = np.concatenate([
+        np.linspace(a, b, 2 + int(math.dist(a, b) / 4.0)) for a, b in itertools.pairwise(profile)
+    ])  # fmt: skip
+    angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    z, r = (np.repeat(column, len(angle)) for column in dense.T)
+    return np.column_stack([r * np.cos(np.tile(angle, len(dense))), r * np.sin(np.tile(angle, len(dense))), z])
+
+
+def meets(points, positions, columns):
+    """Whether any of the work is in the columns of the tool at positions X Y Z A B (n,5) in mm and rad.
+
+    Each column has a length below the gauge line and a radius, and goes up from there without end.
+    """
+    for x, y, z, _, b in positions:
+        level = points[:, 0] * math.cos(b) - points[:, 2] * math.sin(b)
+        forward = -points[:, 0] * math.sin(b) - points[:, 2] * math.cos(b)
+        aside, above = np.hypot(forward - x, points[:, 1] - y), level - (z - MACHINE.gauge_line_height)
+        if any(((aside < radius) & (above > -length)).any() for length, radius in columns):
+            return True
+    return False
+
+
+def followed(first, last):
+    steps = 2 + int(max(np.abs(last - first)[:3].max() / _STEP_MM, np.degrees(np.abs(last - first)[4]) / _STEP_DEG))
+    return first + np.linspace(0, 1, steps)[:, None] * (last - first)
+
+
+def columns_of(member, kind, table_length):
+    """The tool: a stylus with the spindle over it, or a cutter as wide as its 60 mm long blades spread.
+
+    It is as long as it should be, or as the tool table says if that is more.
+    """
+    spindle = MACHINE.cutter_head.spindle_radius
+    if kind in ("probing", "calibration", "again"):
+        more = max(table_length - PROBE.length, 0.0)
+        return [(PROBE.length + PROBE.tip_radius + more, PROBE.tip_radius), (more, spindle)]
+    flanks = (member.concave, member.convex)
+    reach = max(one.blade_point_radius + 60.0 * math.tan(math.radians(one.blade_pressure_angle)) for one in flanks)
+    return [(max(MACHINE.tool_length, table_length), max(reach + 2.0, spindle))]
+
+
+def random_setup(random, machine, tool_names):
+    """A position within the travel, some tool of some length, tables that are right or wrong."""
+    low, high = machine.travel.T
+    low, high = np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 2 * np.pi)
+    place = random.uniform(low, high)
+    place[3:] = np.degrees(place[3:])
+    zero = np.array(machine.work_offset_values)
+    change = np.array([*random.uniform(-300, 300, 2), random.uniform(800, 900), 0.0, random.uniform(-10, 100)])
+    right = Setup.of(machine, PROBE.length)
+    tool_length = random.choice([right.tool_length] * 3 + [0.0, 150.0, 300.0])
+    raised = tuple((zero + np.eye(5)[2] * 150.0).tolist())
+    return Setup(
+        zero=right.zero, offset=right.offset if random.random() < 0.8 else raised,
+        tool_length=float(tool_length), probe_length=right.probe_length, position=tuple((place + zero).tolist()),
+        turned=(0.0, 0.0, 0.0) if random.random() < 0.9 else (0.0, 0.0, 3.0),
+        tool=str(random.choice([*tool_names, "DRILL"])), changed_at=tuple((change + zero).tolist()),
+    )  # fmt: skip
+
+
+CASES = [
+    *((name, member, "cutting") for name in SETS for member in MEMBERS),
+    *((name, member, "probing") for name in SETS for member in MEMBERS),
+    ("nasa_tp3096_12x36", "pinion", "counting"), ("nasa_tp3096_12x36", "gear", "shifted"),
+    ("nasa_tp3096_12x36", "pinion", "calibration"), ("nasa_tp3096_12x36", "gear", "again"),
+]  # fmt: skip
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(len(CASES)), ids=lambda k: "-".join(CASES[k]))
+def test_nothing_is_touched_before_the_first_cut_or_the_program_stops(number):
+    name, member, kind = CASES[number]
+    spec = gear_set(name).member(member)
+    machine, text = text_of(name, member, kind)
+    points = work_points(spec)
+    random, stopped, clear, tried = np.random.default_rng(number), 0, 0, 0
+    names = re.findall(r'T="(\w+)"', text)
+    while stopped + clear < STARTS:
+        setup = random_setup(random, machine, names)
+        start = (np.array(setup.position) - setup.zero) * [1, 1, 1, np.pi / 180, np.pi / 180]
+        tried += 1
+        columns = columns_of(spec, kind, setup.tool_length)
+        if meets(points, [start], columns):
+            continue  # no program can begin in the metal
+        begun = {90: int(random.integers(2, 14))} if kind == "again" else {}  # a program that is continued
+        run = run_program(text, "START", lambda a, b: None, setup=setup, parameters=begun)
+        rows = run.path.axes
+        if run.alarm is not None and not (kind in ("probing", "calibration", "again") and run.alarm[0] == 65001):
+            assert len(rows) <= 3, run.messages  # at most Z has gone home
+            stopped += 1
+        else:
+            clear += 1
+        # a probe comes down from home and goes sideways in measuring blocks, then into a space
+        cutting = np.flatnonzero(~run.path.rapid)[2 if kind in ("probing", "again") else 0 :]
+        first_cut = int(cutting[0]) if len(cutting) else len(rows)
+        before = start
+        for k in range(first_cut):
+            here = rows[k]
+            if k == 2 and kind in ("probing", "again"):
+                # the probe has been fetched, and its length compared: what was in the spindle before is not there now
+                columns = columns_of(spec, kind, 0.0)
+            if k > 0 and run.path.tool[k] != run.path.tool[k - 1]:
+                before = None  # the change itself is the machine's
+            if before is not None and kind != "calibration":
+                assert not meets(points, followed(before, here), columns), (k, before, here)
+            before = here
+            if k == 0:
+                assert here[2] >= start[2] - 1e-9  # never down first
+                assert here[[0, 1, 3, 4]] == pytest.approx(start[[0, 1, 3, 4]])
+    print(f"{name} {member} {kind}: {clear} run, {stopped} stopped of {tried} positions tried")
+    assert clear >= STARTS / 8
+    assert stopped > 0
