@@ -26,8 +26,8 @@ from gearmath.specs.toml import checked
 #: Bounds of what is left free: pressure angle [rad]; 2C and 6D; motion of the sliding base [mm/rad]; tilt [rad].
 _ANGLES = math.radians(10), math.radians(30)
 _ROLL = 0.15, 1.0
-_HELICAL = 15.0
-_TILT = math.radians(15)
+_HELICAL = 5.0
+_TILT = math.radians(12)
 #: Least part of the places of the gear's flank that the pinion must cut.
 _LEAST_SHARE = 0.7
 _EXTRA = {
@@ -116,8 +116,9 @@ def refitted(flank: PinionFlank, name: str, value: float) -> PinionFlank:
     found = local.solve(problem.how, x, problem.wanted, problem.free)
     fitted = None if found is None else fit(problem, found, flank.contact)
     if fitted is None:
+        shown = f"{math.degrees(value):.6g} degrees" if name in ANGULAR else f"{value:.6g} mm"
         raise ComputationError(
-            f"pinion {flank.name} flank: no settings were found with {name} in steps of the shop, {value:.6g}"
+            f"pinion {flank.name} flank: no settings were found with {name} = {shown}, in steps of the shop"
         )
     return replace(flank, problem=problem, fitted=fitted)
 
