@@ -26,8 +26,10 @@ from gearmath.specs.toml import checked
 #: Bounds of what is left free: pressure angle [rad]; 2C and 6D; motion of the sliding base [mm/rad]; tilt [rad].
 _ANGLES = math.radians(10), math.radians(30)
 _ROLL = 0.15, 1.0
-_HELICAL = 15.0
-_TILT = math.radians(15)
+_HELICAL = 5.0
+_TILT = math.radians(12)
+#: Least part of the places of the gear's flank that the pinion must cut.
+_LEAST_SHARE = 0.7
 _EXTRA = {
     "blade_pressure_angle": ("blade_pressure_angle",), "modified_roll": ("modified_roll_2", "modified_roll_3"),
     "cutter_tilt": ("cutter_tilt", "cutter_swivel"),
@@ -80,9 +82,15 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
 
     # first the middle of the flank: on the way from there, no place comes to lie beyond a singular line
     kept, contact = _reached(how, section, found, asked, asked.inner)
-    first = fit(problem(kept), found, contact)
+    first = fit(problem(kept), found, contact) if kept.any() else None
     near = found if first is None else first.local
     kept, contact = _reached(how, section, near, asked, np.ones_like(kept))
+    if not kept.mean() >= _LEAST_SHARE:
+        raise ComputationError(
+            f"pinion {name} flank: settings for the mean point were found, but they cut only {kept.mean():.0%} of the "
+            f"places that the {asked.side} side needs, which must be at least {_LEAST_SHARE:.0%}: the others lie below "
+            "the tip of the blade or are undercut"
+        )
     whole = problem(kept)
     fitted = fit(whole, near, contact)
     if fitted is None:
@@ -108,8 +116,9 @@ def refitted(flank: PinionFlank, name: str, value: float) -> PinionFlank:
     found = local.solve(problem.how, x, problem.wanted, problem.free)
     fitted = None if found is None else fit(problem, found, flank.contact)
     if fitted is None:
+        shown = f"{math.degrees(value):.6g} degrees" if name in ANGULAR else f"{value:.6g} mm"
         raise ComputationError(
-            f"pinion {flank.name} flank: no settings were found with {name} in steps of the shop, {value:.6g}"
+            f"pinion {flank.name} flank: no settings were found with {name} = {shown}, in steps of the shop"
         )
     return replace(flank, problem=problem, fitted=fitted)
 

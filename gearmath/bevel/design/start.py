@@ -10,11 +10,15 @@ from gearmath.specs.blank_data import BlankData
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
 
-#: Top land, in mean normal modules, that a thickness nobody has chosen leaves; what a design must have is 0.2.
-_LAND = 0.3
+#: Top land, in mean normal modules, that a thickness nobody has chosen is to leave, and the least; the cut tooth must
+#: have 0.2, and may be a little thinner at its heel than AGMA 929 has it.
+_LAND, _LEAST = 0.3, 0.28
+#: Where it does not, the addendum factor grows by so much at a time.
+_SHORTER, _TRIALS = 0.015, 8
 #: Most that the thickness factor may be changed for it, and the least thickness left to the gear, in modules.
 _MOST, _THINNEST = 0.15, 0.95
-_TENTH = 0.1
+#: Edge radii come in tenths [mm], and take at most these parts of the narrowest slot and of the clearance.
+_TENTH, _OF_SLOT, _OF_CLEARANCE = 0.1, 0.4, 0.6
 
 
 def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
@@ -23,17 +27,29 @@ def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
     blank = blank_of(given, name)
     if data.data_type_1 is not None or data.data_type_2 is not None:
         return given, blank
-    slots, wanted = slots_of(blank), _LAND * blank.mean_normal_module
-    missing = [wanted - min(member.top_land) for member in (slots.pinion, slots.wheel)]
-    change = max(missing[0], 0.0) - max(missing[1], 0.0)
-    thick = blank.wheel.mean_normal_thickness / blank.mean_normal_module
-    change = min(max(change / blank.mean_normal_module, -_MOST), _MOST, thick - _THINNEST)
-    if not change:
-        return given, blank
     values = given.model_dump(exclude_none=True)
+    factors = dict(values["data_type_2"])
+    for trial in range(_TRIALS):
+        # a shorter pinion where thickness alone leaves it too thin a top land
+        values["data_type_2"] = {**factors, "mean_addendum_factor": factors["mean_addendum_factor"] + trial * _SHORTER}
+        given = checked(values, BlankData, name)
+        blank = blank_of(given, name)
+        change, left = _thickness_change(blank)
+        if left >= _LEAST:
+            break
     values["data_type_2"]["thickness_factor"] += change
     given = checked(values, BlankData, name)
     return given, blank_of(given, name)
+
+
+def _thickness_change(blank: BevelBlank) -> tuple[float, float]:
+    """How the thickness factor must change for top lands that suffice, and the least land that it then leaves, in
+    mean normal modules: the pinion gains what the gear loses."""
+    slots, module = slots_of(blank), blank.mean_normal_module
+    pinion, wheel = (min(member.top_land) / module for member in (slots.pinion, slots.wheel))
+    change = max(_LAND - pinion, 0.0) - max(_LAND - wheel, 0.0)
+    change = min(max(change, -_MOST), _MOST, blank.wheel.mean_normal_thickness / module - _THINNEST)
+    return change, min(pinion + change, wheel - change)
 
 
 def chosen_radius(data: DesignData, name: str) -> float:
@@ -45,6 +61,9 @@ def chosen_radius(data: DesignData, name: str) -> float:
 
 
 def edge_radius(asked: float | None, slots: MemberSlots, clearance: float) -> float:
-    """Edge radius of a member's blades [mm]: as asked, or the largest in tenths that AGMA 929 and clearance allow."""
-    largest = min(slots.maximum_edge_radius, clearance)
+    """Edge radius of a member's blades [mm]: as asked, or the largest in tenths that AGMA 929 and clearance allow.
+
+    A cutter for one flank takes little more than half of the slot, and its edge must fit on that.
+    """
+    largest = min(slots.maximum_edge_radius, _OF_CLEARANCE * clearance, _OF_SLOT * min(slots.slot_width))
     return max(math.floor(largest / _TENTH) * _TENTH, 0.0) if asked is None else asked

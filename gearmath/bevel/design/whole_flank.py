@@ -97,7 +97,7 @@ def fit(problem: WholeFlank, start: Local, contact: np.ndarray) -> Fitted | None
 
     ``contact`` (n,3) is where the flank of ``start`` is cut. None where a place of the gear is not cut there.
     """
-    begin = start.x[[NAMES.index(name) for name in problem.extra]]
+    begin = np.clip(start.x[[NAMES.index(name) for name in problem.extra]], *problem.bounds.T)
     first = problem.tried(start, contact, begin)
     if first is None:
         return None

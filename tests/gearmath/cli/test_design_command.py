@@ -110,3 +110,27 @@ def test_factors_that_nobody_has_chosen_are_those_of_the_standards_sample():
     data = parse(head, DesignData, "sample").blank_data(114.3).data_type_2
     assert data.mean_addendum_factor == pytest.approx(0.24737, abs=5e-6)
     assert data.thickness_factor == pytest.approx(0.0915, abs=5e-5)
+
+
+def test_bundled_7x43_set_is_the_one_that_its_design_data_give(command, tmp_path):
+    """The file of the set in every figure; rounding of shop steps hides what processors differ in."""
+    target = tmp_path / "set.toml"
+    assert command("design", "design_7x43.toml", "-o", target)[0] == 0
+    one, other = (load_pair(path).model_dump() for path in (target, bundled("spiral_7x43.toml")))
+    for name in ("pinion", "gear"):
+        for flank in ("concave", "convex"):
+            made, kept = one[name].pop(flank), other[name].pop(flank)
+            motion, same = made.pop("motion")["modified_roll"], kept.pop("motion")["modified_roll"]
+            assert motion == pytest.approx(same, abs=1e-6)
+            assert made == kept
+    assert one == other
+
+
+@pytest.mark.slow
+def test_program_cuts_the_7x43_pinion_within_a_tenth_of_a_micrometer(command, tmp_path):
+    program = tmp_path / "PINION.MPF"
+    assert command("nc", "cut", "spiral_7x43.toml", "--member", "pinion", "-o", program)[0] == 0
+    given = ("mill", "spiral_7x43.toml", "--member", "pinion", "--program", program, "-o", tmp_path / "milled.csv")
+    status, out, err = command(*given)
+    assert status == 0, err
+    assert "7 of 7 spaces within 0.1 um" in out
