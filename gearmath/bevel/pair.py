@@ -11,6 +11,7 @@ import tomllib
 from pathlib import Path
 
 from gearmath.bevel.blame import likely, most_changed
+from gearmath.bevel.blame_method import likely_method
 from gearmath.bevel.check_blade import check_blades, check_methods, check_offset
 from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, check_mate, transverse_module
 from gearmath.bevel.check_ease_off import check_ease_off
@@ -52,7 +53,10 @@ def check_pair(pair: BevelSet) -> None:
     try:
         _check(pair.members, pair.shaft_angle, cut)
     except Misfit as misfit:
-        cause = likely(pair.members, misfit.where, cut, lambda members: _passes(members, pair.shaft_angle))
+        cause = ""
+        if len(pair.members) == len(MEMBERS) and all(len(flanks) == len(FLANKS) for flanks in cut.values()):
+            cause = likely_method(pair.members, lambda members: _passes(members, pair.shaft_angle))
+        cause = cause or likely(pair.members, misfit.where, cut, lambda members: _passes(members, pair.shaft_angle))
         raise InputError(f"{misfit}{cause}") from misfit
 
 

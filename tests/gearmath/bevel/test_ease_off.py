@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 import tomllib
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -156,22 +157,37 @@ def test_hollow_is_how_far_the_second_order_falls_below_its_middle(crowning, twi
         assert hollow(found) == pytest.approx(depth, abs=1e-12)
 
 
+UNIVERSAL, FORMATE = "crown_gear_universal_14x39", "crown_gear_formate_14x39"
+
+
+def motions(name: str, of: Callable[[dict], dict]) -> tuple:
+    """A set with the motion of both flanks of its pinion changed."""
+    return name, *((f"pinion.{flank}.motion", of) for flank in FLANKS)
+
+
+def times(factor: float) -> Callable[[dict], dict]:
+    return lambda motion: {key: [factor * value for value in values] for key, values in motion.items()}
+
+
+BOTH = r"it would fit with pinion\.concave\.motion and pinion\.convex\.motion"
 OTHER_METHOD = {
-    **{f"{name}: Formate gear": (name, ("gear.generation", "formate")) for name in SETS if "formate" not in name},
-    "Formate gear that is rolled": ("crown_gear_formate_14x39", ("gear.generation", "generated")),
-    "no motions": (
-        "crown_gear_universal_14x39", *((f"pinion.{flank}.motion", {}) for flank in FLANKS)
-    ),
-    "motions turned round": (
-        "crown_gear_universal_14x39",
-        *((f"pinion.{flank}.motion", lambda motion: {key: [-v for v in values] for key, values in motion.items()})
-          for flank in FLANKS),
+    **{
+        f"{name}: Formate gear": (r"= 'generated', not 'formate'$", name, ("gear.generation", "formate"))
+        for name in ("nasa_tp3096_12x36", UNIVERSAL, "crown_gear_hobbed_14x39")
+    },
+    "Formate gear that is rolled": (r"= 'formate', not 'generated'$", FORMATE, ("gear.generation", "generated")),
+    "no motions": ("cut by another method or motion", *motions(UNIVERSAL, lambda _: {})),
+    "motions turned round": (rf"{BOTH} times -1$", *motions(UNIVERSAL, times(-1.0))),
+    "C for 2C": (rf"{BOTH} times 2$", *motions(FORMATE, times(0.5))),
+    "motions of the flanks exchanged": (
+        rf"{BOTH} exchanged$", FORMATE, ("pinion.concave.motion", {"modified_roll": [-0.197824, -0.049731]}),
+        ("pinion.convex.motion", {"modified_roll": [0.174573, -0.558029]}),
     ),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("case", OTHER_METHOD)
-def test_pair_made_for_another_method_or_motion_is_refused(case: str) -> None:
-    name, *changes = OTHER_METHOD[case]
-    with pytest.raises(InputError, match="pinion"):
+def test_pair_made_for_another_method_or_motion_is_refused_and_told_which_would_fit(case: str) -> None:
+    sentence, name, *changes = OTHER_METHOD[case]
+    with pytest.raises(InputError, match=sentence):
         check_pair(changed(name, *changes))

@@ -242,6 +242,22 @@ REFUSED = {
     "teeth a little too thick for each other": (
         NASA, {"pinion.convex.work_rotation_offset": 29.6}, r"backlash of -0\.0\d+ mm .* between 0 and 0\.513 mm",
     ),
+    "blank offsets of the flanks with the wrong signs": (
+        NASA, {"pinion.concave.blank_offset": -3.9262277584, "pinion.convex.blank_offset": 4.426244511222},
+        r"-31\.2 degrees .* convex flank has -38\.47; they must agree within 4; .*\.blank_offset = -3\.926",
+    ),
+    "blades of the other flank, mirrored on both members of uniform depth": (
+        HOBBED, {f"{member}.{flank}.blade_pressure_angle": angle for member in ("pinion", "gear")
+                 for flank, angle in (("concave", 17.0), ("convex", 23.0))},
+        r"pressure angle at the mean point 17 and 23 degrees .* differ by [+-]6 degrees",
+    ),
+    "tilt of the wrong sign": (
+        UNIVERSAL, {f"pinion.{flank}.cutter_tilt": -4.010704566 for flank in FLANKS},
+        r"concave flank: the tip of the blade leaves the root 16 mm below .* pinion\.concave\.cutter_tilt = -4\.0107",
+    ),
+    "teeth of another module": (
+        NASA, {"pinion.teeth": 13, "gear.teeth": 39}, r"transverse backlash of 1\.188 mm .* between 0 and 0\.473 mm",
+    ),
     "cutters that leave a fin": (
         NASA, {f"pinion.{flank}.blade_point_width": 0.1 for flank in FLANKS},
         r"pinion\.concave\.blade_point_width = 0\.1: with 0\.1 mm .* a fin would stay .* is 3\.34 mm wide at the heel",
