@@ -367,7 +367,7 @@ def snapshot(control):
     kept = copy.copy(control)
     for part in ("modal", "position", "shift", "feed_radius", "counting", "within", "path_modes"):
         setattr(kept, part, dict(getattr(control, part)))
-    kept.blind = list(control.blind)
+    kept.blind, kept.changes = list(control.blind), list(control.changes)
     return kept
 
 
