@@ -50,8 +50,10 @@ def probe(
     With --errors axes, probe and work err as the file says: [axes], [probe], and the clamping and
     drift of [measuring].
 
-    A program that collides with a nominal member, as 'gearmath nc probe' watches for it, is refused. 'gearmath touches'
-    and 'gearmath calibrate' read what is written here.
+    A program that collides with a nominal member, as 'gearmath nc probe' watches for it, is refused. So is one that
+    touches too fast, moves the probe without MEAS where it could meet something, does not stop where the probe is
+    deflected or touches nothing, writes something else than it touches, or whose parts R90 and R91 do not choose.
+    'gearmath touches' and 'gearmath calibrate' read what is written here.
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text

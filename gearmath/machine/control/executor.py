@@ -44,6 +44,8 @@ class MachinePath:
     """What the program leaves as it was when its first motion begins, in words of the program."""
     blind: tuple[Blind, ...] = ()
     """Motion while the position of an axis is unknown: at the start, and after a tool change."""
+    changes: tuple[tuple[int, float | None], ...] = ()
+    """Lines of tool changes, and the Z [mm] at which the axes stood, None where it is not known."""
     path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
     """Path mode, CTOL [mm] and OTOL [degrees] of feed blocks, with the line of the first."""
     dynamics: dict[tuple[str, str], int] = field(default_factory=dict)
@@ -158,6 +160,7 @@ def _path(runner: Runner) -> MachinePath:
         cutter=np.radians(np.array([row.cutter for row in rows])),
         unstated=control.unstated or (),
         blind=tuple(control.blind),
+        changes=tuple(control.changes),
         path_modes=dict(control.path_modes),
         dynamics=dict(control.dynamics),
         coolant=np.array([row.coolant for row in rows], dtype=bool),

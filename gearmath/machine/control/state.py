@@ -124,6 +124,8 @@ class State:
     within: dict[str, float] = field(default_factory=dict)
     """CTOL and OTOL, mm and degrees."""
     blind: list[Blind] = field(default_factory=list)
+    changes: list[tuple[int, float | None]] = field(default_factory=list)
+    """Lines of tool changes, and the Z at which the axes stood."""
     path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
     """Path modes in which feed blocks run, with CTOL and OTOL, and the line of the first."""
     dynamics: dict[tuple[str, str], int] = field(default_factory=dict)
@@ -214,6 +216,7 @@ class State:
             self._refuse(block, "tool change", "M6 without a tool: T is missing")
         if self.spindle_on:
             self._refuse(block, "tool change", "M6 with the spindle on")
+        self.changes.append((block.line, self.position.get("Z")))
         self.tool, self.fetched = self.selected, self.setup.spindle_tool(self.selected)
         self.modal.pop("spindle", None)
         self._stand(self.setup.changed_at)

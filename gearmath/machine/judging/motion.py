@@ -32,7 +32,7 @@ def motion_faults(
 ) -> Iterator[Fault]:
     """All faults of motion, kind by kind."""
     yield from states(path, machine)
-    if path.blind:
+    if path.blind or path.changes:
         needed = clear_height(room_of(member, machine, machine.fixture), machine, machine.tool_length)
         yield from blind_motion(path, needed)
     yield from spindle(path, machine, stated)
@@ -99,6 +99,9 @@ def blind_motion(path: MachinePath, clear: float) -> Iterator[Fault]:
     From Z = ``clear`` [mm] on the tool clears the work however the axes stand.
     """
     needed = clear - _HEIGHT_SLACK
+    for line, z in path.changes:
+        if z is None or z < needed:
+            yield Fault(f"changes the tool before Z has gone up to {needed:.1f} mm or more with SUPA", line, "change")
     for one in path.blind:
         if one.z is None or (one.raised and one.z < needed):
             yield Fault(
@@ -142,6 +145,10 @@ def travel(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
     where = positions(path, machine)
     limits = machine.limits(where.shape[1])
     low, high = limits.travel.T
+    for one in path.blind:
+        if one.z is not None and not low[2] - _SLACK <= one.z <= high[2] + _SLACK:
+            what = f"moves Z to {one.z:.3f} mm: {machine.name} travels {low[2]:g} to {high[2]:g} mm"
+            yield Fault(what, one.line, "travel")
     half = np.append(machine.control.half_increments, machine.control.half_increments[-1])[: where.shape[1]]
     for row, axis in np.argwhere((where < low - half) | (where > high + half)):
         scale, unit = limits.scale[axis], limits.units[axis]

@@ -367,7 +367,7 @@ def snapshot(control):
     kept = copy.copy(control)
     for part in ("modal", "position", "shift", "feed_radius", "counting", "within", "path_modes"):
         setattr(kept, part, dict(getattr(control, part)))
-    kept.blind = list(control.blind)
+    kept.blind, kept.changes = list(control.blind), list(control.changes)
     return kept
 
 
@@ -471,7 +471,9 @@ class Whole:
             rows.append(control.run(self.blocks[at], number))
             at += 1
         rows = [row for row in rows if row is not None]
-        joined, first, last = standing(control) == self.standing[at], self.behind[k], self.behind[at]
+        # where Z must stand at a tool change the whole program tells
+        alone = not any({"frame suppression", "tool change"} & set(one.words) for one in (self.blocks[k], *made))
+        joined, first, last = alone and standing(control) == self.standing[at], self.behind[k], self.behind[at]
         tools = {self.path.tools.index(row.tool) for row in rows} or set(self.path.tool[first:last].tolist())
         if len(tools) > 1 or not (rows or last > first):
             return None if len(tools) > 1 else ({}, joined)
