@@ -31,7 +31,13 @@ _HELP = (
 @click.option("--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine.")
 @click.option("--calibration", default="probe.toml", show_default=True, help="Calibrated probe.")
 @click.option("--errors", help="What is wrong with machine, clamping and probe, such as simulated_shop.toml.")
-@click.option("--port", type=click.IntRange(0, 65535), default=4840, show_default=True, help="Port on this computer.")
+@click.option(
+    "--port",
+    type=click.IntRange(0, 65535),
+    default=4840,
+    show_default=True,
+    help="Port on this computer; 0: any that is free.",
+)
 @click.option("--speed", type=click.FloatRange(0.0, 1e6), default=1.0, show_default=True,
               help="1 is real time, 10 ten times as fast, 0 as fast as it is computed.")  # fmt: skip
 @click.option("--unencrypted", is_flag=True, help="Take clients without encryption besides.")
@@ -41,9 +47,9 @@ def simulate(
 ) -> None:  # fmt: skip
     """A simulated SINUMERIK 840D sl on this computer: programs are run on the machine model, with its errors.
 
-    It has the node names, rights and limits of the control. Its console takes one command a line, HELP lists them; what
-    a client must not do, select and start, is done here. User 'operator' has the password of the environment variable
-    GEARMATH_CONTROL_PASSWORD, or one that is drawn and shown.
+    It has the node names, rights and limits of the control. Its console takes one command a line until 'quit'; 'help'
+    lists them. What a client must not do, select and start, is done here. User 'operator' has the password of the
+    environment variable GEARMATH_CONTROL_PASSWORD, or one that is drawn and shown.
     """
     quiet()
     from gearmath.control.simulated.access import Access, Account
@@ -80,7 +86,7 @@ def simulate(
 
 
 async def _console(control: SimulatedControl) -> None:
-    """One command a line, until ``quit`` or the end of the input."""
+    """One command a line, until ``quit``; where the input has an end, on without it until the process is ended."""
     while line := await asyncio.to_thread(sys.stdin.readline):
         words = line.split()
         if words == ["quit"]:
@@ -89,7 +95,8 @@ async def _console(control: SimulatedControl) -> None:
             try:
                 click.echo(await _command(control, words[0].lower(), words[1:]))
             except (InputError, IndexError, ValueError) as error:
-                click.echo(f"not done: {error or 'see HELP'}")
+                click.echo(f"not done: {error or 'see help'}")
+    await asyncio.Event().wait()
 
 
 async def _command(control: SimulatedControl, word: str, rest: list[str]) -> str:

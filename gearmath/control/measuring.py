@@ -68,6 +68,9 @@ class Measuring:
         except asyncio.CancelledError:
             self._run.finish("interrupted by the operator of the host")
             raise
+        except InputError as error:
+            self._run.finish(str(error))
+            raise
         except ComputationError as error:
             self._run.finish(str(error))
             kept = len(self._run.start.points) - len(self._missing)
