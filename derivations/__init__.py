@@ -14,11 +14,37 @@ if TYPE_CHECKING:
     from derivations.expression import Expression
 
 CHAPTERS = (
-    "frames", "cutter", "cradle", "flank", "meshing", "axes", "deviation", "gearbox", "blank", "hobbing",
-    "check_dimensions", "generation", "iso23509", "lengthwise", "tooth_width", "crown_gear",
-    "sweep", "probing", "registration", "spacing", "compensation", "ease_off", "touch_errors", "single_blades",
-    "axis_calibration", "tip_calibration", "contact", "local_synthesis", "chip", "design",
-)  # fmt: skip
+    "frames",
+    "cutter",
+    "cradle",
+    "flank",
+    "meshing",
+    "axes",
+    "deviation",
+    "gearbox",
+    "blank",
+    "hobbing",
+    "check_dimensions",
+    "generation",
+    "iso23509",
+    "lengthwise",
+    "tooth_width",
+    "crown_gear",
+    "sweep",
+    "probing",
+    "registration",
+    "spacing",
+    "compensation",
+    "ease_off",
+    "touch_errors",
+    "single_blades",
+    "axis_calibration",
+    "tip_calibration",
+    "contact",
+    "local_synthesis",
+    "chip",
+    "design",
+)
 
 #: An expression of a chapter, as its source says it.
 _EXPRESSION = re.compile(r"^def ([a-z]\w*)\(\) -> Expression:", re.MULTILINE)

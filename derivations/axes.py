@@ -68,13 +68,15 @@ def positions() -> sp.Matrix:
     i_s, j_s = _across()
     dA = sp.atan2(V_c.dot(J), V_c.dot(V_p.cross(sp.Matrix(J))))
     offset = _swivel(cosine, sine) * q.pivot_offset.symbol
-    return sp.Matrix([
-        -V_ls.dot(i_s) + offset[0],
-        V_ls.dot(j_s) + offset[1],
-        -V_ls.dot(V_c) + q.pivot_height.symbol + offset[2],
-        -cradle.work_angle() - dA,
-        sp.pi / 2 - sp.atan2(sine, cosine),
-    ])  # fmt: skip
+    return sp.Matrix(
+        [
+            -V_ls.dot(i_s) + offset[0],
+            V_ls.dot(j_s) + offset[1],
+            -V_ls.dot(V_c) + q.pivot_height.symbol + offset[2],
+            -cradle.work_angle() - dA,
+            sp.pi / 2 - sp.atan2(sine, cosine),
+        ]
+    )
 
 
 def _swivel(sine: sp.Expr, cosine: sp.Expr) -> sp.Matrix:

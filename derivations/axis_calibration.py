@@ -45,13 +45,23 @@ def carried_sphere() -> Expression:
         "carried_sphere",
         "What a touch on a sphere carried by the work leaves of its equation; zero for the right axes (21.2).",
         (
-            q.trigger, q.A, q.B, q.probe_height, q.tip_offset, q.tip_radius, q.sphere_radius, q.sphere_w, q.axis_place,
-            q.swivel_zero, q.pivot_offset, q.lobing,
+            q.trigger,
+            q.A,
+            q.B,
+            q.probe_height,
+            q.tip_offset,
+            q.tip_radius,
+            q.sphere_radius,
+            q.sphere_w,
+            q.axis_place,
+            q.swivel_zero,
+            q.pivot_offset,
+            q.lobing,
         ),
         ((q.sphere_rest, distance - q.sphere_radius.symbol - tip_calibration.radius_towards(off / distance)),),
         requires=(distance - 1,),
         source="(5.4) for the centre of the sphere, (23.2) for the touch",
-    )  # fmt: skip
+    )
 
 
 def prove_sphere_leaves_nothing_for_the_axes_that_carry_it() -> None:

@@ -147,9 +147,11 @@ def pin_equation() -> Expression:
     """(9.12) as an Expression."""
     z, alpha = q.teeth.symbol, q.pressure_angle.symbol
     wanted = (
-        q.pin_diameter.symbol / (z * q.module.symbol * sp.cos(alpha)) - sp.pi / (2 * z)
-        + involute(transverse_angle()) + 2 * q.profile_shift.symbol * sp.tan(alpha) / z
-    )  # fmt: skip
+        q.pin_diameter.symbol / (z * q.module.symbol * sp.cos(alpha))
+        - sp.pi / (2 * z)
+        + involute(transverse_angle())
+        + 2 * q.profile_shift.symbol * sp.tan(alpha) / z
+    )
     return Expression(
         "pin_equation",
         "Pressure angle at the centre of a pin in a tooth space: zero at the root (9.12).",

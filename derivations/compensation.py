@@ -64,13 +64,21 @@ def _sensitivity(name: str, description: str, profile: Profile, shift: Quantity,
         name,
         description,
         (
-            q.u, q.beta, q.theta, q.settings, q.index_ratio, q.blade_offset_angle, *extra, q.side, q.normal_w,
+            q.u,
+            q.beta,
+            q.theta,
+            q.settings,
+            q.index_ratio,
+            q.blade_offset_angle,
+            *extra,
+            q.side,
+            q.normal_w,
             q.line_direction,
         ),
         ((shift, sp.Matrix([unturned.dot(rate) / n.dot(d) for rate in rates])),),
         requires=(n.dot(d) ** 2 - sp.Rational(1, 100),),
         source="envelope theorem along a line: the shift of u, beta, theta stays in the surface",
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -79,8 +87,9 @@ def straight_sensitivity() -> Expression:
     return _sensitivity(
         "straight_sensitivity",
         "Shift along a line of the flank that a straight blade cuts, per unit of each setting (20.1).",
-        generation.straight(), q.sensitivity,
-    )  # fmt: skip
+        generation.straight(),
+        q.sensitivity,
+    )
 
 
 @cache
@@ -89,8 +98,11 @@ def curved_sensitivity() -> Expression:
     return _sensitivity(
         "curved_sensitivity",
         "Shift along a line of the flank that a curved blade cuts, per unit of each setting and its curvature (20.1).",
-        generation.curved(), q.curved_rates, q.blade_curvature, q.reference_height,
-    )  # fmt: skip
+        generation.curved(),
+        q.curved_rates,
+        q.blade_curvature,
+        q.reference_height,
+    )
 
 
 @cache

@@ -91,14 +91,20 @@ def gear_in_pair() -> Expression:
         "gear_in_pair",
         "Point and outward normal of the gear in the frame of the pair (25.2).",
         (
-            q.point_w, q.normal_w, q.gear_rotation, q.apex_beyond, q.shaft_angle, q.hypoid_offset, q.assembly,
+            q.point_w,
+            q.normal_w,
+            q.gear_rotation,
+            q.apex_beyond,
+            q.shaft_angle,
+            q.hypoid_offset,
+            q.assembly,
         ),
         (
             (q.gear_point, gear_axes() * in_gear + gear_origin()),
             (q.gear_normal, gear_axes() * turn * sp.Matrix(q.normal_w.symbol)),
         ),
         source="assembly of a pair: V, H, J and shaft angle as REXS names them",
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -174,12 +180,19 @@ def meeting() -> Expression:
         "meeting",
         "Rotation of the gear at which a point of its flank meets the pinion at the constant ratio (25.7).",
         (
-            q.point_w, q.normal_w, q.apex_beyond, q.shaft_angle, q.hypoid_offset, q.assembly, q.teeth_ratio, q.side,
+            q.point_w,
+            q.normal_w,
+            q.apex_beyond,
+            q.shaft_angle,
+            q.hypoid_offset,
+            q.assembly,
+            q.teeth_ratio,
+            q.side,
         ),
         ((q.gear_rotation, q.side.symbol * sp.acos(needed / across) - sp.atan2(p[1], p[0])),),
         requires=(p[0] ** 2 + p[1] ** 2 - 1, sp.Rational(99, 100) * (p[0] ** 2 + p[1] ** 2) - needed**2),
         source="gear meshing of two fixed axes with a constant ratio, solved for the angle",
-    )  # fmt: skip
+    )
 
 
 _TRUE = dict.fromkeys((*q.assembly.symbols, q.hypoid_offset.symbol, q.apex_beyond.symbol), 0)

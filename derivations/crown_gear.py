@@ -114,8 +114,17 @@ def crown_gear_flank() -> Expression:
         "crown_gear_flank",
         "Settings of a cut of one flank that has spiral and pressure angle at the mean point (14.2-14.5).",
         (
-            q.hand_sign, q.side, q.mean_spiral_angle, q.flank_pressure_angle, q.cutter_radius, q.mean_cone_distance,
-            q.pitch_angle, q.machine_root_angle, q.mean_dedendum, q.cutter_tilt, q.tilt_direction,
+            q.hand_sign,
+            q.side,
+            q.mean_spiral_angle,
+            q.flank_pressure_angle,
+            q.cutter_radius,
+            q.mean_cone_distance,
+            q.pitch_angle,
+            q.machine_root_angle,
+            q.mean_dedendum,
+            q.cutter_tilt,
+            q.tilt_direction,
         ),
         (
             (q.radial_distance, sp.sqrt(center[0] ** 2 + center[1] ** 2)),
@@ -128,7 +137,7 @@ def crown_gear_flank() -> Expression:
         ),
         requires=(sp.Rational(9, 10) - sine**2, center[0] ** 2 + center[1] ** 2 - 1),
         source=_SOURCE,
-    )  # fmt: skip
+    )
 
 
 def _wall() -> tuple[sp.Expr, sp.Expr]:
@@ -151,8 +160,14 @@ def crown_gear_space() -> Expression:
         "crown_gear_space",
         "Settings of an untilted cut of both flanks, milled or hobbed, about the mean point (14.2, 14.5, 14.6).",
         (
-            q.hand_sign, q.mean_spiral_angle, q.cutter_radius, q.mean_cone_distance, q.pitch_angle,
-            q.machine_root_angle, q.mean_dedendum, q.index_ratio,
+            q.hand_sign,
+            q.mean_spiral_angle,
+            q.cutter_radius,
+            q.mean_cone_distance,
+            q.pitch_angle,
+            q.machine_root_angle,
+            q.mean_dedendum,
+            q.index_ratio,
         ),
         (
             (q.radial_distance, sp.sqrt(center[0] ** 2 + center[1] ** 2)),
@@ -164,7 +179,7 @@ def crown_gear_space() -> Expression:
         ),
         requires=(sp.Rational(9, 10) - sine**2, center[0] ** 2 + center[1] ** 2 - 1),
         source=_SOURCE,
-    )  # fmt: skip
+    )
 
 
 def point_radius() -> sp.Expr:

@@ -46,14 +46,20 @@ def suggested_factors() -> Expression:
     u, z_1 = q.gear_ratio.symbol, q.pinion_teeth.symbol
     equivalent = u * sp.cos(q.pinion_pitch_angle.symbol) / sp.cos(q.wheel_pitch_angle.symbol)
     thickness = (
-        -sp.Rational(88, 1000) + sp.Rational(92, 1000) * u - sp.Rational(4, 1000) * u**2
+        -sp.Rational(88, 1000)
+        + sp.Rational(92, 1000) * u
+        - sp.Rational(4, 1000) * u**2
         + sp.Rational(16, 10000) * (z_1 - 30) * (u - 1)
-    )  # fmt: skip
+    )
     return Expression(
         "suggested_factors",
         "Addendum and thickness factor of a blank that nobody has chosen (27.1).",
         (
-            q.gear_ratio, q.pinion_teeth, q.pinion_pitch_angle, q.wheel_pitch_angle, q.addendum_constant,
+            q.gear_ratio,
+            q.pinion_teeth,
+            q.pinion_pitch_angle,
+            q.wheel_pitch_angle,
+            q.addendum_constant,
             q.addendum_share,
         ),
         (
@@ -61,7 +67,7 @@ def suggested_factors() -> Expression:
             (q.thickness_factor, thickness),
         ),
         source="ISO 23509, annex C, suggested values of data type II",
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -113,13 +119,18 @@ def wanted_gap() -> Expression:
         "wanted_gap",
         "Gap of the pinion against the conjugate one that makes the parabola the same on both sides (27.4).",
         (
-            q.pinion_rotation, q.along_tooth, q.relative_curvature, q.roll_vector, q.roll_acceleration,
-            q.signed_lever, q.lever_arm,
+            q.pinion_rotation,
+            q.along_tooth,
+            q.relative_curvature,
+            q.roll_vector,
+            q.roll_acceleration,
+            q.signed_lever,
+            q.lever_arm,
         ),
         ((q.ease_off, q.signed_lever.symbol / q.lever_arm.symbol * (x.T * A * x)[0] / 2),),
         requires=(beta**2 - 1, w[1] ** 2 - sp.Rational(1, 10)),
         source="ease-off to second order, by roll angle and place along the tooth",
-    )  # fmt: skip
+    )
 
 
 def prove_factors_are_those_of_sample_1() -> None:

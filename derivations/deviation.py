@@ -247,8 +247,9 @@ def prove_line_that_is_laid_through_the_blade_enters_there() -> None:
     """
     settings = [mpmath.mpf(x) for x in (75, 1, "0.125", "0.875", "3.5", "0.25", 1, "0.375", 3, "0.5", 80, "0.25")]
     theta, height, offset = mpmath.mpf("0.125"), mpmath.mpf(3), [mpmath.mpf(x) for x in ("0.5", "-0.25", 2)]
-    radius, alpha = (settings[q.settings.symbols.index(each.symbol)] for each in (
-        q.blade_point_radius, q.blade_pressure_angle))  # fmt: skip
+    radius, alpha = (
+        settings[q.settings.symbols.index(each.symbol)] for each in (q.blade_point_radius, q.blade_pressure_angle)
+    )
     at = dict(zip(q.settings.symbols, settings, strict=True)) | {q.theta.symbol: theta}
     chain = [numbers(cradle.machine_to_work(cradle.cutter_to_machine(sp.eye(3)[:, k])).subs(at)) for k in range(3)]
     center = numbers(cradle.machine_to_work(cradle.apex_to_cutter()).subs(at))

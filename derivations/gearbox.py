@@ -281,9 +281,17 @@ def resolution() -> Expression:
 
 #: The table of the source text for R = 3.142: encoder counts, desired position as printed, steps delivered.
 PUBLISHED_TABLE = (
-    (1, "0.318", 0), (2, "0.637", 0), (3, "0.955", 0), (4, "1.273", 1), (5, "1.592", 1),
-    (6, "1.910", 1), (7, "2.228", 2), (8, "2.546", 2), (9, "2.865", 2), (10, "3.183", 3),
-)  # fmt: skip
+    (1, "0.318", 0),
+    (2, "0.637", 0),
+    (3, "0.955", 0),
+    (4, "1.273", 1),
+    (5, "1.592", 1),
+    (6, "1.910", 1),
+    (7, "2.228", 2),
+    (8, "2.546", 2),
+    (9, "2.865", 2),
+    (10, "3.183", 3),
+)
 
 
 def prove_published_table() -> None:
@@ -423,9 +431,11 @@ def prove_one_count_moves_the_pitch_circle_by_the_ratio_of_steps() -> None:
     assert sp.simplify(rule["count_arc"] - N / D * rule["step_arc"]) == 0
     teeth = 20
     values = {
-        q.pitch_diameter.symbol: teeth * sp.Rational("25.4") / 16, q.teeth.symbol: teeth, q.hob_starts.symbol: 1,
+        q.pitch_diameter.symbol: teeth * sp.Rational("25.4") / 16,
+        q.teeth.symbol: teeth,
+        q.hob_starts.symbol: 1,
         q.encoder_counts.symbol: 981,
-    }  # fmt: skip
+    }
     assert abs(rule["count_arc"].subs(values) / (1000 * sp.Rational("25.4")) - sp.Rational(2, 10_000)) < sp.Rational(
         2, 10**7
     )

@@ -204,8 +204,10 @@ def straight_generation() -> Expression:
     return _expression(
         "straight_generation",
         "Point, outward normal and meshing residual of a straight blade under every motion (10.5, 10.6).",
-        straight(), q.u, (),
-    )  # fmt: skip
+        straight(),
+        q.u,
+        (),
+    )
 
 
 @cache
@@ -214,8 +216,10 @@ def arc_generation() -> Expression:
     return _expression(
         "arc_generation",
         "Point, outward normal and meshing residual of an arc blade under every motion (10.3, 10.5, 10.6).",
-        arc(), q.arc_angle, (q.blade_arc,),
-    )  # fmt: skip
+        arc(),
+        q.arc_angle,
+        (q.blade_arc,),
+    )
 
 
 @cache
@@ -224,8 +228,10 @@ def curved_generation() -> Expression:
     return _expression(
         "curved_generation",
         "Point, outward normal and meshing residual of a curved blade under every motion (10.5, 10.6, 10.8).",
-        curved(), q.u, (q.blade_curvature, q.reference_height),
-    )  # fmt: skip
+        curved(),
+        q.u,
+        (q.blade_curvature, q.reference_height),
+    )
 
 
 def prove_curved_blade_without_curvature_is_straight() -> None:
@@ -320,9 +326,10 @@ def prove_normal_and_residual_are_those_of_the_turned_surface() -> None:
     settings = [75, 1, "0.125", "0.875", "3.5", "0.25", 1, "0.375", 3, "0.5", 80, "0.25"]
     motion = [mpmath.mpf(k % 7 - 3) / 2**9 for k in range(q.motion.size)]
     for make, first, extra, turn in (
-        (straight_generation, "1.5", [], -1), (curved_generation, "1.5", ["0.00390625", 1], -1),
+        (straight_generation, "1.5", [], -1),
+        (curved_generation, "1.5", ["0.00390625", 1], -1),
         (arc_generation, "0.5", [90, 3, 12], 1),
-    ):  # fmt: skip
+    ):
         for side in (1, -1):
             rest = [*map(mpmath.mpf, settings), *motion, mpmath.mpf("0.375"), mpmath.mpf("0.25")]
             rest += [*map(mpmath.mpf, extra), mpmath.mpf(side)]

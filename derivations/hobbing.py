@@ -93,13 +93,21 @@ def fed_ratio() -> Expression:
         "fed_ratio",
         "Motor steps per count of the hob for a helical gear at a constant feed per turn of the table, signed (9.15).",
         (
-            q.hob_sign, q.helix_sign, q.cut_sign, q.teeth, q.hob_starts, q.module, q.helix_angle, q.feed_per_turn,
-            q.encoder_counts, q.motor_steps,
+            q.hob_sign,
+            q.helix_sign,
+            q.cut_sign,
+            q.teeth,
+            q.hob_starts,
+            q.module,
+            q.helix_angle,
+            q.feed_per_turn,
+            q.encoder_counts,
+            q.motor_steps,
         ),
         ((q.fed_ratio, q.hob_sign.symbol * N / (D * change)),),
         requires=(change - sp.Rational(1, 10),),
         source="hobbing machines without a differential",
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -143,12 +151,14 @@ def lead_screw_ratio() -> Expression:
         (
             (
                 q.lead_screw_ratio,
-                q.thread_sign.symbol * lead * q.motor_steps.symbol
+                q.thread_sign.symbol
+                * lead
+                * q.motor_steps.symbol
                 / (q.lead_screw_pitch.symbol * q.encoder_counts.symbol),
             ),
         ),
         source="the other use of the gearbox in the source text",
-    )  # fmt: skip
+    )
 
 
 def prove_lead_is_that_of_the_helix_on_the_reference_cylinder() -> None:

@@ -151,9 +151,11 @@ def taper_angles() -> Expression:
     """(11.6, 11.7) as an Expression."""
     taper, sums = q.depth_taper.symbol, (standard_sum(), duplex_sum())
     total = sp.Piecewise(
-        (0, sp.Eq(taper, 0)), (sums[0], sp.Eq(taper, 1)), (sums[1], sp.Eq(taper, 2)),
+        (0, sp.Eq(taper, 0)),
+        (sums[0], sp.Eq(taper, 1)),
+        (sums[1], sp.Eq(taper, 2)),
         (sp.Min(sums[1], TILT_LIMIT * sums[0]), True),
-    )  # fmt: skip
+    )
     own = sp.atan(q.pinion_mean_dedendum.symbol / q.mean_cone_distance.symbol)
     share = total * q.wheel_mean_addendum.symbol / q.mean_working_depth.symbol
     addendum = sp.Piecewise((own, sp.Eq(taper, 1)), (share, True))
@@ -161,9 +163,17 @@ def taper_angles() -> Expression:
         "taper_angles",
         "Addendum and dedendum angle of the wheel by the taper of the depth (11.6, 11.7).",
         (
-            q.depth_taper, q.mean_cone_distance, q.mean_spiral_angle, q.cutter_radius, q.pressure_angle_drive,
-            q.pressure_angle_coast, q.mean_normal_module, q.pinion_mean_dedendum, q.wheel_mean_dedendum,
-            q.wheel_mean_addendum, q.mean_working_depth,
+            q.depth_taper,
+            q.mean_cone_distance,
+            q.mean_spiral_angle,
+            q.cutter_radius,
+            q.pressure_angle_drive,
+            q.pressure_angle_coast,
+            q.mean_normal_module,
+            q.pinion_mean_dedendum,
+            q.wheel_mean_dedendum,
+            q.wheel_mean_addendum,
+            q.mean_working_depth,
         ),
         (
             (q.dedendum_angle_sum, total),
@@ -171,7 +181,7 @@ def taper_angles() -> Expression:
             (q.wheel_dedendum_angle, total - addendum),
         ),
         source=_SOURCE + "; tapers as in its annex C",
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -215,8 +225,14 @@ def cone_apexes() -> Expression:
         "cone_apexes",
         "Apexes of face and root cones beyond the crossing point (11.9).",
         (
-            q.shaft_angle, q.wheel_pitch_angle, q.wheel_addendum_angle, q.wheel_dedendum_angle, q.mean_cone_distance,
-            q.wheel_mean_addendum, q.wheel_mean_dedendum, q.clearance,
+            q.shaft_angle,
+            q.wheel_pitch_angle,
+            q.wheel_addendum_angle,
+            q.wheel_dedendum_angle,
+            q.mean_cone_distance,
+            q.wheel_mean_addendum,
+            q.wheel_mean_dedendum,
+            q.clearance,
         ),
         (
             (q.wheel_face_apex, face),
@@ -226,7 +242,7 @@ def cone_apexes() -> Expression:
         ),
         requires=(shaft - face_angle - sp.Rational(1, 20),),
         source=_SOURCE,
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -336,9 +352,14 @@ def prove_standard_taper_runs_to_the_pitch_apex() -> None:
     angles, apexes = taper_angles(), cone_apexes()
     for shaft in (sp.Rational(3, 2), sp.Rational(5, 4)):
         depths = {
-            R_m: 80, q.pinion_mean_dedendum.symbol: 3, q.wheel_mean_dedendum.symbol: 5, q.clearance.symbol: 1,
-            q.wheel_mean_addendum.symbol: 2, q.shaft_angle.symbol: shaft, q.wheel_pitch_angle.symbol: sp.Rational(7, 8),
-        }  # fmt: skip
+            R_m: 80,
+            q.pinion_mean_dedendum.symbol: 3,
+            q.wheel_mean_dedendum.symbol: 5,
+            q.clearance.symbol: 1,
+            q.wheel_mean_addendum.symbol: 2,
+            q.shaft_angle.symbol: shaft,
+            q.wheel_pitch_angle.symbol: sp.Rational(7, 8),
+        }
         names = (q.wheel_addendum_angle, q.wheel_dedendum_angle)
         tapered = {each.symbol: angles[each.name].subs(standard).subs(depths) for each in names}
         wheel, pinion = (apexes[name].subs(tapered).subs(depths) for name in ("wheel_root_apex", "pinion_root_apex"))

@@ -71,7 +71,11 @@ def hobbing_cutter() -> Expression:
         "hobbing_cutter",
         "Place and lead of a face hobbing cutter, base circle of its epicycloid (12.2).",
         (
-            q.mean_cone_distance, q.wheel_pitch_angle, q.mean_spiral_angle, q.wheel_teeth, q.blade_groups,
+            q.mean_cone_distance,
+            q.wheel_pitch_angle,
+            q.mean_spiral_angle,
+            q.wheel_teeth,
+            q.blade_groups,
             q.cutter_radius,
         ),
         (
@@ -85,7 +89,7 @@ def hobbing_cutter() -> Expression:
             center_distance_squared(sp.asin(sp.Min(lead_sine(), 1))) - 100,
         ),
         source=_SOURCE,
-    )  # fmt: skip
+    )
 
 
 def hobbed_cosine() -> sp.Expr:

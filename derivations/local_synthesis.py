@@ -80,7 +80,13 @@ def roll_at_contact() -> Expression:
         "roll_at_contact",
         "How the members roll on each other at a contact: w, the acceleration, the sliding (26.2).",
         (
-            q.gear_point, q.gear_normal, q.contact_basis, q.curvature, q.shaft_angle, q.hypoid_offset, q.assembly,
+            q.gear_point,
+            q.gear_normal,
+            q.contact_basis,
+            q.curvature,
+            q.shaft_angle,
+            q.hypoid_offset,
+            q.assembly,
         ),
         (
             (q.roll_vector, T.T * omega.cross(n) + K_2 * along),
@@ -89,7 +95,7 @@ def roll_at_contact() -> Expression:
         ),
         requires=(rho**2 - 25,),
         source="Litvin's relations of curvatures, written without principal directions",
-    )  # fmt: skip
+    )
 
 
 def _matrix(components: sp.Matrix) -> sp.Matrix:
@@ -158,13 +164,18 @@ def synthesis() -> Expression:
         "synthesis",
         "Relative curvature that gives the wanted path direction, parabola and ellipse (26.6).",
         (
-            q.roll_vector, q.roll_acceleration, q.lever_arm, q.path_angle, q.wanted_curvature, q.major_semi_axis,
+            q.roll_vector,
+            q.roll_acceleration,
+            q.lever_arm,
+            q.path_angle,
+            q.wanted_curvature,
+            q.major_semi_axis,
             q.separation,
         ),
         ((q.synthesized_curvature, sp.Matrix([D[0, 0], D[0, 1], D[1, 1]])),),
         requires=(w.dot(p) ** 2 - sp.Rational(1, 100), speed**2 - 1, (along - least) ** 2 - sp.Rational(1, 10**6)),
         source="local synthesis of Litvin, solved in the tangent plane",
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -251,9 +262,11 @@ def prove_curvature_of_a_torus_cut_as_an_envelope() -> None:
     here = {azimuth: theta}
     T = sp.Matrix.hstack(n.diff(psi).subs(here), sp.Matrix([-sp.sin(theta), sp.cos(theta), 0]))
     parts = (
-        (q.point_rates, point.jacobian(w)), (q.normal_rates, n.jacobian(w)),
-        (q.meshing_gradient, sp.Matrix([f]).jacobian(w)), (q.contact_basis, T),
-    )  # fmt: skip
+        (q.point_rates, point.jacobian(w)),
+        (q.normal_rates, n.jacobian(w)),
+        (q.meshing_gradient, sp.Matrix([f]).jacobian(w)),
+        (q.contact_basis, T),
+    )
     values: dict[sp.Symbol, sp.Expr] = {}
     for quantity, matrix in parts:
         values |= dict(zip(quantity.symbols, matrix.subs(here), strict=True))

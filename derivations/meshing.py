@@ -80,13 +80,10 @@ def nasa_closed_form(h: int, v: dict[str, sp.Symbol]) -> sp.Expr:
     tau = theta - h * q_n + h * phi
     return (
         (u - r * sp.cot(psi) * sp.cos(psi)) * sp.cos(root) * sp.sin(tau)
-        + s * (
-            (m_cw - sp.sin(root)) * sp.cos(psi) * sp.sin(theta)
-            - h * sp.cos(root) * sp.sin(psi) * sp.sin(q_n - phi)
-        )
+        + s * ((m_cw - sp.sin(root)) * sp.cos(psi) * sp.sin(theta) - h * sp.cos(root) * sp.sin(psi) * sp.sin(q_n - phi))
         + E_m * (sp.cos(root) * sp.sin(psi) + sp.sin(root) * sp.cos(psi) * sp.cos(tau))
         - L_m * sp.sin(root) * sp.cos(psi) * sp.sin(tau)
-    )  # fmt: skip
+    )
 
 
 def prove_meshing_is_the_normal_part_of_the_surface_velocity() -> None:
@@ -124,11 +121,19 @@ def prove_start_values_put_the_cutter_circle_through_the_point() -> None:
         sp.Rational(text) for text in ("75", "76", "26", "1", "7/2", "1/4", "7/24", "3/8", "80")
     )
     values = {
-        q.radial_distance.symbol: S, q.cradle_angle.symbol: 1, q.cutter_tilt.symbol: 0, q.cutter_swivel.symbol: 0,
-        q.blank_offset.symbol: E_m, q.sliding_base.symbol: X_b, q.machine_center_to_crossing_point.symbol: X_p,
-        q.machine_root_angle.symbol: gamma, q.blade_point_radius.symbol: point, q.blade_pressure_angle.symbol: alpha,
-        q.axial.symbol: z, q.radial.symbol: r,
-    }  # fmt: skip
+        q.radial_distance.symbol: S,
+        q.cradle_angle.symbol: 1,
+        q.cutter_tilt.symbol: 0,
+        q.cutter_swivel.symbol: 0,
+        q.blank_offset.symbol: E_m,
+        q.sliding_base.symbol: X_b,
+        q.machine_center_to_crossing_point.symbol: X_p,
+        q.machine_root_angle.symbol: gamma,
+        q.blade_point_radius.symbol: point,
+        q.blade_pressure_angle.symbol: alpha,
+        q.axial.symbol: z,
+        q.radial.symbol: r,
+    }
     for side in (1, -1):
         height, _, theta = (sp.N(each.subs({**values, q.side.symbol: side}), 40) for each in contact_start()["contact"])
         center = S * sp.Matrix([sp.cos(1 + theta), sp.sin(1 + theta)])

@@ -67,19 +67,30 @@ pitch_apex_beyond_crossing_point = _length(
     "pitch_apex_beyond_crossing_point", "t_z", -20.0, 20.0, "pitch apex beyond the crossing point, seen from the teeth"
 )
 machine_root_angle = _angle("machine_root_angle", r"\Gamma", 0.05, 1.45, "work axis against the machine plane")
-ratio_of_roll = Quantity(
-    "ratio_of_roll", "work rotation per cradle rotation", "1", "R_a", (0.5, 8.0), scale=1.0
-)  # fmt: skip
+ratio_of_roll = Quantity("ratio_of_roll", "work rotation per cradle rotation", "1", "R_a", (0.5, 8.0), scale=1.0)
 work_rotation_offset = _angle("work_rotation_offset", r"\varphi_0", -pi, pi, "work rotation at cradle rotation zero")
 
 settings = Quantity(
-    "settings", "machine and cutter settings of one flank", "mixed", r"\mathbf{x}", shape=(12,),
+    "settings",
+    "machine and cutter settings of one flank",
+    "mixed",
+    r"\mathbf{x}",
+    shape=(12,),
     components=(
-        radial_distance, cradle_angle, cutter_tilt, cutter_swivel, blank_offset, sliding_base,
-        machine_center_to_crossing_point, machine_root_angle, ratio_of_roll, work_rotation_offset,
-        blade_point_radius, blade_pressure_angle,
+        radial_distance,
+        cradle_angle,
+        cutter_tilt,
+        cutter_swivel,
+        blank_offset,
+        sliding_base,
+        machine_center_to_crossing_point,
+        machine_root_angle,
+        ratio_of_roll,
+        work_rotation_offset,
+        blade_point_radius,
+        blade_pressure_angle,
     ),
-)  # fmt: skip
+)
 
 # --- cradle machine ---------------------------------------------------------------------------------------------
 theta = _angle("theta", r"\theta", -1.0, 1.0, "cradle rotation (roll position)")
@@ -94,13 +105,20 @@ V_ls = _vector("V_ls", r"\mathbf{V}_{ls}", "mm", 200.0, 500.0, "pitch apex to cu
 point_w = _vector("point_w", r"\mathbf{R}", "mm", 300.0, 500.0, "point of the tooth surface family, work frame w")
 normal_w = _vector("normal_w", r"\mathbf{n}", "1", 1.0, 1.0, "outward unit normal (out of the metal), work frame w")
 meshing_residual = Quantity(
-    "meshing_residual", "normal speed of cutter against work per unit of cradle speed, zero in contact",
-    "mm/rad", "f", scale=1000.0,
-)  # fmt: skip
+    "meshing_residual",
+    "normal speed of cutter against work per unit of cradle speed, zero in contact",
+    "mm/rad",
+    "f",
+    scale=1000.0,
+)
 sensitivity = Quantity(
-    "sensitivity", "deviation per unit of every setting at the contact point", "mixed",
-    r"\partial\delta/\partial\mathbf{x}", shape=(12,), scale=1000.0,
-)  # fmt: skip
+    "sensitivity",
+    "deviation per unit of every setting at the contact point",
+    "mixed",
+    r"\partial\delta/\partial\mathbf{x}",
+    shape=(12,),
+    scale=1000.0,
+)
 
 # --- vertical machine -------------------------------------------------------------------------------------------
 X = Quantity("X", "position of axis X", "mm", "X", (-500.0, 500.0), scale=300.0)
@@ -111,9 +129,13 @@ A = Quantity(
 )
 B = Quantity("B", "position of the swivel axis B, left-handed about Y", "rad", "B", (-0.2, 1.7), scale=1.0)
 axes = Quantity(
-    "axes", "axis positions X, Y, Z, A, B of the vertical machine", "mixed", r"\mathbf{a}", shape=(5,),
+    "axes",
+    "axis positions X, Y, Z, A, B of the vertical machine",
+    "mixed",
+    r"\mathbf{a}",
+    shape=(5,),
     components=(X, Y, Z, A, B),
-)  # fmt: skip
+)
 pivot_height = _length(
     "pivot_height",
     "(R_d + C_t)",
@@ -122,9 +144,15 @@ pivot_height = _length(
     "R_d + C_t: reading of Z with the blade tips level with the B axis",
 )
 pivot_offset = Quantity(
-    "pivot_offset", "B axis to pitch apex, in the axes of the work at A = 0; zero where none is given", "mm",
-    r"\mathbf{e}", (-100.0, 100.0), shape=(3,), scale=100.0, default=0.0,
-)  # fmt: skip
+    "pivot_offset",
+    "B axis to pitch apex, in the axes of the work at A = 0; zero where none is given",
+    "mm",
+    r"\mathbf{e}",
+    (-100.0, 100.0),
+    shape=(3,),
+    scale=100.0,
+    default=0.0,
+)
 point_m = _vector(
     "point_m", r"\mathbf{r}", "mm", 500.0, 1000.0, "point of the work from the cutter centre, axes of the machine"
 )
@@ -144,7 +172,7 @@ line_point = _vector("line_point", r"\mathbf{p}", "mm", 300.0, 200.0, "point at 
 line_direction = _vector("line_direction", r"\mathbf{d}", "1", 1.0, 1.0, "unit direction of a line, work frame w")
 line_distance = Quantity(
     "line_distance", "where the line enters the swept blade; 1e3 where it does not", "mm", "t", scale=1000.0
-)  # fmt: skip
+)
 line_start = _length("line_start", "t_s", -20.0, 0.0, "where on a line the search begins, within the tooth")
 line_place = _length("line_place", "t", -20.0, 20.0, "distance along a line from its point")
 blade_slope = Quantity("blade_slope", "tan of the blade's angle against the cutter axis", "1", r"\tau", (0.05, 0.7))
@@ -157,19 +185,27 @@ hole_upper = _length("hole_upper", "t_4", -100.0, 100.0, "where a line leaves th
 def _blade(which: str, mark: str, low: float, high: float) -> Quantity:
     text = f"of the {which} blade"
     return Quantity(
-        f"{which}_blade", f"straight or curved flank and rounded edge {text}", "mixed", rf"\mathbf{{b}}_{mark}",
+        f"{which}_blade",
+        f"straight or curved flank and rounded edge {text}",
+        "mixed",
+        rf"\mathbf{{b}}_{mark}",
         shape=(7,),
         components=(
             _length(f"{which}_flank_radius", f"r_{mark}", low, high, f"point radius of the cone at the flank {text}"),
             _angle(f"{which}_flank_angle", rf"\alpha_{mark}", 0.05, 0.6, f"pressure angle {text}"),
-            Quantity(f"{which}_curvature", f"curvature of the flank {text}, convex positive", "1/mm",
-                     rf"\kappa_{mark}", (-0.005, 0.005)),
+            Quantity(
+                f"{which}_curvature",
+                f"curvature of the flank {text}, convex positive",
+                "1/mm",
+                rf"\kappa_{mark}",
+                (-0.005, 0.005),
+            ),
             _length(f"{which}_reference", f"h_{{r{mark}}}", 0.0, 10.0, f"height where arc and cone touch {text}"),
             _length(f"{which}_edge_center", rf"\rho_{{e{mark}}}", low, high, f"radius of the edge's centre {text}"),
             _length(f"{which}_edge_radius", f"r_{{e{mark}}}", 0.0, 3.0, f"radius of the rounded edge {text}"),
             _angle(f"{which}_joint", f"u_{{j{mark}}}", 0.05, 0.6, f"normal's angle where edge and flank join {text}"),
         ),
-    )  # fmt: skip
+    )
 
 
 outer_blade = _blade("outer", "o", 40.0, 250.0)
@@ -185,9 +221,13 @@ seated_point = _vector("seated_point", r"\mathbf{R}_a", "mm", 300.0, 500.0, "poi
 seated_normal = _vector("seated_normal", r"\mathbf{n}_a", "1", 1.0, 1.0, "its outward unit normal, turning with A")
 
 motion_sensitivity = Quantity(
-    "motion_sensitivity", "deviation per unit of a small motion of the work: along x, y, z and about x, y, z", "mixed",
-    r"\partial\delta/\partial(\mathbf{t}, \boldsymbol{\omega})", shape=(6,), scale=1000.0,
-)  # fmt: skip
+    "motion_sensitivity",
+    "deviation per unit of a small motion of the work: along x, y, z and about x, y, z",
+    "mixed",
+    r"\partial\delta/\partial(\mathbf{t}, \boldsymbol{\omega})",
+    shape=(6,),
+    scale=1000.0,
+)
 
 # --- deviation --------------------------------------------------------------------------------------------------
 tip_center = _vector(
@@ -202,15 +242,17 @@ profilewise = _length(
     "profilewise", "Y_t", -20.0, 20.0, "distance from the reference point up the profile, root to tip"
 )
 surface_coefficients = Quantity(
-    "surface_coefficients", "coefficients c_1 ... c_10 of the cubic deviation surface, mm per mm^k", "mixed", "c",
-    (-1.0, 1.0), shape=(10,),
-)  # fmt: skip
-monomials = Quantity(
-    "monomials", "1, X, Y, X^2, XY, Y^2, X^3, X^2 Y, X Y^2, Y^3", "mixed", "m", shape=(10,), scale=1e5
-)  # fmt: skip
+    "surface_coefficients",
+    "coefficients c_1 ... c_10 of the cubic deviation surface, mm per mm^k",
+    "mixed",
+    "c",
+    (-1.0, 1.0),
+    shape=(10,),
+)
+monomials = Quantity("monomials", "1, X, Y, X^2, XY, Y^2, X^3, X^2 Y, X Y^2, Y^3", "mixed", "m", shape=(10,), scale=1e5)
 surface_deviation = Quantity(
     "surface_deviation", "deviation that the cubic surface gives at one point", "mm", r"\delta", scale=1e5
-)  # fmt: skip
+)
 
 evaluated_length = _length("evaluated_length", "a", 1.0, 100.0, "length of the evaluated area, toe to heel")
 evaluated_height = _length("evaluated_height", "b", 1.0, 40.0, "height of the evaluated area, root to tip")
@@ -226,7 +268,11 @@ opposite_w = _vector(
     "opposite_w", r"\mathbf{R}'", "mm", 300.0, 500.0, "point of the opposite flank at the same place, work frame w"
 )
 touch_errors = Quantity(
-    "touch_errors", "errors of the machine that measures, and growth of the work", "mixed", r"\mathbf{e}", shape=(6,),
+    "touch_errors",
+    "errors of the machine that measures, and growth of the work",
+    "mixed",
+    r"\mathbf{e}",
+    shape=(6,),
     components=(
         Quantity("X_error", "error of axis X", "mm", "e_X", (-0.1, 0.1)),
         Quantity("Y_error", "error of axis Y", "mm", "e_Y", (-0.1, 0.1)),
@@ -235,7 +281,7 @@ touch_errors = Quantity(
         Quantity("squareness", "shift of X for every mm of Z", "1", r"\sigma", (-1e-3, 1e-3)),
         Quantity("growth", "part by which the work is larger than its drawing", "1", r"\varepsilon", (-1e-3, 1e-3)),
     ),
-)  # fmt: skip
+)
 seeming_deviation = Quantity(
     "seeming_deviation", "deviation that a perfect flank seems to have", "mm", r"\delta_e", scale=1000.0
 )
@@ -268,9 +314,15 @@ touch_normal = _vector(
     "touch_normal", r"\mathbf{m}", "1", 1.0, 1.0, "unit normal out of what is touched, axes of the machine"
 )
 lobing = Quantity(
-    "lobing", "lobes of the effective radius: amplitude times cosine and sine of three times the azimuth of one", "mm",
-    r"\mathbf{a}", (-0.02, 0.02), shape=(2,), scale=1.0, default=0.0,
-)  # fmt: skip
+    "lobing",
+    "lobes of the effective radius: amplitude times cosine and sine of three times the azimuth of one",
+    "mm",
+    r"\mathbf{a}",
+    (-0.02, 0.02),
+    shape=(2,),
+    scale=1.0,
+    default=0.0,
+)
 lobing_amplitude = _length("lobing_amplitude", "a", 0.0, 0.02, "amplitude of the lobes of the effective radius")
 lobing_phase = _angle("lobing_phase", r"\varphi_0", -pi / 3, pi / 3, "azimuth of a lobe of the effective radius")
 effective_radius = _length("effective_radius", "r", 0.0, 5.0, "radius of the tip that a touch in its direction has")
@@ -278,9 +330,13 @@ sphere_w = _vector(
     "sphere_w", r"\mathbf{s}", "mm", 100.0, 200.0, "centre of a sphere that the work carries, work frame w"
 )
 axis_place = Quantity(
-    "axis_place", "X and Z of the axis B beside where the zero of X and R_d have it", "mm",
-    r"\mathbf{b}", (-5.0, 5.0), shape=(2,),
-)  # fmt: skip
+    "axis_place",
+    "X and Z of the axis B beside where the zero of X and R_d have it",
+    "mm",
+    r"\mathbf{b}",
+    (-5.0, 5.0),
+    shape=(2,),
+)
 swivel_zero = _angle("swivel_zero", r"\beta_B", -0.02, 0.02, "how far B stands beyond what the control reads")
 sphere_rest = _length("sphere_rest", r"\rho", -1e3, 1e3, "distance that a touch on the sphere leaves unexplained")
 
@@ -298,7 +354,7 @@ cone_shift = Quantity(
 )
 space_turning = Quantity(
     "space_turning", "angle by which a tooth space is turned about z_w", "rad", r"\varepsilon", scale=1.0
-)  # fmt: skip
+)
 allowance = Quantity("allowance", "metal left on a flank, along the circle", "mm", "E", scale=300.0)
 arc_deviation = Quantity("arc_deviation", "deviation of the thickness of a tooth, as an arc", "mm", "E_s", (-1.0, 1.0))
 tooth_arc = _length("tooth_arc", "s", -5000.0, 5000.0, "thickness of a tooth along the circle through its points")
@@ -311,7 +367,7 @@ accuracy_grade = Quantity("accuracy_grade", "grade of accuracy, 2 is finest", "1
 single_pitch_tolerance = Quantity("single_pitch_tolerance", "allowed single pitch", "um", "f_{ptT}", scale=100.0)
 cumulative_pitch_tolerance = Quantity(
     "cumulative_pitch_tolerance", "allowed cumulative pitch", "um", "F_{pT}", scale=100.0
-)  # fmt: skip
+)
 runout_tolerance = Quantity("runout_tolerance", "allowed runout", "um", "F_{rT}", scale=100.0)
 
 # --- electronic gearbox -----------------------------------------------------------------------------------------
@@ -381,9 +437,13 @@ helix_angle = _angle("helix_angle", r"\beta", 0.0, 1.1, "helix angle of the gear
 helix_sign = Quantity("helix_sign", "+1 right-hand, -1 left-hand gear", "1", r"s_\beta", (-1, 1), values=(-1, 1))
 hob_sign = Quantity("hob_sign", "+1 right-hand, -1 left-hand hob", "1", "s_h", (-1, 1), values=(-1, 1))
 feed_sign = Quantity(
-    "feed_sign", "+1 if the counts of the feed go up in climb hobbing, -1 if in conventional", "1", "s_f", (-1, 1),
+    "feed_sign",
+    "+1 if the counts of the feed go up in climb hobbing, -1 if in conventional",
+    "1",
+    "s_f",
+    (-1, 1),
     values=(-1, 1),
-)  # fmt: skip
+)
 profile_shift = Quantity("profile_shift", "profile shift in normal modules", "1", "x", (-0.4, 1.0))
 hob_diameter = _length("hob_diameter", "d_0", 5.0, 500.0, "reference diameter of the hob")
 hob_lead_angle = _angle("hob_lead_angle", r"\lambda", 0.0, 1.5, "lead angle of the hob at its reference diameter")
@@ -399,9 +459,12 @@ tip_diameter = _length("tip_diameter", "d_{at}", 0.1, 1e5, "outside diameter of 
 gear_lead = Quantity("gear_lead", "travel along the axis in which a tooth goes once round", "mm", "L", scale=1e5)
 spanned_teeth = _count("spanned_teeth", "k", 1, 400, "number of teeth that the span takes in")
 best_spanned_teeth = Quantity(
-    "best_spanned_teeth", "number of teeth at which the span touches at d + 2 x m_n, before rounding", "1", "k_{th}",
+    "best_spanned_teeth",
+    "number of teeth at which the span touches at d + 2 x m_n, before rounding",
+    "1",
+    "k_{th}",
     scale=100.0,
-)  # fmt: skip
+)
 span = _length("span", "W_k", 0.0, 1e5, "base tangent length over the spanned teeth")
 span_contact_diameter = _length("span_contact_diameter", "d_W", 0.0, 1e5, "diameter at which the span touches")
 span_face_width = _length("span_face_width", "b_W", 0.0, 1e5, "face width below which a span finds no second contact")
@@ -449,11 +512,22 @@ mean_addendum = _length("mean_addendum", "h_{am}", 0.2, 20.0, "tooth height abov
 mean_dedendum = _length("mean_dedendum", "h_{fm}", 0.2, 20.0, "tooth depth below the pitch cone at the mean point")
 clearance = _length("clearance", "c", 0.0, 5.0, "depth of the root that the mating tooth does not reach")
 blank = Quantity(
-    "blank", "blank of one member, pitch apex in the crossing point", "mixed", r"\mathbf{b}", shape=(8,),
+    "blank",
+    "blank of one member, pitch apex in the crossing point",
+    "mixed",
+    r"\mathbf{b}",
+    shape=(8,),
     components=(
-        pitch_angle, face_angle, root_angle, mean_cone_distance, face_width, mean_addendum, mean_dedendum, clearance,
+        pitch_angle,
+        face_angle,
+        root_angle,
+        mean_cone_distance,
+        face_width,
+        mean_addendum,
+        mean_dedendum,
+        clearance,
     ),
-)  # fmt: skip
+)
 across = Quantity("across", "place along the tooth: 0 toe, 1 heel", "1", r"\xi", (0.0, 1.0))
 up = Quantity("up", "place up the working depth: 0 lower limit, 1 tip", "1", r"\eta", (0.0, 1.0))
 axial = Quantity("axial", "coordinate z_w of a flank point", "mm", "z_w", (5.0, 300.0), scale=300.0)
@@ -461,9 +535,14 @@ radial = Quantity("radial", "distance of a flank point from the member's axis", 
 across_space = Quantity("across_space", "outward normal of a flank, its part around the axis", "1", r"n_\varphi")
 flank_azimuth = _angle("flank_azimuth", r"\varphi", -3.2, 3.2, "direction of a flank point about z_w")
 contact = Quantity(
-    "contact", "surface parameters u, beta, theta of a flank point", "mixed", r"(u, \beta, \theta)", shape=(3,),
-    components=(u, beta, theta), scale=100.0,
-)  # fmt: skip
+    "contact",
+    "surface parameters u, beta, theta of a flank point",
+    "mixed",
+    r"(u, \beta, \theta)",
+    shape=(3,),
+    components=(u, beta, theta),
+    scale=100.0,
+)
 turning = Quantity(
     "turning", "angle by which a flank is turned about z_w to leave this deviation", "rad", r"\varepsilon", scale=1.0
 )
@@ -472,28 +551,42 @@ deviation_in = Quantity("deviation_in", "measured deviation along the outward no
 
 # --- every motion and every blade -------------------------------------------------------------------------------
 motion = Quantity(
-    "motion", "coefficients of theta^1 ... theta^7 (columns) of the machine settings (rows, in their order)", "mixed",
-    "m", (-0.3, 0.3), shape=(10, 7),
-)  # fmt: skip
+    "motion",
+    "coefficients of theta^1 ... theta^7 (columns) of the machine settings (rows, in their order)",
+    "mixed",
+    "m",
+    (-0.3, 0.3),
+    shape=(10, 7),
+)
 settings_at = Quantity(
-    "settings_at", "machine and cutter settings of one flank at a cradle rotation", "mixed", r"\mathbf{x}(\theta)",
-    shape=(12,), scale=100.0,
-)  # fmt: skip
+    "settings_at",
+    "machine and cutter settings of one flank at a cradle rotation",
+    "mixed",
+    r"\mathbf{x}(\theta)",
+    shape=(12,),
+    scale=100.0,
+)
 index_ratio = Quantity(
-    "index_ratio", "work rotation per cutter rotation, blade groups over teeth; 0 in face milling", "1", r"\iota",
+    "index_ratio",
+    "work rotation per cutter rotation, blade groups over teeth; 0 in face milling",
+    "1",
+    r"\iota",
     (-0.8, 0.8),
-)  # fmt: skip
+)
 blade_offset_angle = _angle("blade_offset_angle", r"\eta", -0.5, 0.5, "turn of the blade's plane about its point")
 arc_angle = _angle("arc_angle", "u", 0.05, 1.5, "angle of the blade's normal against the tip plane, on an arc blade")
 blade_arc = Quantity(
-    "blade_arc", "arc blade: radius and height of its centre, and its radius (positive = convex blade)", "mm",
-    r"\mathbf{a}", shape=(3,),
+    "blade_arc",
+    "arc blade: radius and height of its centre, and its radius (positive = convex blade)",
+    "mm",
+    r"\mathbf{a}",
+    shape=(3,),
     components=(
         _length("arc_center_radius", r"\rho_b", 20.0, 250.0, "distance of the arc's centre from the cutter axis"),
         _length("arc_center_height", "h_b", -50.0, 50.0, "height of the arc's centre above the tip plane"),
         _length("arc_radius", "r", 0.2, 15.0, "radius of the arc"),
     ),
-)  # fmt: skip
+)
 touching_point_radius = Quantity(
     "touching_point_radius", "point radius of the straight blade that touches an arc blade", "mm", "r_{pt}", scale=1e4
 )
@@ -501,29 +594,38 @@ touching_pressure_angle = _angle(
     "touching_pressure_angle", r"\alpha_t'", 0.0, 1.57, "its angle against the cutter axis"
 )
 main_arc = Quantity(
-    "main_arc", "arc of a circular-arc blade: radius and height of its centre, and its radius", "mm", r"\mathbf{a}_r",
+    "main_arc",
+    "arc of a circular-arc blade: radius and height of its centre, and its radius",
+    "mm",
+    r"\mathbf{a}_r",
     shape=(3,),
     components=(
         _length("main_center_radius", r"\rho_b", -700.0, 900.0, "distance of the arc's centre from the cutter axis"),
         _length("main_center_height", "h_b", -50.0, 300.0, "height of the arc's centre above the tip plane"),
         _length("main_radius", "r", 200.0, 800.0, "radius of the arc, positive where the blade is convex"),
     ),
-)  # fmt: skip
+)
 straight_edge = Quantity(
-    "straight_edge", "straight part of a blade's edge: radius and height at u = 0, and what u adds to them", "mixed",
-    r"\mathbf{l}", shape=(4,),
+    "straight_edge",
+    "straight part of a blade's edge: radius and height at u = 0, and what u adds to them",
+    "mixed",
+    r"\mathbf{l}",
+    shape=(4,),
     components=(
         _length("edge_start_radius", r"\rho_0", 20.0, 250.0, "radius of the edge about the cutter axis at u = 0"),
         _length("edge_start_height", "h_0", 0.0, 15.0, "height of the edge above the tip plane at u = 0"),
         Quantity("edge_radial_slope", "growth of the radius with u", "1", r"\rho'", (-1.0, 1.0)),
         Quantity("edge_height_slope", "growth of the height with u", "1", "h'", (0.0, 1.0)),
     ),
-)  # fmt: skip
+)
 edge_point_w = _vector("edge_point_w", r"\mathbf{R}_e", "mm", 300.0, 1000.0, "point of a blade's edge, work frame w")
 approach_curvature = Quantity(
-    "approach_curvature", "second derivative of the distance of a blade from a flank point by the roll at its contact",
-    "mm/rad2", "c", (0.1, 1e5),
-)  # fmt: skip
+    "approach_curvature",
+    "second derivative of the distance of a blade from a flank point by the roll at its contact",
+    "mm/rad2",
+    "c",
+    (0.1, 1e5),
+)
 scallop = _length("scallop", r"\delta", 1e-6, 0.1, "height of what is left between two passes of a blade")
 roll_per_turn = Quantity("roll_per_turn", "cradle rotation per turn of the work", "rad", r"\Delta\theta")
 toprem_angle = _angle("toprem_angle", r"\alpha_T", 0.01, 0.6, "angle between the Toprem section and the cutter axis")
@@ -533,20 +635,32 @@ toprem_point_radius = _length(
 )
 blade_spheric_radius = _length("blade_spheric_radius", "r", 200.0, 2000.0, "radius of a circular-arc blade")
 blade_curvature = Quantity(
-    "blade_curvature", "curvature of a blade's edge: one over its radius, zero where it is straight", "1/mm", r"\kappa",
+    "blade_curvature",
+    "curvature of a blade's edge: one over its radius, zero where it is straight",
+    "1/mm",
+    r"\kappa",
     (-0.01, 0.01),
-)  # fmt: skip
+)
 reference_height = _length("reference_height", "h_r", 0.0, 15.0, "height at which arc and straight blade touch")
 blade_edge_radius = _length("blade_edge_radius", "r_e", 0.1, 3.0, "radius of the rounded blade edge")
 joint_height = _length("joint_height", "h_j", 0.0, 5.0, "height above the tip plane at which edge and blade join")
 joint_angle = _angle("joint_angle", r"u_j", 0.0, 1.5, "angle of the normal at which edge and arc blade join")
 roll_coefficients = Quantity(
-    "roll_coefficients", "modified roll 2C, 6D, 24E, 120F", "1", "(2C, 6D, 24E, 120F)", (-50.0, 50.0), shape=(4,),
-)  # fmt: skip
+    "roll_coefficients",
+    "modified roll 2C, 6D, 24E, 120F",
+    "1",
+    "(2C, 6D, 24E, 120F)",
+    (-50.0, 50.0),
+    shape=(4,),
+)
 roll_motion = Quantity(
-    "roll_motion", "coefficients of theta^1 ... theta^7 of the work rotation offset", "rad", r"m_{\varphi}",
-    shape=(7,), scale=100.0,
-)  # fmt: skip
+    "roll_motion",
+    "coefficients of theta^1 ... theta^7 of the work rotation offset",
+    "rad",
+    r"m_{\varphi}",
+    shape=(7,),
+    scale=100.0,
+)
 
 # --- bevel blank to ISO 23509 -----------------------------------------------------------------------------------
 shaft_angle = _angle("shaft_angle", r"\Sigma", 0.6, 2.4, "angle between the axes of the pair")
@@ -590,9 +704,14 @@ pinion_mean_dedendum = _length("pinion_mean_dedendum", "h_{fm1}", 0.2, 20.0, "pi
 wheel_mean_addendum = _length("wheel_mean_addendum", "h_{am2}", 0.2, 20.0, "wheel tooth above the pitch cone")
 wheel_mean_dedendum = _length("wheel_mean_dedendum", "h_{fm2}", 0.2, 20.0, "wheel tooth below the pitch cone")
 depth_taper = Quantity(
-    "depth_taper", "0 uniform depth, 1 standard, 2 duplex (constant slot width), 3 tilted root line", "1", "T", (0, 3),
-    kind="int", values=(0, 1, 2, 3),
-)  # fmt: skip
+    "depth_taper",
+    "0 uniform depth, 1 standard, 2 duplex (constant slot width), 3 tilted root line",
+    "1",
+    "T",
+    (0, 3),
+    kind="int",
+    values=(0, 1, 2, 3),
+)
 dedendum_angle_sum = _angle("dedendum_angle_sum", r"\Sigma\theta_f", -1.0, 1.0, "dedendum angles of both members")
 pinion_addendum_angle = _angle("pinion_addendum_angle", r"\theta_{a1}", 0.0, 0.2, "pinion face cone against pitch cone")
 pinion_dedendum_angle = _angle("pinion_dedendum_angle", r"\theta_{f1}", 0.0, 0.2, "pinion root against pitch cone")
@@ -629,9 +748,14 @@ pinion_root_normal_depth = _length(
 )
 backlash = _length("backlash", "j", 0.0, 1.0, "backlash of the pair, of the kind that backlash_kind says")
 backlash_kind = Quantity(
-    "backlash_kind", "0 outer normal, 1 outer transverse, 2 mean normal, 3 mean transverse", "1", "K", (0, 3),
-    kind="int", values=(0, 1, 2, 3),
-)  # fmt: skip
+    "backlash_kind",
+    "0 outer normal, 1 outer transverse, 2 mean normal, 3 mean transverse",
+    "1",
+    "K",
+    (0, 3),
+    kind="int",
+    values=(0, 1, 2, 3),
+)
 outer_normal_backlash = _length("outer_normal_backlash", "j_{en}", 0.0, 2.0, "square to the flank, at the heel")
 outer_transverse_backlash = _length("outer_transverse_backlash", "j_{et}", 0.0, 2.0, "backlash as an arc, at the heel")
 mean_normal_backlash = _length("mean_normal_backlash", "j_{mn}", 0.0, 2.0, "backlash square to the flank, mean point")
@@ -685,18 +809,30 @@ wall_angle = _angle("wall_angle", r"\omega", -0.3, 0.3, "how far the middle of t
 
 # --- compensation -----------------------------------------------------------------------------------------------
 setting_rates = Quantity(
-    "setting_rates", "shift of a flank along a line per unit of every setting", "mixed",
-    r"\partial t/\partial\mathbf{x}", (-300.0, 300.0), shape=(12,), scale=1000.0,
-)  # fmt: skip
-motion_rates = Quantity(
-    "motion_rates", "shift of a flank along a line per unit of every coefficient of the motion", "mixed",
-    r"\partial t/\partial m", shape=(10, 7), scale=1000.0,
-)  # fmt: skip
-curved_rates = Quantity(
-    "curved_rates", "shift of a flank along a line per unit of every setting, and of the curvature of the blade",
+    "setting_rates",
+    "shift of a flank along a line per unit of every setting",
     "mixed",
-    r"\partial t/\partial(\mathbf{x}, \kappa)", shape=(13,), scale=1000.0,
-)  # fmt: skip
+    r"\partial t/\partial\mathbf{x}",
+    (-300.0, 300.0),
+    shape=(12,),
+    scale=1000.0,
+)
+motion_rates = Quantity(
+    "motion_rates",
+    "shift of a flank along a line per unit of every coefficient of the motion",
+    "mixed",
+    r"\partial t/\partial m",
+    shape=(10, 7),
+    scale=1000.0,
+)
+curved_rates = Quantity(
+    "curved_rates",
+    "shift of a flank along a line per unit of every setting, and of the curvature of the blade",
+    "mixed",
+    r"\partial t/\partial(\mathbf{x}, \kappa)",
+    shape=(13,),
+    scale=1000.0,
+)
 curved_height = Quantity("curved_height", "height of a point of a curved blade above the tip plane", "mm", "h_u")
 cone_place = _length("cone_place", "L", -500.0, 500.0, "cone distance of a point, along the pitch cone")
 cone_depth = _length("cone_depth", "D", -500.0, 500.0, "depth of a point below the pitch cone")
@@ -714,12 +850,16 @@ ease_off = Quantity("ease_off", "gap between a flank and the conjugate one along
 cutter_rpm = Quantity("cutter_rpm", "turns of the cutter in a minute", "1/min", "n", (1.0, 5000.0))
 blades_per_turn = Quantity(
     "blades_per_turn", "blades that pass one place of a flank in a turn of the cutter", "1", "N", (0.01, 100.0)
-)  # fmt: skip
+)
 blade_period = Quantity("blade_period", "time from one blade to the next", "s", "T_b", (1e-4, 100.0))
 passing_speed = Quantity(
-    "passing_speed", "speed of the work past the cutter: radial, along the cut, along the cutter axis", "mm/s",
-    r"\mathbf{v}", (-100.0, 100.0), shape=(3,),
-)  # fmt: skip
+    "passing_speed",
+    "speed of the work past the cutter: radial, along the cut, along the cutter axis",
+    "mm/s",
+    r"\mathbf{v}",
+    (-100.0, 100.0),
+    shape=(3,),
+)
 blade_advance = Quantity("blade_advance", "advance of the work from one blade to the next", "mm", "f_b", scale=1.0)
 chip_thickness = Quantity("chip_thickness", "thickness of the chip, square to the blade", "mm", "h", scale=1.0)
 # --- contact of a pair ------------------------------------------------------------------------------------------
@@ -729,31 +869,43 @@ pinion_rotation = _angle(
 gear_rotation = _angle("gear_rotation", r"\varphi_2", -pi, pi, "rotation of the gear about its axis")
 hypoid_offset = _length("hypoid_offset", "a", -50.0, 50.0, "offset of the gear's axis from the pinion's, along Z × X")
 assembly = Quantity(
-    "assembly", "displacements of the members in their assembly", "mixed", r"\mathbf{m}", shape=(4,),
+    "assembly",
+    "displacements of the members in their assembly",
+    "mixed",
+    r"\mathbf{m}",
+    shape=(4,),
     components=(
         _length("deviation_of_offset", "V", -5.0, 5.0, "gear axis shifted along Y = Z × X"),
         _length("axial_displacement_pinion", "H", -5.0, 5.0, "pinion withdrawn along its axis Z"),
         _length("axial_displacement_gear", "J", -5.0, 5.0, "gear withdrawn along its axis"),
         _angle("deviation_of_shaft_angle", r"\Delta\Sigma", -0.05, 0.05, "growth of the shaft angle"),
     ),
-)  # fmt: skip
+)
 pinion_point = _vector("pinion_point", r"\mathbf{r}_1", "mm", 300.0, 300.0, "point of the pinion's flank, pair frame")
 pinion_normal = _vector("pinion_normal", r"\mathbf{n}_1", "1", 1.0, 1.0, "its outward unit normal, pair frame")
 gear_point = _vector("gear_point", r"\mathbf{r}_2", "mm", 300.0, 300.0, "point of the gear's flank, pair frame")
 gear_normal = _vector("gear_normal", r"\mathbf{n}_2", "1", 1.0, 1.0, "its outward unit normal, pair frame")
 alignment = Quantity(
-    "alignment", "parts of the pinion's normal across the gear's, times distances of the contact", "mm",
-    r"\mathbf{q}", shape=(2,), scale=1000.0,
-)  # fmt: skip
+    "alignment",
+    "parts of the pinion's normal across the gear's, times distances of the contact",
+    "mm",
+    r"\mathbf{q}",
+    shape=(2,),
+    scale=1000.0,
+)
 border = Quantity(
-    "border", "coefficients of u, z_w, r_w and 1 of a border of a flank", "mixed", r"\mathbf{c}", shape=(4,),
+    "border",
+    "coefficients of u, z_w, r_w and 1 of a border of a flank",
+    "mixed",
+    r"\mathbf{c}",
+    shape=(4,),
     components=(
         _factor("border_blade", "c_u", -1.0, 1.0, "border: coefficient of the blade's parameter u"),
         _factor("border_axial", "c_z", -1.0, 1.0, "border: coefficient of z_w"),
         _factor("border_radial", "c_r", -1.0, 1.0, "border: coefficient of r_w"),
         _length("border_constant", "c_0", -300.0, 300.0, "border: constant part"),
     ),
-)  # fmt: skip
+)
 border_distance = Quantity(
     "border_distance", "distance of a point from a border of its flank, positive inside", "mm", "b", scale=1000.0
 )
@@ -775,17 +927,32 @@ own_normal = _vector(
 
 # --- curvature and local synthesis --------------------------------------------------------------------------------
 point_rates = Quantity(
-    "point_rates", "derivatives of the point of a flank by its three parameters, as columns", "mixed",
-    r"\mathbf{R}_w", (-50.0, 50.0), shape=(3, 3), scale=1000.0,
-)  # fmt: skip
+    "point_rates",
+    "derivatives of the point of a flank by its three parameters, as columns",
+    "mixed",
+    r"\mathbf{R}_w",
+    (-50.0, 50.0),
+    shape=(3, 3),
+    scale=1000.0,
+)
 normal_rates = Quantity(
-    "normal_rates", "derivatives of the normal of a flank by its three parameters, as columns", "mixed",
-    r"\mathbf{N}_w", (-1.0, 1.0), shape=(3, 3), scale=100.0,
-)  # fmt: skip
+    "normal_rates",
+    "derivatives of the normal of a flank by its three parameters, as columns",
+    "mixed",
+    r"\mathbf{N}_w",
+    (-1.0, 1.0),
+    shape=(3, 3),
+    scale=100.0,
+)
 meshing_gradient = Quantity(
-    "meshing_gradient", "derivatives of the equation of meshing by the three parameters", "mixed", r"\nabla f",
-    (-50.0, 50.0), shape=(3,), scale=1000.0,
-)  # fmt: skip
+    "meshing_gradient",
+    "derivatives of the equation of meshing by the three parameters",
+    "mixed",
+    r"\nabla f",
+    (-50.0, 50.0),
+    shape=(3,),
+    scale=1000.0,
+)
 first_tangent = _vector(
     "first_tangent", r"\mathbf{t}_1", "1", 1.0, 1.0, "first vector of the basis of the tangent plane"
 )
@@ -793,61 +960,106 @@ second_tangent = _vector(
     "second_tangent", r"\mathbf{t}_2", "1", 1.0, 1.0, "second vector of the basis of the tangent plane"
 )
 curvature = Quantity(
-    "curvature", "shape operator K of a flank, dn = -K dr, in the basis of the tangent plane", "1/mm", "K",
-    (-0.1, 0.1), shape=(2, 2), scale=1e4,
-)  # fmt: skip
+    "curvature",
+    "shape operator K of a flank, dn = -K dr, in the basis of the tangent plane",
+    "1/mm",
+    "K",
+    (-0.1, 0.1),
+    shape=(2, 2),
+    scale=1e4,
+)
 contact_basis = Quantity(
-    "contact_basis", "orthonormal basis of the tangent plane, as columns", "1", r"\mathbf{T}", (-1.0, 1.0),
+    "contact_basis",
+    "orthonormal basis of the tangent plane, as columns",
+    "1",
+    r"\mathbf{T}",
+    (-1.0, 1.0),
     shape=(3, 2),
-)  # fmt: skip
+)
 roll_vector = Quantity(
-    "roll_vector", "how the common normal turns against the gear's flank, in the tangent plane", "1", r"\mathbf{w}",
-    (-3.0, 3.0), shape=(2,), scale=1e3,
-)  # fmt: skip
+    "roll_vector",
+    "how the common normal turns against the gear's flank, in the tangent plane",
+    "1",
+    r"\mathbf{w}",
+    (-3.0, 3.0),
+    shape=(2,),
+    scale=1e3,
+)
 roll_acceleration = Quantity(
-    "roll_acceleration", "normal acceleration of the members against each other, per square of the pinion's speed",
-    "mm", r"\beta_c", (-200.0, 200.0), scale=1e5,
-)  # fmt: skip
+    "roll_acceleration",
+    "normal acceleration of the members against each other, per square of the pinion's speed",
+    "mm",
+    r"\beta_c",
+    (-200.0, 200.0),
+    scale=1e5,
+)
 sliding = Quantity(
-    "sliding", "velocity of the pinion against the gear in the tangent plane, per speed of the pinion", "mm",
-    r"\mathbf{v}", (-100.0, 100.0), shape=(2,), scale=1e3,
-)  # fmt: skip
+    "sliding",
+    "velocity of the pinion against the gear in the tangent plane, per speed of the pinion",
+    "mm",
+    r"\mathbf{v}",
+    (-100.0, 100.0),
+    shape=(2,),
+    scale=1e3,
+)
 relative_curvature = Quantity(
-    "relative_curvature", "D = K_1 - K_2: D_11, D_12, D_22", "1/mm", "D", shape=(3,),
+    "relative_curvature",
+    "D = K_1 - K_2: D_11, D_12, D_22",
+    "1/mm",
+    "D",
+    shape=(3,),
     components=(
         Quantity("relative_curvature_11", "relative curvature along the first tangent", "1/mm", "D_{11}", (0.002, 0.1)),
         Quantity("relative_curvature_12", "mixed relative curvature", "1/mm", "D_{12}", (-0.001, 0.001)),
         Quantity("relative_curvature_22", "the same along the second tangent", "1/mm", "D_{22}", (0.002, 0.1)),
     ),
     scale=1e3,
-)  # fmt: skip
+)
 lever_arm = _length("lever_arm", r"\rho", 5.0, 200.0, "lever of the contact normal about the gear's axis, given")
 contact_velocity = Quantity(
-    "contact_velocity", "velocity of the contact on the pinion's flank, per speed of the pinion", "mm",
-    r"\mathbf{v}_1", shape=(2,), scale=1e5,
-)  # fmt: skip
+    "contact_velocity",
+    "velocity of the contact on the pinion's flank, per speed of the pinion",
+    "mm",
+    r"\mathbf{v}_1",
+    shape=(2,),
+    scale=1e5,
+)
 transmission_curvature = Quantity(
-    "transmission_curvature", "second derivative of the gear's rotation by the pinion's", "rad/rad^2",
-    r"\varphi_2''", scale=1e5,
-)  # fmt: skip
+    "transmission_curvature",
+    "second derivative of the gear's rotation by the pinion's",
+    "rad/rad^2",
+    r"\varphi_2''",
+    scale=1e5,
+)
 conjugate_curvature = Quantity(
-    "conjugate_curvature", "D of the pinion that is conjugate to the gear: D_11, D_12, D_22", "1/mm", "D_c",
-    shape=(3,), scale=1e3,
-)  # fmt: skip
+    "conjugate_curvature",
+    "D of the pinion that is conjugate to the gear: D_11, D_12, D_22",
+    "1/mm",
+    "D_c",
+    shape=(3,),
+    scale=1e3,
+)
 separation = _length("separation", r"\tau", 0.001, 0.02, "distance of the flanks at the border of the contact ellipse")
 semi_axes = Quantity(
     "semi_axes", "half axes of the contact ellipse, the major one first", "mm", r"(a, b)", shape=(2,), scale=100.0
-)  # fmt: skip
+)
 path_angle = _angle("path_angle", r"\eta", 0.2, 1.4, "direction of the path in the basis of the tangent plane")
 wanted_curvature = Quantity(
-    "wanted_curvature", "wanted second derivative of the gear's rotation by the pinion's", "rad/rad^2", "m'",
+    "wanted_curvature",
+    "wanted second derivative of the gear's rotation by the pinion's",
+    "rad/rad^2",
+    "m'",
     (-0.01, 0.01),
-)  # fmt: skip
+)
 major_semi_axis = _length("major_semi_axis", "a_c", 2.0, 20.0, "wanted major half axis of the contact ellipse")
 synthesized_curvature = Quantity(
-    "synthesized_curvature", "D_11, D_12, D_22 that give path, parabola and ellipse as wanted", "1/mm", "D",
-    shape=(3,), scale=1e5,
-)  # fmt: skip
+    "synthesized_curvature",
+    "D_11, D_12, D_22 that give path, parabola and ellipse as wanted",
+    "1/mm",
+    "D",
+    shape=(3,),
+    scale=1e5,
+)
 
 # --- design -------------------------------------------------------------------------------------------------------
 addendum_constant = _factor("addendum_constant", "k_1", 0.1, 0.3, "part of the addendum factor that no ratio changes")

@@ -61,10 +61,18 @@ class Quantity:
         for extent in self.shape:
             indices = [f"{index}_{k}" for index in indices for k in range(extent)]
         return tuple(
-            Quantity(self.name + index, self.description, self.unit, f"{self.latex}_{{{index[1:].replace('_', '')}}}",
-                     self.domain, kind=self.kind, values=self.values, scale=self.scale)
+            Quantity(
+                self.name + index,
+                self.description,
+                self.unit,
+                f"{self.latex}_{{{index[1:].replace('_', '')}}}",
+                self.domain,
+                kind=self.kind,
+                values=self.values,
+                scale=self.scale,
+            )
             for index in indices
-        )  # fmt: skip
+        )
 
     @property
     def symbols(self) -> tuple[sp.Symbol, ...]:

@@ -86,8 +86,9 @@ def prove_columns_are_the_derivatives_of_the_seat() -> None:
     column = motion_sensitivity()["motion_sensitivity"]
     still = {q.eccentricity.symbol: 0, q.work_tilt.symbol: 0}
     for size, azimuth, pair in (
-        (q.eccentricity, q.eccentricity_azimuth, column[0:2]), (q.work_tilt, q.tilt_azimuth, column[3:5])
-    ):  # fmt: skip
+        (q.eccentricity, q.eccentricity_azimuth, column[0:2]),
+        (q.work_tilt, q.tilt_azimuth, column[3:5]),
+    ):
         along = seat.diff(size.symbol).subs(still).dot(n)
         assert is_zero(along - sp.cos(azimuth.symbol) * pair[0] - sp.sin(azimuth.symbol) * pair[1])
 

@@ -103,12 +103,18 @@ def straight_edge_point() -> Expression:
         "straight_edge_point",
         "Point of a straight part of a blade's edge in the work, out of all six axes (17.2).",
         (
-            q.u, q.axes, q.C, q.pivot_height, q.pivot_offset, q.blade_offset_angle, q.blade_point_radius,
+            q.u,
+            q.axes,
+            q.C,
+            q.pivot_height,
+            q.pivot_offset,
+            q.blade_offset_angle,
+            q.blade_point_radius,
             q.straight_edge,
         ),
         ((q.edge_point_w, _edge_point(*_straight())),),
         source="(17.1) of a point of the blade's plane (10.4)",
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -119,12 +125,19 @@ def arc_edge_point() -> Expression:
         "arc_edge_point",
         "Point of a round part of a blade's edge in the work, out of all six axes (10.3, 17.2).",
         (
-            q.arc_angle, q.axes, q.C, q.pivot_height, q.pivot_offset, q.blade_offset_angle, q.blade_point_radius,
-            q.blade_arc, q.side,
+            q.arc_angle,
+            q.axes,
+            q.C,
+            q.pivot_height,
+            q.pivot_offset,
+            q.blade_offset_angle,
+            q.blade_point_radius,
+            q.blade_arc,
+            q.side,
         ),
         ((q.edge_point_w, _edge_point(profile.radius, profile.height)),),
         source="(17.1) of a point of the blade's plane (10.4)",
-    )  # fmt: skip
+    )
 
 
 @cache

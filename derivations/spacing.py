@@ -77,7 +77,13 @@ def ball_shift() -> Expression:
         "ball_shift",
         "Movement, normal to the pitch cone, of a ball that touches both flanks of a space, and the turning (19.1).",
         (
-            q.deviation_in, q.point_w, q.normal_w, q.opposite_deviation, q.opposite_w, q.opposite_normal, q.pitch_angle,
+            q.deviation_in,
+            q.point_w,
+            q.normal_w,
+            q.opposite_deviation,
+            q.opposite_w,
+            q.opposite_normal,
+            q.pitch_angle,
         ),
         (
             (q.cone_shift, twice * (d * other_arm - e * arm) / wedge),
@@ -85,7 +91,7 @@ def ball_shift() -> Expression:
         ),
         requires=(sp.Abs(wedge) - twice**2 / 20, twice - 1),
         source="runout test with a ball probe that floats in the space, moved normal to the pitch cone",
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -188,8 +194,9 @@ def prove_ball_stays_in_touch_with_both_flanks() -> None:
     shift, (m, twice) = ball_shift(), _middle()
     eps = sp.Symbol("eps", real=True)
     for point, normal, deviation in (
-        (q.point_w, q.normal_w, q.deviation_in), (q.opposite_w, q.opposite_normal, q.opposite_deviation)
-    ):  # fmt: skip
+        (q.point_w, q.normal_w, q.deviation_in),
+        (q.opposite_w, q.opposite_normal, q.opposite_deviation),
+    ):
         n = sp.Matrix(normal.symbol)
         swept = (Rz(eps) * sp.Matrix(point.symbol)).diff(eps).subs(eps, 0).dot(n)
         touched = shift["cone_shift"] * m.dot(n) / twice + shift["space_turning"] * swept
@@ -202,9 +209,10 @@ def prove_indexing_moves_no_ball() -> None:
     turned = {
         deviation.symbol: eps * _lever(point.symbol, normal.symbol)
         for point, normal, deviation in (
-            (q.point_w, q.normal_w, q.deviation_in), (q.opposite_w, q.opposite_normal, q.opposite_deviation)
+            (q.point_w, q.normal_w, q.deviation_in),
+            (q.opposite_w, q.opposite_normal, q.opposite_deviation),
         )
-    }  # fmt: skip
+    }
     assert sp.simplify(shift["cone_shift"].subs(turned)) == 0
     assert sp.simplify(shift["space_turning"].subs(turned) - eps) == 0
 

@@ -92,7 +92,12 @@ def line_in_cone() -> Expression:
         "line_in_cone",
         "Ends of the part of a line that lies above the tip plane and within the cone of one blade (16.2, 16.3).",
         (
-            q.cutter_center_w, q.cutter_axis_w, q.line_point, q.line_direction, q.blade_point_radius, q.blade_slope,
+            q.cutter_center_w,
+            q.cutter_axis_w,
+            q.line_point,
+            q.line_direction,
+            q.blade_point_radius,
+            q.blade_slope,
             q.side,
         ),
         (
@@ -102,7 +107,7 @@ def line_in_cone() -> Expression:
         ),
         requires=(discriminant - 1, a**2 - sp.Rational(1, 10**6), h_1**2 - sp.Rational(1, 10**6)),
         source="line against a cone of revolution",
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -119,13 +124,15 @@ def first_removed() -> Expression:
             (
                 q.line_distance,
                 sp.Piecewise(
-                    (wall, sp.And(in_hole, wall < upper)), (NOWHERE, in_hole), (reached, reached < upper),
+                    (wall, sp.And(in_hole, wall < upper)),
+                    (NOWHERE, in_hole),
+                    (reached, reached < upper),
                     (NOWHERE, True),
                 ),
             ),
         ),
         source="difference of two intervals",
-    )  # fmt: skip
+    )
 
 
 def _blade_excess(side: int, blade: Quantity, rho: sp.Expr, h: sp.Expr) -> sp.Expr:

@@ -217,10 +217,11 @@ def prove_opposite_touches_in_the_ring_leave_nothing_for_the_tip_of_their_equati
     first, gap = q.first_trigger.symbol, sp.Symbol("gap", positive=True)
     tip = ring_calibration()
     values = {
-        q.tip_radius.symbol: tip["tip_radius"], q.tip_offset.symbols[0]: tip["axis_offset"],
+        q.tip_radius.symbol: tip["tip_radius"],
+        q.tip_offset.symbols[0]: tip["axis_offset"],
         q.ring_axis.symbols[0]: q.ring_center.symbol,
         q.trigger.symbols[1]: q.ring_axis.symbols[1] - q.tip_offset.symbols[1],
-    } | dict.fromkeys(q.lobing.symbols, 0)  # fmt: skip
+    } | dict.fromkeys(q.lobing.symbols, 0)
     for place in (first, first + gap):
         rest = ring_residual()["ring_rest"].subs(values | {q.trigger.symbols[0]: place}, simultaneous=True)
         assert sp.simplify(rest.subs(q.last_trigger.symbol, first + gap)) == 0

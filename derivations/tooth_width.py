@@ -56,9 +56,11 @@ def mean_backlash() -> sp.Expr:
     outward = q.mean_cone_distance.symbol / q.cone_distance.symbol
     transverse = j * sp.cos(beta) * sp.cos(iso23509.normal_angle())
     return sp.Piecewise(
-        (j / pitch_factor(), sp.Eq(kind, 0)), (transverse * outward, sp.Eq(kind, 1)), (j, sp.Eq(kind, 2)),
+        (j / pitch_factor(), sp.Eq(kind, 0)),
+        (transverse * outward, sp.Eq(kind, 1)),
+        (j, sp.Eq(kind, 2)),
         (transverse, True),
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -72,9 +74,17 @@ def tooth_thickness() -> Expression:
         "tooth_thickness",
         "Thickness of both teeth and backlash; cone distance and spiral angle are those of the heel (13.1-13.3).",
         (
-            q.mean_normal_module, q.profile_shift_coefficient, q.thickness_modification, q.pressure_angle_drive,
-            q.pressure_angle_coast, q.cone_distance, q.spiral_angle, q.mean_cone_distance, q.mean_spiral_angle,
-            q.backlash, q.backlash_kind,
+            q.mean_normal_module,
+            q.profile_shift_coefficient,
+            q.thickness_modification,
+            q.pressure_angle_drive,
+            q.pressure_angle_coast,
+            q.cone_distance,
+            q.spiral_angle,
+            q.mean_cone_distance,
+            q.mean_spiral_angle,
+            q.backlash,
+            q.backlash_kind,
         ),
         (
             (q.mean_normal_pressure_angle, alpha),
@@ -88,7 +98,7 @@ def tooth_thickness() -> Expression:
             (q.wheel_mean_normal_thickness, m * (sp.pi / 2 + 2 * (-exchanged - lost - shift))),
         ),
         source=_ISO,
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -102,8 +112,12 @@ def chordal_tooth() -> Expression:
         "chordal_tooth",
         "Thickness in the transverse plane and as a chord, with its height (13.4).",
         (
-            q.mean_normal_thickness, q.mean_pitch_diameter, q.mean_spiral_angle, q.pitch_angle,
-            q.mean_normal_pressure_angle, q.mean_addendum,
+            q.mean_normal_thickness,
+            q.mean_pitch_diameter,
+            q.mean_spiral_angle,
+            q.pitch_angle,
+            q.mean_normal_pressure_angle,
+            q.mean_addendum,
         ),
         (
             (q.mean_transverse_thickness, s / sp.cos(beta)),
@@ -112,7 +126,7 @@ def chordal_tooth() -> Expression:
             (q.mean_chordal_addendum, q.mean_addendum.symbol + sagitta),
         ),
         source=_ISO,
-    )  # fmt: skip
+    )
 
 
 def tangents() -> sp.Expr:
@@ -143,10 +157,20 @@ def slot_widths() -> Expression:
         "slot_widths",
         "Slot widths, thicknesses and backlash of the pair at a cone distance (13.5-13.8).",
         (
-            q.cone_distance, q.spiral_angle, q.mean_cone_distance, q.mean_spiral_angle, q.mean_normal_module,
-            q.pressure_angle_drive, q.pressure_angle_coast, q.pinion_mean_dedendum, q.wheel_mean_dedendum,
-            q.pinion_dedendum_angle, q.wheel_dedendum_angle, q.pinion_mean_normal_thickness,
-            q.wheel_mean_normal_thickness, q.slot_rotation_factor,
+            q.cone_distance,
+            q.spiral_angle,
+            q.mean_cone_distance,
+            q.mean_spiral_angle,
+            q.mean_normal_module,
+            q.pressure_angle_drive,
+            q.pressure_angle_coast,
+            q.pinion_mean_dedendum,
+            q.wheel_mean_dedendum,
+            q.pinion_dedendum_angle,
+            q.wheel_dedendum_angle,
+            q.pinion_mean_normal_thickness,
+            q.wheel_mean_normal_thickness,
+            q.slot_rotation_factor,
         ),
         (
             (q.normal_pitch, pitch),
@@ -161,7 +185,7 @@ def slot_widths() -> Expression:
             ),
         ),
         source=_AGMA,
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -194,12 +218,15 @@ def top_land() -> Expression:
         "top_land",
         "Normal top land of a generated tooth (13.9, 13.10).",
         (
-            q.virtual_pitch_radius, q.addendum_here, q.normal_thickness, q.pressure_angle_drive,
+            q.virtual_pitch_radius,
+            q.addendum_here,
+            q.normal_thickness,
+            q.pressure_angle_drive,
             q.pressure_angle_coast,
         ),
         ((q.top_land, tip * angle),),
         source=_AGMA,
-    )  # fmt: skip
+    )
 
 
 @cache
@@ -214,13 +241,17 @@ def running_interference() -> Expression:
         "running_interference",
         "Largest edge radius whose fillet the tip of the mate clears (13.11).",
         (
-            q.virtual_pitch_radius, q.mate_virtual_pitch_radius, q.mate_addendum_here, q.dedendum_here,
-            q.clearance_change, q.flank_pressure_angle,
+            q.virtual_pitch_radius,
+            q.mate_virtual_pitch_radius,
+            q.mate_addendum_here,
+            q.dedendum_here,
+            q.clearance_change,
+            q.flank_pressure_angle,
         ),
         ((q.interference_height, height), (q.edge_radius_interference, height / (1 - sp.sin(alpha)))),
         requires=(closed - (r + mate) ** 2 / 100,),
         source=_AGMA,
-    )  # fmt: skip
+    )
 
 
 def tip_share(alpha: sp.Expr) -> sp.Expr:

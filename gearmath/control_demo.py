@@ -24,12 +24,12 @@ from gearmath.control.simulated.identity import prepared
 from gearmath.control.simulated.nc import Nc
 from gearmath.control.simulated.server import SimulatedControl
 from gearmath.control.simulated.workshop import Workshop
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.control.store_evaluation import EvaluatedRun, evaluate_run, keep_results
 from gearmath.errors import ComputationError
 from gearmath.export.folder import new_folder
 from gearmath.files import read_bytes, write_text
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.machine.writing.probing import probing_program
 from gearmath.quality.correction.member import correct
@@ -41,8 +41,11 @@ from gearmath.specs.simulated_machine import load_simulated_machine
 from gearmath.specs.toml import bundled
 
 GEAR_SET, MACHINE, CALIBRATION, SHOP = (
-    "nasa_tp3096_12x36.toml", "vertical_5axis.toml", "probe.toml", "simulated_shop.toml",
-)  # fmt: skip
+    "nasa_tp3096_12x36.toml",
+    "vertical_5axis.toml",
+    "probe.toml",
+    "simulated_shop.toml",
+)
 MEMBER = "pinion"
 _FOLDER = "Part Program"
 
@@ -50,7 +53,7 @@ Say = Callable[[str], object]
 
 
 @dataclass(frozen=True)
-class Pass:
+class DemoPass:
     """One part: what it was cut by, and what was measured on it."""
 
     settings: Path
@@ -64,7 +67,7 @@ class Pass:
         return float(np.abs(file.deviation[file.tooth == 0]).max())
 
 
-def run_control_demo(folder: Path, say: Say) -> list[Pass]:
+def run_control_demo(folder: Path, say: Say) -> list[DemoPass]:
     """Cut, measure, correct, cut and measure again, over the control; programs, store and sets are left in ``folder``.
 
     Raises InputError if the folder holds anything that an earlier demo did not write.
@@ -75,7 +78,7 @@ def run_control_demo(folder: Path, say: Say) -> list[Pass]:
     return passes
 
 
-async def _loop(folder: Path, say: Say) -> list[Pass]:
+async def _loop(folder: Path, say: Say) -> list[DemoPass]:
     calibration = load_calibration(bundled(CALIBRATION))
     workshop = Workshop(load_milling_machine(bundled(MACHINE)), calibration, load_simulated_machine(bundled(SHOP)))
     password = secrets.token_urlsafe(12)
@@ -83,9 +86,9 @@ async def _loop(folder: Path, say: Say) -> list[Pass]:
     identity = await prepared(folder / "control", "opc.tcp://127.0.0.1:4840")
     known = load_control_connection(folder / "control" / "control.toml")
     access = Access({known.user: Account(password)})
-    passes: list[Pass] = []
+    passes: list[DemoPass] = []
     settings = bundled(GEAR_SET)
-    with Store.open(folder / "runs.db") as store:
+    with MeasurementStore.open(folder / "runs.db") as store:
         async with SimulatedControl(nc, access, identity) as simulated:
             say(f"a simulated control is at {simulated.url}")
             here = known.model_copy(update={"url": simulated.url})
@@ -104,7 +107,9 @@ async def _loop(folder: Path, say: Say) -> list[Pass]:
     return passes
 
 
-async def _pass(number: int, settings: Path, folder: Path, store: Store, nc: Nc, connect: Connect, say: Say) -> Pass:
+async def _pass(
+    number: int, settings: Path, folder: Path, store: MeasurementStore, nc: Nc, connect: Connect, say: Say
+) -> DemoPass:
     """One part, from its program to its evaluation."""
 
     def heard(said: str) -> None:
@@ -129,14 +134,14 @@ async def _pass(number: int, settings: Path, folder: Path, store: Store, nc: Nc,
     say(f"  {len(run.touches())} touches are in run {run.id}, each on the disk before it was acknowledged")
     evaluated = await asyncio.to_thread(evaluate_run, run)
     keep_results(evaluated)
-    return Pass(settings, cut, evaluated)
+    return DemoPass(settings, cut, evaluated)
 
 
 def _write_programs(settings: Path, cut: Path, probe: Path) -> None:
     """The cutting program of these settings and, once, the probing program, which is the same for all of them."""
     pair, machine = load_pair(settings), load_milling_machine(bundled(MACHINE))
     spaces = range(pair.member(MEMBER).teeth)
-    write_text(cut, cutting_program(pair, MEMBER, machine, cut.stem, Job(spaces)))
+    write_text(cut, cutting_program(pair, MEMBER, machine, cut.stem, CuttingJob(spaces)))
     if not probe.exists():
         text = probing_program(pair, MEMBER, machine, load_calibration(bundled(CALIBRATION)), probe.stem, pitch=False)
         write_text(probe, text)
@@ -151,7 +156,7 @@ async def _operated(nc: Nc, name: str) -> None:
         raise ComputationError(f"{name}: the control stops with alarm {alarm.number}: {alarm.text}")
 
 
-def _corrected(first: Pass, folder: Path) -> Path:
+def _corrected(first: DemoPass, folder: Path) -> Path:
     """The set with the settings that make up for what was measured."""
     target = folder / f"{MEMBER}_corrected.toml"
     spec = load_pair(first.settings).member(MEMBER)

@@ -27,7 +27,7 @@ from gearmath.kernels import kernel
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.milling.mill import mill_member
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.plot import member_figure, save
 from gearmath.quality.correction.member import correct
@@ -96,9 +96,12 @@ def _run_steps(folder: Path, say: Say) -> list[MemberResult]:
             result = run_closed_loop(member, folder)
             results.append(result)
             figure = member_figure(
-                f"{member}: before and after one correction", result.before, result.after, result.pitch_before,
+                f"{member}: before and after one correction",
+                result.before,
+                result.after,
+                result.pitch_before,
                 result.pitch_after,
-            )  # fmt: skip
+            )
             save(figure, folder / f"{member}.png")
             say(f"  max profile error {result.profile[0] * 1000:+.2f} -> {result.profile[1] * 1000:+.2f} um")
     with _step(say, "export C for the Teensy and for the CNC post-processor"):
@@ -133,8 +136,11 @@ def compare_truths() -> tuple[float, int, int]:
     compiled = np.hstack(compile_kernel(kernel("flank_family"))(*arguments))
     expression = flank_chapter.flank_family()
     exact = [expression.evaluate(*contact, settings, side) for contact in points.contact]
-    worst = max(abs(value - float(number)) for row, values in zip(lowered, exact, strict=True)
-                for number, value in zip(row, values, strict=True))  # fmt: skip
+    worst = max(
+        abs(value - float(number))
+        for row, values in zip(lowered, exact, strict=True)
+        for number, value in zip(row, values, strict=True)
+    )
     return float(worst), int((lowered == compiled).sum()), lowered.size
 
 
@@ -160,7 +166,7 @@ def _cut_and_measure(gear_set: Path, name: str, shop: SimulatedMachine, program:
     """The flanks as they are and as the probe sees them, from the program text as written to ``program``."""
     bevel_set, machine = load_pair(gear_set), load_milling_machine(bundled(MILLING_MACHINE))
     member = bevel_set.member(name)
-    write_text(program, cutting_program(bevel_set, name, machine, program.stem, Job(range(member.teeth))))
+    write_text(program, cutting_program(bevel_set, name, machine, program.stem, CuttingJob(range(member.teeth))))
     path = execute(program.read_text("utf-8"), program.name, Setup.of(machine))
     perfect_probe = shop.model_copy(update={"probe": Probe()})
     true, seen = (mill_member(path, member, name, machine, errors) for errors in (perfect_probe, shop))

@@ -78,13 +78,20 @@ def lower(expression: Expression) -> Kernel:
         rows, columns = (*quantity.shape, 1, 1)[:2]
         results.append(ca.vertcat(*(ca.horzcat(*elements[r * columns : (r + 1) * columns]) for r in range(rows))))
     function = ca.Function(
-        expression.name, arguments, results,
-        [quantity.name for quantity in expression.inputs], [quantity.name for quantity, _ in expression.outputs],
-    )  # fmt: skip
+        expression.name,
+        arguments,
+        results,
+        [quantity.name for quantity in expression.inputs],
+        [quantity.name for quantity, _ in expression.outputs],
+    )
     return Kernel(
-        function, expression.description, expression.inputs, tuple(quantity for quantity, _ in expression.outputs),
-        expression.source, tuple(f"{requirement} > 0" for requirement in expression.requires),
-    )  # fmt: skip
+        function,
+        expression.description,
+        expression.inputs,
+        tuple(quantity for quantity, _ in expression.outputs),
+        expression.source,
+        tuple(f"{requirement} > 0" for requirement in expression.requires),
+    )
 
 
 def _walk(node: sp.Basic, values: Mapping[sp.Basic, ca.SX], name: str) -> ca.SX:

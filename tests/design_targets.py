@@ -28,9 +28,11 @@ ELEVEN = (*FREE, "cutter_tilt", "cutter_swivel", "blade_point_radius", "blade_pr
 TWELVE = (*ELEVEN, "blade_spheric_radius")
 #: x along the flank and y up it, from -1 to 1: the largest value of each is 1.
 SHAPES = {
-    "length": lambda x, y: x**2, "profile": lambda x, y: y**2, "twist": lambda x, y: x * y,
+    "length": lambda x, y: x**2,
+    "profile": lambda x, y: y**2,
+    "twist": lambda x, y: x * y,
     "mixed": lambda x, y: 0.4 * x**2 + 0.25 * y**2 + 0.35 * x * y,
-}  # fmt: skip
+}
 
 
 def ease_off_target(member: str, flank: str, shape: str, sign: int) -> FlankTarget:
@@ -71,9 +73,16 @@ def by_scipy(target, names, starts, evaluations):
             continue
         starts -= 1
         left = least_squares(
-            residual, first, slope, bounds=(low, high), x_scale="jac", xtol=1e-12, ftol=1e-12, gtol=1e-14,
+            residual,
+            first,
+            slope,
+            bounds=(low, high),
+            x_scale="jac",
+            xtol=1e-12,
+            ftol=1e-12,
+            gtol=1e-14,
             max_nfev=evaluations,
-        ).fun  # fmt: skip
+        ).fun
         if np.abs(left[-2:]).max() < 0.1:  # the slack of the root line is kept within a micrometre
             best = min(best, float(np.sqrt(np.mean(left[:-2] ** 2))))
     return best

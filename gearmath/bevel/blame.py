@@ -73,9 +73,11 @@ class _Trial:
 
 
 def likely(
-    members: Members, where: Sequence[Where], cut: Mapping[str, Mapping[str, CutFlank]],
+    members: Members,
+    where: Sequence[Where],
+    cut: Mapping[str, Mapping[str, CutFlank]],
     passes: Callable[[Members], bool],
-) -> str:  # fmt: skip
+) -> str:
     """What to say of the settings of some flanks (member, flank): which of them, changed alone, makes the set pass.
 
     ``cut`` are the flanks that were found, ``passes`` is the whole check. Where no single setting does, the one is
@@ -181,11 +183,14 @@ def most_changed(member: Member, name: str, flank: str) -> Suspect:
 def _suspects(member: Member, table: str, spec: Settings, expected: dict[str, float], source: str) -> list[Suspect]:
     R, degree = member.blank.mean_cone_distance, math.radians(1)
     arms = {
-        "cradle_angle": R * degree, "cutter_tilt": R * degree, "machine_root_angle": R * degree,
+        "cradle_angle": R * degree,
+        "cutter_tilt": R * degree,
+        "machine_root_angle": R * degree,
         "cutter_swivel": R * degree * abs(math.sin(spec.cutter_tilt * degree)),
         "work_rotation_offset": R * degree * math.sin(member.blank.pitch_angle * degree),
-        "blade_pressure_angle": _BLADE_ARM * R * degree, "ratio_of_roll": _ROLL_ARM * R / spec.ratio_of_roll,
-    }  # fmt: skip
+        "blade_pressure_angle": _BLADE_ARM * R * degree,
+        "ratio_of_roll": _ROLL_ARM * R / spec.ratio_of_roll,
+    }
     suspects = []
     for key, wanted in expected.items():
         off = getattr(spec, key) - wanted
@@ -212,16 +217,21 @@ def _crown_gear(
     # of the mirrored right-hand member, whose swivel is 180 degrees less that of the left-hand one
     swivel = spec.cutter_swivel if hand == 1 else 180 - spec.cutter_swivel
     angles = {
-        "mean_spiral_angle": spiral, "pitch_angle": math.radians(blank.pitch_angle),
-        "machine_root_angle": math.radians(blank.root_angle), "flank_pressure_angle": math.radians(alpha),
+        "mean_spiral_angle": spiral,
+        "pitch_angle": math.radians(blank.pitch_angle),
+        "machine_root_angle": math.radians(blank.root_angle),
+        "flank_pressure_angle": math.radians(alpha),
         "cutter_tilt": math.radians(spec.cutter_tilt),
         "tilt_direction": math.radians(swivel + hand * spec.cradle_angle),
-    }  # fmt: skip
+    }
     values = angles | {
-        "hand_sign": hand, "side": SIDES[flank], "cutter_radius": radius, "mean_dedendum": blank.mean_dedendum,
+        "hand_sign": hand,
+        "side": SIDES[flank],
+        "cutter_radius": radius,
+        "mean_dedendum": blank.mean_dedendum,
         "mean_cone_distance": blank.mean_cone_distance,
         "index_ratio": indexing_sign * (member.blade_groups or 0) / member.teeth,
-    }  # fmt: skip
+    }
     found = evaluate("crown_gear_space" if member.cutting == "completing" else "crown_gear_flank", values)
     wanted = {
         "radial_distance": found["radial_distance"],

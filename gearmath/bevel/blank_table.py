@@ -17,14 +17,21 @@ from gearmath.bevel.slots import Slots
 #: Where the three values of a slot, a thickness and a top land stand.
 PLACES = ("toe", "mean", "heel")
 _GREEK = {
-    "alpha": "α", "beta": "β", "delta": "δ", "Delta ": "Δ", "theta": "θ", "nu": "ν", "rho": "ρ", "Sigma": "Σ",
-}  # fmt: skip
+    "alpha": "α",
+    "beta": "β",
+    "delta": "δ",
+    "Delta ": "Δ",
+    "theta": "θ",
+    "nu": "ν",
+    "rho": "ρ",
+    "Sigma": "Σ",
+}
 #: What the notation has once for every place.
 _SPIRAL = {"outer_spiral_angle": "beta_e", "inner_spiral_angle": "beta_i"}
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """One figure of the pair (one value), or of pinion and wheel (two), each a number or three along the tooth."""
 
     name: str
@@ -33,13 +40,13 @@ class Row:
     values: tuple[Any, ...]
 
 
-def rows(blank: BevelBlank, slots: Slots) -> list[Row]:
+def rows(blank: BevelBlank, slots: Slots) -> list[TableRow]:
     """All figures, those of the pair first; angles in degrees."""
     pair = [*_own(blank), *(row for row in _own(slots) if not hasattr(blank, row.name))]
     return [*pair, *_of_members(blank.pinion, blank.wheel), *_of_members(slots.pinion, slots.wheel)]
 
 
-def by_name(table: list[Row]) -> dict[str, dict[str, Any]]:
+def by_name(table: list[TableRow]) -> dict[str, dict[str, Any]]:
     """The rows as ``pair``, ``pinion`` and ``wheel``, each by name."""
     values: dict[str, dict[str, Any]] = {"pair": {}, "pinion": {}, "wheel": {}}
     for row in table:
@@ -58,7 +65,7 @@ def set_fragment(blank: BevelBlank) -> str:
     return "# Lengths in mm, angles in degrees.\n" + tomlkit.dumps(values)
 
 
-def _own(record: BevelBlank | Slots) -> Iterator[Row]:
+def _own(record: BevelBlank | Slots) -> Iterator[TableRow]:
     """The figures of the pair; what its process does not have is left out."""
     for field in fields(record):
         value = getattr(record, field.name)
@@ -66,12 +73,12 @@ def _own(record: BevelBlank | Slots) -> Iterator[Row]:
             yield _row(field.name, value)
 
 
-def _of_members(pinion: Any, wheel: Any) -> Iterator[Row]:
+def _of_members(pinion: Any, wheel: Any) -> Iterator[TableRow]:
     for field in fields(pinion):
         yield _row(field.name, getattr(pinion, field.name), getattr(wheel, field.name))
 
 
-def _row(name: str, *values: Any) -> Row:
+def _row(name: str, *values: Any) -> TableRow:
     members = len(values) == 2
     if name in _SPIRAL:
         symbol, unit = f"\\{_SPIRAL[name]}", "rad"
@@ -81,7 +88,7 @@ def _row(name: str, *values: Any) -> Row:
         if quantity.name.startswith("pinion_") and members:
             symbol = re.sub(r"_?1(\}?)$", r"\1", symbol)  # both members have it
     shown = {"rad": "degree", "1": ""}.get(unit, unit)
-    return Row(name, _plain(symbol), shown, tuple(_degrees(value) if unit == "rad" else value for value in values))
+    return TableRow(name, _plain(symbol), shown, tuple(_degrees(value) if unit == "rad" else value for value in values))
 
 
 def _quantity(name: str, of_member: bool) -> Quantity:

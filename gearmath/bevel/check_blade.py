@@ -50,13 +50,19 @@ def check_offset(member: Member, name: str, spiral: float) -> None:
         return
     blank, flanks = member.blank, [member.flank(flank) for flank in FLANKS]
     hand = 1 if member.hand == "right" else -1
-    square = evaluate("crown_gear_space", {
-        "hand_sign": hand, "mean_spiral_angle": hand * spiral, "mean_cone_distance": blank.mean_cone_distance,
-        "cutter_radius": sum(spec.nominal.blade_point_radius for spec in flanks) / len(flanks),
-        "pitch_angle": math.radians(blank.pitch_angle), "machine_root_angle": math.radians(blank.root_angle),
-        "mean_dedendum": blank.mean_dedendum,
-        "index_ratio": member.indexing_sign * member.blade_groups / member.teeth,
-    })["blade_offset_angle"]  # fmt: skip
+    square = evaluate(
+        "crown_gear_space",
+        {
+            "hand_sign": hand,
+            "mean_spiral_angle": hand * spiral,
+            "mean_cone_distance": blank.mean_cone_distance,
+            "cutter_radius": sum(spec.nominal.blade_point_radius for spec in flanks) / len(flanks),
+            "pitch_angle": math.radians(blank.pitch_angle),
+            "machine_root_angle": math.radians(blank.root_angle),
+            "mean_dedendum": blank.mean_dedendum,
+            "index_ratio": member.indexing_sign * member.blade_groups / member.teeth,
+        },
+    )["blade_offset_angle"]
     for flank, spec in zip(FLANKS, flanks, strict=True):
         if not abs(spec.blade_offset_angle - math.degrees(square)) <= _SQUARE:
             raise InputError(

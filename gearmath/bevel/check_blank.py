@@ -169,9 +169,13 @@ def check_mate(member: Member, name: str, shaft_angle: float) -> None:
 def _pitch_angles(pinion_teeth: int, gear_teeth: int, shaft_angle: float) -> list[float]:
     """Pitch angles [degree] of pinion and gear."""
     values = {
-        "shaft_angle": math.radians(shaft_angle), "pinion_teeth": pinion_teeth, "wheel_teeth": gear_teeth,
+        "shaft_angle": math.radians(shaft_angle),
+        "pinion_teeth": pinion_teeth,
+        "wheel_teeth": gear_teeth,
         # sizes are not asked for
-        "wheel_outer_pitch_diameter": 2.0, "face_width": 0.0, "mean_spiral_angle": 0.0,
-    }  # fmt: skip
+        "wheel_outer_pitch_diameter": 2.0,
+        "face_width": 0.0,
+        "mean_spiral_angle": 0.0,
+    }
     cones = evaluate("pitch_cones", values)
     return [math.degrees(cones[f"{name}_{notation.pitch_angle.name}"]) for name in ("pinion", "wheel")]

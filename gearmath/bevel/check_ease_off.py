@@ -68,15 +68,16 @@ def check_ease_off(pinion: Member, gear: Member, shaft_angle: float, share: floa
             f"must be at most {_HOLLOW * module:.3g} mm, {_HOLLOW:g} of the module: crowning "
             f"{found[deepest].crowning:+.3g}, bias {found[deepest].twist:+.3g}, profile crowning "
             f"{found[deepest].profile_crowning:+.3g} mm, as of a mate that is cut by another method or motion",
-            ("pinion", deepest), ("gear", mating),
-        )  # fmt: skip
+            ("pinion", deepest),
+            ("gear", mating),
+        )
     if not size <= share:
         raise Misfit(
             f"pinion and gear do not fit along the flanks: the ease-off has a {what} of {value * module:.3g} mm at the "
             f"edges of the grid, which must lie between {low * module:.3g} and {high * module:.3g} mm, {low:g} and "
             f"{high:g} of the module",
             *where,
-        )  # fmt: skip
+        )
 
 
 def ease_off_parts(pinion: Member, gear: Member, shaft_angle: float) -> dict[str, Parts]:
@@ -90,7 +91,8 @@ def ease_off_parts(pinion: Member, gear: Member, shaft_angle: float) -> dict[str
             raise Misfit(
                 f"pinion {flank} flank: it does not meet the mating {mating} flank of the gear at row {row}, column "
                 f"{column} of its grid",
-                ("pinion", flank), ("gear", mating),
-            )  # fmt: skip
+                ("pinion", flank),
+                ("gear", mating),
+            )
         found[flank] = parts(E)
     return found

@@ -66,10 +66,11 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation, corrected:
     swing = math.degrees(float(mean.contact[0, 2]))
     if not abs(swing) <= OFF_CENTER:
         raise Misfit.of(
-            name, flank,
+            name,
+            flank,
             f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must "
             f"be at most {OFF_CENTER:g}",
-        )  # fmt: skip
+        )
     root = _root(member, name, flank, how, mean.contact, np.array(_CORRECTED_ROOT if corrected else ROOT))
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 0.5, 1.0]), np.ones(3))
     tips = solve_section(how, section, axial, radial)
@@ -112,16 +113,18 @@ def _check_angles(name: str, flank: str, pressure: float, spiral: float) -> None
     low, high = _PRESSURE
     if not low <= math.degrees(pressure) <= high:
         raise Misfit.of(
-            name, flank,
+            name,
+            flank,
             f"its pressure angle at the mean point is {math.degrees(pressure):.4g} degrees, which must lie between "
             f"{low:g} and {high:g}",
-        )  # fmt: skip
+        )
     if not abs(math.degrees(spiral)) <= _STEEPEST:
         raise Misfit.of(
-            name, flank,
+            name,
+            flank,
             f"its spiral angle at the mean point is {math.degrees(spiral):.4g} degrees, which must be at most "
             f"{_STEEPEST:g}",
-        )  # fmt: skip
+        )
 
 
 def _check_hand(member: Member, name: str, flank: str, spiral: float, tip_azimuth: np.ndarray) -> None:
@@ -134,10 +137,11 @@ def _check_hand(member: Member, name: str, flank: str, spiral: float, tip_azimut
         return
     other = "left" if hand == 1 else "right"
     raise Misfit.of(
-        name, flank,
+        name,
+        flank,
         f"hand = {member.hand!r} is stated, but its spiral angle at the mean point is {math.degrees(spiral):+.4g} "
         f"degrees, which is {other} hand",
-    )  # fmt: skip
+    )
 
 
 def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarray, share: np.ndarray) -> np.ndarray:
@@ -153,11 +157,12 @@ def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarr
     if beyond.any():
         k = int(np.argmax(np.abs(off) / share))
         raise Misfit.of(
-            name, flank,
+            name,
+            flank,
             f"the tip of the blade leaves the root {abs(off[k]):.3g} mm {'above' if off[k] > 0 else 'below'} that of "
             f"the blank at the {PLACES[k]}, which must be at most {share[k] * clearance:.3g} mm, "
             f"{share[k]:g} of the clearance",
-        )  # fmt: skip
+        )
     return np.where(found.converged[:, None], found.point, np.nan)
 
 

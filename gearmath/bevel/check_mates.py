@@ -50,7 +50,7 @@ def check_space(member: Member, name: str, cut: Cut) -> float:
             f"{name} concave flank: spiral angle {spirals[0]:+.4g} degrees at the mean point, the convex flank has "
             f"{spirals[1]:+.4g}; they must agree within {_TAPER:g}",
             *((name, flank) for flank in FLANKS),
-        )  # fmt: skip
+        )
     radius, pitch = mean_pitch_radius(member), 2 * math.pi / member.teeth
     # from the concave flank across the space: less than nothing is a tooth, more than a pitch a tooth and two spaces
     turn = concave.across * math.remainder(convex.azimuth - concave.azimuth, 2 * math.pi)
@@ -204,8 +204,9 @@ def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[st
         raise Misfit(
             f"pinion and gear: {_mating_angles(cut, 'pressure_angle')}: pinion {flank} and gear {mating[flank]} differ "
             f"by {wrong[flank]:+.3g} degrees, which must be at most {share * _PRESSURE:.3g}",
-            *(("pinion", one) for one in wrong), *(("gear", one) for one in mating.values()),
-        )  # fmt: skip
+            *(("pinion", one) for one in wrong),
+            *(("gear", one) for one in mating.values()),
+        )
     first, second = _apart(cut, "spiral_angle")
     common, opposite = (first + second) / 2, (first - second) / 2
     given = sum(_given_by_one_cut(member, cut, name) for name, member in members.items())

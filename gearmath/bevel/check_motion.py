@@ -44,10 +44,13 @@ def _check_still(spec: Flank, table: str) -> None:
 def _check_still_roll(member: Member, spec: Flank, table: str) -> None:
     """The ratio of a cut that does not roll is that of the crown gear, as a summary may have it, or a mistake."""
     given = spec.nominal.ratio_of_roll
-    rolling = evaluate("crown_gear_roll", {
-        "pitch_angle": math.radians(member.blank.pitch_angle),
-        "machine_root_angle": math.radians(spec.nominal.machine_root_angle),
-    })["ratio_of_roll"]  # fmt: skip
+    rolling = evaluate(
+        "crown_gear_roll",
+        {
+            "pitch_angle": math.radians(member.blank.pitch_angle),
+            "machine_root_angle": math.radians(spec.nominal.machine_root_angle),
+        },
+    )["ratio_of_roll"]
     if not abs(given - rolling) <= _STILL_ROLL * rolling:
         raise InputError(
             f"{table}.ratio_of_roll = {given:g}: a Formate cut does not roll, so the key has no effect; it must be "

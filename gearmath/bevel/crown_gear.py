@@ -34,7 +34,7 @@ class Method:
 
 
 @dataclass(frozen=True)
-class Tooth:
+class CrownTooth:
     """What the settings of a member follow from (mm, rad); ``space_width`` is normal, at the mean point."""
 
     teeth: int
@@ -63,7 +63,7 @@ class Tooth:
         }
 
 
-def crown_gear_member(tooth: Tooth, method: Method = Method()) -> Member:
+def crown_gear_member(tooth: CrownTooth, method: Method = Method()) -> Member:
     """A member with settings of the crown gear.
 
     Raises InputError where blade groups or cutter do not fit, or where a tilted cut of both flanks is asked for.
@@ -78,9 +78,14 @@ def crown_gear_member(tooth: Tooth, method: Method = Method()) -> Member:
         flanks = {flank: _one_flank(tooth, method, flank) for flank in FLANKS}
     hobbing = {"process": "face_hobbing", "blade_groups": tooth.blade_groups, "indexing_sign": _EPICYCLOID}
     values = {
-        "teeth": tooth.teeth, "hand": tooth.hand, "cutting": method.cutting, "generation": method.generation,
-        "blank": tooth.blank, **flanks, **(hobbing if tooth.blade_groups else {}),
-    }  # fmt: skip
+        "teeth": tooth.teeth,
+        "hand": tooth.hand,
+        "cutting": method.cutting,
+        "generation": method.generation,
+        "blank": tooth.blank,
+        **flanks,
+        **(hobbing if tooth.blade_groups else {}),
+    }
     return checked(values, Member, f"crown gear of {tooth.teeth} teeth")
 
 
@@ -94,25 +99,33 @@ def crown_gear_set(
     blank = blank_of(data)
     other: Literal["left", "right"] = "right" if hand == "left" else "left"
     return BevelSet(
-        title=data.title, source=data.source, shaft_angle=data.shaft_angle,
+        title=data.title,
+        source=data.source,
+        shaft_angle=data.shaft_angle,
         pinion=crown_gear_member(_tooth(data, blank, blank.pinion, hand), pinion),
         gear=crown_gear_member(_tooth(data, blank, blank.wheel, other), gear),
-    )  # fmt: skip
+    )
 
 
-def _tooth(data: BlankData, pair: BevelBlank, member: MemberBlank, hand: Literal["left", "right"]) -> Tooth:
+def _tooth(data: BlankData, pair: BevelBlank, member: MemberBlank, hand: Literal["left", "right"]) -> CrownTooth:
     """A member of the blank; the drive side is the concave flank of the pinion, the convex one of the gear."""
     pitch = math.pi * pair.mean_normal_module
     drive = "concave" if member is pair.pinion else "convex"
     angles = {flank: pair.pressure_angle_drive if flank == drive else pair.pressure_angle_coast for flank in FLANKS}
-    return Tooth(
-        member.teeth, hand, member.spec_blank(), pair.mean_spiral_angle, angles, pair.cutter_radius,
-        pitch - member.mean_normal_thickness, math.ceil(_BLADE_RESERVE * member.outer_whole_depth),
+    return CrownTooth(
+        member.teeth,
+        hand,
+        member.spec_blank(),
+        pair.mean_spiral_angle,
+        angles,
+        pair.cutter_radius,
+        pitch - member.mean_normal_thickness,
+        math.ceil(_BLADE_RESERVE * member.outer_whole_depth),
         data.cutter.blade_groups,
-    )  # fmt: skip
+    )
 
 
-def _both_flanks(tooth: Tooth) -> dict[str, dict[str, float]]:
+def _both_flanks(tooth: CrownTooth) -> dict[str, dict[str, float]]:
     """Both flanks in one cut, the mean radius of the cutter in the middle of the space.
 
     The root line of a milled space is inclined, which takes from the pressure angle of one flank what it gives to the
@@ -137,19 +150,21 @@ def _both_flanks(tooth: Tooth) -> dict[str, dict[str, float]]:
     return {flank: _flank(tooth, space, blades[flank], SIDES[flank]) for flank in FLANKS}
 
 
-def _untilted(tooth: Tooth, flank: str, pressure_angle: float) -> dict[str, float]:
+def _untilted(tooth: CrownTooth, flank: str, pressure_angle: float) -> dict[str, float]:
     """Settings of an untilted blade that cuts this pressure angle [rad] at the mean point (14.3-14.5)."""
     given = {"side": SIDES[flank], "cutter_tilt": 0.0, "tilt_direction": 0.0, "flank_pressure_angle": pressure_angle}
     return evaluate("crown_gear_flank", {**tooth.values, **given})
 
 
-def _one_flank(tooth: Tooth, method: Method, flank: str) -> dict[str, float]:
+def _one_flank(tooth: CrownTooth, method: Method, flank: str) -> dict[str, float]:
     """A flank cut alone: half the width of the space from its middle, by turning the work."""
     side = SIDES[flank]
     given = {
-        "side": side, "flank_pressure_angle": tooth.pressure_angles[flank], "cutter_tilt": method.tilt,
+        "side": side,
+        "flank_pressure_angle": tooth.pressure_angles[flank],
+        "cutter_tilt": method.tilt,
         "tilt_direction": method.tilt_direction,
-    }  # fmt: skip
+    }
     settings = evaluate("crown_gear_flank", {**tooth.values, **given})
     if not math.isfinite(settings["radial_distance"]):
         raise InputError(f"tilt = {math.degrees(method.tilt):g}: the flank would be square to the cutter's axis")
@@ -167,16 +182,19 @@ def _one_flank(tooth: Tooth, method: Method, flank: str) -> dict[str, float]:
     return _flank(tooth, settings, settings["blade_pressure_angle"], side)
 
 
-def _flank(tooth: Tooth, settings: dict[str, float], alpha: float, side: int) -> dict[str, Any]:
+def _flank(tooth: CrownTooth, settings: dict[str, float], alpha: float, side: int) -> dict[str, Any]:
     """The flank as its file has it, in mm and degrees."""
     blade = {"cutter_radius": tooth.cutter_radius, "blade_pressure_angle": alpha, "side": side}
     point_radius = evaluate("blade_in_space", {**settings, **blade})["blade_point_radius"]
     _check_cutter(tooth, settings["radial_distance"], point_radius)
     degrees = {
-        "cradle_angle": settings["cradle_angle"], "cutter_tilt": settings.get("cutter_tilt", 0.0),
-        "cutter_swivel": settings.get("cutter_swivel", 0.0), "blade_offset_angle": settings["blade_offset_angle"],
-        "work_rotation_offset": settings.get("work_rotation_offset", 0.0), "blade_pressure_angle": alpha,
-    }  # fmt: skip
+        "cradle_angle": settings["cradle_angle"],
+        "cutter_tilt": settings.get("cutter_tilt", 0.0),
+        "cutter_swivel": settings.get("cutter_swivel", 0.0),
+        "blade_offset_angle": settings["blade_offset_angle"],
+        "work_rotation_offset": settings.get("work_rotation_offset", 0.0),
+        "blade_pressure_angle": alpha,
+    }
     return {
         "radial_distance": settings["radial_distance"],
         "blank_offset": 0.0,
@@ -190,7 +208,7 @@ def _flank(tooth: Tooth, settings: dict[str, float], alpha: float, side: int) ->
     }
 
 
-def _check_cutter(tooth: Tooth, distance: float, radius: float) -> None:
+def _check_cutter(tooth: CrownTooth, distance: float, radius: float) -> None:
     """The cutter's circle must cross the crown gear from toe to heel."""
     blank = tooth.blank
     toe = blank.mean_cone_distance - blank.face_width / 2

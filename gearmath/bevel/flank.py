@@ -88,10 +88,12 @@ def flank_point() -> Kernel:
         solution = step(solution, *given)
     surface = ca.Function("flank_at", [w, *place], _surface(w, *place))
     function = ca.Function(
-        "flank_point", [guess, *given], [solution, *surface(solution, *given)],
+        "flank_point",
+        [guess, *given],
+        [solution, *surface(solution, *given)],
         ["contact_guess", *(quantity.name for quantity in quantities[1:])],
         ["contact", "point_w", "normal_w", "residual_size"],
-    )  # fmt: skip
+    )
     return Kernel(
         function,
         f"Point and outward normal of a generated flank at a place on the blank, {NEWTON_STEPS} damped Newton steps.",

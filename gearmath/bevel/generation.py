@@ -99,9 +99,13 @@ def solve_section(
 
 
 def solve_curve(
-    flank: Generation, section: Section, u: np.ndarray, direction: tuple[float, float], distance: np.ndarray,
+    flank: Generation,
+    section: Section,
+    u: np.ndarray,
+    direction: tuple[float, float],
+    distance: np.ndarray,
     start: np.ndarray,
-) -> SurfacePoints:  # fmt: skip
+) -> SurfacePoints:
     """Points (n,) of a section with given blade parameters u (n,) on given lines of the axial plane.
 
     The lines are direction · (z_w, r_w) = distance (n,): with (cos δ, sin δ) those of constant cone distance.

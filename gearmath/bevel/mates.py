@@ -41,8 +41,14 @@ def pair_figures(pair: BevelSet) -> dict[str, Any] | None:
     found = ease_off_parts(pair.pinion, pair.gear, pair.shaft_angle)
     for flank, mating in zip(FLANKS, reversed(FLANKS), strict=True):
         own, mate = cut[MEMBERS[0]][flank], cut[MEMBERS[1]][mating]
-        parts = {"slope": "slope", "profile_slope": "profile_slope", "crowning": "crowning", "bias": "twist",
-                 "profile_crowning": "profile_crowning", "rest": "rest"}  # fmt: skip
+        parts = {
+            "slope": "slope",
+            "profile_slope": "profile_slope",
+            "crowning": "crowning",
+            "bias": "twist",
+            "profile_crowning": "profile_crowning",
+            "rest": "rest",
+        }
         figures[flank] = {
             "pressure_angle_difference_deg": math.degrees(own.pressure_angle - mate.pressure_angle),
             "spiral_angle_difference_deg": math.degrees(own.spiral_angle + mate.spiral_angle),
@@ -58,9 +64,14 @@ def _normal(pair: BevelSet, gear: dict[str, Any], transverse: float) -> float:
     spiral = sum(abs(flank.spiral_angle) for flank in gear.values()) / len(gear)
     mean = {"cone_distance": pair.gear.blank.mean_cone_distance, "spiral_angle": spiral}
     values = {
-        "mean_normal_module": transverse_module(pair.gear) * math.cos(spiral), "profile_shift_coefficient": 0.0,
-        "thickness_modification": 0.0, "pressure_angle_drive": gear["convex"].pressure_angle,
-        "pressure_angle_coast": gear["concave"].pressure_angle, "backlash": transverse,
-        "backlash_kind": _MEAN_TRANSVERSE, "mean_cone_distance": mean["cone_distance"], "mean_spiral_angle": spiral,
-    }  # fmt: skip
+        "mean_normal_module": transverse_module(pair.gear) * math.cos(spiral),
+        "profile_shift_coefficient": 0.0,
+        "thickness_modification": 0.0,
+        "pressure_angle_drive": gear["convex"].pressure_angle,
+        "pressure_angle_coast": gear["concave"].pressure_angle,
+        "backlash": transverse,
+        "backlash_kind": _MEAN_TRANSVERSE,
+        "mean_cone_distance": mean["cone_distance"],
+        "mean_spiral_angle": spiral,
+    }
     return evaluate("tooth_thickness", values | mean)["mean_normal_backlash"]

@@ -14,9 +14,13 @@ TOLERANCE = 1e-9
 
 residual_size = Quantity("residual_size", "size of the residual of place and meshing after the last step", "mm", "r")
 contact_guess = Quantity(
-    "contact_guess", "start values of u, beta, theta", "mixed", "(u, \\beta, \\theta)_0", shape=(3,),
+    "contact_guess",
+    "start values of u, beta, theta",
+    "mixed",
+    "(u, \\beta, \\theta)_0",
+    shape=(3,),
     components=notation.contact.components,
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)

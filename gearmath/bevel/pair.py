@@ -127,15 +127,17 @@ def _check_change(member: Member, name: str, flank: str, nominal: CutFlank, foun
         change = math.degrees(getattr(found, what) - getattr(nominal, what))
         if not abs(change) <= _CORRECTED_ANGLE:
             raise Misfit.of(
-                name, flank,
+                name,
+                flank,
                 f"the corrected settings change its {what.replace('_', ' ')} by {change:.3g} degrees against those "
                 f"under design, which must be at most {_CORRECTED_ANGLE:g}",
-            )  # fmt: skip
+            )
     arc = mean_pitch_radius(member) * math.remainder(found.azimuth - nominal.azimuth, 2 * math.pi)
     limit = _CORRECTED_ARC * transverse_module(member)
     if not abs(arc) <= limit:
         raise Misfit.of(
-            name, flank,
+            name,
+            flank,
             f"the corrected settings move it by {arc:.3g} mm at the mean point against those under design, which must "
             f"be at most {limit:.3g} mm",
-        )  # fmt: skip
+        )

@@ -55,9 +55,11 @@ def misfit(member: Member, flank: str, settings: np.ndarray, index: np.ndarray, 
     contact, point, normal, solved = _solve(how, settings, index, np.nan_to_num(start), conditions)
     pressure, spiral, _, _ = kernel("flank_angles")(math.radians(blank.pitch_angle), point, normal)
     parts = [
-        contact[:, 2] / math.radians(OFF_CENTER), (spiral - wanted.spiral) / _SPIRAL,
-        (pressure - wanted.pressure) / _PRESSURE, *_root_off(member, how, settings, index, contact),
-    ]  # fmt: skip
+        contact[:, 2] / math.radians(OFF_CENTER),
+        (spiral - wanted.spiral) / _SPIRAL,
+        (pressure - wanted.pressure) / _PRESSURE,
+        *_root_off(member, how, settings, index, contact),
+    ]
     off = np.stack(parts)
     off = np.where(np.isfinite(off), np.clip(off, -_NONE, _NONE), _NONE)
     return np.where(solved, off, 2 * _NONE)

@@ -64,9 +64,7 @@ def mean_place(member: Member) -> tuple[np.ndarray, np.ndarray]:
     return axial, radial
 
 
-def root_trace(
-    member: Member, flank: str, how: Generation, start: np.ndarray, narrower: float = 0.0
-) -> SurfacePoints:  # fmt: skip
+def root_trace(member: Member, flank: str, how: Generation, start: np.ndarray, narrower: float = 0.0) -> SurfacePoints:
     """Points (13,) that the corner of the blade leaves, at the places ``ACROSS``; those not found have not converged.
 
     ``start`` (1,3) is the contact at the mean point. With ``narrower`` [mm], the corner on the other side of a cutter
@@ -94,7 +92,7 @@ def root_widths(member: Member, concave: np.ndarray, convex: np.ndarray) -> Widt
 
 def slot_widths(
     member: Member, flank: str, how: Generation, start: np.ndarray, own: np.ndarray, other: np.ndarray
-) -> Widths:  # fmt: skip
+) -> Widths:
     """Point widths of a cutter that at the settings of a flank with the trace ``own`` would leave the trace ``other``.
 
     Where both corners of a cutter are cut at the same settings, that is its point width. Traces (13,3) as above.

@@ -29,7 +29,7 @@ _ROWS = (("main", 17), ("toprem", 5), ("edge", 9))
 
 
 @dataclass(frozen=True)
-class FlankSurface:
+class SpaceFlank:
     """One flank of space 0, rows tip to root, columns toe to heel: points and outward normals (rows, columns, 3).
 
     ``section`` (rows,) names the part of the blade that cuts a row, ``sense`` (rows, columns) changes its sign where
@@ -63,8 +63,8 @@ class ToothSpace:
     whose settings a cutter would leave it.
     """
 
-    concave: FlankSurface
-    convex: FlankSurface
+    concave: SpaceFlank
+    convex: SpaceFlank
     pitch: float
     root: Widths
     slots: dict[str, Widths]
@@ -75,7 +75,7 @@ class ToothSpace:
         return half_turn(_angle(high.point[row]) - _angle(low.point[row]))
 
     @property
-    def ordered(self) -> tuple[FlankSurface, FlankSurface]:
+    def ordered(self) -> tuple[SpaceFlank, SpaceFlank]:
         """The flanks in the order of their angle about z_w, across the space."""
         middle = self.concave.point.shape[1] // 2
         turn = half_turn(_angle(self.convex.point[0, middle]) - _angle(self.concave.point[0, middle]))
@@ -120,7 +120,7 @@ def space_widths(member: Member, name: str) -> tuple[Widths, dict[str, Widths]]:
 
 def flank_surface(
     member: Member, name: str, flank: str, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
-) -> FlankSurface:
+) -> SpaceFlank:
     """One flank of space 0 from the face cone to the bottom of its fillet."""
     spec = member.flank(flank)
     sharp = _edged(spec)
@@ -150,7 +150,7 @@ def flank_surface(
             names.append(part)
             start = row.contact
     stack = [np.stack([getattr(row, field) for row in points]) for field in ("point", "normal", "sense")]
-    return FlankSurface(flank, stack[0], stack[1], tuple(names), stack[2])
+    return SpaceFlank(flank, stack[0], stack[1], tuple(names), stack[2])
 
 
 def space_figures(member: Member, space: ToothSpace) -> dict[str, float]:

@@ -28,15 +28,26 @@ _MOST_POINTS = 1_000_000
 @click.option("--margin-toe", "toe", type=float, help="Part of the face width left out at the toe.")
 @click.option("--margin-heel", "heel", type=float, help="The same at the heel.")
 @click.option(
-    "--places", type=click.Path(path_type=Path), metavar="FILE",
+    "--places",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
     help="Places in their stead: z_w and r_w in mm a line, from the pitch apex; row by row where --grid is given, else "
     "one column, for other programs.",
-)  # fmt: skip
+)
 @output("flank CSV")
 def flank(
-    gear_set: str, member: str | None, side: str, size: str | None, margin: float | None, root: float | None,
-    tip: float | None, toe: float | None, heel: float | None, places: Path | None, target: Path,
-) -> None:  # fmt: skip
+    gear_set: str,
+    member: str | None,
+    side: str,
+    size: str | None,
+    margin: float | None,
+    root: float | None,
+    tip: float | None,
+    toe: float | None,
+    heel: float | None,
+    places: Path | None,
+    target: Path,
+) -> None:
     """Nominal points and outward normals of one flank, as a flank CSV."""
     from gearmath.bevel.flank import blank_grid
     from gearmath.bevel.grid import listed_grid

@@ -10,7 +10,7 @@ import click
 from gearmath.cli.common import JSON, NewFile, about, table
 
 if TYPE_CHECKING:
-    from gearmath.bevel.blank_table import Row
+    from gearmath.bevel.blank_table import TableRow
 
 
 @click.command()
@@ -56,7 +56,7 @@ def blank(data: str, as_json: bool, as_set: bool, target: Path | None) -> None:
     click.echo(f"{target}: written")
 
 
-def _text(found: list[Row]) -> str:
+def _text(found: list[TableRow]) -> str:
     """The figures of the pair, then those of pinion and wheel; what changes along the tooth in three lines."""
     from gearmath.bevel.blank_table import PLACES
 

@@ -25,9 +25,10 @@ SET_OPTION = click.option(
     "--set", "gear_set", metavar="SET.toml", required=True, help="Gear set: a file, or a bundled one."
 )
 MEMBER = click.option(
-    "--member", type=click.Choice(["pinion", "gear"]),
+    "--member",
+    type=click.Choice(["pinion", "gear"]),
     help="Member of the pair; may be left out where the set has one only, or a file says it.",
-)  # fmt: skip
+)
 MACHINE = click.option(
     "--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine: a file, or a bundled one."
 )
@@ -41,9 +42,12 @@ TOUCH_CSV = (
 )
 CALIBRATION_CSV = "Touches, mm and degrees: run, point, target, X, Y, Z, A, B, triggered; docs/files.md."
 REGISTER = click.option(
-    "--register/--no-register", "registered", default=True, show_default=True,
+    "--register/--no-register",
+    "registered",
+    default=True,
+    show_default=True,
     help="Take out the clamping (eccentricity, tilt), where the points tell it.",
-)  # fmt: skip
+)
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
@@ -110,9 +114,12 @@ def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> t
 def plot(what: str) -> Any:
     """The option --plot for one picture."""
     return click.option(
-        "--plot", "picture", type=NewFile(), metavar="PICTURE.png",
+        "--plot",
+        "picture",
+        type=NewFile(),
+        metavar="PICTURE.png",
         help=f"Picture to write (PNG): {what}.",
-    )  # fmt: skip
+    )
 
 
 def save_plot(figure: Figure, path: Path, as_json: bool) -> None:
@@ -125,17 +132,23 @@ def save_plot(figure: Figure, path: Path, as_json: bool) -> None:
 
 #: The option --sheet of programs.
 SHEET = click.option(
-    "--sheet", type=NewFile(), metavar="SETUP.html",
+    "--sheet",
+    type=NewFile(),
+    metavar="SETUP.html",
     help="Also write the set-up sheet: a page that prints on A4.",
-)  # fmt: skip
+)
 
 
 def output(suffix: str) -> Any:
     """The option -o for one output file."""
     return click.option(
-        "-o", "--output", "target", type=NewFile(), required=True,
+        "-o",
+        "--output",
+        "target",
+        type=NewFile(),
+        required=True,
         help=f"File to write ({suffix}).",
-    )  # fmt: skip
+    )
 
 
 @contextmanager

@@ -27,9 +27,9 @@ from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from gearmath.bevel.identify.variables import Bounds
-    from gearmath.quality.correction.member import Correction
+    from gearmath.quality.correction.member import MemberCorrection
     from gearmath.quality.correction.thickness import By
-    from gearmath.quality.evaluation.member import Evaluation
+    from gearmath.quality.evaluation.member import MemberEvaluation
     from gearmath.specs.bevel_set import BevelSet, Member
     from gearmath.specs.flank_csv import FlankFile
 
@@ -61,18 +61,28 @@ if TYPE_CHECKING:
 )
 @REGISTER
 @click.option(
-    "--rotation/--no-rotation", "rotated", default=True, show_default=True,
+    "--rotation/--no-rotation",
+    "rotated",
+    default=True,
+    show_default=True,
     help="Leave open how the work stood about its axis: what turns both flanks alike is no error of a setting.",
-)  # fmt: skip
+)
 @click.option(
-    "--bounds", type=click.Choice(["machine", "design"]), default="machine", show_default=True,
+    "--bounds",
+    type=click.Choice(["machine", "design"]),
+    default="machine",
+    show_default=True,
     help="How far settings may change: as a machine may be off, or as a new design may want it.",
-)  # fmt: skip
+)
 @click.option("--root-limit", type=Number(0.001, 2, "mm"), metavar="MM", help="Most that the root line may move.")
 @click.option(
-    "--noise", "--sigma-um", "noise", type=Number(0, 100, "um"), metavar="UM",
+    "--noise",
+    "--sigma-um",
+    "noise",
+    type=Number(0, 100, "um"),
+    metavar="UM",
     help="Noise of one deviation; else what is left. With it, or with u_um in the file, settings have uncertainties.",
-)  # fmt: skip
+)
 @click.option(
     "--thickness", type=Number(-500, 500, "um"), default=0.0, metavar="UM", help="Leave the teeth thicker by so much."
 )
@@ -87,10 +97,24 @@ if TYPE_CHECKING:
 @JSON
 @output("corrected set, TOML")
 def compensate(
-    gear_set: str, member: str | None, measured: Path, names: str, higher_order: bool, objective: str,
-    from_mate: Path | None, registered: bool, rotated: bool, bounds: Bounds, root_limit: float | None,
-    noise: float | None, thickness: float, thickness_by: str, verbose: bool, as_json: bool, target: Path,
-) -> None:  # fmt: skip
+    gear_set: str,
+    member: str | None,
+    measured: Path,
+    names: str,
+    higher_order: bool,
+    objective: str,
+    from_mate: Path | None,
+    registered: bool,
+    rotated: bool,
+    bounds: Bounds,
+    root_limit: float | None,
+    noise: float | None,
+    thickness: float,
+    thickness_by: str,
+    verbose: bool,
+    as_json: bool,
+    target: Path,
+) -> None:
     """Corrected machine settings from a measurement; the nominal settings stay in the file under 'design'.
 
     Points that missed, drift and clamping are taken out first, as 'evaluate' does. Says in two lines what remains of
@@ -117,17 +141,33 @@ def compensate(
         evaluation.closing.check_topography()
         level = noise_of_points(file, spec, evaluation, noise)
         correction = correct(
-            spec, member, evaluation.file, _free(names), objective=objective, higher_order=higher_order,
-            few=names == "few", root_limit=root_limit or ROOT_LIMIT, noise=level, added=moved, bounds=bounds,
-            progress=progress, indexed=evaluation.closing.withheld is None,
-        )  # fmt: skip
+            spec,
+            member,
+            evaluation.file,
+            _free(names),
+            objective=objective,
+            higher_order=higher_order,
+            few=names == "few",
+            root_limit=root_limit or ROOT_LIMIT,
+            noise=level,
+            added=moved,
+            bounds=bounds,
+            progress=progress,
+            indexed=evaluation.closing.withheld is None,
+        )
     if thickness:
         by = cast("By", thickness_by)
         correction.settings.update(with_thickness(spec, member, correction.settings, thickness / 1000, by))
     save_corrected(
-        source, target, member, correction.settings, correction.index, correction.motions, correction.curvatures,
+        source,
+        target,
+        member,
+        correction.settings,
+        correction.index,
+        correction.motions,
+        correction.curvatures,
         check=check_pair,
-    )  # fmt: skip
+    )
     values = correction_values(spec, correction) | {"remarks": [*evaluation.remarks, *correction.remarks]}
     values |= _uncertainty(spec, file, evaluation, correction, noise, root_limit or ROOT_LIMIT)
     if as_json:
@@ -153,9 +193,13 @@ def compensate(
 
 
 def _uncertainty(
-    member: Member, file: FlankFile, found: Evaluation, correction: Correction, noise_um: float | None,
+    member: Member,
+    file: FlankFile,
+    found: MemberEvaluation,
+    correction: MemberCorrection,
+    noise_um: float | None,
     root_limit: float,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Standard uncertainties of the corrected settings, and what errors of measurement do to the flanks."""
     from gearmath.cli.uncertainty import effects_um, point_covariance
     from gearmath.quality.uncertainty.judged import judged_by_measured
@@ -205,8 +249,14 @@ def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, register
 @SET_OPTION
 @MEMBER
 @click.option("--advance", is_flag=True, help="Find an axial shift too, not only the rotation.")
-@click.option("--least", type=Number(0, 2000, "um"), default=0.0, show_default=True, metavar="UM",
-              help="Stock that must remain everywhere.")  # fmt: skip
+@click.option(
+    "--least",
+    type=Number(0, 2000, "um"),
+    default=0.0,
+    show_default=True,
+    metavar="UM",
+    help="Stock that must remain everywhere.",
+)
 @JSON
 def stock(measured: Path, gear_set: str, member: str | None, advance: bool, least: float, as_json: bool) -> None:
     """How a precut blank must stand so that both flanks share its stock: probe it, then turn it by this."""
@@ -222,19 +272,35 @@ def stock(measured: Path, gear_set: str, member: str | None, advance: bool, leas
         found = share_stock(spec, member, file, advance, least / 1000)
     remarks = list(missing_points(file, spec.teeth))
     if as_json:
-        echo_json({
-            "turn_deg": math.degrees(found.turn), "advance_mm": found.advance, "remarks": remarks,
-            **{f"{name}_um": {flank: value * 1000 for flank, value in getattr(found, name).items()}
-               for name in ("least", "mean", "most", "least_before")},
-        })  # fmt: skip
+        echo_json(
+            {
+                "turn_deg": math.degrees(found.turn),
+                "advance_mm": found.advance,
+                "remarks": remarks,
+                **{
+                    f"{name}_um": {flank: value * 1000 for flank, value in getattr(found, name).items()}
+                    for name in ("least", "mean", "most", "least_before")
+                },
+            }
+        )
         return
     click.echo(f"turn the work by {math.degrees(found.turn):+.5f} deg about its axis (A, or work_rotation_offset)")
     if advance:
         click.echo(f"advance it by {found.advance:+.4f} mm along its axis, from toe to heel")
-    click.echo(table(
-        ["flank", "least_um", "mean_um", "most_um", "least_as_clamped_um"],
-        [[flank, *(f"{values[flank] * 1000:.1f}" for values in (found.least, found.mean, found.most,
-                                                                found.least_before))] for flank in found.least],
-    ))  # fmt: skip
+    click.echo(
+        table(
+            ["flank", "least_um", "mean_um", "most_um", "least_as_clamped_um"],
+            [
+                [
+                    flank,
+                    *(
+                        f"{values[flank] * 1000:.1f}"
+                        for values in (found.least, found.mean, found.most, found.least_before)
+                    ),
+                ]
+                for flank in found.least
+            ],
+        )
+    )
     for remark in remarks:
         click.echo(remark)

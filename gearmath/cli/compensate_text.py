@@ -10,23 +10,26 @@ from gearmath.bevel.identify.variables import reading
 from gearmath.cli.common import table
 from gearmath.cli.uncertainty import effects_text
 from gearmath.quality.correction.analysis import Analysis, weak_words
-from gearmath.quality.correction.member import Correction, setting_changes
+from gearmath.quality.correction.member import MemberCorrection, setting_changes
 from gearmath.specs.bevel_set import Member
 
 
-def verdict(member: Member, correction: Correction) -> tuple[str, str]:
+def verdict(member: Member, correction: MemberCorrection) -> tuple[str, str]:
     """What remains of what was measured, by which settings; and which limit binds, or what could be reached."""
 
     remains = []
     for flank, (before, after) in correction.rms.items():
         changes = [
             f"{name} {(new - old) * reading(name)[0]:+.4f} {reading(name)[1]}"
-            for where, name, old, new in setting_changes(member, correction) if where == flank
-        ]  # fmt: skip
+            for where, name, old, new in setting_changes(member, correction)
+            if where == flank
+        ]
         (found,) = (one for group, one in correction.identified.items() if flank in group)
         kept = "expected to remain" if found.converged else f"left where the fit stopped after {found.iterations} steps"
-        remains.append(f"{flank} {after * 1000:.2f} um {kept} of {before * 1000:.2f} um "
-                       f"({', '.join(changes) or 'nothing is changed'})")  # fmt: skip
+        remains.append(
+            f"{flank} {after * 1000:.2f} um {kept} of {before * 1000:.2f} um "
+            f"({', '.join(changes) or 'nothing is changed'})"
+        )
     limits = []
     for group, found in correction.identified.items():
         flanks, best = " and ".join(group), correction.reachable[group] * 1000
@@ -78,7 +81,7 @@ def say_analysis(flanks: str, analysis: Analysis) -> Iterator[str]:
         yield f"  enough: {', '.join(choice.names)}, with a loss of {choice.loss * 1000:.3f} um"
 
 
-def say_result(correction: Correction) -> Iterator[str]:
+def say_result(correction: MemberCorrection) -> Iterator[str]:
     """What remains of every group of flanks, and how far the root lines move."""
     for group, found in correction.identified.items():
         kept = "expected to remain" if found.converged else "not converged, left so far"
@@ -88,7 +91,7 @@ def say_result(correction: Correction) -> Iterator[str]:
         yield f"{flank}: root line {moved[0] * 1000:+.1f} um at the toe, {moved[1] * 1000:+.1f} um at the heel"
 
 
-def correction_values(member: Member, correction: Correction) -> dict[str, Any]:
+def correction_values(member: Member, correction: MemberCorrection) -> dict[str, Any]:
 
     changes = []
     for flank, name, old, new in setting_changes(member, correction):
@@ -106,7 +109,7 @@ def correction_values(member: Member, correction: Correction) -> dict[str, Any]:
     }
 
 
-def _fit_values(correction: Correction, group: tuple[str, ...]) -> dict[str, Any]:
+def _fit_values(correction: MemberCorrection, group: tuple[str, ...]) -> dict[str, Any]:
     analysis, found = correction.analysis[group], correction.identified[group]
     choice = analysis.choose()
     return {

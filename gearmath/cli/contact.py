@@ -36,9 +36,11 @@ _SURE = (
 @click.option("--shaft", type=float, default=0.0, show_default=True, help="Growth of the shaft angle, degrees.")
 @click.option("--step", type=float, default=1.0, show_default=True, help="Positions of the path, degrees of pinion.")
 @click.option(
-    "--tolerance", "with_tolerance", is_flag=True,
+    "--tolerance",
+    "with_tolerance",
+    is_flag=True,
     help="Also V and H, from the assembly as given, at which the pattern reaches an edge.",
-)  # fmt: skip
+)
 @click.option(
     "--measured-pinion", type=click.Path(path_type=Path), metavar="CSV", help="Measured flank CSV of the pinion."
 )
@@ -46,9 +48,18 @@ _SURE = (
 @JSON
 @plot("transmission error, path, pattern and V-H diagram of both sides")
 def contact(
-    gear_set: str, v: float, h: float, j: float, shaft: float, step: float, with_tolerance: bool,
-    measured_pinion: Path | None, measured_gear: Path | None, as_json: bool, picture: Path | None,
-) -> None:  # fmt: skip
+    gear_set: str,
+    v: float,
+    h: float,
+    j: float,
+    shaft: float,
+    step: float,
+    with_tolerance: bool,
+    measured_pinion: Path | None,
+    measured_gear: Path | None,
+    as_json: bool,
+    picture: Path | None,
+) -> None:
     """How a pair runs: path of contact, transmission error, V-H check, of drive (pinion concave) and coast side.
 
     The contact is exact: flanks, edges of tip, toe and heel, and corners, of one pair of teeth and its neighbors. The
@@ -101,9 +112,11 @@ def contact(
 
 def _check(v: float, h: float, j: float, shaft: float, step: float) -> None:
     for name, value, most, unit in (
-        ("--v", v, _MOST_MM, "mm"), ("--h", h, _MOST_MM, "mm"), ("--j", j, _MOST_MM, "mm"),
+        ("--v", v, _MOST_MM, "mm"),
+        ("--h", h, _MOST_MM, "mm"),
+        ("--j", j, _MOST_MM, "mm"),
         ("--shaft", shaft, _MOST_DEG, "degrees"),
-    ):  # fmt: skip
+    ):
         if not abs(value) <= most:
             raise InputError(f"{name} {value:g}: must lie between -{most:g} and {most:g} {unit}")
     if not _FINEST <= step <= _COARSEST:
@@ -117,8 +130,12 @@ def _lost(system: System, side: str, given: Assembly) -> str:
     def keeps(assembly: Assembly) -> bool:
         return mesh(system, assembly).outcome != "contact lost"
 
-    names = {"V": ("--v", 1.0, "mm"), "H": ("--h", 1.0, "mm"), "J": ("--j", 1.0, "mm"),
-             "shaft": ("--shaft", math.degrees(1), "degrees")}  # fmt: skip
+    names = {
+        "V": ("--v", 1.0, "mm"),
+        "H": ("--h", 1.0, "mm"),
+        "J": ("--j", 1.0, "mm"),
+        "shaft": ("--shaft", math.degrees(1), "degrees"),
+    }
     there = [name for name in names if getattr(given, name)]
     for name in there:
         if not keeps(replace(given, **{name: 0.0})):
@@ -145,8 +162,10 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
     runs_on = [kind for kind in result["leading_kinds"] if kind != "interior"]
     if runs_on and not result["outcome"].startswith(runs_on[0]):
         lines[0] += f", running on {' and '.join(f'{kind} contact' for kind in runs_on)} in turn"
-    rows = [["transmission error, peak to peak", "none" if spread is None else f"{spread:.3f} arcsec"],
-            ["contact ratio within the flanks", f"{result['contact_ratio']:.3f}"]]  # fmt: skip
+    rows = [
+        ["transmission error, peak to peak", "none" if spread is None else f"{spread:.3f} arcsec"],
+        ["contact ratio within the flanks", f"{result['contact_ratio']:.3f}"],
+    ]
     if (mean := result["at_mean"]) is not None:
         major, minor = mean["semi_axes_mm"]
         rows += [
@@ -158,11 +177,15 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
     found = result["pattern"]
     if "length_share" in found:
         rows += [
-            [f"pattern at {found['thickness_mm'] * 1000:.3g} um", f"{found['share']:.0%} of the flank, "
-             f"{found['length_share']:.0%} of its width"],
-            ["center of the pattern", f"cone distance {found['center_cone_distance_mm']:.2f}, height "
-             f"{found['center_height_mm']:+.2f} mm"],
-        ]  # fmt: skip
+            [
+                f"pattern at {found['thickness_mm'] * 1000:.3g} um",
+                f"{found['share']:.0%} of the flank, {found['length_share']:.0%} of its width",
+            ],
+            [
+                "center of the pattern",
+                f"cone distance {found['center_cone_distance_mm']:.2f}, height {found['center_height_mm']:+.2f} mm",
+            ],
+        ]
     for name, values in result.get("measured", {}).items():
         text = (
             "nominal: this flank was not measured in full"
@@ -171,21 +194,30 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
         )
         rows.append([f"{name} as measured", text])
     if (sure := result.get("uncertainty")) is not None:
-        rows += [[f"standard uncertainty of {words}", f"{sure[key]:.3g} {unit}"] for key, words, unit in _SURE
-                 if sure[key] is not None]  # fmt: skip
+        rows += [
+            [f"standard uncertainty of {words}", f"{sure[key]:.3g} {unit}"]
+            for key, words, unit in _SURE
+            if sure[key] is not None
+        ]
     for place, found in result["v_h_mm"].items():
-        rows.append([f"V and H for contact at {place}",
-                     "none" if found is None else f"{found[0]:+.4f} and {found[1]:+.4f} mm"])  # fmt: skip
+        rows.append(
+            [f"V and H for contact at {place}", "none" if found is None else f"{found[0]:+.4f} and {found[1]:+.4f} mm"]
+        )
     if "tolerance_mm" in result:
         rows += _tolerance_rows(result["tolerance_mm"])
     lines.append(table(["figure", "value"], rows))
     if result["path"]:
         head = ["pinion deg", "kind", "error arcsec", "cone distance mm", "height mm"]
         cells = [
-            [f"{row['pinion_rotation_deg']:.3f}", row["kind"], f"{row['transmission_error_arcsec']:z.3f}",
-             f"{row['gear_cone_distance_mm']:.4f}", f"{row['gear_height_mm']:.4f}"]
+            [
+                f"{row['pinion_rotation_deg']:.3f}",
+                row["kind"],
+                f"{row['transmission_error_arcsec']:z.3f}",
+                f"{row['gear_cone_distance_mm']:.4f}",
+                f"{row['gear_height_mm']:.4f}",
+            ]
             for row in result["path"]
-        ]  # fmt: skip
+        ]
         lines += ["path of one pair of teeth:", table(head, cells)]
     return "\n".join(lines) + "\n"
 

@@ -55,8 +55,14 @@ def status(connection: Path, insecure: bool, as_json: bool) -> None:
 
     found, rights = ask(connection, insecure, (READ_STATE,), work)
     position = dict(zip(AXES, found.position, strict=True))
-    values = {"channel": str(found.channel), "mode": found.mode, "selected": found.selected, "message": found.message,
-              "position": position, "rights": rights}  # fmt: skip
+    values = {
+        "channel": str(found.channel),
+        "mode": found.mode,
+        "selected": found.selected,
+        "message": found.message,
+        "position": position,
+        "rights": rights,
+    }
     if as_json:
         echo_json(values)
         return
@@ -84,8 +90,10 @@ def watch(connection: Path, insecure: bool, interval: float, seconds: float | No
                 values = dict(zip(AXES, position, strict=True))
                 click.echo(json.dumps({"seconds": round(at - begin, 3), "position": values}))
             else:
-                click.echo(f"{at - begin:9.2f} s  " + "  ".join(
-                    f"{axis} {value:11.5f}" for axis, value in zip(AXES, position, strict=True)))  # fmt: skip
+                click.echo(
+                    f"{at - begin:9.2f} s  "
+                    + "  ".join(f"{axis} {value:11.5f}" for axis, value in zip(AXES, position, strict=True))
+                )
             if seconds is not None and at - begin >= seconds:
                 return
 

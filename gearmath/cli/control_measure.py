@@ -16,21 +16,39 @@ from gearmath.cli.control_connect import CONNECTION, INSECURE, connection_of, co
 @INSECURE
 @click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF", required=False)
 @click.option(
-    "--store", "store_path", type=click.Path(path_type=Path), default="runs.db", show_default=True,
-    envvar="GEARMATH_STORE", show_envvar=True, help="The measurement store; made where there is none.",
-)  # fmt: skip
+    "--store",
+    "store_path",
+    type=click.Path(path_type=Path),
+    default="runs.db",
+    show_default=True,
+    envvar="GEARMATH_STORE",
+    show_envvar=True,
+    help="The measurement store; made where there is none.",
+)
 @click.option("--set", "gear_set", metavar="SET.toml", help="Gear set of the member, to be kept with the run.")
 @click.option("--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine, to be kept too.")
 @click.option("--calibration", default="probe.toml", show_default=True, help="Calibrated probe, to be kept too.")
-@click.option("--acknowledge", is_flag=True,
-              help="Acknowledge the touches: this lets the waiting program move on. It must be given.")  # fmt: skip
+@click.option(
+    "--acknowledge",
+    is_flag=True,
+    help="Acknowledge the touches: this lets the waiting program move on. It must be given.",
+)
 @click.option("--resume", type=click.IntRange(1), metavar="RUN", help="Go on with a run of the store.")
 @click.option("--points", metavar="FIRST-LAST", help="Touch these points only, as a new run.")
 @click.option("--again-of", type=click.IntRange(1), metavar="RUN", help="With --points: the run that they belong to.")
 def measure(
-    connection: Path, insecure: bool, program: Path | None, store_path: Path, gear_set: str | None, machine: str,
-    calibration: str, acknowledge: bool, resume: int | None, points: str | None, again_of: int | None,
-) -> None:  # fmt: skip
+    connection: Path,
+    insecure: bool,
+    program: Path | None,
+    store_path: Path,
+    gear_set: str | None,
+    machine: str,
+    calibration: str,
+    acknowledge: bool,
+    resume: int | None,
+    points: str | None,
+    again_of: int | None,
+) -> None:
     """Keep every touch of a probing or calibration program in the store, before the program goes on.
 
     PROGRAM.MPF lies on the control and is selected there, the channel is in reset. This command sets R104, R90 and R91,
@@ -40,7 +58,7 @@ def measure(
     from gearmath.control import sinumerik
     from gearmath.control.measuring import Measuring
     from gearmath.control.run_start import begun, resumed
-    from gearmath.control.store import Store
+    from gearmath.control.store import MeasurementStore
 
     if not acknowledge:
         raise click.UsageError(
@@ -50,16 +68,18 @@ def measure(
         raise click.UsageError("either PROGRAM.MPF or --resume RUN must be given")
     if again_of is not None and points is None:
         raise click.UsageError("--again-of goes with --points")
-    connect = connector(connection, insecure, sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS,
-                        sinumerik.READ_FILES)  # fmt: skip
-    with Store.open(store_path) as store:
+    connect = connector(
+        connection, insecure, sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS, sinumerik.READ_FILES
+    )
+    with MeasurementStore.open(store_path) as store:
         if resume is not None:
             run = store.resume_run(resume)
             parts = resumed(run)
         else:
             assert program is not None
-            start, parts = begun(connection_of(connection, insecure).name, program, gear_set, machine, calibration,
-                                 points, again_of)  # fmt: skip
+            start, parts = begun(
+                connection_of(connection, insecure).name, program, gear_set, machine, calibration, points, again_of
+            )
             run = store.begin_run(start)
         with bar(len(run.missing()), "touch") as progress:
             asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(parts))

@@ -24,10 +24,20 @@ _HELP = (
 
 
 @click.command()
-@click.option("--folder", type=click.Path(path_type=Path), default=Path("gearmath-control"), show_default=True,
-              help="Where certificates of both sides and CONTROL.toml are kept; made where it is missing.")  # fmt: skip
-@click.option("--set", "gear_sets", multiple=True, metavar="SET.toml",
-              help="Gear set whose programs it cuts and probes; several times, for corrected ones.")  # fmt: skip
+@click.option(
+    "--folder",
+    type=click.Path(path_type=Path),
+    default=Path("gearmath-control"),
+    show_default=True,
+    help="Where certificates of both sides and CONTROL.toml are kept; made where it is missing.",
+)
+@click.option(
+    "--set",
+    "gear_sets",
+    multiple=True,
+    metavar="SET.toml",
+    help="Gear set whose programs it cuts and probes; several times, for corrected ones.",
+)
 @click.option("--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine.")
 @click.option("--calibration", default="probe.toml", show_default=True, help="Calibrated probe.")
 @click.option("--errors", help="What is wrong with machine, clamping and probe, such as simulated_shop.toml.")
@@ -38,13 +48,24 @@ _HELP = (
     show_default=True,
     help="Port on this computer; 0: any that is free.",
 )
-@click.option("--speed", type=click.FloatRange(0.0, 1e6), default=1.0, show_default=True,
-              help="1 is real time, 10 ten times as fast, 0 as fast as it is computed.")  # fmt: skip
+@click.option(
+    "--speed",
+    type=click.FloatRange(0.0, 1e6),
+    default=1.0,
+    show_default=True,
+    help="1 is real time, 10 ten times as fast, 0 as fast as it is computed.",
+)
 @click.option("--unencrypted", is_flag=True, help="Take clients without encryption besides.")
 def simulate(
-    folder: Path, gear_sets: tuple[str, ...], machine: str, calibration: str, errors: str | None, port: int,
-    speed: float, unencrypted: bool,
-) -> None:  # fmt: skip
+    folder: Path,
+    gear_sets: tuple[str, ...],
+    machine: str,
+    calibration: str,
+    errors: str | None,
+    port: int,
+    speed: float,
+    unencrypted: bool,
+) -> None:
     """A simulated SINUMERIK 840D sl on this computer: programs are run on the machine model, with its errors.
 
     It has the node names, rights and limits of the control. Its console takes one command a line until 'quit'; 'help'

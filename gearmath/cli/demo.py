@@ -9,13 +9,19 @@ import click
 
 @click.command()
 @click.option(
-    "-o", "--output", "folder", type=click.Path(path_type=Path), default=Path("gearmath-demo"), show_default=True,
+    "-o",
+    "--output",
+    "folder",
+    type=click.Path(path_type=Path),
+    default=Path("gearmath-demo"),
+    show_default=True,
     help="Folder for programs, measurements, corrected sets, pictures and C.",
-)  # fmt: skip
+)
 @click.option(
-    "--control", is_flag=True,
+    "--control",
+    is_flag=True,
     help="Over a simulated machine control instead: put, cut, measure with a store, correct, cut and measure again.",
-)  # fmt: skip
+)
 def demo(folder: Path, control: bool) -> None:
     """The whole closed loop on a bundled real gear set and a bundled hobbing machine."""
     if control:

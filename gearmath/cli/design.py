@@ -63,9 +63,11 @@ def _text(title: str, figures: dict[str, Any]) -> str:
         ["cutter radius", f"{figures['cutter_radius_mm']:g} mm"],
         ["mean normal module", f"{figures['mean_normal_module_mm']:.4f} mm"],
         ["backlash at the mean point, transverse", f"{backlash['found']:.4f} mm, asked {backlash['asked']:.4f}"],
-        *([f"top land of the {name}, normal, toe mean heel", " ".join(f"{one:.3f}" for one in land.values()) + " mm"]
-          for name, land in lands.items()),
-    ]  # fmt: skip
+        *(
+            [f"top land of the {name}, normal, toe mean heel", " ".join(f"{one:.3f}" for one in land.values()) + " mm"]
+            for name, land in lands.items()
+        ),
+    ]
     parts = [title, table(["figure", "value"], rows)]
     for side in ("drive", "coast"):
         parts.append(_side(side, figures[side]))
@@ -81,13 +83,19 @@ def _side(side: str, found: dict[str, Any]) -> str:
         ["lag half a pitch before and after it", f"{lag[0]} and {lag[1]} arcsec"],
         ["transmission error, peak to peak", f"{found['peak_to_peak_arcsec']:.3f} arcsec"],
         ["contact ratio within the flanks", f"{found['contact_ratio']:.3f}"],
-        ["vertex on the gear", f"cone distance {vertex['gear_cone_distance_mm']:.3f}, height "
-         f"{vertex['gear_height_mm']:+.3f} mm"],
+        [
+            "vertex on the gear",
+            f"cone distance {vertex['gear_cone_distance_mm']:.3f}, height {vertex['gear_height_mm']:+.3f} mm",
+        ],
         ["path from root line towards tip", f"{path['found']:.2f}, asked {path['asked']:.2f} degrees"],
-        ["half axes of the ellipse", f"{axes['found'][0]:.3f} and {axes['found'][1]:.3f} mm, asked "
-         f"{axes['asked_major']:.3f}"],
-        ["ease-off less the wanted one", f"{found['ease_off_rms_um']:.2f} um RMS on {found['share_of_flank']:.0%} of "
-         "the places its mate reaches"],
+        [
+            "half axes of the ellipse",
+            f"{axes['found'][0]:.3f} and {axes['found'][1]:.3f} mm, asked {axes['asked_major']:.3f}",
+        ],
+        [
+            "ease-off less the wanted one",
+            f"{found['ease_off_rms_um']:.2f} um RMS on {found['share_of_flank']:.0%} of the places its mate reaches",
+        ],
         ["bounds reached", bounds],
-    ]  # fmt: skip
+    ]
     return f"{side}: {found['outcome']}\n" + table(["figure", "value"], rows)

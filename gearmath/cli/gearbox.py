@@ -88,9 +88,14 @@ def plan_job(job: GearboxPlan | ThreadPlan, as_json: bool) -> None:
 @plot("the errors over time")
 @JSON
 def simulate(
-    job: GearboxPlan | ThreadPlan, pattern: Pattern, edges: int, start: int, seed: int, picture: Path | None,
+    job: GearboxPlan | ThreadPlan,
+    pattern: Pattern,
+    edges: int,
+    start: int,
+    seed: int,
+    picture: Path | None,
     as_json: bool,
-) -> None:  # fmt: skip
+) -> None:
     """Run the compiled step rule, and the floating rule of the source text beside it; worst errors in steps."""
     from tqdm import tqdm
 

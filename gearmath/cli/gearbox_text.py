@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gearmath.gearbox.job import Job, ThreadPlan
+from gearmath.gearbox.job import GearboxJob, ThreadPlan
 from gearmath.gearbox.simulation import Simulation
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
 from gearmath.specs.ratio import EXACT_INCH, INCH
 
 
-def plan_text(job: Job) -> str:
+def plan_text(job: GearboxJob) -> str:
     """The plan of a gear or of a thread."""
     if isinstance(job, ThreadPlan):
         rows = [*_thread(job), *_rates(job, "spindle")]
@@ -20,21 +20,23 @@ def plan_text(job: Job) -> str:
     return "\n".join(rows)
 
 
-def simulation_text(result: Simulation, job: Job) -> str:
+def simulation_text(result: Simulation, job: GearboxJob) -> str:
     """What became of the compiled rule and of the floating one."""
     feed = f" and {job.feed_numerator}/{job.steps_denominator} of the feed" if job.feed_numerator else ""
     moved = f" and the feed at {result.feed_position}" if job.feed_numerator else ""
-    return "\n".join([
-        f"{result.edges} edges, {result.pattern}, {job.steps_numerator}/{job.steps_denominator} steps per count{feed}; "
-        f"the hob ends at count {result.encoder_position}{moved}",
-        f"  compiled integer rule    worst error {float(result.worst_error):10.4f} steps, "
-        f"exactly {result.worst_error}; the table ends at step {result.position}",
-        f"  float32 rule             worst error {float(result.float_worst_error):10.4f} steps; "
-        f"the table ends at step {result.float_position}",
-    ])  # fmt: skip
+    return "\n".join(
+        [
+            f"{result.edges} edges, {result.pattern}, {job.steps_numerator}/{job.steps_denominator} "
+            f"steps per count{feed}; the hob ends at count {result.encoder_position}{moved}",
+            f"  compiled integer rule    worst error {float(result.worst_error):10.4f} steps, "
+            f"exactly {result.worst_error}; the table ends at step {result.position}",
+            f"  float32 rule             worst error {float(result.float_worst_error):10.4f} steps; "
+            f"the table ends at step {result.float_position}",
+        ]
+    )
 
 
-def _rates(job: Job, what: str) -> Iterator[str]:
+def _rates(job: GearboxJob, what: str) -> Iterator[str]:
     most = f"({job.highest_rpm:.1f} rpm at most)"
     yield f"  {what:7s}{job.rpm:9.1f} rpm   {job.hob_rpm_percent:5.1f} % of the limit {most}"
     yield f"  edges  {job.edge_rate_hz:9.0f} Hz    {job.edge_rate_percent:5.1f} % of the limit"
@@ -44,7 +46,7 @@ def _rates(job: Job, what: str) -> Iterator[str]:
     yield from _motion(job, what)
 
 
-def _motion(job: Job, what: str) -> Iterator[str]:
+def _motion(job: GearboxJob, what: str) -> Iterator[str]:
     motion = job.motion
     yield (
         f"  run-up {motion.run_up_s:9.2f} s     of the motor: the {what} stays in phase up to "

@@ -27,7 +27,7 @@ from gearmath.errors import ComputationError, InputError
 if TYPE_CHECKING:
     from gearmath.bevel.tooth import ToothSpace
     from gearmath.machine.control.executor import MachinePath
-    from gearmath.machine.milling.run import Run
+    from gearmath.machine.milling.run import CuttingRun
     from gearmath.specs.bevel_set import Member
     from gearmath.specs.flank_csv import FlankFile
     from gearmath.specs.milling_machine import MillingMachine
@@ -48,13 +48,18 @@ nc.add_command(nc_calibrate)
 @MEMBER
 @MACHINE
 @click.option(
-    "--spaces", default="all", show_default=True,
+    "--spaces",
+    default="all",
+    show_default=True,
     help="Tooth spaces to cut: all, or numbers such as 0,1,2; face hobbing cuts all.",
-)  # fmt: skip
+)
 @click.option(
-    "--tolerance-um", type=float, default=0.1, show_default=True,
+    "--tolerance-um",
+    type=float,
+    default=0.1,
+    show_default=True,
     help="Flank deviation by straight blocks, and by the scallops of face hobbing.",
-)  # fmt: skip
+)
 @click.option("--feed", type=float, default=300.0, show_default=True, help="Feed of the cutter past the tooth, mm/min.")
 @click.option("--rpm", type=float, default=120.0, show_default=True, help="Spindle speed.")
 @click.option("--roughing-stock", type=float, default=0.0, help="Rough first and leave this much, mm; 0 for none.")
@@ -63,9 +68,19 @@ nc.add_command(nc_calibrate)
 @SHEET
 @output(".MPF; its name becomes the program name")
 def cut(
-    gear_set: str, member: str | None, machine: str, spaces: str, tolerance_um: float, feed: float, rpm: float,
-    roughing_stock: float, finishing_stock: float, dry_run: bool, sheet: Path | None, target: Path,
-) -> None:  # fmt: skip
+    gear_set: str,
+    member: str | None,
+    machine: str,
+    spaces: str,
+    tolerance_um: float,
+    feed: float,
+    rpm: float,
+    roughing_stock: float,
+    finishing_stock: float,
+    dry_run: bool,
+    sheet: Path | None,
+    target: Path,
+) -> None:
     """The cutting program of a member.
 
     Before it is written it is run: it must keep the limits of the machine, and collide with nothing.
@@ -77,7 +92,7 @@ def cut(
     from gearmath.machine.control.state import Setup
     from gearmath.machine.judging.program import faults_of
     from gearmath.machine.judging.timing import timing
-    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, Job, cutting_plan, pass_count
+    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, cutting_plan, pass_count
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
     from gearmath.machine.writing.cutting import program_of
@@ -86,7 +101,7 @@ def cut(
     from gearmath.specs.toml import find
 
     check_name(target.stem)
-    job = Job((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
+    job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
     milling_machine = load_milling_machine(find(machine))
     check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))
@@ -119,19 +134,38 @@ def cut(
 @click.option("--program", required=True, type=click.Path(path_type=Path), help="NC program to run.")
 @click.option("--errors", help="What is wrong with the machine: a TOML file, or the bundled simulated_shop.toml.")
 @click.option(
-    "--report", type=NewFile(),
+    "--report",
+    type=NewFile(),
     help="Also write a JSON file of gouges, uncut stock, collisions, axis speeds and time.",
-)  # fmt: skip
-@click.option("--report-tolerance-um", type=Number(0.01, 1000, "um"), default=1.0, show_default=True,
-              help="Deviation on flank, fillet or root that the report counts as a fault.")  # fmt: skip
+)
+@click.option(
+    "--report-tolerance-um",
+    type=Number(0.01, 1000, "um"),
+    default=1.0,
+    show_default=True,
+    help="Deviation on flank, fillet or root that the report counts as a fault.",
+)
 @click.option("--measured", is_flag=True, help="Clamp the member anew and measure it as the machine of --errors does.")
-@click.option("--run", type=click.IntRange(min=1), default=1, show_default=True,
-              help="Number of the measurement of --measured: each has its own noise.")  # fmt: skip
+@click.option(
+    "--run",
+    type=click.IntRange(min=1),
+    default=1,
+    show_default=True,
+    help="Number of the measurement of --measured: each has its own noise.",
+)
 @output("flank CSV")
 def mill(
-    gear_set: str, member: str | None, machine: str, program: Path, errors: str | None, report: Path | None,
-    report_tolerance_um: float, measured: bool, run: int, target: Path,
-) -> None:  # fmt: skip
+    gear_set: str,
+    member: str | None,
+    machine: str,
+    program: Path,
+    errors: str | None,
+    report: Path | None,
+    report_tolerance_um: float,
+    measured: bool,
+    run: int,
+    target: Path,
+) -> None:
     """Virtual milling from the program text: the deviations it leaves, as a measured flank CSV.
 
     With --measured they are those of a measuring machine, with the clamping, drift and probe of the file of --errors:
@@ -201,7 +235,7 @@ def mill(
 
 def _right_runs(
     path: MachinePath, spec: Member, member: str, machine: MillingMachine, space: ToothSpace | None
-) -> list[Run]:
+) -> list[CuttingRun]:
     """The tools of a program on a machine without errors, with blades as sharp as there are."""
     from gearmath.bevel.tooth import SHARP_EDGE
     from gearmath.machine.milling.run import runs_of
@@ -210,9 +244,15 @@ def _right_runs(
 
 
 def _milled(
-    path: MachinePath, right: list[Run], spec: Member, member: str, machine: MillingMachine,
-    simulated: SimulatedMachine | None, space: ToothSpace | None, measurement: int | None,
-) -> FlankFile:  # fmt: skip
+    path: MachinePath,
+    right: list[CuttingRun],
+    spec: Member,
+    member: str,
+    machine: MillingMachine,
+    simulated: SimulatedMachine | None,
+    space: ToothSpace | None,
+    measurement: int | None,
+) -> FlankFile:
     """The flanks that a program leaves, or with the number of a ``measurement`` what a measuring machine says of
     them."""
 
@@ -237,9 +277,15 @@ def _milled(
 
 
 def _judge_hobbed(
-    text: str, path: MachinePath, runs: list[Run], spec: Member, member: str, machine: MillingMachine, worst: float,
+    text: str,
+    path: MachinePath,
+    runs: list[CuttingRun],
+    spec: Member,
+    member: str,
+    machine: MillingMachine,
+    worst: float,
     right: bool,
-) -> list[str]:  # fmt: skip
+) -> list[str]:
     """Whether the flanks of a hobbed member deviate from those of its settings by more than the program states.
 
     ``worst`` [mm] is how far they do from the design, on a machine without errors where that is ``right``.
@@ -256,7 +302,7 @@ def _judge_hobbed(
 
 
 def _judge_metal(
-    text: str, runs: list[Run], spec: Member, member: str, machine: MillingMachine, space: ToothSpace
+    text: str, runs: list[CuttingRun], spec: Member, member: str, machine: MillingMachine, space: ToothSpace
 ) -> list[str]:
     """Print what the blocks leave on a machine without errors; a sentence for each way in which that is wrong."""
     import math
@@ -281,9 +327,15 @@ def _judge_metal(
 
 
 def _write_report(
-    target: Path, path: MachinePath, spec: Member, member: str, machine: MillingMachine,
-    errors: SimulatedMachine | None, tolerance: float, space: ToothSpace | None,
-) -> list[str]:  # fmt: skip
+    target: Path,
+    path: MachinePath,
+    spec: Member,
+    member: str,
+    machine: MillingMachine,
+    errors: SimulatedMachine | None,
+    tolerance: float,
+    space: ToothSpace | None,
+) -> list[str]:
     """Write and print the report; a sentence for each kind of fault in it."""
     import json
 
@@ -291,17 +343,20 @@ def _write_report(
     from gearmath.machine.judging.report import milling_report
 
     with bar(5 * spec.teeth, "surface") as progress:
-        found = milling_report(path, spec, member, machine, errors, tolerance,
-                               progress=progress, space=space)  # fmt: skip
+        found = milling_report(path, spec, member, machine, errors, tolerance, progress=progress, space=space)
     write_text(target, json.dumps(found.as_dict(), indent=2) + "\n")
     seconds = found.timing.feed_seconds + found.timing.rapid_seconds
-    click.echo(f"{target}: {seconds:.0f} s, {len(found.gouges)} surfaces gouged, {len(found.uncut)} with stock, "
-               f"{len(found.collisions)} collisions")  # fmt: skip
+    click.echo(
+        f"{target}: {seconds:.0f} s, {len(found.gouges)} surfaces gouged, {len(found.uncut)} with stock, "
+        f"{len(found.collisions)} collisions"
+    )
     for state in found.gouges[:5]:
         click.echo(f"  space {state.space}, {state.surface}: {state.lowest * 1000:.3f} um, line {state.line}")
     for state in found.uncut[:5]:
-        click.echo(f"  space {state.space}, {state.surface}: stock at {state.uncut} of {state.points} points, "
-                   f"up to {state.highest * 1000:+.3f} um where a tool comes near")  # fmt: skip
+        click.echo(
+            f"  space {state.space}, {state.surface}: stock at {state.uncut} of {state.points} points, "
+            f"up to {state.highest * 1000:+.3f} um where a tool comes near"
+        )
     for one in found.collisions[:5]:
         click.echo(f"  {one.cutter} and {one.work}: {one.depth:.3f} mm deep, line {one.lines[0]}")
     kinds = (

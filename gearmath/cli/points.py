@@ -23,42 +23,74 @@ _T = TypeVar("_T")
 @SET_OPTION
 @MEMBER
 @click.option(
-    "--flank", "sides", type=click.Choice(["concave", "convex"]), multiple=True, required=True,
+    "--flank",
+    "sides",
+    type=click.Choice(["concave", "convex"]),
+    multiple=True,
+    required=True,
     help="Flank of the points: once for all files, or once for each, in their order.",
-)  # fmt: skip
+)
 @click.option(
-    "--tooth", "teeth", type=click.IntRange(min=0), multiple=True, default=(0,), show_default=True,
+    "--tooth",
+    "teeth",
+    type=click.IntRange(min=0),
+    multiple=True,
+    default=(0,),
+    show_default=True,
     help="Tooth of the points, counted from 0: once for all files, or once for each.",
-)  # fmt: skip
+)
 @click.option("--unit", type=click.Choice(["mm", "inch"]), default="mm", show_default=True, help="Unit of the files.")
 @click.option(
-    "--axis", type=click.Choice(["+x", "-x", "+y", "-y", "+z", "-z"]), default="+z", show_default=True,
+    "--axis",
+    type=click.Choice(["+x", "-x", "+y", "-y", "+z", "-z"]),
+    default="+z",
+    show_default=True,
     help="Direction of the work axis in the files, from the pitch apex to the back.",
-)  # fmt: skip
+)
 @click.option(
-    "--apex-offset", type=float, default=0.0, show_default=True,
+    "--apex-offset",
+    type=float,
+    default=0.0,
+    show_default=True,
     help="Where the origin of the files lies on the axis, from the pitch apex towards the back, in mm.",
-)  # fmt: skip
+)
 @click.option(
-    "--tip-radius", type=float, default=0.0, show_default=True,
+    "--tip-radius",
+    type=float,
+    default=0.0,
+    show_default=True,
     help="Radius of the probe tip in mm, where the points are centers of the tip and not contact points.",
-)  # fmt: skip
+)
 @click.option(
-    "--phase", type=click.Choice(["common", "each", "kept"]), default="common", show_default=True,
+    "--phase",
+    type=click.Choice(["common", "each", "kept"]),
+    default="common",
+    show_default=True,
     help="Rotation about the axis: found for all files at once, for each by itself, or kept as it is.",
-)  # fmt: skip
+)
 @click.option(
-    "--leave-out", is_flag=True,
+    "--leave-out",
+    is_flag=True,
     help="Take files in which points are missing or stand far out from the others; these are left out.  [default: "
     "refused]",
-)  # fmt: skip
+)
 @JSON
 @output("flank CSV")
 def points(
-    texts: Sequence[Path], gear_set: str, member: str | None, sides: Sequence[str], teeth: Sequence[int], unit: str,
-    axis: str, apex_offset: float, tip_radius: float, phase: str, leave_out: bool, as_json: bool,
+    texts: Sequence[Path],
+    gear_set: str,
+    member: str | None,
+    sides: Sequence[str],
+    teeth: Sequence[int],
+    unit: str,
+    axis: str,
+    apex_offset: float,
+    tip_radius: float,
+    phase: str,
+    leave_out: bool,
+    as_json: bool,
     target: Path,
-) -> None:  # fmt: skip
+) -> None:
     """Points of another measuring machine, as plain text, to a measured flank file.
 
     Each file holds one flank of one tooth: rows 'x y z' or 'x y z i j k' in any order, with any header lines; columns
@@ -67,7 +99,7 @@ def points(
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.quality.foreign.member import foreign_file
-    from gearmath.quality.foreign.points import Frame, Part
+    from gearmath.quality.foreign.points import Frame, PointPart
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.point_text import read_point_text
     from gearmath.specs.toml import find
@@ -83,7 +115,7 @@ def points(
         for text, side, tooth in zip(read, sides, teeth, strict=True)
     ]
     parts = [
-        Part(str(path), side, tooth, text.point, text.normal, text.line)
+        PointPart(str(path), side, tooth, text.point, text.normal, text.line)
         for path, side, tooth, text in zip(texts, sides, teeth, read, strict=True)
     ]
     with bar(2 * len(parts), "file") as progress:

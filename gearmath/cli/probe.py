@@ -53,17 +53,28 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
 )
 @click.option("--pitch/--no-pitch", default=True, show_default=True, help="Probe the reference point of every tooth.")
 @click.option(
-    "--registration/--no-registration", default=True, show_default=True,
+    "--registration/--no-registration",
+    default=True,
+    show_default=True,
     help="With the pitch, probe the corners on eight teeth around: they tell how the work sits.",
-)  # fmt: skip
+)
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Touches of every point.")
 @click.option("--errors", help="Simulated machine whose [fixture] and spindle the probe must clear.")
 @SHEET
 @output(_PROGRAM)
 def probe(
-    gear_set: str, member: str | None, machine: str, calibration: str, topography: str, pitch: bool, registration: bool,
-    repeat: int, errors: str | None, sheet: Path | None, target: Path,
-) -> None:  # fmt: skip
+    gear_set: str,
+    member: str | None,
+    machine: str,
+    calibration: str,
+    topography: str,
+    pitch: bool,
+    registration: bool,
+    repeat: int,
+    errors: str | None,
+    sheet: Path | None,
+    target: Path,
+) -> None:
     """Write the probing program of a member; 'gearmath probe' runs it on the machine model.
 
     Before it is written it is run: tip, stylus and spindle must stay clear of teeth, hub, shank and fixture.
@@ -93,9 +104,16 @@ def probe(
     points = planned_touches(text) // repeat
     with bar(points * (2 + repeat) + text.count("\n"), "step") as progress:
         found = approaches(
-            text, str(target), spec, member, milling_machine, known, fixture, head.spindle_radius,
+            text,
+            str(target),
+            spec,
+            member,
+            milling_machine,
+            known,
+            fixture,
+            head.spindle_radius,
             progress,
-        )  # fmt: skip
+        )
     clear = clearances(found, target, "the program is not written")
     judged = judge_probing(text, str(target), spec, member, milling_machine, known)
     refuse_faults(judged, target, "the program is not written")
@@ -139,9 +157,12 @@ def refuse_faults(found: list[Fault], program: Path, end: str = "it is not run")
 @MACHINE
 @CALIBRATION
 @click.option(
-    "--cycle", type=click.Choice(["tip", "axes"]), default="tip", show_default=True,
+    "--cycle",
+    type=click.Choice(["tip", "axes"]),
+    default="tip",
+    show_default=True,
     help="Ring and sphere on the table for the tip, or the sphere on the work side for the rotary axes.",
-)  # fmt: skip
+)
 @output(_PROGRAM)
 def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> None:
     """Write the program that calibrates the probe on ring and sphere, or the rotary axes on a sphere on the work side.
@@ -254,9 +275,7 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
     click.echo(f"{target}: written")
 
 
-def _check_whole(
-    raw: Path, wanted: int | None, found: Touches | CalibrationTouches, missing: tuple[str, ...]
-) -> None:  # fmt: skip
+def _check_whole(raw: Path, wanted: int | None, found: Touches | CalibrationTouches, missing: tuple[str, ...]) -> None:
     """Raise InputError where the last run, with those that it continues, is not whole and was not asked for."""
     from gearmath.specs.touch_csv import run_lengths
 
@@ -273,9 +292,7 @@ def _check_whole(
         raise InputError(f"{raw}: run {run}, the last one, is not whole: {missing[0]}{more}; {choice}")
 
 
-def _calibrate_tip(
-    raw: Path, found: CalibrationTouches, calibration: str, lobing: bool, target: Path
-) -> Iterator[str]:  # fmt: skip
+def _calibrate_tip(raw: Path, found: CalibrationTouches, calibration: str, lobing: bool, target: Path) -> Iterator[str]:
     from gearmath.quality.calibration.tip import calibrate_on_ring, calibrate_on_sphere
     from gearmath.specs.calibration import load_calibration, save_calibration
     from gearmath.specs.toml import find
@@ -298,7 +315,7 @@ def _calibrate_tip(
 
 def _calibrate_axes(
     raw: Path, found: CalibrationTouches, calibration: str, machine: str, target: Path
-) -> Iterator[str]:  # fmt: skip
+) -> Iterator[str]:
     from gearmath.quality.calibration.axes import calibrate_axes
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine, save_axes

@@ -27,20 +27,35 @@ if TYPE_CHECKING:
 @MACHINE
 @CALIBRATION
 @click.option(
-    "--errors", help="What is wrong with the machine, the clamping and the probe: a file, or a bundled one such as "
+    "--errors",
+    help="What is wrong with the machine, the clamping and the probe: a file, or a bundled one such as "
     "simulated_shop.toml.",
-)  # fmt: skip
+)
 @click.option(
-    "--measured", type=click.Path(path_type=Path), metavar="M.csv",
+    "--measured",
+    type=click.Path(path_type=Path),
+    metavar="M.csv",
     help="Flank CSV of the metal that is probed, such as 'gearmath mill' writes.  [default: nominal flanks]",
-)  # fmt: skip
-@click.option("--run", type=click.IntRange(1, 99_999), default=1, show_default=True,
-              help="Number of the run in the file; each has its own noise.")  # fmt: skip
+)
+@click.option(
+    "--run",
+    type=click.IntRange(1, 99_999),
+    default=1,
+    show_default=True,
+    help="Number of the run in the file; each has its own noise.",
+)
 @output("raw touches, CSV")
 def probe(
-    program: Path, gear_set: str | None, member: str | None, machine: str, calibration: str, errors: str | None,
-    measured: Path | None, run: int, target: Path,
-) -> None:  # fmt: skip
+    program: Path,
+    gear_set: str | None,
+    member: str | None,
+    machine: str,
+    calibration: str,
+    errors: str | None,
+    measured: Path | None,
+    run: int,
+    target: Path,
+) -> None:
     """Run a program that 'gearmath nc probe' or 'gearmath nc calibrate' wrote, and write the raw touches.
 
     The tip of --calibration is moved as the text says, against the flanks of a member or, in a calibration program,
@@ -101,7 +116,7 @@ def probe(
 
 def _check_clear(
     text: str, program: Path, there: ProbeMachine, machine: MillingMachine, shop: SimulatedMachine | None, steps: int
-) -> None:  # fmt: skip
+) -> None:
     """Raise InputError where the program moves the probe into a nominal member, or touches what it does not have."""
     from gearmath.machine.bodies.profiles import obstacles
     from gearmath.machine.measuring.collision_check import approaches
@@ -109,16 +124,27 @@ def _check_clear(
     head, fixture = obstacles(machine, shop)
     with bar(steps, "step") as progress:
         found = approaches(
-            text, str(program), there.member, there.name, machine, there.calibration, fixture, head.spindle_radius,
+            text,
+            str(program),
+            there.member,
+            there.name,
+            machine,
+            there.calibration,
+            fixture,
+            head.spindle_radius,
             progress,
-        )  # fmt: skip
+        )
     clearances(found, program, "it is not run")
 
 
 def _member_machine(
-    spec: Member, member: str, measured: Path | None, machine: MillingMachine, calibration: Calibration,
+    spec: Member,
+    member: str,
+    measured: Path | None,
+    machine: MillingMachine,
+    calibration: Calibration,
     shop: SimulatedMachine | None,
-) -> ProbeMachine:  # fmt: skip
+) -> ProbeMachine:
     """The machine with the member on it, nominal or as ``measured`` says, clamped as the shop does."""
     from gearmath.machine.measuring.probe import ProbeMachine
     from gearmath.machine.milling.milled_surface import MilledSurface

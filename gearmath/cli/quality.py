@@ -15,16 +15,24 @@ from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
 @SET_OPTION
 @REGISTER
 @click.option(
-    "--rotation/--no-rotation", "rotated", default=True, show_default=True,
+    "--rotation/--no-rotation",
+    "rotated",
+    default=True,
+    show_default=True,
     help="Take out the rotation of the work that both flanks have in common.",
-)  # fmt: skip
+)
 @SIGMA
 @plot("topography, pitch and runout")
 @JSON
 def evaluate(
-    measured: Path, gear_set: str, registered: bool, rotated: bool, sigma_um: float | None, picture: Path | None,
+    measured: Path,
+    gear_set: str,
+    registered: bool,
+    rotated: bool,
+    sigma_um: float | None,
+    picture: Path | None,
     as_json: bool,
-) -> None:  # fmt: skip
+) -> None:
     """Pitch, profile and topography of a measured member; clamping, rotation, runout, tooth thickness, drift and grade.
 
     What was left out is said first. A maximum or a grade over data with a gap is withheld, with the reason; all other

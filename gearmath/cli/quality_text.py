@@ -6,20 +6,25 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from gearmath.cli.common import table
-from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.evaluation.member import MemberEvaluation
 from gearmath.quality.uncertainty.propagation import Uncertain
 
 _FIGURES = ("max_deviation_um", "rms_um", "cubic_surface_residual_um", "F_p_um", "max_f_pt_um")
 _ORDERS = (
-    "mean_um", "pressure_angle_deviation_um", "spiral_angle_deviation_um", "profile_crowning_um", "length_crowning_um",
-    "twist_um", "residual_um",
-)  # fmt: skip
+    "mean_um",
+    "pressure_angle_deviation_um",
+    "spiral_angle_deviation_um",
+    "profile_crowning_um",
+    "length_crowning_um",
+    "twist_um",
+    "residual_um",
+)
 
 #: Less than this is shown as this: no uncertainty is zero.
 _LEAST_SHOWN = 0.01
 
 
-def evaluation_text(found: Evaluation, sure: Sequence[Uncertain] = ()) -> str:
+def evaluation_text(found: MemberEvaluation, sure: Sequence[Uncertain] = ()) -> str:
     """The figures of an evaluation as text, with their uncertainties where they are known."""
     values = found.as_dict()
     flanks: dict[str, Any] = values["flanks"]
@@ -36,7 +41,7 @@ def _cell(row: dict[str, Any], name: str) -> str:
     return "" if name not in row else "withheld" if row[name] is None else f"{row[name]:.3f}"
 
 
-def _gaps(found: Evaluation) -> Iterator[str]:
+def _gaps(found: MemberEvaluation) -> Iterator[str]:
     """Whether the work moved, what was left out, and which figures are withheld for that."""
     lines = [*found.closing.said, *(f"left out: {line}" for line in _without_suffix(found.left_out)), *found.withheld]
     yield from lines
@@ -116,7 +121,7 @@ def _unsure(values: dict[str, Any]) -> str:
     return f"the file has no u_um, and --sigma-um is not given: {how}"
 
 
-def _others(found: Evaluation) -> Iterator[str]:
+def _others(found: MemberEvaluation) -> Iterator[str]:
     """The remarks that were not made first."""
     yield from (line for line in found.remarks if line not in found.first)
 

@@ -14,8 +14,8 @@ from gearmath.cli.uncertainty import MODEL, SIGMA, check_one_source, covariance_
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from gearmath.quality.evaluation.member import Evaluation
-    from gearmath.report import Measurement
+    from gearmath.quality.evaluation.member import MemberEvaluation
+    from gearmath.report import ReportedMeasurement
     from gearmath.specs.bevel_set import BevelSet
     from gearmath.specs.flank_csv import FlankFile
 
@@ -34,9 +34,12 @@ Progress = Callable[[int], object]
     "--mate", type=click.Path(path_type=Path), metavar="M2.csv", help="The mate as measured; both stand on one sheet."
 )
 @click.option(
-    "--again", type=click.Path(path_type=Path), multiple=True, metavar="M3.csv",
+    "--again",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    metavar="M3.csv",
     help="A member measured again after the correction, shown in place of what is expected; once for each member.",
-)  # fmt: skip
+)
 @click.option(
     "--part-number",
     multiple=True,
@@ -53,10 +56,21 @@ Progress = Callable[[int], object]
 @CALIBRATION
 @output("HTML; two pictures are written beside it as PNG")
 def report(
-    measured: Path, gear_set: str, mate: Path | None, again: tuple[Path, ...], part_number: tuple[str, ...],
-    date: str | None, operator: str | None, measured_on: str | None, probe: str | None, sigma_um: float | None,
-    model: str | None, machine: str, calibration: str, target: Path,
-) -> None:  # fmt: skip
+    measured: Path,
+    gear_set: str,
+    mate: Path | None,
+    again: tuple[Path, ...],
+    part_number: tuple[str, ...],
+    date: str | None,
+    operator: str | None,
+    measured_on: str | None,
+    probe: str | None,
+    sigma_um: float | None,
+    model: str | None,
+    machine: str,
+    calibration: str,
+    target: Path,
+) -> None:
     """The inspection sheet of a measured member: one HTML page that prints on A4.
 
     What was left out stands first; then topography, pitch, figures with tolerance, grade and uncertainty, settings old
@@ -97,14 +111,19 @@ def report(
 
 
 def _measurement(
-    path: Path, file: FlankFile, pair: BevelSet, head: dict[str, str], again: Evaluation | None,
-    sure: tuple[float | None, str | None, str, str], progress: Progress,
-) -> Measurement:  # fmt: skip
+    path: Path,
+    file: FlankFile,
+    pair: BevelSet,
+    head: dict[str, str],
+    again: MemberEvaluation | None,
+    sure: tuple[float | None, str | None, str, str],
+    progress: Progress,
+) -> ReportedMeasurement:
     """One member evaluated, with its uncertainties and its correction."""
     from gearmath.quality.evaluation.member import evaluate_member
     from gearmath.quality.uncertainty.figures import figures_of
     from gearmath.quality.uncertainty.propagation import uncertain_figures
-    from gearmath.report import Measurement, head_of
+    from gearmath.report import ReportedMeasurement, head_of
 
     member = pair.member(file.member)
     with about(path):
@@ -115,10 +134,20 @@ def _measurement(
     correction, settings, effects, remarks = uncertain_correction(member, file, found, covariance, sure[0])
     progress(_CORRECTING)
     caused = {flank: effect.caused for flank, effect in effects.items()}
-    return Measurement(
-        pair.title, path.name, member, found, correction, head_of(file, head), drawn, settings, caused, source, again,
+    return ReportedMeasurement(
+        pair.title,
+        path.name,
+        member,
+        found,
+        correction,
+        head_of(file, head),
+        drawn,
+        settings,
+        caused,
+        source,
+        again,
         remarks,
-    )  # fmt: skip
+    )
 
 
 def _share(progress: Progress) -> Progress:
@@ -133,12 +162,14 @@ def _share(progress: Progress) -> Progress:
     return drawn
 
 
-def _again(paths: tuple[Path, ...], pair: BevelSet, wanted: set[str], progress: Progress) -> dict[str, Evaluation]:
+def _again(
+    paths: tuple[Path, ...], pair: BevelSet, wanted: set[str], progress: Progress
+) -> dict[str, MemberEvaluation]:
     """Second measurements by member."""
     from gearmath.quality.evaluation.member import evaluate_member
     from gearmath.specs.flank_csv import read_flank_csv
 
-    found: dict[str, Evaluation] = {}
+    found: dict[str, MemberEvaluation] = {}
     for path in paths:
         file = read_flank_csv(path)
         if file.member not in wanted or file.member in found:

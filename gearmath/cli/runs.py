@@ -16,14 +16,20 @@ from gearmath.errors import InputError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearmath.control.store import Store
+    from gearmath.control.store import MeasurementStore
     from gearmath.control.store_compare import Comparison
     from gearmath.control.store_evaluation import EvaluatedRun
 
 STORE = click.option(
-    "--store", "store_file", type=click.Path(path_type=Path), default="runs.db", show_default=True,
-    envvar="GEARMATH_STORE", show_envvar=True, help="The measurement store.",
-)  # fmt: skip
+    "--store",
+    "store_file",
+    type=click.Path(path_type=Path),
+    default="runs.db",
+    show_default=True,
+    envvar="GEARMATH_STORE",
+    show_envvar=True,
+    help="The measurement store.",
+)
 _RUN = click.argument("run", type=click.IntRange(1), metavar="RUN")
 _RUNS = click.argument("numbers", type=click.IntRange(1), metavar="RUN...", nargs=-1, required=True)
 #: What --format gives, by the ending of the file where it is not said.
@@ -55,8 +61,10 @@ def list_(store_file: Path, as_json: bool) -> None:
 @_RUN
 @STORE
 @click.option(
-    "--evaluate", is_flag=True, help="Evaluate the run by set, machine and probe as stored, and keep the result.",
-)  # fmt: skip
+    "--evaluate",
+    is_flag=True,
+    help="Evaluate the run by set, machine and probe as stored, and keep the result.",
+)
 @plot("the evaluation of the run")
 @JSON
 def show(run: int, store_file: Path, evaluate: bool, picture: Path | None, as_json: bool) -> None:
@@ -88,10 +96,12 @@ def show(run: int, store_file: Path, evaluate: bool, picture: Path | None, as_js
 @_RUNS
 @STORE
 @click.option(
-    "--format", "wanted", type=click.Choice(["csv", "dfq", "files"]),
+    "--format",
+    "wanted",
+    type=click.Choice(["csv", "dfq", "files"]),
     help="csv: the raw touches, as 'gearmath touches' reads them. dfq: figures as quality data, a part a run. files: a "
     "new folder with all that is stored of the run.  [default: by the ending of the output]",
-)  # fmt: skip
+)
 @click.option("--grade", type=click.IntRange(2, 11), help="With dfq: the grade whose tolerances the figures get.")
 @click.option("-o", "--output", "target", type=click.Path(path_type=Path), required=True, help="File or folder.")
 def export(numbers: tuple[int, ...], store_file: Path, wanted: str | None, grade: int | None, target: Path) -> None:
@@ -159,9 +169,10 @@ def compare(numbers: tuple[int, ...], store_file: Path, picture: Path | None, as
 @_RUN
 @STORE
 @click.option(
-    "--again", metavar="POINTS",
+    "--again",
+    metavar="POINTS",
     help="Begin a new run that refers to this one, of points to be probed again: numbers and stretches, 3,17-20.",
-)  # fmt: skip
+)
 @click.option("-o", "--output", "target", type=NewFile(), help="Also write the program as it was run.")
 @JSON
 def resume(run: int, store_file: Path, again: str | None, target: Path | None, as_json: bool) -> None:
@@ -204,13 +215,13 @@ def _picture(found: Comparison) -> Figure:
     return course_figure(title, numbers, courses)
 
 
-def _opened(path: Path) -> Store:
-    from gearmath.control.store import Store
+def _opened(path: Path) -> MeasurementStore:
+    from gearmath.control.store import MeasurementStore
 
-    return Store.open(path, create=False)
+    return MeasurementStore.open(path, create=False)
 
 
-def _evaluated(store: Store, numbers: tuple[int, ...]) -> list[EvaluatedRun]:
+def _evaluated(store: MeasurementStore, numbers: tuple[int, ...]) -> list[EvaluatedRun]:
     from gearmath.control.store_evaluation import evaluate_run
     from gearmath.quality.evaluation.member import STAGES
 

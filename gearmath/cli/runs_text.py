@@ -9,7 +9,7 @@ from typing import Any
 
 from gearmath.cli.common import table
 from gearmath.control.store_compare import COVERAGE, Comparison, FigureRow
-from gearmath.control.store_run import Run
+from gearmath.control.store_run import StoredRun
 from gearmath.control.store_summary import RunSummary, parts, summary
 
 #: Longer sentences on how a run stands are cut in a table.
@@ -22,15 +22,22 @@ def list_text(path: Path, found: Sequence[RunSummary]) -> str:
         return f"{path}: holds no run"
     rows = [
         [
-            each.run, _local(each.begun), each.operator, each.member or "artefacts", each.program,
-            f"{each.touches}/{each.points}", each.refers_to or "", each.alarms or "", _short(each.state),
+            each.run,
+            _local(each.begun),
+            each.operator,
+            each.member or "artefacts",
+            each.program,
+            f"{each.touches}/{each.points}",
+            each.refers_to or "",
+            each.alarms or "",
+            _short(each.state),
         ]
         for each in found
-    ]  # fmt: skip
+    ]
     return table(["run", "begun", "operator", "of", "program", "touches", "again of", "alarms", "state"], rows)
 
 
-def show_values(run: Run) -> dict[str, Any]:
+def show_values(run: StoredRun) -> dict[str, Any]:
     """All that is stored of a run but touches and texts, for programs."""
     return {
         **vars(summary(run)),
@@ -117,13 +124,17 @@ def _cells(row: FigureRow) -> list[str]:
     return [*values, "" if change is None else f"{change:+.3f}", "" if u is None else f"{u:.3f}", mark]
 
 
-def resume_values(run: Run) -> dict[str, Any]:
+def resume_values(run: StoredRun) -> dict[str, Any]:
     """How a run goes on, for programs: the stretches are R90 and R91 of each NC start."""
     missing = run.missing()
     return {
-        "run": run.id, "refers_to": run.start.refers_to, "program": run.start.program, "missing": missing,
-        "points": len(run.start.points), "stretches": [list(each) for each in parts(run, missing)],
-    }  # fmt: skip
+        "run": run.id,
+        "refers_to": run.start.refers_to,
+        "program": run.start.program,
+        "missing": missing,
+        "points": len(run.start.points),
+        "stretches": [list(each) for each in parts(run, missing)],
+    }
 
 
 def resume_text(values: dict[str, Any]) -> str:

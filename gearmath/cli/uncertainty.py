@@ -30,8 +30,8 @@ from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
-    from gearmath.quality.correction.member import Correction
-    from gearmath.quality.evaluation.member import Evaluation
+    from gearmath.quality.correction.member import MemberCorrection
+    from gearmath.quality.evaluation.member import MemberEvaluation
     from gearmath.quality.uncertainty.covariance import Covariance
     from gearmath.quality.uncertainty.propagation import Uncertain
     from gearmath.quality.uncertainty.settings import Effect
@@ -39,9 +39,10 @@ if TYPE_CHECKING:
     from gearmath.specs.flank_csv import FlankFile
 
 SIGMA = click.option(
-    "--sigma-um", type=Number(0, 1000, "um", above=True),
+    "--sigma-um",
+    type=Number(0, 1000, "um", above=True),
     help="Standard uncertainty of every point, nothing in common, in place of u_um of the file.",
-)  # fmt: skip
+)
 _BUNDLED = "measurement.toml"
 MODEL = click.option(
     "--model",
@@ -69,10 +70,23 @@ _FEW_DRAWS = 2000
 @plot("every figure in µm with its interval")
 @JSON
 def uncertainty(
-    measured: Path, gear_set: str, member: str | None, registered: bool, rotated: bool, sigma_um: float | None,
-    model: str | None, machine: str, calibration: str, draws: int, seed: int, workers: int | None,
-    cluster: str | None, resume: Path | None, picture: Path | None, as_json: bool,
-) -> None:  # fmt: skip
+    measured: Path,
+    gear_set: str,
+    member: str | None,
+    registered: bool,
+    rotated: bool,
+    sigma_um: float | None,
+    model: str | None,
+    machine: str,
+    calibration: str,
+    draws: int,
+    seed: int,
+    workers: int | None,
+    cluster: str | None,
+    resume: Path | None,
+    picture: Path | None,
+    as_json: bool,
+) -> None:
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
 
     from gearmath.bevel.pair import load_pair
@@ -99,22 +113,36 @@ def uncertainty(
 
         save_plot(uncertainty_figure(f"{member}, {measured.name}", found), picture, as_json)
     if as_json:
-        echo_json({
-            "member": member, "source": source, "draws": draws, "seed": seed, "figures": shown(found),
-            **effects_um(effects), "remarks": [*evaluation.first, *remarks],
-        })  # fmt: skip
+        echo_json(
+            {
+                "member": member,
+                "source": source,
+                "draws": draws,
+                "seed": seed,
+                "figures": shown(found),
+                **effects_um(effects),
+                "remarks": [*evaluation.first, *remarks],
+            }
+        )
         return
     for remark in evaluation.first:
         click.echo(remark)
     click.echo(f"standard uncertainties from {source}; {draws} draws")
-    click.echo(table(
-        ["flank", "figure", "value", "u", "from", "to", "unit", "method"],
-        [
-            [row["flank"], row["figure"], *(_number(row[name], row["unit"]) for name in ("value", "u", "from", "to")),
-             row["unit"], row["method"]]
-            for row in shown(found)
-        ],
-    ))  # fmt: skip
+    click.echo(
+        table(
+            ["flank", "figure", "value", "u", "from", "to", "unit", "method"],
+            [
+                [
+                    row["flank"],
+                    row["figure"],
+                    *(_number(row[name], row["unit"]) for name in ("value", "u", "from", "to")),
+                    row["unit"],
+                    row["method"],
+                ]
+                for row in shown(found)
+            ],
+        )
+    )
     for line in effects_text(effects_um(effects)):
         click.echo(line)
     for remark in remarks:
@@ -127,8 +155,8 @@ def _number(value: float, unit: str) -> str:
 
 
 def uncertain_correction(
-    member: Member, file: FlankFile, found: Evaluation, covariance: Covariance, sigma_um: float | None
-) -> tuple[Correction | None, list[Uncertain], dict[str, Effect], list[str]]:
+    member: Member, file: FlankFile, found: MemberEvaluation, covariance: Covariance, sigma_um: float | None
+) -> tuple[MemberCorrection | None, list[Uncertain], dict[str, Effect], list[str]]:
     """The correction of an evaluated member as ``compensate`` writes it, its settings with uncertainties, what errors
     of measurement do to each flank, and remarks: where there is no correction, why.
     """
@@ -140,16 +168,20 @@ def uncertain_correction(
     try:
         found.closing.check_topography()
         correction = correct(
-            member, name, found.file, few=True, noise=noise_of_points(file, member, found, sigma_um),
+            member,
+            name,
+            found.file,
+            few=True,
+            noise=noise_of_points(file, member, found, sigma_um),
             indexed=found.closing.withheld is None,
-        )  # fmt: skip
+        )
         settings, effects = uncertain_settings(member, name, found.file, correction, judged)
     except (InputError, ComputationError) as error:
         return None, [], {}, [f"no corrected settings: {error}"]
     return correction, settings, effects, list(correction.remarks)
 
 
-def noise_of_points(file: FlankFile, member: Member, found: Evaluation, sigma_um: float | None) -> float | None:
+def noise_of_points(file: FlankFile, member: Member, found: MemberEvaluation, sigma_um: float | None) -> float | None:
     """Noise [mm] of a judged deviation at which settings are chosen: by the option, or else by u_um of the file.
 
     None where neither says it: then it is what the settings leave.
@@ -218,7 +250,7 @@ def point_covariance(file: FlankFile, sigma_um: float | None) -> Covariance | No
     return stated(file) if sigma_um is None else independent(np.full(len(file), sigma_um / 1000))
 
 
-def quick_figures(file: FlankFile, member: Member, found: Evaluation, sigma_um: float | None) -> list[Uncertain]:
+def quick_figures(file: FlankFile, member: Member, found: MemberEvaluation, sigma_um: float | None) -> list[Uncertain]:
     """The figures of an evaluation with their uncertainties, from few draws; none where the points have none."""
     covariance = point_covariance(file, sigma_um)
     if covariance is None:

@@ -70,8 +70,14 @@ class Alarms:
         key = condition.to_string() if isinstance(condition, ua.NodeId) else number
         at = getattr(event, "Time", None)
         plain = "".join(letter if letter.isprintable() else " " for letter in text)[:300]
-        alarm = Alarm(key, number[:40], plain, int(getattr(event, "Severity", 0) or 0), bool(retain),
-                      at.isoformat(timespec="seconds") if at is not None else "")  # fmt: skip
+        alarm = Alarm(
+            key,
+            number[:40],
+            plain,
+            int(getattr(event, "Severity", 0) or 0),
+            bool(retain),
+            at.isoformat(timespec="seconds") if at is not None else "",
+        )
         if not alarm.active:
             self._alarms.pop(key, None)
         elif key in self._alarms or len(self._alarms) < _MOST:

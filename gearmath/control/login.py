@@ -104,9 +104,12 @@ async def _secure(client: Client, connection: ControlConnection) -> None:
     _check_files(connection)
     try:
         await client.set_security(
-            _POLICIES[connection.security], connection.certificate, connection.key,
-            server_certificate=connection.server_certificate, mode=ua.MessageSecurityMode.SignAndEncrypt,
-        )  # fmt: skip
+            _POLICIES[connection.security],
+            connection.certificate,
+            connection.key,
+            server_certificate=connection.server_certificate,
+            mode=ua.MessageSecurityMode.SignAndEncrypt,
+        )
         if not connection.user:
             await client.load_client_certificate(connection.certificate)
             await client.load_private_key(Path(connection.key))

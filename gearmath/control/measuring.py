@@ -44,9 +44,13 @@ class Measuring:
     """One attempt to bring a stored run to its end."""
 
     def __init__(
-        self, connect: Connect, run: Run, patience: Patience | None = None,
-        progress: Callable[[int], object] = lambda touches: None, say: Say = lambda sentence: None,
-    ) -> None:  # fmt: skip
+        self,
+        connect: Connect,
+        run: Run,
+        patience: Patience | None = None,
+        progress: Callable[[int], object] = lambda touches: None,
+        say: Say = lambda sentence: None,
+    ) -> None:
         self._connect, self._run, self._progress, self._say = connect, run, progress, say
         self._patience = patience or Patience()
         self._number: int | None = None

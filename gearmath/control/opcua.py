@@ -90,13 +90,21 @@ class OpcUaControl:
     async def status(self) -> Status:
         """Channel, mode, selected program, message and position."""
         channel = self._connection.channel
-        names = [sinumerik.CHANNEL_STATE(channel=channel), sinumerik.MODE(), sinumerik.SELECTED(channel=channel),
-                 sinumerik.MESSAGE(channel=channel), *self._position_names()]  # fmt: skip
+        names = [
+            sinumerik.CHANNEL_STATE(channel=channel),
+            sinumerik.MODE(),
+            sinumerik.SELECTED(channel=channel),
+            sinumerik.MESSAGE(channel=channel),
+            *self._position_names(),
+        ]
         state, mode, selected, message, *position = await self._read(names)
         return Status(
-            sinumerik.CHANNEL_STATES.get(state, ChannelState.UNKNOWN), sinumerik.MODES.get(mode, "unknown"),
-            sinumerik.program_name(str(selected or "")), _plain(message), tuple(map(self._real, position)),
-        )  # fmt: skip
+            sinumerik.CHANNEL_STATES.get(state, ChannelState.UNKNOWN),
+            sinumerik.MODES.get(mode, "unknown"),
+            sinumerik.program_name(str(selected or "")),
+            _plain(message),
+            tuple(map(self._real, position)),
+        )
 
     async def read_parameters(self, numbers: Sequence[int]) -> list[float]:
         """R parameters, those that follow each other as one array."""
@@ -242,8 +250,11 @@ class OpcUaControl:
             return
         if code.value == ua.StatusCodes.BadUserAccessDenied:
             raise ComputationError(f"{self.name}: {name} is refused: the user lacks the right {right}")
-        if code.value in (ua.StatusCodes.BadAttributeIdInvalid, ua.StatusCodes.BadNodeIdInvalid,
-                          ua.StatusCodes.BadNodeIdUnknown):  # fmt: skip
+        if code.value in (
+            ua.StatusCodes.BadAttributeIdInvalid,
+            ua.StatusCodes.BadNodeIdInvalid,
+            ua.StatusCodes.BadNodeIdUnknown,
+        ):
             raise ComputationError(f"{self.name}: the control has no variable {name}")
         raise ComputationError(f"{self.name}: {name}: {code_name(code.value)}")
 
@@ -268,10 +279,12 @@ class OpcUaControl:
         limits = ua.ObjectIds
         with asked(self.name, "reading the limits of the server"):
             found = await self._client.uaclient.session.read_attributes(
-                [node_id(limits.Server_ServerCapabilities_OperationLimits_MaxNodesPerRead),
-                 node_id(limits.Server_ServerCapabilities_OperationLimits_MaxNodesPerWrite)],
+                [
+                    node_id(limits.Server_ServerCapabilities_OperationLimits_MaxNodesPerRead),
+                    node_id(limits.Server_ServerCapabilities_OperationLimits_MaxNodesPerWrite),
+                ],
                 ua.AttributeIds.Value,
-            )  # fmt: skip
+            )
         self._read_limit, self._write_limit = (
             int(one.Value.Value or 0) if one.Value is not None and _good(one.StatusCode) else 0 for one in found
         )

@@ -17,7 +17,7 @@ _POSITION = ("X", "Y", "Z", "A", "B", "triggered")
 
 
 @dataclass(frozen=True)
-class Plan:
+class RunPlan:
     """The touches of a program: columns of its file, and for each point the cells that say where it is."""
 
     columns: tuple[str, ...]
@@ -34,7 +34,7 @@ class Plan:
         raise InputError(f"point {point}: the program makes points {min(self.points)} to {max(self.points)}")
 
 
-def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0) -> Plan:
+def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0) -> RunPlan:
     """The plan of the parts from R90 = ``first`` to R91 = ``last`` (0, 0: all).
 
     Raises InputError for a text that cannot be run, that makes no touches, or that refuses these parts.
@@ -44,9 +44,13 @@ def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0
         return end if is_touch(start, end) else None
 
     run = run_program(
-        text, program, trigger, parameters={_FIRST: float(first), _LAST: float(last)}, step_limit=enough_steps(text),
+        text,
+        program,
+        trigger,
+        parameters={_FIRST: float(first), _LAST: float(last)},
+        step_limit=enough_steps(text),
         setup=setup,
-    )  # fmt: skip
+    )
     if run.alarm is not None:
         why = f": {run.messages[-1]}" if run.messages else ""
         raise InputError(f"{program}, line {run.alarm[1]}: the program sets alarm {run.alarm[0]}{why}")
@@ -56,11 +60,11 @@ def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0
             columns = tuple(lines[0])
             points = {int(cells[1]): tuple(cells[2 : -len(_POSITION)]) for cells in lines[1:]}
             if points:
-                return Plan(columns, points)
+                return RunPlan(columns, points)
     raise InputError(f"{program}: offers no touches to a host: is it a program of 'nc probe' or 'nc calibrate'?")
 
 
-def resuming(text: str, program: str, setup: Setup, plan: Plan, missing: list[int]) -> tuple[int, int]:
+def resuming(text: str, program: str, setup: Setup, plan: RunPlan, missing: list[int]) -> tuple[int, int]:
     """R90 and R91 with which a program makes the points that are missing, and as few others as it can."""
     if list(plan.points) == missing:
         return 0, 0

@@ -16,11 +16,23 @@ from gearmath.errors import ComputationError
 _CODES = ua.StatusCodes
 #: The connection, or the session, is gone: asking again with a new one may help.
 _LOST = {
-    _CODES.BadConnectionClosed, _CODES.BadSessionClosed, _CODES.BadSessionIdInvalid, _CODES.BadSecureChannelClosed,
-    _CODES.BadSecureChannelIdInvalid, _CODES.BadSessionNotActivated, _CODES.BadServerHalted, _CODES.BadShutdown,
-    _CODES.BadTimeout, _CODES.BadCommunicationError, _CODES.BadNoCommunication, _CODES.BadNotConnected,
-    _CODES.BadServerNotConnected, _CODES.BadDisconnect, _CODES.BadTcpInternalError, _CODES.BadInvalidState,
-}  # fmt: skip
+    _CODES.BadConnectionClosed,
+    _CODES.BadSessionClosed,
+    _CODES.BadSessionIdInvalid,
+    _CODES.BadSecureChannelClosed,
+    _CODES.BadSecureChannelIdInvalid,
+    _CODES.BadSessionNotActivated,
+    _CODES.BadServerHalted,
+    _CODES.BadShutdown,
+    _CODES.BadTimeout,
+    _CODES.BadCommunicationError,
+    _CODES.BadNoCommunication,
+    _CODES.BadNotConnected,
+    _CODES.BadServerNotConnected,
+    _CODES.BadDisconnect,
+    _CODES.BadTcpInternalError,
+    _CODES.BadInvalidState,
+}
 _FULL = {_CODES.BadTooManySessions, _CODES.BadMaxConnectionsReached}
 _LOGIN = {
     _CODES.BadUserAccessDenied: "user {user!r} is refused: user or password is wrong",
@@ -35,7 +47,7 @@ _LOGIN = {
     _CODES.BadSecurityPolicyRejected: "security {security} is not offered",
     _CODES.BadSecurityChecksFailed: "the certificates are refused: check clock, dates, trust list and policy, and that "
     "server_certificate is the control's own",
-}  # fmt: skip
+}
 
 
 @contextmanager

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from gearmath.control.file_names import control_name
 from gearmath.control.interface import RunStart
-from gearmath.control.plan import Plan, planned, resuming
-from gearmath.control.store_run import Run
+from gearmath.control.plan import RunPlan, planned, resuming
+from gearmath.control.store_run import StoredRun
 from gearmath.control.store_summary import parts
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
@@ -24,9 +24,14 @@ SET, MACHINE, CALIBRATION = "set.toml", "machine.toml", "calibration.toml"
 
 
 def begun(
-    control: str, program: Path, gear_set: str | None, machine: str, calibration: str, points: str | None = None,
+    control: str,
+    program: Path,
+    gear_set: str | None,
+    machine: str,
+    calibration: str,
+    points: str | None = None,
     refers_to: int | None = None,
-) -> tuple[RunStart, tuple[int, int]]:  # fmt: skip
+) -> tuple[RunStart, tuple[int, int]]:
     """A new run of a program, and the R90 and R91 with which it makes these ``points`` (``FIRST-LAST``; None: all).
 
     Raises InputError where the program offers no touches, or has not these points.
@@ -43,19 +48,19 @@ def begun(
     if points is not None:
         wanted = _chosen(points, plan)
         parts = resuming(text, str(program), setup, plan, wanted)
-        plan = Plan(plan.columns, planned(text, str(program), setup, *parts).points)
+        plan = RunPlan(plan.columns, planned(text, str(program), setup, *parts).points)
     files = {key: read_bytes(path) for key, path in paths.items()}
     settings = {key: path.name for key, path in paths.items()}
     return RunStart(control, name, content, plan.columns, plan.points, files, settings, refers_to=refers_to), parts
 
 
-def resumed(run: Run) -> tuple[int, int]:
+def resumed(run: StoredRun) -> tuple[int, int]:
     """R90 and R91 with which the program of a run makes the first stretch of what is missing."""
     missing = run.missing()
     return parts(run, missing)[0] if missing else (0, 0)
 
 
-def _chosen(points: str, plan: Plan) -> list[int]:
+def _chosen(points: str, plan: RunPlan) -> list[int]:
     match = re.fullmatch(r"(\d{1,6})-(\d{1,6})", points, re.ASCII)
     first, last = (int(match[1]), int(match[2])) if match else (0, 0)
     if not min(plan.points) <= first <= last <= max(plan.points):

@@ -1,7 +1,7 @@
 """The measurement store: runs of a probe in one SQLite file, a touch on the disk before the control hears of it.
 
-Nothing of a run is ever changed or removed; the tables refuse it. ``Store`` and ``Run`` are what the protocols of the
-same name in :mod:`gearmath.control.interface` ask for.
+Nothing of a run is ever changed or removed; the tables refuse it. ``MeasurementStore`` and ``StoredRun`` are what
+the protocols ``Store`` and ``Run`` in :mod:`gearmath.control.interface` ask for.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any
 
 from gearmath.control.interface import RunStart
 from gearmath.control.store_place import check_local
-from gearmath.control.store_run import Run, now
+from gearmath.control.store_run import StoredRun, now
 from gearmath.control.store_schema import prepare
 from gearmath.errors import ComputationError, InputError
 from gearmath.version import __version__
@@ -32,7 +32,7 @@ PLACES = (("member", "flank", "tooth", "row", "col"), ("target",))
 _PATIENCE = 10.0
 
 
-class Store:
+class MeasurementStore:
     """A store that is open, by a connection that :func:`prepare` has set."""
 
     def __init__(self, connection: Any, path: Path) -> None:
@@ -40,7 +40,7 @@ class Store:
         self._one_at_a_time = threading.Lock()
 
     @staticmethod
-    def open(path: Path, create: bool = True) -> Store:
+    def open(path: Path, create: bool = True) -> MeasurementStore:
         """Open a store, by default made where there is none.
 
         Raises InputError for a file that is no store, for a store of a newer version, a network share, a place that
@@ -70,18 +70,18 @@ class Store:
             raise
         if is_new:
             _sync_folder(path.parent)
-        return Store(connection, path)
+        return MeasurementStore(connection, path)
 
     def close(self) -> None:
         self.connection.close()
 
-    def __enter__(self) -> Store:
+    def __enter__(self) -> MeasurementStore:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def begin_run(self, start: RunStart) -> Run:
+    def begin_run(self, start: RunStart) -> StoredRun:
         """A new run, with all that it begins with. Raises InputError where that cannot be a run."""
         rows = _planned(start)
         with self.transaction("the run cannot be begun"):
@@ -91,8 +91,12 @@ class Store:
             begun = (now(), start.operator or _operator(), socket.gethostname(), __version__)
             self.execute(
                 "INSERT INTO run VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
-                run, start.control, start.program, *begun, start.refers_to,
-            )  # fmt: skip
+                run,
+                start.control,
+                start.program,
+                *begun,
+                start.refers_to,
+            )
             self.execute("INSERT INTO session VALUES (?, 1, ?, ?, ?, ?)", run, *begun)
             self._keep_file(run, "program", start.program, start.program_text)
             for name, content in start.files.items():
@@ -101,9 +105,9 @@ class Store:
                 self.execute("INSERT INTO setting VALUES (?, ?, ?)", run, name, value)
             for row in rows:
                 self.execute("INSERT INTO planned VALUES (?, ?, ?, ?, ?, ?, ?, ?)", run, *row)
-        return Run(self, run, start)
+        return StoredRun(self, run, start)
 
-    def resume_run(self, run: int) -> Run:
+    def resume_run(self, run: int) -> StoredRun:
         """A run that is there and not complete, to go on with. Raises InputError where there is none such."""
         found = self.run(run)
         with self.transaction(f"run {run} cannot be resumed"):
@@ -113,7 +117,7 @@ class Store:
             self.execute("INSERT INTO session VALUES (?, ?, ?, ?, ?, ?)", run, found.next_number("session"), *values)
         return found
 
-    def run(self, run: int) -> Run:
+    def run(self, run: int) -> StoredRun:
         """A run as it is kept, to be read. Raises InputError where there is none."""
         self._check(run)
         ((control, program, operator, refers_to),) = self.execute(
@@ -127,12 +131,19 @@ class Store:
         points = {row[0]: tuple(str(cell) for cell in row[1:] if cell is not None) for row in rows}
         settings = dict(self.execute("SELECT name, value FROM setting WHERE run = ? ORDER BY name", run))
         start = RunStart(
-            control, program, files[("program", program)], (*_BEFORE, *place, *_AFTER), points,
-            {name: content for (role, name), content in files.items() if role == "file"}, settings, operator, refers_to,
-        )  # fmt: skip
-        return Run(self, run, start)
+            control,
+            program,
+            files[("program", program)],
+            (*_BEFORE, *place, *_AFTER),
+            points,
+            {name: content for (role, name), content in files.items() if role == "file"},
+            settings,
+            operator,
+            refers_to,
+        )
+        return StoredRun(self, run, start)
 
-    def runs(self) -> list[Run]:
+    def runs(self) -> list[StoredRun]:
         """All runs, the oldest first."""
         return [self.run(run) for (run,) in self.execute("SELECT run FROM run ORDER BY run")]
 
@@ -199,8 +210,11 @@ def _planned(start: RunStart) -> list[tuple]:
         if len(cells) != len(place):
             raise InputError(f"{start.program}, point {point}: {','.join(cells)}: must be {','.join(place)}")
         try:
-            rows.append((point, *cells[:2], *map(int, cells[2:]), None) if len(place) > 1 else
-                        (point, None, None, None, None, None, cells[0]))  # fmt: skip
+            rows.append(
+                (point, *cells[:2], *map(int, cells[2:]), None)
+                if len(place) > 1
+                else (point, None, None, None, None, None, cells[0])
+            )
         except ValueError as error:
             raise InputError(f"{start.program}, point {point}: {','.join(cells)}: must be whole numbers") from error
     return rows

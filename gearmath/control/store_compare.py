@@ -24,9 +24,14 @@ BOTH = "both"
 #: Figures of a flank and, of its mean topography, the first orders; of the spaces. Names as in the JSON of evaluate.
 _OF_FLANK = ("max_deviation_um", "rms_um", "F_p_um", "max_f_pt_um")
 _OF_FORM = (
-    "mean_um", "pressure_angle_deviation_um", "spiral_angle_deviation_um", "profile_crowning_um", "length_crowning_um",
-    "twist_um", "residual_um",
-)  # fmt: skip
+    "mean_um",
+    "pressure_angle_deviation_um",
+    "spiral_angle_deviation_um",
+    "profile_crowning_um",
+    "length_crowning_um",
+    "twist_um",
+    "residual_um",
+)
 #: What the same figure is called in `figures_of`, where it is not the name without its unit.
 _UNCERTAIN = {"arc_deviation_um": "mean_thickness"}
 #: A change of more than so many of its standard uncertainties is not noise; draws for those of maxima.
@@ -72,10 +77,14 @@ class FigureRow:
 
     def as_dict(self) -> dict[str, Any]:
         return {
-            "flank": self.flank, "name": self.name, "values": list(self.values),
-            "uncertainties": list(self.uncertainties), "change": self.change,
-            "u_change": self.change_uncertainty, "beyond_noise": self.beyond_noise,
-        }  # fmt: skip
+            "flank": self.flank,
+            "name": self.name,
+            "values": list(self.values),
+            "uncertainties": list(self.uncertainties),
+            "change": self.change,
+            "u_change": self.change_uncertainty,
+            "beyond_noise": self.beyond_noise,
+        }
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from gearmath.control.run_start import MACHINE
 from gearmath.control.store_compare import BOTH, side_by_side
 from gearmath.control.store_evaluation import EvaluatedRun
 from gearmath.control.store_summary import summary
-from gearmath.exchange.dfq import Characteristic, Measured, Part, dfq
+from gearmath.exchange.dfq import Characteristic, DfqPart, Measured, dfq
 from gearmath.quality.evaluation.tolerance import gear_data, iso17485
 from gearmath.specs.bevel_set import design_sha256
 from gearmath.specs.milling_machine import MillingMachine
@@ -33,15 +33,20 @@ def runs_dfq(runs: Sequence[EvaluatedRun], grade: int | None = None) -> bytes:
     figures = side_by_side(runs)
     characteristics = [
         Characteristic(
-            f"{flank} {name.removesuffix('_um')}", _said(flank, name), "µm", upper=limits.get(_LIMITED.get(name, "")),
+            f"{flank} {name.removesuffix('_um')}",
+            _said(flank, name),
+            "µm",
+            upper=limits.get(_LIMITED.get(name, "")),
         )
         for flank, name in figures
-    ]  # fmt: skip
+    ]
     machine = parse(first.run.start.files[MACHINE].decode("utf-8-sig"), MillingMachine, MACHINE)
-    part = Part(
-        f"{first.name} {design_sha256(member)[:12]}", f"{first.gear_set.title}, {first.name}, {member.teeth} teeth",
-        machine.name, f"probing, {first.run.start.program}",
-    )  # fmt: skip
+    part = DfqPart(
+        f"{first.name} {design_sha256(member)[:12]}",
+        f"{first.gear_set.title}, {first.name}, {member.teeth} teeth",
+        machine.name,
+        f"probing, {first.run.start.program}",
+    )
     of_runs = zip(*figures.values(), strict=True)
     measured = [Measured(_measured_at(run), values) for run, values in zip(runs, of_runs, strict=True)]
     return dfq(part, characteristics, measured)

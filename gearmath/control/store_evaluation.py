@@ -11,10 +11,10 @@ from tempfile import TemporaryDirectory
 
 from gearmath.bevel.pair import load_pair
 from gearmath.control.run_start import CALIBRATION, MACHINE, SET
-from gearmath.control.store_run import Run
+from gearmath.control.store_run import StoredRun
 from gearmath.control.store_touches import first_of, missing_points, touch_csv
 from gearmath.errors import InputError
-from gearmath.quality.evaluation.member import Evaluation, evaluate_member
+from gearmath.quality.evaluation.member import MemberEvaluation, evaluate_member
 from gearmath.quality.evaluation.touches import measured_member
 from gearmath.specs.bevel_set import BevelSet, Member
 from gearmath.specs.calibration import load_calibration
@@ -30,18 +30,18 @@ MEASURED, FIGURES = "measured.csv", "evaluation.json"
 class EvaluatedRun:
     """A run of a member, its measured points and its figures. ``file`` is as it was measured, before any correction."""
 
-    run: Run
+    run: StoredRun
     gear_set: BevelSet
     name: str
     file: FlankFile
-    found: Evaluation
+    found: MemberEvaluation
 
     @property
     def member(self) -> Member:
         return self.gear_set.member(self.name)
 
 
-def evaluate_run(run: Run, progress: Callable[[int], object] = lambda _: None) -> EvaluatedRun:
+def evaluate_run(run: StoredRun, progress: Callable[[int], object] = lambda _: None) -> EvaluatedRun:
     """Evaluate a run by what is stored with it, as ``gearmath touches`` and ``gearmath evaluate`` would.
 
     Raises InputError for a run on artefacts, for one that is not whole, and for one stored without set, machine or
@@ -81,7 +81,7 @@ def keep_results(evaluated: EvaluatedRun) -> None:
 
 
 @contextmanager
-def _files(run: Run) -> Iterator[Path]:
+def _files(run: StoredRun) -> Iterator[Path]:
     """A folder with the files of a run, for what reads files."""
     with TemporaryDirectory() as name:
         folder = Path(name)

@@ -6,14 +6,14 @@ import json
 from pathlib import Path
 
 from gearmath.control.store_place import inside
-from gearmath.control.store_run import Run
+from gearmath.control.store_run import StoredRun
 from gearmath.control.store_summary import summary
 from gearmath.control.store_touches import touch_csv
 from gearmath.errors import InputError
 from gearmath.files import write_bytes
 
 
-def write_run(run: Run, folder: Path) -> list[Path]:
+def write_run(run: StoredRun, folder: Path) -> list[Path]:
     """Write all that is stored of a run into a new folder; ``run.json`` lists it with its hashes.
 
     A file whose name, as a control gave it, could lead elsewhere is written under its role and number. Raises
@@ -34,9 +34,13 @@ def write_run(run: Run, folder: Path) -> list[Path]:
         contents[free] = content
         listed.append({"file": free, "role": "result", "name": kind})
     known = {
-        **vars(summary(run)), "settings": dict(run.start.settings), "sessions": run.sessions(),
-        "endings": run.endings(), "alarms": [vars(alarm) for alarm in run.alarms()], "files": listed,
-    }  # fmt: skip
+        **vars(summary(run)),
+        "settings": dict(run.start.settings),
+        "sessions": run.sessions(),
+        "endings": run.endings(),
+        "alarms": [vars(alarm) for alarm in run.alarms()],
+        "files": listed,
+    }
     contents["run.json"] = (json.dumps(known, indent=2) + "\n").encode("utf-8")
     paths = []
     for name, content in contents.items():

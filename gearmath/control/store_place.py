@@ -11,11 +11,34 @@ from gearmath.errors import InputError
 
 #: What Linux calls file systems of other computers, or of the host of a virtual machine: the shared memory of WAL does
 #: not reach across, so that two computers could each believe that they hold the store alone.
-NETWORK = frozenset({
-    "9p", "afs", "autofs", "ceph", "cifs", "coda", "davfs", "fuse.glusterfs", "fuse.rclone", "fuse.sshfs",
-    "fuse.vmhgfs-fuse", "gfs2", "glusterfs", "lustre", "ncpfs", "nfs", "nfs4", "ocfs2", "prl_fs", "smb2", "smb3",
-    "smbfs", "vboxsf", "virtiofs",
-})  # fmt: skip
+NETWORK = frozenset(
+    {
+        "9p",
+        "afs",
+        "autofs",
+        "ceph",
+        "cifs",
+        "coda",
+        "davfs",
+        "fuse.glusterfs",
+        "fuse.rclone",
+        "fuse.sshfs",
+        "fuse.vmhgfs-fuse",
+        "gfs2",
+        "glusterfs",
+        "lustre",
+        "ncpfs",
+        "nfs",
+        "nfs4",
+        "ocfs2",
+        "prl_fs",
+        "smb2",
+        "smb3",
+        "smbfs",
+        "vboxsf",
+        "virtiofs",
+    }
+)
 #: What GetDriveTypeW of Windows answers for a network drive.
 _DRIVE_REMOTE = 4
 #: Longest file name that every control and computer takes, with its extension.

@@ -12,15 +12,15 @@ from gearmath.errors import ComputationError, InputError
 from gearmath.version import __version__
 
 if TYPE_CHECKING:
-    from gearmath.control.store import Store
+    from gearmath.control.store import MeasurementStore
 
 COMPLETE = "complete"
 
 
-class Run:
+class StoredRun:
     """One run of a store: ``id`` is its number, ``start`` what it was begun with."""
 
-    def __init__(self, store: Store, run: int, start: RunStart) -> None:
+    def __init__(self, store: MeasurementStore, run: int, start: RunStart) -> None:
         self.store, self.id, self.start = store, run, start
 
     def commit_touch(self, point: int, values: Touch) -> None:
@@ -41,8 +41,13 @@ class Run:
                 raise InputError(f"{self._name(point)}: the run is complete")
             self.store.execute(
                 "INSERT INTO touch VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-                self.id, point, int(touch.number), *touch[1:6], int(touch.triggered), now(),
-            )  # fmt: skip
+                self.id,
+                point,
+                int(touch.number),
+                *touch[1:6],
+                int(touch.triggered),
+                now(),
+            )
 
     def touches(self) -> Mapping[int, Touch]:
         """What is kept, by point."""
@@ -107,8 +112,13 @@ class Run:
         with self.store.transaction(f"run {self.id}: the result {kind} cannot be kept"):
             self.store.execute(
                 "INSERT INTO result VALUES (?, ?, ?, ?, ?, ?)",
-                self.id, self.next_number("result"), now(), __version__, kind, content,
-            )  # fmt: skip
+                self.id,
+                self.next_number("result"),
+                now(),
+                __version__,
+                kind,
+                content,
+            )
 
     def results(self) -> dict[str, bytes]:
         """The last result of each kind."""

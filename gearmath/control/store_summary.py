@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from gearmath.control.store import Store
-from gearmath.control.store_run import COMPLETE, Run
+from gearmath.control.store import MeasurementStore
+from gearmath.control.store_run import COMPLETE, StoredRun
 from gearmath.control.store_touches import first_of
 
 #: What a run is called that has ended in no way: it is measured now, or its computer was switched off.
@@ -53,12 +53,12 @@ class RunSummary:
         return self.state == COMPLETE
 
 
-def summaries(store: Store) -> list[RunSummary]:
+def summaries(store: MeasurementStore) -> list[RunSummary]:
     """All runs of a store, the oldest first."""
     return [_summary(row) for row in store.execute(_SUMMARY.format(where=""))]
 
 
-def summary(run: Run) -> RunSummary:
+def summary(run: StoredRun) -> RunSummary:
     """One run of a store."""
     (row,) = run.store.execute(_SUMMARY.format(where="WHERE run = ?"), run.id)
     return _summary(row)
@@ -70,7 +70,7 @@ def _summary(row: tuple) -> RunSummary:
     return RunSummary(*values)
 
 
-def parts(run: Run, points: list[int]) -> list[tuple[int, int]]:
+def parts(run: StoredRun, points: list[int]) -> list[tuple[int, int]]:
     """First and last part of the program (R90, R91) of each stretch of ``points``, as one NC start can make it.
 
     A part is a point with all its touches, and a section in a calibration.
@@ -81,7 +81,7 @@ def parts(run: Run, points: list[int]) -> list[tuple[int, int]]:
     return [(stretch[0][1], stretch[-1][1]) for stretch in stretches]
 
 
-def _part_of(run: Run) -> dict[int, int]:
+def _part_of(run: StoredRun) -> dict[int, int]:
     """The part of the program in which each point of the whole plan is touched."""
     start = first_of(run).start
     places, text = start.points, start.program_text.decode("utf-8", "replace")

@@ -6,18 +6,18 @@ from collections.abc import Iterator
 from decimal import Decimal
 
 from gearmath.control.interface import Touch
-from gearmath.control.store_run import Run
+from gearmath.control.store_run import StoredRun
 from gearmath.specs.touch_csv import PLANNED
 
 
-def first_of(run: Run) -> Run:
+def first_of(run: StoredRun) -> StoredRun:
     """The run that all others refer to, of which points were probed again; the run itself where it refers to none."""
     while run.start.refers_to is not None:
         run = run.store.run(run.start.refers_to)
     return run
 
 
-def whole_touches(run: Run) -> dict[int, tuple[int, Touch]]:
+def whole_touches(run: StoredRun) -> dict[int, tuple[int, Touch]]:
     """Run and touch of every point: those of this run, and what it did not touch again of those it refers to."""
     found = {point: (run.id, touch) for point, touch in run.touches().items()}
     if run.start.refers_to is not None:
@@ -25,13 +25,13 @@ def whole_touches(run: Run) -> dict[int, tuple[int, Touch]]:
     return dict(sorted(found.items()))
 
 
-def missing_points(run: Run) -> list[int]:
+def missing_points(run: StoredRun) -> list[int]:
     """The points that neither this run nor one that it refers to has touched."""
     touched = whole_touches(run)
     return [point for point in first_of(run).start.points if point not in touched]
 
 
-def touch_csv(run: Run) -> str:
+def touch_csv(run: StoredRun) -> str:
     """The touches of a run as ``gearmath touches`` and ``gearmath calibrate`` read them, every number in full.
 
     Points that were probed again stand in place of the old ones, all under the number of this run.
@@ -39,7 +39,7 @@ def touch_csv(run: Run) -> str:
     return "\n".join(_lines(run)) + "\n"
 
 
-def _lines(run: Run) -> Iterator[str]:
+def _lines(run: StoredRun) -> Iterator[str]:
     first, touched = first_of(run), whole_touches(run)
     yield f"# {PLANNED}: {len(first.start.points)} touches"
     earlier = {origin for origin, _ in touched.values() if origin != run.id}

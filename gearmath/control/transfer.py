@@ -20,9 +20,12 @@ _CHUNK = 1 << 18
 _READ, _WRITE, _ERASE = 1, 2, 4
 #: What a missing file, a missing right and the like are answered with: asking in another way changes nothing.
 _FINAL = {
-    ua.StatusCodes.BadNotFound, ua.StatusCodes.BadUserAccessDenied, ua.StatusCodes.BadNotSupported,
-    ua.StatusCodes.BadEntryExists, ua.StatusCodes.BadNotWritable,
-}  # fmt: skip
+    ua.StatusCodes.BadNotFound,
+    ua.StatusCodes.BadUserAccessDenied,
+    ua.StatusCodes.BadNotSupported,
+    ua.StatusCodes.BadEntryExists,
+    ua.StatusCodes.BadNotWritable,
+}
 
 
 class Transfer:
@@ -37,9 +40,10 @@ class Transfer:
         with asked(self._name, f"writing {name}", sinumerik.WRITE_FILES):
             if len(content) <= sinumerik.COPY_LIMIT:
                 arguments = [
-                    ua.Variant(_path(name), ua.VariantType.String), ua.Variant(content, ua.VariantType.ByteString),
+                    ua.Variant(_path(name), ua.VariantType.String),
+                    ua.Variant(content, ua.VariantType.ByteString),
                     ua.Variant(replace, ua.VariantType.Boolean),
-                ]  # fmt: skip
+                ]
                 await self._copy(sinumerik.COPY_TO, arguments)
             else:
                 await self._put_large(name, content, replace)
@@ -100,8 +104,12 @@ class Transfer:
         if node is not None and not replace:
             raise refusal(self._name, f"writing {name}", ua.StatusCodes.BadEntryExists)
         if node is None:
-            await self._call(await self._folder(name), "CreateFile", ua.Variant(name, ua.VariantType.String),
-                             ua.Variant(False, ua.VariantType.Boolean))  # fmt: skip
+            await self._call(
+                await self._folder(name),
+                "CreateFile",
+                ua.Variant(name, ua.VariantType.String),
+                ua.Variant(False, ua.VariantType.Boolean),
+            )
             node = await self._file(name)
         if node is None:
             raise ComputationError(f"{self._name}: writing {name}: the control created no file")

@@ -24,10 +24,13 @@ class Points:
     def __call__(self, *arguments: np.ndarray) -> list[np.ndarray]:
         """Outputs (n, rows, columns) at arguments (n, size), or (size,) of what is shared."""
         n = max(len(argument) for argument, many in zip(arguments, self._many, strict=True) if many)
-        found = self._run([
-            np.ascontiguousarray(argument if many else argument[None], dtype=float)
-            for argument, many in zip(arguments, self._many, strict=True)
-        ], n)  # fmt: skip
+        found = self._run(
+            [
+                np.ascontiguousarray(argument if many else argument[None], dtype=float)
+                for argument, many in zip(arguments, self._many, strict=True)
+            ],
+            n,
+        )
         # in memory column by column
         return [
             flat.reshape(n, columns, rows).swapaxes(1, 2)

@@ -45,7 +45,7 @@ _SMALL, _FEW = 512, 16
 _SPREAD = 2e6
 
 
-class Runner:
+class KernelRunner:
     """Runs one function for one pattern of arguments that differ from point to point; see the module."""
 
     def __init__(self, function: ca.Function, many: tuple[bool, ...]) -> None:
@@ -172,9 +172,9 @@ class _Block:
 
 
 @lru_cache(maxsize=1024)
-def runner(function: ca.Function, many: tuple[bool, ...]) -> Runner:
+def runner(function: ca.Function, many: tuple[bool, ...]) -> KernelRunner:
     """The Runner of a function for a pattern of arguments."""
-    return Runner(function, many)
+    return KernelRunner(function, many)
 
 
 def _operations(function: ca.Function) -> int:

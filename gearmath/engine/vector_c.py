@@ -23,8 +23,25 @@ _COMPARISONS = {"lt": "<", "le": "<=", "eq": "==", "ne": "!="}
 #: Operations of a function that is written as one: more take compilers minutes.
 _LARGEST = 20_000
 #: Functions of the C library, lane by lane; floor, fabs and sqrt are exact, so that they may be anything.
-_LIBRARY = ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "fabs", "floor",
-            "ceil", "log1p", "expm1")  # fmt: skip
+_LIBRARY = (
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "sinh",
+    "cosh",
+    "tanh",
+    "exp",
+    "log",
+    "sqrt",
+    "fabs",
+    "floor",
+    "ceil",
+    "log1p",
+    "expm1",
+)
 _LIBRARY_2 = ("atan2", "pow", "fmod", "fmin", "fmax")
 
 _HEAD = """\
@@ -314,10 +331,16 @@ def _part(function: ca.Function, many: tuple[bool, ...], name: str) -> _Part:
     head = ", ".join([x for x, is_many in zip(xs, many, strict=True) if is_many] + ["const double *restrict t"] + ys)
     text = "\n".join(
         (
-            f"static void {name}_shared({shared_head})", "{", *(f"    {line}" for line in shared_lines), "}",
-            f"static void {name}({head})", "{", *(f"    {line}" for line in lines), "}",
+            f"static void {name}_shared({shared_head})",
+            "{",
+            *(f"    {line}" for line in shared_lines),
+            "}",
+            f"static void {name}({head})",
+            "{",
+            *(f"    {line}" for line in lines),
+            "}",
         )
-    )  # fmt: skip
+    )
     return _Part(name, len(in_table), text)
 
 
@@ -329,8 +352,15 @@ def _literal(value: float) -> str:
     return f"({value!r})" if "." in repr(value) or "e" in repr(value) else f"({value!r}.0)"
 
 
-_CALLED = {"sign": "sign_of", "not": "not_of", "and": "and_of", "or": "or_of", "if_else_zero": "if_else_zero",
-           "constpow": "pow", **{name: name for name in (*_LIBRARY, *_LIBRARY_2)}}  # fmt: skip
+_CALLED = {
+    "sign": "sign_of",
+    "not": "not_of",
+    "and": "and_of",
+    "or": "or_of",
+    "if_else_zero": "if_else_zero",
+    "constpow": "pow",
+    **{name: name for name in (*_LIBRARY, *_LIBRARY_2)},
+}
 
 
 def _scalar(kind: str, x: list[str]) -> str:
@@ -353,8 +383,12 @@ def _vector(kind: str, x: list[str], shared: list[bool]) -> str:
 def _either(kind: str, x: list[str]) -> str:
     """What is written alike for scalars and vectors."""
     return {
-        "neg": f"-{x[0]}", "sq": f"{x[0]} * {x[0]}", "twice": f"2. * {x[0]}", "inv": f"1. / {x[0]}", "assign": x[0],
-    }.get(kind, "")  # fmt: skip
+        "neg": f"-{x[0]}",
+        "sq": f"{x[0]} * {x[0]}",
+        "twice": f"2. * {x[0]}",
+        "inv": f"1. / {x[0]}",
+        "assign": x[0],
+    }.get(kind, "")
 
 
 def _called(kind: str) -> str:

@@ -11,7 +11,7 @@ from itertools import groupby
 import numpy as np
 
 from gearmath.bevel.solid import between, rim
-from gearmath.bevel.tooth import FlankSurface, ToothSpace, tooth_space
+from gearmath.bevel.tooth import SpaceFlank, ToothSpace, tooth_space
 from gearmath.bevel.turning import turned
 from gearmath.exchange.spline import Patch, through
 from gearmath.specs.bevel_set import Member
@@ -46,7 +46,7 @@ def space_grids(space: ToothSpace) -> list[np.ndarray]:
     return [*down, root, *up, land]
 
 
-def _parts(surface: FlankSurface) -> list[np.ndarray]:
+def _parts(surface: SpaceFlank) -> list[np.ndarray]:
     """The rows of a flank by the part of the blade that cuts them, tip to root; neighbors share a row."""
     parts, first = [], 0
     for _, rows in groupby(surface.section):

@@ -34,7 +34,7 @@ class Characteristic:
 
 
 @dataclass(frozen=True)
-class Part:
+class DfqPart:
     """What all values are of: number and description of the part, machine, operation."""
 
     number: str
@@ -51,13 +51,13 @@ class Measured:
     values: tuple[float | None, ...]
 
 
-def dfq(part: Part, characteristics: Sequence[Characteristic], measured: Sequence[Measured]) -> bytes:
+def dfq(part: DfqPart, characteristics: Sequence[Characteristic], measured: Sequence[Measured]) -> bytes:
     """The bytes of a DFQ file. Characters that code page 1252 does not have become ``?``; long texts are cut."""
     lines = [*_head(part, characteristics), *(_values(one, characteristics) for one in measured)]
     return "".join(f"{line}\r\n" for line in lines).encode("cp1252", "replace")
 
 
-def _head(part: Part, characteristics: Sequence[Characteristic]) -> Iterator[str]:
+def _head(part: DfqPart, characteristics: Sequence[Characteristic]) -> Iterator[str]:
     yield f"K0100 {len(characteristics)}"
     yield _text("K1001", part.number)
     yield _text("K1002", part.description)

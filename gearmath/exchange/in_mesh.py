@@ -66,7 +66,9 @@ def pair_patches(pair: BevelSet, side: str = "drive") -> list[tuple[str, list[Pa
 def pair_triangles(pair: BevelSet, side: str = "drive") -> np.ndarray:
     """Both members in mesh as closed surfaces of triangles (n,3,3)."""
     members = {name: pair.member(name) for name in MEMBERS}
-    return np.concatenate([
-        pose.of(member_triangles(members[name], tooth_space(members[name], name)))
-        for name, pose in poses(pair, side).items()
-    ])  # fmt: skip
+    return np.concatenate(
+        [
+            pose.of(member_triangles(members[name], tooth_space(members[name], name)))
+            for name, pose in poses(pair, side).items()
+        ]
+    )

@@ -28,10 +28,15 @@ def write_rexs(path: Path, pair: BevelSet) -> int:
     for name in MEMBERS:
         beyond = pair.member(name).blank.pitch_apex_beyond_crossing_point  # refused by name where there is none
         _shift(values[name], -beyond)
-    model = ET.Element("model", {
-        "version": VERSION, "applicationId": "gearmath", "applicationVersion": __version__,
-        "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
-    })  # fmt: skip
+    model = ET.Element(
+        "model",
+        {
+            "version": VERSION,
+            "applicationId": "gearmath",
+            "applicationVersion": __version__,
+            "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        },
+    )
     writer = _Writer(ET.SubElement(model, "relations"), ET.SubElement(model, "components"))
     stage = writer.component("bevel_stage", pair.title, STAGE, _without(values, *MEMBERS))
     gears = [writer.gear(name, values[name]) for name in MEMBERS]
@@ -131,8 +136,11 @@ class _Reader:
             raise InputError(
                 f"{self._path}: component {number} is {role} of {len(found)} relations of type {kind}, must be of one"
             )
-        missing = {"stage": ("gear_1", "gear_2"), "flank": ("left", "right"),
-                   "manufacturing_step": ("tool", "manufacturing_settings")}[kind]  # fmt: skip
+        missing = {
+            "stage": ("gear_1", "gear_2"),
+            "flank": ("left", "right"),
+            "manufacturing_step": ("tool", "manufacturing_settings"),
+        }[kind]
         for other in missing:
             if found[0].get(other) not in self._components:
                 raise InputError(f"{self._path}: the relation {kind} of component {number} has no {other}")

@@ -104,16 +104,24 @@ def encoder_outputs(machine: HobbingMachine) -> Iterator[str]:
     yield from paragraph(f"What the label on the encoder says, and what stands between it and the {chip}:")
     rows = [
         ("voltage output, TTL, push-pull, 5 V", "nothing: A, B and Z straight"),
-        ("open collector, NPN (E6B2-CWZ6C), fed with 5 V",
-         "1 kOhm from each of A, B, Z to +5 V; 5 mA, quick enough for 100 kHz on 3 m of cable"),
-        ("open collector, NPN, fed with 12 to 24 V",
-         "the same 1 kOhm to +5 V, never to the 24 V; the encoder's brown wire to its own 24 V, the 0 V joined"),
-        ("line driver, RS-422, A and /A (E6B2-CWZ1X)",
-         "a receiver AM26LS32 (5 V), 120 Ohm across each pair at the receiver; the pairs twisted"),
-        ("push-pull (HTL), 10 to 30 V",
-         "a fast opto-coupler 6N137 for each: 2.2 kOhm 1 W in front of its diode at 24 V, 1 kOhm from its output "
-         "to +5 V"),
-    ]  # fmt: skip
+        (
+            "open collector, NPN (E6B2-CWZ6C), fed with 5 V",
+            "1 kOhm from each of A, B, Z to +5 V; 5 mA, quick enough for 100 kHz on 3 m of cable",
+        ),
+        (
+            "open collector, NPN, fed with 12 to 24 V",
+            "the same 1 kOhm to +5 V, never to the 24 V; the encoder's brown wire to its own 24 V, the 0 V joined",
+        ),
+        (
+            "line driver, RS-422, A and /A (E6B2-CWZ1X)",
+            "a receiver AM26LS32 (5 V), 120 Ohm across each pair at the receiver; the pairs twisted",
+        ),
+        (
+            "push-pull (HTL), 10 to 30 V",
+            "a fast opto-coupler 6N137 for each: 2.2 kOhm 1 W in front of its diode at 24 V, 1 kOhm from its output "
+            "to +5 V",
+        ),
+    ]
     yield from table(("output", "in front of the input"), rows)
     yield from paragraph(
         "An opto-coupler turns the levels round. For A and B that changes nothing; for Z the machine file then says "

@@ -160,10 +160,12 @@ def _generate(function: ca.Function, prefix: str, options: dict) -> _Body:
         before, rest = text.split("/* Configuration this file was compiled with */\n")
         after = rest.split("_casadi_real_size(void) { return (int) sizeof(casadi_real); }\n", 1)[1]
         entry = re.search(r"return (casadi_f\d+)\(arg, res, iw, w, mem\);", interface)[1]  # type: ignore[index]
-        sizes = wrapper.Sizes(*(
-            int(re.search(rf"\*sz_{what} = (\d+);", interface)[1])  # type: ignore[index]
-            for what in ("arg", "res", "iw", "w")
-        ))  # fmt: skip
+        sizes = wrapper.Sizes(
+            *(
+                int(re.search(rf"\*sz_{what} = (\d+);", interface)[1])  # type: ignore[index]
+                for what in ("arg", "res", "iw", "w")
+            )
+        )
     except (ValueError, IndexError, TypeError) as error:
         raise ExportError(
             f"{function.name()}: the C of CasADi {ca.CasadiMeta.version()} has an unknown form"

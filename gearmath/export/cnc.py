@@ -62,10 +62,18 @@ def cnc_kernels() -> tuple[Kernel, ...]:
     lowered = (
         kernel(name)
         for name in (
-            "cutter_surface", "cradle_pose", "flank_family", "meshing", "axis_transform", "tool_pose",
-            "point_deviation", "setting_sensitivity", "deviation_surface", "line_entry",
+            "cutter_surface",
+            "cradle_pose",
+            "flank_family",
+            "meshing",
+            "axis_transform",
+            "tool_pose",
+            "point_deviation",
+            "setting_sensitivity",
+            "deviation_surface",
+            "line_entry",
         )
-    )  # fmt: skip
+    )
     return (*lowered, flank_point(), flank_on_line(), compensation_step(len(SETTINGS)))
 
 

@@ -53,10 +53,18 @@ _FILES = (
 def guide(machine: HobbingMachine, sketch: str) -> str:
     """Markdown text for ``<sketch>.ino``."""
     chapters = (
-        _head(machine, sketch), parts_chapter(machine), _wiring(machine), _pins(machine), _decoder(machine),
-        _timing(machine), _flashing(machine, sketch), _commissioning(machine), first_cut(machine),
-        screens(machine), faults(machine),
-    )  # fmt: skip
+        _head(machine, sketch),
+        parts_chapter(machine),
+        _wiring(machine),
+        _pins(machine),
+        _decoder(machine),
+        _timing(machine),
+        _flashing(machine, sketch),
+        _commissioning(machine),
+        first_cut(machine),
+        screens(machine),
+        faults(machine),
+    )
     return "\n".join(line for chapter in chapters for line in chapter).rstrip("\n") + "\n"
 
 
@@ -232,9 +240,14 @@ def _enable(machine: HobbingMachine) -> str:
     if machine.pins.enable is None:
         return "**Leave ENABLE (ENA) of the driver open: it is enabled then.**"
     level = "low" if machine.enable_active_low else "high"
-    doubt = "" if machine.driver.timing.enable_confirmed else (
-        " This was not confirmed by the manual of the driver: before the first run try the shaft by hand, it must hold."
-    )  # fmt: skip
+    doubt = (
+        ""
+        if machine.driver.timing.enable_confirmed
+        else (
+            " This was not confirmed by the manual of the driver: before the first run try the shaft by hand, it "
+            "must hold."
+        )
+    )
     current = " Current through its opto-coupler would switch the motor off." * (machine.driver.timing.enable == "dark")
     return f"ENABLE: the board's pin is {level} while the driver is enabled, in every mode.{current}{doubt}"
 

@@ -47,9 +47,13 @@ def comment(paragraphs: Iterable[str]) -> str:
         body = paragraph.lstrip(" ")
         indent = " " * (len(paragraph) - len(body))
         lines += textwrap.wrap(
-            plain(body), _WIDTH, initial_indent=indent, subsequent_indent=indent + "    ",
-            break_long_words=False, break_on_hyphens=False,
-        ) or [""]  # fmt: skip
+            plain(body),
+            _WIDTH,
+            initial_indent=indent,
+            subsequent_indent=indent + "    ",
+            break_long_words=False,
+            break_on_hyphens=False,
+        ) or [""]
     return "/*\n" + "".join(f" * {line}".rstrip() + "\n" for line in lines) + " */\n"
 
 

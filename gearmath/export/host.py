@@ -56,9 +56,10 @@ class CompiledKernel:
         """The loop in C: how many points, then every input with its stride, then the outputs."""
         function = getattr(self.library, f"gm_{self.name}_batch")
         function.argtypes = [
-            ctypes.c_long, *[ctypes.c_void_p, ctypes.c_long] * len(self._inputs),
+            ctypes.c_long,
+            *[ctypes.c_void_p, ctypes.c_long] * len(self._inputs),
             *[ctypes.c_void_p] * len(self.kernel.outputs),
-        ]  # fmt: skip
+        ]
         return function
 
 
@@ -118,9 +119,13 @@ def run_edges(edges: np.ndarray, numerator: int, denominator: int, remainder: in
     steps = np.empty(len(contiguous), dtype=np.int8)
     state = ctypes.c_int32(remainder)
     _step_library().gm_run_edges(
-        ctypes.c_long(len(steps)), _pointer(contiguous), ctypes.c_int32(numerator), ctypes.c_int32(denominator),
-        ctypes.byref(state), _pointer(steps),
-    )  # fmt: skip
+        ctypes.c_long(len(steps)),
+        _pointer(contiguous),
+        ctypes.c_int32(numerator),
+        ctypes.c_int32(denominator),
+        ctypes.byref(state),
+        _pointer(steps),
+    )
     return steps, state.value
 
 
@@ -148,9 +153,13 @@ void gm_run_axes(
 
 
 def run_axes(
-    axes: np.ndarray, edges: np.ndarray, base: tuple[int, int], increment: tuple[int, int], denominator: int,
+    axes: np.ndarray,
+    edges: np.ndarray,
+    base: tuple[int, int],
+    increment: tuple[int, int],
+    denominator: int,
     remainder: int,
-) -> tuple[np.ndarray, int]:  # fmt: skip
+) -> tuple[np.ndarray, int]:
     """The steps (n,) int8 that the compiled ``gm_gearbox_edge`` delivers in 64 bits, and the last remainder.
 
     Edges (n,) of ±1 come on ``axes`` (n,), 0 hob and 1 feed; the ratio of axis j is base[j] + increment[j]/denominator.
@@ -170,9 +179,15 @@ def run_axes(
     pair = ctypes.c_int64 * 2
     state = ctypes.c_int64(remainder)
     _axes_library().gm_run_axes(
-        ctypes.c_long(len(steps)), _pointer(place), _pointer(edge), pair(*base), pair(*increment),
-        ctypes.c_int64(denominator), ctypes.byref(state), _pointer(steps),
-    )  # fmt: skip
+        ctypes.c_long(len(steps)),
+        _pointer(place),
+        _pointer(edge),
+        pair(*base),
+        pair(*increment),
+        ctypes.c_int64(denominator),
+        ctypes.byref(state),
+        _pointer(steps),
+    )
     return steps, state.value
 
 

@@ -21,9 +21,13 @@ def bullets(texts: Iterable[str], numbered: bool = False) -> Iterator[str]:
     for k, text in enumerate(texts, start=1):
         mark = f"{k}. " if numbered else "- "
         yield from textwrap.wrap(
-            text, _WIDTH, initial_indent=mark, subsequent_indent=" " * len(mark),
-            break_long_words=False, break_on_hyphens=False,
-        )  # fmt: skip
+            text,
+            _WIDTH,
+            initial_indent=mark,
+            subsequent_indent=" " * len(mark),
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
     yield ""
 
 

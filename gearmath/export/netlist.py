@@ -17,7 +17,7 @@ _SHIFTER_IN, _SHIFTER_OUT = range(2, 10), range(18, 10, -1)
 
 
 @dataclass(frozen=True)
-class Part:
+class NetPart:
     """One part: its name in diagram and tables, what to buy, what for, and the current it takes from +5 V [mA]."""
 
     name: str
@@ -30,11 +30,11 @@ class Part:
 class Netlist:
     """Parts by name, nets by name."""
 
-    parts: dict[str, Part] = field(default_factory=dict)
+    parts: dict[str, NetPart] = field(default_factory=dict)
     nets: dict[str, list[End]] = field(default_factory=dict)
 
     def part(self, name: str, what: str, purpose: str, current: int = 0) -> str:
-        self.parts[name] = Part(name, what, purpose, current)
+        self.parts[name] = NetPart(name, what, purpose, current)
         return name
 
     def join(self, net: str, *ends: End) -> None:

@@ -35,9 +35,8 @@ class Contact:
     def to_dict(self, step: float = 1.0) -> dict[str, Any]:
         """As ``gearmath contact --json`` prints it; positions at multiples of ``step`` [degrees of the pinion]."""
         return {
-            side: figures(run, math.radians(step)) | self.measured.figures(side, run)
-            for side, run in self.runs.items()
-        }  # fmt: skip
+            side: figures(run, math.radians(step)) | self.measured.figures(side, run) for side, run in self.runs.items()
+        }
 
     def plot(self) -> Figure:
         """Transmission error, path, pattern and V-H diagram, a row for each side."""
@@ -55,9 +54,14 @@ class Contact:
 
 
 def contact(
-    pair: GearSet, *measured: Measurement, v: float = 0.0, h: float = 0.0, j: float = 0.0, shaft: float = 0.0,
+    pair: GearSet,
+    *measured: Measurement,
+    v: float = 0.0,
+    h: float = 0.0,
+    j: float = 0.0,
+    shaft: float = 0.0,
     sides: tuple[str, ...] = tuple(SIDES),
-) -> Contact:  # fmt: skip
+) -> Contact:
     """The contact of a pair at an assembly: V, H, J [mm], growth of the shaft angle [degrees]; docs/contact.md.
 
     With measurements of its members, one or both, on the measured flanks. Raises InputError where the set has one

@@ -14,9 +14,9 @@ from gearmath.bevel.pair import check_pair
 from gearmath.errors import InputError
 from gearmath.front.sets import GearSet, Member, load_set
 from gearmath.front.tables import html_table
-from gearmath.quality.correction.member import Correction as Corrected
+from gearmath.quality.correction.member import MemberCorrection as Corrected
 from gearmath.quality.correction.member import correct, setting_changes
-from gearmath.quality.evaluation.member import Evaluation as Found
+from gearmath.quality.evaluation.member import MemberEvaluation as Found
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
 from gearmath.specs.set_text import save_corrected
@@ -100,10 +100,15 @@ class Evaluation:
 
     def _repr_html_(self) -> str:
         flanks = self.to_dict()["flanks"]
-        names = [name for name in ("max_deviation_um", "rms_um", "F_p_um", "max_f_pt_um")
-                 if any(name in row for row in flanks.values())]  # fmt: skip
-        rows = [[flank, *("withheld" if row.get(name) is None else row[name] for name in names)]
-                for flank, row in flanks.items()]  # fmt: skip
+        names = [
+            name
+            for name in ("max_deviation_um", "rms_um", "F_p_um", "max_f_pt_um")
+            if any(name in row for row in flanks.values())
+        ]
+        rows = [
+            [flank, *("withheld" if row.get(name) is None else row[name] for name in names)]
+            for flank, row in flanks.items()
+        ]
         return html_table(f"{self.measurement.member.name}, as measured", ["flank", *names], rows)
 
 
@@ -147,9 +152,15 @@ class Correction:
         with TemporaryDirectory() as folder:
             before = member.gear_set.save(Path(folder) / "before.toml")
             save_corrected(
-                before, Path(path), member.name, found.settings, found.index, found.motions, found.curvatures,
+                before,
+                Path(path),
+                member.name,
+                found.settings,
+                found.index,
+                found.motions,
+                found.curvatures,
                 check=check_pair,
-            )  # fmt: skip
+            )
         return Path(path)
 
     def to_dict(self) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from gearmath.front.sets import Member
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.milling.mill import mill_member
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.simulated_machine import SimulatedMachine
 
@@ -76,7 +76,7 @@ def cutting(
     """The cutting program of a member, run before it is returned. Raises InputError naming what is wrong."""
     machine = load_machine() if machine is None else machine
     wanted = list(range(member.teeth) if spaces is None else spaces)
-    text = cutting_program(member.gear_set.spec, member.name, machine.spec, name, Job(wanted, **job))
+    text = cutting_program(member.gear_set.spec, member.name, machine.spec, name, CuttingJob(wanted, **job))
     program = Program(member, machine, name, text)
     if found := program.faults():
         raise InputError(f"{name}: {'; '.join(found)}")

@@ -75,10 +75,13 @@ class GearSet:
     def _repr_html_(self) -> str:
         flanks = [(name, flank) for name in self.spec.members for flank in FLANKS]
         rows = [
-            [key, "degree" if key in ANGULAR else "1" if key == "ratio_of_roll" else "mm",
-             *(getattr(self.spec.member(name).flank(flank), key) for name, flank in flanks)]
+            [
+                key,
+                "degree" if key in ANGULAR else "1" if key == "ratio_of_roll" else "mm",
+                *(getattr(self.spec.member(name).flank(flank), key) for name, flank in flanks),
+            ]
             for key in SETTINGS
-        ]  # fmt: skip
+        ]
         return html_table(self.title, ["setting", "unit", *(f"{name} {flank}" for name, flank in flanks)], rows)
 
 
@@ -162,10 +165,16 @@ class Member:
         return deviations(self, grid, margin)
 
     def program(
-        self, machine: Machine | None = None, name: str = "GEAR", spaces: Sequence[int] | None = None,
-        tolerance: float = 1e-4, feed: float = 300.0, spindle_rpm: float = 120.0, roughing_stock: float = 0.0,
+        self,
+        machine: Machine | None = None,
+        name: str = "GEAR",
+        spaces: Sequence[int] | None = None,
+        tolerance: float = 1e-4,
+        feed: float = 300.0,
+        spindle_rpm: float = 120.0,
+        roughing_stock: float = 0.0,
         finishing_stock: float = 0.0,
-    ) -> Program:  # fmt: skip
+    ) -> Program:
         """The cutting program of the member for a machine, by default the bundled vertical one; all spaces by default.
 
         ``tolerance`` of the flank and stocks [mm], ``feed`` past the tooth [mm/min]. The program is run before it is

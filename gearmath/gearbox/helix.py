@@ -159,9 +159,18 @@ def _fed(machine: HobbingMachine, teeth: int, starts: int, module: float, helix:
     if not Fraction(1, 1000) <= helix.feed < 10:
         raise InputError(f"feed = {float(helix.feed):g}: must lie between 0.001 and 10 mm per turn of the table")
     exact = precise(
-        "fed_ratio", SIGNS[machine.hob_hand], helix.sign, SIGNS[helix.cut], teeth, starts, module, helix.beta,
-        float(helix.feed), float(machine.encoder_counts), float(machine.motor_steps),
-    )  # fmt: skip
+        "fed_ratio",
+        SIGNS[machine.hob_hand],
+        helix.sign,
+        SIGNS[helix.cut],
+        teeth,
+        starts,
+        module,
+        helix.beta,
+        float(helix.feed),
+        float(machine.encoder_counts),
+        float(machine.motor_steps),
+    )
     counts = Fraction(TRAVEL * teeth * machine.encoder_counts) / helix.feed
     found = simplest(abs(exact), math.ceil(2 * PART * counts))
     rounding = Rounding(1 / (2 * PART * starts), float(abs(abs(exact) - found) * counts / starts))

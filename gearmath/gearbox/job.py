@@ -11,7 +11,7 @@ from derivations.expression import Quantity
 from gearmath.errors import InputError
 from gearmath.gearbox.helix import SIGNS, JobRatio, one_term
 from gearmath.gearbox.kernels import evaluate, expression
-from gearmath.gearbox.motion import Motion, check_run_up, motion
+from gearmath.gearbox.motion import MotorMotion, check_run_up, motion
 from gearmath.specs.hobbing import NARROW, Hand, HobbingMachine
 
 #: Largest N and D of the int32 step rule; gearmath.gearbox.proof shows that this bound is tight.
@@ -25,7 +25,7 @@ LARGEST_BASE = int(q.base_step.domain[1])
 
 
 @dataclass(frozen=True)
-class Job:
+class GearboxJob:
     """One job. N/D motor steps per encoder count, reduced if the hob leads alone; R = D/N encoder counts per step.
 
     ``feed_numerator`` is that of the feed encoder over the same denominator. Ratio k of :func:`gearmath.export.host`
@@ -49,7 +49,7 @@ class Job:
     step_rate_percent: float
     carried_at_every_speed: bool
     """Whether the steps keep their limit up to limits.hob_rpm; the firmware refuses a gear otherwise."""
-    motion: Motion
+    motion: MotorMotion
 
     @property
     def exact_pulse_ratio(self) -> Fraction:
@@ -63,7 +63,7 @@ class Job:
 
 
 @dataclass(frozen=True)
-class ThreadPlan(Job):
+class ThreadPlan(GearboxJob):
     """A thread on a lathe: pitch and lead [mm], exactly."""
 
     pitch: Fraction
@@ -139,8 +139,14 @@ def plan_thread(
     per_count = float(1000 * lead / machine.encoder_counts)
     per_step = float(1000 * machine.lead_screw_pitch / machine.motor_steps)
     return ThreadPlan(
-        **values, pitch=pitch, lead=lead, starts=starts, hand=hand, count_um=per_count, step_um=per_step,  # type: ignore[arg-type]
-    )  # fmt: skip
+        **values,  # type: ignore[arg-type]
+        pitch=pitch,
+        lead=lead,
+        starts=starts,
+        hand=hand,
+        count_um=per_count,
+        step_um=per_step,
+    )
 
 
 def thread_ratio(machine: HobbingMachine, pitch: Fraction, starts: int, hand: Hand) -> JobRatio:

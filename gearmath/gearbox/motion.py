@@ -20,7 +20,7 @@ _HEADROOM = 1.002  # of the step rate over the speed, below which nothing is ove
 
 
 @dataclass(frozen=True)
-class Motion:
+class MotorMotion:
     """The motor of a job between rest and its speed. Hob stands for spindle on a lathe."""
 
     run_up_s: float
@@ -37,7 +37,7 @@ class Motion:
     """Highest speed at which it can be engaged: 64 turns are not exceeded."""
 
 
-def motion(machine: HobbingMachine, ratio: Fraction, rpm: float) -> Motion:
+def motion(machine: HobbingMachine, ratio: Fraction, rpm: float) -> MotorMotion:
     """The motion of a job of ``ratio`` motor steps per count at ``rpm``."""
     limits = machine.limits
     rate = rpm / 60.0 * float(machine.encoder_counts * abs(ratio))
@@ -46,10 +46,10 @@ def motion(machine: HobbingMachine, ratio: Fraction, rpm: float) -> Motion:
     turns = None if seconds is None else seconds * rpm / 60.0
     if turns is not None and turns > HOPELESS_TURNS:
         seconds = turns = None
-    return Motion(run_up, rpm / run_up, shortest, seconds, turns, _engage_rpm(machine, rate / rpm, rpm))
+    return MotorMotion(run_up, rpm / run_up, shortest, seconds, turns, _engage_rpm(machine, rate / rpm, rpm))
 
 
-def check_run_up(machine: HobbingMachine, job: Motion, rpm: float, seconds: float | None, what: str) -> None:
+def check_run_up(machine: HobbingMachine, job: MotorMotion, rpm: float, seconds: float | None, what: str) -> None:
     """Raises InputError where the table loses a hob that takes ``seconds`` from rest to ``rpm``.
 
     ``seconds`` is limits.run_up_s of the machine file if not given, and then in proportion to the speed.

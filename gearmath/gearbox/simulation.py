@@ -21,7 +21,7 @@ LONGEST_RUN = 5000  # edges between two reversals, at most
 FEED_EVERY = 8  # in a job of two axes, one edge in so many is one of the feed
 
 
-class Runner(Protocol):
+class TrainRunner(Protocol):
     """A compiled step rule: int8 edges (+1, -1) and a remainder to int8 steps and the remainder after them."""
 
     def __call__(
@@ -33,9 +33,15 @@ class AxesRunner(Protocol):
     """The compiled rule of two axes: axes (0 hob, 1 feed), edges, and the ratios of both, to steps and remainder."""
 
     def __call__(
-        self, axes: np.ndarray, edges: np.ndarray, base: tuple[int, int], increment: tuple[int, int],
-        denominator: int, remainder: int, /,
-    ) -> tuple[np.ndarray, int]: ...  # fmt: skip
+        self,
+        axes: np.ndarray,
+        edges: np.ndarray,
+        base: tuple[int, int],
+        increment: tuple[int, int],
+        denominator: int,
+        remainder: int,
+        /,
+    ) -> tuple[np.ndarray, int]: ...
 
 
 def pattern(kind: Pattern, edges: int, seed: int = 0, chunk: int = 1 << 20) -> Iterator[np.ndarray]:
@@ -183,7 +189,7 @@ Record = Callable[[np.ndarray, np.ndarray], object]
 
 
 def simulate(
-    run: Runner,
+    run: TrainRunner,
     ratio: tuple[int, int],
     first_remainder: int,
     kind: Pattern,
@@ -224,9 +230,16 @@ def simulate_job(
 
 
 def _drive(
-    run: AxesRunner, job: JobRatio, first_remainder: int, kind: Pattern, edges: int, seed: int,
-    progress: Callable[[int], object], record: Record, start: int = 0,
-) -> Simulation:  # fmt: skip
+    run: AxesRunner,
+    job: JobRatio,
+    first_remainder: int,
+    kind: Pattern,
+    edges: int,
+    seed: int,
+    progress: Callable[[int], object],
+    record: Record,
+    start: int = 0,
+) -> Simulation:
     denominator, base, increment = job.denominator, job.base, job.increment
     numerators = np.array(job.numerators)
     floating = FloatRule(job.numerators[0], denominator, start)
@@ -254,9 +267,15 @@ def _drive(
         progress(len(chunk))
     encoder, feed, position, float_position = map(int, sums)
     return Simulation(
-        kind, edges, encoder, feed, position, Fraction(worst, denominator),
-        float_position, Fraction(float_worst, denominator),
-    )  # fmt: skip
+        kind,
+        edges,
+        encoder,
+        feed,
+        position,
+        Fraction(worst, denominator),
+        float_position,
+        Fraction(float_worst, denominator),
+    )
 
 
 def _on_axes(job: JobRatio, kind: Pattern, edges: int, seed: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:

@@ -20,7 +20,7 @@ from gearmath.gearbox.dimensions import (
     swivel,
 )
 from gearmath.gearbox.helix import SIGNS, TRAVEL, Cut, Helix, JobRatio, Rounding, helical_ratio, hob_ratio, one_term
-from gearmath.gearbox.job import WIDEST, Job, check_range, job_values, nearest, refusal
+from gearmath.gearbox.job import WIDEST, GearboxJob, check_range, job_values, nearest, refusal
 from gearmath.gearbox.kernels import evaluate
 from gearmath.specs.hobbing import Hand, Hob, HobbingMachine
 
@@ -63,7 +63,7 @@ class HelixPlan:
 
 
 @dataclass(frozen=True)
-class GearboxPlan(Job):
+class GearboxPlan(GearboxJob):
     """A gear on a hobbing machine."""
 
     teeth: int
@@ -104,16 +104,21 @@ def plan(
     reason = refusal(machine, ratio)
     if reason:
         other = nearest(
-            "tooth count", teeth, q.teeth,
+            "tooth count",
+            teeth,
+            q.teeth,
             lambda count: refusal(machine, _ratio(machine, count, starts, hobs, helix)[0]) is None,
-        )  # fmt: skip
+        )
         raise InputError(f"{machine.name}: teeth = {teeth}: {reason}; {other}")
     return GearboxPlan(
         **job_values(machine, ratio, rpm, f"{teeth} teeth", run_up),  # type: ignore[arg-type]
-        teeth=teeth, hob_starts=starts, hob_hand=machine.hob_hand, profile_shift=shift,
+        teeth=teeth,
+        hob_starts=starts,
+        hob_hand=machine.hob_hand,
+        profile_shift=shift,
         helix=_helix_plan(teeth, hobs[0], helix, rounding),
         blanks=tuple(_blank(machine, teeth, starts, chosen, helix, shift, pin) for chosen in hobs),
-    )  # fmt: skip
+    )
 
 
 def _ratio(
@@ -132,9 +137,7 @@ def _helix_plan(teeth: int, hob: Hob, helix: Helix | None, rounding: Rounding | 
         return None
     (lead,) = evaluate("helical_lead", teeth, hob.module_mm, helix.beta)
     feed = None if helix.feed is None else float(helix.feed)
-    return HelixPlan(
-        helix.angle, helix.hand, helix.cut, feed, lead, float(TRAVEL), rounding.bound, rounding.error
-    )  # fmt: skip
+    return HelixPlan(helix.angle, helix.hand, helix.cut, feed, lead, float(TRAVEL), rounding.bound, rounding.error)
 
 
 def _check_shift(shift: float, pin: float | None) -> None:
@@ -167,6 +170,13 @@ def _blank(
     train = (float(machine.encoder_counts), float(machine.motor_steps))
     arcs = evaluate("resolution", pitch_diameter, teeth, starts, *train)
     return HobbedBlank(
-        hob.name, hob.depth_rule, blank_diameter(gear), depth, stands, span(gear), chord(gear), over_pins(gear, pin),
+        hob.name,
+        hob.depth_rule,
+        blank_diameter(gear),
+        depth,
+        stands,
+        span(gear),
+        chord(gear),
+        over_pins(gear, pin),
         *arcs,
-    )  # fmt: skip
+    )

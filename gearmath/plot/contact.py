@@ -13,7 +13,7 @@ from matplotlib.patches import Patch, Polygon
 
 from gearmath.bevel.contact.local import local
 from gearmath.bevel.contact.mesh import REACH, Mesh
-from gearmath.bevel.contact.pattern import Pattern, envelope, pattern
+from gearmath.bevel.contact.pattern import ContactPattern, envelope, pattern
 from gearmath.bevel.contact.report import v_h
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 
@@ -108,7 +108,7 @@ def _draw_error(axes: Axes, run: Mesh, title: str) -> None:
     _label(axes, title, "pinion / degree", "transmission error / arcsec")
 
 
-def _draw_path(axes: Axes, run: Mesh, found: Pattern) -> None:
+def _draw_path(axes: Axes, run: Mesh, found: ContactPattern) -> None:
     """The path of one pair of teeth on the gear, with the contact ellipses along it."""
     tooth = _outline(axes, found)
     step = 3 * run.system.pitch / (_SAMPLES - 1)
@@ -140,7 +140,7 @@ def _draw_path(axes: Axes, run: Mesh, found: Pattern) -> None:
 _AXES = ((math.cos, math.sin), (lambda a: -math.sin(a), math.cos))
 
 
-def _draw_pattern(axes: Axes, run: Mesh, found: Pattern) -> None:
+def _draw_pattern(axes: Axes, run: Mesh, found: ContactPattern) -> None:
     """Lines of the ease-off in µm, and the area within the marking compound."""
     _outline(axes, found)
     gap = np.ma.masked_invalid(found.gap * 1000)
@@ -160,7 +160,7 @@ def _draw_pattern(axes: Axes, run: Mesh, found: Pattern) -> None:
     )
 
 
-def _outline(axes: Axes, found: Pattern) -> Patch:
+def _outline(axes: Axes, found: ContactPattern) -> Patch:
     """The projected tooth of the gear, from its tip to the lower limit of its working depth."""
     x, y = found.cone_distance, found.height
     rim = [np.concatenate([a[0], a[1:, -1], a[-1, ::-1], a[::-1, 0]]) for a in (x, y)]

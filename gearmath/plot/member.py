@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from gearmath.plot.pitch import draw_pitch, draw_runout
 from gearmath.plot.style import signed
 from gearmath.plot.topography import draw_topography, um_per_row
-from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.evaluation.member import MemberEvaluation
 from gearmath.quality.evaluation.pitch import Pitch
 from gearmath.quality.evaluation.registration import Registration
 from gearmath.quality.evaluation.topography import Topography
@@ -35,7 +35,7 @@ def member_figure(
     return _together(title, drawn)
 
 
-def evaluation_figure(title: str, evaluation: Evaluation) -> Figure:
+def evaluation_figure(title: str, evaluation: MemberEvaluation) -> Figure:
     """A measured member: flanks as measured and as registered, pitch polygons, runout; what the clamping was.
 
     Where no clamping was taken out, they are as they are judged, without the rotation that both flanks have in common.

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from gearmath.plot.member import member_figure
 from gearmath.plot.style import AFTER, BEFORE, INK
-from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.evaluation.member import MemberEvaluation
 from gearmath.quality.evaluation.pitch import Pitch
 from gearmath.quality.evaluation.topography import Topography
 
@@ -21,7 +21,7 @@ _COLUMNS = 3
 _BAR = 2.0
 
 
-def comparison_figure(title: str, before: Evaluation, after: Evaluation) -> Figure:
+def comparison_figure(title: str, before: MemberEvaluation, after: MemberEvaluation) -> Figure:
     """Mean topographies at one scale, as they deviate from the nominal flank, and pitch, as far as both have them."""
     return member_figure(title, _forms(before), _forms(after), _pitches(before), _pitches(after))
 
@@ -55,9 +55,9 @@ def _course(axes: Axes, name: str, runs: Sequence[int], by_flank: Mapping[str, C
     axes.legend(fontsize=7, frameon=False)
 
 
-def _forms(found: Evaluation) -> dict[str, Topography]:
+def _forms(found: MemberEvaluation) -> dict[str, Topography]:
     return {flank: figures.mean for flank, figures in found.flanks.items() if figures.mean is not None}
 
 
-def _pitches(found: Evaluation) -> list[Pitch]:
+def _pitches(found: MemberEvaluation) -> list[Pitch]:
     return [figures.pitch for figures in found.flanks.values() if figures.pitch is not None]

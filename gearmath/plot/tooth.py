@@ -97,9 +97,11 @@ def _words(axes: Axes, nominal: np.ndarray, lifted: np.ndarray, deviation: np.nd
     row, column = rows // 2, columns // 2
     out = 0.07 * float(np.linalg.norm(nominal[row, -1] - nominal[row, 0]))
     for text, edge, inner, far in (
-        ("tip", nominal[-1, column], nominal[0, column], 0.8), ("root", nominal[0, column], nominal[-1, column], 1.0),
-        ("toe", nominal[row, 0], nominal[row, -1], 1.3), ("heel", nominal[row, -1], nominal[row, 0], 1.3),
-    ):  # fmt: skip
+        ("tip", nominal[-1, column], nominal[0, column], 0.8),
+        ("root", nominal[0, column], nominal[-1, column], 1.0),
+        ("toe", nominal[row, 0], nominal[row, -1], 1.3),
+        ("heel", nominal[row, -1], nominal[row, 0], 1.3),
+    ):
         way = (edge - inner) / np.linalg.norm(edge - inner)
         x, y = edge + far * out * way
         axes.text(x, y, text, fontsize=8, style="italic", ha="center", va="center", zorder=6)
@@ -108,9 +110,16 @@ def _words(axes: Axes, nominal: np.ndarray, lifted: np.ndarray, deviation: np.nd
         for column in (0, -1):
             if np.isfinite(deviation[row, column]):
                 axes.annotate(
-                    signed(deviation[row, column]), lifted[row, column], (0, 4 if row else -4), zorder=7, bbox=box,
-                    textcoords="offset points", fontsize=8, ha="center", va="bottom" if row else "top",
-                )  # fmt: skip
+                    signed(deviation[row, column]),
+                    lifted[row, column],
+                    (0, 4 if row else -4),
+                    zorder=7,
+                    bbox=box,
+                    textcoords="offset points",
+                    fontsize=8,
+                    ha="center",
+                    va="bottom" if row else "top",
+                )
 
 
 def _face(one: ToothFlank) -> float:

@@ -32,9 +32,12 @@ def um_per_row(topographies: Iterable[Topography]) -> float:
 
 
 def draw_topography(
-    axes: Axes, shown: Topography, earlier: Topography | None = None, scale: float | None = None,
+    axes: Axes,
+    shown: Topography,
+    earlier: Topography | None = None,
+    scale: float | None = None,
     taken: float | None = None,
-) -> None:  # fmt: skip
+) -> None:
     """One flank and its numbers; dashed below it the same flank ``earlier``, without numbers.
 
     Columns run from toe (left) to heel, rows from root (below) to tip; up is metal left on. ``scale`` is that of
@@ -92,10 +95,17 @@ def _numbers(axes: Axes, x: np.ndarray, y: np.ndarray, values: np.ndarray) -> No
             text = signed(value) if np.isfinite(value) else "×"
             below = not text.startswith("\N{MINUS SIGN}")
             number = axes.annotate(
-                text, (x[row, column], y[row, column]), (0, -2.5 if below else 2.5), textcoords="offset points",
-                ha="center", va="top" if below else "bottom", fontsize=8, zorder=5, gid=f"node {row},{column}",
+                text,
+                (x[row, column], y[row, column]),
+                (0, -2.5 if below else 2.5),
+                textcoords="offset points",
+                ha="center",
+                va="top" if below else "bottom",
+                fontsize=8,
+                zorder=5,
+                gid=f"node {row},{column}",
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
-            )  # fmt: skip
+            )
             number.set_in_layout(False)  # well within the axes; asking every number takes most of the time
     if step > 1:
         axes.set_title(f"numbers at one column in {step}", fontsize=8)

@@ -4,7 +4,7 @@ One page for people, self-contained, and its pictures. Nothing is computed here 
 correction has not said.
 """
 
-from gearmath.report.measurement import FIELDS, Measurement, Report, head_of
+from gearmath.report.measurement import FIELDS, Report, ReportedMeasurement, head_of
 from gearmath.report.sheet import STEPS, inspection_sheet
 
-__all__ = ["FIELDS", "STEPS", "Measurement", "Report", "head_of", "inspection_sheet"]
+__all__ = ["FIELDS", "STEPS", "Report", "ReportedMeasurement", "head_of", "inspection_sheet"]

@@ -12,19 +12,19 @@ from gearmath.plot.pitch import pitch_limits
 from gearmath.plot.sheet import pitch_chart, runout_chart, tooth_chart, topography_chart
 from gearmath.plot.tooth import enlargement, tooth_flanks
 from gearmath.plot.topography import um_per_row
-from gearmath.quality.correction.member import Correction
+from gearmath.quality.correction.member import MemberCorrection
 from gearmath.quality.correction.target import flank_target
-from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.evaluation.member import MemberEvaluation
 from gearmath.quality.evaluation.pitch import Pitch, index_correction, reference_rows
 from gearmath.quality.evaluation.topography import Topography, grid_shape, zeroed
-from gearmath.report.measurement import Measurement
+from gearmath.report.measurement import ReportedMeasurement
 from gearmath.specs.bevel_set import Member
 
 #: (svg, caption)
 Drawing = tuple[str, str]
 
 
-def flank_charts(measurement: Measurement, after: Mapping[str, Topography]) -> list[Drawing]:
+def flank_charts(measurement: ReportedMeasurement, after: Mapping[str, Topography]) -> list[Drawing]:
     """Both flanks, each with what it is ``after`` the correction beside it, all at one scale."""
     found = measurement.evaluation
     before = means(found)
@@ -42,7 +42,7 @@ def flank_charts(measurement: Measurement, after: Mapping[str, Topography]) -> l
     return [(svg(topography_chart(chart, scale, each.at_reference)), words) for chart, each, words in shown]
 
 
-def pitch_charts(measurement: Measurement) -> list[Drawing]:
+def pitch_charts(measurement: ReportedMeasurement) -> list[Drawing]:
     """Single pitch and cumulative pitch of each flank, at one scale, and with them those after the correction."""
     before, after = pitches(measurement.evaluation), pitches_after(measurement)
     limits = pitch_limits([*before, *after])
@@ -53,14 +53,14 @@ def pitch_charts(measurement: Measurement) -> list[Drawing]:
     ]
 
 
-def space_charts(measurement: Measurement) -> list[Drawing]:
+def space_charts(measurement: ReportedMeasurement) -> list[Drawing]:
     """Runout, where it was measured."""
     runout = measurement.evaluation.runout
     words = "Runout: a ball in every space, normal to the pitch cone"
     return [] if runout is None else [(svg(runout_chart(runout)), words)]
 
 
-def tooth_charts(measurement: Measurement) -> tuple[list[Drawing], float]:
+def tooth_charts(measurement: ReportedMeasurement) -> tuple[list[Drawing], float]:
     """The tooth from either side, and how many times its deviations are enlarged."""
     found = measurement.evaluation
     shown = {flank: zeroed(each, found.file) for flank, each in means(found).items()}
@@ -71,7 +71,7 @@ def tooth_charts(measurement: Measurement) -> tuple[list[Drawing], float]:
     return [(svg(tooth_chart(flanks, seen, times)), f"seen from its {seen} flank") for seen in flanks], times
 
 
-def pictures(measurement: Measurement, after: Mapping[str, Topography]) -> dict[str, bytes]:
+def pictures(measurement: ReportedMeasurement, after: Mapping[str, Topography]) -> dict[str, bytes]:
     """Two pictures of the member as PNG, for other uses than the page: measured, and before and ``after``."""
     found = measurement.evaluation
     drawn = {"measured": png(evaluation_figure(f"{found.member}, {measurement.source}", found))}
@@ -80,30 +80,33 @@ def pictures(measurement: Measurement, after: Mapping[str, Topography]) -> dict[
         before = means(found) if measurement.again else first(found)
         later = (measurement.again or found).file
         figure = member_figure(
-            f"{found.member}: {words}", {flank: zeroed(each, found.file) for flank, each in before.items()},
-            {flank: zeroed(each, later) for flank, each in after.items()}, pitches(found), pitches_after(measurement),
+            f"{found.member}: {words}",
+            {flank: zeroed(each, found.file) for flank, each in before.items()},
+            {flank: zeroed(each, later) for flank, each in after.items()},
+            pitches(found),
+            pitches_after(measurement),
             {flank: each.at_reference for flank, each in (after if before.keys() == after.keys() else before).items()},
-        )  # fmt: skip
+        )
         drawn["corrected"] = png(figure)
     return drawn
 
 
-def means(found: Evaluation) -> dict[str, Topography]:
+def means(found: MemberEvaluation) -> dict[str, Topography]:
     """The mean of the teeth measured in full, of each flank that has one."""
     return {flank: figures.mean for flank, figures in found.flanks.items() if figures.mean is not None}
 
 
-def first(found: Evaluation) -> dict[str, Topography]:
+def first(found: MemberEvaluation) -> dict[str, Topography]:
     """The first tooth measured in full."""
     return {flank: figures.topographies[0] for flank, figures in found.flanks.items() if figures.topographies}
 
 
-def pitches(found: Evaluation) -> list[Pitch]:
+def pitches(found: MemberEvaluation) -> list[Pitch]:
     """The pitch of each flank that has one."""
     return [figures.pitch for figures in found.flanks.values() if figures.pitch is not None]
 
 
-def after_correction(measurement: Measurement) -> Mapping[str, Topography]:
+def after_correction(measurement: ReportedMeasurement) -> Mapping[str, Topography]:
     """The flanks as measured again, or else as the correction is expected to leave them."""
     if measurement.again is not None:
         return means(measurement.again)
@@ -112,7 +115,7 @@ def after_correction(measurement: Measurement) -> Mapping[str, Topography]:
     return expected_topographies(measurement.member, measurement.evaluation, measurement.correction)
 
 
-def pitches_after(measurement: Measurement) -> list[Pitch]:
+def pitches_after(measurement: ReportedMeasurement) -> list[Pitch]:
     """Pitch as measured again, or else as corrected indexing is expected to leave it."""
     found, correction = measurement.evaluation, measurement.correction
     if measurement.again is not None:
@@ -122,7 +125,9 @@ def pitches_after(measurement: Measurement) -> list[Pitch]:
     return [_indexed(one, found, measurement.member) for one in pitches(found)]
 
 
-def expected_topographies(member: Member, found: Evaluation, correction: Correction) -> dict[str, Topography]:
+def expected_topographies(
+    member: Member, found: MemberEvaluation, correction: MemberCorrection
+) -> dict[str, Topography]:
     """What the correction is expected to leave of each flank that it was made for, on the grid [mm]."""
     expected = {}
     for group, result in correction.identified.items():
@@ -142,7 +147,7 @@ def expected_topographies(member: Member, found: Evaluation, correction: Correct
     return expected
 
 
-def _indexed(one: Pitch, found: Evaluation, member: Member) -> Pitch:
+def _indexed(one: Pitch, found: MemberEvaluation, member: Member) -> Pitch:
     """The pitch of a flank when every space is turned by the correction of both flanks."""
     turning = one.turning + index_correction(pitches(found))
     points = reference_rows(found.file, member.teeth, one.flank)
@@ -150,6 +155,6 @@ def _indexed(one: Pitch, found: Evaluation, member: Member) -> Pitch:
     return replace(one, turning=turning, cumulative=turning * np.hypot(*points.point[0, :2]))
 
 
-def _teeth(found: Evaluation, flank: str) -> str:
+def _teeth(found: MemberEvaluation, flank: str) -> str:
     teeth = [each.tooth for each in found.flanks[flank].topographies]
     return f"tooth {teeth[0]}" if len(teeth) == 1 else f"mean of {len(teeth)} teeth"

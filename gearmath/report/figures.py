@@ -7,37 +7,42 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearmath.page import Page
-from gearmath.quality.evaluation.member import Evaluation, FlankFigures
+from gearmath.quality.evaluation.member import FlankFigures, MemberEvaluation
 from gearmath.quality.evaluation.tolerance import Verdict, finest_grade, iso17485
 from gearmath.quality.evaluation.topography import ORDERS
 from gearmath.quality.uncertainty.propagation import Uncertain
-from gearmath.report.measurement import Measurement, in_words, micro, taken_out, unsure
+from gearmath.report.measurement import ReportedMeasurement, in_words, micro, taken_out, unsure
 
 #: Figures that have a grade: name in the verdict, that of the figure of a flank, and in words.
 _SPACING = {
-    "f_pt": ("max_f_pt", "f_pt, largest"), "F_p": ("F_p", "F_p"),
+    "f_pt": ("max_f_pt", "f_pt, largest"),
+    "F_p": ("F_p", "F_p"),
     "F_r": ("F_r", "F_r"),
-}  # fmt: skip
+}
 #: Digits of a figure at most: what is surer than a thousandth of a nanometre has no noise.
 _MOST_DIGITS = 6
 
 
-def spacing_section(page: Page, one: Measurement) -> None:
+def spacing_section(page: Page, one: ReportedMeasurement) -> None:
     """Pitch and runout with tolerance and grade beside each value, then thickness."""
     found = one.evaluation
     rows = [
-        [f"{words}, {flank}", *_graded(found.verdict, flank, name, value, one.uncertain(flank, figure)),
-         *_again(one, flank, name)]
+        [
+            f"{words}, {flank}",
+            *_graded(found.verdict, flank, name, value, one.uncertain(flank, figure)),
+            *_again(one, flank, name),
+        ]
         for name, (figure, words) in _SPACING.items()
         for flank, value in _values(found, name)
-    ]  # fmt: skip
+    ]
     if rows:
         caveat = f" {found.verdict.remark}." if found.verdict is not None else ""
         head = ["figure / µm", "value", "95 % interval", "grade", "tolerance"]
         page.table(
             f"Single pitch f_pt, cumulative pitch F_p, runout F_r; tolerance of the grade that was found.{caveat}",
-            [*head, *([] if one.again is None else ["measured again", "grade then"])], rows,
-        )  # fmt: skip
+            [*head, *([] if one.again is None else ["measured again", "grade then"])],
+            rows,
+        )
     if found.runout is not None and np.isfinite(found.runout.of_noise[0]):
         mean, spread = (f"{value * 1000:.1f}" for value in found.runout.of_noise)
         so = ": F_r is mostly noise" if found.runout.mostly_noise else ""
@@ -53,12 +58,14 @@ def spacing_section(page: Page, one: Measurement) -> None:
             "Tooth thickness on the transverse circle through the reference point, radius "
             f"{thickness.radius:.4f} mm, mean of the teeth that have a reading",
             head,
-            [["arc", f"{thickness.arc:.4f}", micro(thickness.mean), *then[0]],
-             ["chord", f"{thickness.chord:.4f}", micro(thickness.mean * thickness.chord_factor), *then[1]]],
-        )  # fmt: skip
+            [
+                ["arc", f"{thickness.arc:.4f}", micro(thickness.mean), *then[0]],
+                ["chord", f"{thickness.chord:.4f}", micro(thickness.mean * thickness.chord_factor), *then[1]],
+            ],
+        )
 
 
-def _values(found: Evaluation, name: str) -> Iterator[tuple[str, float]]:
+def _values(found: MemberEvaluation, name: str) -> Iterator[tuple[str, float]]:
     """Flank and value [mm] of a figure, of each flank that has it; NaN where it is withheld."""
     if name == "F_r":
         if found.runout is not None:
@@ -69,7 +76,7 @@ def _values(found: Evaluation, name: str) -> Iterator[tuple[str, float]]:
             yield flank, figures.pitch.total if name == "F_p" else figures.pitch.largest_single
 
 
-def _again(one: Measurement, flank: str, name: str) -> list[str]:
+def _again(one: ReportedMeasurement, flank: str, name: str) -> list[str]:
     """A figure and its grade as measured again, empty where there is none; no cells without a second measurement."""
     if one.again is None:
         return []
@@ -113,7 +120,7 @@ def _grade_words(grade: int | None) -> str:
     return "beyond 11" if grade is None else str(grade)
 
 
-def flank_section(page: Page, one: Measurement) -> None:
+def flank_section(page: Page, one: ReportedMeasurement) -> None:
     """Size of the deviations and their orders, flank by flank; and again, where it was measured again."""
     if not _with_topography(one.evaluation):
         return
@@ -123,11 +130,11 @@ def flank_section(page: Page, one: Measurement) -> None:
         _flank_table(page, one.again, "Measured again: deviations")
 
 
-def _with_topography(found: Evaluation) -> dict[str, FlankFigures]:
+def _with_topography(found: MemberEvaluation) -> dict[str, FlankFigures]:
     return {flank: each for flank, each in found.flanks.items() if each.mean is not None}
 
 
-def _flank_table(page: Page, found: Evaluation, what: str) -> None:
+def _flank_table(page: Page, found: MemberEvaluation, what: str) -> None:
     flanks = _with_topography(found)
     rows = [
         ["at the reference point", *(micro(each.mean.at_reference) for each in flanks.values() if each.mean)],
@@ -141,8 +148,9 @@ def _flank_table(page: Page, found: Evaluation, what: str) -> None:
     page.table(
         f"{what} of the mean of the teeth measured in full, {taken_out(found)}, but for one row not zeroed at the "
         "reference point: size, mean, first and second order, and what they leave",
-        ["figure / µm", *flanks], rows,
-    )  # fmt: skip
+        ["figure / µm", *flanks],
+        rows,
+    )
 
 
 def _largest(figures: FlankFigures) -> str:
@@ -150,7 +158,7 @@ def _largest(figures: FlankFigures) -> str:
     return "withheld" if withheld or figures.mean is None else micro(figures.mean.extreme)
 
 
-def uncertainty_section(page: Page, one: Measurement) -> None:
+def uncertainty_section(page: Page, one: ReportedMeasurement) -> None:
     """All figures with their uncertainties, but those of single teeth and coefficients."""
     if not one.figures:
         return
@@ -162,11 +170,14 @@ def uncertainty_section(page: Page, one: Measurement) -> None:
     shown = [known for known in one.figures if not known.figure.name.startswith(("f_pt_", "c_"))]
     for flank in dict.fromkeys(known.figure.flank for known in shown):
         rows = [
-            [known.figure.name.replace("_", " ") + ("" if known.method == "GUM" else " *"),
-             *_shown(known),
-             in_words(known.figure.unit)]
-            for known in shown if known.figure.flank == flank
-        ]  # fmt: skip
+            [
+                known.figure.name.replace("_", " ") + ("" if known.method == "GUM" else " *"),
+                *_shown(known),
+                in_words(known.figure.unit),
+            ]
+            for known in shown
+            if known.figure.flank == flank
+        ]
         words = "both flanks" if flank == "both" else f"{flank} flank"
         page.table(f"Values and uncertainties, {words}", ["figure", "value", "u", "from", "to", "unit"], rows)
 
@@ -180,7 +191,7 @@ def _shown(known: Uncertain) -> list[str]:
     return [f"{value:.{digits}f}" for value in values]
 
 
-def clamping_section(page: Page, found: Evaluation) -> None:
+def clamping_section(page: Page, found: MemberEvaluation) -> None:
     """What was taken out of the deviations before they were judged."""
     seat, turn = found.taken_out, found.rotation
     rows = []

@@ -8,20 +8,24 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gearmath.quality.correction.member import Correction
-from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.correction.member import MemberCorrection
+from gearmath.quality.evaluation.member import MemberEvaluation
 from gearmath.quality.uncertainty.propagation import Uncertain
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
 
 #: What people write at the head of a sheet: header key of the file, and its label.
 FIELDS = {
-    "part_number": "Part number", "date": "Date", "operator": "Operator", "machine": "Machine", "probe": "Probe",
-}  # fmt: skip
+    "part_number": "Part number",
+    "date": "Date",
+    "operator": "Operator",
+    "machine": "Machine",
+    "probe": "Probe",
+}
 
 
 @dataclass(frozen=True)
-class Measurement:
+class ReportedMeasurement:
     """One member on the sheet.
 
     ``title`` names the set, ``source`` the file; ``head`` has a text for each of ``FIELDS`` that is known; ``figures``
@@ -33,14 +37,14 @@ class Measurement:
     title: str
     source: str
     member: Member
-    evaluation: Evaluation
-    correction: Correction | None
+    evaluation: MemberEvaluation
+    correction: MemberCorrection | None
     head: Mapping[str, str] = field(default_factory=dict)
     figures: Sequence[Uncertain] = ()
     settings: Sequence[Uncertain] = ()
     caused: Mapping[str, float] = field(default_factory=dict)
     how_sure: str = ""
-    again: Evaluation | None = None
+    again: MemberEvaluation | None = None
     remarks: Sequence[str] = ()
 
     def uncertain(self, flank: str, name: str) -> Uncertain | None:
@@ -62,7 +66,7 @@ def head_of(file: FlankFile, given: Mapping[str, str]) -> dict[str, str]:
     return {key: given.get(key) or said.get(key, "") for key in FIELDS}
 
 
-def counted(found: Evaluation) -> str:
+def counted(found: MemberEvaluation) -> str:
     """How many of the points the figures come from."""
     used = int(np.isfinite(found.file.deviation).sum())
     left_out = "" if used == len(found.file) else f", {len(found.file) - used} left out"
@@ -86,7 +90,7 @@ def unsure(value: float) -> str:
     return "< 0.01" if 0 < value < 5e-6 else micro(value)
 
 
-def taken_out(found: Evaluation) -> str:
+def taken_out(found: MemberEvaluation) -> str:
     """What was taken out of the deviations before they were judged, in words."""
     parts = ["drift"] * bool(found.drifts) + ["clamping"] * (found.taken_out is not None)
     parts += ["the rotation that both flanks have in common"] * (found.rotation is not None)

@@ -11,18 +11,18 @@ from gearmath.bevel.identify.identification import Identification
 from gearmath.bevel.identify.variables import reading
 from gearmath.page import Page
 from gearmath.quality.correction.analysis import Analysis, weak_words
-from gearmath.quality.correction.member import Correction, setting_changes
-from gearmath.report.measurement import Measurement, in_words, micro, taken_out
+from gearmath.quality.correction.member import MemberCorrection, setting_changes
+from gearmath.report.measurement import ReportedMeasurement, in_words, micro, taken_out
 
 
-def settings_sections(page: Page, measurement: Measurement) -> None:
+def settings_sections(page: Page, measurement: ReportedMeasurement) -> None:
     """The settings that change, and what is not corrected, where there is a correction."""
     if measurement.correction is not None:
         _settings_section(page, measurement, measurement.correction)
         _limits_section(page, measurement, measurement.correction)
 
 
-def _settings_section(page: Page, measurement: Measurement, correction: Correction) -> None:
+def _settings_section(page: Page, measurement: ReportedMeasurement, correction: MemberCorrection) -> None:
     page.subheading("Settings, old and new")
     standard = {(one.figure.flank, one.figure.name): one.uncertainty for one in measurement.settings}
     rows = []
@@ -43,7 +43,7 @@ def _sure(u: float) -> str:
     return "" if not math.isfinite(u) else f"{u:.6f}" if u >= 5e-7 or u == 0 else f"{u:.1e}"
 
 
-def _limits_section(page: Page, measurement: Measurement, correction: Correction) -> None:
+def _limits_section(page: Page, measurement: ReportedMeasurement, correction: MemberCorrection) -> None:
     page.subheading("What is not corrected, and why")
     rows = []
     for group, result in correction.identified.items():
@@ -54,8 +54,9 @@ def _limits_section(page: Page, measurement: Measurement, correction: Correction
     page.table(
         f"RMS of the flanks / µm: of the tooth that was corrected, {taken_out(measurement.evaluation)}{turned}, not "
         "zeroed at the reference point",
-        head, rows,
-    )  # fmt: skip
+        head,
+        rows,
+    )
     for group, analysis in correction.analysis.items():
         result = correction.identified[group]
         for sentence in _limits(" and ".join(group), analysis, result, correction, group):
@@ -71,8 +72,8 @@ def _limits_section(page: Page, measurement: Measurement, correction: Correction
 
 
 def _limits(
-    flanks: str, analysis: Analysis, found: Identification, correction: Correction, group: tuple[str, ...]
-) -> Iterator[str]:  # fmt: skip
+    flanks: str, analysis: Analysis, found: Identification, correction: MemberCorrection, group: tuple[str, ...]
+) -> Iterator[str]:
     """Sentences on what holds a correction back."""
     names, reachable, measured = ", ".join(analysis.names), correction.reachable[group], correction.measured_rms(group)
     yield (

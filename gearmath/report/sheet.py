@@ -8,7 +8,7 @@ from gearmath.page import Page
 from gearmath.quality.evaluation.topography import Topography
 from gearmath.report import charts
 from gearmath.report.figures import clamping_section, flank_section, spacing_section, uncertainty_section
-from gearmath.report.measurement import FIELDS, Measurement, Report, counted, in_words
+from gearmath.report.measurement import FIELDS, Report, ReportedMeasurement, counted, in_words
 from gearmath.report.settings import settings_sections
 from gearmath.specs.bevel_set import FLANKS
 
@@ -22,7 +22,9 @@ _ZERO = (
 STEPS = 5
 
 
-def inspection_sheet(members: Sequence[Measurement], progress: Callable[[int], object] = lambda _: None) -> Report:
+def inspection_sheet(
+    members: Sequence[ReportedMeasurement], progress: Callable[[int], object] = lambda _: None
+) -> Report:
     """The sheet of one member, or of both, as a page that holds everything, and pictures once more for other uses."""
     names = [one.evaluation.member for one in members]
     page = Page(f"Inspection sheet: {' and '.join(names)}")
@@ -39,7 +41,7 @@ def inspection_sheet(members: Sequence[Measurement], progress: Callable[[int], o
     return Report(page.html, pictures)
 
 
-def _head(page: Page, members: Sequence[Measurement]) -> None:
+def _head(page: Page, members: Sequence[ReportedMeasurement]) -> None:
     rows = [(label, [one.head.get(key, "") for one in members]) for key, label in FIELDS.items()]
     headers = [one.evaluation.file.header for one in members]
     facts = {
@@ -53,7 +55,7 @@ def _head(page: Page, members: Sequence[Measurement]) -> None:
     page.head([one.evaluation.member for one in members], [*rows, *facts.items()])
 
 
-def _left_out(page: Page, members: Sequence[Measurement]) -> None:
+def _left_out(page: Page, members: Sequence[ReportedMeasurement]) -> None:
     """Before any figure: what they do not contain, and which of them there are not for that."""
     sentences = []
     for one in members:
@@ -75,7 +77,11 @@ def _left_out(page: Page, members: Sequence[Measurement]) -> None:
 
 
 def _member(
-    page: Page, one: Measurement, after: Mapping[str, Topography], new_sheet: bool, progress: Callable[[int], object]
+    page: Page,
+    one: ReportedMeasurement,
+    after: Mapping[str, Topography],
+    new_sheet: bool,
+    progress: Callable[[int], object],
 ) -> None:
     found = one.evaluation
     page.heading(found.member.capitalize(), new_sheet)
@@ -105,7 +111,7 @@ def _member(
     progress(1)
 
 
-def _spacing(page: Page, one: Measurement) -> None:
+def _spacing(page: Page, one: ReportedMeasurement) -> None:
     page.subheading("Pitch, runout, thickness")
     if drawings := charts.pitch_charts(one):
         later = "measured again" if one.again else "expected after the correction"

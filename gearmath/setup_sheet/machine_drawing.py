@@ -21,7 +21,7 @@ _SPINDLE = 40.0
 
 
 @dataclass(frozen=True)
-class Ring:
+class DrawnRing:
     """A part of the tool about its axis, between two heights above the tip, with the radii there [mm]."""
 
     kind: str
@@ -32,9 +32,14 @@ class Ring:
 
 
 def machine_drawing(
-    machine: MillingMachine, profiles: Mapping[str, np.ndarray], tool: Sequence[Ring], tool_length: float, tip: str,
-    x: float, b: float,
-) -> str:  # fmt: skip
+    machine: MillingMachine,
+    profiles: Mapping[str, np.ndarray],
+    tool: Sequence[DrawnRing],
+    tool_length: float,
+    tip: str,
+    x: float,
+    b: float,
+) -> str:
     """As SVG. The spindle stands at X = ``x`` [mm] and at the home of Z, the work at B = ``b`` [rad].
 
     ``profiles`` are points (n,2) of z_w and radius about the work axis; the ``tool`` is ``tool_length`` mm long, to its
@@ -43,8 +48,14 @@ def machine_drawing(
     gauge = machine.home - machine.gauge_line_height
     tips, zero = gauge - tool_length, -machine.gauge_line_height
     outlines = {name: _outline(machine, points, b) for name, points in silhouettes(profiles).items()}
-    around = np.vstack([*outlines.values(), [[x + part.high_radius, tips] for part in tool],
-                        [[x - part.high_radius, tips] for part in tool], [[0.0, zero]]])  # fmt: skip
+    around = np.vstack(
+        [
+            *outlines.values(),
+            [[x + part.high_radius, tips] for part in tool],
+            [[x - part.high_radius, tips] for part in tool],
+            [[0.0, zero]],
+        ]
+    )
     (left, bottom), right, top = around.min(axis=0), around[:, 0].max(), max(gauge + _SPINDLE, zero)
     scale = min((_HEIGHT - 2 * LETTER) / (top - bottom), (WIDTH - _WORDS) / (right - left))
     drawing = Drawing(left, bottom - LETTER / scale, top, scale, (6.0, _ABOVE))
@@ -87,7 +98,7 @@ def _labels(drawing: Drawing, ruler: float, levels: Sequence[tuple[float, str]])
         drawing.words(px + 10, below, text)
 
 
-def _tool(drawing: Drawing, tool: Sequence[Ring], x: float, tips: float, gauge: float) -> None:
+def _tool(drawing: Drawing, tool: Sequence[DrawnRing], x: float, tips: float, gauge: float) -> None:
     """Tool and spindle, upright at X = ``x``."""
     widest = max(part.high_radius for part in tool)
     last = max(tool, key=lambda part: part.high)
@@ -95,13 +106,23 @@ def _tool(drawing: Drawing, tool: Sequence[Ring], x: float, tips: float, gauge: 
     for part in tool:
         low, high = tips + part.low, tips + part.high
         drawing.outline(
-            [(x - part.low_radius, low), (x + part.low_radius, low), (x + part.high_radius, high),
-             (x - part.high_radius, high)], part.kind,
-        )  # fmt: skip
+            [
+                (x - part.low_radius, low),
+                (x + part.low_radius, low),
+                (x + part.high_radius, high),
+                (x - part.high_radius, high),
+            ],
+            part.kind,
+        )
     drawing.outline(
-        [(x - spindle, min(tips + top, gauge)), (x + spindle, min(tips + top, gauge)), (x + spindle, gauge + _SPINDLE),
-         (x - spindle, gauge + _SPINDLE)], "holder",
-    )  # fmt: skip
+        [
+            (x - spindle, min(tips + top, gauge)),
+            (x + spindle, min(tips + top, gauge)),
+            (x + spindle, gauge + _SPINDLE),
+            (x - spindle, gauge + _SPINDLE),
+        ],
+        "holder",
+    )
     drawing.line((x - widest, gauge), (x + widest, gauge))
 
 

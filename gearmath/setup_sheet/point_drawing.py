@@ -40,8 +40,9 @@ def point_drawing(cutter: Cutter) -> str:
         place = px + off * (_STEEL / 2 + 8 if off < 0 else _STEEL / 2 + 46)
         rounded = f"edge {blade.edge_radius:g}" if blade.edge_radius else ""
         name = "inner" if off < 0 else "outer"
-        for k, text in enumerate((name, f"r {blade.point_radius:.4f}", f"{math.degrees(blade.pressure_angle):.3f}°",
-                                  rounded)):  # fmt: skip
+        for k, text in enumerate(
+            (name, f"r {blade.point_radius:.4f}", f"{math.degrees(blade.pressure_angle):.3f}°", rounded)
+        ):
             drawing.words(place, py - 58 + k * (LETTER + 3), text, anchor)
     ax, ay = drawing.at(drawing.left, 0.0)
     drawing.words(ax + 2, ay + 28, "← cutter axis")

@@ -9,7 +9,7 @@ from gearmath.machine.bodies.profiles import work_profiles
 from gearmath.machine.planning.setup_facts import NOT_ON_METAL, PROBING, R_D, VARIABLES, BlankSizes
 from gearmath.machine.planning.targets import APPROACH, APPROACH_FEED, MEASURING_FEED
 from gearmath.page import Page
-from gearmath.setup_sheet.machine_drawing import Ring, machine_drawing
+from gearmath.setup_sheet.machine_drawing import DrawnRing, machine_drawing
 from gearmath.setup_sheet.references import references
 from gearmath.setup_sheet.work_drawing import work_drawing
 from gearmath.specs.bevel_set import Member, design_sha256
@@ -39,45 +39,60 @@ def probing_sheet(job: ProbingJob, program: str) -> str:
     member, machine, probe = job.member, job.machine, job.probe
     page = Page(f"Set-up sheet for probing: {job.name}")
     page.paragraph(job.title)
-    page.head([job.name], [
-        ("Program", [program]),
-        ("Member", [f"{job.name}, {member.teeth} teeth, {member.hand} hand"]),
-        ("Nominal settings", [f"sha256 {design_sha256(member)[:16]}"]),
-        ("Machine", [machine.name]),
-        ("Probe", [probe.name]),
-        ("Made by", [f"gearmath {__version__}"]),
-        ("Set up by, date", [""]),
-    ])  # fmt: skip
+    page.head(
+        [job.name],
+        [
+            ("Program", [program]),
+            ("Member", [f"{job.name}, {member.teeth} teeth, {member.hand} hand"]),
+            ("Nominal settings", [f"sha256 {design_sha256(member)[:16]}"]),
+            ("Machine", [machine.name]),
+            ("Probe", [probe.name]),
+            ("Made by", [f"gearmath {__version__}"]),
+            ("Set up by, date", [""]),
+        ],
+    )
     page.first("Unconfirmed", [f"{text}." for text in (NOT_ON_METAL, VARIABLES, PROBING)])
-    page.first("To be watched", [
-        "A run from the first point on deletes the result file of the run before: fetch it first.",
-        "The back face and the shank of the work are assumed for the check of collisions: see the drawing.",
-    ])  # fmt: skip
+    page.first(
+        "To be watched",
+        [
+            "A run from the first point on deletes the result file of the run before: fetch it first.",
+            "The back face and the shank of the work are assumed for the check of collisions: see the drawing.",
+        ],
+    )
     page.heading("Machine and references")
     page.paragraph(f"{R_D}. Z counts up.")
     profiles, b = work_profiles(member, job.fixture), math.radians(member.blank.root_angle)
     stylus = [
-        Ring("tool", probe.stylus_length, probe.length, 0.5 * job.spindle_radius, 0.5 * job.spindle_radius),
-        Ring("blade", 0.0, probe.stylus_length, probe.tip_radius, probe.tip_radius),
+        DrawnRing("tool", probe.stylus_length, probe.length, 0.5 * job.spindle_radius, 0.5 * job.spindle_radius),
+        DrawnRing("blade", 0.0, probe.stylus_length, probe.tip_radius, probe.tip_radius),
     ]
-    page.drawings([
-        (machine_drawing(machine, profiles, stylus, probe.length, "tip", 0.0, b),
-         f"Machine from the front: X 0, Z at its home, B {member.blank.root_angle:.2f}°; mm"),
-        (work_drawing(BlankSizes.of(member, machine), profiles, job.fixture), "Work on its fixture; mm"),
-    ], tall=True)  # fmt: skip
+    page.drawings(
+        [
+            (
+                machine_drawing(machine, profiles, stylus, probe.length, "tip", 0.0, b),
+                f"Machine from the front: X 0, Z at its home, B {member.blank.root_angle:.2f}°; mm",
+            ),
+            (work_drawing(BlankSizes.of(member, machine), profiles, job.fixture), "Work on its fixture; mm"),
+        ],
+        tall=True,
+    )
     page.heading("Before the start", new_sheet=True)
     references(page, machine, "center of the tip", probe.length, "length of the probe", _MORE)
-    page.table("Probe and touches", ["what", "value", "unit"], [
-        ["effective radius of the tip", f"{probe.tip_radius:.5f}", "mm"],
-        ["offset of the tip in X, Y, Z", ", ".join(f"{value:.5f}" for value in probe.offset), "mm"],
-        ["radius of the stylus", f"{probe.stylus_radius:g}", "mm"],
-        ["free length of the stylus", f"{probe.stylus_length:g}", "mm"],
-        ["touches", str(job.touches), ""],
-        ["a touch starts from the flank at most", f"{APPROACH:g}", "mm"],
-        ["and is searched beyond it for", f"{probe.overtravel:g}", "mm"],
-        ["feed of a touch, of an approach", f"{MEASURING_FEED:g}, {APPROACH_FEED:g}", "mm/min"],
-        ["radius of the fixture, of the spindle", f"{job.fixture.radius:g}, {job.spindle_radius:g}", "mm"],
-    ])  # fmt: skip
+    page.table(
+        "Probe and touches",
+        ["what", "value", "unit"],
+        [
+            ["effective radius of the tip", f"{probe.tip_radius:.5f}", "mm"],
+            ["offset of the tip in X, Y, Z", ", ".join(f"{value:.5f}" for value in probe.offset), "mm"],
+            ["radius of the stylus", f"{probe.stylus_radius:g}", "mm"],
+            ["free length of the stylus", f"{probe.stylus_length:g}", "mm"],
+            ["touches", str(job.touches), ""],
+            ["a touch starts from the flank at most", f"{APPROACH:g}", "mm"],
+            ["and is searched beyond it for", f"{probe.overtravel:g}", "mm"],
+            ["feed of a touch, of an approach", f"{MEASURING_FEED:g}, {APPROACH_FEED:g}", "mm/min"],
+            ["radius of the fixture, of the spindle", f"{job.fixture.radius:g}, {job.spindle_radius:g}", "mm"],
+        ],
+    )
     page.paragraph(
         f"The program was run on the machine model: {job.clearances}. The spindle must stand still, oriented."
     )

@@ -22,19 +22,27 @@ def references(page: Page, machine: MillingMachine, tips: str, length: float, le
     offsets = " ".join(f"{axis}{value:g}" for axis, value in zip(AXES, machine.work_offset_values, strict=True))
     pivot, control = ", ".join(f"{value:g}" for value in machine.pivot_offset), machine.control
     checked = f"by the program: length 1 = {length:g}" if machine.z_reference == "tip" else "by hand: measure the tool"
-    page.table("References", ["what", "value", "unit", "checked"], [
-        ["R_d, gauge_line_height", f"{machine.gauge_line_height:g}", "mm", "by hand, as below"],
-        [length_name, f"{length:g}", "mm", checked],
-        ["home of Z", f"{machine.home:g}", "mm", ""],
-        ["gauge line above the B axis there", f"{above:g}", "mm", "by hand"],
-        [f"{tips} above the B axis there", f"{above - length:g}", "mm", "by hand"],
-        ["pitch apex from the B axis, x y z at A = 0", pivot, "mm", "by hand"],
-        [f"{machine.work_offset} in machine coordinates", offsets, "mm, °", "by the program"],
-        ["increments per mm, per degree", f"{control.increments_per_mm}, {control.increments_per_degree}", "",
-         "by the program, at least"],
-        ["travel of X, Y, Z", ", ".join(_travel(machine, axis) for axis in "XYZ"), "mm", ""],
-        ["travel of A, B", ", ".join(_travel(machine, axis) for axis in "AB"), "°", ""],
-    ])  # fmt: skip
+    page.table(
+        "References",
+        ["what", "value", "unit", "checked"],
+        [
+            ["R_d, gauge_line_height", f"{machine.gauge_line_height:g}", "mm", "by hand, as below"],
+            [length_name, f"{length:g}", "mm", checked],
+            ["home of Z", f"{machine.home:g}", "mm", ""],
+            ["gauge line above the B axis there", f"{above:g}", "mm", "by hand"],
+            [f"{tips} above the B axis there", f"{above - length:g}", "mm", "by hand"],
+            ["pitch apex from the B axis, x y z at A = 0", pivot, "mm", "by hand"],
+            [f"{machine.work_offset} in machine coordinates", offsets, "mm, °", "by the program"],
+            [
+                "increments per mm, per degree",
+                f"{control.increments_per_mm}, {control.increments_per_degree}",
+                "",
+                "by the program, at least",
+            ],
+            ["travel of X, Y, Z", ", ".join(_travel(machine, axis) for axis in "XYZ"), "mm", ""],
+            ["travel of A, B", ", ".join(_travel(machine, axis) for axis in "AB"), "°", ""],
+        ],
+    )
     page.paragraph(
         f"{_Z_MODES[machine.z_reference]} The zero of {machine.work_offset} is on the B axis in X and Y; in Z it is "
         "where the gauge line reads 0. A turns the work clockwise, seen from its back towards the pitch apex. At B = 0 "

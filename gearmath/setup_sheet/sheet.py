@@ -14,7 +14,7 @@ from gearmath.machine.planning.path import Cut
 from gearmath.machine.planning.setup_facts import R_D, SetupFacts
 from gearmath.machine.planning.tooling import Tool
 from gearmath.page import Page
-from gearmath.setup_sheet.machine_drawing import CUTTER_TIP, Ring, machine_drawing
+from gearmath.setup_sheet.machine_drawing import CUTTER_TIP, DrawnRing, machine_drawing
 from gearmath.setup_sheet.point_drawing import point_drawing
 from gearmath.setup_sheet.references import references
 from gearmath.setup_sheet.work_drawing import work_drawing
@@ -32,15 +32,23 @@ def setup_sheet(facts: SetupFacts, program: str, timing: Timing) -> str:
     page = Page(f"Set-up sheet: {plan.name}")
     page.paragraph(plan.title)
     method = (member.process, member.generation, member.cutting)
-    page.head([plan.name], [
-        ("Program", [program]),
-        ("Member", [f"{plan.name}, {member.teeth} teeth, {member.hand} hand, "
-                    + ", ".join(word.replace("_", " ") for word in method)]),
-        ("Settings", [f"sha256 {settings_sha256(member)[:16]}"]),
-        ("Machine", [plan.machine.name]),
-        ("Made by", [f"gearmath {__version__}"]),
-        ("Set up by, date", [""]),
-    ])  # fmt: skip
+    page.head(
+        [plan.name],
+        [
+            ("Program", [program]),
+            (
+                "Member",
+                [
+                    f"{plan.name}, {member.teeth} teeth, {member.hand} hand, "
+                    + ", ".join(word.replace("_", " ") for word in method)
+                ],
+            ),
+            ("Settings", [f"sha256 {settings_sha256(member)[:16]}"]),
+            ("Machine", [plan.machine.name]),
+            ("Made by", [f"gearmath {__version__}"]),
+            ("Set up by, date", [""]),
+        ],
+    )
     if plan.job.dry_run:
         page.first("Dry run", [f"Z is raised by {DRY_LIFT:g} mm, coolant is off: the program cuts air."])
     page.first("Unconfirmed", [f"{text}." for text in facts.unconfirmed])
@@ -76,15 +84,16 @@ def _drawings(facts: SetupFacts) -> Iterator[tuple[str, str]]:
         yield point_drawing(cutter), f"Point of {name}, mm"
 
 
-def _rings(cutter: Cutter, machine: MillingMachine) -> list[Ring]:
+def _rings(cutter: Cutter, machine: MillingMachine) -> list[DrawnRing]:
     """Blades, head and spindle as the collision check has them."""
     outer, head, radius = cutter.bodies[0].outer, machine.cutter_head, head_radius(cutter, machine.cutter_head)
     reach = outer.point_radius + cutter.height * math.tan(outer.pressure_angle)
     top = cutter.height + head.height
     return [
-        Ring("tool", cutter.height, top, radius, radius), Ring("blade", 0.0, cutter.height, outer.point_radius, reach),
-        Ring("holder", top, max(machine.tool_length, top + 1.0), head.spindle_radius, head.spindle_radius),
-    ]  # fmt: skip
+        DrawnRing("tool", cutter.height, top, radius, radius),
+        DrawnRing("blade", 0.0, cutter.height, outer.point_radius, reach),
+        DrawnRing("holder", top, max(machine.tool_length, top + 1.0), head.spindle_radius, head.spindle_radius),
+    ]
 
 
 def _tools(page: Page, facts: SetupFacts) -> None:
@@ -99,9 +108,10 @@ def _tools(page: Page, facts: SetupFacts) -> None:
     columns = [dict(_blade(tool, flank, groups)) for tool, flank in blades]
     keys = list(dict.fromkeys(key for column in columns for key in column))
     page.table(
-        "Cutters; mm and degrees", ["", *(tool.name for tool, _ in blades)],
+        "Cutters; mm and degrees",
+        ["", *(tool.name for tool, _ in blades)],
         [[key, *(column.get(key, "") for column in columns)] for key in keys],
-    )  # fmt: skip
+    )
     if any(tool.point.least is not None for tool in facts.tools):
         page.paragraph(
             "Below its least point width a cutter for one flank may leave a ridge between the two cuts, above the most "
@@ -141,21 +151,25 @@ def _work(page: Page, facts: SetupFacts) -> None:
     sizes, fixture, blank = facts.sizes, facts.plan.machine.fixture, facts.plan.member.blank
     shank = float(work_profiles(facts.plan.member, fixture)["shank"][0, 1])
     page.subheading("Blank and clamping")
-    page.table("To be measured on the blank, and the room that its fixture may take", ["", "", "unit"], [
-        ["outside diameter", f"{sizes.outside_diameter:.3f}", "mm"],
-        ["face angle", f"{sizes.face_angle:.4f}", "°"],
-        ["root angle", f"{sizes.root_angle:.4f}", "°"],
-        ["pitch angle", f"{sizes.pitch_angle:.4f}", "°"],
-        ["face width along the pitch cone", f"{blank.face_width:.3f}", "mm"],
-        ["pitch apex to crown", f"{sizes.to_crown:.3f}", "mm"],
-        ["crossing point to crown", f"{sizes.crossing_to_crown:.3f}", "mm"],
-        ["pitch apex to tip at the toe", f"{sizes.to_front_crown:.3f}", "mm"],
-        ["pitch apex to back face, as checked", f"{sizes.back:.3f}", "mm"],
-        ["radius of the shank behind it", f"{shank:.3f}", "mm"],
-        ["length of the shank", f"{fixture.shank_length:g}", "mm"],
-        ["radius of the fixture behind that", f"{fixture.radius:g}", "mm"],
-        ["length of the fixture", f"{fixture.length:g}", "mm"],
-    ])  # fmt: skip
+    page.table(
+        "To be measured on the blank, and the room that its fixture may take",
+        ["", "", "unit"],
+        [
+            ["outside diameter", f"{sizes.outside_diameter:.3f}", "mm"],
+            ["face angle", f"{sizes.face_angle:.4f}", "°"],
+            ["root angle", f"{sizes.root_angle:.4f}", "°"],
+            ["pitch angle", f"{sizes.pitch_angle:.4f}", "°"],
+            ["face width along the pitch cone", f"{blank.face_width:.3f}", "mm"],
+            ["pitch apex to crown", f"{sizes.to_crown:.3f}", "mm"],
+            ["crossing point to crown", f"{sizes.crossing_to_crown:.3f}", "mm"],
+            ["pitch apex to tip at the toe", f"{sizes.to_front_crown:.3f}", "mm"],
+            ["pitch apex to back face, as checked", f"{sizes.back:.3f}", "mm"],
+            ["radius of the shank behind it", f"{shank:.3f}", "mm"],
+            ["length of the shank", f"{fixture.shank_length:g}", "mm"],
+            ["radius of the fixture behind that", f"{fixture.radius:g}", "mm"],
+            ["length of the fixture", f"{fixture.length:g}", "mm"],
+        ],
+    )
     page.paragraph(
         "All along the axis. Clamp the blank so that its pitch apex is where the references say: the set does not have "
         "the back face, measure from it to the crown."
@@ -166,24 +180,33 @@ def _cut(page: Page, facts: SetupFacts, timing: Timing) -> None:
     plan = facts.plan
     total = timing.feed_seconds + timing.rapid_seconds
     page.subheading("Cut")
-    page.table("Speeds and times", ["", "", "unit"], [
-        ["feed past the tooth, at most", f"{plan.job.feed:g}", "mm/min"],
-        ["spindle", f"{plan.job.spindle_rpm:g}", "1/min"],
-        ["cutting speed at the tips", f"{_cutting_speed(facts):.0f}", "m/min"],
-        ["coolant", "off, dry run" if plan.job.dry_run else "on, M8, from the approach on", ""],
-        ["tooth spaces", f"{len(plan.job.spaces)} of {plan.member.teeth}", ""],
-        *([f"stock left, {stage}", f"{stock:g}", "mm"] for stage, stock, _ in plan.job.stages),
-        ["in feed, with approaches", f"{timing.feed_seconds:.0f}", "s"],
-        ["in rapid motion", f"{timing.rapid_seconds:.0f}", "s"],
-        ["a space, all tools", f"{total / len(plan.job.spaces):.1f}", "s"],
-        ["program, without tool changes", f"{total / 60:.1f}", "min"],
-    ])  # fmt: skip
+    page.table(
+        "Speeds and times",
+        ["", "", "unit"],
+        [
+            ["feed past the tooth, at most", f"{plan.job.feed:g}", "mm/min"],
+            ["spindle", f"{plan.job.spindle_rpm:g}", "1/min"],
+            ["cutting speed at the tips", f"{_cutting_speed(facts):.0f}", "m/min"],
+            ["coolant", "off, dry run" if plan.job.dry_run else "on, M8, from the approach on", ""],
+            ["tooth spaces", f"{len(plan.job.spaces)} of {plan.member.teeth}", ""],
+            *([f"stock left, {stage}", f"{stock:g}", "mm"] for stage, stock, _ in plan.job.stages),
+            ["in feed, with approaches", f"{timing.feed_seconds:.0f}", "s"],
+            ["in rapid motion", f"{timing.rapid_seconds:.0f}", "s"],
+            ["a space, all tools", f"{total / len(plan.job.spaces):.1f}", "s"],
+            ["program, without tool changes", f"{total / 60:.1f}", "min"],
+        ],
+    )
     rows = [
         [load.flank, words, *_bite(bite)]
-        for load in facts.chips for words, bite in (("plunge", load.plunge), ("roll", load.roll)) if bite is not None
-    ]  # fmt: skip
-    page.table("Chip load of a blade, mm: advance to the next blade, chip square to the flank, at most",
-               ["flank", "", "advance", "chip"], rows)  # fmt: skip
+        for load in facts.chips
+        for words, bite in (("plunge", load.plunge), ("roll", load.roll))
+        if bite is not None
+    ]
+    page.table(
+        "Chip load of a blade, mm: advance to the next blade, chip square to the flank, at most",
+        ["flank", "", "advance", "chip"],
+        rows,
+    )
     page.paragraph(_chip_words(facts))
     if len(plan.job.stages) == 1:
         page.paragraph("There is no roughing: every space is cut to its full depth in one go.")
@@ -237,6 +260,8 @@ def _restart(page: Page, facts: SetupFacts) -> None:
         "that are cut, 0 for all; the program shows them, waits for NC start, and sets both to 0 at its end. After a "
         "stop: RESET, R90 = the section that was cut when it stopped, R91 = 0, and start from the beginning."
     )
-    page.table("Sections, and seconds in the cut of each", ["section", "tool", "cuts", "s"], [
-        [one.numbers.split(" ", 1)[1], one.tool, one.span, f"{one.seconds:.1f}"] for one in facts.sections
-    ])  # fmt: skip
+    page.table(
+        "Sections, and seconds in the cut of each",
+        ["section", "tool", "cuts", "s"],
+        [[one.numbers.split(" ", 1)[1], one.tool, one.span, f"{one.seconds:.1f}"] for one in facts.sections],
+    )

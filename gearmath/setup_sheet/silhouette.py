@@ -18,9 +18,12 @@ def silhouettes(profiles: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     band = np.vstack([face, heel[:1], toe[:1]])
     body = np.vstack([toe[::-1], face, heel])
     return {
-        "fixture": _both(profiles["fixture"]), "shank": _both(profiles["shank"]), "body": _both(body), "teeth": band,
+        "fixture": _both(profiles["fixture"]),
+        "shank": _both(profiles["shank"]),
+        "body": _both(body),
+        "teeth": band,
         "lower teeth": band * [1.0, -1.0],
-    }  # fmt: skip
+    }
 
 
 def _both(half: np.ndarray) -> np.ndarray:

@@ -72,9 +72,11 @@ class Drawing:
         sign = np.sign((y2 - y1) if upright else (x2 - x1)) or 1.0
         arrows = []
         for x, y, s in ((x1, y1, sign), (x2, y2, -sign)):
-            wings = [(x - 2.5, y + s * _HEAD), (x + 2.5, y + s * _HEAD)] if upright else [
-                (x + s * _HEAD, y - 2.5), (x + s * _HEAD, y + 2.5)
-            ]  # fmt: skip
+            wings = (
+                [(x - 2.5, y + s * _HEAD), (x + 2.5, y + s * _HEAD)]
+                if upright
+                else [(x + s * _HEAD, y - 2.5), (x + s * _HEAD, y + 2.5)]
+            )
             arrows.append("M{:.2f},{:.2f}L{:.2f},{:.2f}L{:.2f},{:.2f}Z".format(x, y, *wings[0], *wings[1]))
         self._parts.append(
             f'<g class="dimension" data-name="{escape(name)}"><line x1="{x1:.2f}" y1="{y1:.2f}" x2="{x2:.2f}" '

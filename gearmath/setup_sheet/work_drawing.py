@@ -36,9 +36,7 @@ def work_drawing(sizes: BlankSizes, profiles: Mapping[str, np.ndarray], fixture:
     where = min(crown + 0.5 * (right - crown), right)
     drawing.line((crown, outside), (where, outside))
     drawing.line((crown, -outside), (where, -outside))
-    drawing.dimension(
-        "outside diameter", (where, -outside), (where, outside), f"⌀ {sizes.outside_diameter:.3f}"
-    )  # fmt: skip
+    drawing.dimension("outside diameter", (where, -outside), (where, outside), f"⌀ {sizes.outside_diameter:.3f}")
     end = sizes.back + fixture.shank_length + fixture.length
     rows = [
         ("pitch apex to toe tip", front, f"{front:.3f} tip at the toe"),
@@ -53,5 +51,5 @@ def work_drawing(sizes: BlankSizes, profiles: Mapping[str, np.ndarray], fixture:
     drawing.line((0.0, 0.0), (0.0, -high - (25.0 + 24.0 * (len(rows) - 1)) / scale), "2 2")
     drawing.words(
         WIDTH / 2, LETTER + 2, f"face angle {sizes.face_angle:.4f}°, root angle {sizes.root_angle:.4f}°", "middle"
-    )  # fmt: skip
+    )
     return drawing.svg

@@ -35,9 +35,25 @@ from gearmath.specs.toml import load
 
 #: With what a set is made of, which is read from here.
 __all__ = [
-    "ADVANCE", "BEYOND", "CRADLE_PER_WORK", "FLANKS", "MACHINE_SETTINGS", "MEMBERS", "SETTINGS", "SIDES", "BevelSet",
-    "Blank", "Design", "Flank", "Member", "Motion", "Settings", "design_sha256", "load_bevel_set", "settings_sha256",
-]  # fmt: skip
+    "ADVANCE",
+    "BEYOND",
+    "CRADLE_PER_WORK",
+    "FLANKS",
+    "MACHINE_SETTINGS",
+    "MEMBERS",
+    "SETTINGS",
+    "SIDES",
+    "BevelSet",
+    "Blank",
+    "Design",
+    "Flank",
+    "Member",
+    "Motion",
+    "Settings",
+    "design_sha256",
+    "load_bevel_set",
+    "settings_sha256",
+]
 
 MEMBERS = ("pinion", "gear")
 FLANKS = ("concave", "convex")
@@ -245,7 +261,7 @@ def settings_sha256(member: Member) -> str:
     radii = [member.flank(flank).blade_spheric_radius for flank in FLANKS]
     return _digest(
         member, [member.flank(flank).motion for flank in FLANKS], radii, actual, list(member.index_correction)
-    )  # fmt: skip
+    )
 
 
 def _digest(member: Member, motions: list[Motion], radii: list[float | None], *settings: list) -> str:

@@ -17,7 +17,7 @@ TAPERS = ("uniform", "standard", "duplex", "tilted_root_line")
 BACKLASHES = ("outer_normal", "outer_transverse", "mean_normal", "mean_transverse")
 
 
-class Cutter(Sheet):
+class BlankCutter(Sheet):
     """The cutter head: its mean radius, and the blade groups of a face hobbing head."""
 
     process: Literal["face_milling", "face_hobbing"]
@@ -25,7 +25,7 @@ class Cutter(Sheet):
     blade_groups: int | None = Field(default=None, ge=1, le=60)
 
     @model_validator(mode="after")
-    def _consistent(self) -> Cutter:
+    def _consistent(self) -> BlankCutter:
         if (self.process == "face_hobbing") != (self.blade_groups is not None):
             raise ValueError("blade_groups belongs to face_hobbing, which needs it, and to no other process")
         return self
@@ -112,7 +112,7 @@ class BlankData(Sheet):
     mean_spiral_angle: Angle = Field(ge=0, le=50)
     pressure_angle_drive: Angle = Field(ge=10, le=30)
     pressure_angle_coast: Angle = Field(ge=10, le=30)
-    cutter: Cutter
+    cutter: BlankCutter
     taper: Taper
     data_type_1: DataType1 | None = None
     data_type_2: DataType2 | None = None

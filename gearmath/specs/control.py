@@ -20,7 +20,7 @@ def _power_of_ten(value: int) -> int:
 _Increments = Annotated[int, Field(ge=100, le=1_000_000), AfterValidator(_power_of_ten)]
 
 
-class Control(Spec):
+class ControlSettings(Spec):
     """The table ``[control]``; what is left out has the value that a new control has, or a safe one.
 
     Positions are written in whole increments, since the control rounds to them whatever is written.

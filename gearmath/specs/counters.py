@@ -25,9 +25,17 @@ class Counter:
 _FTM = {(16, 17): Counter(1, (6, 6)), (3, 4): Counter(1, (7, 7)), (32, 25): Counter(2, (6, 6))}
 #: Pin -> multiplexer, input of XBAR1, daisy, from the pin tables of the IMXRT1062 and the Teensy 4.0 and 4.1.
 _CROSSBAR = {
-    0: (1, 17, 1), 2: (3, 6, 0), 3: (3, 7, 0), 4: (3, 8, 0), 5: (3, 17, 0), 7: (1, 15, 1), 8: (1, 14, 1),
-    30: (1, 23, 0), 31: (1, 22, 0), 33: (3, 9, 0),
-}  # fmt: skip
+    0: (1, 17, 1),
+    2: (3, 6, 0),
+    3: (3, 7, 0),
+    4: (3, 8, 0),
+    5: (3, 17, 0),
+    7: (1, 15, 1),
+    8: (1, 14, 1),
+    30: (1, 23, 0),
+    31: (1, 22, 0),
+    33: (3, 9, 0),
+}
 #: Pins of the hob encoder at a counter where the machine file names none.
 DEFAULT_PINS = {"teensy32": (16, 17), "teensy40": (5, 7), "teensy41": (5, 7)}
 

@@ -20,9 +20,15 @@ from gearmath.specs.toml import checked, load
 #: Depth factor, and the two constants of the addendum factor, by the teeth of the pinion; 12 stands for all above. The
 #: last is ISO 23509's, the others are shallower and give the pinion more of the depth, so that it is not undercut.
 _SMALL_PINIONS = {
-    5: (1.70, 0.115, 0.080), 6: (1.765, 0.130, 0.115), 7: (1.835, 0.145, 0.160), 8: (1.895, 0.160, 0.195),
-    9: (1.940, 0.170, 0.235), 10: (1.975, 0.185, 0.260), 11: (1.995, 0.210, 0.280), 12: (2.0, 0.210, 0.290),
-}  # fmt: skip
+    5: (1.70, 0.115, 0.080),
+    6: (1.765, 0.130, 0.115),
+    7: (1.835, 0.145, 0.160),
+    8: (1.895, 0.160, 0.195),
+    9: (1.940, 0.170, 0.235),
+    10: (1.975, 0.185, 0.260),
+    11: (1.995, 0.210, 0.280),
+    12: (2.0, 0.210, 0.290),
+}
 #: A Formate gear has straight flanks, which reach deeper into the pinion: its addendum is so much of the other one.
 _FORMATE = 0.8
 _CLEARANCE_FACTOR = 0.125
@@ -71,7 +77,7 @@ class GearMethod(Sheet):
     blade_edge_radius: Length | None = Field(default=None, ge=0, le=10)
 
 
-class Contact(Sheet):
+class ContactRequest(Sheet):
     """What is asked of the contact of one side.
 
     ``transmission_error`` is that half a pitch from the vertex [arcsec], ``path_angle`` the direction of the path on
@@ -87,7 +93,7 @@ class Contact(Sheet):
     position: tuple[float, float] | None = Field(default=None, strict=False)
 
     @model_validator(mode="after")
-    def _inside(self) -> Contact:
+    def _inside(self) -> ContactRequest:
         if self.position is not None and any(not 0.1 <= part <= 0.9 for part in self.position):
             raise ValueError("position must lie between 0.1 and 0.9, from toe to heel and from root to tip")
         return self
@@ -128,8 +134,8 @@ class DesignData(Sheet):
     backlash: Backlash | None = None
     pinion: PinionMethod = PinionMethod()
     gear: GearMethod = GearMethod()
-    drive: Contact = Contact()
-    coast: Contact = Contact()
+    drive: ContactRequest = ContactRequest()
+    coast: ContactRequest = ContactRequest()
     shop: Shop = Shop()
 
     @classmethod
@@ -148,7 +154,7 @@ class DesignData(Sheet):
             raise ValueError("exactly one of wheel_outer_pitch_diameter and outer_transverse_module must be given")
         return self
 
-    def contact(self, side: str) -> Contact:
+    def contact(self, side: str) -> ContactRequest:
         """What is asked of a side, ``drive`` or ``coast``."""
         return self.drive if side == "drive" else self.coast
 
@@ -165,10 +171,13 @@ class DesignData(Sheet):
         """Pitch angles of pinion and gear [rad]."""
         wheel = kernel("pitch_cones")
         given = {
-            "shaft_angle": math.radians(self.shaft_angle), "pinion_teeth": self.pinion_teeth,
-            "wheel_teeth": self.wheel_teeth, "wheel_outer_pitch_diameter": self.module * self.wheel_teeth,
-            "face_width": self.face_width, "mean_spiral_angle": math.radians(self.mean_spiral_angle),
-        }  # fmt: skip
+            "shaft_angle": math.radians(self.shaft_angle),
+            "pinion_teeth": self.pinion_teeth,
+            "wheel_teeth": self.wheel_teeth,
+            "wheel_outer_pitch_diameter": self.module * self.wheel_teeth,
+            "face_width": self.face_width,
+            "mean_spiral_angle": math.radians(self.mean_spiral_angle),
+        }
         found = dict(
             zip([one.name for one in wheel.outputs], wheel(*(given[one.name] for one in wheel.inputs)), strict=True)
         )
@@ -178,10 +187,22 @@ class DesignData(Sheet):
         """The data of the blank with a cutter, completed by values to start from."""
         hobbed = self.cutter.process == "face_hobbing"
         keys = (
-            "title", "source", "shaft_angle", "pinion_teeth", "wheel_teeth", "wheel_outer_pitch_diameter",
-            "outer_transverse_module", "face_width", "mean_spiral_angle", "pressure_angle_drive",
-            "pressure_angle_coast", "taper", "data_type_1", "data_type_2", "backlash",
-        )  # fmt: skip
+            "title",
+            "source",
+            "shaft_angle",
+            "pinion_teeth",
+            "wheel_teeth",
+            "wheel_outer_pitch_diameter",
+            "outer_transverse_module",
+            "face_width",
+            "mean_spiral_angle",
+            "pressure_angle_drive",
+            "pressure_angle_coast",
+            "taper",
+            "data_type_1",
+            "data_type_2",
+            "backlash",
+        )
         values = self.model_dump(include=set(keys), exclude_none=True)
         values["cutter"] = {
             **self.cutter.model_dump(include={"process", "blade_groups"}),
@@ -199,10 +220,11 @@ class DesignData(Sheet):
             self.wheel_teeth / self.pinion_teeth, self.pinion_teeth, *self.pitch_angles, constant, share
         )
         return {
-            "tooth_depth_factor": depth, "clearance_factor": _CLEARANCE_FACTOR,
+            "tooth_depth_factor": depth,
+            "clearance_factor": _CLEARANCE_FACTOR,
             "mean_addendum_factor": float(addendum) * (_FORMATE if self.gear.generation == "formate" else 1.0),
             "thickness_factor": float(thickness),
-        }  # fmt: skip
+        }
 
 
 def load_design(path: Path) -> DesignData:

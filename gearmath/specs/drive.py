@@ -98,9 +98,11 @@ class Drive(Spec):
         return self.pulses_per_turn * self.belt
 
     def _words(self) -> str:
-        motor = f"{self.full_steps} full steps x {self.microsteps} microsteps" if self.pulses is None else (
-            f"{self.pulses} pulses"
-        )  # fmt: skip
+        motor = (
+            f"{self.full_steps} full steps x {self.microsteps} microsteps"
+            if self.pulses is None
+            else (f"{self.pulses} pulses")
+        )
         return f"{motor} x belt {self.belt}"
 
     @model_validator(mode="after")

@@ -21,9 +21,17 @@ from gearmath.specs.margins import OWN, PATTERN
 COLUMNS = ("member", "flank", "tooth", "row", "col", "x", "y", "z", "nx", "ny", "nz", "deviation_um", "u_um")
 #: Header keys of the contract that every file carries, in this order.
 HEADER = (
-    "member", "member_teeth", "frame", "unit", "grid", "margins", "reference_point", "phase_zeroed", "tip_radius_mm",
+    "member",
+    "member_teeth",
+    "frame",
+    "unit",
+    "grid",
+    "margins",
+    "reference_point",
+    "phase_zeroed",
+    "tip_radius_mm",
     "settings_sha256",
-)  # fmt: skip
+)
 
 #: ``phase_zeroed`` of a file without the rotation of the work that both flanks had in common. Elsewhere it is false, or
 #: true where the deviation at the reference point of each flank was set to zero by turning, so that thickness is lost.
@@ -108,15 +116,30 @@ def join(files: Sequence[FlankFile]) -> FlankFile:
 
 
 def flank_file(
-    header: dict[str, str], member: str, flank: str, tooth: int, row: np.ndarray, col: np.ndarray,
-    point: np.ndarray, normal: np.ndarray, deviation: np.ndarray | None = None,
-) -> FlankFile:  # fmt: skip
+    header: dict[str, str],
+    member: str,
+    flank: str,
+    tooth: int,
+    row: np.ndarray,
+    col: np.ndarray,
+    point: np.ndarray,
+    normal: np.ndarray,
+    deviation: np.ndarray | None = None,
+) -> FlankFile:
     """A file of n points of one flank of one tooth; a nominal one where ``deviation`` is None."""
     n, silent = len(point), np.full(len(point), np.nan)
     return FlankFile(
-        header, member, np.full(n, flank), np.full(n, tooth), row, col, point, normal,
-        silent if deviation is None else deviation, silent,
-    )  # fmt: skip
+        header,
+        member,
+        np.full(n, flank),
+        np.full(n, tooth),
+        row,
+        col,
+        point,
+        normal,
+        silent if deviation is None else deviation,
+        silent,
+    )
 
 
 def write_flank_csv(path: Path, file: FlankFile) -> None:

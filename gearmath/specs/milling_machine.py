@@ -12,7 +12,7 @@ import tomlkit
 from pydantic import AfterValidator, Field, model_validator
 
 from gearmath.files import read_text, write_text
-from gearmath.specs.control import Control
+from gearmath.specs.control import ControlSettings
 from gearmath.specs.obstacles import CutterHead, Fixture
 from gearmath.specs.toml import Spec, load, parse
 
@@ -107,7 +107,7 @@ class MillingMachine(Spec):
     cutter_direction: Literal["M3", "M4"] = "M3"
     spindle_speed_rpm: _Speeds
     axes: Axes
-    control: Control = Control()
+    control: ControlSettings = ControlSettings()
     cutter_head: CutterHead = CutterHead()
     fixture: Fixture = Fixture()
 
@@ -176,11 +176,13 @@ class MillingMachine(Spec):
             return AxisLimits(AXES, UNITS, UNITS_PER_INTERNAL, self.travel, self.max_speed, self.max_acceleration)
         degree = UNITS_PER_INTERNAL[-1]
         return AxisLimits(
-            AXES + CUTTER_AXIS, (*UNITS, UNITS[-1]), np.append(UNITS_PER_INTERNAL, degree),
+            AXES + CUTTER_AXIS,
+            (*UNITS, UNITS[-1]),
+            np.append(UNITS_PER_INTERNAL, degree),
             np.vstack([self.travel, np.array(cutter.travel or (-np.inf, np.inf)) / degree]),
             np.append(self.max_speed, cutter.max_speed_per_min / degree / 60.0),
             np.append(self.max_acceleration, cutter.max_acceleration / degree),
-        )  # fmt: skip
+        )
 
     @property
     def _all(self) -> tuple[TravelAxis, TravelAxis, TravelAxis, TurningAxis, TravelAxis]:

@@ -42,7 +42,7 @@ _SENTENCES = {
     **dict.fromkeys(("bool_type", "bool_parsing"), _TRUTH),
     **dict.fromkeys(("model_type", "model_attributes_type", "dict_type", "mapping_type"), _TABLE),
     **dict.fromkeys(("tuple_type", "list_type", "iterable_type", "set_type"), _LIST),
-}  # fmt: skip
+}
 _OTHERWISE = "is no value that this key can have"
 
 

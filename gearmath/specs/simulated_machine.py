@@ -35,9 +35,12 @@ class SettingErrors(Spec):
     def vector(self) -> np.ndarray:
         """The errors as the vector of ``notation.settings`` (12,), mm and rad; the blades have none."""
         values = {name: getattr(self, name) for name in MACHINE_SETTINGS}
-        return np.array([
-            math.radians(values.get(name, 0.0)) if _UNITS[name] == "rad" else values.get(name, 0.0) for name in SETTINGS
-        ])  # fmt: skip
+        return np.array(
+            [
+                math.radians(values.get(name, 0.0)) if _UNITS[name] == "rad" else values.get(name, 0.0)
+                for name in SETTINGS
+            ]
+        )
 
 
 class WorkAxis(Spec):
@@ -113,7 +116,7 @@ class Drift(Spec):
         return np.array([self.X_um, self.Y_um, self.Z_um]) / 1000
 
 
-class Measuring(Spec):
+class SimulatedMeasuring(Spec):
     """The clamping in which a finished member is measured, and how the measuring machine drifts during a run."""
 
     pinion: Mounting = Mounting()
@@ -148,7 +151,7 @@ class SimulatedMachine(Spec):
     work_axis: WorkAxis = WorkAxis()
     axes: AxisErrors = AxisErrors()
     mounting: Mounting = Mounting()
-    measuring: Measuring = Measuring()
+    measuring: SimulatedMeasuring = SimulatedMeasuring()
     cutter_head: CutterHead | None = None
     fixture: Fixture | None = None
     """Where they are given, they stand for those of the machine file."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gearmath.engine.kernel import Kernel
-from gearmath.engine.run import Runner
+from gearmath.engine.run import KernelRunner
 
 
 @pytest.fixture(scope="session")
@@ -26,7 +26,7 @@ def by_vm() -> Callable[[Kernel], Callable[..., list[np.ndarray]]]:
                 )
                 for a, q, is_many in zip(arrays, kernel.inputs, many, strict=True)
             ]
-            found = Runner(kernel.function, many).interpreted(flats, n)
+            found = KernelRunner(kernel.function, many).interpreted(flats, n)
             return [a if q.shape else a.reshape(n) for a, q in zip(found, kernel.outputs, strict=True)]
 
         return run

@@ -145,12 +145,15 @@ def test_a_design_target_against_scipy(benchmark, host_compiler) -> None:
 
     def theirs() -> np.ndarray:
         return least_squares(
-            lambda v: there(v)[0], np.zeros(len(low)), lambda v: there(v)[1], bounds=(low, high), x_scale="jac",
+            lambda v: there(v)[0],
+            np.zeros(len(low)),
+            lambda v: there(v)[1],
+            bounds=(low, high),
+            x_scale="jac",
             max_nfev=200,
-        ).fun  # fmt: skip
+        ).fun
 
-    ours = min(timeit.repeat(lambda: identify([target], names, root_limit=0.025, bounds="design"),
-                             number=1, repeat=10))  # fmt: skip
+    ours = min(timeit.repeat(lambda: identify([target], names, root_limit=0.025, bounds="design"), number=1, repeat=10))
     begin = time.perf_counter()
     left = np.sqrt(np.mean(theirs()[:45] ** 2))
     scipy = time.perf_counter() - begin

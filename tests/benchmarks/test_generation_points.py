@@ -86,7 +86,8 @@ def test_points_per_second_of_a_million_compiled_against_the_vm_and_fsolve(bench
         benchmark.extra_info[f"points_per_second_{name}"] = round(rate)
     top = rates["milled_1000000"]
     print(
-        "\ngeneration points per s: " + ", ".join(f"{name} {rate:.3g}" for name, rate in rates.items())
+        "\ngeneration points per s: "
+        + ", ".join(f"{name} {rate:.3g}" for name, rate in rates.items())
         + f"; compiled / VM {top / rates['vm']:.1f}, / fsolve {top / rates['fsolve']:.0f}, "
         f"milled / hobbed {top / rates['hobbed_1000000']:.2f}"
-    )  # fmt: skip
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import load_milling_machine
@@ -16,7 +16,7 @@ def test_program_of_all_36_teeth(benchmark) -> None:
     gear_set = load_bevel_set(bundled("nasa_tp3096_12x36.toml"))
     machine = load_milling_machine(bundled("vertical_5axis.toml"))
     cutting_program(gear_set, "gear", machine, "GEAR")  # derives and lowers, once per process
-    text = benchmark(cutting_program, gear_set, "gear", machine, "GEAR", Job(range(36)))
+    text = benchmark(cutting_program, gear_set, "gear", machine, "GEAR", CuttingJob(range(36)))
     assert text.count("; section") == 36
     if benchmark.stats is not None:  # not with --benchmark-disable
         benchmark.extra_info["blocks"] = text.count("G93")

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from gearmath.control.interface import RunStart, Touch
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS
 
 POINTS = 1000
@@ -20,7 +20,9 @@ TOUCH = Touch(1, 101.23456789, -12.3456789, 150.00012345, 12.0, 45.0, 1.0)
 @pytest.fixture
 def commit(tmp_path: Path) -> Callable[[], None]:
     points = dict.fromkeys(range(1, POINTS + 1), ("sphere",))
-    run = Store.open(tmp_path / "runs.db").begin_run(RunStart("bench", "P.MPF", b"M30", CALIBRATION_COLUMNS, points))
+    run = MeasurementStore.open(tmp_path / "runs.db").begin_run(
+        RunStart("bench", "P.MPF", b"M30", CALIBRATION_COLUMNS, points)
+    )
     numbers = count(1)
     return lambda: run.commit_touch(next(numbers), TOUCH)
 

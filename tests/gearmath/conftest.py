@@ -19,7 +19,7 @@ import pytest
 from gearmath import cli
 from gearmath.machine.control.executor import MachinePath, execute
 from gearmath.machine.milling.mill import mill_member
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.path import DEFAULT_TOLERANCE
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, BevelSet, Design, Member, Settings, load_bevel_set
@@ -53,9 +53,13 @@ def shop() -> SimulatedMachine:
 def witness() -> SimpleNamespace:
     """Cradle machine, vertical machine, cone and envelope in NumPy."""
     return SimpleNamespace(
-        pose=_pose, surface=_surface, vertical_axes=_vertical_axes, vertical_pose=_vertical_pose, entry=_entry,
+        pose=_pose,
+        surface=_surface,
+        vertical_axes=_vertical_axes,
+        vertical_pose=_vertical_pose,
+        entry=_entry,
         left_by_cradle=_left_by_cradle,
-    )  # fmt: skip
+    )
 
 
 @pytest.fixture(scope="session")
@@ -65,7 +69,9 @@ def program(vertical: MillingMachine) -> Callable[..., MachinePath]:
     def run(
         gear_set: BevelSet, member: str, spaces: Iterable[int] = (0,), tolerance: float = DEFAULT_TOLERANCE
     ) -> MachinePath:
-        return execute(cutting_program(gear_set, member, vertical, "PART", Job(tuple(spaces), tolerance)), "PART.MPF")
+        return execute(
+            cutting_program(gear_set, member, vertical, "PART", CuttingJob(tuple(spaces), tolerance)), "PART.MPF"
+        )
 
     return run
 
@@ -75,9 +81,12 @@ def mill(program: Callable[..., MachinePath], vertical: MillingMachine) -> Calla
     """``mill(gear_set, member, spaces, errors, tolerance)``: what that program leaves on the flanks."""
 
     def run(
-        gear_set: BevelSet, member: str, spaces: Iterable[int] = (0,), errors: SimulatedMachine | None = None,
+        gear_set: BevelSet,
+        member: str,
+        spaces: Iterable[int] = (0,),
+        errors: SimulatedMachine | None = None,
         tolerance: float = DEFAULT_TOLERANCE,
-    ) -> FlankFile:  # fmt: skip
+    ) -> FlankFile:
         path = program(gear_set, member, spaces, tolerance)
         return mill_member(path, gear_set.member(member), member, vertical, errors)
 
@@ -208,9 +217,14 @@ def _vertical_pose(axes: np.ndarray, pivot: float) -> tuple[np.ndarray, np.ndarr
     """Cutter centre and axis in the work out of X, Y, Z, A, B, from p_m = M(B) Rz(-A) p_w."""
     X, Y, Z, A, B = np.moveaxis(axes, -1, 0)
     zero = np.zeros_like(B)
-    columns = [np.stack(c, axis=-1) for c in (
-        (-np.sin(B), zero, np.cos(B)), (zero, zero + 1, zero), (-np.cos(B), zero, -np.sin(B)),
-    )]  # fmt: skip
+    columns = [
+        np.stack(c, axis=-1)
+        for c in (
+            (-np.sin(B), zero, np.cos(B)),
+            (zero, zero + 1, zero),
+            (-np.cos(B), zero, -np.sin(B)),
+        )
+    ]
     centre, down = np.stack([X, Y, Z - pivot], axis=-1), np.stack([zero, zero, zero - 1], axis=-1)
     return tuple(  # type: ignore[return-value]
         _turn(np.stack([_dot(v, column) for column in columns], axis=-1), np.broadcast_to(K, v.shape), A)
@@ -267,9 +281,17 @@ def _left_by_cradle(
 
 ANGULAR = ("cradle_angle", "cutter_tilt", "cutter_swivel", "machine_root_angle", "work_rotation_offset")
 MACHINE = (
-    "radial_distance", "cradle_angle", "cutter_tilt", "cutter_swivel", "blank_offset", "sliding_base",
-    "machine_center_to_crossing_point", "machine_root_angle", "ratio_of_roll", "work_rotation_offset",
-)  # fmt: skip
+    "radial_distance",
+    "cradle_angle",
+    "cutter_tilt",
+    "cutter_swivel",
+    "blank_offset",
+    "sliding_base",
+    "machine_center_to_crossing_point",
+    "machine_root_angle",
+    "ratio_of_roll",
+    "work_rotation_offset",
+)
 #: What changes its sign in the mirror, cradle rotation and cutter angle besides.
 ODD = ("cradle_angle", "cutter_swivel", "blank_offset", "work_rotation_offset")
 
@@ -329,9 +351,7 @@ class Blade:
             reversed_ = row * (-1.0) ** np.arange(len(row)) * (-1 if name in ODD else 1)
             moving[name] = reversed_ + (np.pi * (np.arange(len(row)) == 0) if name == "cutter_swivel" else 0)
         roll = tuple(value * (-1) ** (k + 1) for k, value in enumerate(self.roll))
-        return Blade(
-            moving, roll, self.point_radius, self.alpha, -self.offset, self.side, self.index, self.arc
-        )  # fmt: skip
+        return Blade(moving, roll, self.point_radius, self.alpha, -self.offset, self.side, self.index, self.arc)
 
 
 def _about(axis: str, angle: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -350,9 +370,14 @@ def blade_of(member: Member, flank: str) -> Blade:
         moving[name] = np.radians(row) if name in ANGULAR else row
     index = member.indexing_sign * member.blade_groups / member.teeth if member.blade_groups else 0.0
     return Blade(
-        moving, spec.motion.modified_roll, spec.blade_point_radius, np.radians(spec.blade_pressure_angle),
-        np.radians(spec.blade_offset_angle), SIDES[flank], index,
-    )  # fmt: skip
+        moving,
+        spec.motion.modified_roll,
+        spec.blade_point_radius,
+        np.radians(spec.blade_pressure_angle),
+        np.radians(spec.blade_offset_angle),
+        SIDES[flank],
+        index,
+    )
 
 
 def on_lines(

@@ -18,10 +18,24 @@ from tests.arrows import arrows_of, circles
 
 ROOT = Path(__file__).parents[2]
 TOP_LEVEL = {
-    ".ci", ".editorconfig", ".github", ".gitignore", ".pre-commit-config.yaml", "CHANGELOG.md", "CITATION.cff",
-    "CONTRIBUTING.md", "LICENSE", "Makefile", "README.md", "derivations", "docs", "gearmath", "notebooks",
-    "pyproject.toml", "tests",
-}  # fmt: skip
+    ".ci",
+    ".editorconfig",
+    ".github",
+    ".gitignore",
+    ".pre-commit-config.yaml",
+    "CHANGELOG.md",
+    "CITATION.cff",
+    "CONTRIBUTING.md",
+    "LICENSE",
+    "Makefile",
+    "README.md",
+    "derivations",
+    "docs",
+    "gearmath",
+    "notebooks",
+    "pyproject.toml",
+    "tests",
+}
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 
 

@@ -192,16 +192,32 @@ def truth(condition: sp.Basic) -> sp.Piecewise:
 
 
 ONE_OF_EACH_RULE = {
-    sp.Add: x + y + sp.Rational(1, 3), sp.Mul: -2 * x * y / 3, sp.sin: sp.sin(x), sp.cos: sp.cos(x), sp.tan: sp.tan(x),
-    sp.asin: sp.asin(x), sp.acos: sp.acos(x), sp.atan: sp.atan(x), sp.atan2: sp.atan2(x - y, y - sp.Rational(1, 2)),
-    sp.exp: sp.exp(x), sp.log: sp.log(x), sp.Abs: sp.Abs(x - y), sp.sign: sp.sign(x - y), sp.floor: sp.floor(9 * x),
-    sp.Max: sp.Max(x, y, sp.Rational(1, 2)), sp.Min: sp.Min(x, y, sp.Rational(1, 2)),
-    sp.StrictGreaterThan: truth(x > y), sp.GreaterThan: truth(x >= y),
-    sp.StrictLessThan: truth(x < y), sp.LessThan: truth(x <= y),
-    sp.Equality: truth(sp.Eq(x, y)), sp.Unequality: truth(sp.Ne(x, y)),
-    sp.And: truth((x > y) & (x > sp.Rational(1, 2))), sp.Or: truth((x > y) | (x > sp.Rational(1, 2))),
+    sp.Add: x + y + sp.Rational(1, 3),
+    sp.Mul: -2 * x * y / 3,
+    sp.sin: sp.sin(x),
+    sp.cos: sp.cos(x),
+    sp.tan: sp.tan(x),
+    sp.asin: sp.asin(x),
+    sp.acos: sp.acos(x),
+    sp.atan: sp.atan(x),
+    sp.atan2: sp.atan2(x - y, y - sp.Rational(1, 2)),
+    sp.exp: sp.exp(x),
+    sp.log: sp.log(x),
+    sp.Abs: sp.Abs(x - y),
+    sp.sign: sp.sign(x - y),
+    sp.floor: sp.floor(9 * x),
+    sp.Max: sp.Max(x, y, sp.Rational(1, 2)),
+    sp.Min: sp.Min(x, y, sp.Rational(1, 2)),
+    sp.StrictGreaterThan: truth(x > y),
+    sp.GreaterThan: truth(x >= y),
+    sp.StrictLessThan: truth(x < y),
+    sp.LessThan: truth(x <= y),
+    sp.Equality: truth(sp.Eq(x, y)),
+    sp.Unequality: truth(sp.Ne(x, y)),
+    sp.And: truth((x > y) & (x > sp.Rational(1, 2))),
+    sp.Or: truth((x > y) | (x > sp.Rational(1, 2))),
     sp.Not: truth(sp.Not((x > y) & (x > sp.Rational(1, 2)), evaluate=False)),
-}  # fmt: skip
+}
 
 
 def test_every_rule_of_the_table_is_tried() -> None:
@@ -212,12 +228,21 @@ def test_every_rule_of_the_table_is_tried() -> None:
     "value",
     [
         *ONE_OF_EACH_RULE.values(),
-        sp.sqrt(x), 1 / sp.sqrt(x), x**3, x**-2, x ** sp.Rational(3, 2), x**y, x / (y * (1 + x)), -x, sp.pi * x + sp.E,
-        sp.Piecewise((x, x > y), (y, x > y / 2), (x * y, True)), sp.Float("0.1", 30) * x,
+        sp.sqrt(x),
+        1 / sp.sqrt(x),
+        x**3,
+        x**-2,
+        x ** sp.Rational(3, 2),
+        x**y,
+        x / (y * (1 + x)),
+        -x,
+        sp.pi * x + sp.E,
+        sp.Piecewise((x, x > y), (y, x > y / 2), (x * y, True)),
+        sp.Float("0.1", 30) * x,
         sp.Piecewise((x, sp.Eq(x, y)), (y + 1, True)),
     ],
     ids=str,
-)  # fmt: skip
+)
 def test_rule_equals_sympy(value: sp.Basic) -> None:
     expression = of_two(value)
     some: list[Point] = [*points(expression, inside, 50, "rule"), [[0.5], [0.5]]]

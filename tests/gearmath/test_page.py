@@ -57,9 +57,20 @@ def test_free_text_is_shown_and_never_becomes_markup(page):
     seen = Seen(page.html)
     assert seen.open == []
     words = (
-        "title", "heading", "paragraph", "caption", "head", "cell", "subheading", "frame", "sentence", "column",
-        "label", "value", "drawing",
-    )  # fmt: skip
+        "title",
+        "heading",
+        "paragraph",
+        "caption",
+        "head",
+        "cell",
+        "subheading",
+        "frame",
+        "sentence",
+        "column",
+        "label",
+        "value",
+        "drawing",
+    )
     for what in words:
         assert f"{what} {NASTY}" in seen.text
     frame = {"html", "head", "meta", "title", "style", "body", "div"}

@@ -64,8 +64,12 @@ def leads_over_a_pitch(run: Mesh) -> Leads:
     def flat(index: int, low: float, high: float) -> float:
         """The lead of one runner where its slope is zero, NaN where that is nowhere."""
         thread, k = runners[index]
-        found = zero(lambda at: thread.at(system, at), lambda touch: float(touch.tangent[6]) + system.ratio,
-                     low - k * pitch, high - k * pitch)  # fmt: skip
+        found = zero(
+            lambda at: thread.at(system, at),
+            lambda touch: float(touch.tangent[6]) + system.ratio,
+            low - k * pitch,
+            high - k * pitch,
+        )
         return math.nan if found is None else run.lead(found)
 
     extremes = []

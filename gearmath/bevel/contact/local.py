@@ -9,7 +9,7 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.contact.system import System, Touch
+from gearmath.bevel.contact.system import System, TouchPoint
 from gearmath.engine.points import Points
 from gearmath.kernels import kernel
 
@@ -18,7 +18,7 @@ MARKING = 0.00635
 
 
 @dataclass(frozen=True)
-class Local:
+class LocalContact:
     """Quantities of chapter 26 at a contact within both flanks.
 
     ``second_derivative`` of φ_2 by φ_1 [rad/rad²], half axes (major, minor) [mm] of the ellipse, and directions on the
@@ -71,7 +71,7 @@ def roll(system: System) -> Points:
     return Points(ca.Function("local", [x, rotation, assembly], [ca.densify(one) for one in outputs]), shared=(2,))
 
 
-def local(system: System, touch: Touch, assembly: np.ndarray, separation: float = MARKING) -> Local:
+def local(system: System, touch: TouchPoint, assembly: np.ndarray, separation: float = MARKING) -> LocalContact:
     """Curvature and motion at a contact within both flanks, its ellipse at a ``separation`` [mm]."""
     *found, seen = roll(system).at(touch.x, touch.rotation, assembly)
     w, beta, D, lever, sliding = (one.ravel() for one in found)
@@ -80,10 +80,16 @@ def local(system: System, touch: Touch, assembly: np.ndarray, separation: float 
     on_gear = velocity + sliding
     values, vectors = np.linalg.eigh(np.array([[D[0], D[1]], [D[1], D[2]]]))
     flat = vectors[:, 0]
-    return Local(
-        float(second), (float(axes[0]), float(axes[1])), _line(on_gear), _line(flat), bool(values[0] > 0), D,
-        float(np.linalg.norm(on_gear)), seen * [[1], [-1]],
-    )  # fmt: skip
+    return LocalContact(
+        float(second),
+        (float(axes[0]), float(axes[1])),
+        _line(on_gear),
+        _line(flat),
+        bool(values[0] > 0),
+        D,
+        float(np.linalg.norm(on_gear)),
+        seen * [[1], [-1]],
+    )
 
 
 def _line(vector: np.ndarray) -> float:

@@ -14,14 +14,19 @@ from functools import cached_property, partial
 import numpy as np
 
 from gearmath.bevel.contact.leads import Leads, leads_over_a_pitch
-from gearmath.bevel.contact.local import Local, local
+from gearmath.bevel.contact.local import LocalContact, local
 from gearmath.bevel.contact.places import Places, Seed, contact_line, places, seeds
-from gearmath.bevel.contact.system import Assembly, System, Touch
+from gearmath.bevel.contact.system import Assembly, System, TouchPoint
 from gearmath.bevel.contact.thread import Segment, Thread, follow, zero
 
 OUTCOMES = (
-    "interior contact", "edge contact", "corner contact", "reversed parabola", "contact lost", "line contact",
-)  # fmt: skip
+    "interior contact",
+    "edge contact",
+    "corner contact",
+    "reversed parabola",
+    "contact lost",
+    "line contact",
+)
 #: Pitches to either side over which a pair of teeth is followed, and positions of a pitch at which contacts are sought.
 REACH = 1.5
 _SOUGHT = 4
@@ -36,7 +41,7 @@ _NEAR = np.array([0.5, 0.02, 0.02] * 2)
 
 
 @dataclass(frozen=True)
-class Row:
+class MeshRow:
     """A position of a pair of teeth: rotation [rad], kind, error φ_2 + i φ_1 [rad], place on the gear [mm]."""
 
     rotation: float
@@ -81,11 +86,11 @@ class Mesh:
         ahead = ahead[found.common]
         return float(ahead.max()) < _CONJUGATE and float(np.mean(np.abs(ahead) < _CONJUGATE)) > _MOSTLY
 
-    def lead(self, touch: Touch) -> float:
+    def lead(self, touch: TouchPoint) -> float:
         """sense · (φ_2 + i φ_1) [rad]."""
         return self.system.sense * self.system.transmission_error(touch)
 
-    def rows(self, rotations: np.ndarray) -> list[Row]:
+    def rows(self, rotations: np.ndarray) -> list[MeshRow]:
         """The positions of pair 0 at rotations (n,) [rad], without those at which it has no contact."""
         if self.is_line:
             return [
@@ -93,7 +98,7 @@ class Mesh:
                 for rotation in rotations
                 if (row := _line_row(self.places, self.system.sense, rotation)) is not None
             ]
-        best: dict[int, Row] = {}
+        best: dict[int, MeshRow] = {}
         for thread in self.threads:
             x, kinds = thread.sample(self.system, rotations)
             at = self.system.gear_places(x)
@@ -101,10 +106,10 @@ class Mesh:
                 rotation = float(rotations[k])
                 error = float(x[k, 6] + self.system.ratio * rotation)
                 if k not in best or self.system.sense * (error - best[k].error) > 0:
-                    best[k] = Row(rotation, kinds[k], error, float(at[k, 0]), float(at[k, 1]))
+                    best[k] = MeshRow(rotation, kinds[k], error, float(at[k, 0]), float(at[k, 1]))
         return [best[k] for k in sorted(best)]
 
-    def path(self, step: float) -> list[Row]:
+    def path(self, step: float) -> list[MeshRow]:
         """Positions of pair 0 at whole multiples of ``step`` [rad], and at every change of kind."""
         limit = REACH * self.system.pitch
         count = math.floor(limit / step * (1 + 1e-12))
@@ -116,10 +121,11 @@ class Mesh:
     def changes(self) -> list[float]:
         """Rotations [rad] at which the kind of contact of pair 0 changes."""
         return [
-            after.ends[0] for thread in self.threads
+            after.ends[0]
+            for thread in self.threads
             for before, after in zip(thread.segments[:-1], thread.segments[1:], strict=True)
             if before.kind != after.kind
-        ]  # fmt: skip
+        ]
 
     @cached_property
     def reference(self) -> float | None:
@@ -145,20 +151,20 @@ class Mesh:
         return sum(part.ends[1] - part.ends[0] for _, part in self.interior) / self.system.pitch
 
     @cached_property
-    def at_mean(self) -> tuple[Touch, Local] | None:
+    def at_mean(self) -> tuple[TouchPoint, LocalContact] | None:
         """The contact within both flanks that is nearest to the mean point of the gear's pitch cone, if any."""
         mean = self.system.gear.blank.mean_cone_distance
 
-        def away(touch: Touch) -> float:
+        def away(touch: TouchPoint) -> float:
             distance, height = self.system.gear_place(touch.x)
             return math.hypot(distance - mean, height)
 
-        def departing(touch: Touch) -> float:
+        def departing(touch: TouchPoint) -> float:
             distance, height = self.system.gear_place(touch.x)
             along, up = self.system.place_rates(touch.x) @ touch.tangent
             return float((distance - mean) * along + height * up)
 
-        found: list[Touch] = []
+        found: list[TouchPoint] = []
         for thread, segment in self.interior:
             touches = segment.touches
             k = int(np.argmin([away(touch) for touch in touches]))
@@ -229,7 +235,7 @@ def _near(threads: list[Thread], seed: Seed) -> bool:
     return False
 
 
-def _known(system: System, threads: list[Thread], touch: Touch) -> bool:
+def _known(system: System, threads: list[Thread], touch: TouchPoint) -> bool:
     """Whether one of the threads runs through a contact."""
     for thread in threads:
         other = thread.at(system, touch.rotation)
@@ -238,7 +244,7 @@ def _known(system: System, threads: list[Thread], touch: Touch) -> bool:
     return False
 
 
-def _line_row(found: Places, sense: float, rotation: float) -> Row | None:
+def _line_row(found: Places, sense: float, rotation: float) -> MeshRow | None:
     """The middle of a contact line, where the whole line touches."""
     error, _, distance, along, height = contact_line(found, rotation)
     inside = np.flatnonzero((distance > -_SAME_PLACE).all(axis=1))
@@ -246,4 +252,4 @@ def _line_row(found: Places, sense: float, rotation: float) -> Row | None:
         return None
     touching = inside[sense * error[inside] > (sense * error[inside]).max() - _CONJUGATE / 100.0]
     k = touching[len(touching) // 2]
-    return Row(rotation, "interior", float(error[k]), float(along[k]), float(height[k]))
+    return MeshRow(rotation, "interior", float(error[k]), float(along[k]), float(height[k]))

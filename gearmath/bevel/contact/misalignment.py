@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from gearmath.bevel.contact.local import local
-from gearmath.bevel.contact.system import TOLERANCE, System, Touch
+from gearmath.bevel.contact.system import TOLERANCE, System, TouchPoint
 from gearmath.bevel.turning import half_turn
 from gearmath.engine.points import Points
 from gearmath.kernels import kernel
@@ -28,7 +28,7 @@ class VH:
 
     V: float
     H: float
-    touch: Touch
+    touch: TouchPoint
 
 
 @lru_cache(maxsize=16)
@@ -55,8 +55,10 @@ def contact_at(system: System, distance: float, J: float = 0.0, shaft: float = 0
     if not all(np.isfinite(start.contact).all() for start in starts):
         return None
     azimuths = [math.atan2(start.point[0, 1], start.point[0, 0]) for start in starts]
-    turns = [half_turn(line - azimuth - phase)
-             for line, azimuth, phase in zip((0.0, math.pi), azimuths, system.phase, strict=True)]  # fmt: skip
+    turns = [
+        half_turn(line - azimuth - phase)
+        for line, azimuth, phase in zip((0.0, math.pi), azimuths, system.phase, strict=True)
+    ]
     y = np.concatenate([starts[0].contact[0], starts[1].contact[0], [turns[1], turns[0], 0.0, 0.0]])
     function = _wanted(system)
     for _ in range(_STEPS):
@@ -88,7 +90,7 @@ def _displaced(system: System) -> Points:
     return Points(ca.Function("displaced", [x, rotation, assembly], rates), shared=(2,))
 
 
-def sensitivities(system: System, touch: Touch, assembly: np.ndarray) -> np.ndarray:
+def sensitivities(system: System, touch: TouchPoint, assembly: np.ndarray) -> np.ndarray:
     """How a contact within both flanks moves with V, H, J [mm] and ΔΣ [rad], at a rotation of the pinion (3,4).
 
     Rows: cone distance and height on the gear [mm], and φ_2 [rad].

@@ -22,7 +22,7 @@ _ROWS, _COLUMNS = 21, 41
 
 
 @dataclass(frozen=True)
-class Pattern:
+class ContactPattern:
     """The gear's flank on a grid, rows root to tip, columns toe to heel: cone distance, height above the pitch cone,
     ease-off and least gap in the mesh (rows, columns) [mm]; NaN where the flanks have no common point.
 
@@ -66,8 +66,9 @@ def envelope(run: Mesh, rotations: np.ndarray) -> np.ndarray:
     within = (rotations + pitch / 2) % pitch - pitch / 2
     leads = [
         system.sense * thread.errors(system, within - k * pitch)
-        for thread in run.threads for k in range(-math.ceil(run.reach), math.ceil(run.reach) + 1)
-    ]  # fmt: skip
+        for thread in run.threads
+        for k in range(-math.ceil(run.reach), math.ceil(run.reach) + 1)
+    ]
     if not leads:
         return np.full(len(rotations), np.nan)
     first = np.where(np.isnan(leads), -np.inf, leads).max(axis=0)
@@ -80,13 +81,13 @@ def gaps(run: Mesh, found: Places) -> np.ndarray:
     return np.abs(found.lever) * (first - run.system.sense * found.error)
 
 
-def pattern(run: Mesh, thickness: float = MARKING, rows: int = _ROWS, columns: int = _COLUMNS) -> Pattern:
+def pattern(run: Mesh, thickness: float = MARKING, rows: int = _ROWS, columns: int = _COLUMNS) -> ContactPattern:
     """The pattern at a marking ``thickness`` [mm], on the whole flank of the gear."""
     found = places(run.system, run.assembly, rows, columns)
     lead = np.where(found.common, run.system.sense * found.error, np.nan)
     gap = np.where(found.common, gaps(run, found), np.nan)
     middle = lead[rows // 2, columns // 2]
     reference = middle if np.isfinite(middle) else float(np.nanmax(lead)) if np.isfinite(lead).any() else math.nan
-    return Pattern(
+    return ContactPattern(
         found.cone_distance, found.height, np.abs(found.lever) * (reference - lead), gap, found.common, thickness
     )

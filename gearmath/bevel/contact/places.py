@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from gearmath.bevel.contact.surface import BORDERS, Surface
+from gearmath.bevel.contact.surface import BORDERS, ContactSurface
 from gearmath.bevel.contact.system import System
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import half_turn
@@ -84,7 +84,7 @@ def places(system: System, assembly: np.ndarray, rows: int = _ROWS, columns: int
 
 
 @lru_cache(maxsize=32)
-def _grid(surface: Surface, rows: int, columns: int) -> FlankPoints:
+def _grid(surface: ContactSurface, rows: int, columns: int) -> FlankPoints:
     """Points of a flank on a grid of its blank, row by row; the assembly does not change them."""
     up, across = (
         one.ravel() for one in np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")

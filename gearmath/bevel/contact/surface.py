@@ -27,7 +27,7 @@ _STEPS, _TOLERANCE, _LIMITS = 12, 1e-11, np.array([8.0, 0.4, 0.4])
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class ContactSurface:
     """One flank of a member, nominal or measured.
 
     ``function`` takes w = (u [mm], β, θ) to point [mm], outward unit normal, condition [mm], zero on the flank, and
@@ -77,12 +77,10 @@ class Surface:
     def at(self, cone_distance: float, height: float = 0.0) -> FlankPoints:
         """The one point at a cone distance and a height over the pitch cone [mm], NaN where there is none."""
         s, c = math.sin(self.pitch_angle), math.cos(self.pitch_angle)
-        return self.solve(
-            np.array([cone_distance * c - height * s]), np.array([cone_distance * s + height * c])
-        )  # fmt: skip
+        return self.solve(np.array([cone_distance * c - height * s]), np.array([cone_distance * s + height * c]))
 
 
-def nominal_surface(member: Member, flank: str) -> Surface:
+def nominal_surface(member: Member, flank: str) -> ContactSurface:
     """The nominal flank of a member: what the main section of its blade cuts, whatever the method."""
     how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
 
@@ -90,10 +88,10 @@ def nominal_surface(member: Member, flank: str) -> Surface:
     mean = _slowly(how, section, *(np.array([distance * f(delta)]) for f in (math.cos, math.sin))).contact[0]
     function = _function(how.with_blade(section), section, mean)
     solve = _solver(function, mean, lambda axial, radial: _slowly(how, section, axial, radial))
-    return Surface(function, _borders(member, section), solve, member.blank, member.teeth)
+    return ContactSurface(function, _borders(member, section), solve, member.blank, member.teeth)
 
 
-def displaced_surface(surface: Surface, deviation: ca.Function) -> Surface:
+def displaced_surface(surface: ContactSurface, deviation: ca.Function) -> ContactSurface:
     """A flank with metal left on: ``deviation`` takes the place z_w, r_w of a nominal point to δ [mm] along its normal.
 
     Borders and singular line are those of the nominal flank. ``deviation`` must be smooth: twice differentiable.
@@ -107,7 +105,7 @@ def displaced_surface(surface: Surface, deviation: ca.Function) -> Surface:
     function = ca.Function("displaced", [w], ca.cse([moved, own, condition, fold]))
     mean = surface.at(surface.blank.mean_cone_distance).contact[0]
     solve = _solver(function, mean, _nowhere)
-    return Surface(function, surface.borders, solve, surface.blank, surface.teeth)
+    return ContactSurface(function, surface.borders, solve, surface.blank, surface.teeth)
 
 
 def _nowhere(axial: np.ndarray, radial: np.ndarray) -> FlankPoints:
@@ -171,12 +169,14 @@ def _borders(member: Member, section: Section) -> np.ndarray:
     mean, half = blank.mean_cone_distance, blank.face_width / 2
     sense, end = (-1.0, section.upper) if section.tip_is_upper else (1.0, section.lower)
     end *= _length_of_u(section)
-    return np.array([
-        [0.0, math.sin(face), -math.cos(face), radial * math.cos(face) - axial * math.sin(face)],
-        [0.0, math.cos(delta), math.sin(delta), half - mean],
-        [0.0, -math.cos(delta), -math.sin(delta), half + mean],
-        [sense, 0.0, 0.0, -sense * end],
-    ])  # fmt: skip
+    return np.array(
+        [
+            [0.0, math.sin(face), -math.cos(face), radial * math.cos(face) - axial * math.sin(face)],
+            [0.0, math.cos(delta), math.sin(delta), half - mean],
+            [0.0, -math.cos(delta), -math.sin(delta), half + mean],
+            [sense, 0.0, 0.0, -sense * end],
+        ]
+    )
 
 
 def _length_of_u(section: Section) -> float:

@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.contact.surface import BORDERS, Surface
+from gearmath.bevel.contact.surface import BORDERS, ContactSurface
 from gearmath.bevel.turning import half_turn
 from gearmath.engine.points import Points
 from gearmath.errors import ComputationError
@@ -46,7 +46,7 @@ class Assembly:
 
 
 @dataclass(frozen=True)
-class Touch:
+class TouchPoint:
     """A contact: rotation of the pinion [rad], x (7,), active borders, dx/dφ_1 (7,), and what keeps it valid.
 
     ``distance`` (8,) [mm] from all borders, ``pressure`` of the active ones: positive where the edge is pressed on.
@@ -73,8 +73,8 @@ class Touch:
 class System:
     """A pair of flanks in its frame. ``shaft_angle`` [rad], ``offset`` [mm]."""
 
-    pinion: Surface
-    gear: Surface
+    pinion: ContactSurface
+    gear: ContactSurface
     shaft_angle: float
     offset: float = 0.0
     #: Rotations at which the mean points stand on the pitch line, counted from the frames of the work.
@@ -125,7 +125,7 @@ class System:
 
     def solve(
         self, x: np.ndarray, rotation: float, active: tuple[int, ...], assembly: np.ndarray, steps: int = _STEPS
-    ) -> Touch | None:
+    ) -> TouchPoint | None:
         """The contact near ``x`` at a rotation of the pinion, None where Newton's method does not get there."""
         rows = _rows(active)
         for _ in range(steps):
@@ -162,16 +162,22 @@ class System:
         return None
 
     def _touch(
-        self, x: np.ndarray, rotation: float, active: tuple[int, ...], J: np.ndarray, tangent: np.ndarray,
-        distance: np.ndarray, by_x: np.ndarray,
-    ) -> Touch:  # fmt: skip
+        self,
+        x: np.ndarray,
+        rotation: float,
+        active: tuple[int, ...],
+        J: np.ndarray,
+        tangent: np.ndarray,
+        distance: np.ndarray,
+        by_x: np.ndarray,
+    ) -> TouchPoint:
         pressure = np.empty(0)
         if active:
             # touching configurations at this rotation have two directions of x; along them the gear is pressed on
             free = np.linalg.svd(J[:5, :7])[2][5:]
             gradients = by_x[list(active)] @ free.T
             pressure = -self.sense * np.linalg.lstsq(gradients.T, free[:, 6], rcond=None)[0]
-        return Touch(rotation, x, active, tangent, distance, pressure, float(np.linalg.slogdet(J[:, :7])[0]))
+        return TouchPoint(rotation, x, active, tangent, distance, pressure, float(np.linalg.slogdet(J[:, :7])[0]))
 
     def solve_many(
         self, x: np.ndarray, rotation: np.ndarray, active: tuple[int, ...], assembly: np.ndarray
@@ -197,13 +203,18 @@ class System:
         """+1 where the pinion pushes the gear to larger φ_2: contact is the largest of sense · φ_2."""
         flank = self.gear.at(self.gear.blank.mean_cone_distance)
         point, normal = kernel("gear_in_pair")(
-            flank.point[0], flank.normal[0], self.phase[1], self.gear.apex_beyond, self.shaft_angle, self.offset,
+            flank.point[0],
+            flank.normal[0],
+            self.phase[1],
+            self.gear.apex_beyond,
+            self.shaft_angle,
+            self.offset,
             np.zeros(4),
-        )  # fmt: skip
+        )
         lever, _ = kernel("transmission")(point, normal, self.shaft_angle, self.offset, np.zeros(4))
         return -math.copysign(1.0, float(lever))
 
-    def transmission_error(self, touch: Touch) -> float:
+    def transmission_error(self, touch: TouchPoint) -> float:
         """φ_2 + i φ_1 [rad] of a contact, not yet less its value at rotation zero."""
         return float(touch.x[6] + self.ratio * touch.rotation)
 
@@ -230,7 +241,7 @@ class System:
         return np.stack([along, -deep])
 
 
-def pair_system(pinion: Surface, gear: Surface, shaft_angle: float, offset: float = 0.0) -> System:
+def pair_system(pinion: ContactSurface, gear: ContactSurface, shaft_angle: float, offset: float = 0.0) -> System:
     """The pair of two flanks, with rotation zero where both mean points stand on the pitch line.
 
     Raises ComputationError where a flank has no point there.

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from gearmath.bevel.contact.surface import BORDERS
-from gearmath.bevel.contact.system import System, Touch
+from gearmath.bevel.contact.system import System, TouchPoint
 
 #: Step of the pinion [rad]: the usual one, and the one below which a contact counts as lost.
 _STEP, _LEAST_STEP = 0.05, 1e-5
@@ -37,7 +37,7 @@ _PARTS = 24
 class Segment:
     """Contacts (at least one) of one kind in the order of the rotation, from end to end."""
 
-    touches: tuple[Touch, ...]
+    touches: tuple[TouchPoint, ...]
 
     @cached_property
     def nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -61,7 +61,7 @@ class Segment:
     def ends(self) -> tuple[float, float]:
         return self.touches[0].rotation, self.touches[-1].rotation
 
-    def at(self, system: System, rotation: float, assembly: np.ndarray) -> Touch | None:
+    def at(self, system: System, rotation: float, assembly: np.ndarray) -> TouchPoint | None:
         """The contact at a rotation between the ends."""
         for touch in (self.touches[0], self.touches[-1]):
             if rotation == touch.rotation:
@@ -87,7 +87,7 @@ class Thread:
     def ends(self) -> tuple[float, float]:
         return self.segments[0].ends[0], self.segments[-1].ends[1]
 
-    def at(self, system: System, rotation: float) -> Touch | None:
+    def at(self, system: System, rotation: float) -> TouchPoint | None:
         """The contact at a rotation, None beyond the ends of the thread."""
         for segment in self.segments:
             low, high = segment.ends
@@ -121,7 +121,7 @@ class Thread:
         return found + system.ratio * rotations
 
 
-def follow(system: System, start: Touch, assembly: np.ndarray, low: float, high: float) -> Thread:
+def follow(system: System, start: TouchPoint, assembly: np.ndarray, low: float, high: float) -> Thread:
     """The thread through a contact, within rotations from ``low`` to ``high``."""
     forward = _parts(system, start, assembly, high)
     backward = _parts(system, start, assembly, low)
@@ -130,7 +130,7 @@ def follow(system: System, start: Touch, assembly: np.ndarray, low: float, high:
     return Thread((*before, Segment(joined), *(Segment(tuple(part)) for part in forward[1:])), assembly)
 
 
-def _parts(system: System, start: Touch, assembly: np.ndarray, limit: float) -> list[list[Touch]]:
+def _parts(system: System, start: TouchPoint, assembly: np.ndarray, limit: float) -> list[list[TouchPoint]]:
     """Contacts in one direction, a list for each kind; the first begins with ``start``."""
     parts = [_run(system, start, assembly, limit)]
     while len(parts) < _PARTS and (following := _next(system, parts[-1][-1], assembly, limit)) is not None:
@@ -141,7 +141,7 @@ def _parts(system: System, start: Touch, assembly: np.ndarray, limit: float) -> 
     return parts
 
 
-def _run(system: System, start: Touch, assembly: np.ndarray, limit: float) -> list[Touch]:
+def _run(system: System, start: TouchPoint, assembly: np.ndarray, limit: float) -> list[TouchPoint]:
     """Contacts of one kind from ``start`` to the limit, or to where a margin becomes zero or the contact turns back."""
     touches, step = [start], _STEP
     way = 1.0 if limit > start.rotation else -1.0
@@ -164,7 +164,9 @@ def _run(system: System, start: Touch, assembly: np.ndarray, limit: float) -> li
     return touches
 
 
-def _corrected(system: System, before: Sequence[Touch], rotation: float, assembly: np.ndarray) -> Touch | None:
+def _corrected(
+    system: System, before: Sequence[TouchPoint], rotation: float, assembly: np.ndarray
+) -> TouchPoint | None:
     """The contact at a rotation, from the cubic through the last two positions, or from the tangent of one."""
     last = before[-2:] if len(before) > 1 else before
     ordered = last if last[0].rotation <= last[-1].rotation else last[::-1]
@@ -172,7 +174,7 @@ def _corrected(system: System, before: Sequence[Touch], rotation: float, assembl
     return system.solve(guess, rotation, last[-1].active, assembly, _CORRECTIONS)
 
 
-def _border(system: System, inside: Touch, outside: Touch, assembly: np.ndarray) -> Touch:
+def _border(system: System, inside: TouchPoint, outside: TouchPoint, assembly: np.ndarray) -> TouchPoint:
     """The contact between two where the first margin is zero: in one go, else by the Illinois rule from inside."""
     parts = _crossings(inside, outside)
     which, part = int(np.argmin(parts)), float(parts.min())
@@ -188,7 +190,9 @@ def _border(system: System, inside: Touch, outside: Touch, assembly: np.ndarray)
     return _border_slowly(system, inside, outside, which, assembly)
 
 
-def _border_slowly(system: System, inside: Touch, outside: Touch, which: int, assembly: np.ndarray) -> Touch:
+def _border_slowly(
+    system: System, inside: TouchPoint, outside: TouchPoint, which: int, assembly: np.ndarray
+) -> TouchPoint:
     low, high, kept = inside, outside, 0
     one, other = float(inside.margins[which]), float(outside.margins[which])
     for _ in range(_SECANTS):
@@ -208,14 +212,14 @@ def _border_slowly(system: System, inside: Touch, outside: Touch, which: int, as
     return low
 
 
-def _crossings(inside: Touch, outside: Touch) -> np.ndarray:
+def _crossings(inside: TouchPoint, outside: TouchPoint) -> np.ndarray:
     """The part of the way (8,) at which each margin is zero, infinite where it is not."""
     one, other = inside.margins, outside.margins
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(other < _SLACK, np.maximum(one, 0.0) / (np.maximum(one, 0.0) - other), np.inf)
 
 
-def _next(system: System, end: Touch, assembly: np.ndarray, limit: float) -> Touch | None:
+def _next(system: System, end: TouchPoint, assembly: np.ndarray, limit: float) -> TouchPoint | None:
     """The contact of another kind that goes on where one ends: a border more, a border less, or one for another."""
     way = 1.0 if limit > end.rotation else -1.0
     if not abs(limit - end.rotation) > 0.0:
@@ -240,11 +244,12 @@ def _next(system: System, end: Touch, assembly: np.ndarray, limit: float) -> Tou
     return None
 
 
-def _nodes(touches: Sequence[Touch]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _nodes(touches: Sequence[TouchPoint]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return (
-        np.array([touch.rotation for touch in touches]), np.stack([touch.x for touch in touches]),
+        np.array([touch.rotation for touch in touches]),
+        np.stack([touch.x for touch in touches]),
         np.stack([touch.tangent for touch in touches]),
-    )  # fmt: skip
+    )
 
 
 def _cubic(nodes: tuple[np.ndarray, np.ndarray, np.ndarray], rotations: np.ndarray) -> np.ndarray:
@@ -256,12 +261,15 @@ def _cubic(nodes: tuple[np.ndarray, np.ndarray, np.ndarray], rotations: np.ndarr
     h = (at[k] - at[k - 1])[:, None]
     t = (rotations - at[k - 1])[:, None] / h
     return (
-        (1 + 2 * t) * (1 - t) ** 2 * x[k - 1] + t**2 * (3 - 2 * t) * x[k]
+        (1 + 2 * t) * (1 - t) ** 2 * x[k - 1]
+        + t**2 * (3 - 2 * t) * x[k]
         + h * (t * (1 - t) ** 2 * slope[k - 1] - t**2 * (1 - t) * slope[k])
-    )  # fmt: skip
+    )
 
 
-def zero(at: Callable[[float], Touch | None], value: Callable[[Touch], float], low: float, high: float) -> Touch | None:
+def zero(
+    at: Callable[[float], TouchPoint | None], value: Callable[[TouchPoint], float], low: float, high: float
+) -> TouchPoint | None:
     """The contact between two rotations where a value is zero, by the Illinois rule; None where it keeps its sign."""
     first, second = at(low), at(high)
     if first is None or second is None:

@@ -19,8 +19,10 @@ from gearmath.bevel.contact.system import Assembly
 #: The edges of a pair, and which of the eight distances of a place tells each.
 EDGES = {
     f"{member} {border}": len(BORDERS) * side + k
-    for side, member in enumerate(("pinion", "gear")) for k, border in enumerate(BORDERS) if border != "root"
-}  # fmt: skip
+    for side, member in enumerate(("pinion", "gear"))
+    for k, border in enumerate(BORDERS)
+    if border != "root"
+}
 #: Displacement [mm] with which the search begins, and beyond which it ends.
 _FIRST, MOST = 0.02, 5.0
 _ROWS, _COLUMNS = 41, 41

@@ -19,8 +19,11 @@ from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SETTINGS
 
 #: What may be unknown besides the settings: coefficients of the motion, by (setting, power).
-MOVING = {"modified_roll_2": ("work_rotation_offset", 2), "modified_roll_3": ("work_rotation_offset", 3),
-          "helical_motion": ("sliding_base", 1)}  # fmt: skip
+MOVING = {
+    "modified_roll_2": ("work_rotation_offset", 2),
+    "modified_roll_3": ("work_rotation_offset", 3),
+    "helical_motion": ("sliding_base", 1),
+}
 #: Contact of the flank (θ = 0), of the tip plane at the root of toe and heel; settings, coefficients of their motion.
 ROOT = ("toe_beta", "toe_theta", "heel_beta", "heel_theta")
 #: Last the curvature [1/mm] added across the path, which changes neither path nor parabola, but the ellipse (26.6).
@@ -29,23 +32,41 @@ NAMES = ("u", "beta", *ROOT, *SETTINGS, *MOVING, ACROSS)
 FIRST = NAMES.index(SETTINGS[0])
 #: What the square system finds; any other of NAMES may be given.
 UNKNOWN = (
-    "u", "beta", *ROOT, "radial_distance", "cradle_angle", "blank_offset", "sliding_base",
-    "machine_center_to_crossing_point", "machine_root_angle", "ratio_of_roll", "work_rotation_offset",
+    "u",
+    "beta",
+    *ROOT,
+    "radial_distance",
+    "cradle_angle",
+    "blank_offset",
+    "sliding_base",
+    "machine_center_to_crossing_point",
+    "machine_root_angle",
+    "ratio_of_roll",
+    "work_rotation_offset",
     "blade_point_radius",
-)  # fmt: skip
+)
 #: Sizes that count alike in a Newton step: mm, rad and coefficients; the way of least change is taken in these.
 _SIZES = {
-    "u": 1.0, "beta": 0.05, **dict.fromkeys(ROOT, 0.05), "cradle_angle": 0.05, "work_rotation_offset": 0.1,
-    "cutter_tilt": 0.03, "cutter_swivel": 0.1, "machine_root_angle": 0.02, "ratio_of_roll": 0.1,
-    "blade_pressure_angle": 0.03, "modified_roll_2": 0.05, "modified_roll_3": 0.2,
-}  # fmt: skip
+    "u": 1.0,
+    "beta": 0.05,
+    **dict.fromkeys(ROOT, 0.05),
+    "cradle_angle": 0.05,
+    "work_rotation_offset": 0.1,
+    "cutter_tilt": 0.03,
+    "cutter_swivel": 0.1,
+    "machine_root_angle": 0.02,
+    "ratio_of_roll": 0.1,
+    "blade_pressure_angle": 0.03,
+    "modified_roll_2": 0.05,
+    "modified_roll_3": 0.2,
+}
 _STEPS, _TOLERANCE, _PARTS, _LEAST = 12, 1e-10, 20, 1e-4
 #: A curvature counts as a length by the square of this. [mm]
 _LENGTH = 30.0
 
 
 @dataclass(frozen=True)
-class Wanted:
+class WantedPoint:
     """Point (3,) [mm], outward normal (3,), shape operator (2,2) [1/mm] in a ``basis`` (3,2), depths (2,) [mm].
 
     The shape operator is that with the normal into the pinion, as chapter 26 has it; the depths those of the
@@ -84,9 +105,11 @@ def _system(formate: bool) -> ca.Function:
     rates = ca.jacobian(point, w), -ca.jacobian(normal, w), ca.jacobian(on_flank, w).T
     found = kernel("flank_curvature").function(*rates, T)
     flank = ca.vertcat(
-        point - P, _LENGTH * T.T @ normal, on_flank,
+        point - P,
+        _LENGTH * T.T @ normal,
+        on_flank,
         _LENGTH**2 * (ca.vertcat(found[0, 0], (found[0, 1] + found[1, 0]) / 2, found[1, 1]) - K - across),
-    )  # fmt: skip
+    )
     flank = ca.substitute(flank, w, ca.vertcat(x[0], x[1], 0))
     tip_plane = ca.vertcat(settings[:-1], FLAT_BLADE)
     roots = []
@@ -101,7 +124,7 @@ def _system(formate: bool) -> ca.Function:
 
 
 @dataclass(frozen=True)
-class Local:
+class LocalSystem:
     """A solution: x of NAMES, and how it moves with what was held: derivatives by all of NAMES."""
 
     x: np.ndarray
@@ -113,7 +136,7 @@ class Local:
         return self.x[FIRST : FIRST + len(SETTINGS)]
 
 
-def residual(how: Generation, x: np.ndarray, wanted: Wanted) -> tuple[np.ndarray, np.ndarray]:
+def residual(how: Generation, x: np.ndarray, wanted: WantedPoint) -> tuple[np.ndarray, np.ndarray]:
     """How far settings are off what is wanted (15,), and its derivatives (15,22)."""
     K = wanted.curvature[[0, 0, 1], [0, 1, 1]]
     off, rates = _system(not how.rolling)(
@@ -132,7 +155,7 @@ def residual(how: Generation, x: np.ndarray, wanted: Wanted) -> tuple[np.ndarray
     return np.asarray(off).ravel(), np.asarray(rates)
 
 
-def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = UNKNOWN) -> Local | None:
+def solve(how: Generation, x: np.ndarray, wanted: WantedPoint, free: Sequence[str] = UNKNOWN) -> LocalSystem | None:
     """The settings near ``x`` (22,) that give what is wanted, by the ``free`` ones alone; None where Newton fails.
 
     More free settings than conditions change as little as they can.
@@ -146,7 +169,7 @@ def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = 
             return None
         size = float(np.abs(off).max())
         if size < _TOLERANCE:
-            return Local(x, size, rates)
+            return LocalSystem(x, size, rates)
         try:
             step = sizes * np.linalg.lstsq(rates[:, index] * sizes, -off)[0]
         except np.linalg.LinAlgError:
@@ -155,7 +178,9 @@ def solve(how: Generation, x: np.ndarray, wanted: Wanted, free: Sequence[str] = 
     return None
 
 
-def followed(how: Generation, x: np.ndarray, start: Wanted, end: Wanted, free: Sequence[str] = UNKNOWN) -> Local | None:
+def followed(
+    how: Generation, x: np.ndarray, start: WantedPoint, end: WantedPoint, free: Sequence[str] = UNKNOWN
+) -> LocalSystem | None:
     """The settings that give ``end``, followed from ``x`` (22,) which gives ``start``; None where the way ends."""
     found = solve(how, x, start, free)
     part, step = 0.0, 1.0 / _PARTS
@@ -171,19 +196,19 @@ def followed(how: Generation, x: np.ndarray, start: Wanted, end: Wanted, free: S
     return found
 
 
-def curvature(how: Generation, x: np.ndarray, at: Wanted) -> np.ndarray:
+def curvature(how: Generation, x: np.ndarray, at: WantedPoint) -> np.ndarray:
     """The shape operator (2,2) [1/mm] that settings give in the basis of ``at``."""
     off, _ = residual(how, x, at)
     one, mixed, two = off[6:9] / _LENGTH**2
     return at.curvature + np.array([[one, mixed], [mixed, two]])
 
 
-def depth(how: Generation, x: np.ndarray, at: Wanted) -> np.ndarray:
+def depth(how: Generation, x: np.ndarray, at: WantedPoint) -> np.ndarray:
     """Depths (2,) of the root [mm] below the pitch cone that settings give at toe and heel."""
     return at.depth + residual(how, x, at)[0][[11, 14]]
 
 
-def generation(how: Generation, found: Local) -> Generation:
+def generation(how: Generation, found: LocalSystem) -> Generation:
     """The generation with the settings and the motion of a solution."""
     motion = how.motion.copy()
     for k, (name, power) in enumerate(MOVING.values()):
@@ -191,7 +216,7 @@ def generation(how: Generation, found: Local) -> Generation:
     return replace(how, settings=found.settings.copy(), motion=motion)
 
 
-def between(start: Wanted, end: Wanted, part: float) -> Wanted:
+def between(start: WantedPoint, end: WantedPoint, part: float) -> WantedPoint:
     """What lies a part of the way between two, each curvature in the basis at its own normal."""
     normal = (1 - part) * start.normal + part * end.normal
     normal /= np.linalg.norm(normal)
@@ -199,8 +224,12 @@ def between(start: Wanted, end: Wanted, part: float) -> Wanted:
     first /= np.linalg.norm(first)
     second = np.cross(normal, first)
     second *= np.sign(second @ end.basis[:, 1])
-    return Wanted(
-        (1 - part) * start.point + part * end.point, normal, np.column_stack([first, second]),
-        (1 - part) * start.curvature + part * end.curvature, (1 - part) * start.depth + part * end.depth, end.cone,
+    return WantedPoint(
+        (1 - part) * start.point + part * end.point,
+        normal,
+        np.column_stack([first, second]),
+        (1 - part) * start.curvature + part * end.curvature,
+        (1 - part) * start.depth + part * end.depth,
+        end.cone,
         end.path,
-    )  # fmt: skip
+    )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gearmath.bevel.design import local_settings as local
-from gearmath.bevel.design.local_settings import FIRST, MOVING, NAMES, Local, Wanted
+from gearmath.bevel.design.local_settings import FIRST, MOVING, NAMES, LocalSystem, WantedPoint
 from gearmath.bevel.design.request import Request
 from gearmath.bevel.design.rolling import Meeting
 from gearmath.bevel.design.whole_flank import Fitted, WholeFlank, fit
@@ -31,10 +31,11 @@ _TILT = math.radians(12)
 #: Least part of the places of the gear's flank that the pinion must cut.
 _LEAST_SHARE = 0.7
 _EXTRA = {
-    "blade_pressure_angle": ("blade_pressure_angle",), "modified_roll": ("modified_roll_2", "modified_roll_3"),
+    "blade_pressure_angle": ("blade_pressure_angle",),
+    "modified_roll": ("modified_roll_2", "modified_roll_3"),
     "cutter_tilt": ("cutter_tilt", "cutter_swivel"),
     "helical_motion": ("helical_motion",),
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)
@@ -64,8 +65,15 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
     """
     how, section = generation_of(start, name), blade_sections(start.flank(name), SIDES[name])["main"]
     x, begin = _crown_gear(start, how, section, asked)
-    end = Wanted(asked.roll.point, asked.roll.normal, asked.roll.basis, asked.curvature,
-                 _root(start)[1], begin.cone, asked.own_path)  # fmt: skip
+    end = WantedPoint(
+        asked.roll.point,
+        asked.roll.normal,
+        asked.roll.basis,
+        asked.curvature,
+        _root(start)[1],
+        begin.cone,
+        asked.own_path,
+    )
     extra = tuple(extra for name in free for extra in _EXTRA[name])
     found = local.followed(how, x, begin, end, (*local.UNKNOWN, *extra))
     if found is None:
@@ -128,7 +136,7 @@ def _without(problem: WholeFlank, name: str) -> WholeFlank:
     return replace(problem, extra=tuple(problem.extra[k] for k in kept), bounds=problem.bounds[kept])
 
 
-def _crown_gear(member: Member, how: Generation, section: Section, asked: Request) -> tuple[np.ndarray, Wanted]:
+def _crown_gear(member: Member, how: Generation, section: Section, asked: Request) -> tuple[np.ndarray, WantedPoint]:
     """The crown gear's flank turned to the wanted point, at θ = 0 there: x, and what it has."""
     P = asked.roll.point
     at = solve_section(how, section, P[2:3], np.array([math.hypot(P[0], P[1])]))
@@ -145,7 +153,7 @@ def _crown_gear(member: Member, how: Generation, section: Section, asked: Reques
     direction, around = (math.cos(cone[0]), math.sin(cone[0])), np.array([[0.0, beta, theta]] * 2)
     root = solve_curve(how, flat, np.zeros(2), direction, cone[1:], around)
     x[2:6] = (root.contact[:, 1:] - [0.0, theta]).ravel()
-    there = Wanted(P, turned(at.normal, turn)[0], asked.roll.basis, asked.curvature, depth, cone, asked.own_path)
+    there = WantedPoint(P, turned(at.normal, turn)[0], asked.roll.basis, asked.curvature, depth, cone, asked.own_path)
     begin = local.between(there, there, 0.0)
     return x, replace(begin, curvature=local.curvature(how, x, begin), depth=local.depth(how, x, begin))
 
@@ -160,7 +168,7 @@ def _root(member: Member) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _reached(
-    how: Generation, section: Section, found: Local, asked: Request, among: np.ndarray
+    how: Generation, section: Section, found: LocalSystem, asked: Request, among: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Which conjugate places (n,) the blade reaches above its tip, not undercut, and where it cuts them (m,3)."""
     moved = local.generation(how, found)
@@ -175,8 +183,12 @@ def _reached(
 def _bounds(extra: tuple[str, ...], x: np.ndarray) -> np.ndarray:
     """Least and largest values (p,2) of what is left free."""
     ratio = x[NAMES.index("ratio_of_roll")]
-    table = {"blade_pressure_angle": _ANGLES, "helical_motion": (-_HELICAL, _HELICAL),
-             "cutter_tilt": (-_TILT, _TILT), "cutter_swivel": (-math.pi, math.pi)}  # fmt: skip
+    table = {
+        "blade_pressure_angle": _ANGLES,
+        "helical_motion": (-_HELICAL, _HELICAL),
+        "cutter_tilt": (-_TILT, _TILT),
+        "cutter_swivel": (-math.pi, math.pi),
+    }
     for name, most in zip(("modified_roll_2", "modified_roll_3"), roll_rows(ratio, _ROLL), strict=True):
         table[name] = (-abs(most), abs(most))
     return np.array([table[name] for name in extra]).reshape(-1, 2)

@@ -9,12 +9,12 @@ import numpy as np
 
 from gearmath.bevel.contact.local import MARKING
 from gearmath.bevel.contact.report import ARCSEC
-from gearmath.bevel.contact.surface import Surface
+from gearmath.bevel.contact.surface import ContactSurface
 from gearmath.bevel.design.rolling import GearFlank, Meeting, Roll
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import Member
-from gearmath.specs.design import Contact
+from gearmath.specs.design import ContactRequest
 
 #: Rows and columns of the gear's flank on which the gap is wanted, and heights at which its mate's tip is sought.
 _ROWS, _COLUMNS, _HEIGHTS = 7, 13, 41
@@ -51,7 +51,7 @@ class Request:
     inner: np.ndarray
 
 
-def request(side: str, asked: Contact, gear: GearFlank, teeth: int, tip: np.ndarray) -> Request:
+def request(side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: np.ndarray) -> Request:
     """What is asked of a side. ``tip`` (4,) is the pinion's border there (25.4).
 
     Raises InputError where no pinion touches the gear as is asked, with the limit.
@@ -74,8 +74,21 @@ def request(side: str, asked: Contact, gear: GearFlank, teeth: int, tip: np.ndar
     meeting, along, inner = _flank(gear, roll, lowest)
     lever = np.full(len(along), abs(roll.lever))
     (gap,) = kernel("wanted_gap")(meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever)
-    return Request(side, gear, roll, (axial, radial), parabola, path, float(own), semi_axis, D,
-                   roll.gear_curvature + matrix(D), meeting, gap, inner)  # fmt: skip
+    return Request(
+        side,
+        gear,
+        roll,
+        (axial, radial),
+        parabola,
+        path,
+        float(own),
+        semi_axis,
+        D,
+        roll.gear_curvature + matrix(D),
+        meeting,
+        gap,
+        inner,
+    )
 
 
 def matrix(components: np.ndarray) -> np.ndarray:
@@ -151,7 +164,7 @@ def _parabola(side: str, amplitude: float, teeth: int, roll: Roll) -> float:
     return found
 
 
-def _check_ellipse(side: str, asked: Contact, D: np.ndarray, own: float, face_width: float) -> None:
+def _check_ellipse(side: str, asked: ContactRequest, D: np.ndarray, own: float, face_width: float) -> None:
     """The path needs a curvature along it, and the ellipse must be longer than that alone makes it."""
     along = np.array([math.cos(own), math.sin(own)])
     least = 2 * math.sqrt(2 * MARKING / float(along @ D @ along)) / face_width
@@ -162,8 +175,14 @@ def _check_ellipse(side: str, asked: Contact, D: np.ndarray, own: float, face_wi
         )
 
 
-def gear_flank(surface: Surface, pinion: Member, shaft_angle: float) -> GearFlank:
+def gear_flank(surface: ContactSurface, pinion: Member, shaft_angle: float) -> GearFlank:
     """The gear's flank in its pair; ``shaft_angle`` in degrees."""
     blank = pinion.blank
-    return GearFlank(surface, math.radians(shaft_angle), pinion.teeth / surface.teeth, math.radians(blank.pitch_angle),
-                     blank.mean_cone_distance, blank.pitch_apex_beyond_crossing_point)  # fmt: skip
+    return GearFlank(
+        surface,
+        math.radians(shaft_angle),
+        pinion.teeth / surface.teeth,
+        math.radians(blank.pitch_angle),
+        blank.mean_cone_distance,
+        blank.pitch_apex_beyond_crossing_point,
+    )

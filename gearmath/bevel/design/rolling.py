@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.contact.surface import Surface
+from gearmath.bevel.contact.surface import ContactSurface
 from gearmath.bevel.turning import turned
 from gearmath.kernels import kernel
 
@@ -52,7 +52,7 @@ class Roll:
 class GearFlank:
     """The gear's flank in a pair. ``shaft_angle`` [rad], ``offset`` [mm]; ``pinion_beyond`` t_z of the pinion [mm]."""
 
-    surface: Surface
+    surface: ContactSurface
     shaft_angle: float
     ratio: float
     pinion_pitch_angle: float
@@ -98,8 +98,17 @@ class GearFlank:
             np.asarray(one) for one in self._rolling(own.contact[0], turn)
         )
         at = point.ravel() + self._apex
-        return Roll(at, -normal.ravel(), basis, curvature, vector.ravel(), float(beta[0, 0]), float(lever[0, 0]),
-                    sliding.ravel(), float(turn))  # fmt: skip
+        return Roll(
+            at,
+            -normal.ravel(),
+            basis,
+            curvature,
+            vector.ravel(),
+            float(beta[0, 0]),
+            float(lever[0, 0]),
+            sliding.ravel(),
+            float(turn),
+        )
 
     @property
     def _rolling(self) -> ca.Function:

@@ -47,9 +47,11 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
         raise InputError(f"{name}: cutter.process = 'face_hobbing': pairs are so far designed face milled only")
     blank_data, blank = blank_for(data, name)
     start = crown_gear_set(
-        blank_data, Method("fixed_setting", tilt=_tilt(data, blank), tilt_direction=math.pi / 2),
-        Method("completing", data.gear.generation), data.hand,
-    )  # fmt: skip
+        blank_data,
+        Method("fixed_setting", tilt=_tilt(data, blank), tilt_direction=math.pi / 2),
+        Method("completing", data.gear.generation),
+        data.hand,
+    )
     backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
     pinion = _with_edge(
         start.member("pinion"), edge_radius(data.pinion.blade_edge_radius, slots.pinion, blank.clearance)

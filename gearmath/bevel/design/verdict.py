@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from gearmath.bevel.contact.local import Local, local
+from gearmath.bevel.contact.local import LocalContact, local
 from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.contact.report import ARCSEC, side_mesh
-from gearmath.bevel.contact.system import Assembly, Touch
+from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
 from gearmath.bevel.design.route import Designed
 from gearmath.bevel.pair import check_pair
@@ -37,8 +37,8 @@ class Vertex:
     NaN where the contact has left both flanks there.
     """
 
-    touch: Touch
-    local: Local
+    touch: TouchPoint
+    local: LocalContact
     lag: tuple[float, float]
     place: tuple[float, float]
 
@@ -66,7 +66,7 @@ def vertex(run: Mesh) -> Vertex | None:
     return Vertex(touch, local(system, touch, run.assembly), (lags[0], lags[1]), place)
 
 
-def _flat(run: Mesh, thread: Thread, low: float, high: float) -> Touch | None:
+def _flat(run: Mesh, thread: Thread, low: float, high: float) -> TouchPoint | None:
     """The contact between two rotations at which the transmission has the slope of the ratio."""
     system = run.system
     return zero(lambda at: thread.at(system, at), lambda touch: float(touch.tangent[6]) + system.ratio, low, high)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.design import local_settings as local
-from gearmath.bevel.design.local_settings import MOVING, NAMES, Local, Wanted
+from gearmath.bevel.design.local_settings import MOVING, NAMES, LocalSystem, WantedPoint
 from gearmath.bevel.design.rolling import Meeting
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.identify.flank_target import FlankTarget, locate
@@ -32,7 +32,7 @@ _AT_BOUND = 1e-6
 class Fitted:
     """The settings found, the ease-off less what was wanted at the gear's grid (n,) [mm], and the bounds reached."""
 
-    local: Local
+    local: LocalSystem
     off: np.ndarray
     active: tuple[str, ...]
 
@@ -49,7 +49,7 @@ class Tried:
     """
 
     values: np.ndarray
-    local: Local
+    local: LocalSystem
     contact: np.ndarray
     off: np.ndarray
     rates: np.ndarray
@@ -63,14 +63,14 @@ class WholeFlank:
     """
 
     how: Generation
-    wanted: Wanted
+    wanted: WantedPoint
     meeting: Meeting
     gap: np.ndarray
     free: Sequence[str]
     extra: tuple[str, ...]
     bounds: np.ndarray
 
-    def tried(self, near: Local, contact: np.ndarray, values: np.ndarray) -> Tried | None:
+    def tried(self, near: LocalSystem, contact: np.ndarray, values: np.ndarray) -> Tried | None:
         """The extra settings at ``values``, from a solution nearby; None where there is none, or a place is not cut."""
         x = near.x.copy()
         where = [NAMES.index(name) for name in self.extra]
@@ -92,7 +92,7 @@ class WholeFlank:
         return Tried(values, found, crossing.contact, -crossing.deviation - self.gap, rates)
 
 
-def fit(problem: WholeFlank, start: Local, contact: np.ndarray) -> Fitted | None:
+def fit(problem: WholeFlank, start: LocalSystem, contact: np.ndarray) -> Fitted | None:
     """The extra settings within their bounds that bring the ease-off nearest to what is wanted, by least squares.
 
     ``contact`` (n,3) is where the flank of ``start`` is cut. None where a place of the gear is not cut there.

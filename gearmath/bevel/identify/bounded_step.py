@@ -61,9 +61,12 @@ def bounded_pass(p: int) -> Kernel:
         Quantity("part", "how much of the way was gone: 1 where no bound was met", "1", "t", (0.0, 1.0)),
     )
     function = ca.Function(
-        "bounded_pass", [matrix, right, low, high, step, fixed], [there, held, part],
-        [quantity.name for quantity in quantities], [quantity.name for quantity in outputs],
-    )  # fmt: skip
+        "bounded_pass",
+        [matrix, right, low, high, step, fixed],
+        [there, held, part],
+        [quantity.name for quantity in quantities],
+        [quantity.name for quantity in outputs],
+    )
     return Kernel(function, "One pass of a bounded least-squares step.", quantities, outputs, "primal active set")
 
 
@@ -97,10 +100,12 @@ def compensation_step(p: int) -> Kernel:
     for _ in range(p):
         step, fixed, _ = bounded_pass(p).function(damped, -g, low, high, step, fixed)
     function = ca.Function(
-        "compensation_step", [A, g, v, lower, upper, damping],
+        "compensation_step",
+        [A, g, v, lower, upper, damping],
         [step, -(2 * ca.dot(g, step) + ca.bilin(A, step, step))],
-        [quantity.name for quantity in quantities], ["step", "promised"],
-    )  # fmt: skip
+        [quantity.name for quantity in quantities],
+        ["step", "promised"],
+    )
     return Kernel(
         function,
         f"One bounded Levenberg-Marquardt step of {p} scaled settings, and the fall of the sum of squares it promises.",

@@ -23,9 +23,15 @@ _MATTERS = 1e-6
 
 
 def identify(
-    targets: Sequence[FlankTarget], free: Sequence[str] = FREE, *, objective: str = "points",
-    weights: np.ndarray | None = None, root_limit: float | None = None, noise: float = 0.0, bounds: Bounds = "machine",
-) -> Identification:  # fmt: skip
+    targets: Sequence[FlankTarget],
+    free: Sequence[str] = FREE,
+    *,
+    objective: str = "points",
+    weights: np.ndarray | None = None,
+    root_limit: float | None = None,
+    noise: float = 0.0,
+    bounds: Bounds = "machine",
+) -> Identification:
     """The errors, common to all targets, whose exact flanks fit the measured deviations best.
 
     ``objective`` is "points", or "surface" for the coefficients of the cubic deviation surfaces (6.3) with ``weights``
@@ -50,14 +56,24 @@ def identify(
     residual, jacobian = problem.deviations(v)  # type: ignore[misc]
     rms_before, rms_after = (float(np.sqrt(np.mean(values**2))) for values in (problem.measured, residual))
     held = [
-        variable.label for variable, part, low, high in zip(variables, v, lower[:p], upper[:p], strict=True)
+        variable.label
+        for variable, part, low, high in zip(variables, v, lower[:p], upper[:p], strict=True)
         if not low < part < high
-    ]  # fmt: skip
+    ]
     held += ["root line"] * bool((np.abs(slack) >= 1).any())
     return Identification(
-        variables, v * problem.scale, rms_before, rms_after, found.iterations, found.converged, jacobian,
-        residual, weighting, tuple(held), noise,
-    )  # fmt: skip
+        variables,
+        v * problem.scale,
+        rms_before,
+        rms_after,
+        found.iterations,
+        found.converged,
+        jacobian,
+        residual,
+        weighting,
+        tuple(held),
+        noise,
+    )
 
 
 def nothing_identified(targets: Sequence[FlankTarget]) -> Identification:

@@ -115,9 +115,12 @@ class Located:
 
 
 def locate(
-    target: FlankTarget, vectors: np.ndarray, moving: bool = True, bending: bool = False,
+    target: FlankTarget,
+    vectors: np.ndarray,
+    moving: bool = True,
+    bending: bool = False,
     start: np.ndarray | None = None,
-) -> Located:  # fmt: skip
+) -> Located:
     """Where the flank of settings and motions (83,) crosses the normals, found from ``start`` (n,3) on.
 
     ``vectors`` may also be (n,83), one for every point; ``start`` is the nominal contact if it is not given. The

@@ -116,9 +116,13 @@ def minimize(fit: Fit, lower: np.ndarray, upper: np.ndarray, matters: float = 0.
 
 
 def _nothing_to_gain(
-    at: Place, normal: tuple[np.ndarray, np.ndarray], lower: np.ndarray, upper: np.ndarray, promised: float,
+    at: Place,
+    normal: tuple[np.ndarray, np.ndarray],
+    lower: np.ndarray,
+    upper: np.ndarray,
+    promised: float,
     matters: float,
-) -> bool:  # fmt: skip
+) -> bool:
     """Whether an undamped step promises nothing; it promises more than the damped one, which is looked at first."""
     if not enough(promised, at.cost, len(at.residual), matters):
         return False

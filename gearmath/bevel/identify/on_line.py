@@ -94,15 +94,19 @@ def flank_on_line(kind: Kind = "plain", steps: int = _NEWTON_STEPS) -> Kernel:
     for _ in range(steps):
         solution = step(solution, *others)
     outputs = (
-        notation.contact, notation.deviation,
-        notation.curved_rates if kind == "curved" else notation.sensitivity, residual_size,
-    )  # fmt: skip
+        notation.contact,
+        notation.deviation,
+        notation.curved_rates if kind == "curved" else notation.sensitivity,
+        residual_size,
+    )
     name = "flank_on_line" if kind == "plain" else f"{kind}_on_line"
     function = ca.Function(
         name if steps == _NEWTON_STEPS else f"{name}_in_{steps}",
-        [guess, *others], [solution, *final(solution, *others)],
-        [quantity.name for quantity in quantities], [quantity.name for quantity in outputs],
-    )  # fmt: skip
+        [guess, *others],
+        [solution, *final(solution, *others)],
+        [quantity.name for quantity in quantities],
+        [quantity.name for quantity in outputs],
+    )
     return Kernel(
         function,
         "Deviation at a nominal point of the flank that other settings cut, with its gradient by the settings.",

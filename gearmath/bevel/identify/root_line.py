@@ -29,9 +29,12 @@ _STEP_LIMITS = (2.0, 0.1, 0.1)
 _TOLERANCE = 1e-9
 
 _depth_gradient = Quantity(
-    "depth_gradient", "depth gained per unit of every setting, of every coefficient of the motion and of the curvature",
-    "mixed", r"\partial D/\partial\mathbf{x}", shape=(83,),
-)  # fmt: skip
+    "depth_gradient",
+    "depth gained per unit of every setting, of every coefficient of the motion and of the curvature",
+    "mixed",
+    r"\partial D/\partial\mathbf{x}",
+    shape=(83,),
+)
 
 
 @cache
@@ -58,10 +61,12 @@ def root_depth() -> Kernel:
         solution = step(solution, *others)
     found, lagrange, left = final(solution, *others)
     function = ca.Function(
-        "root_depth", [guess, *others],
+        "root_depth",
+        [guess, *others],
         [solution, found, slope(lagrange, solution, *others), left],
-        [quantity.name for quantity in quantities], ["contact", "cone_depth", "depth_gradient", "residual_size"],
-    )  # fmt: skip
+        [quantity.name for quantity in quantities],
+        ["contact", "cone_depth", "depth_gradient", "residual_size"],
+    )
     return Kernel(
         function,
         "Depth of the root line below the pitch cone at a cone distance, with its gradient by settings and motion.",

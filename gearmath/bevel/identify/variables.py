@@ -20,16 +20,30 @@ from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS, Member
 #: How far a setting may be changed, mm or rad, and the curvature of a blade, 1/mm: beyond this something else is wrong
 #: with the machine.
 BOUNDS = {
-    "radial_distance": 1.0, "cradle_angle": 0.02, "cutter_tilt": 0.02, "cutter_swivel": 0.2, "blank_offset": 1.0,
-    "sliding_base": 1.0, "machine_center_to_crossing_point": 1.0, "machine_root_angle": 0.01, "ratio_of_roll": 0.02,
-    "work_rotation_offset": 0.02, "blade_point_radius": 1.0, "blade_pressure_angle": 0.01,
+    "radial_distance": 1.0,
+    "cradle_angle": 0.02,
+    "cutter_tilt": 0.02,
+    "cutter_swivel": 0.2,
+    "blank_offset": 1.0,
+    "sliding_base": 1.0,
+    "machine_center_to_crossing_point": 1.0,
+    "machine_root_angle": 0.01,
+    "ratio_of_roll": 0.02,
+    "work_rotation_offset": 0.02,
+    "blade_point_radius": 1.0,
+    "blade_pressure_angle": 0.01,
     "blade_spheric_radius": 0.001,
-}  # fmt: skip
+}
 #: The settings that are corrected: those of the machine, without tilt; cradle angle stands also for work rotation.
 FREE = (
-    "radial_distance", "cradle_angle", "blank_offset", "sliding_base", "machine_center_to_crossing_point",
-    "machine_root_angle", "ratio_of_roll",
-)  # fmt: skip
+    "radial_distance",
+    "cradle_angle",
+    "blank_offset",
+    "sliding_base",
+    "machine_center_to_crossing_point",
+    "machine_root_angle",
+    "ratio_of_roll",
+)
 #: The motions that are corrected besides, when asked: modified roll of second and third order, and helical motion.
 HIGHER_ORDER = ("work_rotation_offset.2", "work_rotation_offset.3", "sliding_base.1")
 #: A coefficient of θ^j may move the machine as far as the setting may be off, where the cradle has turned by this.
@@ -42,10 +56,16 @@ BOUND_NAMES: tuple[Bounds, ...] = get_args(Bounds)
 _DESIGN_PART = {"radial_distance": (0.7, 1.3), "ratio_of_roll": (0.7, 1.4), "blade_point_radius": (0.66, 1.33)}
 #: Most that a setting may be changed in a design, mm, rad and 1/mm.
 _DESIGN_CHANGE = {
-    "cradle_angle": math.radians(60), "cutter_tilt": math.radians(8), "cutter_swivel": math.radians(70),
-    "blank_offset": 5.0, "sliding_base": 5.0, "machine_center_to_crossing_point": 5.0,
-    "machine_root_angle": math.radians(1), "work_rotation_offset": math.radians(60), "blade_spheric_radius": 0.005,
-}  # fmt: skip
+    "cradle_angle": math.radians(60),
+    "cutter_tilt": math.radians(8),
+    "cutter_swivel": math.radians(70),
+    "blank_offset": 5.0,
+    "sliding_base": 5.0,
+    "machine_center_to_crossing_point": 5.0,
+    "machine_root_angle": math.radians(1),
+    "work_rotation_offset": math.radians(60),
+    "blade_spheric_radius": 0.005,
+}
 #: Least and largest pressure angle of a design [rad].
 _DESIGN_ANGLE = math.radians(5), math.radians(30)
 #: Largest 2C, 6D and 24E of a design: the coefficient of θ^j of the work rotation is that times R_a/j! (10.7).

@@ -49,21 +49,31 @@ class FileMethods:
         for folder in sinumerik.FOLDERS.values():
             node = await self._object(system, folder.text, f"{_PREFIX}{folder.text}")
             self._folders[folder.text] = node
-            await self._method(node, f"{_PREFIX}{folder.text}.CreateFile", "CreateFile", self._create,
-                               [ua.VariantType.String, ua.VariantType.Boolean],
-                               [ua.VariantType.NodeId, ua.VariantType.UInt32])  # fmt: skip
-            await self._method(node, f"{_PREFIX}{folder.text}.Delete", "Delete", self._delete,
-                               [ua.VariantType.NodeId], [])  # fmt: skip
+            await self._method(
+                node,
+                f"{_PREFIX}{folder.text}.CreateFile",
+                "CreateFile",
+                self._create,
+                [ua.VariantType.String, ua.VariantType.Boolean],
+                [ua.VariantType.NodeId, ua.VariantType.UInt32],
+            )
+            await self._method(
+                node, f"{_PREFIX}{folder.text}.Delete", "Delete", self._delete, [ua.VariantType.NodeId], []
+            )
         for home in homes:
             place, path = methods, f"/{sinumerik.METHODS.text}"
             if home == "new":
                 path += f"/{sinumerik.FILE_METHODS.text}"
                 place = await self._object(methods, sinumerik.FILE_METHODS.text, path)
             for name, call, takes, gives in (
-                (sinumerik.COPY_TO.text, self._copy_to,
-                 [ua.VariantType.String, ua.VariantType.ByteString, ua.VariantType.Boolean], []),
+                (
+                    sinumerik.COPY_TO.text,
+                    self._copy_to,
+                    [ua.VariantType.String, ua.VariantType.ByteString, ua.VariantType.Boolean],
+                    [],
+                ),
                 (sinumerik.COPY_FROM.text, self._copy_from, [ua.VariantType.String], [ua.VariantType.ByteString]),
-            ):  # fmt: skip
+            ):
                 await self._method(place, f"{path}/{name}", name, call, takes, gives, self.index)
         await self.refresh()
 

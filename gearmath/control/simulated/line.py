@@ -8,7 +8,7 @@ from contextlib import suppress
 _CHUNK = 65536
 
 
-class Line:
+class FaultyLine:
     """Passes connections on from ``port`` to the server's own; what is done to it is done to all of them."""
 
     def __init__(self, host: str, port: int, server_port: int) -> None:
@@ -64,9 +64,13 @@ class Line:
             task.add_done_callback(self._tasks.discard)
 
     async def _pump(
-        self, source: asyncio.StreamReader, target: asyncio.StreamWriter, both: tuple[asyncio.StreamWriter, ...],
-        alive: list[bool], delayed: bool,
-    ) -> None:  # fmt: skip
+        self,
+        source: asyncio.StreamReader,
+        target: asyncio.StreamWriter,
+        both: tuple[asyncio.StreamWriter, ...],
+        alive: list[bool],
+        delayed: bool,
+    ) -> None:
         """One direction of a connection."""
         with suppress(OSError):
             while data := await source.read(_CHUNK):

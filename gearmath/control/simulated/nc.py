@@ -12,8 +12,8 @@ from gearmath.control import sinumerik
 from gearmath.control.interface import AXES
 from gearmath.control.sinumerik import PROGRAM_ABORTED, PROGRAM_RUNNING
 from gearmath.errors import InputError
-from gearmath.machine.control.blocks import Row
-from gearmath.machine.control.executor import Run, run_program
+from gearmath.machine.control.blocks import PathRow
+from gearmath.machine.control.executor import ProgramRun, run_program
 from gearmath.machine.control.runner import Moment
 from gearmath.machine.control.state import Deflected, Follower, Probe, Setup
 from gearmath.machine.control.text import decoded
@@ -31,21 +31,21 @@ _STEPS = 20_000_000
 
 
 @dataclass(frozen=True)
-class Job:
+class NcJob:
     """What one program meets on the machine."""
 
     probe: Probe | None = None
     setup: Setup = field(default_factory=Setup)
     deflected: Deflected = lambda position: False
     moved: Follower = lambda position: None
-    done: Callable[[Run], object] = lambda run: None
+    done: Callable[[ProgramRun], object] = lambda run: None
     """Hears of the program when it has come to its end."""
 
 
-class Machine(Protocol):
+class NcMachine(Protocol):
     """The machine behind the control."""
 
-    def job(self, text: str, name: str, number: int) -> Job:
+    def job(self, text: str, name: str, number: int) -> NcJob:
         """What a program meets, in run ``number``. Raises InputError where it cannot be run."""
         ...
 
@@ -79,7 +79,7 @@ class Nc:
     Only the operator selects, starts and resets: :meth:`select`, :meth:`start`, :meth:`reset`.
     """
 
-    def __init__(self, machine: Machine, speed: float = 1.0) -> None:
+    def __init__(self, machine: NcMachine, speed: float = 1.0) -> None:
         self.machine, self.speed = machine, speed
         self.parameters: dict[int, float] = {}
         self.position = [0.0] * len(AXES)
@@ -179,9 +179,18 @@ class Nc:
                 if path.startswith(self._folder) and path != self.selected
             }
             run = run_program(
-                text, name, job.probe, self._host, self.parameters, step_limit=_STEPS, setup=job.setup, files=there,
-                deflected=job.deflected, moved=job.moved, watch=self._watch,
-            )  # fmt: skip
+                text,
+                name,
+                job.probe,
+                self._host,
+                self.parameters,
+                step_limit=_STEPS,
+                setup=job.setup,
+                files=there,
+                deflected=job.deflected,
+                moved=job.moved,
+                watch=self._watch,
+            )
             self.parameters.update(run.parameters)
             self._keep(run.files)
             if run.alarm is not None:
@@ -235,7 +244,7 @@ class Nc:
             if number == _OFFERED and value > 0.0:
                 self._say("offered", int(value), tuple(parameters.get(k, 0.0) for k in _TOUCH))
 
-    def _travel(self, row: Row) -> None:
+    def _travel(self, row: PathRow) -> None:
         """The way of one block, in its time."""
         start = self._before or row.position
         self._before = row.position

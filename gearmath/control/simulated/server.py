@@ -18,7 +18,7 @@ from asyncua.server.event_generator import EventGenerator
 from gearmath.control import sinumerik
 from gearmath.control.simulated.access import Access, caller
 from gearmath.control.simulated.files import FileMethods
-from gearmath.control.simulated.line import Line
+from gearmath.control.simulated.line import FaultyLine
 from gearmath.control.simulated.nc import Nc, NcAlarm
 from gearmath.control.simulated.session import ControlServer
 from gearmath.control.simulated.values import first_names, item
@@ -55,7 +55,7 @@ class SimulatedControl:
     ) -> None:
         self.nc, self.access, self.identity = nc, access, identity
         self.appearance = appearance or Appearance()
-        self.line = Line(_HOST, port, 0)
+        self.line = FaultyLine(_HOST, port, 0)
         self.clock_off = timedelta()
         """What the clock of the control shows beyond the right time."""
         self._server: Server | None = None
@@ -129,8 +129,11 @@ class SimulatedControl:
         )
         await methods.add_method(
             node_id(f"/{sinumerik.METHODS.text}/{sinumerik.MY_RIGHTS.text}", index),
-            ua.QualifiedName(sinumerik.MY_RIGHTS.text, index), self._my_rights, [], [ua.VariantType.String],
-        )  # fmt: skip
+            ua.QualifiedName(sinumerik.MY_RIGHTS.text, index),
+            self._my_rights,
+            [],
+            [ua.VariantType.String],
+        )
         self._files = FileMethods(server, self.nc, self.access, index)
         await self._files.build(root, methods, self.appearance.homes)
         await self._alarms(server, root)
@@ -208,10 +211,15 @@ class SimulatedControl:
         """Alarms come from ``Sinumerik``, and so do the brackets of a refresh."""
         index = await server.register_namespace(sinumerik.ALARM_NAMESPACE.text)
         self._alarm_type = await server.create_custom_event_type(
-            index, sinumerik.ALARM_TYPE.text, node_id(ua.ObjectIds.DiscreteAlarmType),
-            [("AlarmIdentifier", ua.VariantType.String), ("AuxParameters", ua.VariantType.String),
-             ("HelpSource", ua.VariantType.String)],
-        )  # fmt: skip
+            index,
+            sinumerik.ALARM_TYPE.text,
+            node_id(ua.ObjectIds.DiscreteAlarmType),
+            [
+                ("AlarmIdentifier", ua.VariantType.String),
+                ("AuxParameters", ua.VariantType.String),
+                ("HelpSource", ua.VariantType.String),
+            ],
+        )
         self._root = root
         for kind in (ua.ObjectIds.RefreshStartEventType, ua.ObjectIds.RefreshEndEventType):
             generator = EventGenerator(self.inner.isession)

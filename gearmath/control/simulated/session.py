@@ -206,9 +206,11 @@ class ControlSession(InternalSession):
             if not events:
                 control.variables.find(one.ItemToMonitor.NodeId)
         rates = [
-            0.0 if one.ItemToMonitor.AttributeId == ua.AttributeIds.EventNotifier
-            else 1000.0 / granted(one.RequestedParameters.SamplingInterval) for one in params.ItemsToCreate
-        ]  # fmt: skip
+            0.0
+            if one.ItemToMonitor.AttributeId == ua.AttributeIds.EventNotifier
+            else 1000.0 / granted(one.RequestedParameters.SamplingInterval)
+            for one in params.ItemsToCreate
+        ]
         if sum(control.budget.subscribed.values()) + sum(rates) > sinumerik.SAMPLES_PER_SECOND:
             raise ServiceError(_CODES.BadTooManyMonitoredItems)
         results = await super().create_monitored_items(params)
@@ -219,9 +221,11 @@ class ControlSession(InternalSession):
         return results
 
     async def create_subscription(
-        self, params: ua.CreateSubscriptionParameters, callback: Callable[..., Any],
+        self,
+        params: ua.CreateSubscriptionParameters,
+        callback: Callable[..., Any],
         request_callback: Callable[..., Any] | None = None,
-    ) -> ua.CreateSubscriptionResult:  # fmt: skip
+    ) -> ua.CreateSubscriptionResult:
         if self.external:
             await self._before()
             params.RequestedPublishingInterval = granted(params.RequestedPublishingInterval)

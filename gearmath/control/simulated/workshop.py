@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from gearmath.bevel.pair import load_pair
-from gearmath.control.simulated.nc import Job
+from gearmath.control.simulated.nc import NcJob
 from gearmath.errors import InputError
-from gearmath.machine.control.executor import Run
+from gearmath.machine.control.executor import ProgramRun
 from gearmath.machine.control.state import Probe, Setup
 from gearmath.machine.judging.stated import Stated, stated_member
 from gearmath.machine.measuring.artefacts import Artefacts
@@ -49,7 +49,7 @@ class Workshop:
         """A gear set whose programs are to be understood, the corrected ones besides the first."""
         self.sets.append(load_pair(path))
 
-    def job(self, text: str, name: str, number: int) -> Job:
+    def job(self, text: str, name: str, number: int) -> NcJob:
         """What a program of gearmath meets; any other one moves in the air."""
         setup = Setup.of(self.machine, self.calibration.length)
         if touches_artefacts(text):
@@ -58,14 +58,14 @@ class Workshop:
             return self._probing(self._member(text, name), setup, touch_count(text, name, setup), number)
         if Stated.of(text).is_ours:
             self._set_of(text, name)
-            return Job(setup=setup, done=lambda run: self._cut(text, name, run))
-        return Job(setup=setup)
+            return NcJob(setup=setup, done=lambda run: self._cut(text, name, run))
+        return NcJob(setup=setup)
 
-    def _probing(self, probe: Probe, setup: Setup, touches: int | None, number: int) -> Job:
+    def _probing(self, probe: Probe, setup: Setup, touches: int | None, number: int) -> NcJob:
         if self.shop is None:
-            return Job(probe, setup)
+            return NcJob(probe, setup)
         erring = ErringProbe(probe, self.shop, touches, number)
-        return Job(erring, setup, moved=erring.follow)
+        return NcJob(erring, setup, moved=erring.follow)
 
     def _member(self, text: str, name: str) -> ProbeMachine:
         """The member on the table, under the probe."""
@@ -77,7 +77,7 @@ class Workshop:
         metal = MilledSurface(self.metal[member], spec, member, name)
         return ProbeMachine(spec, member, self.machine, self.calibration, metal, metal.lowest, seat)
 
-    def _cut(self, text: str, name: str, run: Run) -> None:
+    def _cut(self, text: str, name: str, run: ProgramRun) -> None:
         """Mill what the program has cut; the noise of a probe is no metal."""
         found, member = self._set_of(text, name)
         quiet = None if self.shop is None else self.shop.model_copy(update={"probe": ProbeErrors()})

@@ -175,10 +175,16 @@ def crossing(is_arc: bool) -> Kernel:
     left = Quantity("crossing_rest", "distance that is left between edge and line", "mm", "r")
     name = "arc_crossing" if is_arc else "straight_crossing"
     function = ca.Function(
-        name, [start, *arguments], [solution, rest(solution, *arguments)],
-        [q.name for q in quantities], ["crossing", "crossing_rest"],
-    )  # fmt: skip
+        name,
+        [start, *arguments],
+        [solution, rest(solution, *arguments)],
+        [q.name for q in quantities],
+        ["crossing", "crossing_rest"],
+    )
     return Kernel(
-        function, f"Where the edge of one blade crosses a line within a block, {NEWTON_STEPS} damped Newton steps.",
-        quantities, (found, left), "(17.2) of a straight block, against a line",
-    )  # fmt: skip
+        function,
+        f"Where the edge of one blade crosses a line within a block, {NEWTON_STEPS} damped Newton steps.",
+        quantities,
+        (found, left),
+        "(17.2) of a straight block, against a line",
+    )

@@ -44,10 +44,17 @@ class Profile:
         """As ``notation.outer_blade`` (7,); a blade without an edge radius has its edge at the point radius."""
         center = self.point_radius if math.isnan(self.edge_center) else self.edge_center
         joint = self.pressure_angle if math.isnan(self.joint) else self.joint
-        return np.array([
-            self.point_radius, self.pressure_angle, self.curvature, self.reference_height, center, self.edge_radius,
-            joint,
-        ])  # fmt: skip
+        return np.array(
+            [
+                self.point_radius,
+                self.pressure_angle,
+                self.curvature,
+                self.reference_height,
+                center,
+                self.edge_radius,
+                joint,
+            ]
+        )
 
     def raised(self, height: float, side: int) -> Profile:
         """The blade from a height up: without the edge below it."""
@@ -72,10 +79,14 @@ class Body:
     @property
     def annulus(self) -> np.ndarray:
         """Sharp cones that hold the body (4,): point radius and slope of the outer blade, then of the inner one."""
-        return np.array([
-            self.outer.enclosing_radius(1, self.height), math.tan(self.outer.pressure_angle),
-            self.inner.enclosing_radius(-1, self.height), math.tan(self.inner.pressure_angle),
-        ])  # fmt: skip
+        return np.array(
+            [
+                self.outer.enclosing_radius(1, self.height),
+                math.tan(self.outer.pressure_angle),
+                self.inner.enclosing_radius(-1, self.height),
+                math.tan(self.inner.pressure_angle),
+            ]
+        )
 
     @property
     def sharp(self) -> bool:
@@ -156,10 +167,13 @@ def _other_side(spec: Flank, flank: str, other: Flank, width: float) -> Flank:
     return spec.model_copy(
         update={
             "blade_point_radius": spec.blade_point_radius - SIDES[flank] * width,
-            "blade_pressure_angle": other.blade_pressure_angle, "blade_spheric_radius": None, "toprem_angle": None,
-            "toprem_height": 0.0, "design": None,
+            "blade_pressure_angle": other.blade_pressure_angle,
+            "blade_spheric_radius": None,
+            "toprem_angle": None,
+            "toprem_height": 0.0,
+            "design": None,
         }
-    )  # fmt: skip
+    )
 
 
 def _as_cut(spec: Flank) -> Flank:
@@ -181,9 +195,12 @@ def _profile(sections: dict[str, Section], spec: Flank, side: int) -> Profile:
     if lowest.arc is None:
         return Profile(lowest.point_radius, lowest.pressure_angle, **rounded)
     return Profile(
-        spec.blade_point_radius, math.radians(spec.blade_pressure_angle), 1 / lowest.arc[2],
-        spec.blade_reference_height, **rounded,
-    )  # fmt: skip
+        spec.blade_point_radius,
+        math.radians(spec.blade_pressure_angle),
+        1 / lowest.arc[2],
+        spec.blade_reference_height,
+        **rounded,
+    )
 
 
 def _moved(profile: Profile, by: float) -> Profile:

@@ -29,8 +29,9 @@ def work_profiles(member: Member, fixture: Fixture) -> dict[str, np.ndarray]:
     """
     corners = {
         (end, edge): np.array([float(value) for value in kernel("flank_place")(member.blank.vector, end, edge)])
-        for end in (0.0, 1.0) for edge in (0.0, 1.0)
-    }  # fmt: skip
+        for end in (0.0, 1.0)
+        for edge in (0.0, 1.0)
+    }
     delta = math.radians(member.blank.pitch_angle)
     inward = np.array([math.sin(delta), -math.cos(delta)])  # along the end faces, away from the tip
     below = member.blank.clearance + _UNDER_ROOT

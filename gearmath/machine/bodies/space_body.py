@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gearmath.bevel.tooth import FlankSurface, ToothSpace, tooth_space
+from gearmath.bevel.tooth import SpaceFlank, ToothSpace, tooth_space
 from gearmath.bevel.turning import turned
 from gearmath.specs.bevel_set import Member
 
@@ -75,7 +75,7 @@ class SpaceBody:
         return result
 
 
-def _flank(surface: FlankSurface) -> tuple[np.ndarray, np.ndarray]:
+def _flank(surface: SpaceFlank) -> tuple[np.ndarray, np.ndarray]:
     return surface.point.reshape(-1, 3), surface.normal.reshape(-1, 3)
 
 

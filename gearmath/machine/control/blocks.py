@@ -21,15 +21,32 @@ _NEEDED_FOR_MOTION = {
 }
 #: Whether these act before or after the motion of their block is a setting of the machine.
 _NOT_WITH_MOTION = (
-    "spindle", "SPOS", "tool change", "coolant", "program stop", "program end", "T", "D", "S", "compressor", "dwell",
-)  # fmt: skip
+    "spindle",
+    "SPOS",
+    "tool change",
+    "coolant",
+    "program stop",
+    "program end",
+    "T",
+    "D",
+    "S",
+    "compressor",
+    "dwell",
+)
 #: What a program must say before its first motion, or else it depends on what ran before.
 STATED = {
-    "stop mode": "path mode (G60 or G642)", "acceleration": "SOFT or BRISK", "feed forward": "FFWON or FFWOF",
-    "transformation": "TRAFOOF", "compressor": "COMPOF", "diameter programming": "DIAMOF", "frames": "TRANS",
-    "path axes": "FGROUP", "OVR": "OVR", "OVRRAP": "OVRRAP",
+    "stop mode": "path mode (G60 or G642)",
+    "acceleration": "SOFT or BRISK",
+    "feed forward": "FFWON or FFWOF",
+    "transformation": "TRAFOOF",
+    "compressor": "COMPOF",
+    "diameter programming": "DIAMOF",
+    "frames": "TRANS",
+    "path axes": "FGROUP",
+    "OVR": "OVR",
+    "OVRRAP": "OVRRAP",
     **{f"ACC {axis}": f"ACC[{axis}]" for axis in AXES},
-}  # fmt: skip
+}
 #: And what with a path mode that rounds corners.
 WITHIN = {"CTOL": "CTOL", "OTOL": "OTOL"}
 _ALL = AXES + CUTTER_AXIS
@@ -39,7 +56,7 @@ _HALF_RESOLUTION_DEG = 5e-7
 _LARGEST_COORDINATE = 1e6
 
 
-class Row(NamedTuple):
+class PathRow(NamedTuple):
     """One motion block that ends at a known position of five axes, and of C or NaN; degrees, A and C counted on.
 
     ``rpm`` is the speed of the spindle, negative with M4, 0 where it stands or is an axis.
@@ -56,10 +73,10 @@ class Row(NamedTuple):
     coolant: bool
 
 
-class Control(State):
+class ControlState(State):
     """A control that runs blocks, one after the other."""
 
-    def run(self, block: Block, number: Number) -> Row | None:
+    def run(self, block: Block, number: Number) -> PathRow | None:
         """Let one block act; the row of the path if it moves to a position that is known."""
         words = block.words
         if self.ended:
@@ -88,7 +105,7 @@ class Control(State):
             self._refuse(block, key, f"{words[key].text} without axis words")
         return None
 
-    def _move(self, block: Block, number: Number) -> Row | None:
+    def _move(self, block: Block, number: Number) -> PathRow | None:
         """The motion of one block; None while the position of an axis is still unknown."""
         name, line, words = self.name, block.line, block.words
         column = min(words[axis].column for axis in _ALL if axis in words)
@@ -129,7 +146,7 @@ class Control(State):
         if self.tool is None:
             return None
         position, cutter = tuple(self.position[axis] for axis in AXES), self.position.get(CUTTER_AXIS, math.nan)
-        return Row(
+        return PathRow(
             position,
             rapid,
             self.tool or "",

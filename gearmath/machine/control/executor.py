@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from gearmath.machine.control.blocks import Control
+from gearmath.machine.control.blocks import ControlState
 from gearmath.machine.control.expression import AXES, refuse
 from gearmath.machine.control.reader import read_program
-from gearmath.machine.control.runner import Halt, Host, Runner, Stopped, Watch
+from gearmath.machine.control.runner import Halt, Host, StatementRunner, Stopped, Watch
 from gearmath.machine.control.state import Blind, Deflected, Follower, Probe, Setup
-from gearmath.machine.control.tree import Program
+from gearmath.machine.control.tree import ParsedProgram
 
 #: Blocks and turns of loops that a program may run through.
 STEP_LIMIT = 1_000_000
-_KEPT: dict[str, Program] = {}
+_KEPT: dict[str, ParsedProgram] = {}
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class MachinePath:
 
 
 @dataclass(frozen=True)
-class Run:
+class ProgramRun:
     """All that a program did: its path, the texts of its files, its messages, the R parameters at its end."""
 
     path: MachinePath
@@ -92,7 +92,7 @@ def execute(text: str, name: str, setup: Setup = AS_WRITTEN) -> MachinePath:
     return done.path
 
 
-def parsed(text: str, name: str) -> Program:
+def parsed(text: str, name: str) -> ParsedProgram:
     """The statements of a text, as ``read_program`` reads them.
 
     A program is often run several times, from other states of the control: the last one is kept.
@@ -116,7 +116,7 @@ def run_program(
     deflected: Deflected = lambda position: False,
     moved: Follower = lambda position: None,
     watch: Watch | None = None,
-) -> Run:
+) -> ProgramRun:
     """Run a program as the control would, with a ``probe`` for its MEAS blocks and a ``host`` that answers.
 
     ``parameters`` are the R parameters at the start; others are 0. ``setup`` is how the control stands, ``files`` are
@@ -126,7 +126,9 @@ def run_program(
     ``step_limit`` steps.
     """
     program = parsed(text, name)
-    runner = Runner(Control(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved, watch)
+    runner = StatementRunner(
+        ControlState(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved, watch
+    )
     runner.holds(files or {})
     try:
         runner.all(program.body)
@@ -136,13 +138,18 @@ def run_program(
         if not runner.control.ended:
             refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
     files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
-    return Run(
-        _path(runner), files, tuple(runner.messages), runner.parameters, runner.alarm, tuple(runner.said),
+    return ProgramRun(
+        _path(runner),
+        files,
+        tuple(runner.messages),
+        runner.parameters,
+        runner.alarm,
+        tuple(runner.said),
         tuple(sorted(runner.taken)),
-    )  # fmt: skip
+    )
 
 
-def _path(runner: Runner) -> MachinePath:
+def _path(runner: StatementRunner) -> MachinePath:
     """The rows as arrays, in mm and rad."""
     rows, control = runner.rows, runner.control
     positions = np.array([row.position for row in rows]).reshape(-1, len(AXES))

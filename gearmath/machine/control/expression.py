@@ -49,10 +49,20 @@ FUNCTIONS: dict[str, tuple[int, Callable[..., float]]] = {
 }
 #: System variables, and what stands in their brackets, where they have any.
 SYSTEM = {
-    "$AA_MM": "axis", "$AA_MW": "axis", "$AC_MEA": "1", "$A_PROBE": "1", "$AA_IM": "axis", "$P_ACTFRAME": "axis,part",
-    "$P_TOOLL": "1", "$P_TOOLNO": "", "$TC_TP2": "$P_TOOLNO", "$MN_SCALING_SYSTEM_IS_METRIC": "",
-    "$MN_INT_INCR_PER_MM": "", "$MN_INT_INCR_PER_DEG": "", "$MN_LEN_PROTOCOL_FILE": "",
-}  # fmt: skip
+    "$AA_MM": "axis",
+    "$AA_MW": "axis",
+    "$AC_MEA": "1",
+    "$A_PROBE": "1",
+    "$AA_IM": "axis",
+    "$P_ACTFRAME": "axis,part",
+    "$P_TOOLL": "1",
+    "$P_TOOLNO": "",
+    "$TC_TP2": "$P_TOOLNO",
+    "$MN_SCALING_SYSTEM_IS_METRIC": "",
+    "$MN_INT_INCR_PER_MM": "",
+    "$MN_INT_INCR_PER_DEG": "",
+    "$MN_LEN_PROTOCOL_FILE": "",
+}
 AXES = "XYZAB"
 _INSIDE = {"axis": re.compile(rf"[{AXES}]"), "axis,part": re.compile(rf"[{AXES}],TR|[XYZ],(?:RT|MI|SC)")}
 #: The cutter's spindle, once SPOS has made an axis of it.
@@ -72,7 +82,7 @@ class Constant:
 
 
 @dataclass(frozen=True)
-class Variable:
+class NcVariable:
     """``R`` with an index, a variable of the program with its indices, or a system variable of an axis."""
 
     name: str
@@ -90,7 +100,7 @@ class Operation:
     column: int
 
 
-Node = Constant | Variable | Operation
+Node = Constant | NcVariable | Operation
 
 
 class Scanner:
@@ -224,14 +234,14 @@ class Scanner:
             if not self.take(","):
                 self.refuse("')' is missing")
 
-    def variable(self, name: str, at: int, depth: int = 0) -> Variable:
+    def variable(self, name: str, at: int, depth: int = 0) -> NcVariable:
         """A variable whose name is read, with what stands in its brackets."""
         if name in SYSTEM:
             return self._system(name, at)
         if name.startswith("$"):
             self.refuse(f"the system variable {shown(name)} is not understood", at)
         if name[0] == "R" and name[1:].isdecimal():
-            return Variable("R", (Constant(self.number(name[1:], at)),), at + 1)
+            return NcVariable("R", (Constant(self.number(name[1:], at)),), at + 1)
         self.check_length(name, at)
         if self.text.startswith("(", self.at):
             self.refuse(f"{name} is no function that is understood", at)
@@ -247,19 +257,19 @@ class Scanner:
                     self.refuse("']' is missing")
         if name == "R" and len(index) != 1:
             self.refuse("R needs one number, as in R1 or R[1]", at)
-        return Variable(name, tuple(index), at + 1)
+        return NcVariable(name, tuple(index), at + 1)
 
-    def _system(self, name: str, at: int) -> Variable:
+    def _system(self, name: str, at: int) -> NcVariable:
         """A system variable whose name is read, with what stands in its brackets."""
         inside = SYSTEM[name]
         if not inside:
-            return Variable(name, (), at + 1)
+            return NcVariable(name, (), at + 1)
         self.need("[")
         found = self.match(_INSIDE.get(inside) or re.compile(re.escape(inside)))
         if found is None:
             self.refuse(f"{name} of {shown(self._rest())} is not understood")
         self.need("]")
-        return Variable(name, (), at + 1, found[0] if inside in _INSIDE else "")
+        return NcVariable(name, (), at + 1, found[0] if inside in _INSIDE else "")
 
     def check_length(self, name: str, at: int) -> None:
         if len(name) > LONGEST_NAME:

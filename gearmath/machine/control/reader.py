@@ -15,7 +15,7 @@ from gearmath.machine.control.expression import AXES, Constant, Node, shown
 from gearmath.machine.control.refused import instead
 from gearmath.machine.control.structure import Keyword, structured
 from gearmath.machine.control.text import check_file_name, check_program_name, divided
-from gearmath.machine.control.tree import Block, Command, Definition, Program, Statement, Word
+from gearmath.machine.control.tree import Block, Command, Definition, ParsedProgram, Statement, Word
 from gearmath.machine.control.vocabulary import COMMANDS, RESERVED, STRUCTURE, TYPES
 from gearmath.machine.control.words import TARGET, WordScanner
 
@@ -32,7 +32,7 @@ _LARGEST_BLOCK_NUMBER = 99_999_999
 _LARGEST_FIELD = 10_000
 
 
-def read_program(text: str, name: str) -> Program:
+def read_program(text: str, name: str) -> ParsedProgram:
     """The statements of a program. Raises InputError with ``name``, line and column for what is not understood.
 
     Capitals and small letters are the same outside texts. A block that begins with ``/`` is taken as not skipped;
@@ -54,7 +54,7 @@ def read_program(text: str, name: str) -> Program:
 
     lines = text.count("\n") + 1
     body = tuple(structured(parts(), name, lines))
-    return Program(name, body, comments, lines)
+    return ParsedProgram(name, body, comments, lines)
 
 
 class _AtLine(WordScanner):

@@ -49,7 +49,7 @@ _HINTS: dict[str, str] = {
     "(": "a comment begins with ;",
     "#": "a variable is written R1",
     "%": "% stands in the first line only, as %_N_NAME_MPF",
-}  # fmt: skip
+}
 _WORD = re.compile(r"[A-Z]+")
 _WITH_NUMBER = re.compile(r"([GM])0*([0-9]+)")
 #: Words whose name ends before their number or parameter.

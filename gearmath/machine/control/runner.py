@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearmath.machine.control.blocks import Control, Row
-from gearmath.machine.control.expression import AXES, Node, Value, Variable, refuse
+from gearmath.machine.control.blocks import ControlState, PathRow
+from gearmath.machine.control.expression import AXES, NcVariable, Node, Value, refuse
 from gearmath.machine.control.state import Deflected, Follower
 from gearmath.machine.control.tree import Block, Branch, Command, Definition, Loop, Statement
 from gearmath.machine.control.values import evaluate, indices, number
@@ -35,7 +35,7 @@ class Moment(NamedTuple):
     parameters: Mapping[int, float]
     messages: list[str]
     files: Mapping[str, list[str]]
-    row: Row | None
+    row: PathRow | None
     """The motion that has been made, at the end of its block; None before a statement."""
 
 
@@ -56,19 +56,25 @@ class Stopped(Exception):
     """The program ended before the end of its text: M30 in a branch or in a loop."""
 
 
-class Runner:
+class StatementRunner:
     """Statements in the order in which they act."""
 
     def __init__(
-        self, control: Control, host: Host | None, parameters: dict[int, float], step_limit: int, deflected: Deflected,
-        moved: Follower, watch: Watch | None,
-    ) -> None:  # fmt: skip
+        self,
+        control: ControlState,
+        host: Host | None,
+        parameters: dict[int, float],
+        step_limit: int,
+        deflected: Deflected,
+        moved: Follower,
+        watch: Watch | None,
+    ) -> None:
         self.unset: dict[int, int] = {}
         self.control, self.host, self.parameters, self.steps_left = control, host, parameters, step_limit
         self.deflected, self.moved, self.watch = deflected, moved, watch
         self.variables: dict[tuple[str, tuple[int, ...]], float] = {}
         self.integer: dict[str, bool] = {}
-        self.rows: list[Row] = []
+        self.rows: list[PathRow] = []
         self.files: dict[str, list[str]] = {}
         self._sizes: dict[str, int] = {}
         self.messages: list[str] = []
@@ -100,7 +106,7 @@ class Runner:
             else:
                 self._define(statement)
 
-    def read(self, variable: Variable, index: tuple[int, ...], line: int) -> Value:
+    def read(self, variable: NcVariable, index: tuple[int, ...], line: int) -> Value:
         """The value of a variable, for :func:`evaluate`."""
         name, column = variable.name, variable.column
         if name == "R":
@@ -115,11 +121,11 @@ class Runner:
             self._unknown(variable, index, line)
         return self.variables[name, index]
 
-    def _unknown(self, variable: Variable, index: tuple[int, ...], line: int) -> None:
+    def _unknown(self, variable: NcVariable, index: tuple[int, ...], line: int) -> None:
         where = f"[{','.join(map(str, index))}]" if index else ""
         refuse(self.control.name, line, variable.column, f"the variable {variable.name}{where} is not defined")
 
-    def _system(self, variable: Variable, line: int) -> Value:
+    def _system(self, variable: NcVariable, line: int) -> Value:
         latch, name, control = self.control.latch, variable.name, self.control
         setup = control.setup
         if name == "$A_PROBE":
@@ -171,7 +177,7 @@ class Runner:
         if self.control.ended:
             raise Stopped
 
-    def _watched(self, line: int, row: Row | None = None) -> None:
+    def _watched(self, line: int, row: PathRow | None = None) -> None:
         if self.watch is not None:
             self.watch(Moment(line, self.parameters, self.messages, self.files, row))
 
@@ -192,7 +198,7 @@ class Runner:
         if "dwell" in block.words and self.host is not None:
             self._pending.update(self.host(dict(self.parameters)))
 
-    def _assign(self, target: Variable, value: float, line: int) -> None:
+    def _assign(self, target: NcVariable, value: float, line: int) -> None:
         index = indices(target, self, self.control.name, line)
         if target.name == "R":
             self.parameters.setdefault(index[0], value)  # to be written, not read
@@ -272,7 +278,7 @@ class Runner:
         name, line, column = self.control.name, command.line, command.column
         _, file, *texts = self._arguments(command, 2 if command.name == "DELETE" else 3)
         error = command.arguments[0]
-        if not (isinstance(error, Variable) and self.integer.get(error.name)):
+        if not (isinstance(error, NcVariable) and self.integer.get(error.name)):
             refuse(name, line, column, f"the first argument of {command.name} must be a variable of DEF INT")
         if not (isinstance(file, str) and all(isinstance(text, str) for text in texts)):
             refuse(name, line, column, f"{command.name} takes the name of a file{' and a text' if texts else ''}")

@@ -67,9 +67,13 @@ class Setup:
         tip = machine.z_reference == "tip"
         values = machine.work_offset_values
         return Setup(
-            values, values, machine.tool_length if tip else 0.0, probe_length if tip else 0.0,
-            work_offset=machine.work_offset, result_file_kB=machine.control.result_file_kB or Setup.result_file_kB,
-        )  # fmt: skip
+            values,
+            values,
+            machine.tool_length if tip else 0.0,
+            probe_length if tip else 0.0,
+            work_offset=machine.work_offset,
+            result_file_kB=machine.control.result_file_kB or Setup.result_file_kB,
+        )
 
     def length(self, tool: str | None) -> float:
         """Length 1 of a tool in the table [mm]."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from gearmath.machine.control.expression import Node, Variable
+from gearmath.machine.control.expression import NcVariable, Node
 
 
 class Word(NamedTuple):
@@ -20,7 +20,7 @@ class Word(NamedTuple):
 class Assignment(NamedTuple):
     """A variable of the program and its new value."""
 
-    target: Variable
+    target: NcVariable
     value: Node
 
 
@@ -73,7 +73,7 @@ class Loop:
     column: int
     condition: Node | None
     body: tuple[Statement, ...]
-    counter: Variable | None = None
+    counter: NcVariable | None = None
     first: Node | None = None
     last: Node | None = None
 
@@ -82,7 +82,7 @@ Statement = Block | Command | Definition | Branch | Loop
 
 
 @dataclass(frozen=True)
-class Program:
+class ParsedProgram:
     """The statements of a text, and its comments by line; ``lines`` is the number of its lines."""
 
     name: str

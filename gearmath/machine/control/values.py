@@ -6,19 +6,19 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
-from gearmath.machine.control.expression import FUNCTIONS, LARGEST, Constant, Node, Operation, Value, Variable, refuse
+from gearmath.machine.control.expression import FUNCTIONS, LARGEST, Constant, NcVariable, Node, Operation, Value, refuse
 from gearmath.machine.control.text import LONGEST_TEXT
 
 _EQUAL = 1e-12
 
 
-class Variables(Protocol):
+class NcVariables(Protocol):
     """Where the values of variables come from."""
 
-    def read(self, variable: Variable, index: tuple[int, ...], line: int) -> Value: ...
+    def read(self, variable: NcVariable, index: tuple[int, ...], line: int) -> Value: ...
 
 
-def evaluate(node: Node, variables: Variables, name: str, line: int) -> Value:
+def evaluate(node: Node, variables: NcVariables, name: str, line: int) -> Value:
     """The value of an expression. Raises InputError where an operand is of the wrong kind or there is no result."""
     # a long sum is deep on its left only: down there in a loop, for Python has a limit of its own
     waiting: list[Operation] = []
@@ -53,7 +53,7 @@ def _result(node: Operation, operands: list[Value], name: str, line: int) -> Val
     return result
 
 
-def indices(variable: Variable, variables: Variables, name: str, line: int) -> tuple[int, ...]:
+def indices(variable: NcVariable, variables: NcVariables, name: str, line: int) -> tuple[int, ...]:
     """Whole numbers in the brackets of a variable."""
     values = [number(index, variables, name, line, variable.column) for index in variable.index]
     for value in values:
@@ -62,7 +62,7 @@ def indices(variable: Variable, variables: Variables, name: str, line: int) -> t
     return tuple(int(value) for value in values)
 
 
-def number(node: Node, variables: Variables, name: str, line: int, column: int) -> float:
+def number(node: Node, variables: NcVariables, name: str, line: int, column: int) -> float:
     """The value of an expression that must be a number."""
     if isinstance(node, Constant) and isinstance(node.value, float):
         return node.value
@@ -74,9 +74,14 @@ def number(node: Node, variables: Variables, name: str, line: int, column: int) 
 
 _TRUTH = {"truth value"}
 _WANTED: Mapping[str, set[str]] = {
-    "AND": _TRUTH, "OR": _TRUTH, "XOR": _TRUTH, "NOT": _TRUTH, "<<": {"number", "text"},
-    "==": {"number", "text", "truth value"}, "<>": {"number", "text", "truth value"},
-}  # fmt: skip
+    "AND": _TRUTH,
+    "OR": _TRUTH,
+    "XOR": _TRUTH,
+    "NOT": _TRUTH,
+    "<<": {"number", "text"},
+    "==": {"number", "text", "truth value"},
+    "<>": {"number", "text", "truth value"},
+}
 
 
 def _kind(value: Value) -> str:

@@ -37,7 +37,28 @@ TYPES = ("INT", "REAL")
 STRUCTURE = ("IF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "FOR", "ENDFOR")
 LETTERS = frozenset(f"{AXES}{CUTTER_AXIS}FSD")
 ADDRESSES = ("SPOS", "MEAS", "ADIS", "ADISPOS", "FGREF", "CTOL", "OTOL", "OVR", "OVRRAP", "ACC")
-RESERVED = frozenset((
-    *GROUP_OF_CODE, *COMMANDS, *TYPES, *STRUCTURE, *ADDRESSES, *FUNCTIONS,
-    "DEF", "TO", "PROC", "EXTERN", "DIV", "MOD", "AND", "OR", "XOR", "NOT", "DC", "IC", "AC", "ACP", "ACN",
-))  # fmt: skip
+RESERVED = frozenset(
+    (
+        *GROUP_OF_CODE,
+        *COMMANDS,
+        *TYPES,
+        *STRUCTURE,
+        *ADDRESSES,
+        *FUNCTIONS,
+        "DEF",
+        "TO",
+        "PROC",
+        "EXTERN",
+        "DIV",
+        "MOD",
+        "AND",
+        "OR",
+        "XOR",
+        "NOT",
+        "DC",
+        "IC",
+        "AC",
+        "ACP",
+        "ACN",
+    )
+)

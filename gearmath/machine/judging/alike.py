@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearmath.machine.milling.run import Run
+from gearmath.machine.milling.run import CuttingRun
 from gearmath.machine.planning.passes import tooth_angles
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 
 
-def alike(runs: list[Run], member: Member, machine: MillingMachine) -> dict[int, list[int]]:
+def alike(runs: list[CuttingRun], member: Member, machine: MillingMachine) -> dict[int, list[int]]:
     """The spaces cut by ``runs``, by the first of those whose passes are the same within the increments of the control.
 
     A pass begins where its first block does, at the end of the rapid motion to it.
@@ -28,7 +28,7 @@ def alike(runs: list[Run], member: Member, machine: MillingMachine) -> dict[int,
     return found
 
 
-def _passes(runs: list[Run], space: int, member: Member) -> list[np.ndarray]:
+def _passes(runs: list[CuttingRun], space: int, member: Member) -> list[np.ndarray]:
     """Positions (n,6) of the passes through a space as they are in space 0, with whether the block to them cuts."""
     angle = tooth_angles(member.teeth, member.index_correction)[space]
     found = []

@@ -20,7 +20,7 @@ from gearmath.kernels import kernel
 from gearmath.machine.milling.axis_errors import roll_position
 from gearmath.machine.milling.mill import expose, thickness
 from gearmath.machine.milling.removal import REACH, annulus_entry
-from gearmath.machine.milling.run import Run
+from gearmath.machine.milling.run import CuttingRun
 from gearmath.machine.planning.blocks import flank_curve, foot_curves, on_one_machine
 from gearmath.machine.planning.passes import tooth_angles
 from gearmath.machine.planning.path import axis_positions, flank_points, roll_range
@@ -67,7 +67,7 @@ class Watch:
         return max((self.lowest, self.lowest_at), (self.highest, self.highest_at), key=lambda found: abs(found[0]))
 
 
-def watched_flanks(member: Member, runs: list[Run]) -> list[WatchedFlank]:
+def watched_flanks(member: Member, runs: list[CuttingRun]) -> list[WatchedFlank]:
     """Lines on all flanks that the tools of a program cut, as many as their blocks ask for."""
     found = []
     for run in runs:
@@ -81,7 +81,7 @@ def watched_flanks(member: Member, runs: list[Run]) -> list[WatchedFlank]:
     return found
 
 
-def _lines(member: Member, run: Run, flank: str, blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _lines(member: Member, run: CuttingRun, flank: str, blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     if member.generation == "formate":
         points = flank_points(member, flank, blank_grid(member, 5, 17, 0.0))
         return points.contact[:, 2], points.point, points.normal
@@ -100,10 +100,13 @@ def _lines(member: Member, run: Run, flank: str, blocks: int) -> tuple[np.ndarra
 
 
 def watch(
-    runs: list[Run], member: Member, machine: MillingMachine, errors: SimulatedMachine | None = None,
+    runs: list[CuttingRun],
+    member: Member,
+    machine: MillingMachine,
+    errors: SimulatedMachine | None = None,
     progress: Callable[[int], object] = lambda _: None,
     groups: Mapping[int, list[int]] | None = None,
-) -> Watch:  # fmt: skip
+) -> Watch:
     """What the passes of every space leave on the flanks of that space, the ``runs`` with rounded blades.
 
     The flanks are those that the settings cut, indexed as they are corrected, whatever they are corrected for.
@@ -128,29 +131,40 @@ def watch(
             met = np.isfinite(left.distance)
             low = int(np.argmin(np.where(met, left.distance, np.inf)))
             high = int(np.argmax(np.where(met, left.distance, -np.inf)))
-            rows.append((
-                float(left.distance[low]) if met.any() else np.inf,
-                float(left.distance[high]) if met.any() else -np.inf, int(numbers[left.block[low]]),
-                int(numbers[left.block[high]]), int((~met).sum()) * len(like), one.flank, space,
-            ))  # fmt: skip
+            rows.append(
+                (
+                    float(left.distance[low]) if met.any() else np.inf,
+                    float(left.distance[high]) if met.any() else -np.inf,
+                    int(numbers[left.block[low]]),
+                    int(numbers[left.block[high]]),
+                    int((~met).sum()) * len(like),
+                    one.flank,
+                    space,
+                )
+            )
         progress(1)
     deep, full = min(rows, key=lambda row: row[0]), max(rows, key=lambda row: row[1])
     return Watch(
         lines=len(every) * sum(len(one.point) for one in flanks),
-        lowest=deep[0], lowest_at=(deep[6], deep[5], deep[2]), highest=full[1], highest_at=(full[6], full[5], full[3]),
+        lowest=deep[0],
+        lowest_at=(deep[6], deep[5], deep[2]),
+        highest=full[1],
+        highest_at=(full[6], full[5], full[3]),
         uncut=sum(row[4] for row in rows),
-    )  # fmt: skip
+    )
 
 
-def _rapid_in_metal(run: Run) -> np.ndarray:
+def _rapid_in_metal(run: CuttingRun) -> np.ndarray:
     """Rapid blocks (n,) that end no higher than the tool cuts: a right program has none."""
     return ~run.cutting & (run.axes[:, 2] <= run.axes[run.cutting, 2].max(initial=-np.inf))
 
 
 def off_the_way(
-    runs: list[Run], member: Member, machine: MillingMachine,
+    runs: list[CuttingRun],
+    member: Member,
+    machine: MillingMachine,
     flanks: list[WatchedFlank] | None = None,
-) -> tuple[float, tuple[int, str, int]]:  # fmt: skip
+) -> tuple[float, tuple[int, str, int]]:
     """The largest distance [mm] along a flank normal between the tool at the end of a block and where it belongs.
 
     With it come space, flank and line of the text. The cradle rotation of an end is that whose X and Y are nearest;
@@ -170,7 +184,7 @@ def off_the_way(
     return worst
 
 
-def in_space_0(run: Run, member: Member) -> tuple[np.ndarray, np.ndarray]:
+def in_space_0(run: CuttingRun, member: Member) -> tuple[np.ndarray, np.ndarray]:
     """Rows (m,) of a run that cut in a space, and their positions (m,5) as they are in space 0."""
     rows = np.flatnonzero(run.cutting & (run.space >= 0))
     axes = run.axes[rows].copy()
@@ -178,7 +192,7 @@ def in_space_0(run: Run, member: Member) -> tuple[np.ndarray, np.ndarray]:
     return rows, axes
 
 
-def distances_off_the_way(run: Run, lines: WatchedFlank, member: Member, machine: MillingMachine) -> np.ndarray:
+def distances_off_the_way(run: CuttingRun, lines: WatchedFlank, member: Member, machine: MillingMachine) -> np.ndarray:
     """How far the tool is off its path (n,) [mm] on one flank at every row of a run.
 
     Where it touches no line, as where it plunges, that is how far its X and Y are off the path.

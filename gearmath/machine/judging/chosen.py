@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.machine.control.executor import MachinePath, Run, run_program
+from gearmath.machine.control.executor import MachinePath, ProgramRun, run_program
 from gearmath.machine.control.state import Setup
 from gearmath.machine.judging.faults import Fault
 
@@ -28,7 +28,7 @@ def reads_choice(text: str) -> bool:
 def chosen_faults(text: str, name: str, path: MachinePath, setup: Setup) -> Iterator[Fault]:
     """What is wrong with the parts of a cutting program that are run alone; ``path`` is that of the whole run."""
 
-    def run(first: int, last: int) -> Run:
+    def run(first: int, last: int) -> ProgramRun:
         return run_program(text, name, parameters={90: float(first), 91: float(last)}, setup=setup)
 
     whole, done = cut_rows(path), 0
@@ -46,9 +46,10 @@ def chosen_faults(text: str, name: str, path: MachinePath, setup: Setup) -> Iter
         elif not same(part, whole[done : done + len(part)]):
             line = int(alone.path.line[~alone.path.rapid][0])
             yield Fault(
-                f"with R90={number} R91={number} does not make section {number} of the whole run, and that alone", line,
+                f"with R90={number} R91={number} does not make section {number} of the whole run, and that alone",
+                line,
                 "part",
-            )  # fmt: skip
+            )
             return
         done += len(part)
     if done != len(whole):
@@ -57,7 +58,7 @@ def chosen_faults(text: str, name: str, path: MachinePath, setup: Setup) -> Iter
     yield from wrong_choices(run, number - 1)
 
 
-def wrong_choices(run: Callable[[int, int], Run], count: int) -> Iterator[Fault]:
+def wrong_choices(run: Callable[[int, int], ProgramRun], count: int) -> Iterator[Fault]:
     """What R90 and R91 must not be: the program must stop before it moves."""
     for first, last in ((count + 1, 0), (0, count + 1), (-1, 0), (0, -1), (2, 1)):
         found = tried(run, first, last)
@@ -65,7 +66,7 @@ def wrong_choices(run: Callable[[int, int], Run], count: int) -> Iterator[Fault]
             yield Fault(f"moves with R90={first} R91={last}, which choose nothing that it has", kind="part")
 
 
-def tried(run: Callable[[int, int], Run], first: int, last: int) -> Run | str:
+def tried(run: Callable[[int, int], ProgramRun], first: int, last: int) -> ProgramRun | str:
     """The run of some parts, or the sentence that refuses it."""
     try:
         return run(first, last)
@@ -73,12 +74,12 @@ def tried(run: Callable[[int, int], Run], first: int, last: int) -> Run | str:
         return f"is refused: {error}"
 
 
-def not_run(found: Run) -> bool:
+def not_run(found: ProgramRun) -> bool:
     """Whether a program has stopped with an alarm before it moved anything."""
     return found.alarm is not None and not len(found.path.line) and not found.path.blind
 
 
-def agreed(found: Run, number: int) -> Iterator[Fault]:
+def agreed(found: ProgramRun, number: int) -> Iterator[Fault]:
     """A run of a part of the program waits at M0 before it moves."""
     if not any(halt.stop and not halt.rows and not halt.blind for halt in found.path.halts):
         yield Fault(f"with R90={number} moves before it has waited at M0 for the operator", kind="M0")

@@ -15,7 +15,7 @@ from gearmath.kernels import kernel
 from gearmath.machine.bodies.cutter import Cutter
 from gearmath.machine.bodies.profiles import head_radius, rings, work_profiles
 from gearmath.machine.control.executor import MachinePath
-from gearmath.machine.milling.run import Run
+from gearmath.machine.milling.run import CuttingRun
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.obstacles import CutterHead, Fixture
@@ -41,9 +41,13 @@ class Collision:
 
 
 def collisions(
-    path: MachinePath, runs: list[Run], member: Member, machine: MillingMachine, head: CutterHead | None = None,
+    path: MachinePath,
+    runs: list[CuttingRun],
+    member: Member,
+    machine: MillingMachine,
+    head: CutterHead | None = None,
     fixture: Fixture | None = None,
-) -> list[Collision]:  # fmt: skip
+) -> list[Collision]:
     """Every pair that meets on the way, rapid blocks included; poses are tried every 5 mm of a block."""
     profiles = work_profiles(member, fixture or machine.fixture)
     found: dict[tuple[str, str], tuple[set[int], float]] = {}
@@ -63,7 +67,7 @@ def collisions(
     return [Collision(*pair, tuple(sorted(lines)), depth) for pair, (lines, depth) in sorted(found.items())]
 
 
-def rapid_approaches(runs: list[Run], member: Member, machine: MillingMachine) -> list[Collision]:
+def rapid_approaches(runs: list[CuttingRun], member: Member, machine: MillingMachine) -> list[Collision]:
     """Rapid blocks on which the blades come nearer to the face cone than ``RAPID_CLEARANCE``, at any height.
 
     Straight up out of the cut they may, since nothing stands in the way that the cut has left.

@@ -15,7 +15,7 @@ from gearmath.machine.judging.block_check import Watch, watch
 from gearmath.machine.judging.faults import Fault
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.axis_errors import roll_position
-from gearmath.machine.milling.run import Run
+from gearmath.machine.milling.run import CuttingRun
 from gearmath.machine.milling.surfaces import DEFAULT_COLUMNS, surface_states
 from gearmath.machine.milling.surfaces import DEFAULT_TOLERANCE as REPORTED
 from gearmath.machine.planning.hobbing import index_ratio, spindle_phase
@@ -31,7 +31,7 @@ def allowed(stated: Stated) -> float:
     return REPORTED if stated.tolerance is None else stated.tolerance
 
 
-def missing(stated: Stated, runs: list[Run], member: Member, name: str) -> Iterator[Fault]:
+def missing(stated: Stated, runs: list[CuttingRun], member: Member, name: str) -> Iterator[Fault]:
     """Spaces that the program says it cuts and does not, with any of the tools of the member; all if it says none."""
     wanted = set(stated.spaces or range(member.teeth))
     cut = {run.cut.tool: set(run.spaces) for run in runs}
@@ -43,7 +43,7 @@ def missing(stated: Stated, runs: list[Run], member: Member, name: str) -> Itera
             yield Fault(f"space {more[0]} is cut with {one.tool}, and should not be")
 
 
-def beside_the_path(runs: list[Run], member: Member, machine: MillingMachine, stated: Stated) -> Iterator[Fault]:
+def beside_the_path(runs: list[CuttingRun], member: Member, machine: MillingMachine, stated: Stated) -> Iterator[Fault]:
     """Feed blocks that end where the settings have no position: X Y A B beside their path, or Z below it, or above.
 
     Above it only where it rolls, between the first and the last block of a pass, by its median: a stock raises all of
@@ -69,7 +69,7 @@ def beside_the_path(runs: list[Run], member: Member, machine: MillingMachine, st
             yield Fault(f"ends {aside[k]:.6f} mm beside the path of these settings", int(run.line[rows[k]]), "beside")
 
 
-def off_the_path(run: Run, member: Member, machine: MillingMachine) -> tuple[np.ndarray, np.ndarray]:
+def off_the_path(run: CuttingRun, member: Member, machine: MillingMachine) -> tuple[np.ndarray, np.ndarray]:
     """Rows (m,) of a run that cut, and how far X Y Z A B are off the path (m,5), rotations in mm at the flank.
 
     The cradle rotation is that whose X and Y are nearest. In face hobbing A belongs to C besides, and goes on with it.
@@ -102,9 +102,14 @@ class MetalLeft:
 
 
 def metal_left(
-    runs: list[Run], member: Member, name: str, machine: MillingMachine, stated: Stated, space: ToothSpace,
+    runs: list[CuttingRun],
+    member: Member,
+    name: str,
+    machine: MillingMachine,
+    stated: Stated,
+    space: ToothSpace,
     progress: Callable[[int], object] = lambda _: None,
-) -> MetalLeft:  # fmt: skip
+) -> MetalLeft:
     """Stock and gouges that a face milling program leaves on flanks, fillets and root, the work of its settings.
 
     Spaces that are cut alike are exposed once. ``runs`` are those of a machine without errors, with sharp blades;
@@ -123,17 +128,30 @@ def metal_left(
         (found.highest, found.highest_at, found.highest > most + tolerance),
     ):
         if wrong:
-            faults.append(Fault(
-                f"of the program (space {number}, {flank} flank) leaves {value * 1000:+.3f} um, {says} "
-                + (f"{stock * 1000:g} um of stock within " if stock else "") + f"{tolerance * 1000:g} um", line,
-                "leaves",
-            ))  # fmt: skip
+            faults.append(
+                Fault(
+                    f"of the program (space {number}, {flank} flank) leaves {value * 1000:+.3f} um, {says} "
+                    + (f"{stock * 1000:g} um of stock within " if stock else "")
+                    + f"{tolerance * 1000:g} um",
+                    line,
+                    "leaves",
+                )
+            )
     if found.uncut:
         faults.append(Fault(f"{found.uncut} of {found.lines} normals on the flanks are not cut at all"))
     states = surface_states(
-        None, member, name, machine, None, _exposed(groups, member), tolerance + REPORTED, DEFAULT_COLUMNS, runs,
-        progress, space,
-    )  # fmt: skip
+        None,
+        member,
+        name,
+        machine,
+        None,
+        _exposed(groups, member),
+        tolerance + REPORTED,
+        DEFAULT_COLUMNS,
+        runs,
+        progress,
+        space,
+    )
     deepest = min(states, key=lambda state: state.lowest)
     least, greatest = stock - tolerance - REPORTED, tolerance + REPORTED
     if deepest.lowest < least:
@@ -141,10 +159,12 @@ def metal_left(
         faults.append(Fault(f"{what}the limit is {least * 1000:+g} um", deepest.line, "gouge"))
     fullest = max(states, key=lambda state: state.highest)
     if stock == 0.0 and fullest.highest > greatest:
-        faults.append(Fault(
-            f"the {fullest.surface} of space {fullest.space} keeps {fullest.highest * 1000:+.3f} um, "
-            f"the limit is {greatest * 1000:+g} um"
-        ))  # fmt: skip
+        faults.append(
+            Fault(
+                f"the {fullest.surface} of space {fullest.space} keeps {fullest.highest * 1000:+.3f} um, "
+                f"the limit is {greatest * 1000:+g} um"
+            )
+        )
     uncut = sum(state.unmet for state in states)
     if uncut and not found.uncut:
         faults.append(Fault(f"{uncut} points of fillets and roots are not cut at all"))

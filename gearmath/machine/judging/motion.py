@@ -13,7 +13,7 @@ from gearmath.kernels import kernel
 from gearmath.machine.control.executor import MachinePath
 from gearmath.machine.judging.faults import Fault
 from gearmath.machine.judging.stated import Stated
-from gearmath.machine.milling.run import Run
+from gearmath.machine.milling.run import CuttingRun
 from gearmath.machine.planning.clear_space import clear_height, room_of
 from gearmath.machine.planning.cut_plan import middle_of_tooth
 from gearmath.machine.planning.feeds import accelerations
@@ -28,7 +28,7 @@ _STATED_SLACK, _HEIGHT_SLACK = 1e-2, 1e-3
 
 
 def motion_faults(
-    path: MachinePath, runs: list[Run], member: Member, machine: MillingMachine, stated: Stated
+    path: MachinePath, runs: list[CuttingRun], member: Member, machine: MillingMachine, stated: Stated
 ) -> Iterator[Fault]:
     """All faults of motion, kind by kind."""
     yield from states(path, machine)
@@ -51,7 +51,7 @@ def states(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
     for number, line in path.unset.items():
         yield Fault(
             f"reads R{number} before it sets it: it has there what another program left, here it counts as 0", line, "R"
-        )  # fmt: skip
+        )
     yield from path_modes(path, machine)
 
 
@@ -83,8 +83,10 @@ def path_modes(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
         elif contour > within * (1 + _STATED_SLACK) or orientation > turned * (1 + _STATED_SLACK):
             yield Fault(
                 f"cuts with CTOL={contour:g} OTOL={orientation:g}, the machine file allows {within:g} mm and "
-                f"{turned:.3g} degrees", line, "path mode",
-            )  # fmt: skip
+                f"{turned:.3g} degrees",
+                line,
+                "path mode",
+            )
 
     wanted = control.jerk, "FFWON" if control.feed_forward else "FFWOF"
     for found, line in path.dynamics.items():
@@ -106,13 +108,16 @@ def blind_motion(path: MachinePath, clear: float) -> Iterator[Fault]:
         if one.z is None or (one.raised and one.z < needed):
             yield Fault(
                 f"moves before Z has gone up to {needed:.1f} mm or more with SUPA, from wherever the axes stand",
-                one.line, "blind",
-            )  # fmt: skip
+                one.line,
+                "blind",
+            )
         elif one.z < needed:
             yield Fault(
                 f"moves at Z {one.z:.3f} while other axes may stand anywhere: the work is cleared from Z {needed:.1f} "
-                "on", one.line, "blind",
-            )  # fmt: skip
+                "on",
+                one.line,
+                "blind",
+            )
 
 
 def spindle(path: MachinePath, machine: MillingMachine, stated: Stated) -> Iterator[Fault]:
@@ -123,12 +128,16 @@ def spindle(path: MachinePath, machine: MillingMachine, stated: Stated) -> Itera
     speed, wanted = np.abs(path.rpm), stated.rpm
     for wrong, what in (
         (path.rpm == 0.0, "cuts with the spindle standing"),
-        (path.rpm * sense < 0.0, f"cuts with the spindle turning backwards: {machine.name} cuts with "
-         f"{machine.cutter_direction}"),
+        (
+            path.rpm * sense < 0.0,
+            f"cuts with the spindle turning backwards: {machine.name} cuts with {machine.cutter_direction}",
+        ),
         ((speed > high) | ((speed < low) & (speed != 0.0)), f"cuts at a speed outside of {low:g} to {high:g} rpm"),
-        (np.abs(speed - (wanted or 0.0)) > _STATED_SLACK * (wanted or np.inf),
-         f"cuts at another speed than the {wanted or 0.0:g} rpm that the program states"),
-    ):  # fmt: skip
+        (
+            np.abs(speed - (wanted or 0.0)) > _STATED_SLACK * (wanted or np.inf),
+            f"cuts at another speed than the {wanted or 0.0:g} rpm that the program states",
+        ),
+    ):
         for row in np.flatnonzero(wrong & cutting):
             yield Fault(what, int(path.line[row]), what)
 
@@ -154,8 +163,10 @@ def travel(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
         scale, unit = limits.scale[axis], limits.units[axis]
         yield Fault(
             f"moves {limits.names[axis]} to {where[row, axis] * scale:.3f} {unit}: {machine.name} travels "
-            f"{low[axis] * scale:g} to {high[axis] * scale:g} {unit}", int(path.line[row]), "travel",
-        )  # fmt: skip
+            f"{low[axis] * scale:g} to {high[axis] * scale:g} {unit}",
+            int(path.line[row]),
+            "travel",
+        )
 
 
 def speeds(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
@@ -176,12 +187,14 @@ def speeds(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
                 scale, unit = limits.scale[axis] * per, limits.units[axis]
                 yield Fault(
                     f"needs {values[row, axis] * scale:.0f} {unit}{what} of {limits.names[axis]}: {machine.name} "
-                    f"allows {limit[axis] * scale:g} {unit}{what}", int(path.line[rows[row]]), "speed",
-                )  # fmt: skip
+                    f"allows {limit[axis] * scale:g} {unit}{what}",
+                    int(path.line[rows[row]]),
+                    "speed",
+                )
 
 
 def feeds(
-    path: MachinePath, runs: list[Run], member: Member, machine: MillingMachine, stated: Stated
+    path: MachinePath, runs: list[CuttingRun], member: Member, machine: MillingMachine, stated: Stated
 ) -> Iterator[Fault]:
     """Feed of the cutter past the tooth and of the plunge, and in face hobbing the speed of C, beyond what is stated.
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from gearmath.machine.control.expression import Constant, Node, Operation, Variable
-from gearmath.machine.control.tree import Block, Branch, Command, Definition, Loop, Program, Statement
+from gearmath.machine.control.expression import Constant, NcVariable, Node, Operation
+from gearmath.machine.control.tree import Block, Branch, Command, Definition, Loop, ParsedProgram, Statement
 from gearmath.machine.judging.faults import Fault
 
 #: What the probe says of the motion that the program has made itself, and what WRITE and DELETE make of their files.
@@ -21,7 +21,7 @@ COUNTING = frozenset((101, 102, 103, 104))
 _PROBE = "$A_PROBE"
 
 
-def outside_faults(program: Program) -> Iterator[Fault]:
+def outside_faults(program: ParsedProgram) -> Iterator[Fault]:
     """Conditions and words that depend on what is not in the program."""
     watch = _Watch()
     while True:  # a loop may hand a variable back to its begin
@@ -86,7 +86,7 @@ class _Watch:
         for node in nodes:
             if isinstance(node, Operation):
                 yield from self._from_outside(node.operands)
-            elif isinstance(node, Variable):
+            elif isinstance(node, NcVariable):
                 yield from self._from_outside(node.index)
                 name = _name(node)
                 if name in self.outside:
@@ -97,7 +97,7 @@ class _Watch:
                     yield name
 
 
-def _name(variable: Variable) -> str:
+def _name(variable: NcVariable) -> str:
     """The name of a variable, of an R parameter with its number where that is a constant."""
     if variable.name == "R" and isinstance(variable.index[0], Constant):
         return f"R{int(float(variable.index[0].value))}"

@@ -19,7 +19,7 @@ from gearmath.machine.judging.motion import motion_faults
 from gearmath.machine.judging.outside import outside_faults
 from gearmath.machine.judging.start_state import start_faults
 from gearmath.machine.judging.stated import Stated
-from gearmath.machine.milling.run import Run
+from gearmath.machine.milling.run import CuttingRun
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 
@@ -30,7 +30,7 @@ _NAME = "the program"
 
 
 def faults_of(
-    text: str, path: MachinePath, runs: list[Run], member: Member, name: str, machine: MillingMachine
+    text: str, path: MachinePath, runs: list[CuttingRun], member: Member, name: str, machine: MillingMachine
 ) -> list[Fault]:
     """What a machine without errors must not do of a program, the first of each kind."""
     stated = Stated.of(text)
@@ -46,7 +46,7 @@ def faults_of(
     return [*first_of_each([*found, *asked]), *started, *met(path, runs, member, machine)]
 
 
-def met(path: MachinePath, runs: list[Run], member: Member, machine: MillingMachine) -> list[Fault]:
+def met(path: MachinePath, runs: list[CuttingRun], member: Member, machine: MillingMachine) -> list[Fault]:
     """What of the cutter meets what of the work, and rapid motion in the work or near it."""
     found = [
         Fault(f"takes the {one.cutter} {one.depth:.2f} mm into the {one.work}", one.lines[0])
@@ -55,8 +55,9 @@ def met(path: MachinePath, runs: list[Run], member: Member, machine: MillingMach
     found += [
         Fault(
             f"moves in rapid {one.depth:.2f} mm into the work or nearer to it than {RAPID_CLEARANCE:g} mm",
-            one.lines[0], "rapid",
+            one.lines[0],
+            "rapid",
         )
         for one in rapid_approaches(runs, member, machine)
-    ]  # fmt: skip
+    ]
     return first_of_each(found)

@@ -43,17 +43,21 @@ class MillingReport:
 
 
 def milling_report(
-    path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None = None,
-    tolerance: float = DEFAULT_TOLERANCE, columns: int = DEFAULT_COLUMNS,
-    progress: Callable[[int], object] = lambda _: None, space: ToothSpace | None = None,
-) -> MillingReport:  # fmt: skip
+    path: MachinePath,
+    member: Member,
+    name: str,
+    machine: MillingMachine,
+    errors: SimulatedMachine | None = None,
+    tolerance: float = DEFAULT_TOLERANCE,
+    columns: int = DEFAULT_COLUMNS,
+    progress: Callable[[int], object] = lambda _: None,
+    space: ToothSpace | None = None,
+) -> MillingReport:
     """The report of a whole program. ``progress`` is called for every surface of every space, five to a space;
     ``space`` is the nominal space where it is known. Raises InputError if a tool is not of this member.
     """
     space = space or tooth_space(member, name, columns)
     runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
-    states = surface_states(
-        path, member, name, machine, errors, None, tolerance, columns, runs, progress, space
-    )  # fmt: skip
+    states = surface_states(path, member, name, machine, errors, None, tolerance, columns, runs, progress, space)
     met = collisions(path, runs, member, machine, *obstacles(machine, errors))
     return MillingReport(name, tolerance, tuple(states), tuple(met), timing(path, machine))

@@ -74,7 +74,7 @@ class Artefacts:
         given = (height, tip, self.calibration.tip_radius, sphere.diameter / 2, sphere.place, np.zeros(2), 0.0)
         return lambda axes: kernel("carried_sphere")(
             axes[:, :3], axes[:, 3], axes[:, 4], *given, self.machine.pivot, _NO_LOBES
-        )[0]  # fmt: skip
+        )[0]
 
     def _of_bore(self, ring: Ring) -> Gap:
         tip = (self.calibration.tip_offset, self.calibration.tip_radius)

@@ -74,10 +74,17 @@ class _Block:
 
 
 def approaches(
-    text: str, program: str, member: Member, name: str, machine: MillingMachine, calibration: Calibration,
-    fixture: Fixture | None = None, spindle_radius: float = CutterHead().spindle_radius,
-    progress: Callable[[int], object] = lambda steps: None, probe: Probe | None = None,
-) -> list[Approach]:  # fmt: skip
+    text: str,
+    program: str,
+    member: Member,
+    name: str,
+    machine: MillingMachine,
+    calibration: Calibration,
+    fixture: Fixture | None = None,
+    spindle_radius: float = CutterHead().spindle_radius,
+    progress: Callable[[int], object] = lambda steps: None,
+    probe: Probe | None = None,
+) -> list[Approach]:
     """The nearest approach of every pair of tip, stylus, spindle and teeth, hub, shank, fixture.
 
     ``probe`` says where touches end, by default at the body of the tooth space.
@@ -102,9 +109,14 @@ class _Watch:
     """The probe and the work as bodies."""
 
     def __init__(
-        self, member: Member, name: str, machine: MillingMachine, calibration: Calibration, fixture: Fixture,
+        self,
+        member: Member,
+        name: str,
+        machine: MillingMachine,
+        calibration: Calibration,
+        fixture: Fixture,
         spindle_radius: float,
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.body, self.calibration, self.spindle_radius = SpaceBody(member, name), calibration, spindle_radius
         self.setup = Setup.of(machine, calibration.length)
         self._place = probe_height(machine, calibration), calibration.tip_offset, machine.pivot

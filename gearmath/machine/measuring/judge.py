@@ -39,9 +39,14 @@ _CLEARANCE = 1.0
 
 
 def judge_probing(
-    text: str, name: str, member: Member, member_name: str, machine: MillingMachine, calibration: Calibration,
+    text: str,
+    name: str,
+    member: Member,
+    member_name: str,
+    machine: MillingMachine,
+    calibration: Calibration,
     progress: Callable[[int], object] = lambda ways: None,
-) -> list[Fault]:  # fmt: skip
+) -> list[Fault]:
     """Faults of a program that probes a member. Raises InputError for a text that cannot be run.
 
     Raises ComputationError where it sets an alarm.
@@ -53,9 +58,12 @@ def judge_probing(
 
 
 def judge_calibration(
-    text: str, name: str, machine: MillingMachine, calibration: Calibration,
+    text: str,
+    name: str,
+    machine: MillingMachine,
+    calibration: Calibration,
     progress: Callable[[int], object] = lambda ways: None,
-) -> list[Fault]:  # fmt: skip
+) -> list[Fault]:
     """Faults of a program that touches ring and spheres. Raises InputError for a text that cannot be run.
 
     Raises ComputationError where it sets an alarm.
@@ -70,9 +78,16 @@ def judge_calibration(
 
 
 def _judged(
-    text: str, name: str, machine: MillingMachine, calibration: Calibration, probe: Probe, clear: float, free: float,
-    place: Place, progress: Callable[[int], object],
-) -> list[Fault]:  # fmt: skip
+    text: str,
+    name: str,
+    machine: MillingMachine,
+    calibration: Calibration,
+    probe: Probe,
+    clear: float,
+    free: float,
+    place: Place,
+    progress: Callable[[int], object],
+) -> list[Fault]:
     setup = Setup.of(machine, calibration.length)
     seen = watched(text, name, probe, setup)
     check_ended(seen.run, name)

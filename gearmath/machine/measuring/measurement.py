@@ -43,9 +43,17 @@ def measure_member(true: FlankFile, member: Member, name: str, shop: SimulatedMa
     noise = np.random.default_rng([shop.seed, zlib.crc32(name.encode()), run]).standard_normal(len(file))
     deviation = deviation + late + shop.probe.sigma * noise
     return FlankFile(
-        file.header, file.member, file.flank, file.tooth, file.row, file.col,
-        nominal + deviation[:, None] * file.normal, file.normal, deviation, np.full(len(file), shop.probe.sigma),
-    )  # fmt: skip
+        file.header,
+        file.member,
+        file.flank,
+        file.tooth,
+        file.row,
+        file.col,
+        nominal + deviation[:, None] * file.normal,
+        file.normal,
+        deviation,
+        np.full(len(file), shop.probe.sigma),
+    )
 
 
 def _in_order(file: FlankFile, member: Member) -> FlankFile:
@@ -57,18 +65,24 @@ def _in_order(file: FlankFile, member: Member) -> FlankFile:
     tooth = file.tooth[index]
     tooth[len(order) :] = member.teeth
     return FlankFile(
-        file.header, file.member, file.flank[index], tooth, file.row[index], file.col[index], file.point[index],
-        file.normal[index], file.deviation[index], file.uncertainty[index],
-    )  # fmt: skip
+        file.header,
+        file.member,
+        file.flank[index],
+        tooth,
+        file.row[index],
+        file.col[index],
+        file.point[index],
+        file.normal[index],
+        file.deviation[index],
+        file.uncertainty[index],
+    )
 
 
 def _work_axis(file: FlankFile, member: Member, name: str) -> np.ndarray:
     """Positions (n,) [rad] of the work axis at which the points are touched, each with its space on top."""
     grid = file_grid(file, member)
     points = {flank: solve_flank(member, name, flank, grid).point for flank in FLANKS}
-    angle = {
-        flank: kernel("space_azimuth")(points[flank], points[other])[0] for flank, other in (FLANKS, FLANKS[::-1])
-    }  # fmt: skip
+    angle = {flank: kernel("space_azimuth")(points[flank], points[other])[0] for flank, other in (FLANKS, FLANKS[::-1])}
     place = file.row * grid.shape[1] + file.col
     at = np.array([angle[flank][k] for flank, k in zip(file.flank, place, strict=True)])
     return at + 2 * math.pi * file.tooth / member.teeth

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.machine.control.executor import Run
+from gearmath.machine.control.executor import ProgramRun
 from gearmath.machine.control.state import Probe, Setup
 from gearmath.machine.judging.chosen import agreed, not_run, wrong_choices
 from gearmath.machine.judging.faults import Fault
@@ -26,7 +26,7 @@ _OLD = "what was there\n"
 
 
 @dataclass(frozen=True)
-class Part:
+class ProgramPart:
     """One part of a program, run alone: its number, and what it does."""
 
     number: int
@@ -38,7 +38,7 @@ class Part:
         return {90: float(self.number), 91: float(self.number)}
 
 
-def parts_of(text: str, name: str, probe: Probe, seen: Watched, setup: Setup) -> list[Part] | Fault:
+def parts_of(text: str, name: str, probe: Probe, seen: Watched, setup: Setup) -> list[ProgramPart] | Fault:
     """The parts of a program, each run alone, or some of them where there are many; ``seen`` is the whole run.
 
     A fault where one is not what it is in the whole run.
@@ -55,7 +55,7 @@ def parts_of(text: str, name: str, probe: Probe, seen: Watched, setup: Setup) ->
         each, done, found = len(touches) // max(count, 1), 0, []
         numbers = range(1, count + 1) if count <= _ALL else (1, 2, count // 2, count - 1, count)
         for number in numbers:
-            part = Part(number, alone(number))
+            part = ProgramPart(number, alone(number))
             own = [part.seen.ways[k] for k in part.seen.touches]
             begin = done if count <= _ALL else (number - 1) * each
             wanted = touches[begin : begin + len(own)]
@@ -72,7 +72,9 @@ def parts_of(text: str, name: str, probe: Probe, seen: Watched, setup: Setup) ->
     return found
 
 
-def part_faults(text: str, name: str, probe: Probe, seen: Watched, parts: list[Part], setup: Setup) -> Iterator[Fault]:
+def part_faults(
+    text: str, name: str, probe: Probe, seen: Watched, parts: list[ProgramPart], setup: Setup
+) -> Iterator[Fault]:
     """What is wrong with how parts begin and with what they write."""
     (file, *_) = [*seen.run.files, ""]
     lines = [line["point"] for line in touch_lines(seen.run.files.get(file, ""))]
@@ -88,7 +90,7 @@ def part_faults(text: str, name: str, probe: Probe, seen: Watched, parts: list[P
         if held not in content or now != lines[begin : begin + len(now)] or len(now) != len(part.seen.touches):
             yield Fault(f"with R90={number} does not write which touches it makes: {held[2:]}", kind="held")
 
-    def run(first: int, last: int) -> Run:
+    def run(first: int, last: int) -> ProgramRun:
         return watched(text, name, probe, setup, {90: float(first), 91: float(last)}).run
 
     yield from wrong_choices(run, parts[-1].number)

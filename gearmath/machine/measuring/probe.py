@@ -42,9 +42,15 @@ class ProbeMachine:
     """
 
     def __init__(
-        self, member: Member, name: str, machine: MillingMachine, calibration: Calibration,
-        stock: Stock = lambda flank, tooth, place: 0.0, lowest: float = 0.0, seat: Mounting | None = None,
-    ) -> None:  # fmt: skip
+        self,
+        member: Member,
+        name: str,
+        machine: MillingMachine,
+        calibration: Calibration,
+        stock: Stock = lambda flank, tooth, place: 0.0,
+        lowest: float = 0.0,
+        seat: Mounting | None = None,
+    ) -> None:
         self.member, self.name, self.calibration, self.stock = member, name, calibration, stock
         self._deepest = BODY_ERROR - min(lowest, 0.0)
         here, axes = mounted(np.zeros((3, 3)), np.eye(3), seat or Mounting())

@@ -7,7 +7,7 @@ import numpy as np
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.probe_tip import lobing
 from gearmath.machine.control.state import Probe
-from gearmath.machine.milling.axis_errors import Backlash, with_axis_errors
+from gearmath.machine.milling.axis_errors import AxisBacklash, with_axis_errors
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 #: A and B stand still within this. [rad]
@@ -27,7 +27,7 @@ class ErringProbe:
         self.count, self.steps = 0, max((touches or 1) - 1, 1)
         self._drift = shop.measuring.drift.vector if touches is not None else np.zeros(3)
         self._random = np.random.default_rng([shop.seed, run])
-        self._backlash = Backlash(shop)
+        self._backlash = AxisBacklash(shop)
 
     def follow(self, position: np.ndarray) -> None:
         """The axes have moved to a position X Y Z A B (5,), touching or not."""

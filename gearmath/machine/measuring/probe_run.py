@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from gearmath.errors import ComputationError, InputError
-from gearmath.machine.control.executor import AS_WRITTEN, Run, run_program
+from gearmath.machine.control.executor import AS_WRITTEN, ProgramRun, run_program
 from gearmath.machine.control.state import Probe, Setup
 from gearmath.machine.measuring.collision_check import enough_steps, is_touch
 from gearmath.machine.measuring.probe_errors import ErringProbe
@@ -41,9 +41,15 @@ def touch_count(text: str, program: str, setup: Setup = AS_WRITTEN) -> int:
 
 
 def run_touches(
-    text: str, program: str, probe: Probe, shop: SimulatedMachine | None = None, touches: int | None = None,
-    run: int = 1, progress: Callable[[int], object] = lambda blocks: None, setup: Setup = AS_WRITTEN,
-) -> str:  # fmt: skip
+    text: str,
+    program: str,
+    probe: Probe,
+    shop: SimulatedMachine | None = None,
+    touches: int | None = None,
+    run: int = 1,
+    progress: Callable[[int], object] = lambda blocks: None,
+    setup: Setup = AS_WRITTEN,
+) -> str:
     """What a program writes into its file of touches, moving ``probe``, with the errors of a shop.
 
     ``touches`` is how many the run has, over which the work drifts evenly; ``run`` is the number that the program
@@ -71,9 +77,15 @@ def run_touches(
             erring.follow(position)
 
     done = run_program(
-        text, program, moved, parameters={_RUN_PARAMETER: run - 1}, step_limit=enough_steps(text), setup=setup,
-        deflected=lambda position: contact is not None, moved=follow,
-    )  # fmt: skip
+        text,
+        program,
+        moved,
+        parameters={_RUN_PARAMETER: run - 1},
+        step_limit=enough_steps(text),
+        setup=setup,
+        deflected=lambda position: contact is not None,
+        moved=follow,
+    )
     check_ended(done, program)
     written = [lines for lines in done.files.values() if _touches(lines)]
     if len(written) != 1:
@@ -81,7 +93,7 @@ def run_touches(
     return written[0]
 
 
-def check_ended(done: Run, program: str) -> None:
+def check_ended(done: ProgramRun, program: str) -> None:
     """Raise ComputationError where a run has ended with an alarm."""
     if done.alarm is not None:
         number, line = done.alarm

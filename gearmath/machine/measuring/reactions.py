@@ -31,9 +31,14 @@ class _GoesOn(Exception):
 
 
 def reaction_faults(
-    text: str, name: str, seen: Watched, setup: Setup, given: Mapping[int, float], done: set[int],
+    text: str,
+    name: str,
+    seen: Watched,
+    setup: Setup,
+    given: Mapping[int, float],
+    done: set[int],
     progress: Callable[[int], object] = lambda ways: None,
-) -> Iterator[Fault]:  # fmt: skip
+) -> Iterator[Fault]:
     """Where the program, with R parameters ``given``, goes on although it must not.
 
     Every line is tried once, but for those that were ``done`` before; ``progress`` hears of every way that is tried.
@@ -62,9 +67,15 @@ def _missed(way: Way) -> None:
 
 
 def _goes_on(
-    text: str, name: str, setup: Setup, given: Mapping[int, float], probe: Probe, last: int, deflected: int | None,
+    text: str,
+    name: str,
+    setup: Setup,
+    given: Mapping[int, float],
+    probe: Probe,
+    last: int,
+    deflected: int | None,
     written: int,
-) -> bool:  # fmt: skip
+) -> bool:
     """Whether a program gets to the way of number ``last``, writes more touches than ``written``, or sets no alarm.
 
     The probe is ``deflected`` from that look at $A_PROBE on, counted from 1.
@@ -84,9 +95,7 @@ def _goes_on(
         return deflected is not None and looked >= deflected
 
     try:
-        run = run_program(
-            text, name, watch, acknowledged, given, enough_steps(text), setup, deflected=is_deflected
-        )  # fmt: skip
+        run = run_program(text, name, watch, acknowledged, given, enough_steps(text), setup, deflected=is_deflected)
     except _GoesOn:
         return True
     except InputError:  # the control stops it

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.machine.control.executor import Run, run_program
+from gearmath.machine.control.executor import ProgramRun, run_program
 from gearmath.machine.control.state import Probe, Setup
 from gearmath.machine.measuring.collision_check import enough_steps, is_touch
 
@@ -52,7 +52,7 @@ class Recorder:
 class Watched:
     """A run and its ways, as many as its path has MEAS blocks."""
 
-    run: Run
+    run: ProgramRun
     ways: tuple[Way, ...]
 
     @property
@@ -68,15 +68,27 @@ class Watched:
 
 
 def watched(
-    text: str, name: str, probe: Probe, setup: Setup, parameters: Mapping[int, float] | None = None,
+    text: str,
+    name: str,
+    probe: Probe,
+    setup: Setup,
+    parameters: Mapping[int, float] | None = None,
     files: Mapping[str, str] | None = None,
-) -> Watched:  # fmt: skip
+) -> Watched:
     """Run a program with its host ready at once. Raises InputError as ``run_program`` does."""
     recorder = Recorder(probe)
     run = run_program(
-        text, name, recorder, acknowledged, parameters, enough_steps(text), setup, files, recorder.deflected,
+        text,
+        name,
+        recorder,
+        acknowledged,
+        parameters,
+        enough_steps(text),
+        setup,
+        files,
+        recorder.deflected,
         recorder.moved,
-    )  # fmt: skip
+    )
     return Watched(run, tuple(recorder.ways))
 
 

@@ -47,27 +47,40 @@ def roll_position() -> Kernel:
     step = ca.Function("roll_step", [theta, x, X, Y, pivot, motion], [theta - limited])
     rest = ca.Function("roll_rest", [theta, x, X, Y, pivot, motion], [ca.norm_2(off)])
     quantities = (
-        notation.settings, notation.X, notation.Y, notation.pivot_offset, replace(notation.motion, default=0.0),
-    )  # fmt: skip
+        notation.settings,
+        notation.X,
+        notation.Y,
+        notation.pivot_offset,
+        replace(notation.motion, default=0.0),
+    )
     arguments = [ca.MX.sym(q.name, *(q.shape or (1,))) for q in quantities]
     solution = ca.MX(0)
     for _ in range(_GAUSS_NEWTON_STEPS):
         solution = step(solution, *arguments)
     off_path = Quantity("off_path", "distance of the position from the path in X and Y", "mm", "d")
     function = ca.Function(
-        "roll_position", arguments, [solution, rest(solution, *arguments)],
-        [q.name for q in quantities], ["theta", "off_path"],
-    )  # fmt: skip
+        "roll_position",
+        arguments,
+        [solution, rest(solution, *arguments)],
+        [q.name for q in quantities],
+        ["theta", "off_path"],
+    )
     return Kernel(
-        function, "Cradle rotation of an executed position, from its X and Y.", quantities,
-        (notation.theta, off_path), "(5.1) inverted by Gauss-Newton",
-    )  # fmt: skip
+        function,
+        "Cradle rotation of an executed position, from its X and Y.",
+        quantities,
+        (notation.theta, off_path),
+        "(5.1) inverted by Gauss-Newton",
+    )
 
 
 def with_setting_errors(
-    axes: np.ndarray, settings: np.ndarray, errors: np.ndarray, pivot_offset: np.ndarray,
+    axes: np.ndarray,
+    settings: np.ndarray,
+    errors: np.ndarray,
+    pivot_offset: np.ndarray,
     motion: np.ndarray = _AT_REST,
-) -> np.ndarray:  # fmt: skip
+) -> np.ndarray:
     """The axis positions (n,5) that settings off by ``errors`` (12,) make of executed positions (n,5), or (n,6) with C.
 
     ``motion`` (10,7) moves right and wrong settings alike. Raises ComputationError if a position does not belong to the
@@ -146,7 +159,7 @@ def with_axis_errors(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
     return real
 
 
-class Backlash:
+class AxisBacklash:
     """Axes A and B that lag behind: told to turn back, they stand until the play is taken up.
 
     They are within half of the play of where they are told to stand, and move no more than that asks for; at first
@@ -169,7 +182,7 @@ def with_backlash(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
     """Where A and B really stand at the ends of blocks (n,5), one after the other."""
     if not errors.axes.backlash.any():
         return axes
-    play, real = Backlash(errors), axes.copy()
+    play, real = AxisBacklash(errors), axes.copy()
     for k, position in enumerate(axes):
         real[k, 3:5] += play(position)
     return real

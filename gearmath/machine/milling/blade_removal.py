@@ -76,9 +76,16 @@ class _Passes:
 
 
 def removal_by_blades(
-    axes: np.ndarray, cutter: np.ndarray, cutting: np.ndarray, blades: Blades, machine: tuple, point: np.ndarray,
-    normal: np.ndarray, start: np.ndarray, progress: Callable[[int], object] = lambda _: None,
-) -> Removal:  # fmt: skip
+    axes: np.ndarray,
+    cutter: np.ndarray,
+    cutting: np.ndarray,
+    blades: Blades,
+    machine: tuple,
+    point: np.ndarray,
+    normal: np.ndarray,
+    start: np.ndarray,
+    progress: Callable[[int], object] = lambda _: None,
+) -> Removal:
     """What the blades leave of lines along ``normal`` (m,3) through ``point`` (m,3), and the blocks that cut deepest.
 
     ``axes`` (n,5) and ``cutter`` (n,) are the ends of n blocks, ``cutting`` (n,) is False where block k does not cut;
@@ -110,9 +117,15 @@ def removal_by_blades(
 
 
 def _passes(
-    path: _Path, nodes: np.ndarray, poses: tuple[np.ndarray, ...], point: np.ndarray, blades: Blades, machine: tuple,
-    reach: float, seen: _Computed,
-) -> _Passes:  # fmt: skip
+    path: _Path,
+    nodes: np.ndarray,
+    poses: tuple[np.ndarray, ...],
+    point: np.ndarray,
+    blades: Blades,
+    machine: tuple,
+    reach: float,
+    seen: _Computed,
+) -> _Passes:
     """All passes of blade groups within ``reach`` [mm] of any edge, wherever on the path."""
     line, node = np.nonzero(_near(poses, point, blades, reach) & (np.diff(path.block) == 0))
     before, after = (_in_chunks(seen, len(node), nodes[node + k, :5], point[line], *machine) for k in (0, 1))
@@ -130,11 +143,16 @@ def _passes(
         def between(a: np.ndarray, b: np.ndarray, part: np.ndarray = part) -> np.ndarray:
             return a + part * (b - a)
 
-        found.append(_Passes(
-            line[chosen], path.block[j], between(path.fraction[j], path.fraction[j + 1]),
-            between(before[1][chosen], after[1][chosen]), between(before[0][chosen], after[0][chosen]),
-            -number[chosen] * pitch,
-        ))  # fmt: skip
+        found.append(
+            _Passes(
+                line[chosen],
+                path.block[j],
+                between(path.fraction[j], path.fraction[j + 1]),
+                between(before[1][chosen], after[1][chosen]),
+                between(before[0][chosen], after[0][chosen]),
+                -number[chosen] * pitch,
+            )
+        )
     return _Passes(*(np.concatenate([getattr(one, f) for one in found]) for f in _Passes.__dataclass_fields__))
 
 
@@ -168,9 +186,18 @@ def _crossings(
         first, last = path.first[k], path.last[k]
         angle = passes.group_angle[open_]
         found, rest = _in_chunks(
-            crosses, len(open_), guess[open_], first[:, :5], last[:, :5], first[:, 5] + angle, last[:, 5] + angle,
-            *machine, *edge.arguments, line[0][open_], line[1][open_],
-        )  # fmt: skip
+            crosses,
+            len(open_),
+            guess[open_],
+            first[:, :5],
+            last[:, :5],
+            first[:, 5] + angle,
+            last[:, 5] + angle,
+            *machine,
+            *edge.arguments,
+            line[0][open_],
+            line[1][open_],
+        )
         u, s, t = found.T
         there = (rest < _RESIDUAL) & (u > edge.lower - _EDGE_SLACK) & (u < edge.upper + _EDGE_SLACK)
         within = there & (s >= -_BLOCK_SLACK) & (s <= 1 + _BLOCK_SLACK)

@@ -11,7 +11,7 @@ from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.nominal_file import MARGIN, nominal_flank
 from gearmath.machine.control.executor import MachinePath
 from gearmath.machine.milling.mill import measured_lines, root_of, thickness
-from gearmath.machine.milling.run import Run, runs_of
+from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.machine.planning.targets import landmarks
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile, join
@@ -20,10 +20,16 @@ from gearmath.specs.simulated_machine import SimulatedMachine
 
 
 def metal(
-    path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None = None,
-    whole: Sequence[int] = (0,), around: Sequence[int] = (), progress: Callable[[int], object] = lambda _: None,
-    runs: list[Run] | None = None,
-) -> FlankFile:  # fmt: skip
+    path: MachinePath,
+    member: Member,
+    name: str,
+    machine: MillingMachine,
+    errors: SimulatedMachine | None = None,
+    whole: Sequence[int] = (0,),
+    around: Sequence[int] = (),
+    progress: Callable[[int], object] = lambda _: None,
+    runs: list[CuttingRun] | None = None,
+) -> FlankFile:
     """What a program leaves, without noise: the grid of the teeth ``whole``, the reference point of every tooth.
 
     Of the teeth ``around``, the corners of the grid too: eight of them let a registration find tilt and eccentricity.
@@ -48,7 +54,7 @@ def metal(
     return join(files)
 
 
-def _near(run: Run, tooth: int, teeth: int) -> Run:
+def _near(run: CuttingRun, tooth: int, teeth: int) -> CuttingRun:
     """A run of which only the passes through a space and its neighbours cut; face hobbing cuts all spaces at once."""
     if run.blades is not None:
         return run

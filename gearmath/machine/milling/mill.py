@@ -18,7 +18,7 @@ from gearmath.machine.control.executor import MachinePath
 from gearmath.machine.milling.axis_errors import mounted
 from gearmath.machine.milling.blade_removal import removal_by_blades
 from gearmath.machine.milling.removal import Removal, removal
-from gearmath.machine.milling.run import Run, runs_of
+from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import PLANNED, FlankFile, flank_file, join
 from gearmath.specs.milling_machine import MillingMachine
@@ -35,7 +35,7 @@ def mill_member(
     machine: MillingMachine,
     errors: SimulatedMachine | None = None,
     progress: Callable[[int], object] = lambda _: None,
-    runs: list[Run] | None = None,
+    runs: list[CuttingRun] | None = None,
 ) -> FlankFile:
     """What a program leaves on a member: the whole grid of the first space cut, the reference point of the others.
 
@@ -88,9 +88,15 @@ def _together(spaces: list[int]) -> list[list[int]]:
 
 
 def measured_lines(
-    runs: list[Run], member: Member, machine: MillingMachine, errors: SimulatedMachine | None, nominal: FlankFile,
-    flank: str, spaces: list[int], start: np.ndarray,
-) -> list[FlankFile]:  # fmt: skip
+    runs: list[CuttingRun],
+    member: Member,
+    machine: MillingMachine,
+    errors: SimulatedMachine | None,
+    nominal: FlankFile,
+    flank: str,
+    spaces: list[int],
+    start: np.ndarray,
+) -> list[FlankFile]:
     """The deviations that all passes leave at nominal points of some spaces, which are given for tooth 0."""
     angles = [2 * math.pi * space / member.teeth for space in spaces]
     points, normals = ([turned(part, angle) for angle in angles] for part in (nominal.point, nominal.normal))
@@ -102,17 +108,31 @@ def measured_lines(
             k = int(np.argmax(np.isnan(deviation)))
             place = f"row {nominal.row[k]}, col {nominal.col[k]}"
             raise InputError(f"the program leaves the {flank} flank of space {space} uncut at {place}")
-        files.append(flank_file(
-            nominal.header, nominal.member, flank, space, nominal.row, nominal.col,
-            point + deviation[:, None] * normal, normal, deviation,
-        ))  # fmt: skip
+        files.append(
+            flank_file(
+                nominal.header,
+                nominal.member,
+                flank,
+                space,
+                nominal.row,
+                nominal.col,
+                point + deviation[:, None] * normal,
+                normal,
+                deviation,
+            )
+        )
     return files
 
 
 def expose(
-    runs: list[Run], machine: MillingMachine, errors: SimulatedMachine | None, point: np.ndarray, normal: np.ndarray,
-    start: np.ndarray, progress: Callable[[int], object] = lambda _: None,
-) -> Removal:  # fmt: skip
+    runs: list[CuttingRun],
+    machine: MillingMachine,
+    errors: SimulatedMachine | None,
+    point: np.ndarray,
+    normal: np.ndarray,
+    start: np.ndarray,
+    progress: Callable[[int], object] = lambda _: None,
+) -> Removal:
     """What all tools leave of lines of the work; ``block`` counts through the blocks of all runs."""
     where, along = mounted(point, normal, errors.mounting) if errors is not None else (point, normal)
     left, offset = Removal(np.full(len(point), np.nan), np.full(len(point), -1)), 0
@@ -146,6 +166,14 @@ def _probed(file: FlankFile, name: str, errors: SimulatedMachine | None) -> Flan
         return file
     noise = sigma * np.random.default_rng([errors.seed, zlib.crc32(name.encode())]).standard_normal(len(file))
     return FlankFile(
-        file.header, file.member, file.flank, file.tooth, file.row, file.col,
-        file.point + noise[:, None] * file.normal, file.normal, file.deviation + noise, np.full(len(file), sigma),
-    )  # fmt: skip
+        file.header,
+        file.member,
+        file.flank,
+        file.tooth,
+        file.row,
+        file.col,
+        file.point + noise[:, None] * file.normal,
+        file.normal,
+        file.deviation + noise,
+        np.full(len(file), sigma),
+    )

@@ -82,9 +82,12 @@ def annulus_entry() -> Kernel:
         "annulus_entry", [*line, start, w], [distance], [q.name for q in quantities], ["line_distance"]
     )
     return Kernel(
-        function, "Where a line, from its start on, is first taken away by an annular cutter at one pose.",
-        quantities, (notation.line_distance,), "(16.3) of both cones and the tip plane, (16.4)",
-    )  # fmt: skip
+        function,
+        "Where a line, from its start on, is first taken away by an annular cutter at one pose.",
+        quantities,
+        (notation.line_distance,),
+        "(16.3) of both cones and the tip plane, (16.4)",
+    )
 
 
 @cache
@@ -97,9 +100,18 @@ def entry_along_block(sharp: bool) -> Kernel:
     fraction = Quantity("fraction", "0 at the start of the block, 1 at its end", "1", "s", (0.0, 1.0))
     machine = kernel("tool_pose").inputs[1:]
     quantities = (
-        first, last, fraction, *machine, _base, notation.line_point, notation.line_direction, notation.line_start,
-        _annulus, notation.outer_blade, notation.inner_blade,
-    )  # fmt: skip
+        first,
+        last,
+        fraction,
+        *machine,
+        _base,
+        notation.line_point,
+        notation.line_direction,
+        notation.line_start,
+        _annulus,
+        notation.outer_blade,
+        notation.inner_blade,
+    )
     symbols = [ca.SX.sym(q.name, max(q.size, 1)) for q in quantities]
     a, b, s = symbols[:3]
     base, point, direction, start, annulus, outer, inner = symbols[-7:]
@@ -110,9 +122,12 @@ def entry_along_block(sharp: bool) -> Kernel:
         t = _onto_cutter(t, *pose, outer, inner)
     function = ca.Function("entry_along_block", symbols, [ca.cse(t)], [q.name for q in quantities], ["line_distance"])
     return Kernel(
-        function, "Where a line is first taken away at a fraction of a straight block.", quantities,
-        (notation.line_distance,), "annulus_entry, then Newton on (16.5)",
-    )  # fmt: skip
+        function,
+        "Where a line is first taken away at a fraction of a straight block.",
+        quantities,
+        (notation.line_distance,),
+        "annulus_entry, then Newton on (16.5)",
+    )
 
 
 def _onto_cutter(t: ca.SX, center: ca.SX, axis: ca.SX, point: ca.SX, direction: ca.SX, *blades: ca.SX) -> ca.SX:
@@ -133,9 +148,15 @@ def _onto_cutter(t: ca.SX, center: ca.SX, axis: ca.SX, point: ca.SX, direction: 
 
 
 def removal(
-    axes: np.ndarray, cutting: np.ndarray, cutter: Cutter, machine: tuple, point: np.ndarray, normal: np.ndarray,
-    start: np.ndarray | float = -REACH, progress: Callable[[int], object] = lambda _: None,
-) -> Removal:  # fmt: skip
+    axes: np.ndarray,
+    cutting: np.ndarray,
+    cutter: Cutter,
+    machine: tuple,
+    point: np.ndarray,
+    normal: np.ndarray,
+    start: np.ndarray | float = -REACH,
+    progress: Callable[[int], object] = lambda _: None,
+) -> Removal:
     """What a path leaves of lines along ``normal`` (m,3) through ``point`` (m,3), and which blocks it is left by.
 
     ``axes`` (n,5) are the ends of n blocks, ``cutting`` (n,) is False where block k, from end k-1 to end k, does not
@@ -164,9 +185,14 @@ def removal(
 
 
 def remaining(
-    axes: np.ndarray, cutting: np.ndarray, blade: Blade | Cutter, pivot_height: float, point: np.ndarray,
-    normal: np.ndarray, progress: Callable[[int], object] = lambda _: None,
-) -> np.ndarray:  # fmt: skip
+    axes: np.ndarray,
+    cutting: np.ndarray,
+    blade: Blade | Cutter,
+    pivot_height: float,
+    point: np.ndarray,
+    normal: np.ndarray,
+    progress: Callable[[int], object] = lambda _: None,
+) -> np.ndarray:
     """Distance (m,) [mm] of :func:`removal` on a machine without pivot offset."""
     cutter = blade.cutter if isinstance(blade, Blade) else blade
     return removal(axes, cutting, cutter, (pivot_height,), point, normal, progress=progress).distance
@@ -176,9 +202,14 @@ _Lines = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def _of_body(
-    axes: np.ndarray, ends: np.ndarray, place: np.ndarray, poses: tuple[np.ndarray, ...], body: Body, machine: tuple,
+    axes: np.ndarray,
+    ends: np.ndarray,
+    place: np.ndarray,
+    poses: tuple[np.ndarray, ...],
+    body: Body,
+    machine: tuple,
     lines: _Lines,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+) -> tuple[np.ndarray, np.ndarray]:
     """Smallest distance (m,) of one body on some lines and the block it is in."""
     center, axis = poses
     entry, annulus = annulus_entry(), body.annulus
@@ -201,8 +232,13 @@ def _beside_dips(lower: np.ndarray, limit: np.ndarray) -> np.ndarray:
 
 
 def _divide(
-    axes: np.ndarray, block: np.ndarray, line: np.ndarray, body: Body, machine: tuple, lines: _Lines,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    axes: np.ndarray,
+    block: np.ndarray,
+    line: np.ndarray,
+    body: Body,
+    machine: tuple,
+    lines: _Lines,
+) -> tuple[np.ndarray, np.ndarray]:
     """Smallest distance within candidate blocks: sampled, and again around the smallest sample.
 
     A candidate is given up when what its samples differ by cannot bring it below the smallest distance of its line.

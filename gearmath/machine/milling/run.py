@@ -32,7 +32,7 @@ _NOMINAL_POSITIONS = 201
 
 
 @dataclass(frozen=True)
-class Run:
+class CuttingRun:
     """The blocks of one tool: real axis positions (n,5), which of them cut (n,), and the space (n,) of each, or -1.
 
     ``line`` (n,) is the number of the line in the program text. In face hobbing, ``blades`` cut one by one at the
@@ -57,9 +57,14 @@ class Run:
 
 
 def runs_of(
-    path: MachinePath, member: Member, name: str, machine: MillingMachine, errors: SimulatedMachine | None,
-    space: ToothSpace | None = None, edge_radius: float = 0.0,
-) -> list[Run]:  # fmt: skip
+    path: MachinePath,
+    member: Member,
+    name: str,
+    machine: MillingMachine,
+    errors: SimulatedMachine | None,
+    space: ToothSpace | None = None,
+    edge_radius: float = 0.0,
+) -> list[CuttingRun]:
     """The program's tools in their order. Raises InputError if one of them is not of this member."""
     cuts = {cut.tool: cut for cut in Cut.of(member, name)}
     for tool in path.tools:
@@ -84,7 +89,7 @@ def runs_of(
             axes = with_backlash(axes, errors) + turned[:, None] * np.array([0, 0, 0, 1, 0])
             axes = with_axis_errors(axes, errors)
         cutter = cutter_of(member, cut.flanks, space, edge_radius)
-        runs.append(Run(cut, cutter, axes, cutting, indexed, line))
+        runs.append(CuttingRun(cut, cutter, axes, cutting, indexed, line))
     return runs
 
 
@@ -98,9 +103,14 @@ def _divided(axes: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def _hobbing_run(
-    path: MachinePath, member: Member, name: str, cut: Cut, machine: MillingMachine, errors: SimulatedMachine | None,
+    path: MachinePath,
+    member: Member,
+    name: str,
+    cut: Cut,
+    machine: MillingMachine,
+    errors: SimulatedMachine | None,
     edge_radius: float,
-) -> Run:  # fmt: skip
+) -> CuttingRun:
     """The run of a face hobbing program. Raises InputError where it cuts without C."""
     cutting = ~path.rapid
     still = cutting & ~np.isfinite(path.cutter)
@@ -119,7 +129,7 @@ def _hobbing_run(
         turned, cutting, lines = six[:, 5], cutting[own], lines[own]
     cutter = cutter_of(member, cut.flanks, None, edge_radius)
     spaces = np.full(len(cutting), -1)
-    return Run(cut, cutter, axes, cutting, spaces, lines, blades_of(member, edge_radius), turned)
+    return CuttingRun(cut, cutter, axes, cutting, spaces, lines, blades_of(member, edge_radius), turned)
 
 
 def _spaces(axes: np.ndarray, cutting: np.ndarray, member: Member, cut: Cut, machine: MillingMachine) -> np.ndarray:

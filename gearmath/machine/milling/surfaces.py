@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearmath.bevel.tooth import SHARP_EDGE, FlankSurface, ToothSpace, tooth_space
+from gearmath.bevel.tooth import SHARP_EDGE, SpaceFlank, ToothSpace, tooth_space
 from gearmath.bevel.turning import turned
 from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.control.executor import MachinePath
 from gearmath.machine.milling.mill import expose, thickness
 from gearmath.machine.milling.removal import removal
-from gearmath.machine.milling.run import Run, runs_of
+from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.machine.planning.passes import tooth_angles
 from gearmath.machine.planning.path import Cut, axis_positions, roll_range
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member
@@ -89,12 +89,18 @@ def nominal_surfaces(member: Member, space: ToothSpace) -> list[Surface]:
 
 
 def surface_states(
-    path: MachinePath | None, member: Member, name: str, machine: MillingMachine,
+    path: MachinePath | None,
+    member: Member,
+    name: str,
+    machine: MillingMachine,
     errors: SimulatedMachine | None = None,
-    spaces: Sequence[int] | None = None, tolerance: float = DEFAULT_TOLERANCE, columns: int = DEFAULT_COLUMNS,
-    runs: list[Run] | None = None,
-    progress: Callable[[int], object] = lambda _: None, space: ToothSpace | None = None,
-) -> list[SurfaceState]:  # fmt: skip
+    spaces: Sequence[int] | None = None,
+    tolerance: float = DEFAULT_TOLERANCE,
+    columns: int = DEFAULT_COLUMNS,
+    runs: list[CuttingRun] | None = None,
+    progress: Callable[[int], object] = lambda _: None,
+    space: ToothSpace | None = None,
+) -> list[SurfaceState]:
     """Every surface of ``spaces`` (all that the program cuts, by default), exposed to every pass of every tool.
 
     ``runs`` replaces the tools of the program, whose ``path`` is then not needed; ``space`` the nominal space.
@@ -159,28 +165,36 @@ def _as_designed(member: Member) -> Member:
     """The member with its nominal settings in the place of corrected ones."""
     flanks = {
         flank: spec.model_copy(update={"design": None} | {key: getattr(spec.nominal, key) for key in SETTINGS})
-        for flank in FLANKS for spec in [member.flank(flank)]
-    }  # fmt: skip
+        for flank in FLANKS
+        for spec in [member.flank(flank)]
+    }
     return member.model_copy(update=flanks)
 
 
 def _state(
     surface: Surface, space: int, distance: np.ndarray, block: np.ndarray, lines: np.ndarray, tolerance: float
-) -> SurfaceState:  # fmt: skip
+) -> SurfaceState:
     met = ~np.isnan(distance)
     deepest = int(np.nanargmin(distance)) if met.any() else 0
     fullest = int(np.argmax(np.nan_to_num(distance, nan=np.inf)))
     return SurfaceState(
-        surface=surface.name, space=space, points=len(distance),
-        lowest=float(np.min(distance[met], initial=math.inf)), highest=float(np.max(distance[met], initial=-math.inf)),
-        gouged=int((distance[met] < -tolerance).sum()), uncut=int((~met).sum() + (distance[met] > tolerance).sum()),
-        unmet=int((~met).sum()), row=int(surface.row[deepest]), col=int(surface.col[deepest]),
+        surface=surface.name,
+        space=space,
+        points=len(distance),
+        lowest=float(np.min(distance[met], initial=math.inf)),
+        highest=float(np.max(distance[met], initial=-math.inf)),
+        gouged=int((distance[met] < -tolerance).sum()),
+        uncut=int((~met).sum() + (distance[met] > tolerance).sum()),
+        unmet=int((~met).sum()),
+        row=int(surface.row[deepest]),
+        col=int(surface.col[deepest]),
         line=int(lines[block[deepest]]) if block[deepest] >= 0 else 0,
-        highest_row=int(surface.row[fullest]), highest_col=int(surface.col[fullest]),
-    )  # fmt: skip
+        highest_row=int(surface.row[fullest]),
+        highest_col=int(surface.col[fullest]),
+    )
 
 
-def _root(low: FlankSurface, high: FlankSurface) -> Surface:
+def _root(low: SpaceFlank, high: SpaceFlank) -> Surface:
     first, last = low.point[-1], high.point[-1]
     a, b = (np.stack([np.arctan2(p[:, 1], p[:, 0]), np.hypot(p[:, 0], p[:, 1]), p[:, 2]]) for p in (first, last))
     turn = (b[0] - a[0] + math.pi) % (2 * math.pi) - math.pi
@@ -191,9 +205,7 @@ def _root(low: FlankSurface, high: FlankSurface) -> Surface:
         normal = (1 - fraction) * low.normal[-1] + fraction * high.normal[-1]
         normals.append(normal / np.linalg.norm(normal, axis=1, keepdims=True))
     row, col = (index.ravel() for index in np.indices((len(_ROOT), len(first))))
-    return Surface(
-        "root", np.concatenate(points), np.concatenate(normals), row, col, np.full(len(row), -_ROOT_DEPTH)
-    )  # fmt: skip
+    return Surface("root", np.concatenate(points), np.concatenate(normals), row, col, np.full(len(row), -_ROOT_DEPTH))
 
 
 def _flat(points: np.ndarray) -> np.ndarray:

@@ -75,17 +75,23 @@ def entry_within_block() -> Kernel:
     distance = kernel("line_entry").function(a + s * (b - a), *others)
     second, gradient = ca.hessian(distance, s)
     function = ca.Function(
-        "entry_within_block", [a, b, s, *others], [distance, gradient, second],
-        ["axes_first", "axes_last", "fraction", *(q.name for q in rest)], ["line_distance", "slope", "curvature"],
-    )  # fmt: skip
+        "entry_within_block",
+        [a, b, s, *others],
+        [distance, gradient, second],
+        ["axes_first", "axes_last", "fraction", *(q.name for q in rest)],
+        ["line_distance", "slope", "curvature"],
+    )
     return Kernel(
-        function, "Entry of a line into the swept blade along a straight block.", (first, last, fraction, *rest),
-        (notation.line_distance, slope, curvature), "line_entry (6.4) along a G1 block",
-    )  # fmt: skip
+        function,
+        "Entry of a line into the swept blade along a straight block.",
+        (first, last, fraction, *rest),
+        (notation.line_distance, slope, curvature),
+        "line_entry (6.4) along a G1 block",
+    )
 
 
 @dataclass(frozen=True)
-class Pass:
+class ExactPass:
     """The exact path of one pass, and rows of flank points that it generates.
 
     ``theta`` holds the cradle rotations of all rows, one behind the other and rising within each; ``rows`` holds where
@@ -101,14 +107,14 @@ class Pass:
     rows: tuple[tuple[int, np.ndarray], ...]
 
     @staticmethod
-    def of(member: Member, cut: Cut, pivot_height: float, pivot_offset: np.ndarray) -> Pass:
+    def of(member: Member, cut: Cut, pivot_height: float, pivot_offset: np.ndarray) -> ExactPass:
         """Points over the whole flanks of a pass, down to the root."""
         found = [row for flank in cut.flanks for row in (*_rows(member, flank), *foot_curves(member, flank))]
         theta, lines = [at for at, _ in found], [row for _, row in found]
         begin = np.cumsum([0, *(len(at) for at in theta)]).tolist()
         rows = tuple((k, (at[1:] + at[:-1]) / 2) for k, at in zip(begin, theta, strict=False) if len(at))
         spec = member.flank(cut.flanks[0])
-        return Pass(spec, pivot_height, pivot_offset, np.concatenate(theta), np.concatenate(lines), rows)
+        return ExactPass(spec, pivot_height, pivot_offset, np.concatenate(theta), np.concatenate(lines), rows)
 
     def deviation(self, start: float, end: float) -> float:
         """The largest deviation [mm] that a block leaves: on points within its roll, and as gouges beside it."""
@@ -143,9 +149,15 @@ class Pass:
         lines = np.repeat(self.lines[chosen], len(axes), axis=0)
         points, normals, radius, angle, side = np.split(lines, [3, 6, 7, 8], axis=1)
         (distance,) = kernel("line_entry")(
-            np.tile(axes, (len(chosen), 1)), self.pivot_height, points, normals, radius[:, 0], angle[:, 0], side[:, 0],
+            np.tile(axes, (len(chosen), 1)),
+            self.pivot_height,
+            points,
+            normals,
+            radius[:, 0],
+            angle[:, 0],
+            side[:, 0],
             self.pivot_offset,
-        )  # fmt: skip
+        )
         return distance.reshape(len(chosen), len(axes))
 
     def _smallest(self, start: float, end: float, chosen: np.ndarray) -> np.ndarray:
@@ -171,9 +183,17 @@ class Pass:
         """Distance (n,) at fractions ``s`` (n,) of the block, the smallest as seen from there, the way there."""
         points, normals, radius, angle, side = np.split(self.lines[chosen], [3, 6, 7, 8], axis=1)
         distance, slope, curvature = entry_within_block()(
-            ends[0], ends[1], s, self.pivot_height, points, normals, radius[:, 0], angle[:, 0], side[:, 0],
+            ends[0],
+            ends[1],
+            s,
+            self.pivot_height,
+            points,
+            normals,
+            radius[:, 0],
+            angle[:, 0],
+            side[:, 0],
             self.pivot_offset,
-        )  # fmt: skip
+        )
         curved = np.where(curvature > 0, curvature, math.inf)
         change = np.clip(s - slope / curved, 0.0, 1.0) - s
         return distance, np.minimum(distance, distance + (slope + curvature * change / 2) * change), change
@@ -244,9 +264,13 @@ def check_tolerance(tolerance: float, decimals: float = ROUNDING) -> None:
 
 
 def roll_nodes(
-    member: Member, cut: Cut, tolerance: float = DEFAULT_TOLERANCE, pivot_height: float = 0.0,
-    pivot_offset: np.ndarray | None = None, rounding: float = ROUNDING,
-) -> np.ndarray:  # fmt: skip
+    member: Member,
+    cut: Cut,
+    tolerance: float = DEFAULT_TOLERANCE,
+    pivot_height: float = 0.0,
+    pivot_offset: np.ndarray | None = None,
+    rounding: float = ROUNDING,
+) -> np.ndarray:
     """Cradle rotations (n,) [rad] of the block ends: the fewest blocks that keep the flanks within the tolerance [mm].
 
     Of that, ``rounding`` [mm] is left for the increments of the control, but never more than half.
@@ -255,7 +279,7 @@ def roll_nodes(
     check_tolerance(tolerance)
     member = on_one_machine(member, cut)
     start, end = roll_range(member, cut)
-    exact = Pass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)
+    exact = ExactPass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)
     budget = _BETWEEN * (tolerance - min(rounding, tolerance / 2))
     nodes, width = [start], _LONGEST / 10
     while nodes[-1] < end:
@@ -271,7 +295,7 @@ def on_one_machine(member: Member, cut: Cut) -> Member:
     return member.model_copy(update={name: member.flank(name).model_copy(update=shared) for name in cut.flanks})
 
 
-def _longest(exact: Pass, start: float, guess: float, budget: float) -> float:
+def _longest(exact: ExactPass, start: float, guess: float, budget: float) -> float:
     """Roll [rad] of the longest block from ``start``: deviations grow with the square of the block, then bisection."""
     feasible, infeasible, width = 0.0, math.inf, min(guess, _LONGEST)
     for _ in range(40):

@@ -52,9 +52,7 @@ def chip_loads(
     return tuple(_load(member, flank, machine, last[cut.tool], rpm, plunge_feed) for cut, flank in cuts)
 
 
-def _load(
-    member: Member, flank: str, machine: MillingMachine, one: Pass, rpm: float, plunge_feed: float
-) -> ChipLoad:  # fmt: skip
+def _load(member: Member, flank: str, machine: MillingMachine, one: Pass, rpm: float, plunge_feed: float) -> ChipLoad:
     spec, index = member.flank(flank), member.indexing_sign * (member.blade_groups or 0) / member.teeth
     blades = 1 if member.process == "face_hobbing" else spec.blade_count
     speeds = np.full(len(one.seconds), rpm)

@@ -47,7 +47,7 @@ _HOBBING_DEPTHS = 1.5
 
 
 @dataclass(frozen=True)
-class Job:
+class CuttingJob:
     """What a program does: tooth spaces, tolerance and stocks [mm] along the tooth normal, feed [mm/min] at the tooth.
 
     ``roughing_stock`` above ``finishing_stock`` adds a roughing pass of all spaces before the finishing one;
@@ -86,11 +86,11 @@ class Job:
         return ("rough", self.roughing_stock, coarse), finish
 
 
-ONE_SPACE = Job()
+ONE_SPACE = CuttingJob()
 
 
 @dataclass(frozen=True)
-class Plan:
+class CuttingPlan:
     """A job on one member, planned: all that its program and its set-up sheet say.
 
     ``tool_radius`` [mm] is the widest of cutter, head and spindle, ``space`` the tooth space where each flank has a
@@ -101,7 +101,7 @@ class Plan:
     name: str
     member: Member
     machine: MillingMachine
-    job: Job
+    job: CuttingJob
     passes: tuple[Pass, ...]
     share: ControlShare
     space: ToothSpace | None
@@ -115,9 +115,12 @@ class Plan:
 
 
 def cutting_plan(
-    bevel_set: BevelSet, name: str, machine: MillingMachine, job: Job = ONE_SPACE,
+    bevel_set: BevelSet,
+    name: str,
+    machine: MillingMachine,
+    job: CuttingJob = ONE_SPACE,
     progress: Callable[[int], object] = lambda passes: None,
-) -> Plan:  # fmt: skip
+) -> CuttingPlan:
     """All passes of a job on one member; ``progress`` hears of those that are planned.
 
     Raises InputError for singular poses, travel and speed limits, a tolerance out of range, and a face hobbed member
@@ -132,16 +135,16 @@ def cutting_plan(
     for one in _passes(member, name, machine, job, share):
         passes.append(one)
         progress(1)
-    return Plan(bevel_set.title, name, member, machine, job, tuple(passes), share, space, room, radius)
+    return CuttingPlan(bevel_set.title, name, member, machine, job, tuple(passes), share, space, room, radius)
 
 
-def pass_count(member: Member, name: str, job: Job) -> int:
+def pass_count(member: Member, name: str, job: CuttingJob) -> int:
     """How many passes the program of a job has: in face hobbing one a stage, else one a tool, stage and space."""
     hobbed = member.process == "face_hobbing"
     return len(job.stages) * (1 if hobbed else len(Cut.of(member, name)) * len(job.spaces))
 
 
-def _passes(member: Member, name: str, machine: MillingMachine, job: Job, share: ControlShare) -> Iterator[Pass]:
+def _passes(member: Member, name: str, machine: MillingMachine, job: CuttingJob, share: ControlShare) -> Iterator[Pass]:
     """All passes in their order: tool by tool, roughing before finishing, space by space."""
     if member.process == "face_hobbing":
         yield from _hobbing_passes(member, name, machine, job)
@@ -163,7 +166,7 @@ def _passes(member: Member, name: str, machine: MillingMachine, job: Job, share:
                 yield replace(first, label=label, tooth=int(space), axes=axes)
 
 
-def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job) -> Iterator[Pass]:
+def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: CuttingJob) -> Iterator[Pass]:
     """One pass a stage, through all spaces at once."""
     if sorted(set(job.spaces)) != list(range(member.teeth)):
         raise InputError(
@@ -176,9 +179,7 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job
     _check_motions(member, name, cut)
     tooth, lift = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
-        one = hobbing_pass(
-            member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth
-        )  # fmt: skip
+        one = hobbing_pass(member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth)
         one.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
         label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
         axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
@@ -186,7 +187,7 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Job
 
 
 def _first_pass(
-    member: Member, cut: Cut, machine: MillingMachine, job: Job, share: ControlShare
+    member: Member, cut: Cut, machine: MillingMachine, job: CuttingJob, share: ControlShare
 ) -> tuple[np.ndarray, Pass]:
     """Cradle rotations and the pass through space 0: rolled, or for Formate plunged at cradle rotation zero."""
     flank = member.flank(cut.flanks[0])

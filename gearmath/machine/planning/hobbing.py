@@ -131,9 +131,17 @@ def _distance(
 
 
 def hobbing_pass(
-    member: Member, name: str, cut: Cut, machine: MillingMachine, tolerance: float, feed: float, rpm: float,
-    lift: float, plunge_feed: float, tooth: np.ndarray,
-) -> HobbingPass:  # fmt: skip
+    member: Member,
+    name: str,
+    cut: Cut,
+    machine: MillingMachine,
+    tolerance: float,
+    feed: float,
+    rpm: float,
+    lift: float,
+    plunge_feed: float,
+    tooth: np.ndarray,
+) -> HobbingPass:
     """The whole cut: from ``lift`` [mm] above the start of the roll down, through the roll, to a standstill.
 
     ``feed`` [mm/min] is the highest speed of the roll past ``tooth`` (3,), a place of the work as the indexing has
@@ -161,7 +169,7 @@ def hobbing_pass(
     axes[: len(plunge), 2] += lift * (1.0 - plunge)
     seconds = paced_seconds(
         np.diff(axes, axis=0), np.diff(turned) * per_turn, limits.max_speed, limits.max_acceleration
-    )  # fmt: skip
+    )
     return HobbingPass(axes, theta, seconds, turns)
 
 

@@ -47,7 +47,7 @@ class Targets:
 
 
 @dataclass(frozen=True)
-class Pattern:
+class TouchPattern:
     """Places (p) of a space in their order, and teeth (z + 1), tooth z being tooth 0 once more.
 
     A place is touched on every tooth whose ``kind`` (z + 1,) is at least the ``least`` (p,) of the place. ``turn``
@@ -60,7 +60,7 @@ class Pattern:
     turn: np.ndarray
 
     @staticmethod
-    def of(targets: Targets, teeth: int, machine: MillingMachine) -> Pattern:
+    def of(targets: Targets, teeth: int, machine: MillingMachine) -> TouchPattern:
         """The pattern that repeats ``targets``, which must be nested: a tooth has all places that a poorer one has."""
         order = sorted({targets.place(k) for k in range(len(targets))})
         first = {targets.place(k): k for k in reversed(range(len(targets)))}
@@ -74,7 +74,7 @@ class Pattern:
         where = np.array([order.index(targets.place(k)) for k in range(len(targets))])
         np.minimum.at(least, where, kind[targets.tooth])
         turn = pitch * (np.arange(teeth + 1) % teeth)
-        pattern = Pattern(places, least, kind, turn + _whole_turns(places, turn, machine))
+        pattern = TouchPattern(places, least, kind, turn + _whole_turns(places, turn, machine))
         if list(pattern.order()) != list(zip(targets.tooth.tolist(), where.tolist(), strict=True)):
             raise ValueError("the touches do not repeat one pattern from tooth to tooth")
         return pattern
@@ -114,8 +114,11 @@ def check_travel(targets: Targets, name: str, machine: MillingMachine, level: fl
     raised[:, 2] = level
     before = targets.start - machine.one_sided * np.array([0, 0, 0, 1, 0])
     for what, axes in (
-        ("the start", targets.start), ("the end", targets.end), ("the height above", raised), ("the way to A", before)
-    ):  # fmt: skip
+        ("the start", targets.start),
+        ("the end", targets.end),
+        ("the height above", raised),
+        ("the way to A", before),
+    ):
         outside = np.argwhere((axes < low) | (axes > high))
         if outside.size:
             k, axis = outside[0]

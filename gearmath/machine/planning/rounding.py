@@ -43,9 +43,12 @@ def entry_by_axes() -> Kernel:
         "entry_by_axes", symbols, [ca.jacobian(distance, symbols[0]).T], [q.name for q in inputs], ["gradient"]
     )
     return Kernel(
-        function, "How the entry of a line into the swept blade moves with the axes.", inputs, (gradient,),
+        function,
+        "How the entry of a line into the swept blade moves with the axes.",
+        inputs,
+        (gradient,),
         f"derivative of line_entry (6.4) by {notation.axes.name}",
-    )  # fmt: skip
+    )
 
 
 def axis_effects(member: Member, cut: Cut, machine: MillingMachine) -> np.ndarray:

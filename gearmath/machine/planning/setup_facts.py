@@ -14,7 +14,7 @@ from gearmath.specs.bevel_set import Flank, Member
 from gearmath.specs.milling_machine import MillingMachine
 
 if TYPE_CHECKING:
-    from gearmath.machine.planning.cut_plan import Plan
+    from gearmath.machine.planning.cut_plan import CuttingPlan
 
 #: The sentence for R_d, wherever it is explained.
 R_D = (
@@ -63,10 +63,16 @@ class BlankSizes:
         ends = evaluate("blank_ends", {"blank": member.blank.vector})
         blank, shank = member.blank, work_profiles(member, machine.fixture)["shank"]
         return BlankSizes(
-            ends["outer_tip_diameter"], ends["inner_tip_diameter"], blank.face_angle, blank.root_angle,
-            blank.pitch_angle, ends["crossing_point_to_crown"], ends["crossing_point_to_front_crown"],
-            float(shank[0, 0]), ends["crossing_point_to_crown"] - blank.pitch_apex_beyond_crossing_point,
-        )  # fmt: skip
+            ends["outer_tip_diameter"],
+            ends["inner_tip_diameter"],
+            blank.face_angle,
+            blank.root_angle,
+            blank.pitch_angle,
+            ends["crossing_point_to_crown"],
+            ends["crossing_point_to_front_crown"],
+            float(shank[0, 0]),
+            ends["crossing_point_to_crown"] - blank.pitch_apex_beyond_crossing_point,
+        )
 
 
 @dataclass(frozen=True)
@@ -89,14 +95,14 @@ class Sections:
 class SetupFacts:
     """All of it for one planned program."""
 
-    plan: Plan
+    plan: CuttingPlan
     sizes: BlankSizes
     tools: tuple[Tool, ...]
     chips: tuple[ChipLoad, ...]
     sections: tuple[Sections, ...]
 
     @staticmethod
-    def of(plan: Plan, plunge_feed: float) -> SetupFacts:
+    def of(plan: CuttingPlan, plunge_feed: float) -> SetupFacts:
         """``plunge_feed`` [mm/min] is that down to the first point of a roll."""
         member, machine = plan.member, plan.machine
         chips = chip_loads(member, plan.name, machine, plan.passes, plan.job.spindle_rpm, plunge_feed)
@@ -139,7 +145,7 @@ class SetupFacts:
         return (*(f"{', '.join(names)}: {words}" for words, names in said.items()), *others)
 
 
-def _sections(plan: Plan) -> Iterator[Sections]:
+def _sections(plan: CuttingPlan) -> Iterator[Sections]:
     first = 0
     for k, one in enumerate(plan.passes):
         after = plan.passes[k + 1] if k + 1 < len(plan.passes) else None

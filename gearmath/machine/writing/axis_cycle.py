@@ -15,7 +15,7 @@ from gearmath.machine.bodies.probe_tip import probe_height
 from gearmath.machine.planning.artefact_targets import sphere_positions, work_sphere_directions
 from gearmath.machine.planning.targets import APPROACH, CLEARANCE
 from gearmath.machine.writing.calibrating import touch_sphere
-from gearmath.machine.writing.probe_words import Blocks, Plan
+from gearmath.machine.writing.probe_words import Blocks, ProbingPlan
 from gearmath.specs.calibration import Calibration, WorkSphere
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, WORK_SPHERE
@@ -47,7 +47,7 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     )
 
     above = f"G0 {blocks.length('Z', anywhere)}"
-    plan = Plan.of_sections([len(work_sphere_directions(one, sphere, calibration)) for one in centers])
+    plan = ProbingPlan.of_sections([len(work_sphere_directions(one, sphere, calibration)) for one in centers])
 
     def body() -> Iterator[str]:
         yield from blocks.start(plan, CALIBRATION_COLUMNS)

@@ -9,7 +9,7 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.machine.planning.artefact_targets import FACE_SIDES, PAIRS, sphere_directions
 from gearmath.machine.planning.targets import APPROACH, APPROACH_FEED, CLEARANCE, MEASURING_FEED
-from gearmath.machine.writing.probe_words import STILL, Blocks, Plan
+from gearmath.machine.writing.probe_words import STILL, Blocks, ProbingPlan
 from gearmath.specs.calibration import Calibration, Face, Ring
 from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, MillingMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING_FACE, SPHERE
@@ -36,7 +36,7 @@ def calibration_program(machine: MillingMachine, calibration: Calibration, progr
         center, directions = np.array(sphere.center) - calibration.tip_offset, sphere_directions()
         touches = touch_sphere(blocks, calibration, center, sphere.diameter, directions, level, SPHERE)
         sections.append(("sphere", len(directions), touches))
-    plan = Plan.of_sections([count for _, count, _ in sections])
+    plan = ProbingPlan.of_sections([count for _, count, _ in sections])
 
     def body() -> Iterator[str]:
         yield from blocks.start(plan, CALIBRATION_COLUMNS)
@@ -66,9 +66,12 @@ def _level(machine: MillingMachine, calibration: Calibration) -> float:
         if isinstance(place, Ring) and place.face is not None:
             reach = max(reach, (place.diameter + place.face.width) / 2)
         for axis, (least, most) in enumerate(
-            ((place.center[0] - reach, place.center[0] + reach), (place.center[1] - reach, place.center[1] + reach),
-             (place.center[2], level))
-        ):  # fmt: skip
+            (
+                (place.center[0] - reach, place.center[0] + reach),
+                (place.center[1] - reach, place.center[1] + reach),
+                (place.center[2], level),
+            )
+        ):
             if least < low[axis] or most > high[axis]:
                 scale = UNITS_PER_INTERNAL[axis]
                 raise InputError(
@@ -118,9 +121,14 @@ def _face(blocks: Blocks, calibration: Calibration, ring: Ring, face: Face, leve
 
 
 def touch_sphere(
-    blocks: Blocks, calibration: Calibration, center: np.ndarray, diameter: float, directions: np.ndarray, level: float,
+    blocks: Blocks,
+    calibration: Calibration,
+    center: np.ndarray,
+    diameter: float,
+    directions: np.ndarray,
+    level: float,
     target: str,
-) -> Iterator[str]:  # fmt: skip
+) -> Iterator[str]:
     """Touches along the normals of a sphere; from the top of Z, and down to each of them outside of the sphere.
 
     ``center`` (3,) is X Y Z with the tip's centre in that of the sphere; ``level`` is the Z of sideways motion.

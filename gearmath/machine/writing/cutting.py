@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 
 from gearmath.machine.planning.blocks import ROUNDING
-from gearmath.machine.planning.cut_plan import DRY_LIFT, ONE_SPACE, PLUNGE_FEED, Job, Plan, cutting_plan
+from gearmath.machine.planning.cut_plan import DRY_LIFT, ONE_SPACE, PLUNGE_FEED, CuttingJob, CuttingPlan, cutting_plan
 from gearmath.machine.planning.hobbing import C_ROUNDING
 from gearmath.machine.planning.rounding import ControlShare
 from gearmath.machine.planning.setup_facts import SetupFacts, member_note, setup_notes, z_note
@@ -23,14 +23,18 @@ _LISTED = 30
 
 
 def cutting_program(
-    bevel_set: BevelSet, name: str, machine: MillingMachine, program_name: str, job: Job = ONE_SPACE,
+    bevel_set: BevelSet,
+    name: str,
+    machine: MillingMachine,
+    program_name: str,
+    job: CuttingJob = ONE_SPACE,
     progress: Callable[[int], object] = lambda passes: None,
-) -> str:  # fmt: skip
+) -> str:
     """The text of the program of a job on one member. Raises InputError as ``cutting_plan`` does."""
     return program_of(cutting_plan(bevel_set, name, machine, job, progress), program_name)
 
 
-def program_of(plan: Plan, program_name: str) -> str:
+def program_of(plan: CuttingPlan, program_name: str) -> str:
     """The text of a planned program. Raises InputError as the writer does."""
     name, member, machine, job = plan.name, plan.member, plan.machine, plan.job
     header = (
@@ -52,12 +56,20 @@ def program_of(plan: Plan, program_name: str) -> str:
         f"time in the cut, without plunges and positioning: {plan.seconds:.1f} s",
     )
     return write_program(
-        program_name, header, plan.passes, machine, job.spindle_rpm, CLEARANCE, plan.room, plan.tool_radius,
-        PLUNGE_FEED, coolant=not job.dry_run,
-    )  # fmt: skip
+        program_name,
+        header,
+        plan.passes,
+        machine,
+        job.spindle_rpm,
+        CLEARANCE,
+        plan.room,
+        plan.tool_radius,
+        PLUNGE_FEED,
+        coolant=not job.dry_run,
+    )
 
 
-def _tolerance_notes(member: Member, job: Job, machine: MillingMachine, share: ControlShare) -> tuple[str, ...]:
+def _tolerance_notes(member: Member, job: CuttingJob, machine: MillingMachine, share: ControlShare) -> tuple[str, ...]:
     """What the header says of the flanks: how far they may deviate with the increments of this control."""
     wanted = job.tolerance * 1000
     if member.process == "face_hobbing":
@@ -71,13 +83,12 @@ def _tolerance_notes(member: Member, job: Job, machine: MillingMachine, share: C
         f"flank tolerance: {_upwards(total)} um along the tooth normal, by straight blocks and rounding",
         f"of which rounding to {control.increments_per_mm} increments per mm and {control.increments_per_degree} per "
         f"degree: up to {_upwards(share.rounding * 1000)} um",
-        f"path mode {control.path_mode}" + (
-            f" adds up to {_upwards(share.path_mode * 1000)} um" if control.path_mode == "G642" else ": exact stop"
-        ),
-    )  # fmt: skip
+        f"path mode {control.path_mode}"
+        + (f" adds up to {_upwards(share.path_mode * 1000)} um" if control.path_mode == "G642" else ": exact stop"),
+    )
 
 
-def _space_notes(job: Job) -> Iterator[str]:
+def _space_notes(job: CuttingJob) -> Iterator[str]:
     """The spaces of the program, in lines of thirty: what virtual milling looks for."""
     spaces = list(job.spaces)
     for k in range(0, len(spaces), _LISTED):

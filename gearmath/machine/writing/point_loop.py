@@ -13,10 +13,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearmath.machine.planning.clear_space import Room
-from gearmath.machine.planning.pattern import Pattern
+from gearmath.machine.planning.pattern import TouchPattern
 from gearmath.machine.planning.targets import APPROACH_FEED, MEASURING_FEED
 from gearmath.machine.writing import start
-from gearmath.machine.writing.probe_words import FROM, TO, Blocks, Plan
+from gearmath.machine.writing.probe_words import FROM, TO, Blocks, ProbingPlan
 from gearmath.specs.bevel_set import FLANKS
 
 #: Variables: number of the point, tooth, place of the table, touch of a point; A of the point, and of the way there.
@@ -29,7 +29,9 @@ _BESIDE = 0.1
 _DECIMALS = 8
 
 
-def point_loop(blocks: Blocks, pattern: Pattern, name: str, plan: Plan, level: float, room: Room) -> Iterator[str]:
+def point_loop(
+    blocks: Blocks, pattern: TouchPattern, name: str, plan: ProbingPlan, level: float, room: Room
+) -> Iterator[str]:
     """The body of the program."""
     places, teeth = len(pattern.least), len(pattern.kind)
     yield f"DEF INT {_POINT},{_TOOTH},{_PLACE},{_TOUCH},{_KIND}[{teeth}],{_WHERE}[{places},4]"
@@ -54,7 +56,7 @@ def point_loop(blocks: Blocks, pattern: Pattern, name: str, plan: Plan, level: f
     yield from blocks.end()
 
 
-def _above_first(pattern: Pattern) -> np.ndarray:
+def _above_first(pattern: TouchPattern) -> np.ndarray:
     """Where the probe goes down to the height of sideways motion: over the end of the first touch of space 0.
 
     Not over its start, for the way to the first point must not be none; and with A beside that of every tooth: a run
@@ -64,7 +66,7 @@ def _above_first(pattern: Pattern) -> np.ndarray:
     return pattern.places.end[0] + (pattern.turn[0] + beside) * np.array([0, 0, 0, 1, 0])
 
 
-def _tables(blocks: Blocks, pattern: Pattern) -> Iterator[str]:
+def _tables(blocks: Blocks, pattern: TouchPattern) -> Iterator[str]:
     mm, _ = blocks.machine.control.decimals
     places = pattern.places
     first, last = blocks.positions.printed(places.start), blocks.positions.printed(places.end)
@@ -86,7 +88,7 @@ def _tables(blocks: Blocks, pattern: Pattern) -> Iterator[str]:
         yield f"{_TURN}[{tooth}]={turn:.{_DECIMALS}f} {_KIND}[{tooth}]={kind}"
 
 
-def _point(blocks: Blocks, name: str, plan: Plan, level: float, b: str) -> Iterator[str]:
+def _point(blocks: Blocks, name: str, plan: ProbingPlan, level: float, b: str) -> Iterator[str]:
     """One point by itself."""
     row, col = (f"{_WHERE}[{_PLACE},{k}]" for k in (1, 2))
     yield f"IF {_WHERE}[{_PLACE},0]==0"
@@ -106,8 +108,9 @@ def _point(blocks: Blocks, name: str, plan: Plan, level: float, b: str) -> Itera
     several = plan.each > 1
     if several:
         yield f"FOR {_TOUCH}=1 TO {plan.each}"
-    yield from blocks.touch(f"{x_end} {y_end} {z_end}", f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level,
-                            up=not several)  # fmt: skip
+    yield from blocks.touch(
+        f"{x_end} {y_end} {z_end}", f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level, up=not several
+    )
     yield "R101=R101+1"
     yield f"IF {_WHERE}[{_PLACE},0]==0"
     for flank, close in zip(FLANKS, ("ELSE", "ENDIF"), strict=True):

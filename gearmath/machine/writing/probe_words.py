@@ -37,7 +37,7 @@ _NO_SUCH_FILE = 3
 
 
 @dataclass(frozen=True)
-class Plan:
+class ProbingPlan:
     """What a whole run makes: how many ``touches``, in words, and the ``parts`` that R90 and R91 choose from.
 
     A part has ``each`` touches, or ``ends`` says how many there are up to the end of each part.
@@ -51,10 +51,10 @@ class Plan:
     ends: tuple[int, ...] = ()
 
     @staticmethod
-    def of_sections(counts: Sequence[int]) -> Plan:
+    def of_sections(counts: Sequence[int]) -> ProbingPlan:
         """The plan of a calibration, whose sections have so many touches."""
         ends = tuple(itertools.accumulate(counts))
-        return Plan(ends[-1], f"{ends[-1]} touches", len(counts), "section", ends=ends)
+        return ProbingPlan(ends[-1], f"{ends[-1]} touches", len(counts), "section", ends=ends)
 
 
 class Blocks:
@@ -89,7 +89,7 @@ class Blocks:
         """The word of one linear axis [mm]."""
         return self.positions.z(value) if axis == "Z" else self.positions.word(axis, value)
 
-    def start(self, plan: Plan, columns: Sequence[str] = COLUMNS, room: Room | None = None) -> Iterator[str]:
+    def start(self, plan: ProbingPlan, columns: Sequence[str] = COLUMNS, room: Room | None = None) -> Iterator[str]:
         """Head: Z home, the probe is fetched and held, the run is numbered, the result file gets its plan and columns.
 
         A run from the first part on opens the file anew; one that goes on with a later part adds to it, and says which
@@ -133,7 +133,7 @@ class Blocks:
         yield "ENDIF"
         yield from self.write(f'"{",".join(columns)}"')
 
-    def _file_size(self, plan: Plan) -> Iterator[str]:
+    def _file_size(self, plan: ProbingPlan) -> Iterator[str]:
         """Stops where the control would not take all that is written. Raises InputError where the machine file says so.
 
         A run that goes on adds a plan and a column line, and perhaps touches of one part that are there already.
@@ -148,7 +148,7 @@ class Blocks:
         yield f"IF $MN_LEN_PROTOCOL_FILE<{needed}"
         yield from start.stop(f"MN_LEN_PROTOCOL_FILE is less than {needed}: the result file would be full", FILE_SIZE)
 
-    def section(self, plan: Plan, number: int, what: str, body: Iterable[str]) -> Iterator[str]:
+    def section(self, plan: ProbingPlan, number: int, what: str, body: Iterable[str]) -> Iterator[str]:
         """One section of a calibration by itself: label, message, modal head, and what it does, from the home of Z."""
         yield f"; section {number}: {what}"
         yield f"SECTION_{number}:"

@@ -14,11 +14,11 @@ import numpy as np
 
 from gearmath.kernels import kernel
 from gearmath.machine.planning.clear_space import Room, check_home, room_of
-from gearmath.machine.planning.pattern import Pattern, Targets, check_travel
+from gearmath.machine.planning.pattern import Targets, TouchPattern, check_travel
 from gearmath.machine.planning.setup_facts import NOT_ON_METAL, PROBING, VARIABLES
 from gearmath.machine.planning.targets import CLEARANCE, probe_targets, tip_positions
 from gearmath.machine.writing.point_loop import point_loop
-from gearmath.machine.writing.probe_words import Blocks, Plan
+from gearmath.machine.writing.probe_words import Blocks, ProbingPlan
 from gearmath.machine.writing.words import plain
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member, design_sha256
 from gearmath.specs.calibration import Calibration
@@ -52,7 +52,7 @@ def probing_program(
     member = bevel_set.member(name)
     targets = probe_targets(member, name, machine, calibration, topography, pitch, around=around)
     level = clear_height(member, machine, calibration)
-    check_travel(Pattern.of(targets, member.teeth, machine).targets(), name, machine, level)
+    check_travel(TouchPattern.of(targets, member.teeth, machine).targets(), name, machine, level)
     room = room_of(member, machine, machine.fixture)
     check_home(room, machine, calibration.length + calibration.tip_radius - calibration.offset[2], program_name)
     header = (
@@ -69,25 +69,31 @@ def probing_program(
         "R104 = 1, set before the start: a host reads R200 to R205 of every point, and the program waits for it",
         *(f"unconfirmed: {text}" for text in (NOT_ON_METAL, VARIABLES, PROBING)),
     )
-    return write_touches(
-        program_name, header, targets, name, member.teeth, machine, calibration, level, room, repeat
-    )  # fmt: skip
+    return write_touches(program_name, header, targets, name, member.teeth, machine, calibration, level, room, repeat)
 
 
 def write_touches(
-    program_name: str, header: Sequence[str], targets: Targets, name: str, teeth: int, machine: MillingMachine,
-    calibration: Calibration, level: float, room: Room, repeat: int = 1,
-) -> str:  # fmt: skip
+    program_name: str,
+    header: Sequence[str],
+    targets: Targets,
+    name: str,
+    teeth: int,
+    machine: MillingMachine,
+    calibration: Calibration,
+    level: float,
+    room: Room,
+    repeat: int = 1,
+) -> str:
     """The text of a probing program: its touches in two loops, sideways at the ``level`` of :func:`clear_height`.
 
     The probe comes from the home of Z, which clears the ``room`` of the work. Every point can be the first of a run.
 
     Raises InputError for touches that fill the result file, and for a name that the control refuses.
     """
-    pattern = Pattern.of(targets, teeth, machine)
+    pattern = TouchPattern.of(targets, teeth, machine)
     blocks = Blocks(program_name, machine, calibration.length)
     flanks = " and ".join(flank for flank in FLANKS if (targets.flank == flank).any())
     touches = len(targets) * repeat
     said = f"{touches} touches, {len(set(targets.tooth.tolist()))} teeth, {flanks}"
-    plan = Plan(touches, said, len(targets), "point", repeat)
+    plan = ProbingPlan(touches, said, len(targets), "point", repeat)
     return blocks.text(header, point_loop(blocks, pattern, name, plan, level, room))

@@ -71,10 +71,15 @@ class Positions:
     def words(self, axes: np.ndarray) -> list[tuple[str, ...]]:
         """The words of positions X Y Z A B (n, 5) in mm and rad."""
         return [
-            (self._mm("X", x), self._mm("Y", y), self._mm("Z", z), self._turned("A", a, self.modulo),
-             f"B{b:.{self.degrees}f}")
+            (
+                self._mm("X", x),
+                self._mm("Y", y),
+                self._mm("Z", z),
+                self._turned("A", a, self.modulo),
+                f"B{b:.{self.degrees}f}",
+            )
             for x, y, z, a, b in self.printed(axes).tolist()
-        ]  # fmt: skip
+        ]
 
     def cutter_words(self, angle: np.ndarray) -> list[str]:
         """The words of positions of C (n,) rad."""

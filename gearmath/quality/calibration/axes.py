@@ -65,9 +65,19 @@ def calibrate_axes(touches: CalibrationTouches, machine: MillingMachine, calibra
     def rows(v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         place = np.array([v[6], v[7], sphere.axial])
         rest, gradient = _rows()(
-            axes[:, :3], axes[:, 3], axes[:, 4], height, calibration.tip_offset, calibration.tip_radius,
-            sphere.diameter / 2, place, v[3:5], v[5], v[:3], known,
-        )  # fmt: skip
+            axes[:, :3],
+            axes[:, 3],
+            axes[:, 4],
+            height,
+            calibration.tip_offset,
+            calibration.tip_radius,
+            sphere.diameter / 2,
+            place,
+            v[3:5],
+            v[5],
+            v[:3],
+            known,
+        )
         return rest, gradient[:, :_UNKNOWNS]
 
     start = np.array([*machine.pivot, 0.0, 0.0, 0.0, *sphere.place[:2]])
@@ -75,9 +85,14 @@ def calibrate_axes(touches: CalibrationTouches, machine: MillingMachine, calibra
     fit = least_squares(rows, start, names, "the places of A and B")
     v = fit.values
     return AxisCalibration(
-        v[:3], machine.gauge_line_height + float(v[4]), float(v[3]), float(v[5]), math.atan2(v[7], v[6]),
-        math.hypot(v[6], v[7]), fit,
-    )  # fmt: skip
+        v[:3],
+        machine.gauge_line_height + float(v[4]),
+        float(v[3]),
+        float(v[5]),
+        math.atan2(v[7], v[6]),
+        math.hypot(v[6], v[7]),
+        fit,
+    )
 
 
 @cache

@@ -85,9 +85,7 @@ class Tip:
         return float(np.abs(self.fit.residuals).max())
 
 
-def calibrate_on_sphere(
-    touches: CalibrationTouches, sphere: Sphere, start: Calibration, lobes: bool = False
-) -> Tip:  # fmt: skip
+def calibrate_on_sphere(touches: CalibrationTouches, sphere: Sphere, start: Calibration, lobes: bool = False) -> Tip:
     """Radius and offset of the tip that leave the touches on a sphere the least residual (23.2), with lobes if asked.
 
     Without, the lobes of ``start`` are kept. Raises InputError for too few touches, touches that do not tell the tip,

@@ -15,12 +15,12 @@ from functools import cached_property
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.contact.surface import Surface, displaced_surface, nominal_surface
+from gearmath.bevel.contact.surface import ContactSurface, displaced_surface, nominal_surface
 from gearmath.bevel.grid import file_grid
 from gearmath.engine.points import Points
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.evaluation.member import MemberEvaluation
 from gearmath.quality.evaluation.topography import grid_shape
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
@@ -39,7 +39,7 @@ class MeasuredFlank:
     (1,m). ``variance`` (k,) [mm²] is that of the deviations, NaN where the file does not state it.
     """
 
-    nominal: Surface
+    nominal: ContactSurface
     deviation: np.ndarray
     variance: np.ndarray
     fit: np.ndarray
@@ -47,11 +47,11 @@ class MeasuredFlank:
     places: np.ndarray
 
     @property
-    def surface(self) -> Surface:
+    def surface(self) -> ContactSurface:
         """The flank with the spline of its deviations on it."""
         return self.with_deviation(self.deviation)
 
-    def with_deviation(self, deviation: np.ndarray) -> Surface:
+    def with_deviation(self, deviation: np.ndarray) -> ContactSurface:
         """The flank with other deviations (k,) [mm] at the same points."""
         place = ca.SX.sym("place", 2)
         off = self.basis(place[0], place[1]) @ ca.DM(self.fit @ deviation)
@@ -63,7 +63,7 @@ class MeasuredFlank:
         return self.deviation - _rows(self.basis, self.places) @ (self.fit @ self.deviation)
 
 
-def measured_flank(member: Member, flank: str, file: FlankFile, evaluation: Evaluation) -> MeasuredFlank | None:
+def measured_flank(member: Member, flank: str, file: FlankFile, evaluation: MemberEvaluation) -> MeasuredFlank | None:
     """A flank of an evaluated file, the mean of its teeth; None where no tooth of it was measured in full.
 
     ``file`` is as it was read: it states the uncertainty of the points. Raises InputError where the points do not

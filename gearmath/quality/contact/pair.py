@@ -52,10 +52,11 @@ class MeasuredPair:
         return {
             "measured": {
                 name: None if one is None else {"rms_um": _rms(one.deviation), "spline_residual_um": _rms(one.residual)}
-                for name, one in zip(MEMBERS, self.of(side), strict=True) if name in names
+                for name, one in zip(MEMBERS, self.of(side), strict=True)
+                if name in names
             },
             "uncertainty": None if sure is None else sure.as_dict(),
-        }  # fmt: skip
+        }
 
 
 def measured_pair(pair: BevelSet, files: Mapping[str, Path]) -> MeasuredPair:

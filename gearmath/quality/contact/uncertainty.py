@@ -41,7 +41,7 @@ Effect = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 @dataclass(frozen=True)
-class Uncertain:
+class UncertainContact:
     """Standard uncertainties of a contact: center of the pattern [mm], peak to peak of the transmission error [rad]."""
 
     center_cone_distance: float
@@ -57,7 +57,7 @@ class Uncertain:
         return {name: value if math.isfinite(value) else None for name, value in values.items()}
 
 
-def uncertain_contact(run: Mesh, flanks: Flanks) -> Uncertain | None:
+def uncertain_contact(run: Mesh, flanks: Flanks) -> UncertainContact | None:
     """Of a pair with measured flanks of pinion and gear, by propagation; None where no file states an uncertainty."""
     known = [one for one in flanks if one is not None and np.isfinite(one.variance).all() and (one.variance > 0).any()]
     if not known or run.is_line or run.leads.peak_to_peak is None:
@@ -66,7 +66,7 @@ def uncertain_contact(run: Mesh, flanks: Flanks) -> Uncertain | None:
     pinion, gear = (one if one in known else None for one in flanks)
     rows = jacobian(run, (pinion, gear))
     center_along, center_up, spread = np.linalg.norm(rows * deviation, axis=1)
-    return Uncertain(float(center_along), float(center_up), float(spread))
+    return UncertainContact(float(center_along), float(center_up), float(spread))
 
 
 def jacobian(run: Mesh, flanks: Flanks) -> np.ndarray:

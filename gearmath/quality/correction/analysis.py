@@ -175,9 +175,11 @@ def weak_words(analysis: Analysis, k: int) -> str:
 
 
 def fewest(
-    columns: Mapping[Key, np.ndarray], deviation: np.ndarray, besides: np.ndarray | None = None,
+    columns: Mapping[Key, np.ndarray],
+    deviation: np.ndarray,
+    besides: np.ndarray | None = None,
     noise: float | None = None,
-) -> tuple[tuple[Key, ...], tuple[float, ...]]:  # fmt: skip
+) -> tuple[tuple[Key, ...], tuple[float, ...]]:
     """The fewest blocks of columns (m,k) that explain deviations (m,) nearly as well as all, and RMS left after each.
 
     Of the least number that is enough, the choice with the least change of settings in parts of their bounds. Where

@@ -43,10 +43,15 @@ class Draws:
 
 
 def identify_many(
-    targets: Sequence[FlankTarget], deviations: np.ndarray, free: Sequence[str] = FREE, *,
-    objective: str = "points", weights: np.ndarray | None = None, start: np.ndarray | None = None,
+    targets: Sequence[FlankTarget],
+    deviations: np.ndarray,
+    free: Sequence[str] = FREE,
+    *,
+    objective: str = "points",
+    weights: np.ndarray | None = None,
+    start: np.ndarray | None = None,
     noise: float = 0.0,
-) -> Draws:  # fmt: skip
+) -> Draws:
     """The errors that explain each of many measurements ``deviations`` (d,m) [mm] of the points of some targets.
 
     ``start`` (p,) [mm, rad] is where all of them begin, by default at no error; the rest is as in ``identify``. The
@@ -134,17 +139,22 @@ def compensation_kernel(
     problem = Problem(targets, variables, None, None)
     m, p = len(problem.measured), len(variables)
     quantities = (
-        Quantity("measured", "measured deviations of all targets, one after the other", "mm", r"\boldsymbol\delta",
-                 shape=(m,)),
+        Quantity(
+            "measured",
+            "measured deviations of all targets, one after the other",
+            "mm",
+            r"\boldsymbol\delta",
+            shape=(m,),
+        ),
         Quantity("start", "errors to start from", "mixed", r"\mathbf{e}_0", shape=(p,)),
-    )  # fmt: skip
+    )
     measured, start = (ca.MX.sym(quantity.name, quantity.size) for quantity in quantities)
     v, ones = start / problem.scale, ca.DM.ones(p)
     for _ in range(steps):
         residual, jacobian = _residual_graph(problem, v, measured)
         change, _ = compensation_step(p).function(
             jacobian.T @ jacobian + noise**2 * ca.DM.eye(p), jacobian.T @ residual + noise**2 * v, v, -ones, ones, FLOOR
-        )  # fmt: skip
+        )
         v = ca.fmin(ca.fmax(v + change, -ones), ones)
     residual, _ = _residual_graph(problem, v, measured)
     outputs = (
@@ -152,13 +162,19 @@ def compensation_kernel(
         Quantity("remaining", "predicted less measured deviations", "mm", r"\mathbf{r}", shape=(m,)),
     )
     function = ca.Function(
-        "compensation", [measured, start], [v * problem.scale, residual],
-        [quantity.name for quantity in quantities], [quantity.name for quantity in outputs],
-    )  # fmt: skip
+        "compensation",
+        [measured, start],
+        [v * problem.scale, residual],
+        [quantity.name for quantity in quantities],
+        [quantity.name for quantity in outputs],
+    )
     return Kernel(
-        function, f"Errors of {p} settings that explain the deviations at {m} points, in {steps} steps.", quantities,
-        outputs, "compensation_step on flank_on_line",
-    )  # fmt: skip
+        function,
+        f"Errors of {p} settings that explain the deviations at {m} points, in {steps} steps.",
+        quantities,
+        outputs,
+        "compensation_step on flank_on_line",
+    )
 
 
 def _residual_graph(problem: Problem, v: ca.MX, measured: ca.MX) -> tuple[ca.MX, ca.MX]:

@@ -63,9 +63,7 @@ class CorrectionFit:
         taken, _ = fewest(columns, measured, self.columns, noise)
         return {group: tuple(name for one, name in taken if one == group) for group in self.groups}
 
-    def solve_few(
-        self, noise: float | None
-    ) -> tuple[dict[tuple[str, ...], Identification], UnknownRotation]:  # fmt: skip
+    def solve_few(self, noise: float | None) -> tuple[dict[tuple[str, ...], Identification], UnknownRotation]:
         """By the fewest settings; where one of them meets its bound, by the next best few, if these leave less.
 
         What is chosen to first order knows no bounds.

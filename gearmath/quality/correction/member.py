@@ -40,7 +40,7 @@ STAGES = 2
 
 
 @dataclass(frozen=True)
-class Correction:
+class MemberCorrection:
     """Corrected settings (12,) of each flank, the change of settings of each group of flanks, and index corrections.
 
     ``motions`` (10,7) of each flank, without the modified roll, is empty where no motion was corrected; ``curvatures``
@@ -74,12 +74,22 @@ class Correction:
 
 
 def correct(
-    member: Member, name: str, measured: FlankFile, free: Sequence[str] | None = None, *, objective: str = "points",
-    higher_order: bool = False, few: bool = False, root_limit: float | None = ROOT_LIMIT,
-    noise: float | None = None, added: dict[str, np.ndarray] | None = None, excluded: np.ndarray | None = None,
-    bounds: Bounds = "machine", progress: Callable[[int], object] = lambda _: None,
+    member: Member,
+    name: str,
+    measured: FlankFile,
+    free: Sequence[str] | None = None,
+    *,
+    objective: str = "points",
+    higher_order: bool = False,
+    few: bool = False,
+    root_limit: float | None = ROOT_LIMIT,
+    noise: float | None = None,
+    added: dict[str, np.ndarray] | None = None,
+    excluded: np.ndarray | None = None,
+    bounds: Bounds = "machine",
+    progress: Callable[[int], object] = lambda _: None,
     indexed: bool = True,
-) -> Correction:  # fmt: skip
+) -> MemberCorrection:
     """The settings that make up for what was measured on a member.
 
     Flanks of a completing cut share their correction. ``free`` names what may change, by default the settings that suit
@@ -117,7 +127,7 @@ def correct(
     judged, as_measured = without_shift(targets, of_work.shift), _turned_best(targets, columns)
     progress(1)
     index = _index(member, measured) if indexed else None
-    found = Correction({}, identified, {}, index, {}, {}, {}, {}, {}, of_work, {}, {}, remarks)
+    found = MemberCorrection({}, identified, {}, index, {}, {}, {}, {}, {}, of_work, {}, {}, remarks)
     for group, analysis in zip(groups, fit.analysis, strict=True):
         mine, before = [wanted[flank] for flank in group], [as_measured[flank].deviation for flank in group]
         found.left_out.update({f: t.grid_points - len(t.deviation) for f, t in zip(group, mine, strict=True)})
@@ -159,7 +169,7 @@ def _as_good(found: Identification, best: Identification) -> bool:
     return found.rms_after <= max(best.rms_after * (1 + LOSS_PART), best.rms_after + LOSS)
 
 
-def _settle(found: Correction, member: Member, flank: str, target: FlankTarget, change: np.ndarray) -> None:
+def _settle(found: MemberCorrection, member: Member, flank: str, target: FlankTarget, change: np.ndarray) -> None:
     """Enter the corrected settings of one flank: those that the machine was set to, and the change (83,)."""
     spec, (settings, motion) = member.flank(flank), parts(change)
     curvature, _ = blade_curve(spec)
@@ -186,7 +196,7 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
     return before + turn - others[near_the_median(others, LEAST_OFF / radius)].mean()
 
 
-def setting_changes(member: Member, correction: Correction) -> list[tuple[str, str, float, float]]:
+def setting_changes(member: Member, correction: MemberCorrection) -> list[tuple[str, str, float, float]]:
     """(flank, setting, old, new) of what changes: settings, coefficients of a motion, curvature; mm and rad."""
     changes = []
     for flank, vector in correction.settings.items():

@@ -124,7 +124,7 @@ def near_the_median(values: np.ndarray, least: float) -> np.ndarray:
 
 def _apart(
     file: FlankFile, rows: NominalRows, slope: np.ndarray, known: np.ndarray, place: np.ndarray, tooth: int
-) -> tuple[int, ...]:  # fmt: skip
+) -> tuple[int, ...]:
     """The teeth but ``tooth`` that stand far off the median of all, if enough are left without them."""
     teeth, turning, *_ = _turnings(file, slope, known, place)
     least = LEAST_OFF / float(np.hypot(*rows.point[known, :2].T).mean())

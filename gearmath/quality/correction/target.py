@@ -29,9 +29,13 @@ _ROOT_MARGIN = 0.1
 
 
 def flank_target(
-    member: Member, name: str, flank: str, measured: FlankFile, tooth: int | None = None,
+    member: Member,
+    name: str,
+    flank: str,
+    measured: FlankFile,
+    tooth: int | None = None,
     excluded: np.ndarray | None = None,
-) -> FlankTarget:  # fmt: skip
+) -> FlankTarget:
     """One flank of a file with the nominal points of the set, of a tooth that has most points if none is given.
 
     Points that the file does not have, that have no deviation, or that ``excluded`` (points of the file,) marks are
@@ -65,9 +69,13 @@ def flank_target(
 
 
 def target_of(
-    member: Member, flank: str, nominal: FlankPoints, place: np.ndarray | None = None,
-    used: np.ndarray | None = None, deviation: np.ndarray | None = None,
-) -> FlankTarget:  # fmt: skip
+    member: Member,
+    flank: str,
+    nominal: FlankPoints,
+    place: np.ndarray | None = None,
+    used: np.ndarray | None = None,
+    deviation: np.ndarray | None = None,
+) -> FlankTarget:
     """A target at the ``used`` ones (grid,) of nominal points, with the settings that the machine is set to."""
     spec, how = member.flank(flank), cut_generation_of(member, flank)
     nominal = by_foot(spec, nominal)
@@ -135,9 +143,14 @@ def _check_grid(flank: str, points: FlankFile, rows: int, columns: int) -> None:
 
 
 def _check_places(
-    flank: str, points: np.ndarray, deviation: np.ndarray, nominal: FlankPoints, at: np.ndarray, turn: float,
+    flank: str,
+    points: np.ndarray,
+    deviation: np.ndarray,
+    nominal: FlankPoints,
+    at: np.ndarray,
+    turn: float,
     columns: int,
-) -> None:  # fmt: skip
+) -> None:
     """Raise InputError unless measured points (n,3) lie on the nominal normals at ``at`` (n,), turned by ``turn``."""
     touched = turned(points, -2 * np.pi * turn) - deviation[:, None] * nominal.normal[at]
     apart = np.linalg.norm(touched - nominal.point[at], axis=1)

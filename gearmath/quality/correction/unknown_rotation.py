@@ -89,7 +89,9 @@ def rotation_step(
 def step_of(columns: np.ndarray, found: Sequence[Identification]) -> tuple[np.ndarray, np.ndarray]:
     """``rotation_step`` at what was identified of every group."""
     return rotation_step(
-        columns, [one.jacobian for one in found], np.concatenate([one.residual for one in found]),
+        columns,
+        [one.jacobian for one in found],
+        np.concatenate([one.residual for one in found]),
         np.concatenate([one.values / one.scale for one in found]),
         np.concatenate([np.full(len(one.values), one.noise) for one in found]),
-    )  # fmt: skip
+    )

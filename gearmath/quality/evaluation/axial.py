@@ -21,9 +21,14 @@ from gearmath.specs.flank_csv import FlankFile
 TWIN = "machine_center_to_crossing_point"
 #: Settings of the machine that can stand in for it; tilt and swivel of the cutter are seldom moved.
 _OTHERS = (
-    "radial_distance", "cradle_angle", "blank_offset", "sliding_base", "machine_root_angle", "ratio_of_roll",
+    "radial_distance",
+    "cradle_angle",
+    "blank_offset",
+    "sliding_base",
+    "machine_root_angle",
+    "ratio_of_roll",
     "work_rotation_offset",
-)  # fmt: skip
+)
 
 
 @dataclass(frozen=True)

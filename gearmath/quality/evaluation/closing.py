@@ -142,7 +142,7 @@ class Closing:
             "step": f"the work or the machine slipped by {self._size} {self._between}: {measured}; pitch is withheld",
             "not told": f"the work or the machine moved by {self._size}: {measured}; the teeth do not tell whether it "
             "drifted or slipped; pitch is withheld",
-        }  # fmt: skip
+        }
         return (how[self.kind],)
 
     @property
@@ -299,8 +299,10 @@ def _told(file: FlankFile, teeth: int, first: np.ndarray, again: np.ndarray, eve
         return step
     if evidence > _TOLD:
         return replace(even, kind="steady")
-    depends = max(abs(one - other) for one, other in zip(*(_ranges(file, series, each.taken) for each in (even, step)),
-                                                         strict=True))  # fmt: skip
+    depends = max(
+        abs(one - other)
+        for one, other in zip(*(_ranges(file, series, each.taken) for each in (even, step)), strict=True)
+    )
     matters = depends > _ONE_GRADE * max(*_ranges(file, series, even.taken), _FLOOR)
     return replace(even, kind="not told" if matters else "small")
 

@@ -122,7 +122,7 @@ def _unplanned(touches: Touches | CalibrationTouches) -> Iterable[str]:
 
 def missing_calibration(
     touches: CalibrationTouches, calibration: Calibration, machine: MillingMachine
-) -> tuple[tuple[str, ...], tuple[str, ...]]:  # fmt: skip
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What a run on ring and sphere does not have of the touches that its program makes: parts, and whole targets."""
     if (touches.target == WORK_SPHERE).any() and calibration.work_sphere is not None:
         wanted = {WORK_SPHERE: axis_touches(machine, calibration)}
@@ -150,7 +150,7 @@ def _in_full(places: _Places, shape: tuple[int, int]) -> bool:
 
 def _missing(
     places: _Places, teeth: int, shape: tuple[int, int], reference: tuple[int, int], most: float
-) -> Iterable[str]:  # fmt: skip
+) -> Iterable[str]:
     """Sentences, flank by flank; of a grid more than the part ``most`` must be missing."""
     absent = [flank for flank in FLANKS if not any(one == flank for one, _ in places)]
     if absent:

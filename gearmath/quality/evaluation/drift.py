@@ -22,7 +22,7 @@ _FELT = 0.1
 
 
 @dataclass(frozen=True)
-class Drift:
+class MeasuredDrift:
     """Drift seen by one flank: ``closure`` [mm], deviation of tooth 0 at the end less that at the start, as the mean of
     ``points`` that were touched twice; ``motion`` (3,) [mm], what the machine moved from the first row to the last, in
     the axes of a space.
@@ -41,7 +41,7 @@ def evenly(file: FlankFile) -> np.ndarray:
 
 def without_drift(
     file: FlankFile, teeth: int, course: np.ndarray | None = None
-) -> tuple[FlankFile, dict[str, Drift]]:  # fmt: skip
+) -> tuple[FlankFile, dict[str, MeasuredDrift]]:
     """The file without tooth 0 measured again and without what that shows, and the drift of each flank.
 
     ``course`` (n,) is how far the motion has come at each row, even over all of them if not given: one clock for both
@@ -59,7 +59,7 @@ def without_drift(
         here, (start, end) = file.flank == flank, pairs[flank]
         deviation[here] -= course[here] * (normal[here] @ motion)
         closure = float(np.mean(file.deviation[end] - file.deviation[start]))
-        drifts[flank] = Drift(flank, closure, motion, len(start))
+        drifts[flank] = MeasuredDrift(flank, closure, motion, len(start))
     moved = np.nan_to_num(deviation - file.deviation)[:, None] * file.normal
     return replace(file, deviation=deviation, point=file.point + moved).pick(file.tooth < teeth), drifts
 
@@ -77,9 +77,7 @@ def moved_by(file: FlankFile, first: np.ndarray, again: np.ndarray, course: np.n
     return course * (normal @ motion)
 
 
-def _motion(
-    file: FlankFile, first: np.ndarray, again: np.ndarray, course: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+def _motion(file: FlankFile, first: np.ndarray, again: np.ndarray, course: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The whole motion (3,) [mm] in the axes of a space, and the normals (n,3) in them."""
     normal = _in_space(file)
     change = file.deviation[again] - file.deviation[first]

@@ -101,9 +101,12 @@ def _factor(file: FlankFile, along: np.ndarray) -> str:
     large = np.abs(along) > 2 * SAME_DEVIATION
     ratio = file.deviation[large & np.isfinite(file.deviation)] / along[large & np.isfinite(file.deviation)]
     words = {
-        -1.0: "they have the other sign, and metal left on is positive", 1e-3: "they are mm", 1e3: "they are nm",
-        INCH: "they are of a file in inches", 1 / INCH: "they are of a file in inches",
-    }  # fmt: skip
+        -1.0: "they have the other sign, and metal left on is positive",
+        1e-3: "they are mm",
+        1e3: "they are nm",
+        INCH: "they are of a file in inches",
+        1 / INCH: "they are of a file in inches",
+    }
     for factor, why in words.items():
         if len(ratio) and np.mean(np.abs(ratio / factor - 1) < _FACTOR) >= _MOST_ALIKE:
             return f": it is {factor:g} times that at nearly all points, {why}"

@@ -13,9 +13,13 @@ from gearmath.specs.bevel_set import FLANKS, Member
 
 
 def grade_member(
-    member: Member, name: str, pitches: Mapping[str, Pitch], runout: Runout | None, closing: Closing,
+    member: Member,
+    name: str,
+    pitches: Mapping[str, Pitch],
+    runout: Runout | None,
+    closing: Closing,
     uncertainties: Mapping[str, float],
-) -> Verdict | None:  # fmt: skip
+) -> Verdict | None:
     """The grade of pitch and runout, of what is known of every tooth; None where pitch was not measured.
 
     There is none where a drift that was taken out is larger than the tolerance of the grade, none of a runout that

@@ -12,7 +12,7 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.quality.evaluation.closing import Closing, close_run
 from gearmath.quality.evaluation.completeness import cut_off, missing_points, silent_points
-from gearmath.quality.evaluation.drift import Drift, untold_drift, without_drift
+from gearmath.quality.evaluation.drift import MeasuredDrift, untold_drift, without_drift
 from gearmath.quality.evaluation.file_checks import check_belongs, check_phase, check_points
 from gearmath.quality.evaluation.grades import grade_member
 from gearmath.quality.evaluation.nominal import at_one_place, completed, nominal_rows
@@ -97,7 +97,7 @@ class FlankFigures:
 
 
 @dataclass(frozen=True)
-class Evaluation:
+class MemberEvaluation:
     """A measured member: its points as judged, the figures of both flanks and of the spaces, and what was done to them.
 
     ``flanks`` and ``runout`` are those of ``file``, without clamping and the rotation that both flanks have in common;
@@ -114,7 +114,7 @@ class Evaluation:
     runout: Runout | None
     runout_as_measured: Runout | None
     thickness: Thickness | None
-    drifts: dict[str, Drift]
+    drifts: dict[str, MeasuredDrift]
     closing: Closing
     registration: Registration | None
     rotation: Rotation | None
@@ -171,9 +171,13 @@ STAGES = 4
 
 
 def evaluate_member(
-    file: FlankFile, member: Member, name: str, registered: bool = True,
-    progress: Callable[[int], object] = lambda _: None, rotated: bool = True,
-) -> Evaluation:  # fmt: skip
+    file: FlankFile,
+    member: Member,
+    name: str,
+    registered: bool = True,
+    progress: Callable[[int], object] = lambda _: None,
+    rotated: bool = True,
+) -> MemberEvaluation:
     """Judge a measured file of a member, of this machine or of another measuring centre.
 
     Points that missed are left out, drift is taken out where tooth 0 was measured again, and, if ``registered``, so is
@@ -229,10 +233,22 @@ def evaluate_member(
     pitches = {flank: figures.pitch for flank, figures in flanks.items() if figures.pitch is not None}
     verdict = grade_member(member, name, pitches, runout, closing, pitch_uncertainties(judged, member.teeth, noise))
     progress(1)
-    return Evaluation(
-        name, judged, flanks, as_measured, runout, before, thickness, drifts, closing, seat, turn, verdict, left_out,
+    return MemberEvaluation(
+        name,
+        judged,
+        flanks,
+        as_measured,
+        runout,
+        before,
+        thickness,
+        drifts,
+        closing,
+        seat,
+        turn,
+        verdict,
+        left_out,
         remarks,
-    )  # fmt: skip
+    )
 
 
 def _without_maxima(figures: FlankFigures, cut: str | None, closing: Closing) -> FlankFigures:

@@ -138,9 +138,13 @@ def reference_rows(file: FlankFile, teeth: int, flank: str) -> FlankFile | None:
     nominal = first.point - np.nan_to_num(first.deviation)[:, None] * first.normal
     silent = np.full(len(absent), np.nan)
     added = replace(
-        first, tooth=absent, point=turned(nominal, turn), normal=turned(first.normal, turn), deviation=silent,
+        first,
+        tooth=absent,
+        point=turned(nominal, turn),
+        normal=turned(first.normal, turn),
+        deviation=silent,
         uncertainty=silent,
-    )  # fmt: skip
+    )
     both = join([points, added])
     return both.pick(np.argsort(both.tooth))
 

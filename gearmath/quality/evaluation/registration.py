@@ -162,10 +162,20 @@ def register(file: FlankFile, member: Member, name: str, untold: np.ndarray | No
     registered = with_deviations(file, rows, deviation)
     singular_values = np.linalg.svd(model.columns * sizes(member)[found], compute_uv=False)
     return Registration(
-        registered, seat, covariance, len(found) == 4, model.name, noise, spare, singular_values,
-        np.nan_to_num(file.deviation - deviation), gain, columns[:, SEAT],
-        axial_shift(registered, member, name, rows, columns), model.remarks,
-    )  # fmt: skip
+        registered,
+        seat,
+        covariance,
+        len(found) == 4,
+        model.name,
+        noise,
+        spare,
+        singular_values,
+        np.nan_to_num(file.deviation - deviation),
+        gain,
+        columns[:, SEAT],
+        axial_shift(registered, member, name, rows, columns),
+        model.remarks,
+    )
 
 
 def _fit(
@@ -191,9 +201,13 @@ def _without(file: FlankFile, rows: NominalRows, columns: np.ndarray, seat: np.n
     touched = with_deviations(file, rows, file.deviation).point
     (x, y), (about_x, about_y) = seat[:2], seat[2:]
     (back, _) = kernel("unseated")(
-        touched, rows.normal, math.hypot(x, y), math.atan2(y, x), math.hypot(about_x, about_y),
+        touched,
+        rows.normal,
+        math.hypot(x, y),
+        math.atan2(y, x),
+        math.hypot(about_x, about_y),
         math.atan2(about_y, about_x),
-    )  # fmt: skip
+    )
     expected = np.nan_to_num(file.deviation) - columns[:, SEAT] @ seat
     return deviations_of(file, member, rows, back, expected)
 

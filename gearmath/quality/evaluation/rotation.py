@@ -93,9 +93,16 @@ def common_rotation(file: FlankFile, member: Member, name: str, noise: float = m
         raise ComputationError(f"no rotation of the {file.member} explains its points: after {_ITERATIONS} steps")
     turned_back = replace(with_deviations(file, rows, deviation), header=_header(file))
     return Rotation(
-        turned_back, angle, noise * float(np.linalg.norm(gain)), radius, place, int(used.sum()) // 2,
-        np.nan_to_num(file.deviation - deviation), gain, column,
-    )  # fmt: skip
+        turned_back,
+        angle,
+        noise * float(np.linalg.norm(gain)),
+        radius,
+        place,
+        int(used.sum()) // 2,
+        np.nan_to_num(file.deviation - deviation),
+        gain,
+        column,
+    )
 
 
 def _pairs(file: FlankFile) -> tuple[tuple[int, int], np.ndarray]:
@@ -108,11 +115,12 @@ def _pairs(file: FlankFile) -> tuple[tuple[int, int], np.ndarray]:
     places = {
         flank: {
             (int(r), int(c), int(t))
-            for r, c, t in zip(*(array[known & (file.flank == flank)] for array in (file.row, file.col, file.tooth)),
-                               strict=True)
+            for r, c, t in zip(
+                *(array[known & (file.flank == flank)] for array in (file.row, file.col, file.tooth)), strict=True
+            )
         }
         for flank in FLANKS
-    }  # fmt: skip
+    }
     both = places[FLANKS[0]] & places[FLANKS[1]]
     if not both:
         raise InputError("no tooth was measured at one place of both flanks")

@@ -130,9 +130,12 @@ def gear_data(member: Member, name: str) -> GearData:
 
 
 def judge(
-    member: Member, name: str, measured: dict[str, float], withheld: Mapping[str, str] = MappingProxyType({}),
+    member: Member,
+    name: str,
+    measured: dict[str, float],
+    withheld: Mapping[str, str] = MappingProxyType({}),
     flanks: Mapping[str, dict[str, float]] = MappingProxyType({}),
-) -> Verdict:  # fmt: skip
+) -> Verdict:
     """The grades of measured ``f_pt``, ``F_p``, ``F_r`` [mm]: of each the finest whose rounded tolerance holds it.
 
     ``withheld`` are those that are not known, and why; ``flanks`` those of one flank alone. Outside of the scope there

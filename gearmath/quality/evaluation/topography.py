@@ -22,8 +22,13 @@ _MOST_SILENT = 0.2
 _TURNING = 5
 #: The figures of ``orders``, in the order of the rows of ``orders_matrix``.
 ORDERS = (
-    "mean", "spiral_angle_deviation", "pressure_angle_deviation", "length_crowning", "twist", "profile_crowning",
-)  # fmt: skip
+    "mean",
+    "spiral_angle_deviation",
+    "pressure_angle_deviation",
+    "length_crowning",
+    "twist",
+    "profile_crowning",
+)
 
 
 @dataclass(frozen=True)

@@ -59,8 +59,10 @@ def check_on_grid(touches: Touches, member: Member, name: str, grid: Grid) -> No
         raise InputError(f"the touches are of the {touches.member}, not of the {name}")
     rows, columns = grid.shape
     for what, values, last in (
-        ("row", touches.row, rows - 1), ("col", touches.col, columns - 1), ("tooth", touches.tooth, member.teeth)
-    ):  # fmt: skip
+        ("row", touches.row, rows - 1),
+        ("col", touches.col, columns - 1),
+        ("tooth", touches.tooth, member.teeth),
+    ):
         if (values > last).any():
             raise InputError(f"{what} = {int(values.max())}: the {name} and its grid {rows}x{columns} end at {last}")
 
@@ -98,10 +100,17 @@ def _averaged(
     if touches.planned is not None:
         header = header | {PLANNED: f"{math.ceil(touches.planned / often.max())} points"}
     return FlankFile(
-        header, touches.member, touches.flank[first], touches.tooth[first], touches.row[first], touches.col[first],
-        np.add.reduceat(contact * weight[:, None], first), normal[first], mean,
+        header,
+        touches.member,
+        touches.flank[first],
+        touches.tooth[first],
+        touches.row[first],
+        touches.col[first],
+        np.add.reduceat(contact * weight[:, None], first),
+        normal[first],
+        mean,
         np.where(known, sigma / np.sqrt(np.maximum(count, 1)), np.nan),
-    )  # fmt: skip
+    )
 
 
 def _check_scatter(off: np.ndarray, touches: Touches) -> None:

@@ -13,7 +13,7 @@ from gearmath.errors import InputError
 from gearmath.quality.evaluation.outliers import flag_outliers
 from gearmath.quality.evaluation.robust import limit_of, off_the_fit
 from gearmath.quality.foreign.lattice import Lattice, find_lattice
-from gearmath.quality.foreign.points import LARGEST_FORM, Laid, Part
+from gearmath.quality.foreign.points import LARGEST_FORM, Laid, PointPart
 from gearmath.specs.bevel_set import Member
 
 #: A file whose points cover less than this part of face width or depth may have been cut off.
@@ -142,5 +142,5 @@ def repeated_words(one: Laid, member: Member) -> Iterator[str]:
     )
 
 
-def _row(part: Part, k: int) -> str:
+def _row(part: PointPart, k: int) -> str:
     return f"{part.name}, " + (f"point {k + 1}" if part.line is None else f"line {part.line[k]}")

@@ -33,8 +33,8 @@ from gearmath.quality.foreign.points import (
     SAME_TOOTH,
     Frame,
     Laid,
-    Part,
     Phase,
+    PointPart,
     axial_hint,
     check_normals,
     lay,
@@ -75,9 +75,14 @@ class Foreign:
 
 
 def foreign_file(
-    parts: Sequence[Part], frame: Frame, gear_set: BevelSet, name: str, phase: Phase = "common",
-    progress: Callable[[int], object] = lambda _: None, leave_out: bool = False,
-) -> Foreign:  # fmt: skip
+    parts: Sequence[PointPart],
+    frame: Frame,
+    gear_set: BevelSet,
+    name: str,
+    phase: Phase = "common",
+    progress: Callable[[int], object] = lambda _: None,
+    leave_out: bool = False,
+) -> Foreign:
     """The measured file of a member out of parts, each of them one flank of one tooth.
 
     ``phase``: all parts share one turning ("common"), each has its own ("each"), or they stand as the set has them
@@ -138,7 +143,7 @@ def foreign_file(
     return Foreign(joined, tuple(turns), (*doubts, *remarks), tuple(doubts), tuple(gaps))
 
 
-def _common(parts: Sequence[Part], turns: Sequence[float], member: Member) -> float:
+def _common(parts: Sequence[PointPart], turns: Sequence[float], member: Member) -> float:
     """The median turning. Raises InputError where a part is not of its tooth."""
     pitch = 2 * math.pi / member.teeth
     apart = half_turn(np.array(turns) - turns[0])
@@ -172,9 +177,13 @@ def _lattices(laid: Sequence[Laid], member: Member) -> list[Lattice | None]:
 
 
 def _zeroed(
-    laid: Sequence[Laid], lattices: Sequence[Lattice | None], turns: Sequence[float], frame: Frame, member: Member,
+    laid: Sequence[Laid],
+    lattices: Sequence[Lattice | None],
+    turns: Sequence[float],
+    frame: Frame,
+    member: Member,
     together: bool,
-) -> tuple[list[float], list[Laid]]:  # fmt: skip
+) -> tuple[list[float], list[Laid]]:
     """Turnings and points at which the deviation at the reference points is zero, or in the mean of the flanks."""
     found, turns = list(laid), list(turns)
     flanks = [one.part.flank for one in laid]

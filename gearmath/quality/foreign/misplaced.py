@@ -15,7 +15,7 @@ import numpy as np
 
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
-from gearmath.quality.foreign.points import LARGEST_FORM, SAME_TOOTH, Frame, Part, lay
+from gearmath.quality.foreign.points import LARGEST_FORM, SAME_TOOTH, Frame, PointPart, lay
 from gearmath.specs.bevel_set import FLANKS, Member
 
 #: Points that are farther off than this, in RMS, are said to be; those of both flanks from the smaller one on, where a
@@ -46,7 +46,7 @@ class _Fit:
     rms: float
 
 
-def check_placed(parts: Sequence[Part], turns: Sequence[float], frame: Frame, member: Member) -> str:
+def check_placed(parts: Sequence[PointPart], turns: Sequence[float], frame: Frame, member: Member) -> str:
     """What to say of parts that lie farther off their flanks than a form does, and the likeliest causes; or nothing.
 
     The parts share one turning. Raises InputError where both flanks lie so far out that the radius of the tip is wrong.
@@ -79,8 +79,13 @@ def check_placed(parts: Sequence[Part], turns: Sequence[float], frame: Frame, me
 
 
 def _scale_words(
-    parts: Sequence[Part], turns: Sequence[float], frame: Frame, member: Member, before: _Fit, fits: dict[str, _Fit]
-) -> str:  # fmt: skip
+    parts: Sequence[PointPart],
+    turns: Sequence[float],
+    frame: Frame,
+    member: Member,
+    before: _Fit,
+    fits: dict[str, _Fit],
+) -> str:
     """What to say of a scale that both flanks ask for beside their form; nothing where another cause leaves less."""
     scale = fits["scale"]
     others = min(one.rms for cause, one in fits.items() if cause != "tip")
@@ -115,8 +120,8 @@ def _words(cause: str, fit: _Fit, frame: Frame) -> str:
 
 
 def _fit(
-    parts: Sequence[Part], turns: Sequence[float], frame: Frame, member: Member, columns: tuple[int, ...]
-) -> _Fit:  # fmt: skip
+    parts: Sequence[PointPart], turns: Sequence[float], frame: Frame, member: Member, columns: tuple[int, ...]
+) -> _Fit:
     """Least absolute distances from the flank, with the rotation about the axis free, too."""
     free = [_TURN, *columns]
     motion, rms = np.zeros(_SCALE + 1), []
@@ -151,7 +156,7 @@ def _least_absolute(terms: np.ndarray, off: np.ndarray) -> tuple[np.ndarray, np.
     return change, left
 
 
-def kept_words(part: Part, turn: float, frame: Frame, member: Member) -> str:
+def kept_words(part: PointPart, turn: float, frame: Frame, member: Member) -> str:
     """What to say of a part that is kept as it stands, but turned against the set by more than a tooth is off.
 
     Raises InputError where it would be of another tooth.

@@ -70,7 +70,7 @@ class Frame:
 
 
 @dataclass(frozen=True)
-class Part:
+class PointPart:
     """One flank of one tooth in a file: points (n,3) [mm] and normals (n,3) or None, in the axes of the file.
 
     ``line`` (n,) are the lines of the file in which they stand, None where there is no file.
@@ -92,7 +92,7 @@ class Laid:
     of the work [mm per rad].
     """
 
-    part: Part
+    part: PointPart
     kept: np.ndarray
     foot: np.ndarray
     normal: np.ndarray
@@ -108,7 +108,7 @@ def lever(point: np.ndarray, normal: np.ndarray) -> np.ndarray:
     return point[:, 0] * normal[:, 1] - point[:, 1] * normal[:, 0]
 
 
-def turn_of(part: Part, frame: Frame, gear_set: BevelSet, name: str) -> float:
+def turn_of(part: PointPart, frame: Frame, gear_set: BevelSet, name: str) -> float:
     """Angle [rad], within half a turn, by which a part is turned against the nominal flank of its tooth.
 
     Raises InputError, with what would make most of the points fit, where they are not of the flank.
@@ -123,7 +123,7 @@ def turn_of(part: Part, frame: Frame, gear_set: BevelSet, name: str) -> float:
     return half_turn(turn - 2 * math.pi * part.tooth / member.teeth)
 
 
-def lay(part: Part, frame: Frame, member: Member, turn: float) -> Laid:
+def lay(part: PointPart, frame: Frame, member: Member, turn: float) -> Laid:
     """The feet of the points of a part that is turned by ``turn`` [rad], in the frame of the nominal flank of tooth 0.
 
     Points without a foot, far off the flank or beyond its edge, are left out.
@@ -165,7 +165,7 @@ def check_normals(laid: Laid, frame: Frame, member: Member, turn: float) -> str:
     )
 
 
-def axial_hint(part: Part, frame: Frame, member: Member, turn: float) -> str:
+def axial_hint(part: PointPart, frame: Frame, member: Member, turn: float) -> str:
     """What another apex offset would do, in words; empty where it would not lessen the deviations much.
 
     Raises InputError where deviations are larger than those of a flank, and another apex offset explains them.
@@ -183,7 +183,7 @@ def axial_hint(part: Part, frame: Frame, member: Member, turn: float) -> str:
     return f"{words}; if the offset given is right, the member was cut or clamped so far off"
 
 
-def _axial_fit(part: Part, frame: Frame, member: Member, turn: float) -> tuple[float, float, float]:
+def _axial_fit(part: PointPart, frame: Frame, member: Member, turn: float) -> tuple[float, float, float]:
     """The apex offset at which the points fit best, and the median of their distances before and after [mm]."""
     tried, angle, medians = frame, turn, []
     for _ in range(_AXIAL_STEPS):
@@ -243,7 +243,7 @@ def _near(member: Member) -> float:
     return _NEAR * (member.blank.mean_addendum + member.blank.mean_dedendum)
 
 
-def _likeliest_cause(part: Part, frame: Frame, gear_set: BevelSet, name: str) -> str:
+def _likeliest_cause(part: PointPart, frame: Frame, gear_set: BevelSet, name: str) -> str:
     """What would make most of the points fit: the fewest other options."""
     other_flank, others = FLANKS[1 - FLANKS.index(part.flank)], [each for each in gear_set.members if each != name]
     mirror = np.array([-1, 1, 1]) if frame.axis[1] != "x" else np.array([1, -1, 1])
@@ -269,8 +269,10 @@ def _likeliest_cause(part: Part, frame: Frame, gear_set: BevelSet, name: str) ->
             return f"most would fit with {' and '.join(words)}"
     halves = np.array_split(frame.placed(part.point), 2)
     for flanks in (FLANKS, FLANKS[::-1]):
-        shares = [_turn(gear_set.member(name), flank, half, frame.tip_radius)[1].mean()
-                  for flank, half in zip(flanks, halves, strict=True)]  # fmt: skip
+        shares = [
+            _turn(gear_set.member(name), flank, half, frame.tip_radius)[1].mean()
+            for flank, half in zip(flanks, halves, strict=True)
+        ]
         if min(shares) >= LEAST_FIT:
             return "it holds the points of both flanks: give each flank a file of its own"
     offset = _likely_offset(part, frame, gear_set.member(name))
@@ -279,7 +281,7 @@ def _likeliest_cause(part: Part, frame: Frame, gear_set: BevelSet, name: str) ->
     return "is the file of this set, member and flank, and are --unit, --axis and --apex-offset those of the file?"
 
 
-def _likely_offset(part: Part, frame: Frame, member: Member) -> float | None:
+def _likely_offset(part: PointPart, frame: Frame, member: Member) -> float | None:
     """The apex offset [mm] at which the points lie on the blank and fit the flank best, None where they fit nowhere."""
     height = member.blank.mean_cone_distance * math.cos(math.radians(member.blank.pitch_angle))
     point = replace(frame, apex_offset=0.0).placed(part.point)

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from gearmath.kernels import kernel
-from gearmath.quality.evaluation.member import Evaluation, FlankFigures
+from gearmath.quality.evaluation.member import FlankFigures, MemberEvaluation
 from gearmath.quality.evaluation.pitch import reference_point
 from gearmath.quality.evaluation.registration import Registration
 from gearmath.quality.evaluation.topography import ORDERS, Topography, orders_matrix
@@ -95,7 +95,7 @@ class Figures:
         return np.array(self.of_judged(self.judged)).ravel()
 
 
-def figures_of(file: FlankFile, member: Member, found: Evaluation) -> Figures:
+def figures_of(file: FlankFile, member: Member, found: MemberEvaluation) -> Figures:
     """All figures of the evaluation of a measured file, flank by flank, then those of both."""
     judging, slope = judging_of(file, member, found)
     judged = ca.MX.sym("judged", judging.size1_out(0))
@@ -125,7 +125,7 @@ _Part = tuple[Figure, ca.MX]
 
 def _together(
     parts: list[_Part], judged: ca.MX, deviation: np.ndarray, judging: ca.Function, slope: np.ndarray
-) -> Figures:  # fmt: skip
+) -> Figures:
     values, extremes, at = [], {}, np.array(judging(deviation)).ravel()
     for k, (figure, value) in enumerate(parts):
         if figure.smooth:
@@ -160,9 +160,7 @@ def _seat(found: Registration, seat: ca.MX) -> list[_Part]:
     return [(Figure("both", name, unit), seat[k] * scale) for k, (name, unit, scale) in enumerate(names)]
 
 
-def _topography(
-    file: FlankFile, flank: str, figures: FlankFigures, deviation: ca.MX
-) -> list[_Part]:  # fmt: skip
+def _topography(file: FlankFile, flank: str, figures: FlankFigures, deviation: ca.MX) -> list[_Part]:
     """Orders of the mean of the teeth measured in full; cubic surface and largest deviation of the first of them."""
     if figures.mean is None:
         return []
@@ -209,9 +207,7 @@ def _by_tooth(name: str, file: FlankFile, rows: np.ndarray, deviation: ca.MX, po
     ]
 
 
-def _pitch(
-    file: FlankFile, flank: str, figures: FlankFigures, deviation: ca.MX
-) -> list[_Part]:  # fmt: skip
+def _pitch(file: FlankFile, flank: str, figures: FlankFigures, deviation: ca.MX) -> list[_Part]:
     """Single pitch of every tooth, the largest of them, and the total: the largest difference of two teeth.
 
     Of teeth without a reading there is no single pitch, and then neither of the maxima; of none where the pitch is not
@@ -234,7 +230,7 @@ def _pitch(
     return parts
 
 
-def _spaces(file: FlankFile, found: Evaluation, member: Member, deviation: ca.MX) -> list[_Part]:
+def _spaces(file: FlankFile, found: MemberEvaluation, member: Member, deviation: ca.MX) -> list[_Part]:
     """Runout, and the mean thickness of the teeth: each flank of a tooth adds its allowance to it."""
     if found.runout is None or found.runout.withheld is not None:
         return []

@@ -11,14 +11,14 @@ import casadi as ca
 import numpy as np
 
 from gearmath.quality.evaluation.drift import without_drift
-from gearmath.quality.evaluation.member import Evaluation
+from gearmath.quality.evaluation.member import MemberEvaluation
 from gearmath.quality.evaluation.nominal import completed
 from gearmath.quality.evaluation.outliers import find_outliers
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
 
 
-def judging_of(file: FlankFile, member: Member, found: Evaluation) -> tuple[ca.Function, np.ndarray]:
+def judging_of(file: FlankFile, member: Member, found: MemberEvaluation) -> tuple[ca.Function, np.ndarray]:
     """What is judged, as a function of the deviations measured, and its constant Jacobian (q,n).
 
     Judged are the deviations of the evaluated file, zero where there are none, then the four components of the seat and
@@ -48,13 +48,13 @@ def judging_of(file: FlankFile, member: Member, found: Evaluation) -> tuple[ca.F
     return ca.Function("judging", [deviation], [ca.vertcat(now, seat, turn)], ["deviation"], ["judged"]), slope
 
 
-def judged_by_measured(file: FlankFile, member: Member, found: Evaluation) -> np.ndarray:
+def judged_by_measured(file: FlankFile, member: Member, found: MemberEvaluation) -> np.ndarray:
     """How the deviations (m,) that were judged depend on those measured (n,): (m,n)."""
     _, slope = judging_of(file, member, found)
     return np.where(np.isfinite(found.file.deviation)[:, None], slope[: len(found.file)], 0.0)
 
 
-def _without_drift(file: FlankFile, member: Member, found: Evaluation) -> np.ndarray:
+def _without_drift(file: FlankFile, member: Member, found: MemberEvaluation) -> np.ndarray:
     """How the deviations without outliers and drift (m,) depend on those measured (m,n).
 
     Taking out the drift is linear and homogeneous, so that unit deviations of the nominal points give the columns.

@@ -29,7 +29,7 @@ from gearmath.bevel.identify.problem import ROOT_WEIGHT, Problem
 from gearmath.bevel.identify.variables import SIZE, Variable, reading, whole
 from gearmath.errors import ComputationError
 from gearmath.kernels import kernel
-from gearmath.quality.correction.member import ROOT_LIMIT, Correction
+from gearmath.quality.correction.member import ROOT_LIMIT, MemberCorrection
 from gearmath.quality.correction.representative import representative_tooth
 from gearmath.quality.correction.target import blade_curve, flank_target
 from gearmath.quality.evaluation.topography import grid_shape
@@ -177,9 +177,13 @@ def curvature(target: FlankTarget, found: Identification, k: int, pull: np.ndarr
 
 
 def uncertain_settings(
-    member: Member, name: str, file: FlankFile, correction: Correction, measured: Covariance,
+    member: Member,
+    name: str,
+    file: FlankFile,
+    correction: MemberCorrection,
+    measured: Covariance,
     root_limit: float | None = ROOT_LIMIT,
-) -> tuple[list[Uncertain], dict[str, Effect]]:  # fmt: skip
+) -> tuple[list[Uncertain], dict[str, Effect]]:
     """Every corrected setting, and per flank what the errors of measurement do to it.
 
     ``measured`` is the covariance of the file that was corrected. Raises ComputationError where the flanks do not
@@ -203,9 +207,10 @@ def uncertain_settings(
             effects[flank] = Effect(*(float(np.sqrt(np.mean(u**2))) for u in piece))
             spec = member.flank(flank)
             corrected = whole(
-                correction.settings[flank], correction.motions.get(flank, spec.motion.matrix),
+                correction.settings[flank],
+                correction.motions.get(flank, spec.motion.matrix),
                 correction.curvatures.get(flank, blade_curve(spec)[0]),
-            )  # fmt: skip
+            )
             settings += [
                 _setting(flank, variable, float(corrected[variable.index]), float(u))
                 for variable, u in zip(found.variables, known.standard, strict=True)

@@ -45,8 +45,8 @@ class Drawn:
         """What makes the columns what they are. Not their number: more draws continue the same study."""
         return f"standard normal, width {self.width}, seed {self.seed}, blocks of {BLOCK}".encode()
 
-    def block(self, k: int) -> Block:
-        return Block(k, self.width, self.seed, None)
+    def block(self, k: int) -> DrawBlock:
+        return DrawBlock(k, self.width, self.seed, None)
 
 
 @dataclass(frozen=True)
@@ -67,12 +67,12 @@ class Given:
     def key(self) -> bytes:
         return f"given, {self.rows.shape}, blocks of {BLOCK}".encode() + np.ascontiguousarray(self.rows).tobytes()
 
-    def block(self, k: int) -> Block:
-        return Block(k, self.width, 0, self.rows[k * BLOCK : (k + 1) * BLOCK])
+    def block(self, k: int) -> DrawBlock:
+        return DrawBlock(k, self.width, 0, self.rows[k * BLOCK : (k + 1) * BLOCK])
 
 
 @dataclass(frozen=True)
-class Block:
+class DrawBlock:
     """One block, small enough to be sent: where its columns come from, or the columns themselves."""
 
     number: int
@@ -216,7 +216,7 @@ class _Dispatch:
 _KNOWN: dict[str, ca.Function] = {}
 
 
-def evaluate_batch(digest: str, text: str | None, blocks: Sequence[Block]) -> np.ndarray | None:
+def evaluate_batch(digest: str, text: str | None, blocks: Sequence[DrawBlock]) -> np.ndarray | None:
     """What a worker does: values (n,q) of some blocks; None if it does not know the function and gets no text."""
     function = _KNOWN.get(digest)
     if function is None:
@@ -228,7 +228,7 @@ def evaluate_batch(digest: str, text: str | None, blocks: Sequence[Block]) -> np
     return _evaluate(function, blocks)
 
 
-def _evaluate(function: ca.Function, blocks: Sequence[Block], threads: int = 1) -> np.ndarray:
+def _evaluate(function: ca.Function, blocks: Sequence[DrawBlock], threads: int = 1) -> np.ndarray:
     columns = np.concatenate([block.columns() for block in blocks], axis=1)
     return np.ascontiguousarray(np.asarray(_mapped(function, columns.shape[1], threads)(columns)).T)
 

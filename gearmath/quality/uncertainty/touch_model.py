@@ -50,9 +50,13 @@ def sensitivities(
     axes = tip_positions(tip, A, math.radians(member.blank.root_angle), machine, calibration)
     n = len(axes)
     slopes = _slopes().map(n)(
-        axes.T, probe_height(machine, calibration), calibration.tip_offset, points.point.T, points.normal.T,
+        axes.T,
+        probe_height(machine, calibration),
+        calibration.tip_offset,
+        points.point.T,
+        points.normal.T,
         machine.pivot,
-    )  # fmt: skip
+    )
     found = np.array(slopes).reshape(n, 6)
     artefact = calibration.sphere or calibration.ring
     found[:, 4] -= found[:, 0] * (artefact.center[2] if artefact else 0.0)

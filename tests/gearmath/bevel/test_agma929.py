@@ -21,9 +21,18 @@ PRINTED = 0.001  # mm, the agreement that the issue asks for; the annex prints f
 
 #: Input of annex C. Members: pinion, wheel.
 C = {
-    "m_mn": 3.21331, "b": 25.4, "Re": 93.973, "Rm": 81.273, "delta": (19.7468, 70.2532), "theta_f": (2.2259, 6.4935),
-    "c": 0.964, "ham": (4.83648, 1.58937), "hfm": (2.55337, 5.80048), "smn": (6.2788, 3.67226), "rc0": 114.3,
-}  # fmt: skip
+    "m_mn": 3.21331,
+    "b": 25.4,
+    "Re": 93.973,
+    "Rm": 81.273,
+    "delta": (19.7468, 70.2532),
+    "theta_f": (2.2259, 6.4935),
+    "c": 0.964,
+    "ham": (4.83648, 1.58937),
+    "hfm": (2.55337, 5.80048),
+    "smn": (6.2788, 3.67226),
+    "rc0": 114.3,
+}
 BETA_E, BETA_I = 36.84579, 33.94556  # degrees, output of the annex
 
 
@@ -50,10 +59,18 @@ def annex() -> BevelBlank:
             )
         )
     return replace(
-        blank, pinion=members[0], wheel=members[1], mean_normal_module=C["m_mn"], outer_cone_distance=C["Re"],
-        mean_cone_distance=C["Rm"], inner_cone_distance=C["Re"] - C["b"], cutter_radius=C["rc0"],
-        outer_spiral_angle=math.radians(BETA_E), inner_spiral_angle=math.radians(BETA_I), clearance=C["c"],
-    )  # fmt: skip
+        blank,
+        pinion=members[0],
+        wheel=members[1],
+        mean_normal_module=C["m_mn"],
+        outer_cone_distance=C["Re"],
+        mean_cone_distance=C["Rm"],
+        inner_cone_distance=C["Re"] - C["b"],
+        cutter_radius=C["rc0"],
+        outer_spiral_angle=math.radians(BETA_E),
+        inner_spiral_angle=math.radians(BETA_I),
+        clearance=C["c"],
+    )
 
 
 @pytest.mark.parametrize(("end", "printed"), [("outer", BETA_E), ("inner", BETA_I)])
@@ -116,9 +133,12 @@ def test_top_land_is_what_an_involute_drawn_point_by_point_leaves() -> None:
         tip_angles.append(np.interp(r + h, radius, polar) - np.interp(r, radius, polar))
     drawn = (r + h) * (s / r - sum(tip_angles))
     values = {
-        "virtual_pitch_radius": r, "addendum_here": h, "normal_thickness": s, "pressure_angle_drive": alphas[0],
+        "virtual_pitch_radius": r,
+        "addendum_here": h,
+        "normal_thickness": s,
+        "pressure_angle_drive": alphas[0],
         "pressure_angle_coast": alphas[1],
-    }  # fmt: skip
+    }
     assert evaluate("top_land", values)["top_land"] == pytest.approx(drawn, abs=1e-7)
 
 
@@ -137,9 +157,12 @@ def test_backlash_closed_the_tips_reach_the_profile_at_the_height_of_interferenc
     for own, mate, height in ((0, 1, 0.81059), (1, 0, 1.49757)):
         members = (annex.pinion, annex.wheel)
         values = {
-            "virtual_pitch_radius": radii[own], "mate_virtual_pitch_radius": radii[mate],
-            "mate_addendum_here": members[mate].inner_addendum, "dedendum_here": members[own].inner_dedendum,
-            "clearance_change": slots_of(annex).clearance_change, "flank_pressure_angle": math.radians(20),
-        }  # fmt: skip
+            "virtual_pitch_radius": radii[own],
+            "mate_virtual_pitch_radius": radii[mate],
+            "mate_addendum_here": members[mate].inner_addendum,
+            "dedendum_here": members[own].inner_dedendum,
+            "clearance_change": slots_of(annex).clearance_change,
+            "flank_pressure_angle": math.radians(20),
+        }
         found = evaluate("running_interference", values)["interference_height"]
         assert found == pytest.approx(height, abs=PRINTED)

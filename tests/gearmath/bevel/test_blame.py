@@ -18,20 +18,26 @@ WRONG = {
     "sliding base of one flank": (NASA, {"pinion.concave.sliding_base": -0.2965}, r"sliding_base = -0\.2965: 0\.2\d+"),
     "no sliding base": (NASA, {"pinion.convex.sliding_base": 0.0}, r"sliding_base = 0: -0\.[34]\d+"),
     "root angle of both flanks of the gear": (
-        NASA, {f"gear.{flank}.machine_root_angle": 65.0 for flank in FLANKS},
+        NASA,
+        {f"gear.{flank}.machine_root_angle": 65.0 for flank in FLANKS},
         r"gear\.concave\.machine_root_angle = 65: 67\.",
     ),
     "radial distance in inches": (
-        NASA, {"pinion.concave.radial_distance": 2.94780202969}, r"pinion\.concave\.radial_distance = 2\.9478: 7\d\.",
+        NASA,
+        {"pinion.concave.radial_distance": 2.94780202969},
+        r"pinion\.concave\.radial_distance = 2\.9478: 7\d\.",
     ),
     "blades of both flanks": (
-        HOBBED, {f"gear.{flank}.blade_pressure_angle": 23.0 for flank in FLANKS},
+        HOBBED,
+        {f"gear.{flank}.blade_pressure_angle": 23.0 for flank in FLANKS},
         r"gear\.concave\.blade_pressure_angle = 23: (19\.[89]|20\.[01])\d* would fit on both flanks",
     ),
     "ratio of roll the other way": (
-        NASA, {"pinion.concave.ratio_of_roll": 1 / 3.2426985355495}, r"ratio_of_roll = 0\.308385: 3\.2427 would fit",
+        NASA,
+        {"pinion.concave.ratio_of_roll": 1 / 3.2426985355495},
+        r"ratio_of_roll = 0\.308385: 3\.2427 would fit",
     ),
-}  # fmt: skip
+}
 
 
 def changed(name: str, changes: dict[str, float]) -> dict:
@@ -56,8 +62,15 @@ def test_setting_that_alone_puts_the_flank_right_is_named_with_the_value_that_wo
 
 
 def test_figures_that_no_single_setting_explains_are_said_to_be_so() -> None:
-    text = refusal(NASA, {"pinion.concave.radial_distance": 113.8, "pinion.concave.blade_point_radius": 77.0,
-                          "pinion.concave.cradle_angle": -20.0, "pinion.concave.sliding_base": 5.0})  # fmt: skip
+    text = refusal(
+        NASA,
+        {
+            "pinion.concave.radial_distance": 113.8,
+            "pinion.concave.blade_point_radius": 77.0,
+            "pinion.concave.cradle_angle": -20.0,
+            "pinion.concave.sliding_base": 5.0,
+        },
+    )
     assert "no single setting puts" in text
     assert "would fit" not in text
 

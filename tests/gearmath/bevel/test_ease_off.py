@@ -20,9 +20,12 @@ from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
 from gearmath.specs.toml import bundled, checked
 
 SETS = (
-    "nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_formate_14x39", "crown_gear_universal_14x39",
+    "nasa_tp3096_12x36",
+    "crown_gear_7x43",
+    "crown_gear_formate_14x39",
+    "crown_gear_universal_14x39",
     "crown_gear_hobbed_14x39",
-)  # fmt: skip
+)
 #: A pair of uniform depth: both members roll on the pitch plane of one crown gear.
 PINION, GEAR, CONE, SPIRAL, ALPHA, RADIUS, DEPTH = 14, 39, 80.0, math.radians(35), math.radians(20), 100.0, 4.0
 
@@ -33,22 +36,38 @@ def member(teeth: int, hand: int, radius: float = RADIUS) -> Member:
     delta = math.atan2(teeth, mate)
     center = CONE - radius * cmath.exp(-1j * (math.pi / 2 - SPIRAL))
     flank = {
-        "radial_distance": abs(center), "cradle_angle": math.degrees(hand * cmath.phase(center)), "cutter_tilt": 0.0,
-        "cutter_swivel": 0.0, "blank_offset": 0.0, "sliding_base": -DEPTH, "machine_center_to_crossing_point": 0.0,
-        "machine_root_angle": math.degrees(delta), "ratio_of_roll": 1 / math.sin(delta), "work_rotation_offset": 0.0,
-        "blade_pressure_angle": math.degrees(ALPHA), "blade_profile_height": 17.0,
-    }  # fmt: skip
+        "radial_distance": abs(center),
+        "cradle_angle": math.degrees(hand * cmath.phase(center)),
+        "cutter_tilt": 0.0,
+        "cutter_swivel": 0.0,
+        "blank_offset": 0.0,
+        "sliding_base": -DEPTH,
+        "machine_center_to_crossing_point": 0.0,
+        "machine_root_angle": math.degrees(delta),
+        "ratio_of_roll": 1 / math.sin(delta),
+        "work_rotation_offset": 0.0,
+        "blade_pressure_angle": math.degrees(ALPHA),
+        "blade_profile_height": 17.0,
+    }
     # blades of both members are the two sides of one cone: on the pitch plane, DEPTH above their tips, of one radius
     radii = {"concave": radius - DEPTH * math.tan(ALPHA), "convex": radius + DEPTH * math.tan(ALPHA)}
     angle = math.degrees(delta)
     values = {
-        "teeth": teeth, "hand": "right" if hand > 0 else "left", "cutting": "fixed_setting",
+        "teeth": teeth,
+        "hand": "right" if hand > 0 else "left",
+        "cutting": "fixed_setting",
         "blank": {
-            "pitch_angle": angle, "face_angle": angle, "root_angle": angle, "mean_cone_distance": CONE,
-            "face_width": 20.0, "mean_addendum": 3.2, "mean_dedendum": DEPTH, "clearance": 0.8,
+            "pitch_angle": angle,
+            "face_angle": angle,
+            "root_angle": angle,
+            "mean_cone_distance": CONE,
+            "face_width": 20.0,
+            "mean_addendum": 3.2,
+            "mean_dedendum": DEPTH,
+            "clearance": 0.8,
         },
         **{name: {**flank, "blade_point_radius": radii[name]} for name in FLANKS},
-    }  # fmt: skip
+    }
     return checked(values, Member, "member")
 
 
@@ -116,14 +135,16 @@ def changed(name: str, *changes: tuple[str, object]) -> BevelSet:
 
 WRONG = {
     "radial distance of the gear": (
-        "nasa_tp3096_12x36", *((f"gear.{flank}.radial_distance", lambda S: S + 0.5) for flank in FLANKS)
+        "nasa_tp3096_12x36",
+        *((f"gear.{flank}.radial_distance", lambda S: S + 0.5) for flank in FLANKS),
     ),
     "motion of a flank at rest": ("nasa_tp3096_12x36", ("pinion.convex.motion", {"ratio_of_roll": [0.5]})),
     "arc blade of another cutter": ("nasa_tp3096_12x36", ("pinion.concave.blade_spheric_radius", 100.0)),
     "blank offset of a cut of both flanks": (
-        "crown_gear_hobbed_14x39", *((f"pinion.{flank}.blank_offset", 0.8) for flank in FLANKS)
+        "crown_gear_hobbed_14x39",
+        *((f"pinion.{flank}.blank_offset", 0.8) for flank in FLANKS),
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", WRONG)
@@ -146,12 +167,14 @@ def test_other_number_of_blade_groups_is_refused_as_the_blades_are_not_square_to
 @pytest.mark.parametrize(
     ("crowning", "twist", "profile_crowning", "depth"),
     [
-        (3.0, 0.0, 2.0, 0.0), (3.0, 4.0, 2.0, 0.0),  # 4 < 2 √6: no saddle
+        (3.0, 0.0, 2.0, 0.0),
+        (3.0, 4.0, 2.0, 0.0),  # 4 < 2 √6: no saddle
         (3.0, 6.0, 2.0, 1.0),  # at the corner 3 - 6 + 2
-        (-1.0, 0.0, 2.0, 1.0), (1.0, 1.0, -2.0, 2.25),  # x = 1/2 on the edge: 1/4 - 1/2 - 2
+        (-1.0, 0.0, 2.0, 1.0),
+        (1.0, 1.0, -2.0, 2.25),  # x = 1/2 on the edge: 1/4 - 1/2 - 2
         (-1.0, 0.5, -2.0, 3.5),
     ],
-)  # fmt: skip
+)
 def test_hollow_is_how_far_the_second_order_falls_below_its_middle(crowning, twist, profile_crowning, depth) -> None:
     for sign in (1, -1):
         found = Parts(5.0, -7.0, crowning, sign * twist, profile_crowning, 1.0)
@@ -181,10 +204,12 @@ OTHER_METHOD = {
     "motions turned round": (rf"{BOTH} times -1$", *motions(UNIVERSAL, times(-1.0))),
     "C for 2C": (rf"{BOTH} times 2$", *motions(FORMATE, times(0.5))),
     "motions of the flanks exchanged": (
-        rf"{BOTH} exchanged$", FORMATE, ("pinion.concave.motion", {"modified_roll": [-0.197824, -0.049731]}),
+        rf"{BOTH} exchanged$",
+        FORMATE,
+        ("pinion.concave.motion", {"modified_roll": [-0.197824, -0.049731]}),
         ("pinion.convex.motion", {"modified_roll": [0.174573, -0.558029]}),
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", OTHER_METHOD)

@@ -23,9 +23,17 @@ def measured(member, grid, margins, deviation=0.02):
     file = nominal_flank(member, "gear", "concave", grid, margins)
     out = np.full(len(file), deviation)
     return type(file)(
-        file.header, file.member, file.flank, file.tooth, file.row, file.col,
-        file.point + out[:, None] * file.normal, file.normal, out, file.uncertainty,
-    )  # fmt: skip
+        file.header,
+        file.member,
+        file.flank,
+        file.tooth,
+        file.row,
+        file.col,
+        file.point + out[:, None] * file.normal,
+        file.normal,
+        out,
+        file.uncertainty,
+    )
 
 
 def test_each_margin_is_left_out_on_its_own_side(gear_set):
@@ -77,9 +85,7 @@ def uneven(member):
     """Places on no grid of margins: a grid with its inner columns moved."""
     grid = blank_grid(member, 3, 4, SIDES)
     moved = blank_grid(member, 3, 4, 0.2)
-    return np.where(np.arange(4) == 1, moved.axial, grid.axial), np.where(
-        np.arange(4) == 1, moved.radial, grid.radial
-    )  # fmt: skip
+    return np.where(np.arange(4) == 1, moved.axial, grid.axial), np.where(np.arange(4) == 1, moved.radial, grid.radial)
 
 
 def test_listed_places_are_found_again_in_a_measured_file(gear_set, tmp_path):
@@ -122,9 +128,17 @@ def test_missing_point_of_a_listed_grid_is_filled_in_where_another_tooth_has_it(
 
     angle = 2 * np.pi / 36
     second = type(first)(
-        first.header, first.member, first.flank, first.tooth + 1, first.row, first.col, turned(first.point, angle),
-        turned(first.normal, angle), first.deviation, first.uncertainty,
-    )  # fmt: skip
+        first.header,
+        first.member,
+        first.flank,
+        first.tooth + 1,
+        first.row,
+        first.col,
+        turned(first.point, angle),
+        turned(first.normal, angle),
+        first.deviation,
+        first.uncertainty,
+    )
     whole, remarks = completed(join([first, second]).pick(keep), member, "gear")
     assert remarks == ("concave flank, tooth 0, row 1, col 1: not measured; left out",)
     here = (whole.tooth == 0) & (whole.row == 1) & (whole.col == 1)

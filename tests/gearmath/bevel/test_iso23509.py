@@ -29,37 +29,71 @@ SAMPLE = bundled("blank_iso23509_sample1.toml").read_text("utf-8")
 
 #: Outputs of annex F.2 of the pair, degrees and mm.
 PAIR = {
-    "gear_ratio": 2.786, "mean_cone_distance": 81.273, "mean_spiral_angle": 35.0, "mean_normal_module": 3.213,
-    "mean_normal_pressure_angle": 20.0, "pressure_angle_drive": 20.0, "pressure_angle_coast": 20.0,
-    "outer_cone_distance": 93.973, "inner_cone_distance": 68.573, "outer_transverse_module": 4.536,
-    "mean_working_depth": 6.427, "clearance": 0.803, "mean_whole_depth": 7.230, "outer_spiral_angle": 36.846,
-    "inner_spiral_angle": 33.946, "face_width": 25.4, "pinion_root_normal_depth": 9.137,
-}  # fmt: skip
+    "gear_ratio": 2.786,
+    "mean_cone_distance": 81.273,
+    "mean_spiral_angle": 35.0,
+    "mean_normal_module": 3.213,
+    "mean_normal_pressure_angle": 20.0,
+    "pressure_angle_drive": 20.0,
+    "pressure_angle_coast": 20.0,
+    "outer_cone_distance": 93.973,
+    "inner_cone_distance": 68.573,
+    "outer_transverse_module": 4.536,
+    "mean_working_depth": 6.427,
+    "clearance": 0.803,
+    "mean_whole_depth": 7.230,
+    "outer_spiral_angle": 36.846,
+    "inner_spiral_angle": 33.946,
+    "face_width": 25.4,
+    "pinion_root_normal_depth": 9.137,
+}
 
 #: Outputs of annex F.2 of pinion and wheel.
 MEMBERS = {
-    "pitch_angle": (19.747, 70.253), "mean_pitch_diameter": (54.918, 152.987), "outer_pitch_diameter": (63.5, 176.893),
-    "inner_pitch_diameter": (46.337, 129.080), "crossing_point_to_mean_point": (76.493, 27.459),
-    "mean_addendum": (4.836, 1.591), "mean_dedendum": (2.394, 5.639), "face_angle": (26.240, 72.387),
-    "root_angle": (17.613, 63.760), "addendum_angle": (6.493, 2.134), "dedendum_angle": (2.134, 6.493),
-    "face_apex": (-9.931, -1.508), "root_apex": (2.094, 3.999), "outer_addendum": (6.281, 2.064),
-    "outer_dedendum": (2.867, 7.085), "outer_whole_depth": (9.149, 9.149), "inner_addendum": (3.391, 1.117),
-    "inner_dedendum": (1.921, 4.194), "inner_whole_depth": (5.311, 5.311), "thickness_coefficient": (0.037, -0.055),
-    "mean_normal_thickness": (6.465, 3.511), "mean_transverse_thickness": (7.892, 4.286),
-    "mean_normal_diameter": (82.241, 638.207), "mean_normal_chordal_thickness": (6.458, 3.511),
-    "mean_chordal_addendum": (4.955, 1.592), "outer_tip_diameter": (75.324, 178.288),
-    "outer_root_diameter": (58.102, 172.106), "inner_tip_diameter": (52.719, 129.835),
-    "inner_root_diameter": (42.721, 126.246), "crossing_point_to_crown": (86.324, 29.808),
+    "pitch_angle": (19.747, 70.253),
+    "mean_pitch_diameter": (54.918, 152.987),
+    "outer_pitch_diameter": (63.5, 176.893),
+    "inner_pitch_diameter": (46.337, 129.080),
+    "crossing_point_to_mean_point": (76.493, 27.459),
+    "mean_addendum": (4.836, 1.591),
+    "mean_dedendum": (2.394, 5.639),
+    "face_angle": (26.240, 72.387),
+    "root_angle": (17.613, 63.760),
+    "addendum_angle": (6.493, 2.134),
+    "dedendum_angle": (2.134, 6.493),
+    "face_apex": (-9.931, -1.508),
+    "root_apex": (2.094, 3.999),
+    "outer_addendum": (6.281, 2.064),
+    "outer_dedendum": (2.867, 7.085),
+    "outer_whole_depth": (9.149, 9.149),
+    "inner_addendum": (3.391, 1.117),
+    "inner_dedendum": (1.921, 4.194),
+    "inner_whole_depth": (5.311, 5.311),
+    "thickness_coefficient": (0.037, -0.055),
+    "mean_normal_thickness": (6.465, 3.511),
+    "mean_transverse_thickness": (7.892, 4.286),
+    "mean_normal_diameter": (82.241, 638.207),
+    "mean_normal_chordal_thickness": (6.458, 3.511),
+    "mean_chordal_addendum": (4.955, 1.592),
+    "outer_tip_diameter": (75.324, 178.288),
+    "outer_root_diameter": (58.102, 172.106),
+    "inner_tip_diameter": (52.719, 129.835),
+    "inner_root_diameter": (42.721, 126.246),
+    "crossing_point_to_crown": (86.324, 29.808),
     "crossing_point_to_front_crown": (63.395, 22.117),
-}  # fmt: skip
+}
 
 #: Where the standard's rounding to three decimals on the way leaves its mark in the last digit: computed (printed)
 #: t_zF1 -9.9317 (-9.931), t_zR1 2.0946 (2.094), t_zR2 4.0000 (3.999), h_ae1 6.2815 (6.281), d_fe1 58.1029 (58.102),
 #: h_amc1 4.9555 (4.955).
 LAST_DIGIT = {
-    "pinion.face_apex", "pinion.root_apex", "wheel.root_apex", "pinion.outer_addendum", "pinion.outer_root_diameter",
+    "pinion.face_apex",
+    "pinion.root_apex",
+    "wheel.root_apex",
+    "pinion.outer_addendum",
+    "pinion.outer_root_diameter",
     "pinion.mean_chordal_addendum",
-}  # fmt: skip
+}
 
 
 def sample(*changes: tuple[str, str]) -> BlankData:
@@ -133,9 +167,13 @@ def test_angles_of_sample_1_are_those_of_its_duplex_taper() -> None:
 def test_face_hobbed_wheel_of_sample_3_has_its_printed_spiral_angles() -> None:
     """Annex F.4 is a hypoid pair, but its wheel's trace on the pitch plane is that of a bevel gear."""
     values = {
-        "mean_cone_distance": 82.168, "wheel_pitch_angle": math.radians(63.212), "wheel_teeth": 34.0,
-        "mean_spiral_angle": math.radians(21.009), "blade_groups": 13.0, "cutter_radius": 76.0,
-    }  # fmt: skip
+        "mean_cone_distance": 82.168,
+        "wheel_pitch_angle": math.radians(63.212),
+        "wheel_teeth": 34.0,
+        "mean_spiral_angle": math.radians(21.009),
+        "blade_groups": 13.0,
+        "cutter_radius": 76.0,
+    }
     values |= evaluate("hobbing_cutter", values)
     assert math.degrees(values["cutter_lead_angle"]) == pytest.approx(20.151, abs=1e-3)
     assert values["epicycloid_base_radius"] == pytest.approx(82.820, abs=1e-3)
@@ -149,9 +187,13 @@ def test_hobbed_trace_is_the_path_of_a_rolling_blade() -> None:
     """The blade carried by the rolling cutter, drawn numerically: its tangent against the radius from the apex."""
     R_m, r, beta, ratio = 80.0, 88.0, math.radians(32), 13 * math.sin(math.radians(70)) / 38
     values = {
-        "mean_cone_distance": R_m, "wheel_pitch_angle": math.radians(70), "wheel_teeth": 38.0,
-        "mean_spiral_angle": beta, "blade_groups": 13.0, "cutter_radius": r,
-    }  # fmt: skip
+        "mean_cone_distance": R_m,
+        "wheel_pitch_angle": math.radians(70),
+        "wheel_teeth": 38.0,
+        "mean_spiral_angle": beta,
+        "blade_groups": 13.0,
+        "cutter_radius": r,
+    }
     values |= evaluate("hobbing_cutter", values)
     lead = values["cutter_lead_angle"]
     center = R_m + r * 1j * np.exp(1j * (beta - lead))
@@ -174,17 +216,31 @@ def designs() -> st.SearchStrategy[BlankData]:
     ) -> BlankData:
         wheel = round(teeth * ratio)
         hobbing, radius = taper == "hobbed", min(500.0, cutter * module * wheel / 2)
-        return BlankData.model_validate({
-            "title": "random", "source": "", "shaft_angle": shaft, "pinion_teeth": teeth, "wheel_teeth": wheel,
-            "outer_transverse_module": module, "face_width": max(1.5, 0.28 * module * math.hypot(teeth, wheel) / 2),
-            "mean_spiral_angle": spiral, "pressure_angle_drive": 20.0, "pressure_angle_coast": 20.0,
-            "cutter": {"process": "face_hobbing", "blade_groups": 5, "cutter_radius": radius} if hobbing
-            else {"process": "face_milling", "cutter_radius": radius},
-            "taper": {"kind": "uniform" if hobbing else taper},
-            "data_type_2": {"tooth_depth_factor": 2.0, "clearance_factor": 0.125, "mean_addendum_factor": 0.3,
-                            "thickness_factor": 0.05},
-            "backlash": {"mean_normal": 0.02 * module},
-        })  # fmt: skip
+        return BlankData.model_validate(
+            {
+                "title": "random",
+                "source": "",
+                "shaft_angle": shaft,
+                "pinion_teeth": teeth,
+                "wheel_teeth": wheel,
+                "outer_transverse_module": module,
+                "face_width": max(1.5, 0.28 * module * math.hypot(teeth, wheel) / 2),
+                "mean_spiral_angle": spiral,
+                "pressure_angle_drive": 20.0,
+                "pressure_angle_coast": 20.0,
+                "cutter": {"process": "face_hobbing", "blade_groups": 5, "cutter_radius": radius}
+                if hobbing
+                else {"process": "face_milling", "cutter_radius": radius},
+                "taper": {"kind": "uniform" if hobbing else taper},
+                "data_type_2": {
+                    "tooth_depth_factor": 2.0,
+                    "clearance_factor": 0.125,
+                    "mean_addendum_factor": 0.3,
+                    "thickness_factor": 0.05,
+                },
+                "backlash": {"mean_normal": 0.02 * module},
+            }
+        )
 
     tapers = st.sampled_from(["uniform", "standard", "duplex", "tilted_root_line", "hobbed"])
     numbers = (

@@ -27,9 +27,12 @@ from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member
 from gearmath.specs.toml import bundled, checked
 
 SETS = (
-    "nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_formate_14x39", "crown_gear_universal_14x39",
+    "nasa_tp3096_12x36",
+    "crown_gear_7x43",
+    "crown_gear_formate_14x39",
+    "crown_gear_universal_14x39",
     "crown_gear_hobbed_14x39",
-)  # fmt: skip
+)
 #: Mutations of the whole enumeration that are tried; which, is drawn.
 TRIED = 2400
 #: Tolerance of the programs that cut the accepted ones [mm]: coarse, so that more of them can be cut.
@@ -56,9 +59,15 @@ COUNTS: dict[str, Callable[[int], int]] = {
     "zero": lambda value: 0,
 }
 OTHER = {
-    "left": "right", "right": "left", "completing": "fixed_setting", "fixed_setting": "completing",
-    "face_milling": "face_hobbing", "face_hobbing": "face_milling", "generated": "formate", "formate": "generated",
-}  # fmt: skip
+    "left": "right",
+    "right": "left",
+    "completing": "fixed_setting",
+    "fixed_setting": "completing",
+    "face_milling": "face_hobbing",
+    "face_hobbing": "face_milling",
+    "generated": "formate",
+    "formate": "generated",
+}
 
 Place = tuple[str | int, ...]
 

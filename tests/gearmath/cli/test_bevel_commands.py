@@ -20,8 +20,12 @@ def test_nominal_flank_is_written_as_the_contract_says(command, tmp_path, member
     file = read_flank_csv(target)
     assert (file.member, set(file.flank)) == (member, {side})
     assert {key: file.header[key] for key in ("frame", "unit", "grid", "margins", "reference_point")} == {
-        "frame": "w", "unit": "mm", "grid": "5x9", "margins": "0.1,0.1", "reference_point": "2,4",
-    }  # fmt: skip
+        "frame": "w",
+        "unit": "mm",
+        "grid": "5x9",
+        "margins": "0.1,0.1",
+        "reference_point": "2,4",
+    }
     assert np.isnan(file.deviation).all()
     # the reference point lies on the mean cone distance, within half the working depth of the pitch cone
     here = (file.row == 2) & (file.col == 4)
@@ -129,8 +133,15 @@ def test_bad_set_is_one_line_with_file_key_value_and_limit(refused, tmp_path, ol
     bad.write_text(text.replace(old, new, 1), "utf-8")
     refused(
         r"^gearmath: .*bad\.toml: .*" + sentence,
-        "flank", bad, "--member", "gear", "--flank", "concave", "-o", tmp_path / "f.csv",
-    )  # fmt: skip
+        "flank",
+        bad,
+        "--member",
+        "gear",
+        "--flank",
+        "concave",
+        "-o",
+        tmp_path / "f.csv",
+    )
     assert [path.name for path in tmp_path.iterdir()] == ["bad.toml"]
 
 

@@ -15,22 +15,32 @@ SAMPLE = "blank_iso23509_sample1.toml"
 
 #: Name, symbol, unit and printed values of ISO 23509:2016, annex F.2, of pinion and wheel.
 ANNEX = [
-    ("teeth", "z", "", 14, 39), ("pitch angle", "δ", "degree", 19.747, 70.253),
-    ("face angle", "δ_a", "degree", 26.240, 72.387), ("root angle", "δ_f", "degree", 17.613, 63.760),
-    ("addendum angle", "θ_a", "degree", 6.493, 2.134), ("mean addendum", "h_am", "mm", 4.836, 1.591),
-    ("mean dedendum", "h_fm", "mm", 2.394, 5.639), ("outer whole depth", "h_e", "mm", 9.149, 9.149),
-    ("outer pitch diameter", "d_e", "mm", 63.5, 176.893), ("outer tip diameter", "d_ae", "mm", 75.324, 178.288),
-    ("crossing point to crown", "t_xo", "mm", 86.324, 29.808), ("mean normal thickness", "s_mn", "mm", 6.465, 3.511),
+    ("teeth", "z", "", 14, 39),
+    ("pitch angle", "δ", "degree", 19.747, 70.253),
+    ("face angle", "δ_a", "degree", 26.240, 72.387),
+    ("root angle", "δ_f", "degree", 17.613, 63.760),
+    ("addendum angle", "θ_a", "degree", 6.493, 2.134),
+    ("mean addendum", "h_am", "mm", 4.836, 1.591),
+    ("mean dedendum", "h_fm", "mm", 2.394, 5.639),
+    ("outer whole depth", "h_e", "mm", 9.149, 9.149),
+    ("outer pitch diameter", "d_e", "mm", 63.5, 176.893),
+    ("outer tip diameter", "d_ae", "mm", 75.324, 178.288),
+    ("crossing point to crown", "t_xo", "mm", 86.324, 29.808),
+    ("mean normal thickness", "s_mn", "mm", 6.465, 3.511),
     ("mean chordal addendum", "h_amc", "mm", 4.955, 1.592),
-]  # fmt: skip
+]
 #: The same of the pair; spiral angles and the last two with the digits of AGMA 929-B22, annex C.
 PAIR = [
-    ("shaft angle", "Σ", "degree", 90), ("mean cone distance", "R_m", "mm", 81.273),
-    ("outer transverse module", "m_et", "mm", 4.536), ("mean normal module", "m_mn", "mm", 3.213),
-    ("outer spiral angle", "β_e", "degree", 36.84579), ("inner spiral angle", "β_i", "degree", 33.94556),
-    ("mean whole depth", "h_m", "mm", 7.230), ("normal pitch", "p_n", "mm", 10.09492),
+    ("shaft angle", "Σ", "degree", 90),
+    ("mean cone distance", "R_m", "mm", 81.273),
+    ("outer transverse module", "m_et", "mm", 4.536),
+    ("mean normal module", "m_mn", "mm", 3.213),
+    ("outer spiral angle", "β_e", "degree", 36.84579),
+    ("inner spiral angle", "β_i", "degree", 33.94556),
+    ("mean whole depth", "h_m", "mm", 7.230),
+    ("normal pitch", "p_n", "mm", 10.09492),
     ("involute cone distance", "R_x", "mm", 148.586),
-]  # fmt: skip
+]
 
 
 @pytest.fixture

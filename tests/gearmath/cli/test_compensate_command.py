@@ -117,14 +117,25 @@ def test_motions_are_corrected_when_asked_and_kept_in_the_file(command, measured
     how = cut_generation_of(new, "concave")
     np.testing.assert_allclose(
         whole(how.settings, how.motion)[NAMES.index("sliding_base.1")],
-        cut_generation_of(old, "concave").motion[5, 0] + changed["sliding_base.1"]["new"] - 0.8, atol=1e-9,
-    )  # fmt: skip
+        cut_generation_of(old, "concave").motion[5, 0] + changed["sliding_base.1"]["new"] - 0.8,
+        atol=1e-9,
+    )
     # a second round starts from the corrected file and its own design
     again = measured(moving, "pinion", **errors)
     status, out, err = command(
-        "compensate", moving, "--member", "pinion", "--measured", again, "--no-rotation", "--higher-order",
-        "--settings", "standard", "-o", tmp_path / "2.toml",
-    )  # fmt: skip
+        "compensate",
+        moving,
+        "--member",
+        "pinion",
+        "--measured",
+        again,
+        "--no-rotation",
+        "--higher-order",
+        "--settings",
+        "standard",
+        "-o",
+        tmp_path / "2.toml",
+    )
     assert (status, err) == (0, ""), out
     assert worst_after(tmp_path / "2.toml", "pinion", **errors) < 1e-4
 

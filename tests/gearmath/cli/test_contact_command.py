@@ -34,8 +34,12 @@ def test_json_has_the_names_of_both_sides(nasa):
         assert list(side["v_h_mm"]) == ["toe", "mean", "heel"]
         for row in side["path"]:
             assert list(row) == [
-                "pinion_rotation_deg", "kind", "transmission_error_arcsec", "gear_cone_distance_mm", "gear_height_mm",
-            ]  # fmt: skip
+                "pinion_rotation_deg",
+                "kind",
+                "transmission_error_arcsec",
+                "gear_cone_distance_mm",
+                "gear_height_mm",
+            ]
 
 
 def test_positions_are_whole_steps_and_changes_of_kind(nasa):
@@ -112,13 +116,23 @@ def test_options_out_of_range_are_refused(refused, sentence, arguments):
 def test_offset_beyond_contact_is_refused_with_its_limit(refused):
     refused(
         rf"{SET}: --v 40: the flanks of the drive side lose contact; it may go to about 2\d\.\d mm$",
-        "contact", SET, "--v", 40,
-    )  # fmt: skip
+        "contact",
+        SET,
+        "--v",
+        40,
+    )
 
 
 def test_displacement_that_binds_is_named_among_others(refused):
-    refused(r"--v 40: .*it may go to about .* mm with the other displacements as given", "contact", SET, "--v", 40,
-            "--h", 0.1)  # fmt: skip
+    refused(
+        r"--v 40: .*it may go to about .* mm with the other displacements as given",
+        "contact",
+        SET,
+        "--v",
+        40,
+        "--h",
+        0.1,
+    )
 
 
 def test_set_of_one_member_is_refused(refused, tmp_path):
@@ -154,22 +168,38 @@ def uniform_set() -> str:
         delta = math.atan2(teeth, 53 - teeth)
         angle = math.degrees(delta)
         lines += [
-            f"[{name}]", f"teeth = {teeth}", f'hand = "{"right" if sign > 0 else "left"}"', 'cutting = "fixed_setting"',
-            f"[{name}.blank]", f"pitch_angle = {angle!r}", f"face_angle = {angle!r}", f"root_angle = {angle!r}",
-            f"mean_cone_distance = {cone}", "face_width = 20.0", "mean_addendum = 2.1", f"mean_dedendum = {depth}",
+            f"[{name}]",
+            f"teeth = {teeth}",
+            f'hand = "{"right" if sign > 0 else "left"}"',
+            'cutting = "fixed_setting"',
+            f"[{name}.blank]",
+            f"pitch_angle = {angle!r}",
+            f"face_angle = {angle!r}",
+            f"root_angle = {angle!r}",
+            f"mean_cone_distance = {cone}",
+            "face_width = 20.0",
+            "mean_addendum = 2.1",
+            f"mean_dedendum = {depth}",
             "clearance = 0.5",
-        ]  # fmt: skip
+        ]
         for flank, side in (("concave", 1), ("convex", -1)):
             quarter = side * sign * 90.0 / teeth
             lines += [
-                f"[{name}.{flank}]", f"radial_distance = {math.hypot(x, y)!r}",
-                f"cradle_angle = {sign * math.degrees(math.atan2(y, x))!r}", "cutter_tilt = 0.0", "cutter_swivel = 0.0",
-                "blank_offset = 0.0", f"sliding_base = {-depth}", "machine_center_to_crossing_point = 0.0",
-                f"machine_root_angle = {angle!r}", f"ratio_of_roll = {1 / math.sin(delta)!r}",
+                f"[{name}.{flank}]",
+                f"radial_distance = {math.hypot(x, y)!r}",
+                f"cradle_angle = {sign * math.degrees(math.atan2(y, x))!r}",
+                "cutter_tilt = 0.0",
+                "cutter_swivel = 0.0",
+                "blank_offset = 0.0",
+                f"sliding_base = {-depth}",
+                "machine_center_to_crossing_point = 0.0",
+                f"machine_root_angle = {angle!r}",
+                f"ratio_of_roll = {1 / math.sin(delta)!r}",
                 f"work_rotation_offset = {quarter!r}",
                 f"blade_point_radius = {radius - side * depth * math.tan(alpha)!r}",
-                "blade_pressure_angle = 20.0", "blade_profile_height = 17.0",
-            ]  # fmt: skip
+                "blade_pressure_angle = 20.0",
+                "blade_profile_height = 17.0",
+            ]
     return "\n".join(lines) + "\n"
 
 
@@ -193,9 +223,16 @@ def measured(tmp_path_factory):
 
 def test_measured_flanks_move_the_contact_and_have_uncertainties(nasa, command, measured):
     status, out, err = command(
-        "contact", SET, "--step", 15, "--json", "--measured-pinion", measured["pinion"], "--measured-gear",
+        "contact",
+        SET,
+        "--step",
+        15,
+        "--json",
+        "--measured-pinion",
+        measured["pinion"],
+        "--measured-gear",
         measured["gear"],
-    )  # fmt: skip
+    )
     assert (status, err) == (0, "")
     for name, side in json.loads(out).items():
         assert set(side["measured"]) == {"pinion", "gear"}
@@ -217,8 +254,13 @@ def test_flanks_without_stated_uncertainty_have_none_and_nominal_ones_change_not
 
 
 def test_measurement_of_the_other_member_is_refused(refused, measured):
-    refused(r"pinion\.csv: member = pinion: the measurement of the gear is wanted", "contact", SET, "--measured-gear",
-            measured["pinion"])  # fmt: skip
+    refused(
+        r"pinion\.csv: member = pinion: the measurement of the gear is wanted",
+        "contact",
+        SET,
+        "--measured-gear",
+        measured["pinion"],
+    )
 
 
 def test_measurement_without_a_whole_tooth_is_refused(refused, measured, tmp_path):

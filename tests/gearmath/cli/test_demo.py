@@ -55,8 +55,13 @@ def test_table_holds_the_figures_of_the_measured_files(run):
 def test_every_product_is_there(run):
     folder, _ = run
     for member in ("pinion", "gear"):
-        for name in (f"{member.upper()}_1.MPF", f"{member.upper()}_2.MPF", f"{member}_measured.csv",
-                     f"{member}_measured_again.csv", f"{member}_corrected.toml"):  # fmt: skip
+        for name in (
+            f"{member.upper()}_1.MPF",
+            f"{member.upper()}_2.MPF",
+            f"{member}_measured.csv",
+            f"{member}_measured_again.csv",
+            f"{member}_corrected.toml",
+        ):
             assert (folder / name).stat().st_size > 0, name
         assert (folder / f"{member}.png").read_bytes().startswith(b"\x89PNG")
         corrected = load_bevel_set(folder / f"{member}_corrected.toml").member(member)

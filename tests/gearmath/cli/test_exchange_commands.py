@@ -53,8 +53,20 @@ def test_points_that_are_exported_are_read_as_a_flank_without_deviation(command,
 
 @pytest.mark.parametrize("grid", ["5", "1x9", "5x999", "axb"])
 def test_grids_that_are_none_are_refused(refused, grid: str, tmp_path) -> None:
-    refused(rf"--grid {grid}: must read like 5x9, each from 2 to 200", "export", "points", SET, "--member", "pinion",
-            "--flank", "convex", "--grid", grid, "-o", tmp_path / "points.txt")  # fmt: skip
+    refused(
+        rf"--grid {grid}: must read like 5x9, each from 2 to 200",
+        "export",
+        "points",
+        SET,
+        "--member",
+        "pinion",
+        "--flank",
+        "convex",
+        "--grid",
+        grid,
+        "-o",
+        tmp_path / "points.txt",
+    )
 
 
 def test_pair_in_mesh_is_both_members_where_they_touch(command, gear_set: BevelSet, tmp_path) -> None:
@@ -89,5 +101,13 @@ def test_members_in_mesh_touch_on_the_drive_side(gear_set: BevelSet) -> None:
 
 def test_step_without_the_kernel_says_what_to_install(refused, monkeypatch, tmp_path) -> None:
     monkeypatch.setitem(sys.modules, "OCP.STEPControl", None)
-    refused(r"STEP needs the CAD kernel: install it with pip install 'gearmath\[cad\]'$", "export", "step", SET,
-            "--member", "pinion", "-o", tmp_path / "pinion.step")  # fmt: skip
+    refused(
+        r"STEP needs the CAD kernel: install it with pip install 'gearmath\[cad\]'$",
+        "export",
+        "step",
+        SET,
+        "--member",
+        "pinion",
+        "-o",
+        tmp_path / "pinion.step",
+    )

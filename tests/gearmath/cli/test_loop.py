@@ -22,7 +22,7 @@ def test_cut_mill_probe_and_compensate_from_the_shell_end_with_a_smaller_error(t
     command = Path(sys.executable).with_name("gearmath")
     done = subprocess.run(
         ["sh", str(LOOP), str(tmp_path)], env={**os.environ, "GEARMATH": str(command)}, capture_output=True, text=True
-    )  # fmt: skip
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stderr == ""
     lines = done.stdout.splitlines()[-3:]
@@ -33,6 +33,8 @@ def test_cut_mill_probe_and_compensate_from_the_shell_end_with_a_smaller_error(t
 def test_loop_fails_where_a_command_does(tmp_path):
     done = subprocess.run(
         ["sh", str(LOOP), str(tmp_path), "no_such_set.toml"],
-        env={**os.environ, "GEARMATH": "false"}, capture_output=True, text=True,
-    )  # fmt: skip
+        env={**os.environ, "GEARMATH": "false"},
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode != 0

@@ -50,9 +50,7 @@ def test_tolerance_feed_and_speed_reach_the_program(command, tmp_path):
 
 
 def test_milling_without_errors_leaves_at_most_a_tenth_of_a_micrometre(command, tmp_path, pinion_program):
-    status, out, err = command(
-        "mill", SET, "--member", "pinion", "--program", pinion_program, "-o", tmp_path / "m.csv"
-    )  # fmt: skip
+    status, out, err = command("mill", SET, "--member", "pinion", "--program", pinion_program, "-o", tmp_path / "m.csv")
     assert (status, err) == (0, "")
     file = read_flank_csv(tmp_path / "m.csv")
     assert np.abs(file.deviation).max() <= 1e-4
@@ -127,9 +125,17 @@ def test_wrong_digit_is_named_with_its_line(command, tmp_path, pinion_program):
 
 def test_metal_of_a_wrong_machine_is_not_judged_by_the_tolerance_of_the_program(command, tmp_path, pinion_program):
     status, out, err = command(
-        "mill", SET, "--member", "pinion", "--program", pinion_program, "--errors", "simulated_shop.toml",
-        "-o", tmp_path / "m.csv",
-    )  # fmt: skip
+        "mill",
+        SET,
+        "--member",
+        "pinion",
+        "--program",
+        pinion_program,
+        "--errors",
+        "simulated_shop.toml",
+        "-o",
+        tmp_path / "m.csv",
+    )
     assert (status, err) == (0, "")
     assert (
         out.splitlines()[-1]
@@ -149,8 +155,17 @@ def test_blocks_are_counted_without_comments(command, tmp_path):
 def test_subprograms_are_refused_with_line_and_column(refused, tmp_path, pinion_program, word):
     program = tmp_path / "SUB.MPF"
     program.write_text(pinion_program.read_text("ascii").replace("M30", word), "ascii")
-    refused(rf"SUB\.MPF, line \d+, column \d+: .*{word}'? is not understood", "mill", SET, "--member", "pinion",
-            "--program", program, "-o", tmp_path / "m.csv")  # fmt: skip
+    refused(
+        rf"SUB\.MPF, line \d+, column \d+: .*{word}'? is not understood",
+        "mill",
+        SET,
+        "--member",
+        "pinion",
+        "--program",
+        program,
+        "-o",
+        tmp_path / "m.csv",
+    )
     assert not (tmp_path / "m.csv").exists()
 
 
@@ -210,9 +225,17 @@ def test_program_off_the_path_of_the_settings_is_a_failure_of_status_1(command, 
     text = pinion_program.read_text("utf-8")
     moved.write_text(re.sub(r"\bX(-?[\d.]+)", lambda word: f"X{float(word[1]) + 5:.4f}", text), "utf-8")
     status, out, err = command(
-        "mill", SET, "--member", "pinion", "--program", moved, "--errors", "simulated_shop.toml",
-        "-o", tmp_path / "m.csv",
-    )  # fmt: skip
+        "mill",
+        SET,
+        "--member",
+        "pinion",
+        "--program",
+        moved,
+        "--errors",
+        "simulated_shop.toml",
+        "-o",
+        tmp_path / "m.csv",
+    )
     assert (status, out) == (1, "")
     assert "off the path of the settings" in err
     assert not (tmp_path / "m.csv").exists()

@@ -125,8 +125,10 @@ def test_help_loads_nothing_that_computes() -> None:
 def test_command_of_the_shell_shows_no_traceback() -> None:
     done = subprocess.run(
         [sys.executable, "-c", "from gearmath.cli import main; main()", "gearbocks"],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 2
     assert done.stderr.startswith("gearmath: ")
     assert "Traceback" not in done.stderr

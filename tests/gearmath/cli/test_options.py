@@ -33,9 +33,23 @@ def options(command: click.Command) -> dict[str, click.Parameter]:
 
 
 READ_A_SET = [
-    "flank", "tooth", "nc cut", "nc probe", "mill", "probe", "touches", "points", "evaluate", "compensate", "stock",
-    "report", "uncertainty", "contact", "control measure", "control simulate",
-]  # fmt: skip
+    "flank",
+    "tooth",
+    "nc cut",
+    "nc probe",
+    "mill",
+    "probe",
+    "touches",
+    "points",
+    "evaluate",
+    "compensate",
+    "stock",
+    "report",
+    "uncertainty",
+    "contact",
+    "control measure",
+    "control simulate",
+]
 
 
 @pytest.mark.parametrize("verb", READ_A_SET)

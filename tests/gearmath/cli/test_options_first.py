@@ -9,19 +9,22 @@ import pytest
 NASA = "nasa_tp3096_12x36.toml"
 WRONG = {
     "folder of the program": (
-        ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/absent/P.MPF"), r"P\.MPF: cannot be written: No such file",
+        ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/absent/P.MPF"),
+        r"P\.MPF: cannot be written: No such file",
     ),
     "folder of the report": (
         ("mill", NASA, "--program", "P.MPF", "-o", "{}/m.csv", "--report", "{}/absent/r.json"),
         r"r\.json: cannot be written: No such file",
     ),
     "folder of the picture": (
-        ("evaluate", "m.csv", "--set", NASA, "--plot", "{}/absent/p.png"), r"p\.png: cannot be written: No such file",
+        ("evaluate", "m.csv", "--set", NASA, "--plot", "{}/absent/p.png"),
+        r"p\.png: cannot be written: No such file",
     ),
     "name of the program": (
-        ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/1-bad name.MPF"), r"name '1-bad name': must be letters",
+        ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/1-bad name.MPF"),
+        r"name '1-bad name': must be letters",
     ),
-}  # fmt: skip
+}
 
 
 CUT = ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/PART.MPF")
@@ -70,7 +73,8 @@ for number in ("nan", "-1", "1e9"):
 WRONG |= {
     "no feed": ((*CUT, "--feed", "0"), "feed = 0.0 mm/min: must be greater than 0"),
     "finishing more than roughing": (
-        (*CUT, "--roughing-stock", "0.1", "--finishing-stock", "0.2"), "roughing_stock = 0.1 mm: must be more than",
+        (*CUT, "--roughing-stock", "0.1", "--finishing-stock", "0.2"),
+        "roughing_stock = 0.1 mm: must be more than",
     ),
     "thickness": (
         ("compensate", NASA, "--measured", "m.csv", "-o", "{}/n.toml", "--thickness", "-501"),
@@ -88,7 +92,7 @@ WRONG |= {
         ("report", "m.csv", *CSV, "--part-number", "1", "--part-number", "2"),
         "--part-number: given 2 times, for 1 meas",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", WRONG)

@@ -28,12 +28,14 @@ def test_the_loop_from_verb_to_verb(command, tmp_path, member):
     """nc cut, mill with errors, evaluate, compensate, and the same again with the corrected set."""
     source, figures = SET, []
     for cycle in (1, 2):
-        program, csv, new = (tmp_path / f"{name}_{cycle}{end}" for name, end in (
-            ("PART", ".MPF"), ("measured", ".csv"), ("corrected", ".toml")))  # fmt: skip
+        program, csv, new = (
+            tmp_path / f"{name}_{cycle}{end}"
+            for name, end in (("PART", ".MPF"), ("measured", ".csv"), ("corrected", ".toml"))
+        )
         assert command("nc", "cut", source, "--member", member, "-o", program)[::2] == (0, "")
         assert command(
             "mill", source, "--member", member, "--program", program, "--errors", "simulated_shop.toml", "-o", csv
-        )[::2] == (0, "")  # fmt: skip
+        )[::2] == (0, "")
         turned = ["--no-rotation"] if cycle == 1 else []  # what a machine finds of the part as it stands on it
         status, out, _ = command("evaluate", csv, "--set", source, "--json", *turned)
         assert status == 0
@@ -220,8 +222,15 @@ def test_bad_measurement_is_one_line_with_its_file_and_writes_nothing(refused, m
     path = changed(measured, tmp_path, old, new)
     refused(
         r"^gearmath: .*bad\.csv.*(" + sentence + ")",
-        "compensate", SET, "--member", "pinion", "--measured", path, "-o", tmp_path / "new.toml",
-    )  # fmt: skip
+        "compensate",
+        SET,
+        "--member",
+        "pinion",
+        "--measured",
+        path,
+        "-o",
+        tmp_path / "new.toml",
+    )
     assert [entry.name for entry in tmp_path.iterdir()] == ["bad.csv"]
 
 
@@ -251,8 +260,15 @@ def test_unreadable_measurement_is_one_line_with_its_file(refused, tmp_path, ver
 def test_measurement_of_the_other_member_is_refused(refused, measured, tmp_path):
     refused(
         r"m\.csv: member = 'pinion' in the measured file: must be 'gear'",
-        "compensate", SET, "--member", "gear", "--measured", measured, "-o", tmp_path / "new.toml",
-    )  # fmt: skip
+        "compensate",
+        SET,
+        "--member",
+        "gear",
+        "--measured",
+        measured,
+        "-o",
+        tmp_path / "new.toml",
+    )
     assert list(tmp_path.iterdir()) == []
 
 
@@ -263,8 +279,15 @@ def test_measurement_of_another_set_is_refused(refused, measured, tmp_path):
     refused(r"m\.csv: settings_sha256 = ", "evaluate", measured, "--set", other)
     refused(
         r"m\.csv: settings_sha256 = ",
-        "compensate", other, "--member", "pinion", "--measured", measured, "-o", tmp_path / "new.toml",
-    )  # fmt: skip
+        "compensate",
+        other,
+        "--member",
+        "pinion",
+        "--measured",
+        measured,
+        "-o",
+        tmp_path / "new.toml",
+    )
     assert [entry.name for entry in tmp_path.iterdir()] == ["other.toml"]
 
 
@@ -274,8 +297,15 @@ def test_nominal_file_is_refused(command, refused, tmp_path):
     refused(r"nominal\.csv: .*nominal file", "evaluate", path, "--set", SET)
     refused(
         r"nominal\.csv: .*nominal file",
-        "compensate", SET, "--member", "pinion", "--measured", path, "-o", tmp_path / "new.toml",
-    )  # fmt: skip
+        "compensate",
+        SET,
+        "--member",
+        "pinion",
+        "--measured",
+        path,
+        "-o",
+        tmp_path / "new.toml",
+    )
     assert not (tmp_path / "new.toml").exists()
 
 

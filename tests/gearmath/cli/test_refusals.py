@@ -30,9 +30,14 @@ def test_touches_on_an_artefact_that_the_probe_file_does_not_have(refused, tmp_p
     raw = tmp_path / "raw.csv"
     raw.write_text("run,point,target,X,Y,Z,A,B,triggered\n1,1,ring_x_low,-20,0,80,0,0,1\n")
     refused(
-        r"bare\.toml has neither the ring nor the sphere that was touched$", "calibrate", raw, "--calibration", probe,
-        "-o", tmp_path / "tip.toml",
-    )  # fmt: skip
+        r"bare\.toml has neither the ring nor the sphere that was touched$",
+        "calibrate",
+        raw,
+        "--calibration",
+        probe,
+        "-o",
+        tmp_path / "tip.toml",
+    )
     assert not (tmp_path / "tip.toml").exists()
 
 

@@ -17,7 +17,7 @@ from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.plot import evaluation_figure
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.report.charts import flank_charts
-from gearmath.report.measurement import Measurement
+from gearmath.report.measurement import ReportedMeasurement
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import join, read_flank_csv, write_flank_csv
 from gearmath.specs.toml import bundled
@@ -298,7 +298,7 @@ def test_sheet_and_picture_take_the_same_off_at_the_ring(gear_set, tmp_path, sea
     """Whether or not a clamping was taken out: the rotation that both flanks have in common is in neither."""
     file = written(tmp_path / "m.csv", gear_set, seat)
     found = evaluate_member(read_flank_csv(file), gear_set.pinion, "pinion")
-    sheet = flank_charts(Measurement("t", "m.csv", gear_set.pinion, found, None), {})
+    sheet = flank_charts(ReportedMeasurement("t", "m.csv", gear_set.pinion, found, None), {})
     words = [unescape(re.search(r">([^<]*taken off there[^<]*)<", svg)[1]) for svg, _ in sheet]
     labels = [axes.get_xlabel() for axes in evaluation_figure("t", found).axes]
     assert [label.partition(": after; ")[2] or label for label in labels if "taken off" in label] == words
@@ -313,9 +313,21 @@ def test_both_members_stand_on_one_sheet_with_what_is_known_of_each(command, mea
     written(again, gear_set, 0 * SEAT)
     target = tmp_path / "sheet.html"
     run(
-        "report", measured, "--set", SET, "--mate", mate, "--again", again, "--part-number", "4711-P", "--date",
-        "2026-11-27", "-o", target,
-    )  # fmt: skip
+        "report",
+        measured,
+        "--set",
+        SET,
+        "--mate",
+        mate,
+        "--again",
+        again,
+        "--part-number",
+        "4711-P",
+        "--date",
+        "2026-11-27",
+        "-o",
+        target,
+    )
     text = target.read_text("utf-8")
     found = head(text)
     assert found[""] == ["pinion", "gear"]

@@ -125,8 +125,10 @@ def test_pair_has_its_backlash_angles_and_ease_off(command, tmp_path):
     both = {member: figures(command, tmp_path / "t.stl", member=member) for member in MEMBERS}
     mates = both["pinion"]["pair"]
     assert mates == both["gear"]["pair"]
-    angles = {"concave": (19.27384719 - 19.79546867, 35.20926128 - 35.24621333),
-              "convex": (23.70769370 - 24.24966429, 34.69525743 - 34.71717186)}  # fmt: skip
+    angles = {
+        "concave": (19.27384719 - 19.79546867, 35.20926128 - 35.24621333),
+        "convex": (23.70769370 - 24.24966429, 34.69525743 - 34.71717186),
+    }
     for flank, (pressure, spiral) in angles.items():
         assert mates[flank]["pressure_angle_difference_deg"] == pytest.approx(pressure, abs=1e-7)
         assert mates[flank]["spiral_angle_difference_deg"] == pytest.approx(spiral, abs=1e-7)

@@ -211,9 +211,10 @@ def test_each_run_of_a_file_has_its_own_plan(raw, tmp_path):
 def test_kinds_of_touches_are_not_taken_for_each_other(command, raw, calibration_raw, tmp_path):
     path = tmp_path / "raw.csv"
     path.write_text(calibration_raw)
-    assert "raw.csv, line 1: the touches are on ring and spheres" in command(
-        "touches", path, "--set", SET, "-o", tmp_path / "o"
-    )[2]  # fmt: skip
+    assert (
+        "raw.csv, line 1: the touches are on ring and spheres"
+        in command("touches", path, "--set", SET, "-o", tmp_path / "o")[2]
+    )
     path.write_text(raw)
     assert "raw.csv, line 1: the touches are on a member" in command("calibrate", path, "-o", tmp_path / "o")[2]
 
@@ -288,9 +289,10 @@ def test_single_touch_beside_its_line_is_named(command, raw, tmp_path):
         r"convex flank, tooth 5, row 2, col 4: the touch lies \d\.\d+ mm from the line along which", err
     ), err
     path.write_text(shifted(raw, lambda cells: cells[3:7] == ["convex", "5", "2", "4"], A=7.0))
-    assert "tooth 5, row 2, col 4: A stands +7.0000 degrees from where" in command(
-        "touches", path, "--set", SET, "-o", out
-    )[2]  # fmt: skip
+    assert (
+        "tooth 5, row 2, col 4: A stands +7.0000 degrees from where"
+        in command("touches", path, "--set", SET, "-o", out)[2]
+    )
 
 
 def test_metal_along_the_search_is_measured_and_a_small_common_offset_is_said(

@@ -181,9 +181,20 @@ def test_compensation_shows_uncertainties_where_the_points_have_them(command, me
 def test_settings_that_are_not_determined_are_corrected_without_uncertainty(command, tmp_path, measured):
     """Cradle and work rotation do the same; almost no noise lets both move."""
     out = command(
-        "compensate", SET, "--member", "pinion", "--measured", measured, "-o", tmp_path / "new.toml", "--json",
-        "--settings", "cradle_angle,work_rotation_offset", "--sigma-um", 1e-6,
-    )[1]  # fmt: skip
+        "compensate",
+        SET,
+        "--member",
+        "pinion",
+        "--measured",
+        measured,
+        "-o",
+        tmp_path / "new.toml",
+        "--json",
+        "--settings",
+        "cradle_angle,work_rotation_offset",
+        "--sigma-um",
+        1e-6,
+    )[1]
     found = json.loads(out)
     assert "u" not in found
     assert "do not determine the settings" in found["no_uncertainties"]
@@ -240,8 +251,13 @@ def test_results_of_another_study_are_refused_by_their_name(command, refused, me
 def test_measurement_of_the_other_member_is_refused(refused, measured):
     refused(
         r"m\.csv: member = 'pinion' in the measured file: must be 'gear'",
-        "uncertainty", measured, "--set", SET, "--member", "gear",
-    )  # fmt: skip
+        "uncertainty",
+        measured,
+        "--set",
+        SET,
+        "--member",
+        "gear",
+    )
 
 
 def test_cluster_that_is_no_address_is_one_line(command, measured):

@@ -42,9 +42,12 @@ def on_a_terminal(code: str, both: bool = True) -> tuple[int, str]:
     master, slave = pty.openpty()
     termios.tcsetwinsize(slave, (24, 80))
     process = subprocess.Popen(
-        [sys.executable, "-c", code], stdout=slave if both else subprocess.PIPE, stderr=slave, stdin=slave,
+        [sys.executable, "-c", code],
+        stdout=slave if both else subprocess.PIPE,
+        stderr=slave,
+        stdin=slave,
         env={**os.environ, "TERM": "xterm"},
-    )  # fmt: skip
+    )
     os.close(slave)
     pieces = []
     while True:
@@ -86,5 +89,5 @@ def test_an_error_stays_alone_on_its_line() -> None:
 def test_nothing_moves_where_nobody_looks() -> None:
     result = subprocess.run(
         [sys.executable, "-c", SLOW_VERB.format(end="")], capture_output=True, text=True, check=True
-    )  # fmt: skip
+    )
     assert (result.stdout, result.stderr) == ("F.csv: done\n", "")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from gearmath.control.interface import RunStart, Touch
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.specs.touch_csv import COLUMNS
 
 
@@ -42,5 +42,5 @@ def start() -> Callable[..., RunStart]:
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Store:
-    return Store.open(tmp_path / "runs.db")
+def store(tmp_path: Path) -> MeasurementStore:
+    return MeasurementStore.open(tmp_path / "runs.db")

@@ -22,7 +22,7 @@ import apsw
 import pytest
 
 from gearmath.control.interface import RunStart, Touch
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.control.store_schema import SETTINGS, prepare
 
 POINTS, CUTS = 60, 50
@@ -117,7 +117,7 @@ def noted_run(folder: Path, start: RunStart, touch: Touched, settings: tuple[str
     connection = apsw.Connection(str(folder / "runs.db"), vfs="noting")
     connection.execute("PRAGMA locking_mode = EXCLUSIVE")  # a VFS of apsw has no shared memory
     prepare(connection, folder / "runs.db", settings)
-    store = Store(connection, folder / "runs.db")
+    store = MeasurementStore(connection, folder / "runs.db")
     run = store.begin_run(start)
     connection.execute("PRAGMA wal_autocheckpoint = 20")
     for point in start.points:
@@ -134,7 +134,7 @@ def lost(notes: Notes, cut: int, kept: random.Random | None, folder: Path, touch
     for name, content in disk_after(notes.events[:cut], kept).items():
         (folder / name).write_bytes(content)
     acknowledged = notes.acknowledged_before[cut]
-    with Store.open(folder / "runs.db") as store:
+    with MeasurementStore.open(folder / "runs.db") as store:
         assert store.execute("PRAGMA integrity_check") == [("ok",)]
         runs = store.runs()
         touches = runs[0].touches() if runs else {}
@@ -197,7 +197,7 @@ def test_a_power_cut_while_an_old_store_is_brought_up_to_date_loses_nothing(tmp_
         with sqlite3.connect(after / "runs.db") as found:
             versions |= set(found.execute("PRAGMA user_version"))
         found.close()
-        with Store.open(after / "runs.db") as store:
+        with MeasurementStore.open(after / "runs.db") as store:
             assert store.execute("SELECT * FROM touch") == kept
             assert store.execute("PRAGMA integrity_check") == [("ok",)]
             assert store.resume_run(2).missing() == [4, 5, 6, 7, 8]
@@ -264,10 +264,10 @@ def test_a_run_that_is_killed_at_50_moments_ends_with_the_same_result(tmp_path: 
                     killed = True
             assert said["end"] == (signal.SIGKILL if attempt < CUTS else 0)
             if acknowledged:
-                with Store.open(path) as store:
+                with MeasurementStore.open(path) as store:
                     assert acknowledged <= set(store.run(1).touches())
         server.stdin.close()
-    with Store.open(path) as store:
+    with MeasurementStore.open(path) as store:
         run = store.run(1)
         assert run.is_complete
         assert run.touches() == {k: Touch(1, k / 3, -k / 7, 150.0, 12.0, 45.0, 1.0) for k in range(1, points + 1)}

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from gearmath.control.interface import Alarm, RunStart, Touch
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.machine.control.state import Setup
 from gearmath.machine.measuring.probe import ProbeMachine
 from gearmath.machine.measuring.probe_run import run_touches
@@ -51,12 +51,15 @@ def template(raw: tuple[str, str], tmp_path_factory: pytest.TempPathFactory) -> 
     columns, *rows = csv.reader(line for line in text.splitlines() if not line.startswith("#"))
     places = {int(row[1]): tuple(row[2:7]) for row in rows}
     touches = {int(row[1]): Touch(1, *map(float, row[7:12]), float(row[12])) for row in rows}
-    files = {"set.toml": bundled(SET), "machine.toml": bundled("vertical_5axis.toml"),
-             "calibration.toml": bundled("probe.toml")}  # fmt: skip
+    files = {
+        "set.toml": bundled(SET),
+        "machine.toml": bundled("vertical_5axis.toml"),
+        "calibration.toml": bundled("probe.toml"),
+    }
     content = {name: path.read_bytes() for name, path in files.items()}
     start = RunStart("simulated control", "PROBE.MPF", program.encode(), tuple(columns), places, content, {}, "Ann")
     path = tmp_path_factory.mktemp("store") / "runs.db"
-    with Store.open(path) as store:
+    with MeasurementStore.open(path) as store:
         first = store.begin_run(start)
         other = content | {"machine.toml": content["machine.toml"].replace(b"Vertical 5-axis", b"Other")}
         second = store.begin_run(replace(start, operator="Bob", files=other))
@@ -234,11 +237,17 @@ def test_dfq_has_a_part_a_run_and_the_tolerances_of_the_grade(path: Path, tmp_pa
 def test_all_files_of_a_run_are_written_under_names_that_stay_in_the_folder(tmp_path: Path, command: Command) -> None:
     path = tmp_path / "runs.db"
     names = ["../escape.toml", "/etc/x", "run.json", "TOUCHES.CSV", "CON", "ok.toml"]
-    with Store.open(path) as store:
-        store.begin_run(RunStart(
-            "control", "..\\..\\EVIL.MPF", b"M30\n", ("run", "point", "target", "X", "Y", "Z", "A", "B", "triggered"),
-            {1: ("sphere",)}, {name: name.encode() for name in names},
-        ))  # fmt: skip
+    with MeasurementStore.open(path) as store:
+        store.begin_run(
+            RunStart(
+                "control",
+                "..\\..\\EVIL.MPF",
+                b"M30\n",
+                ("run", "point", "target", "X", "Y", "Z", "A", "B", "triggered"),
+                {1: ("sphere",)},
+                {name: name.encode() for name in names},
+            )
+        )
     folder = tmp_path / "new" / "all"
     folder.parent.mkdir()
     assert command("runs", "export", 1, "--store", path, "-o", folder)[0] == 0

@@ -12,7 +12,7 @@ import pytest
 
 from gearmath.control import interface
 from gearmath.control.interface import Alarm, RunStart, Touch
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.control.store_schema import APPLICATION_ID, VERSION, prepare
 from gearmath.errors import ComputationError, InputError
 
@@ -21,12 +21,12 @@ Start = Callable[..., RunStart]
 Touched = Callable[[int], Touch]
 
 
-def test_a_run_is_read_back_as_it_was_begun(store: Store, start: Start, touch: Touched) -> None:
+def test_a_run_is_read_back_as_it_was_begun(store: MeasurementStore, start: Start, touch: Touched) -> None:
     begun = start(8)
     run: interface.Run = store.begin_run(begun)
     run.commit_touch(1, touch(1))
     run.add_alarm(Alarm("65001#1", "65001", "touched nothing", 1000, True, "12:00"))
-    with Store.open(store.path) as again:
+    with MeasurementStore.open(store.path) as again:
         read = again.run(run.id)
         assert read.start == begun
         assert read.touches() == {1: touch(1)}
@@ -34,14 +34,14 @@ def test_a_run_is_read_back_as_it_was_begun(store: Store, start: Start, touch: T
         assert read.alarms() == [Alarm("65001#1", "65001", "touched nothing", 1000, True, "12:00")]
 
 
-def test_touches_of_a_calibration_are_kept_with_their_targets(store: Store, start: Start) -> None:
+def test_touches_of_a_calibration_are_kept_with_their_targets(store: MeasurementStore, start: Start) -> None:
     columns = ("run", "point", "target", "X", "Y", "Z", "A", "B", "triggered")
     begun = start(columns=columns, points={1: ("ring_x_low",), 2: ("ring_x_high",)})
     run = store.begin_run(begun)
     assert store.run(run.id).start == begun
 
 
-def test_a_point_is_kept_once(store: Store, start: Start, touch: Touched) -> None:
+def test_a_point_is_kept_once(store: MeasurementStore, start: Start, touch: Touched) -> None:
     run = store.begin_run(start(8))
     run.commit_touch(3, touch(3))
     with pytest.raises(InputError, match=r"run 1, point 3: is kept already"):
@@ -50,10 +50,10 @@ def test_a_point_is_kept_once(store: Store, start: Start, touch: Touched) -> Non
 
 
 def test_one_of_two_processes_that_offer_the_same_point_is_refused(
-    store: Store, start: Start, touch: Touched
-) -> None:  # fmt: skip
+    store: MeasurementStore, start: Start, touch: Touched
+) -> None:
     first = store.begin_run(start(8))
-    with Store.open(store.path) as other:
+    with MeasurementStore.open(store.path) as other:
         second = other.resume_run(first.id)
         first.commit_touch(1, touch(1))
         with pytest.raises(InputError, match="is kept already"):
@@ -73,7 +73,7 @@ def test_one_of_two_processes_that_offer_the_same_point_is_refused(
     ],
 )
 def test_what_is_no_touch_of_the_run_is_refused_and_nothing_is_kept(
-    store: Store, start: Start, point: int, values: tuple, why: str
+    store: MeasurementStore, start: Start, point: int, values: tuple, why: str
 ) -> None:
     run = store.begin_run(start(8))
     with pytest.raises(InputError, match=why):
@@ -81,7 +81,7 @@ def test_what_is_no_touch_of_the_run_is_refused_and_nothing_is_kept(
     assert run.touches() == {}
 
 
-def test_a_complete_run_takes_no_more(store: Store, start: Start, touch: Touched) -> None:
+def test_a_complete_run_takes_no_more(store: MeasurementStore, start: Start, touch: Touched) -> None:
     run = store.begin_run(start(1))
     with pytest.raises(ComputationError, match="1 of 1 points have no touch, the first is 1"):
         run.finish("complete")
@@ -94,8 +94,8 @@ def test_a_complete_run_takes_no_more(store: Store, start: Start, touch: Touched
 
 
 def test_a_run_that_ended_otherwise_is_resumed_at_its_first_missing_point(
-    store: Store, start: Start, touch: Touched
-) -> None:  # fmt: skip
+    store: MeasurementStore, start: Start, touch: Touched
+) -> None:
     run = store.begin_run(start(8))
     for point in (1, 2, 3):
         run.commit_touch(point, touch(point))
@@ -109,8 +109,8 @@ def test_a_run_that_ended_otherwise_is_resumed_at_its_first_missing_point(
 
 
 def test_points_are_probed_again_in_a_run_that_refers_to_the_old_one(
-    store: Store, start: Start, touch: Touched
-) -> None:  # fmt: skip
+    store: MeasurementStore, start: Start, touch: Touched
+) -> None:
     old = store.begin_run(start(8))
     points = {k: start(8).points[k] for k in (3, 5)}
     new = store.begin_run(start(points=points, refers_to=old.id))
@@ -123,7 +123,9 @@ def test_points_are_probed_again_in_a_run_that_refers_to_the_old_one(
 @pytest.mark.parametrize(
     "table", ["run", "file", "run_file", "setting", "planned", "touch", "alarm", "ending", "session", "result"]
 )
-def test_no_row_of_a_store_is_changed_or_removed(store: Store, start: Start, touch: Touched, table: str) -> None:
+def test_no_row_of_a_store_is_changed_or_removed(
+    store: MeasurementStore, start: Start, touch: Touched, table: str
+) -> None:
     run = store.begin_run(start(1))
     run.commit_touch(1, touch(1))
     run.add_alarm(Alarm("1", "65001", "touched nothing", 1000, True))
@@ -139,7 +141,7 @@ def test_no_row_of_a_store_is_changed_or_removed(store: Store, start: Start, tou
 
 
 @pytest.mark.parametrize("text", ["'; DROP TABLE touch; --", 'a"b', "Ø\u2028\U0001f600", "x" * 100_000, "%s ? :a {0}"])
-def test_texts_are_values_and_never_sql(store: Store, start: Start, touch: Touched, text: str) -> None:
+def test_texts_are_values_and_never_sql(store: MeasurementStore, start: Start, touch: Touched, text: str) -> None:
     begun = start(2, control=text, program=text, operator=text, files={text: b""}, settings={text: text})
     run = store.begin_run(begun)
     run.commit_touch(1, touch(1))
@@ -149,7 +151,7 @@ def test_texts_are_values_and_never_sql(store: Store, start: Start, touch: Touch
     assert (read.start, read.touches()) == (begun, {1: touch(1)})
 
 
-def test_the_same_file_of_many_runs_is_kept_once(store: Store, start: Start) -> None:
+def test_the_same_file_of_many_runs_is_kept_once(store: MeasurementStore, start: Start) -> None:
     for _ in range(3):
         store.begin_run(start(2))
     assert store.execute("SELECT count(*) FROM file") == [(3,)]  # program, set and machine
@@ -164,7 +166,9 @@ def test_the_same_file_of_many_runs_is_kept_once(store: Store, start: Start) -> 
         ({"points": {1: ("gear", "concave", "a", "2", "4")}}, "must be whole numbers"),
     ],
 )
-def test_a_run_that_could_not_be_stored_is_not_begun(store: Store, start: Start, changes: dict, why: str) -> None:
+def test_a_run_that_could_not_be_stored_is_not_begun(
+    store: MeasurementStore, start: Start, changes: dict, why: str
+) -> None:
     with pytest.raises(InputError, match=why):
         store.begin_run(start(**changes))
     assert store.runs() == []
@@ -176,7 +180,7 @@ def test_a_store_of_version_1_keeps_all_it_has(tmp_path: Path, touch: Touched) -
         old.executescript((DATA / "store_version_1.sql").read_text("utf-8"))
     kept = {table: old.execute(f"SELECT * FROM {table}").fetchall() for table in ("run", "touch", "alarm", "ending")}
     old.close()
-    with Store.open(path) as store:
+    with MeasurementStore.open(path) as store:
         assert store.execute("PRAGMA user_version") == [(VERSION,)]
         for table, rows in kept.items():
             assert store.execute(f"SELECT * FROM {table}") == rows
@@ -192,9 +196,7 @@ def test_a_store_of_version_1_keeps_all_it_has(tmp_path: Path, touch: Touched) -
         assert store.execute("PRAGMA foreign_key_check") == []
 
 
-def test_a_migration_that_fails_leaves_the_old_store_as_it_was(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:  # fmt: skip
+def test_a_migration_that_fails_leaves_the_old_store_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from gearmath.control import store_schema
 
     path = tmp_path / "old.db"
@@ -204,7 +206,7 @@ def test_a_migration_that_fails_leaves_the_old_store_as_it_was(
     broken = (store_schema.MIGRATIONS[0], (*store_schema.MIGRATIONS[1][:2], "CREATE TABLE run (x)"))
     monkeypatch.setattr(store_schema, "MIGRATIONS", broken)
     with pytest.raises(InputError, match="cannot be opened as a measurement store: table run already exists"):
-        Store.open(path)
+        MeasurementStore.open(path)
     monkeypatch.undo()
     with sqlite3.connect(path) as old:
         assert old.execute("PRAGMA user_version").fetchall() == [(1,)]
@@ -212,14 +214,14 @@ def test_a_migration_that_fails_leaves_the_old_store_as_it_was(
     old.close()
 
 
-def test_a_store_of_a_newer_version_is_refused_and_left_alone(store: Store) -> None:
+def test_a_store_of_a_newer_version_is_refused_and_left_alone(store: MeasurementStore) -> None:
     store.close()
     with sqlite3.connect(store.path) as newer:
         newer.execute(f"PRAGMA user_version = {VERSION + 1}")
     newer.close()
     before = store.path.read_bytes()
     with pytest.raises(InputError, match=f"version {VERSION + 1}, this gearmath knows versions up to {VERSION}"):
-        Store.open(store.path)
+        MeasurementStore.open(store.path)
     assert store.path.read_bytes() == before
 
 
@@ -233,27 +235,27 @@ def test_other_files_are_refused_and_left_alone(tmp_path: Path) -> None:
     for path, why in ((other, "but no measurement store"), (text, "file is not a database")):
         before = path.read_bytes()
         with pytest.raises(InputError, match=why):
-            Store.open(path)
+            MeasurementStore.open(path)
         assert path.read_bytes() == before
     assert sorted(tmp_path.iterdir()) == [other, text]
 
 
 def test_a_store_that_is_not_there_is_made_only_to_write_into_it(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="there is no such measurement store"):
-        Store.open(tmp_path / "none.db", create=False)
+        MeasurementStore.open(tmp_path / "none.db", create=False)
     with pytest.raises(InputError, match="there is no folder"):
-        Store.open(tmp_path / "nowhere" / "none.db")
+        MeasurementStore.open(tmp_path / "nowhere" / "none.db")
     assert list(tmp_path.iterdir()) == []
 
 
 def test_no_name_makes_a_store_that_is_in_memory_only(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, start: Start
-) -> None:  # fmt: skip
+) -> None:
     monkeypatch.chdir(tmp_path)
-    with Store.open(Path(":memory:")) as store:
+    with MeasurementStore.open(Path(":memory:")) as store:
         store.begin_run(start(1))
     assert (tmp_path / ":memory:").exists()
-    with Store.open(Path(":memory:"), create=False) as store:
+    with MeasurementStore.open(Path(":memory:"), create=False) as store:
         assert len(store.runs()) == 1
 
 
@@ -265,7 +267,7 @@ def test_a_file_system_without_the_journal_is_refused() -> None:
     connection.close()
 
 
-def test_a_store_says_what_it_is(store: Store) -> None:
+def test_a_store_says_what_it_is(store: MeasurementStore) -> None:
     """As the file format of SQLite has it: application_id big-endian at byte 68, the user version at byte 60."""
     store.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     header = store.path.read_bytes()[:100]
@@ -275,7 +277,7 @@ def test_a_store_says_what_it_is(store: Store) -> None:
     assert settings == ["wal", 2, 1]
 
 
-def test_a_full_disk_keeps_what_was_acknowledged(store: Store, start: Start, touch: Touched) -> None:
+def test_a_full_disk_keeps_what_was_acknowledged(store: MeasurementStore, start: Start, touch: Touched) -> None:
     run = store.begin_run(start(200))
     (pages,) = store.execute("PRAGMA page_count")[0]
     store.execute(f"PRAGMA max_page_count = {pages + 1}")
@@ -295,8 +297,8 @@ def test_a_full_disk_keeps_what_was_acknowledged(store: Store, start: Start, tou
 
 
 def test_a_damaged_store_is_said_and_shows_no_traceback(
-    store: Store, start: Start, touch: Touched, command: Callable[..., tuple[int, str, str]]
-) -> None:  # fmt: skip
+    store: MeasurementStore, start: Start, touch: Touched, command: Callable[..., tuple[int, str, str]]
+) -> None:
     """Zeros over the first page of the touches."""
     run = store.begin_run(start(50))
     for point in range(1, 51):

@@ -30,11 +30,14 @@ blank_offset = 3.92
             False,
             ["pinion.concave.design.blank_offset none -> 3.9"],
         ),
-        (SET.replace(b"teeth = 12", b"index_correction = [0.1, 0.2]"), True,
-         ["pinion.teeth 12 -> none", "pinion.index_correction none -> a list"]),
+        (
+            SET.replace(b"teeth = 12", b"index_correction = [0.1, 0.2]"),
+            True,
+            ["pinion.teeth 12 -> none", "pinion.index_correction none -> a list"],
+        ),
         (b"\xff no TOML", True, ["is not the same"]),
         (None, True, ["is stored with the earlier run only"]),
     ],
-)  # fmt: skip
+)
 def test_every_key_of_a_file_that_changed_is_named(new: bytes | None, same_design: bool, said: list[str]) -> None:
     assert list(_file_changes(SET, new, same_design)) == said

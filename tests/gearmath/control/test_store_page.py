@@ -6,13 +6,13 @@ import re
 from pathlib import Path
 
 from gearmath.cli.runs import runs
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.control.store_schema import VERSION
 
 PAGE = (Path(__file__).parents[3] / "docs" / "measurement_store.md").read_text("utf-8")
 
 
-def test_every_table_of_a_store_is_on_its_page(store: Store) -> None:
+def test_every_table_of_a_store_is_on_its_page(store: MeasurementStore) -> None:
     tables = {name for (name,) in store.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
     section = PAGE.split("## What is in the file")[1].split("## What may go wrong")[0]
     named = {

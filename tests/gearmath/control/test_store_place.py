@@ -14,7 +14,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from gearmath.control import store_place
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.control.store_place import file_system, inside, network_share
 from gearmath.errors import InputError
 
@@ -28,8 +28,37 @@ systemd-1 /data autofs rw,relatime 0 0
 me@server: /srv/remote fuse.sshfs rw 0 0
 /dev/sdc1 /mnt/shop/local ext4 rw 0 0
 """
-PARTS = ["..", ".", "/", "\\", "C:", "\\\\server\\share", "~", "PROBE", ".MPF", ".db", "\0", "\n", "\x1b", " ", "CON",
-         "$HOME", "%TEMP%", "\u2215", "\u202e", "é", "*", "?", '"', ":", "-", "_", "A" * 300, "a", "1"]  # fmt: skip
+PARTS = [
+    "..",
+    ".",
+    "/",
+    "\\",
+    "C:",
+    "\\\\server\\share",
+    "~",
+    "PROBE",
+    ".MPF",
+    ".db",
+    "\0",
+    "\n",
+    "\x1b",
+    " ",
+    "CON",
+    "$HOME",
+    "%TEMP%",
+    "\u2215",
+    "\u202e",
+    "é",
+    "*",
+    "?",
+    '"',
+    ":",
+    "-",
+    "_",
+    "A" * 300,
+    "a",
+    "1",
+]
 
 
 @example("..").via("the parent")
@@ -91,7 +120,7 @@ def test_the_innermost_and_last_mount_says_what_holds_a_path(path: str, kind: st
 def test_a_store_on_a_network_share_is_refused_and_not_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(store_place, "network_share", lambda path: "nfs4")
     with pytest.raises(InputError, match=r"runs\.db: lies on a network share \(nfs4\): a store must lie on a disk of"):
-        Store.open(tmp_path / "runs.db")
+        MeasurementStore.open(tmp_path / "runs.db")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gearmath.control.interface import RunStart, Touch
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.control.store_summary import parts
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Probe, Setup
@@ -55,7 +55,7 @@ def test_a_run_goes_on_with_the_part_of_its_first_missing_point(
     columns = COLUMNS if kind == KINDS[0] else CALIBRATION_COLUMNS
     points = {int(row[1]): tuple(row[2:-6]) for row in touched(text, probe, setup)}
     for kept in (len(points) // 3, len(points) - 1):
-        with Store.open(tmp_path / f"{kept}.db") as store:
+        with MeasurementStore.open(tmp_path / f"{kept}.db") as store:
             run = store.begin_run(RunStart("sim", "PROBE.MPF", text.encode(), columns, points))
             for point in list(points)[:kept]:
                 run.commit_touch(point, Touch(1, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))

@@ -93,9 +93,21 @@ def test_choices_take_zeros_of_both_signs_infinities_and_nan_as_the_virtual_mach
     """Bit by bit: masks instead of branches, in every pair of such numbers."""
     x, z = ca.SX.sym("x"), ca.SX.sym("z")
     outputs = [
-        ca.fmin(x, z), ca.fmax(x, z), ca.fabs(x), ca.sign(x), ca.sqrt(ca.fabs(x)), ca.if_else(x, z, 0), x < z, x <= z,
-        ca.eq(x, z), ca.ne(x, z), ca.logic_not(x), ca.logic_and(x, z), ca.logic_or(x, z), ca.if_else(x < z, x, z),
-    ]  # fmt: skip
+        ca.fmin(x, z),
+        ca.fmax(x, z),
+        ca.fabs(x),
+        ca.sign(x),
+        ca.sqrt(ca.fabs(x)),
+        ca.if_else(x, z, 0),
+        x < z,
+        x <= z,
+        ca.eq(x, z),
+        ca.ne(x, z),
+        ca.logic_not(x),
+        ca.logic_and(x, z),
+        ca.logic_or(x, z),
+        ca.if_else(x < z, x, z),
+    ]
     function = ca.Function("choices", [x, z], outputs)
     values = [0.0, -0.0, 1.0, -2.5, 5e-324, float("inf"), float("-inf"), float("nan")]
     pairs = np.array([(one, other) for one in values for other in values])

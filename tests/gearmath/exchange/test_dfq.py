@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from datetime import datetime
 
-from gearmath.exchange.dfq import Characteristic, Measured, Part, dfq
+from gearmath.exchange.dfq import Characteristic, DfqPart, Measured, dfq
 
-PART = Part("4711", "bevel pinion, 12 teeth", "machine 3", "probing")
+PART = DfqPart("4711", "bevel pinion, 12 teeth", "machine 3", "probing")
 FIGURES = (
     Characteristic("concave f_pt", "largest f_pt, concave flank", "µm", upper=12.0),
     Characteristic("convex mean", "mean, convex flank", "µm"),
@@ -39,8 +39,12 @@ def test_a_reader_gets_back_names_limits_values_and_times() -> None:
     measured = [Measured(TIMES[0], (2.0184, -0.4331, 2.92)), Measured(TIMES[1], (1.541, 0.5, 36.5))]
     part, characteristics, values = read(dfq(PART, FIGURES, measured))
     assert part == {
-        "K0100": "3", "K1001": "4711", "K1002": "bevel pinion, 12 teeth", "K1082": "machine 3", "K1086": "probing",
-    }  # fmt: skip
+        "K0100": "3",
+        "K1001": "4711",
+        "K1002": "bevel pinion, 12 teeth",
+        "K1082": "machine 3",
+        "K1086": "probing",
+    }
     assert [one["K2001"] for one in characteristics.values()] == ["concave f_pt", "convex mean", "both F_r"]
     assert [one["K2142"] for one in characteristics.values()] == ["µm"] * 3
     assert [float(one["K2111"]) if "K2111" in one else None for one in characteristics.values()] == [12.0, None, 36.5]
@@ -57,7 +61,7 @@ def test_a_figure_that_is_withheld_is_a_placeholder_and_no_value() -> None:
 
 
 def test_no_text_breaks_the_lines_of_a_file_or_its_code_page() -> None:
-    part = Part("A\r\nK0001/1 99\x0f\x14", "☃" * 200, "Müller \N{GREEK SMALL LETTER MU}", "")
+    part = DfqPart("A\r\nK0001/1 99\x0f\x14", "☃" * 200, "Müller \N{GREEK SMALL LETTER MU}", "")
     content = dfq(part, FIGURES, [Measured(TIMES[0], (1.0, 2.0, 3.0))])
     read_part, characteristics, values = read(content)
     assert (len(characteristics), len(values)) == (3, 1)

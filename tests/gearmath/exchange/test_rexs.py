@@ -20,20 +20,38 @@ SETS = ["nasa_tp3096_12x36", "crown_gear_formate_14x39", "crown_gear_hobbed_14x3
 ALLOWED = {
     "bevel_stage": {"shaft_angle"},
     "bevel_gear": {
-        "number_of_teeth", "spiral_angle_pitch_direction", "pitch_angle", "face_angle", "root_angle",
-        "mean_cone_distance", "face_width", "mean_addendum", "mean_dedendum", "clearance_iso_23509_2025",
+        "number_of_teeth",
+        "spiral_angle_pitch_direction",
+        "pitch_angle",
+        "face_angle",
+        "root_angle",
+        "mean_cone_distance",
+        "face_width",
+        "mean_addendum",
+        "mean_dedendum",
+        "clearance_iso_23509_2025",
         "pitch_apex_beyond_crossing_point",
     },
     "bevel_gear_flank": set(),
     "bevel_gear_tool": {
-        "blade_point_radius", "blade_pressure_angle", "blade_profile_height", "blade_spheric_radius",
+        "blade_point_radius",
+        "blade_pressure_angle",
+        "blade_profile_height",
+        "blade_spheric_radius",
         "tool_edge_radius_bevel_gear_tool",
     },
     "bevel_gear_manufacturing_settings": {
-        "radial_distance", "center_roll_position", "cutter_tilt", "cutter_swivel", "work_offset", "sliding_base",
-        "machine_center_to_crossing_point", "machine_root_angle", "ratio_of_roll",
+        "radial_distance",
+        "center_roll_position",
+        "cutter_tilt",
+        "cutter_swivel",
+        "work_offset",
+        "sliding_base",
+        "machine_center_to_crossing_point",
+        "machine_root_angle",
+        "ratio_of_roll",
     },
-}  # fmt: skip
+}
 
 
 @pytest.fixture

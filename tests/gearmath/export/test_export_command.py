@@ -23,10 +23,21 @@ def test_teensy_folder_is_a_whole_sketch(tmp_path: Path, capsys: pytest.CaptureF
         main(["export", "teensy", str(bundled("hobbing_plewes.toml")), "-o", str(tmp_path / "hobber")])
     written = {path.name for path in (tmp_path / "hobber").iterdir()}
     assert {
-        "hobber.ino", "gm_machine.h", "gm_core.h", "gm_core.c", "gm_gearbox_edge.h", "gm_encoder_hysteresis.h",
-        "gm_counter.h", "gm_counter_motion.h",
-        "gm_job.c", "gm_ui.c", "gm_store.c", "wiring.svg", "README.md", "manifest.json",
-    } <= written  # fmt: skip
+        "hobber.ino",
+        "gm_machine.h",
+        "gm_core.h",
+        "gm_core.c",
+        "gm_gearbox_edge.h",
+        "gm_encoder_hysteresis.h",
+        "gm_counter.h",
+        "gm_counter_motion.h",
+        "gm_job.c",
+        "gm_ui.c",
+        "gm_store.c",
+        "wiring.svg",
+        "README.md",
+        "manifest.json",
+    } <= written
     constants = (tmp_path / "hobber" / "gm_machine.h").read_text()
     assert f"#define GM_ENCODER_COUNTS {1024 * 4} " in constants
     assert f"#define GM_MOTOR_STEPS {200 * 4 * 2 * 10} " in constants

@@ -138,8 +138,9 @@ def test_every_public_name_starts_with_gm(folder: Path, gcc: str) -> None:
         with (folder / "names.o").open("rb") as stream:
             table = ELFFile(stream).get_section_by_name(".symtab")
             public = {
-                s.name for s in table.iter_symbols()
+                s.name
+                for s in table.iter_symbols()
                 if s["st_info"]["bind"] == "STB_GLOBAL" and s["st_shndx"] != "SHN_UNDEF"
-            }  # fmt: skip
+            }
         assert public == {f"gm_{name}", f"gm_{name}_batch"}
         assert set(double_kernel(kernel).files) == {f"gm_{name}.h", f"gm_{name}.c"}

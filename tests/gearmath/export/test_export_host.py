@@ -72,9 +72,11 @@ def test_matrices_go_in_and_out_row_by_row() -> None:
         "turned", [M, v], [M @ v, M.T, ca.blockcat([[v[0], 0], [0, v[1]]])], ["M", "v"], ["p", "T", "S"]
     )
     kernel = Kernel(
-        function, "A test.", (_quantity("M", 2, 3), _quantity("v", 3)),
+        function,
+        "A test.",
+        (_quantity("M", 2, 3), _quantity("v", 3)),
         (_quantity("p", 2), _quantity("T", 3, 2), _quantity("S", 2, 2)),
-    )  # fmt: skip
+    )
     matrices, vector = np.random.default_rng(2).normal(size=(4, 2, 3)), np.array([1.0, 10.0, 100.0])
     product, transposed, sparse = compile_kernel(kernel)(matrices, vector)
     np.testing.assert_allclose(product, matrices @ vector, rtol=1e-14)

@@ -24,21 +24,27 @@ MACHINES = (
 )
 #: Supply pins by the data sheets: LM7805 1 in, 2 ground, 3 out; LS7184N 2, 3; 74LVC245 20, 10.
 POWER = {
-    "U1": {(PLUS, "Vin"), (GROUND, "GND")}, "U2": {("supply", "1 IN"), (GROUND, "2 GND"), (PLUS, "3 OUT")},
-    "U3": {(PLUS, "2 VDD"), (GROUND, "3 VSS")}, "U4": {(PLUS, "2 VDD"), (GROUND, "3 VSS")},
+    "U1": {(PLUS, "Vin"), (GROUND, "GND")},
+    "U2": {("supply", "1 IN"), (GROUND, "2 GND"), (PLUS, "3 OUT")},
+    "U3": {(PLUS, "2 VDD"), (GROUND, "3 VSS")},
+    "U4": {(PLUS, "2 VDD"), (GROUND, "3 VSS")},
     "U5": {(LOGIC, "20 VCC"), (GROUND, "10 GND"), (GROUND, "19 OE"), (LOGIC, "1 DIR")},
-    "H1": {(PLUS, "VCC"), (GROUND, "GND")}, "U6": {(LOGIC, "LV"), (PLUS, "HV"), (GROUND, "GND")},
-    "B1": {(PLUS, "+5 V"), (GROUND, "0 V")}, "B2": {(PLUS, "+5 V"), (GROUND, "0 V")},
-}  # fmt: skip
+    "H1": {(PLUS, "VCC"), (GROUND, "GND")},
+    "U6": {(LOGIC, "LV"), (PLUS, "HV"), (GROUND, "GND")},
+    "B1": {(PLUS, "+5 V"), (GROUND, "0 V")},
+    "B2": {(PLUS, "+5 V"), (GROUND, "0 V")},
+}
 
 
 def machines() -> list[HobbingMachine]:
     found = [load_hobbing_machine(bundled(f"{name}.toml")) for name in MACHINES]
     base = found[0]
     for board, decoder, output, wired in itertools.product(
-        ("teensy32", "teensy41"), ("ls7184_x1", "ls7184_x2", "ls7184_x4", "interrupts"), ("open_collector", "direct"),
+        ("teensy32", "teensy41"),
+        ("ls7184_x1", "ls7184_x2", "ls7184_x4", "interrupts"),
+        ("open_collector", "direct"),
         (False, True),
-    ):  # fmt: skip
+    ):
         more = {
             "index": 9,
             "feed_step": 10,
@@ -142,9 +148,12 @@ class Diagram:
         """Ends of wires that are joined: the same point, or one on the way of another wire."""
         found: list[set[Point]] = []
         for wire in self.wires:
-            joined = [net for net in found if any(self._meets(wire, point) for point in net) or any(
-                self._meets(other, point) for point in wire for other in self.wires if set(other) <= net
-            )]  # fmt: skip
+            joined = [
+                net
+                for net in found
+                if any(self._meets(wire, point) for point in net)
+                or any(self._meets(other, point) for point in wire for other in self.wires if set(other) <= net)
+            ]
             found = [net for net in found if net not in joined] + [set(wire).union(*joined)]
         return found
 

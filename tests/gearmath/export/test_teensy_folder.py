@@ -66,9 +66,12 @@ def variants() -> Iterator[HobbingMachine]:
 def _variant(base: HobbingMachine, board: tuple[str, str, str], wires: tuple[bool, ...]) -> HobbingMachine:
     feed, index, estop, healthy, enable = wires
     pins = dict(
-        [("feed_step", 9), ("feed_dir", 10)] * feed + [("index", 11)] * index + [("estop", 12)] * estop
-        + [("healthy", 14)] * healthy + [("enable", 15)] * enable
-    )  # fmt: skip
+        [("feed_step", 9), ("feed_dir", 10)] * feed
+        + [("index", 11)] * index
+        + [("estop", 12)] * estop
+        + [("healthy", 14)] * healthy
+        + [("enable", 15)] * enable
+    )
     changed = with_pins(base, **pins)
     update = {
         "board": board[0],
@@ -149,9 +152,13 @@ def test_flash_and_ram_of_the_readme_are_those_of_the_compiled_files(name: str, 
     sizes = subprocess.run(
         [f"{arm}size", *sorted(path.name for path in folder.glob("*.o"))], cwd=folder, capture_output=True
     )
-    text, data, bss = (sum(column) for column in zip(*(
-        [int(number) for number in line.split()[:3]] for line in sizes.stdout.decode().splitlines()[1:]
-    ), strict=True))  # fmt: skip
+    text, data, bss = (
+        sum(column)
+        for column in zip(
+            *([int(number) for number in line.split()[:3]] for line in sizes.stdout.decode().splitlines()[1:]),
+            strict=True,
+        )
+    )
     stated = re.search(
         r"take\s+about\s+([\d.]+)\s+kB\s+of\s+flash\s+and\s+([\d.]+)\s+kB", teensy_files(given)["README.md"]
     )
@@ -201,9 +208,16 @@ def test_clang_accepts_the_folder_for_its_processor(name: str, tmp_path: Path) -
     folder = write(teensy_files(given), tmp_path / "gearbox")
     zig = (sys.executable, "-m", "ziglang")
     common = (
-        "-target", "thumb-freestanding-eabi", f"-mcpu={processor}", "-mfloat-abi=soft", "-ffreestanding", *STRICT,
-        "-isystem", str(STAND_IN / "freestanding"), "-c",
-    )  # fmt: skip
+        "-target",
+        "thumb-freestanding-eabi",
+        f"-mcpu={processor}",
+        "-mfloat-abi=soft",
+        "-ffreestanding",
+        *STRICT,
+        "-isystem",
+        str(STAND_IN / "freestanding"),
+        "-c",
+    )
     for source in c_files(folder):
         run(folder, *zig, "cc", *common, "-std=c99", source, "-o", "one.o")
     run(folder, *zig, "c++", *common, *CXX, *defines, f"-I{STAND_IN}", "sketch.cpp", "-o", "sketch.o")
@@ -389,14 +403,16 @@ def test_channels_of_the_boards_own_decoder_follow_too(power_up: Callable[..., B
 COUNTERS = {
     "FTM1, channels": ("teensy32", {"decoder": '"hardware"'}, ""),
     "FTM1 on its other pins": (
-        "teensy32", {"decoder": '"hardware"'}, "encoder_step = 3\nencoder_dir = 4\nknob_b = 5\nbutton = 9"
+        "teensy32",
+        {"decoder": '"hardware"'},
+        "encoder_step = 3\nencoder_dir = 4\nknob_b = 5\nbutton = 9",
     ),
     "FTM2, channels": ("teensy32", {"decoder": '"hardware"'}, "encoder_step = 32\nencoder_dir = 25"),
     "FTM1, LS7184": ("teensy32", {"decoder": '"ls7184_x4"\ncounter = "hardware"'}, ""),
     "ENC1, channels": ("teensy41", {"decoder": '"hardware"'}, ""),
     "ENC1 on other pins": ("teensy40", {"decoder": '"hardware"'}, "encoder_step = 33\nencoder_dir = 0"),
     "ENC1, LS7184": ("teensy40", {"decoder": '"ls7184_x4"\ncounter = "hardware"'}, ""),
-}  # fmt: skip
+}
 
 
 def with_counter(name: str, base: str = "hobbing_plewes") -> HobbingMachine:

@@ -88,11 +88,14 @@ def test_drawing_is_the_same_in_every_process_and_carries_no_date_and_no_path() 
     )
     hashes = {
         subprocess.run(
-            [sys.executable, "-c", program], env=os.environ | {"PYTHONHASHSEED": seed}, capture_output=True, text=True,
+            [sys.executable, "-c", program],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
             check=True,
         ).stdout
         for seed in ("1", "2")
-    }  # fmt: skip
+    }
     assert len(hashes) == 1
     svg = wiring_svg(machine("hobbing_helical"))
     assert not re.search(r"20\d\d-|/home|/tmp|/work|\d\.\d{3}", svg)

@@ -35,14 +35,26 @@ from gearmath.lowering import lower
 
 #: A machine of the tests: the source text's train, and times that differ from each other.
 MACHINE = {
-    "GM_ENCODER_COUNTS": 4096, "GM_TICK_NS": 5000,
-    "GM_STEP_HIGH_TICKS": 2, "GM_STEP_LOW_TICKS": 3, "GM_DIR_SETUP_TICKS": 4, "GM_DIR_HOLD_TICKS": 5,
-    "GM_STEP_ACTIVE_LOW": 0, "GM_DIR_ACTIVE_LOW": 0, "GM_DIR_INVERT": 0, "GM_ENABLE_ACTIVE_LOW": 0,
-    "GM_MAX_LAG": 100, "GM_MAX_EDGE_RATE": 54613, "GM_MOVE_MAX_RATE": 4000, "GM_MOVE_ACCELERATION": 8000,
+    "GM_ENCODER_COUNTS": 4096,
+    "GM_TICK_NS": 5000,
+    "GM_STEP_HIGH_TICKS": 2,
+    "GM_STEP_LOW_TICKS": 3,
+    "GM_DIR_SETUP_TICKS": 4,
+    "GM_DIR_HOLD_TICKS": 5,
+    "GM_STEP_ACTIVE_LOW": 0,
+    "GM_DIR_ACTIVE_LOW": 0,
+    "GM_DIR_INVERT": 0,
+    "GM_ENABLE_ACTIVE_LOW": 0,
+    "GM_MAX_LAG": 100,
+    "GM_MAX_EDGE_RATE": 54613,
+    "GM_MOVE_MAX_RATE": 4000,
+    "GM_MOVE_ACCELERATION": 8000,
     # edges of these tests start at full speed: a motor that follows at once, but where a test is about acceleration
     "GM_ACCELERATION": 10_000_000,
-    "GM_HAS_INDEX": 0, "GM_HAS_ESTOP": 1, "GM_PROFILE_HOBBING": 1,
-}  # fmt: skip
+    "GM_HAS_INDEX": 0,
+    "GM_HAS_ESTOP": 1,
+    "GM_PROFILE_HOBBING": 1,
+}
 
 
 def machine_text(wide: bool, changes: Mapping[str, int | None]) -> str:

@@ -32,10 +32,15 @@ def running(core, N: int, D: int, **terms):
 @pytest.mark.parametrize(
     ("wide", "N", "D", "feed"),
     [
-        (False, 125, 192, 0), (False, 2**30 - 1, 2**30, 1), (False, 1300, 384, -77), (False, -25, 64, 3),
-        (True, 2**62 - 58, 2**62 - 57, 3), (True, -(2**60), 2**61 - 1, 2**59), (True, 125, 192, 500),
+        (False, 125, 192, 0),
+        (False, 2**30 - 1, 2**30, 1),
+        (False, 1300, 384, -77),
+        (False, -25, 64, 3),
+        (True, 2**62 - 58, 2**62 - 57, 3),
+        (True, -(2**60), 2**61 - 1, 2**59),
+        (True, 125, 192, 500),
     ],
-)  # fmt: skip
+)
 def test_table_is_at_the_nearest_step_after_any_edges_of_both_axes(new_core, wide, N, D, feed):
     core = running(new_core(wide), N, D, feed=feed)
     random = np.random.default_rng(11)
@@ -195,11 +200,18 @@ def test_every_call_is_refused_in_the_wrong_mode(new_core):
 @pytest.mark.parametrize(
     ("wide", "N", "D", "terms"),
     [
-        (False, 1, 0, {}), (False, 1, -5, {}), (False, 1, 2**30 + 1, {}), (True, 1, 2**62 + 1, {}), (False, 0, 5, {}),
-        (False, 65, 1, {}), (False, -65, 1, {}), (False, 1, 2, {"hysteresis": -1}), (False, 1, 2, {"hysteresis": 17}),
+        (False, 1, 0, {}),
+        (False, 1, -5, {}),
+        (False, 1, 2**30 + 1, {}),
+        (True, 1, 2**62 + 1, {}),
+        (False, 0, 5, {}),
+        (False, 65, 1, {}),
+        (False, -65, 1, {}),
+        (False, 1, 2, {"hysteresis": -1}),
+        (False, 1, 2, {"hysteresis": 17}),
         (False, 1, 2, {"feed": 130}),
     ],
-)  # fmt: skip
+)
 def test_job_beyond_the_proved_range_is_refused(new_core, wide, N, D, terms):
     core = new_core(wide)
     assert core.job(N, D, **terms) == -1

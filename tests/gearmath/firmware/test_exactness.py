@@ -86,9 +86,10 @@ class History(ctypes.Structure):
 
     _fields_ = [
         *((name, ctypes.c_int64) for name in ("N", "M", "D", "remainder", "e", "f", "p")),
-        ("seed", ctypes.c_uint64), ("worst", ctypes.c_uint64),
+        ("seed", ctypes.c_uint64),
+        ("worst", ctypes.c_uint64),
         *((name, ctypes.c_int64) for name in ("run", "direction", "wrong")),
-    ]  # fmt: skip
+    ]
 
     @classmethod
     def start(cls, N: int, M: int, D: int, e: int, direction: int) -> "History":

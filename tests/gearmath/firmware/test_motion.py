@@ -222,10 +222,19 @@ int main(void)
 """
 
 QUICK = {
-    "GM_ACCELERATION": 100_000, "GM_MOVE_ACCELERATION": 100_000, "GM_MOVE_MAX_RATE": 8000, "GM_MAX_STEP_RATE": 60_000,
-    "GM_MAX_EDGE_RATE": 60_000, "GM_STEP_HIGH_TICKS": 1, "GM_STEP_LOW_TICKS": 1, "GM_DIR_SETUP_TICKS": 1,
-    "GM_DIR_HOLD_TICKS": 1, "GM_HAS_ESTOP": 0, "GM_PROFILE_HOBBING": None, "GM_PROFILE_LATHE": 1,
-}  # fmt: skip
+    "GM_ACCELERATION": 100_000,
+    "GM_MOVE_ACCELERATION": 100_000,
+    "GM_MOVE_MAX_RATE": 8000,
+    "GM_MAX_STEP_RATE": 60_000,
+    "GM_MAX_EDGE_RATE": 60_000,
+    "GM_STEP_HIGH_TICKS": 1,
+    "GM_STEP_LOW_TICKS": 1,
+    "GM_DIR_SETUP_TICKS": 1,
+    "GM_DIR_HOLD_TICKS": 1,
+    "GM_HAS_ESTOP": 0,
+    "GM_PROFILE_HOBBING": None,
+    "GM_PROFILE_LATHE": 1,
+}
 
 
 @pytest.mark.slow
@@ -298,10 +307,14 @@ def test_catching_up_takes_the_time_and_the_speed_that_the_plan_tells(new_core, 
 @pytest.mark.parametrize(
     ("rate", "part", "fault"),
     [
-        (4000.0, 1.03, NO_FAULT), (10_000.0, 1.3, NO_FAULT), (10_000.0, 1.03, NO_FAULT), (10_000.0, 0.7, LAG),
-        (40_000.0, 1.03, NO_FAULT), (40_000.0, 0.9, LAG),
+        (4000.0, 1.03, NO_FAULT),
+        (10_000.0, 1.3, NO_FAULT),
+        (10_000.0, 1.03, NO_FAULT),
+        (10_000.0, 0.7, LAG),
+        (40_000.0, 1.03, NO_FAULT),
+        (40_000.0, 0.9, LAG),
     ],
-)  # fmt: skip
+)
 def test_hob_that_runs_up_in_the_shortest_time_of_the_plan_is_followed_and_a_quicker_one_is_not(
     new_core, rate, part, fault
 ):

@@ -79,9 +79,15 @@ def test_every_driver_gets_its_times_through_reversals_moves_and_a_trip(new_core
     pulse = timing["GM_STEP_HIGH_TICKS"] + timing["GM_STEP_LOW_TICKS"]
     for step_low, dir_low, invert in ((0, 0, 0), (1, 1, 0), (1, 0, 1), (0, 1, 1)):
         core = new_core(
-            GM_TICK_NS=tick_ns, **timing, GM_STEP_ACTIVE_LOW=step_low, GM_DIR_ACTIVE_LOW=dir_low, GM_DIR_INVERT=invert,
-            GM_MOVE_MAX_RATE=200_000, GM_MOVE_ACCELERATION=2_000_000, GM_MAX_EDGE_RATE=1_000_000,
-        )  # fmt: skip
+            GM_TICK_NS=tick_ns,
+            **timing,
+            GM_STEP_ACTIVE_LOW=step_low,
+            GM_DIR_ACTIVE_LOW=dir_low,
+            GM_DIR_INVERT=invert,
+            GM_MOVE_MAX_RATE=200_000,
+            GM_MOVE_ACCELERATION=2_000_000,
+            GM_MAX_EDGE_RATE=1_000_000,
+        )
         assert core.job(13, 10) == 0
         assert core.run() == 0
         records = [core.play(hob_script(random, 2 * pulse + 1, 12)), core.play(0, 300 * pulse + 4000)]

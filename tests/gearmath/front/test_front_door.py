@@ -38,8 +38,15 @@ def test_contact_of_a_pair_as_it_is_and_as_it_was_measured() -> None:
     with pytest.raises(gm.InputError, match="sides: 'left': must be of drive, coast"):
         gm.contact(pair, sides=("left",))
     other = pair.with_member(pair.pinion.with_settings(concave={"machine_root_angle": 0.05}))
-    bare = gm.GearSet(other.spec.model_copy(update={"pinion": other.spec.pinion.model_copy(
-        update={"concave": other.spec.pinion.concave.model_copy(update={"design": None})})}))  # fmt: skip
+    bare = gm.GearSet(
+        other.spec.model_copy(
+            update={
+                "pinion": other.spec.pinion.model_copy(
+                    update={"concave": other.spec.pinion.concave.model_copy(update={"design": None})}
+                )
+            }
+        )
+    )
     with pytest.raises(gm.InputError, match=r"pinion\.concave: was measured against other nominal settings"):
         gm.contact(bare, off)
 

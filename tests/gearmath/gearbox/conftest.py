@@ -115,9 +115,13 @@ class CortexM4:
         self._core.mem_write(DATA, edges.astype(np.int8).tobytes())
         self._core.mem_write(job, struct.pack("<3i", numerator, denominator, remainder))
         for register, value in (
-            (UC_ARM_REG_R0, DATA), (UC_ARM_REG_R1, steps), (UC_ARM_REG_R2, n), (UC_ARM_REG_R3, job),
-            (UC_ARM_REG_SP, STACK + STACK_SIZE), (UC_ARM_REG_LR, HALT | 1),
-        ):  # fmt: skip
+            (UC_ARM_REG_R0, DATA),
+            (UC_ARM_REG_R1, steps),
+            (UC_ARM_REG_R2, n),
+            (UC_ARM_REG_R3, job),
+            (UC_ARM_REG_SP, STACK + STACK_SIZE),
+            (UC_ARM_REG_LR, HALT | 1),
+        ):
             self._core.reg_write(register, value)
         self._core.emu_start(self._entry, HALT)
         assert self._core.reg_read(UC_ARM_REG_PC) == HALT

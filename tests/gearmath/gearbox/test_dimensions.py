@@ -76,10 +76,12 @@ class Helicoid:
 @pytest.mark.parametrize(
     "gear",
     [
-        Gear(20, 1.0, ALPHA), Gear(30, 1.0, ALPHA, math.radians(20)), Gear(24, 2.0, ALPHA, math.radians(35), 0.3),
+        Gear(20, 1.0, ALPHA),
+        Gear(30, 1.0, ALPHA, math.radians(20)),
+        Gear(24, 2.0, ALPHA, math.radians(35), 0.3),
         Gear(12, 1.0, math.radians(14.5), math.radians(10), 0.2),
     ],
-)  # fmt: skip
+)
 def test_ball_in_a_space_touches_the_flank_of_the_solid(gear):
     """A ball on the middle of the space, just as far out as the measurement says, is its radius from the helicoid."""
     measured = over_pins(gear)

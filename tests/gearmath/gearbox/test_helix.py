@@ -71,9 +71,11 @@ def test_no_fraction_of_a_smaller_denominator_is_as_near(value, needed):
 
 @settings(max_examples=200, deadline=None)
 @given(
-    teeth=st.integers(6, 999), angle=st.floats(0.01, 60.0), module=st.sampled_from((1.0, 1.5)),
+    teeth=st.integers(6, 999),
+    angle=st.floats(0.01, 60.0),
+    module=st.sampled_from((1.0, 1.5)),
     hand=st.sampled_from(("right", "left")),
-)  # fmt: skip
+)
 def test_table_is_never_a_hundredth_of_a_step_from_the_true_helix(helical, teeth, angle, module, hand):
     ratio, rounding = helical_ratio(helical, teeth, 1, module, Helix(angle, hand))
     hob, feed = (Fraction(numerator, ratio.denominator) for numerator in ratio.numerators)
@@ -135,9 +137,10 @@ def test_denominator_is_the_least_multiple_of_the_hobs_that_keeps_the_bound():
 
 
 JOBS = st.tuples(
-    st.fractions(-8, 8, max_denominator=10**6).filter(bool), st.fractions(-3, 3, max_denominator=10**9),
+    st.fractions(-8, 8, max_denominator=10**6).filter(bool),
+    st.fractions(-3, 3, max_denominator=10**9),
     st.integers(1, 2000),
-)  # fmt: skip
+)
 RUNS = st.lists(
     st.tuples(st.sampled_from((0, 1)), st.sampled_from((1, -1)), st.integers(1, 60)), min_size=1, max_size=12
 )
@@ -166,11 +169,15 @@ def test_compiled_rule_stands_at_the_nearest_step_of_the_rational_sum(job, runs)
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (([0], [0]), "edges"), (([2], [1]), "axes"), (([0, 1], [1]), "axes"),
-        (([0], [1], (65, 0)), "64 whole steps"), (([0], [1], (0, 0), (5, 0)), "D"),
-        (([0], [1], (0, 0), (0, 0), 0), "D"), (([0], [1], (0, 0), (0, 0), 5, 5), "D"),
+        (([0], [0]), "edges"),
+        (([2], [1]), "axes"),
+        (([0, 1], [1]), "axes"),
+        (([0], [1], (65, 0)), "64 whole steps"),
+        (([0], [1], (0, 0), (5, 0)), "D"),
+        (([0], [1], (0, 0), (0, 0), 0), "D"),
+        (([0], [1], (0, 0), (0, 0), 5, 5), "D"),
     ],
-)  # fmt: skip
+)
 def test_rule_of_two_axes_refuses_what_lies_outside_its_domain(arguments, words):
     defaults = ([0], [1], (0, 0), (1, 0), 5, 2)
     with pytest.raises(InputError, match=words):

@@ -72,9 +72,17 @@ def firmware(name: str, **changes: str) -> tuple[HobbingMachine, Firmware]:
 
     def make(**changes: int) -> JobRatio | None:
         settings_ = {
-            "profile": int(machine.profile == "lathe"), "starts": 1, "left": 0, "climb": 1, "kind": 0, "teeth": 30,
-            "helix": 0, "size": 10_000, "pitch": 1000, "feed": 300,
-        } | changes  # fmt: skip
+            "profile": int(machine.profile == "lathe"),
+            "starts": 1,
+            "left": 0,
+            "climb": 1,
+            "kind": 0,
+            "teeth": 30,
+            "helix": 0,
+            "size": 10_000,
+            "pitch": 1000,
+            "feed": 300,
+        } | changes
         out = (ctypes.c_int64 * 5)()
         if library.probe((ctypes.c_int32 * 10)(*settings_.values()), out):
             return None
@@ -124,9 +132,12 @@ def test_two_term_jobs(helical, teeth, hundredths, left, size):
 
 @settings(max_examples=300, deadline=None)
 @given(
-    teeth=st.integers(6, 999), hundredths=st.integers(1, 4500), left=st.integers(0, 1), climb=st.integers(0, 1),
+    teeth=st.integers(6, 999),
+    hundredths=st.integers(1, 4500),
+    left=st.integers(0, 1),
+    climb=st.integers(0, 1),
     feed=st.integers(50, 2000),
-)  # fmt: skip
+)
 @example(teeth=250, hundredths=1, left=0, climb=1, feed=50)  # nearly 1/64: two convergents lie side by side
 @example(teeth=250, hundredths=1, left=1, climb=1, feed=50)
 def test_jobs_at_a_fixed_feed(plewes, teeth, hundredths, left, climb, feed):
@@ -179,7 +190,7 @@ TRAINS = {
     "gears 120:127 on the motor": ({"belt": '"127/120"', "worm": "3"}, Fraction(4096), Fraction(2540)),
     "belt 20/17 and worm 90": ({"belt": '"20/17"', "worm": "90"}, Fraction(4096), Fraction(1_440_000, 17)),
     "both": ({"lines": '1000\nbelt = "40/41"', "worm": '"73/7"'}, Fraction(160_000, 41), Fraction(116_800, 7)),
-}  # fmt: skip
+}
 
 
 @pytest.fixture(scope="module", params=list(TRAINS))

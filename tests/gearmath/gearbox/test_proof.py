@@ -40,10 +40,14 @@ def test_limit_is_two_to_the_thirty_and_tight(step_kernel):
         (rule(lambda x, D: x >= D), "0 <= a' < D"),  # forgets the way back
         (rule(lambda x, D: (x >= D) - (x < 0), lambda x, s, D: x - s * D + (s < 0)), "0 <= a' < D"),
         (rule(lambda x, D: (x >= D) - (x < 0), lambda x, s, D: x - x * (x < 0) - D * (x >= D)), "a' + s D = a + d N"),
-        (rule(lambda x, D: (x >= D) - (x < 0), lambda x, s, D: ca.if_else(x >= D, x - D, ca.if_else(x < 0, x + D, x))),
-         "32 bits"),  # both branches are evaluated, and the one not taken overflows
+        (
+            rule(
+                lambda x, D: (x >= D) - (x < 0), lambda x, s, D: ca.if_else(x >= D, x - D, ca.if_else(x < 0, x + D, x))
+            ),
+            "32 bits",
+        ),  # both branches are evaluated, and the one not taken overflows
     ],
-)  # fmt: skip
+)
 def test_broken_rule_is_not_proved(broken, claim):
     with pytest.raises(ComputationError) as caught:
         prove_step_rule(broken)

@@ -54,8 +54,9 @@ def test_dither_has_no_true_motion_and_reversals_alternate_within_5000_edges():
 
 @given(
     moves=st.lists(st.tuples(st.sampled_from((1, -1)), st.sampled_from((-1, 0, 1))), min_size=1, max_size=50),
-    numerator=st.integers(1, 2**30), denominator=st.integers(1, 2**30),
-)  # fmt: skip
+    numerator=st.integers(1, 2**30),
+    denominator=st.integers(1, 2**30),
+)
 def test_worst_error_equals_fractions(moves, numerator, denominator):
     edges, steps = (np.array(column, np.int8) for column in zip(*moves, strict=True))
     encoder = position = 0

@@ -44,9 +44,7 @@ def test_start_is_half_of_the_denominator(denominator):
 
 def test_every_state_of_small_ratios(step_kernel):
     """All (a, d, N, D) with D <= 12: the step of floor division, and the remainder that belongs to it."""
-    states = [
-        (a, d, N, D) for D in range(1, 13) for N in range(1, D + 1) for a in range(D) for d in (1, -1)
-    ]  # fmt: skip
+    states = [(a, d, N, D) for D in range(1, 13) for N in range(1, D + 1) for a in range(D) for d in (1, -1)]
     step, following = step_kernel(*np.array(states, dtype=float).T)
     for (a, d, N, D), s, remainder in zip(states, step, following, strict=True):
         assert (int(s), int(remainder)) == divmod(a + d * N, D)

@@ -37,7 +37,7 @@ def test_ten_teeth_on_the_first_machine_of_the_text_give_2_56():
 @pytest.mark.parametrize(
     ("changes", "ratio"),
     [({}, Fraction(40960, 16000)), ({"worm": "5"}, Fraction(40960, 8000)), ({"lines": "200"}, Fraction(8000, 16000))],
-)  # fmt: skip
+)
 def test_ratios_of_the_edited_machines_of_the_text(changes, ratio):
     assert plan(machine(**changes), 10).exact_pulse_ratio == ratio
 

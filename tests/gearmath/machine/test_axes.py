@@ -151,12 +151,14 @@ def test_settings_that_move_with_the_cradle_stand_where_they_are_at_that_rotatio
     axes = axis_positions(moving, theta, 500.0)
     for t, row in zip(theta, axes, strict=True):
         roll = base.ratio_of_roll * (t - 0.02 / 2 * t**2 + 0.03 / 6 * t**3)  # 2C, 6D
-        still = base.model_copy(update={
-            "sliding_base": base.sliding_base + 2.0 * t - 1.5 * t**2,
-            "cutter_tilt": 1.0 * t,
-            "cutter_swivel": 30.0,
-            "work_rotation_offset": base.work_rotation_offset + np.degrees(roll - base.ratio_of_roll * t),
-        })  # fmt: skip
+        still = base.model_copy(
+            update={
+                "sliding_base": base.sliding_base + 2.0 * t - 1.5 * t**2,
+                "cutter_tilt": 1.0 * t,
+                "cutter_swivel": 30.0,
+                "work_rotation_offset": base.work_rotation_offset + np.degrees(roll - base.ratio_of_roll * t),
+            }
+        )
         (expected,) = axis_positions(still, np.array([t]), 500.0)
         np.testing.assert_allclose(row[[0, 1, 2, 4]], expected[[0, 1, 2, 4]], rtol=0, atol=1e-11)
         assert abs(np.remainder(row[3] - expected[3] + np.pi, 2 * np.pi) - np.pi) < 1e-12

@@ -11,25 +11,29 @@ from gearmath.machine.judging.collision import collisions
 from gearmath.machine.milling.mill import expose, mill_member
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.milling.surfaces import left_by_exact_motion, nominal_surfaces, surface_states
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, load_bevel_set
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.toml import bundled
 
 SETS = (
-    "nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_formate_14x39", "crown_gear_universal_14x39",
+    "nasa_tp3096_12x36",
+    "crown_gear_7x43",
+    "crown_gear_formate_14x39",
+    "crown_gear_universal_14x39",
     "crown_gear_hobbed_14x39",
-)  # fmt: skip
+)
 
 
 def with_edges(bevel_set: BevelSet) -> BevelSet:
     """The set with blade edges of 0.4 mm."""
     rounded = {
-        name: bevel_set.member(name).model_copy(update={
-            f: bevel_set.member(name).flank(f).model_copy(update={"blade_edge_radius": 0.4}) for f in FLANKS
-        }) for name in MEMBERS
-    }  # fmt: skip
+        name: bevel_set.member(name).model_copy(
+            update={f: bevel_set.member(name).flank(f).model_copy(update={"blade_edge_radius": 0.4}) for f in FLANKS}
+        )
+        for name in MEMBERS
+    }
     return bevel_set.model_copy(update=rounded)
 
 
@@ -53,8 +57,10 @@ def with_arc_blades(bevel_set: BevelSet) -> BevelSet:
 
 
 CASES = [(name, member, None) for name in SETS[:4] for member in MEMBERS] + [
-    (SETS[0], "pinion", with_edges), (SETS[0], "gear", with_edges), (SETS[0], "pinion", with_arc_blades),
-]  # fmt: skip
+    (SETS[0], "pinion", with_edges),
+    (SETS[0], "gear", with_edges),
+    (SETS[0], "pinion", with_arc_blades),
+]
 
 
 @pytest.mark.slow
@@ -71,7 +77,9 @@ def test_program_of_a_tenth_of_a_micrometre_keeps_it_from_tip_to_root(
     if change:
         bevel_set = change(bevel_set)
     spec = bevel_set.member(name)
-    path = execute(cutting_program(bevel_set, name, vertical, "EVERY_SET", Job(range(spec.teeth))), "EVERY_SET.MPF")
+    path = execute(
+        cutting_program(bevel_set, name, vertical, "EVERY_SET", CuttingJob(range(spec.teeth))), "EVERY_SET.MPF"
+    )
     states = surface_states(path, spec, name, vertical, spaces=(0,), columns=9)
     for state in states:
         limit = 1.2e-4 if state.surface.endswith("fillet") else 1e-4  # mm
@@ -90,7 +98,7 @@ def test_flank_file_of_one_space_keeps_it(gear_set: str, name: str, vertical: Mi
     bevel_set = load_bevel_set(bundled(f"{gear_set}.toml"))
     member = bevel_set.member(name)
     spaces = range(member.teeth if member.process == "face_hobbing" else 1)
-    text = cutting_program(bevel_set, name, vertical, "EVERY_SET", Job(spaces, tolerance=1e-4))
+    text = cutting_program(bevel_set, name, vertical, "EVERY_SET", CuttingJob(spaces, tolerance=1e-4))
     measured = mill_member(execute(text, "EVERY_SET.MPF"), member, name, vertical)
     for flank in FLANKS:
         deviation = measured.select(flank).deviation
@@ -105,7 +113,7 @@ def test_program_for_toprem_blades_leaves_what_their_exact_motion_leaves(
     """Where Toprem and main blade join, each cuts some micrometres off the other's surface: so does the program."""
     bevel_set = with_toprem(load_bevel_set(bundled("nasa_tp3096_12x36.toml")))
     spec, space = bevel_set.gear, tooth_space(bevel_set.gear, "gear", 9)
-    path = execute(cutting_program(bevel_set, "gear", vertical, "TOPREM", Job(range(3))), "TOPREM.MPF")
+    path = execute(cutting_program(bevel_set, "gear", vertical, "TOPREM", CuttingJob(range(3))), "TOPREM.MPF")
     runs = runs_of(path, spec, "gear", vertical, None, space, SHARP_EDGE)
     for surface in nominal_surfaces(spec, space):
         exact = left_by_exact_motion(spec, "gear", space, surface)

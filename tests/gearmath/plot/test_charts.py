@@ -260,9 +260,11 @@ def test_every_word_of_every_chart_of_the_sheet_lies_within_its_picture(gear_set
     wave = 0.1234 * np.sin(2 * np.pi * np.arange(36) / 36)
     pitch, runout = Pitch("concave", 0 * wave, wave), Runout(wave, 2 * np.pi * np.arange(36) / 36, np.eye(36))
     figures = [
-        topography_chart(flank(-88.8), 100.0, 0.1234), pitch_chart(pitch, pitch, pitch_limits([pitch])),
-        runout_chart(runout), tooth_chart(flanks, "concave", 50.0),
-    ]  # fmt: skip
+        topography_chart(flank(-88.8), 100.0, 0.1234),
+        pitch_chart(pitch, pitch, pitch_limits([pitch])),
+        runout_chart(runout),
+        tooth_chart(flanks, "concave", 50.0),
+    ]
     for figure in figures:
         FigureCanvasAgg(figure).draw()
         beyond = {  # labels of ticks outside of the axes are not drawn
@@ -281,6 +283,11 @@ def test_every_word_of_every_chart_of_the_sheet_lies_within_its_picture(gear_set
 
 def test_numbers_have_signs_and_scale_bars_round_lengths():
     assert [signed(x) for x in (1.04, -0.26, 0.04, -0.04, 99.94, -123.4)] == [
-        "+1.0", "\N{MINUS SIGN}0.3", "0.0", "0.0", "+99.9", "\N{MINUS SIGN}123",
-    ]  # fmt: skip
+        "+1.0",
+        "\N{MINUS SIGN}0.3",
+        "0.0",
+        "0.0",
+        "+99.9",
+        "\N{MINUS SIGN}123",
+    ]
     assert [round_length(x) for x in (1.0, 4.9, 5.0, 19.0, 0.3)] == pytest.approx([1, 2, 5, 10, 0.2])

@@ -18,9 +18,17 @@ from gearmath.specs.calibration import Calibration
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
 
 HEADER = {
-    "member": "pinion", "member_teeth": "4", "frame": "w", "unit": "mm", "grid": "5x9", "margins": "0.1,0.1",
-    "reference_point": "2,4", "phase_zeroed": "false", "tip_radius_mm": "0", "settings_sha256": "0" * 64,
-}  # fmt: skip
+    "member": "pinion",
+    "member_teeth": "4",
+    "frame": "w",
+    "unit": "mm",
+    "grid": "5x9",
+    "margins": "0.1,0.1",
+    "reference_point": "2,4",
+    "phase_zeroed": "false",
+    "tip_radius_mm": "0",
+    "settings_sha256": "0" * 64,
+}
 
 
 @pytest.fixture
@@ -31,19 +39,32 @@ def teeth() -> Callable[..., FlankFile]:
     """
 
     def make(
-        deviations: Sequence[float], radius: float = 50.0, slope: float = 0.0, flank: str = "concave",
-        order: Sequence[int] | None = None, place: tuple[int, int] = (2, 4),
-    ) -> FlankFile:  # fmt: skip
+        deviations: Sequence[float],
+        radius: float = 50.0,
+        slope: float = 0.0,
+        flank: str = "concave",
+        order: Sequence[int] | None = None,
+        place: tuple[int, int] = (2, 4),
+    ) -> FlankFile:
         files = []
         for tooth in order if order is not None else range(len(deviations)):
             turn = 2 * math.pi * tooth / 4
             c, s = math.cos(turn), math.sin(turn)
             about = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
             point, normal = [[radius, 0, 20.0]] @ about.T, [[0, math.cos(slope), math.sin(slope)]] @ about.T
-            files.append(flank_file(
-                HEADER, "pinion", flank, tooth, np.array([place[0]]), np.array([place[1]]), point, normal,
-                np.array([deviations[tooth]]),
-            ))  # fmt: skip
+            files.append(
+                flank_file(
+                    HEADER,
+                    "pinion",
+                    flank,
+                    tooth,
+                    np.array([place[0]]),
+                    np.array([place[1]]),
+                    point,
+                    normal,
+                    np.array([deviations[tooth]]),
+                )
+            )
         return join(files)
 
     return make
@@ -67,9 +88,16 @@ def plane() -> Callable[..., FlankFile]:
         mixed = np.random.default_rng(2).permutation(len(point))
         header = HEADER | {"grid": f"{rows}x{columns}", "reference_point": f"{rows // 2},{columns // 2}"}
         return flank_file(
-            header, "pinion", "concave", 0, row[mixed], col[mixed], point[mixed], normal[mixed],
+            header,
+            "pinion",
+            "concave",
+            0,
+            row[mixed],
+            col[mixed],
+            point[mixed],
+            normal[mixed],
             np.broadcast_to(deviation(along, up), along.shape)[mixed],
-        )  # fmt: skip
+        )
 
     return make
 
@@ -125,18 +153,27 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
         v = np.hstack([nominal.contact[keep], np.zeros((len(point), 1))])
         for _ in range(5):
             jacobian = np.stack(
-                [(off(v + np.eye(4)[k] * _STEPS[k]) - off(v - np.eye(4)[k] * _STEPS[k])) / (2 * _STEPS[k])
-                 for k in range(4)], axis=2,
-            )  # fmt: skip
+                [
+                    (off(v + np.eye(4)[k] * _STEPS[k]) - off(v - np.eye(4)[k] * _STEPS[k])) / (2 * _STEPS[k])
+                    for k in range(4)
+                ],
+                axis=2,
+            )
             v = v - np.linalg.solve(jacobian, off(v)[..., None])[..., 0]
         assert np.abs(off(v)).max() < 1e-8
         return point, normal, v[:, 3]
 
     def make(
-        member: Member, name: str, seat: Sequence[float] = (0, 0, 0, 0), teeth: Sequence[int] = range(8),
-        places: Sequence[int] | None = None, index: dict[str, np.ndarray] | None = None,
-        form: Callable = lambda flank, z, r: 0 * z, whole: Sequence[int] = (), grid: tuple[int, int] = (5, 9),
-    ) -> FlankFile:  # fmt: skip
+        member: Member,
+        name: str,
+        seat: Sequence[float] = (0, 0, 0, 0),
+        teeth: Sequence[int] = range(8),
+        places: Sequence[int] | None = None,
+        index: dict[str, np.ndarray] | None = None,
+        form: Callable = lambda flank, z, r: 0 * z,
+        whole: Sequence[int] = (),
+        grid: tuple[int, int] = (5, 9),
+    ) -> FlankFile:
         grid_ = blank_grid(member, *grid)
         row, col = (each.ravel() for each in np.indices(grid))
         header, files = flank_header(member, name, grid_.shape), []
@@ -215,9 +252,7 @@ def brute_force(moved_edge) -> SimpleNamespace:
             r, height, side = spec.blade_spheric_radius, spec.blade_reference_height, blade.side
             at = radius + side * height * math.tan(alpha)  # where arc and straight blade touch
             arc = (at - side * r * math.cos(alpha), height + r * math.sin(alpha), r)
-        return dataclasses.replace(
-            blade, moving=moving, roll=roll, point_radius=radius, alpha=alpha, arc=arc
-        )  # fmt: skip
+        return dataclasses.replace(blade, moving=moving, roll=roll, point_radius=radius, alpha=alpha, arc=arc)
 
     def left(member: Member, flank: str, target: FlankTarget, change: np.ndarray, levels: int = 5) -> np.ndarray:
         blade, at = changed(member, flank, change), target.nominal

@@ -21,9 +21,12 @@ from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, load_bevel_set
 from gearmath.specs.toml import bundled
 
 SETS = (
-    "nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_formate_14x39", "crown_gear_universal_14x39",
+    "nasa_tp3096_12x36",
+    "crown_gear_7x43",
+    "crown_gear_formate_14x39",
+    "crown_gear_universal_14x39",
     "crown_gear_hobbed_14x39",
-)  # fmt: skip
+)
 ALL = [(name, member) for name in SETS for member in MEMBERS]
 each_member = pytest.mark.parametrize(("set_name", "name"), ALL)
 #: Errors of the largest size that must be found again. [mm]
@@ -135,10 +138,12 @@ def _group(brute_force, member, name, flanks):
 
 def measured(brute_force, member, flanks, targets, variables, errors):
     """What brute force leaves on all flanks of a group."""
-    return np.concatenate([
-        brute_force.left(member, flank, target, spread(variables, errors, k))
-        for k, (flank, target) in enumerate(zip(flanks, targets, strict=True))
-    ])  # fmt: skip
+    return np.concatenate(
+        [
+            brute_force.left(member, flank, target, spread(variables, errors, k))
+            for k, (flank, target) in enumerate(zip(flanks, targets, strict=True))
+        ]
+    )
 
 
 @each_member
@@ -236,8 +241,10 @@ def test_blades_of_a_completing_cut_are_identified_one_by_one(brute_force, host_
     targets, names = targets_of(member, "gear"), ("sliding_base", "blade_pressure_angle")
     variables = variables_of(names, 2)
     assert [variable.label for variable in variables] == [
-        "sliding_base", "blade_pressure_angle[0]", "blade_pressure_angle[1]"
-    ]  # fmt: skip
+        "sliding_base",
+        "blade_pressure_angle[0]",
+        "blade_pressure_angle[1]",
+    ]
     errors = np.array([0.02, 0.001, -0.002])
     left = measured(brute_force, member, FLANKS, targets, variables, errors)
     found = identify(with_deviations(targets, left), names)

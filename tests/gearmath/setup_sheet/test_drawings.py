@@ -10,17 +10,17 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.root import Widths
-from gearmath.bevel.tooth import FlankSurface, ToothSpace
+from gearmath.bevel.tooth import SpaceFlank, ToothSpace
 from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.bodies.profiles import work_profiles
 from gearmath.machine.planning.setup_facts import BlankSizes
 from gearmath.machine.planning.tooling import PointWidth, tools_of
-from gearmath.setup_sheet.machine_drawing import Ring, machine_drawing
+from gearmath.setup_sheet.machine_drawing import DrawnRing, machine_drawing
 from gearmath.setup_sheet.point_drawing import point_drawing
 from gearmath.setup_sheet.svg import LETTER, WIDTH
 from gearmath.setup_sheet.work_drawing import work_drawing
 
-TOOL = [Ring("blade", 0.0, 12.0, 75.0, 79.0), Ring("holder", 12.0, 150.0, 60.0, 60.0)]
+TOOL = [DrawnRing("blade", 0.0, 12.0, 75.0, 79.0), DrawnRing("holder", 12.0, 150.0, 60.0, 60.0)]
 SVG = "{http://www.w3.org/2000/svg}"
 
 
@@ -52,10 +52,14 @@ def drawn(machine, member, b=0.3):
 def placed_otherwise(vertical):
     """The machine of the sentence: its gauge line is 650 mm above the B axis at Z = 0, and Z travels below that."""
     z = vertical.axes.Z.model_copy(update={"travel": (-700.0, 0.0)})
-    return vertical.model_copy(update={
-        "gauge_line_height": -650.0, "tool_length": 120.0, "home_z": None,
-        "axes": vertical.axes.model_copy(update={"Z": z}),
-    })  # fmt: skip
+    return vertical.model_copy(
+        update={
+            "gauge_line_height": -650.0,
+            "tool_length": 120.0,
+            "home_z": None,
+            "axes": vertical.axes.model_copy(update={"Z": z}),
+        }
+    )
 
 
 def test_lengths_of_the_machine_are_to_scale(gear_set, vertical):
@@ -90,8 +94,10 @@ def test_sizes_of_the_blank_are_those_of_a_hand_calculation_and_to_scale(gear_se
     ends = {}
     for end, along in (("crown", half), ("toe tip", -half)):
         distance, addendum = 81.0514 + along, 4.570064768422 + along * more
-        ends[end] = (distance * math.cos(delta) - addendum * math.sin(delta),
-                     distance * math.sin(delta) + addendum * math.cos(delta))  # fmt: skip
+        ends[end] = (
+            distance * math.cos(delta) - addendum * math.sin(delta),
+            distance * math.sin(delta) + addendum * math.cos(delta),
+        )
     sizes = BlankSizes.of(gear_set.pinion, vertical)
     assert (sizes.to_crown, sizes.outside_diameter / 2) == pytest.approx(ends["crown"], abs=1e-9)
     assert (sizes.to_front_crown, sizes.toe_diameter / 2) == pytest.approx(ends["toe tip"], abs=1e-9)
@@ -122,7 +128,7 @@ def test_point_of_a_completing_cutter_is_as_wide_as_its_blades_are_apart(gear_se
 def test_point_of_a_cutter_for_one_flank_is_limited_by_the_slot_that_both_leave(gear_set):
     """A slot that is 3 mm wide at the toe and 5 mm at the heel: at least 2.5 mm, or a ridge stays, and at most 3 mm."""
     low, high = (np.array([[[50.0, sign * 1.5, 0.0], [60.0, sign * 2.5, 9.0]]]) for sign in (-1, 1))
-    flanks = [FlankSurface("any", points, points, ("main",), np.ones((1, 2))) for points in (low, high)]
+    flanks = [SpaceFlank("any", points, points, ("main",), np.ones((1, 2))) for points in (low, high)]
     slot = Widths(3.0, 4.0, 5.0, 3.0, 5.0)
     space = ToothSpace(*flanks, 0.5, slot, dict.fromkeys(("concave", "convex"), slot))
     wanted = gear_set.pinion.concave.model_copy(update={"blade_point_width": 2.0})

@@ -14,7 +14,7 @@ import pytest
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.judging.timing import timing
-from gearmath.machine.planning.cut_plan import PLUNGE_FEED, Job, cutting_plan
+from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, cutting_plan
 from gearmath.machine.planning.setup_facts import R_D, SetupFacts
 from gearmath.machine.writing.cutting import program_of
 from gearmath.setup_sheet import setup_sheet
@@ -53,7 +53,7 @@ addEventListener('load', () => {
 def facts(gear_set, vertical):
     """The NASA pinion, three spaces that are not neighbours, with a title that is no plain text."""
     odd = gear_set.model_copy(update={"title": ODD})
-    return SetupFacts.of(cutting_plan(odd, "pinion", vertical, Job((0, 1, 5), tolerance=1e-3)), PLUNGE_FEED)
+    return SetupFacts.of(cutting_plan(odd, "pinion", vertical, CuttingJob((0, 1, 5), tolerance=1e-3)), PLUNGE_FEED)
 
 
 @pytest.fixture(scope="module")
@@ -155,9 +155,18 @@ def test_probing_has_a_sheet_with_the_length_of_its_probe_in_place_of_a_cutter(c
     """The bundled probe: 200 mm long; at the home of Z, 900, its tip is 900 - 350 - 200 = 350 mm above the B axis."""
     page = tmp_path / "probe.html"
     status, out, err = command(
-        "nc", "probe", "nasa_tp3096_12x36.toml", "--member", "pinion", "--topography", "none", "-o",
-        tmp_path / "PROBE.MPF", "--sheet", page,
-    )  # fmt: skip
+        "nc",
+        "probe",
+        "nasa_tp3096_12x36.toml",
+        "--member",
+        "pinion",
+        "--topography",
+        "none",
+        "-o",
+        tmp_path / "PROBE.MPF",
+        "--sheet",
+        page,
+    )
     assert (status, err) == (0, "")
     assert f"{page}: set-up sheet, prints on A4" in out
     found = cells(page.read_text("utf-8"))
@@ -170,8 +179,16 @@ def test_blade_count_of_a_hobbed_flank_is_refused_by_its_key(refused, tmp_path):
     text = bundled("crown_gear_hobbed_14x39.toml").read_text("utf-8")
     wrong = tmp_path / "wrong.toml"
     wrong.write_text(text.replace("blade_profile_height", "blade_count = 4\nblade_profile_height", 1), "utf-8")
-    refused(r"pinion.*concave\.blade_count = 4: belongs to face_milling", "nc", "cut", wrong, "--member", "pinion",
-            "-o", tmp_path / "PINION.MPF")  # fmt: skip
+    refused(
+        r"pinion.*concave\.blade_count = 4: belongs to face_milling",
+        "nc",
+        "cut",
+        wrong,
+        "--member",
+        "pinion",
+        "-o",
+        tmp_path / "PINION.MPF",
+    )
 
 
 def test_sheet_fits_a_telephone_and_no_word_of_a_drawing_is_over_another(browser, sheet, tmp_path):

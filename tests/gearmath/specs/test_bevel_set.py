@@ -76,7 +76,9 @@ def test_vectors_are_in_mm_and_rad_in_the_order_of_the_notation(gear_set):
     ("table", "old", "new", "sentence"),
     [
         (
-            "pinion.concave", "radial_distance = 74.874171554126\n", "",
+            "pinion.concave",
+            "radial_distance = 74.874171554126\n",
+            "",
             "pinion.concave.radial_distance: the key is missing",
         ),
         ("pinion.concave", "cutter_tilt = 0.0", "tilt = 0.0", r"pinion\.concave\.tilt = 0\.0: no such key"),
@@ -101,7 +103,7 @@ def test_vectors_are_in_mm_and_rad_in_the_order_of_the_notation(gear_set):
         ("pinion.blank", "clearance = 0.762", "clearance = 2.3", "pinion.blank: clearance 2.3 must be less than mean"),
         ("gear.convex", "sliding_base = 0.0", "sliding_base = 0.5", "gear: a completing cut has one sliding_base"),
     ],
-)  # fmt: skip
+)
 def test_fault_is_refused_by_file_key_value_and_limit(table, old, new, sentence):
     with pytest.raises(InputError, match=r"^set\.toml: " + sentence):
         parse(changed(table, old, new), BevelSet, "set.toml")

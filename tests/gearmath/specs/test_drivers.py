@@ -9,15 +9,26 @@ from gearmath.specs.drivers import DRIVERS, Driver, StepTiming
 
 #: LinuxCNC's tables of step timing and stepconf [ns]: step high, step low, DIR hold, DIR set-up.
 PUBLISHED = {
-    "gecko201": (500, 4000, 20_000, 1000), "gecko210": (500, 4000, 20_000, 1000), "gecko212": (500, 4000, 20_000, 1000),
-    "gecko202": (500, 4500, 20_000, 1000), "gecko201x": (500, 3000, 20_000, 1000),
-    "gecko203v": (1000, 2000, 200, 200), "gecko_g540": (5000, 5000, 10_000, 10_000),
-    "m542": (1500, 1500, 8000, 5000), "dm556": (2500, 2500, 10_000, 5000), "dm422": (7500, 7500, 20_000, 5000),
-    "dm860t": (5000, 5000, 5000, 5000), "a4988": (1000, 1000, 200, 200), "drv8825": (1900, 1900, 650, 650),
-    "xylotex_8s3": (2000, 1000, 200, 200), "keling_4030": (5000, 5000, 20_000, 20_000),
-    "sherline": (22_000, 22_000, 100_000, 100_000), "tb6560": (150_000, 150_000, 150_000, 150_000),
-    "tmc2208": (100, 100, 20, 20), "tmc2209": (100, 100, 20, 20),
-}  # fmt: skip
+    "gecko201": (500, 4000, 20_000, 1000),
+    "gecko210": (500, 4000, 20_000, 1000),
+    "gecko212": (500, 4000, 20_000, 1000),
+    "gecko202": (500, 4500, 20_000, 1000),
+    "gecko201x": (500, 3000, 20_000, 1000),
+    "gecko203v": (1000, 2000, 200, 200),
+    "gecko_g540": (5000, 5000, 10_000, 10_000),
+    "m542": (1500, 1500, 8000, 5000),
+    "dm556": (2500, 2500, 10_000, 5000),
+    "dm422": (7500, 7500, 20_000, 5000),
+    "dm860t": (5000, 5000, 5000, 5000),
+    "a4988": (1000, 1000, 200, 200),
+    "drv8825": (1900, 1900, 650, 650),
+    "xylotex_8s3": (2000, 1000, 200, 200),
+    "keling_4030": (5000, 5000, 20_000, 20_000),
+    "sherline": (22_000, 22_000, 100_000, 100_000),
+    "tb6560": (150_000, 150_000, 150_000, 150_000),
+    "tmc2208": (100, 100, 20, 20),
+    "tmc2209": (100, 100, 20, 20),
+}
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
@@ -65,11 +76,12 @@ def test_times_of_the_file_are_taken_as_they_are():
 @pytest.mark.parametrize(
     ("output", "level", "low"),
     [
-        ("direct", "high", False), ("direct", "low", True),
+        ("direct", "high", False),
+        ("direct", "low", True),
         ("open_collector", "low", False),  # the source text: pin high, transistor on, opto-coupler pulled down
         ("open_collector", "high", True),
     ],
-)  # fmt: skip
+)
 def test_an_open_collector_inverts_every_level(output, level, low):
     driver = Driver(name="m542", output=output, step_active=level)
     assert driver.pin_active_low(level) is low

@@ -22,11 +22,19 @@ LAYOUTS = {
 #: Which help names which layout.
 VERBS = {
     "Flank CSV": (
-        "flank", "points", "touches", "mill", "evaluate", "compensate", "report", "uncertainty", "stock",
+        "flank",
+        "points",
+        "touches",
+        "mill",
+        "evaluate",
+        "compensate",
+        "report",
+        "uncertainty",
+        "stock",
     ),
     "Touch CSV": ("touches",),
     "Calibration touches": ("calibrate",),
-}  # fmt: skip
+}
 
 
 def section(title):

@@ -31,9 +31,16 @@ def test_default_pins_are_the_wiring_of_the_source_text():
     """Knob on 2 and 3, its button on 4; LS7184 on 6 and 7; STEP 13, DIR 8; display on A4, A5, which are 18 and 19."""
     pins = dict(load_hobbing_machine(bundled("hobbing_plewes.toml")).pins.used())
     assert pins == {
-        "knob_a": 2, "knob_b": 3, "button": 4, "encoder_step": 6, "encoder_dir": 7, "step_out": 13, "dir_out": 8,
-        "sda": 18, "scl": 19,
-    }  # fmt: skip
+        "knob_a": 2,
+        "knob_b": 3,
+        "button": 4,
+        "encoder_step": 6,
+        "encoder_dir": 7,
+        "step_out": 13,
+        "dir_out": 8,
+        "sda": 18,
+        "scl": 19,
+    }
 
 
 def test_second_bundled_machine_has_the_metric_hobs_of_the_second_example():
@@ -116,8 +123,8 @@ BAD = [
     (PLEWES, "lines = 1024", "lines = 1024\nwires = 2", ("encoder.wires", "2", "known")),
     (PLEWES, "lines = 1024", "lines = 10001", ("encoder.lines = 10001", "40004", "at most 10000 lines")),
     (PLEWES, "lines = 1024", "lines = 2000", ("limits.hob_rpm = 800", "106667", "100000", "at most 750 rpm")),
-    (PLEWES, 'worm = 10\n', 'worm = 10\n[feed]\ncounts_per_mm = 0.5\ncounts_up = "climb"\n', ("feed.counts_per_mm",)),
-    (PLEWES, 'worm = 10\n', 'worm = 10\n[feed]\ncounts_per_mm = 5\ncounts_up = "climb"\n', ("pins.feed_step",)),
+    (PLEWES, "worm = 10\n", 'worm = 10\n[feed]\ncounts_per_mm = 0.5\ncounts_up = "climb"\n', ("feed.counts_per_mm",)),
+    (PLEWES, "worm = 10\n", 'worm = 10\n[feed]\ncounts_per_mm = 5\ncounts_up = "climb"\n', ("pins.feed_step",)),
     (PLEWES, "[pins]", "[pins]\nfeed_step = 9\nfeed_dir = 10", ("pins.feed_step", "[feed]")),
     (PLEWES, "hob_starts = 1", "hob_starts = 0", ("hob_starts", "0", "1")),
     (PLEWES, "module = 1.0", "module = nan", ("hobs.9.module", "nan", "finite")),
@@ -155,7 +162,7 @@ BAD = [
     (LATHE, "[pins]", "[pins]\nfeed_dir = 20", ("pins.feed_dir", "[feed]")),
     (LATHE, 'profile = "lathe"', 'profile = "lathe"\nhob_hand = "left"', ("hob_hand", "lathe")),
     (LATHE, 'profile = "lathe"\n', "", ("profile = 'hobbing'", "[table]")),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("text", "old", "new", "words"), BAD)
@@ -228,7 +235,7 @@ def test_no_bundled_machine_connects_enable():
         ('name = "dm556"', 'name = "unsure"', ("pins.enable = 12", "driver.enable_active", "open")),
         ('name = "dm556"', "step_high_ns = 1\nstep_low_ns = 1\ndir_setup_ns = 1\ndir_hold_ns = 1", ("pins.enable",)),
     ],
-)  # fmt: skip
+)
 def test_a_setting_that_would_hold_the_motor_off_is_refused(old, new, words):
     with pytest.raises(InputError) as caught:
         changed(HELICAL.replace("index = 9", "index = 9\nenable = 12"), old, new)
@@ -258,10 +265,12 @@ def with_changes(text: str, *pairs: tuple[str, str]) -> HobbingMachine:
     ("board", "pins", "unit", "mux"),
     [
         # Teensy 3.2: PTB0, PTB1 (ALT6) and PTA12, PTA13 (ALT7) are FTM1's, PTB18, PTB19 (ALT6) FTM2's phases
-        ("teensy32", "", 1, (6, 6)), ("teensy32", "encoder_step = 32\nencoder_dir = 25", 2, (6, 6)),
-        ("teensy40", "", 1, (3, 1)), ("teensy41", "encoder_step = 31\nencoder_dir = 30", 1, (1, 1)),
+        ("teensy32", "", 1, (6, 6)),
+        ("teensy32", "encoder_step = 32\nencoder_dir = 25", 2, (6, 6)),
+        ("teensy40", "", 1, (3, 1)),
+        ("teensy41", "encoder_step = 31\nencoder_dir = 30", 1, (1, 1)),
     ],
-)  # fmt: skip
+)
 def test_encoder_is_led_to_a_counter_of_the_board(board, pins, unit, mux):
     machine = with_changes(PLEWES, HARDWARE, ('"teensy32"', f'"{board}"'), ("[pins]\n", f"[pins]\n{pins}\n"))
     assert machine.hob_counter is not None
@@ -271,15 +280,19 @@ def test_encoder_is_led_to_a_counter_of_the_board(board, pins, unit, mux):
 @pytest.mark.parametrize(
     ("pairs", "words"),
     [
-        ((HARDWARE, ("[pins]\n", "[pins]\nencoder_step = 6\nencoder_dir = 7\n")),
-         r"pins.encoder_step = 6 .* 16 and 17, 3 and 4, 32 and 25; or write decoder = \"interrupts\""),
+        (
+            (HARDWARE, ("[pins]\n", "[pins]\nencoder_step = 6\nencoder_dir = 7\n")),
+            r"pins.encoder_step = 6 .* 16 and 17, 3 and 4, 32 and 25; or write decoder = \"interrupts\"",
+        ),
         ((HARDWARE, ("[pins]\n", "[pins]\nencoder_step = 17\nencoder_dir = 16\n")), "in this order"),
-        ((HARDWARE, ('"teensy32"', '"teensy40"'), ("[pins]\n", "[pins]\nencoder_step = 5\nencoder_dir = 0\n")),
-         "but 0 with 5"),
+        (
+            (HARDWARE, ('"teensy32"', '"teensy40"'), ("[pins]\n", "[pins]\nencoder_step = 5\nencoder_dir = 0\n")),
+            "but 0 with 5",
+        ),
         ((('"ls7184_x4"', '"hardware"\ncounter = "hardware"'),), "counter = 'hardware': has no meaning"),
         ((PULSES, ("[pins]\n", "[pins]\nencoder_step = 6\nencoder_dir = 7\n")), "or leave counter out"),
     ],
-)  # fmt: skip
+)
 def test_pins_that_reach_no_counter_are_refused_with_those_that_do(pairs, words):
     with pytest.raises(InputError, match=words):
         with_changes(PLEWES, *pairs)

@@ -45,9 +45,12 @@ def limits(field: FieldInfo) -> str:
     if get_origin(field.annotation) is Literal or words is not None:
         return ", ".join(f"`{value!r}`".replace("'", '"') for value in get_args(words or field.annotation))
     bounds = {
-        at.Gt: ("above {}", "gt"), at.Ge: ("at least {}", "ge"), at.Lt: ("below {}", "lt"), at.Le: ("up to {}", "le"),
+        at.Gt: ("above {}", "gt"),
+        at.Ge: ("at least {}", "ge"),
+        at.Lt: ("below {}", "lt"),
+        at.Le: ("up to {}", "le"),
         at.MaxLen: ("{} characters at most" if field.annotation is str else "{} numbers at most", "max_length"),
-    }  # fmt: skip
+    }
     said = []
     for kind, (text, name) in bounds.items():
         values = [getattr(part, name) for part in found if isinstance(part, kind)]

@@ -115,11 +115,24 @@ def test_printed_sheet_in_inches_is_the_bundled_set(sheet, gear_set):
 def test_every_length_and_no_other_number_is_taken_as_inches():
     """Of every key of the models: what is 1 in the file is 25.4 mm, 1 degree, or 1."""
     lengths = {
-        "mean_cone_distance", "face_width", "mean_addendum", "mean_dedendum", "clearance", "radial_distance",
-        "blank_offset", "sliding_base", "machine_center_to_crossing_point", "blade_point_radius",
-        "blade_profile_height", "blade_edge_radius", "blade_point_width", "blade_spheric_radius",
-        "blade_reference_height", "toprem_height", "pitch_apex_beyond_crossing_point",
-    }  # fmt: skip
+        "mean_cone_distance",
+        "face_width",
+        "mean_addendum",
+        "mean_dedendum",
+        "clearance",
+        "radial_distance",
+        "blank_offset",
+        "sliding_base",
+        "machine_center_to_crossing_point",
+        "blade_point_radius",
+        "blade_profile_height",
+        "blade_edge_radius",
+        "blade_point_width",
+        "blade_spheric_radius",
+        "blade_reference_height",
+        "toprem_height",
+        "pitch_apex_beyond_crossing_point",
+    }
     from gearmath.specs.bevel_set import Blank, Flank, Member, Motion
 
     for model in (BevelSet, Member, Blank, Flank, Motion):
@@ -127,51 +140,94 @@ def test_every_length_and_no_other_number_is_taken_as_inches():
             one = model.plain({key: 1.0}, 25.4, ())[key]
             assert one == (25.4 if key in lengths else 1.0), key
     assert Motion.plain({"sliding_base": [1.0, 2.0], "cradle_angle": [1.0]}, 25.4, ()) == {
-        "sliding_base": [25.4, 50.8], "cradle_angle": [1.0],
-    }  # fmt: skip
+        "sliding_base": [25.4, 50.8],
+        "cradle_angle": [1.0],
+    }
 
 
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("radial_distance = 2.94780202969", "radial_distance = 74.87",
-         "pinion.concave.radial_distance = 74.87: must be at most 39.3701"),
-        ("face_width = 1.0", "face_width = 25.4",
-         "pinion.blank.face_width = 25.4: must be at most 11.811"),
-        ("face_width = 1.0", "face_width = 3.3",
-         "pinion.blank: face_width 3.3 must be less than mean_cone_distance 3.191"),
+        (
+            "radial_distance = 2.94780202969",
+            "radial_distance = 74.87",
+            "pinion.concave.radial_distance = 74.87: must be at most 39.3701",
+        ),
+        ("face_width = 1.0", "face_width = 25.4", "pinion.blank.face_width = 25.4: must be at most 11.811"),
+        (
+            "face_width = 1.0",
+            "face_width = 3.3",
+            "pinion.blank: face_width 3.3 must be less than mean_cone_distance 3.191",
+        ),
         ("face_width = 1.0", "face_width = nan", "pinion.blank.face_width = nan: must be a finite number"),
         ("face_width = 1.0", 'face_width = "1 in"', "pinion.blank.face_width = '1 in': must be a number"),
-        ("radial_distance = 2.80104946", "motion.sliding_base = [0.1, 50.0]\nradial_distance = 2.80104946",
-         "pinion.convex.motion.sliding_base.1 = 50.0: must be at most 39.3701"),
-        ("blade_point_radius = 2.96562137806", "blade_point_radius = 15.0",
-         "pinion: concave.blade_point_radius = 15: no real contact, .* between -0.4516 and 6.834"),
-        ("blade_profile_height = 0.5", "blade_profile_height = 0.5\nblade_spheric_radius = 0.7",
-         "pinion.concave: blade_spheric_radius = 0.7: must be at least 1.0 in size"),
+        (
+            "radial_distance = 2.80104946",
+            "motion.sliding_base = [0.1, 50.0]\nradial_distance = 2.80104946",
+            "pinion.convex.motion.sliding_base.1 = 50.0: must be at most 39.3701",
+        ),
+        (
+            "blade_point_radius = 2.96562137806",
+            "blade_point_radius = 15.0",
+            "pinion: concave.blade_point_radius = 15: no real contact, .* between -0.4516 and 6.834",
+        ),
+        (
+            "blade_profile_height = 0.5",
+            "blade_profile_height = 0.5\nblade_spheric_radius = 0.7",
+            "pinion.concave: blade_spheric_radius = 0.7: must be at least 1.0 in size",
+        ),
         ('unit = "inch"', 'unit = "cm"', "unit = 'cm': must be 'mm' or 'inch'"),
         ('unit = "inch"', "unit = 25.4", "unit = 25.4: must be 'mm' or 'inch'"),
         ('unit = "inch"', 'unit = ["mm"]', r"unit = \['mm'\]: must be 'mm' or 'inch'"),
-        ('cradle_angle = "-63 56 31.3096686"', 'cradle_angle = "-63 75 31.3"',
-         "pinion.concave.cradle_angle = '-63 75 31.3': minutes must be below 60"),
-        ('cradle_angle = "-63 56 31.3096686"', 'cradle_angle = "-63 56 60"',
-         "pinion.concave.cradle_angle = '-63 56 60': seconds must be below 60"),
-        ('cradle_angle = "-63 56 31.3096686"', 'cradle_angle = "-63.5 56"',
-         "pinion.concave.cradle_angle = '-63.5 56': only the last of degrees, minutes and seconds may have decimals"),
-        ('cradle_angle = "-63 56 31.3096686"', 'cradle_angle = "N63"',
-         "pinion.concave.cradle_angle = 'N63': must be a number, or degrees, minutes and seconds such as '63 56 31.3'"),
-        ('cradle_angle = "-63 56 31.3096686"', 'cradle_angle = "200 0 0"',
-         "pinion.concave.cradle_angle = '200 0 0': must be at most 180"),
-        ("ratio_of_roll_cradle_per_work = 0.30838512709", "ratio_of_roll_cradle_per_work = 30.8",
-         "pinion.concave.ratio_of_roll_cradle_per_work = 30.8: must be at least 0.02 and less than 10"),
-        ("ratio_of_roll_cradle_per_work = 0.30838512709", "ratio_of_roll_cradle_per_work = 0",
-         "pinion.concave.ratio_of_roll_cradle_per_work = 0: must be at least 0.02 and less than 10"),
-        ("ratio_of_roll_cradle_per_work = 0.30838512709", "ratio_of_roll_cradle_per_work = nan",
-         "pinion.concave.ratio_of_roll_cradle_per_work = nan: must be at least 0.02 and less than 10"),
-        ("ratio_of_roll_cradle_per_work = 0.30838512709",
-         "ratio_of_roll = 3.24\nratio_of_roll_cradle_per_work = 0.30838512709",
-         "pinion.concave.ratio_of_roll_cradle_per_work = 0.30838512709: ratio_of_roll is given too: only one of them"),
+        (
+            'cradle_angle = "-63 56 31.3096686"',
+            'cradle_angle = "-63 75 31.3"',
+            "pinion.concave.cradle_angle = '-63 75 31.3': minutes must be below 60",
+        ),
+        (
+            'cradle_angle = "-63 56 31.3096686"',
+            'cradle_angle = "-63 56 60"',
+            "pinion.concave.cradle_angle = '-63 56 60': seconds must be below 60",
+        ),
+        (
+            'cradle_angle = "-63 56 31.3096686"',
+            'cradle_angle = "-63.5 56"',
+            "pinion.concave.cradle_angle = '-63.5 56': only the last of degrees, minutes and seconds may have decimals",
+        ),
+        (
+            'cradle_angle = "-63 56 31.3096686"',
+            'cradle_angle = "N63"',
+            "pinion.concave.cradle_angle = 'N63': must be a number, or degrees, minutes and seconds such as "
+            "'63 56 31.3'",
+        ),
+        (
+            'cradle_angle = "-63 56 31.3096686"',
+            'cradle_angle = "200 0 0"',
+            "pinion.concave.cradle_angle = '200 0 0': must be at most 180",
+        ),
+        (
+            "ratio_of_roll_cradle_per_work = 0.30838512709",
+            "ratio_of_roll_cradle_per_work = 30.8",
+            "pinion.concave.ratio_of_roll_cradle_per_work = 30.8: must be at least 0.02 and less than 10",
+        ),
+        (
+            "ratio_of_roll_cradle_per_work = 0.30838512709",
+            "ratio_of_roll_cradle_per_work = 0",
+            "pinion.concave.ratio_of_roll_cradle_per_work = 0: must be at least 0.02 and less than 10",
+        ),
+        (
+            "ratio_of_roll_cradle_per_work = 0.30838512709",
+            "ratio_of_roll_cradle_per_work = nan",
+            "pinion.concave.ratio_of_roll_cradle_per_work = nan: must be at least 0.02 and less than 10",
+        ),
+        (
+            "ratio_of_roll_cradle_per_work = 0.30838512709",
+            "ratio_of_roll = 3.24\nratio_of_roll_cradle_per_work = 0.30838512709",
+            "pinion.concave.ratio_of_roll_cradle_per_work = 0.30838512709: ratio_of_roll is given too: only one "
+            "of them",
+        ),
     ],
-)  # fmt: skip
+)
 def test_fault_is_refused_as_the_file_has_it_with_the_limit_in_its_unit(sheet, old, new, sentence):
     assert old in sheet
     with pytest.raises(InputError, match=r"^sheet\.toml: " + sentence):
@@ -323,9 +379,27 @@ def test_model_of_a_loaded_set_is_that_set_again(sheet):
 
 
 ODD = [
-    "1" + "0" * 400, "-1" + "0" * 400, "true", '"x"', '""', '" "', "[]", "{}", "[1]", '["1 2 3"]', "nan", "-inf", "0",
-    '"1 2 3"', '"1 2 3 4"', f'"1{" " * 5000}2"', "1979-05-27", "1e308", "{a = 1}", '"\\u0661 2"',
-]  # fmt: skip
+    "1" + "0" * 400,
+    "-1" + "0" * 400,
+    "true",
+    '"x"',
+    '""',
+    '" "',
+    "[]",
+    "{}",
+    "[1]",
+    '["1 2 3"]',
+    "nan",
+    "-inf",
+    "0",
+    '"1 2 3"',
+    '"1 2 3 4"',
+    f'"1{" " * 5000}2"',
+    "1979-05-27",
+    "1e308",
+    "{a = 1}",
+    '"\\u0661 2"',
+]
 
 
 def outcome(text: str) -> str | BevelSet:

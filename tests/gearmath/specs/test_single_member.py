@@ -73,9 +73,18 @@ def test_correction_by_the_mate_says_that_there_is_none(alone, refused, tmp_path
     member = gear_set.member(name)
     write_flank_csv(measured, join([nominal_flank(member, name, flank, blank_grid(member)) for flank in FLANKS]))
     refused(
-        rf"--from-mate: .*alone\.toml: has no {absent}", "compensate", path, "--member", name, "--measured",
-        measured, "--from-mate", measured, "-o", tmp_path / "new.toml",
-    )  # fmt: skip
+        rf"--from-mate: .*alone\.toml: has no {absent}",
+        "compensate",
+        path,
+        "--member",
+        name,
+        "--measured",
+        measured,
+        "--from-mate",
+        measured,
+        "-o",
+        tmp_path / "new.toml",
+    )
 
 
 def test_hands_are_compared_only_where_there_are_two():

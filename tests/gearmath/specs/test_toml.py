@@ -129,9 +129,26 @@ def models(base: type[Spec] = Spec) -> Iterator[type[Spec]]:
 
 #: A value of each kind that TOML has, some beyond all limits.
 KINDS = (
-    True, -1, 10**400, 12.5, -1e300, float("nan"), "", "abc", "12.5", "x" * 2000, [], [1.0, "a"], [[1]], [0.0] * 99, {},
-    {"foo": 1}, datetime.date(2026, 1, 2), datetime.time(3, 4), datetime.datetime(2026, 1, 2, 3, 4),
-)  # fmt: skip
+    True,
+    -1,
+    10**400,
+    12.5,
+    -1e300,
+    float("nan"),
+    "",
+    "abc",
+    "12.5",
+    "x" * 2000,
+    [],
+    [1.0, "a"],
+    [[1]],
+    [0.0] * 99,
+    {},
+    {"foo": 1},
+    datetime.date(2026, 1, 2),
+    datetime.time(3, 4),
+    datetime.datetime(2026, 1, 2, 3, 4),
+)
 #: Words of pydantic and of Python.
 FOREIGN = re.compile(
     r"Input|should|valid\b|parse|instance|tuple|dict|float|integer|permitted|Field|True|False|datetime|\bNone\b|literal"

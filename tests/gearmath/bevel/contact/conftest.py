@@ -90,8 +90,9 @@ def _place(member: Member, across: np.ndarray, up: np.ndarray) -> tuple[np.ndarr
     bottom, tip = _heights(member, distance)
     height, angle = bottom + up * (tip - bottom), math.radians(blank.pitch_angle)
     return (
-        distance * math.cos(angle) - height * math.sin(angle), distance * math.sin(angle) + height * math.cos(angle)
-    )  # fmt: skip
+        distance * math.cos(angle) - height * math.sin(angle),
+        distance * math.sin(angle) + height * math.cos(angle),
+    )
 
 
 def _blank_place(member: Member, axial: np.ndarray, radial: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -132,8 +133,13 @@ class Rolling:
 
         def apart(turn: np.ndarray) -> tuple[np.ndarray, ...]:
             x, y, z = radial * np.cos(own + turn), radial * np.sin(own + turn), axial + self.J
-            at = np.stack([x * math.cos(sigma) + z * math.sin(sigma), y + self.V,
-                           z * math.cos(sigma) - x * math.sin(sigma) - self.H])  # fmt: skip
+            at = np.stack(
+                [
+                    x * math.cos(sigma) + z * math.sin(sigma),
+                    y + self.V,
+                    z * math.cos(sigma) - x * math.sin(sigma) - self.H,
+                ]
+            )
             place = _blank_place(self.pinion.member, at[2], np.hypot(at[0], at[1]))
             return _half(np.arctan2(at[1], at[0]) - self.pinion.azimuth(*place) + zero - rotation), *place
 
@@ -154,9 +160,7 @@ class Rolling:
         sigma = self.shaft_angle + self.shaft
         x, y, z = radial * np.cos(own), radial * np.sin(own) - self.V, axial + self.H
         along = x * math.cos(sigma) - z * math.sin(sigma)
-        place = _blank_place(
-            self.gear.member, x * math.sin(sigma) + z * math.cos(sigma) - self.J, np.hypot(along, y)
-        )  # fmt: skip
+        place = _blank_place(self.gear.member, x * math.sin(sigma) + z * math.cos(sigma) - self.J, np.hypot(along, y))
         turn = np.arctan2(y, along) - self.gear.azimuth(*place) + _mean(self.gear) - math.pi
         return _half(turn), *place, across, up
 
@@ -222,30 +226,49 @@ def uniform_pair():
         delta = math.atan2(teeth, _TEETH[0] + _TEETH[1] - teeth)
         center = _CONE - radius * cmath.exp(-1j * (math.pi / 2 - _SPIRAL))
         settings = {
-            "radial_distance": abs(center), "cradle_angle": math.degrees(hand * cmath.phase(center)),
-            "cutter_tilt": 0.0, "cutter_swivel": 0.0, "blank_offset": 0.0, "sliding_base": -_DEPTH,
-            "machine_center_to_crossing_point": 0.0, "machine_root_angle": math.degrees(delta),
-            "ratio_of_roll": 1 / math.sin(delta), "work_rotation_offset": 0.0,
-            "blade_pressure_angle": math.degrees(_ALPHA), "blade_profile_height": 17.0,
-        }  # fmt: skip
+            "radial_distance": abs(center),
+            "cradle_angle": math.degrees(hand * cmath.phase(center)),
+            "cutter_tilt": 0.0,
+            "cutter_swivel": 0.0,
+            "blank_offset": 0.0,
+            "sliding_base": -_DEPTH,
+            "machine_center_to_crossing_point": 0.0,
+            "machine_root_angle": math.degrees(delta),
+            "ratio_of_roll": 1 / math.sin(delta),
+            "work_rotation_offset": 0.0,
+            "blade_pressure_angle": math.degrees(_ALPHA),
+            "blade_profile_height": 17.0,
+        }
         if bent is not None:
             settings |= {"blade_spheric_radius": bent, "blade_reference_height": _DEPTH}
         radii = {"concave": radius - _DEPTH * math.tan(_ALPHA), "convex": radius + _DEPTH * math.tan(_ALPHA)}
         angle = math.degrees(delta)
         blank = {
-            "pitch_angle": angle, "face_angle": angle, "root_angle": angle, "mean_cone_distance": _CONE,
-            "face_width": 20.0, "mean_addendum": 3.2, "mean_dedendum": _DEPTH, "clearance": 0.8,
-        }  # fmt: skip
+            "pitch_angle": angle,
+            "face_angle": angle,
+            "root_angle": angle,
+            "mean_cone_distance": _CONE,
+            "face_width": 20.0,
+            "mean_addendum": 3.2,
+            "mean_dedendum": _DEPTH,
+            "clearance": 0.8,
+        }
         return {
-            "teeth": teeth, "hand": "right" if hand > 0 else "left", "cutting": "fixed_setting", "blank": blank,
+            "teeth": teeth,
+            "hand": "right" if hand > 0 else "left",
+            "cutting": "fixed_setting",
+            "blank": blank,
             **{flank: {**settings, "blade_point_radius": radii[flank]} for flank in FLANKS},
-        }  # fmt: skip
+        }
 
     def make(radius: float = _RADIUS, bent: float | None = None) -> BevelSet:
         values = {
-            "title": "uniform depth", "source": "here", "shaft_angle": 90.0,
-            "pinion": member(_TEETH[0], -1, radius, bent), "gear": member(_TEETH[1], 1, _RADIUS, None),
-        }  # fmt: skip
+            "title": "uniform depth",
+            "source": "here",
+            "shaft_angle": 90.0,
+            "pinion": member(_TEETH[0], -1, radius, bent),
+            "gear": member(_TEETH[1], 1, _RADIUS, None),
+        }
         return checked(values, BevelSet, "uniform depth")
 
     return make

@@ -13,7 +13,7 @@ from gearmath.bevel.contact.local import MARKING, local, roll
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.misalignment import contact_at, sensitivities
 from gearmath.bevel.contact.report import ARCSEC, SIDES, side_mesh, side_system
-from gearmath.bevel.contact.surface import Surface
+from gearmath.bevel.contact.surface import ContactSurface
 from gearmath.bevel.contact.system import Assembly, System
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import BevelSet, load_bevel_set
@@ -65,8 +65,10 @@ def test_ellipse_is_that_of_the_gap_between_the_flanks(name: str, side: str) -> 
 
     def gap(p: float, s: float) -> float:
         """Along the normal, over a point of the tangent plane."""
-        over = [height(frames[k], touch.x[3 * k : 3 * k + 3], r, n, tangents, (p, s), surface_of(system, k))
-                for k in range(2)]  # fmt: skip
+        over = [
+            height(frames[k], touch.x[3 * k : 3 * k + 3], r, n, tangents, (p, s), surface_of(system, k))
+            for k in range(2)
+        ]
         return over[0] - over[1]
 
     h = 0.1
@@ -78,7 +80,7 @@ def test_ellipse_is_that_of_the_gap_between_the_flanks(name: str, side: str) -> 
     assert local(system, touch, assembly).semi_axes == pytest.approx(list(wanted), rel=1e-5)
 
 
-def surface_of(system: System, side: int) -> Surface:
+def surface_of(system: System, side: int) -> ContactSurface:
     return (system.pinion, system.gear)[side]
 
 
@@ -100,7 +102,7 @@ def placed(system: System, side: int, touch, assembly: np.ndarray):
     return at
 
 
-def height(at, w, r, n, tangents, over, surface: Surface) -> float:
+def height(at, w, r, n, tangents, over, surface: ContactSurface) -> float:
     """Height over the tangent plane at which a flank stands over a point of it, by Newton with differences."""
     w = np.array(w)
 
@@ -139,7 +141,7 @@ def test_path_and_parabola_of_two_quadrics_are_those_of_differences(offset: floa
             point, normal = axes.T @ (point - np.array([0, offset, 0])), axes.T @ normal
         function = ca.Function("quadric", [w], [point, normal, w[2], ca.SX(1)])
         blank = (gear_set.gear if side else gear_set.pinion).blank
-        surfaces.append(Surface(function, np.zeros((4, 4)), lambda *_: None, blank, (12, 36)[side]))
+        surfaces.append(ContactSurface(function, np.zeros((4, 4)), lambda *_: None, blank, (12, 36)[side]))
     system = System(surfaces[0], surfaces[1], math.pi / 2, offset)
     system.__dict__["sense"] = 1.0
     still = np.zeros(4)
@@ -180,9 +182,7 @@ def test_displacements_turn_the_gear_as_by_hand(side: str, gear_set: BevelSet) -
     found = sensitivities(system, touch, np.zeros(4))[2]
     assert found == pytest.approx(list(by_hand.values()), rel=1e-9)
     for name, rate in by_hand.items():
-        turns = [
-            system.solve(touch.x, touch.rotation, (), Assembly(**{name: by}).vector).x[6] for by in (1e-4, -1e-4)
-        ]  # fmt: skip
+        turns = [system.solve(touch.x, touch.rotation, (), Assembly(**{name: by}).vector).x[6] for by in (1e-4, -1e-4)]
         assert (turns[0] - turns[1]) / 2e-4 == pytest.approx(rate, rel=1e-5)
 
 
@@ -243,12 +243,14 @@ def test_hands_of_a_pair_mirror_its_contact(gear_set: BevelSet) -> None:
     def mirrored(member):
         flanks = {
             name: getattr(member, name).model_copy(
-                update={key: -getattr(getattr(member, name), key)
-                        for key in ("cradle_angle", "blank_offset", "work_rotation_offset")}
+                update={
+                    key: -getattr(getattr(member, name), key)
+                    for key in ("cradle_angle", "blank_offset", "work_rotation_offset")
+                }
                 | {"cutter_swivel": 180 - getattr(member, name).cutter_swivel}
             )
             for name in ("concave", "convex")
-        }  # fmt: skip
+        }
         return member.model_copy(update={**flanks, "hand": "left" if member.hand == "right" else "right"})
 
     other = gear_set.model_copy(update={"pinion": mirrored(gear_set.pinion), "gear": mirrored(gear_set.gear)})
@@ -261,5 +263,7 @@ def test_hands_of_a_pair_mirror_its_contact(gear_set: BevelSet) -> None:
             twin = rows[-round(math.degrees(row.rotation))]
             assert row.error == pytest.approx(-twin.error, abs=1e-11)
             assert (row.kind, row.cone_distance, row.height) == (
-                twin.kind, pytest.approx(twin.cone_distance, abs=1e-7), pytest.approx(twin.height, abs=1e-7)
-            )  # fmt: skip
+                twin.kind,
+                pytest.approx(twin.cone_distance, abs=1e-7),
+                pytest.approx(twin.height, abs=1e-7),
+            )

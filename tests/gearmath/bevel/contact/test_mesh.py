@@ -17,8 +17,11 @@ from gearmath.specs.toml import bundled
 
 DISPLACED = {"V": 0.2, "H": -0.15, "J": 0.1, "shaft": math.radians(0.1)}
 NASA, FORMATE, HOBBED, UNIVERSAL = (
-    "nasa_tp3096_12x36", "crown_gear_formate_14x39", "crown_gear_hobbed_14x39", "crown_gear_universal_14x39",
-)  # fmt: skip
+    "nasa_tp3096_12x36",
+    "crown_gear_formate_14x39",
+    "crown_gear_hobbed_14x39",
+    "crown_gear_universal_14x39",
+)
 #: Rotations of three pitches, in pitches: none of them a round part of one.
 ROTATIONS = (-1.37, -0.63, -0.21, 0.32, 1.44)
 
@@ -172,10 +175,15 @@ def conjugate_generator(spec, side: int) -> dict[str, float]:
     axis = np.array([i @ [0, 0, -1], j @ [0, 0, -1], k @ [0, 0, -1]])
     q = math.atan2(y, x)
     return {
-        "radial_distance": math.hypot(x, y), "cradle_angle": math.degrees(q), "sliding_base": -z,
+        "radial_distance": math.hypot(x, y),
+        "cradle_angle": math.degrees(q),
+        "sliding_base": -z,
         "cutter_tilt": math.degrees(math.acos(axis[2])),
         "cutter_swivel": math.degrees(math.atan2(axis[1], axis[0]) + math.pi / 2 - q),
-        "blank_offset": 0.0, "machine_center_to_crossing_point": 0.0, "machine_root_angle": 0.0,
+        "blank_offset": 0.0,
+        "machine_center_to_crossing_point": 0.0,
+        "machine_root_angle": 0.0,
         "blade_point_radius": spec.blade_point_radius + side * depth * math.tan(alpha),
-        "blade_pressure_angle": spec.blade_pressure_angle, "blade_profile_height": 60.0,
-    }  # fmt: skip
+        "blade_pressure_angle": spec.blade_pressure_angle,
+        "blade_profile_height": 60.0,
+    }

@@ -33,8 +33,10 @@ def test_gap_is_the_least_in_the_course_of_the_mesh(uniform_pair, rolling) -> No
     rotations = np.linspace(-1.8, 1.8, 1201) * system.pitch
     ahead = envelope(run, rotations)
     turns = [_on_pinion(*witness.from_gear(*_fractions(5, 9), rotation)) for rotation in rotations]
-    open_ = [first - system.sense * (turn + system.ratio * rotation)
-             for first, turn, rotation in zip(ahead, turns, rotations, strict=True)]  # fmt: skip
+    open_ = [
+        first - system.sense * (turn + system.ratio * rotation)
+        for first, turn, rotation in zip(ahead, turns, rotations, strict=True)
+    ]
     lever = np.abs(places(system, run.assembly, 5, 9).lever)
     at = np.nan_to_num(open_, nan=np.inf).argmin(axis=0)
     near = [

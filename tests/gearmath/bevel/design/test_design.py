@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.contact.report import ARCSEC, SIDES, side_system
-from gearmath.bevel.contact.system import System, Touch
+from gearmath.bevel.contact.system import System, TouchPoint
 from gearmath.bevel.design.local_settings import NAMES
 from gearmath.bevel.design.rounding import to_step
 from gearmath.bevel.design.route import Designed, design
@@ -24,13 +24,22 @@ from gearmath.specs.design import DesignData, load_design
 from gearmath.specs.toml import bundled, checked
 
 GENERATED = {
-    "title": "12 x 36", "pinion_teeth": 12, "wheel_teeth": 36, "outer_transverse_module": 4.96, "face_width": 25.4,
+    "title": "12 x 36",
+    "pinion_teeth": 12,
+    "wheel_teeth": 36,
+    "outer_transverse_module": 4.96,
+    "face_width": 25.4,
     "cutter": {"cutter_radius": 76.2},
-}  # fmt: skip
+}
 FORMATE = {
-    "title": "14 x 39", "pinion_teeth": 14, "wheel_teeth": 39, "outer_transverse_module": 4.5358, "face_width": 25.4,
-    "cutter": {"cutter_radius": 114.3}, "gear": {"generation": "formate"},
-}  # fmt: skip
+    "title": "14 x 39",
+    "pinion_teeth": 14,
+    "wheel_teeth": 39,
+    "outer_transverse_module": 4.5358,
+    "face_width": 25.4,
+    "cutter": {"cutter_radius": 114.3},
+    "gear": {"generation": "formate"},
+}
 
 
 def data(base: dict, **changes) -> DesignData:
@@ -44,7 +53,7 @@ def made(name: str) -> Designed:
     return design(data({"generated": GENERATED, "formate": FORMATE}[name]))
 
 
-def contact_where_asked(designed: Designed, side: str) -> tuple[System, Touch]:
+def contact_where_asked(designed: Designed, side: str) -> tuple[System, TouchPoint]:
     """The exact contact at the vertex, by Newton's method from the settings and the place on the gear."""
     system = side_system(designed.pair, side)
     flank = designed.flanks[side]
@@ -62,7 +71,7 @@ def contact_where_asked(designed: Designed, side: str) -> tuple[System, Touch]:
     raise AssertionError("no contact where it was asked for")
 
 
-def error(system: System, touch: Touch, by: float) -> float:
+def error(system: System, touch: TouchPoint, by: float) -> float:
     """φ_2 + i φ_1 [rad] at a rotation of the pinion away from a contact."""
     there = system.solve(touch.x + by * touch.tangent, touch.rotation + by, (), np.zeros(4), 20)
     assert there is not None
@@ -176,14 +185,24 @@ def test_uniform_depth_with_little_asked_comes_near_the_common_crown_gear() -> N
 
 
 def test_settings_come_in_the_steps_of_the_shop() -> None:
-    steps = {"length_step": 0.01, "angle_step": 0.005, "ratio_step": 1e-5, "blade_angle_step": 0.5,
-             "blade_radius_step": 0.1}  # fmt: skip
+    steps = {
+        "length_step": 0.01,
+        "angle_step": 0.005,
+        "ratio_step": 1e-5,
+        "blade_angle_step": 0.5,
+        "blade_radius_step": 0.1,
+    }
     designed = design(data(GENERATED, shop=steps))
     for member in designed.pair.members.values():
         for flank in ("concave", "convex"):
             for name in SETTINGS:
-                step = steps.get({"blade_pressure_angle": "blade_angle_step", "blade_point_radius": "blade_radius_step",
-                                  "ratio_of_roll": "ratio_step"}.get(name, ""))  # fmt: skip
+                step = steps.get(
+                    {
+                        "blade_pressure_angle": "blade_angle_step",
+                        "blade_point_radius": "blade_radius_step",
+                        "ratio_of_roll": "ratio_step",
+                    }.get(name, "")
+                )
                 step = step or steps["angle_step" if name in ANGULAR else "length_step"]
                 value = getattr(member.flank(flank), name)
                 assert to_step(value, step) == pytest.approx(value, abs=1e-9), name
@@ -219,10 +238,16 @@ def family(seed: int) -> DesignData:
     outer = module * z_2 / 2 / math.sin(math.atan2(z_2, z_1))
     width = min(0.3 * outer, 10 * module)
     values = {
-        "title": str(seed), "pinion_teeth": z_1, "wheel_teeth": z_2, "outer_transverse_module": module,
-        "face_width": width, "mean_spiral_angle": spiral, "cutter": {"cutter_radius": cutter * (outer - width / 2)},
-        "gear": {"generation": generation}, "hand": draw.choice(["left", "right"]),
-    }  # fmt: skip
+        "title": str(seed),
+        "pinion_teeth": z_1,
+        "wheel_teeth": z_2,
+        "outer_transverse_module": module,
+        "face_width": width,
+        "mean_spiral_angle": spiral,
+        "cutter": {"cutter_radius": cutter * (outer - width / 2)},
+        "gear": {"generation": generation},
+        "hand": draw.choice(["left", "right"]),
+    }
     return checked(values, DesignData, str(seed))
 
 

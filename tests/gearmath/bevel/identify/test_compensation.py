@@ -21,8 +21,13 @@ from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES
 
 each_flank = pytest.mark.parametrize(("member", "flank"), [(m, f) for m in MEMBERS for f in FLANKS])
 #: Steps of the finite differences: each shifts the flank by about a micrometre.
-STEP = {"radial_distance": 1e-3, "blank_offset": 1e-3, "sliding_base": 1e-3, "machine_center_to_crossing_point": 1e-3,
-        "blade_point_radius": 1e-3}  # fmt: skip
+STEP = {
+    "radial_distance": 1e-3,
+    "blank_offset": 1e-3,
+    "sliding_base": 1e-3,
+    "machine_center_to_crossing_point": 1e-3,
+    "blade_point_radius": 1e-3,
+}
 
 
 def target_of(gear_set, member, flank, deviation=0.0, tilt=0.0, rows=5, columns=9) -> FlankTarget:

@@ -45,10 +45,14 @@ def test_ease_off_of_75_um_is_reached_by_twelve_settings(host_compiler, flank):
         assert low <= now[NAMES.index(name)] / x[NAMES.index(name)] <= high
     assert np.radians(5) <= now[NAMES.index("blade_pressure_angle")] <= np.radians(30)
     for name, most in (
-        ("cradle_angle", np.radians(60)), ("cutter_tilt", np.radians(8)), ("cutter_swivel", np.radians(70)),
-        ("blank_offset", 5), ("sliding_base", 5), ("machine_center_to_crossing_point", 5),
+        ("cradle_angle", np.radians(60)),
+        ("cutter_tilt", np.radians(8)),
+        ("cutter_swivel", np.radians(70)),
+        ("blank_offset", 5),
+        ("sliding_base", 5),
+        ("machine_center_to_crossing_point", 5),
         ("machine_root_angle", np.radians(1)),
-    ):  # fmt: skip
+    ):
         assert abs(now[NAMES.index(name)] - x[NAMES.index(name)]) <= most * (1 + 1e-12)
 
 
@@ -99,11 +103,14 @@ def test_hundredths_of_a_micrometre_are_not_bought_with_settings_at_their_limits
 @pytest.mark.parametrize(
     ("member", "flank", "shape", "sign", "names"),
     [
-        ("pinion", "concave", "mixed", -1, TWELVE), ("pinion", "convex", "mixed", -1, ELEVEN),
-        ("pinion", "convex", "profile", 1, FREE), ("gear", "concave", "profile", -1, TWELVE),
-        ("gear", "convex", "length", -1, ELEVEN), ("pinion", "concave", "twist", 1, TWELVE),
+        ("pinion", "concave", "mixed", -1, TWELVE),
+        ("pinion", "convex", "mixed", -1, ELEVEN),
+        ("pinion", "convex", "profile", 1, FREE),
+        ("gear", "concave", "profile", -1, TWELVE),
+        ("gear", "convex", "length", -1, ELEVEN),
+        ("pinion", "concave", "twist", 1, TWELVE),
     ],
-)  # fmt: skip
+)
 def test_fit_is_not_worse_than_scipy_from_ten_starts(host_compiler, member, flank, shape, sign, names):
     """A sample of the 96 that ``python tests/design_targets.py`` prints."""
     target = ease_off_target(member, flank, shape, sign)

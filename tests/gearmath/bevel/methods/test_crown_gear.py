@@ -37,9 +37,10 @@ def at_mean_point(member, flank):
     out *= np.sign(out[0] * np.cos(polar) + out[1] * np.sin(polar))
     trace = np.cross(n, out)
     return (
-        np.degrees(np.arctan(abs((n @ along) / (n @ around)))), np.degrees(np.arcsin(n @ out)),
+        np.degrees(np.arctan(abs((n @ along) / (n @ around)))),
+        np.degrees(np.arcsin(n @ out)),
         np.sign((trace @ along) * (trace @ around)),
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("tilt", [0.0, 0.08])

@@ -14,9 +14,16 @@ from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES
 
 METHODS = (
-    "face mill, generated", "modified roll", "tilt", "helical motion", "universal motion", "face hob, generated",
-    "face hob, universal motion", "Formate mill", "Formate hob",
-)  # fmt: skip
+    "face mill, generated",
+    "modified roll",
+    "tilt",
+    "helical motion",
+    "universal motion",
+    "face hob, generated",
+    "face hob, universal motion",
+    "Formate mill",
+    "Formate hob",
+)
 FORMATE = ("Formate mill", "Formate hob")
 
 each_method = pytest.mark.parametrize("method", METHODS)
@@ -107,9 +114,7 @@ def test_indexing_that_tends_to_zero_tends_to_face_milling(methods, flank):
     how, milled = generation_of(member, flank), solve(member, flank)
     apart = []
     for index_ratio in (1e-3, 1e-4):
-        points = solve_section(
-            replace(how, index_ratio=index_ratio), section, grid.axial.ravel(), grid.radial.ravel()
-        )  # fmt: skip
+        points = solve_section(replace(how, index_ratio=index_ratio), section, grid.axial.ravel(), grid.radial.ravel())
         apart.append(np.linalg.norm(points.point - milled.point, axis=1).max())
     assert 1e-3 < apart[1] < 0.5  # mm
     assert apart[0] / apart[1] == pytest.approx(10, rel=0.02)

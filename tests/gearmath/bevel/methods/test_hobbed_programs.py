@@ -9,7 +9,7 @@ import pytest
 
 from gearmath.machine.control.executor import execute
 from gearmath.machine.milling.mill import mill_member
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import MEMBERS, BevelSet
 from gearmath.specs.milling_machine import MillingMachine
@@ -24,7 +24,7 @@ def test_flanks_of_all_spaces_keep_the_tolerance(
 ) -> None:
     gear_set = pair(blade_groups=groups, cutter_radius=radius, hand=hand)
     member = gear_set.member(name)
-    text = cutting_program(gear_set, name, vertical, "HOB", Job(range(member.teeth), TOLERANCE))
+    text = cutting_program(gear_set, name, vertical, "HOB", CuttingJob(range(member.teeth), TOLERANCE))
     deviation = mill_member(execute(text, "HOB.MPF"), member, name, vertical).deviation
     assert len(deviation) == 2 * (45 + member.teeth - 1)
     assert np.abs(deviation).max() <= TOLERANCE

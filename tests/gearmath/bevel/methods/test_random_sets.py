@@ -149,9 +149,18 @@ def test_of_random_sets_at_most_a_fifth_is_rejected_and_999_of_1000_points_are_f
 unit = st.floats(0, 1)
 methods = st.sampled_from(("milled", "one flank alone", "tilted", "milled Formate", "hobbed", "hobbed Formate"))
 draws = st.tuples(
-    methods, st.sampled_from(("left", "right")), st.booleans(), st.integers(7, 25), st.floats(1, 8), st.floats(0, 45),
-    unit, unit, unit, unit, st.tuples(unit, unit, unit, unit),
-)  # fmt: skip
+    methods,
+    st.sampled_from(("left", "right")),
+    st.booleans(),
+    st.integers(7, 25),
+    st.floats(1, 8),
+    st.floats(0, 45),
+    unit,
+    unit,
+    unit,
+    unit,
+    st.tuples(unit, unit, unit, unit),
+)
 
 
 @hypothesis_settings(deadline=None, max_examples=10)

@@ -13,28 +13,40 @@ HOBBED, MILLED = bundled("crown_gear_hobbed_14x39.toml"), bundled("crown_gear_fo
 
 REFUSALS = {
     "cutter far too small": (
-        MILLED, ("pinion", "convex"), {"blade_point_radius": 6.0, "radial_distance": 20.0},
+        MILLED,
+        ("pinion", "convex"),
+        {"blade_point_radius": 6.0, "radial_distance": 20.0},
         r"pinion.*convex\.blade_point_radius = 6: no real contact, .* between 39\.89 and 122\.7",
     ),
     "machine root angle beyond the blank": (
-        MILLED, ("gear", "concave"), {"machine_root_angle": 80.0},
+        MILLED,
+        ("gear", "concave"),
+        {"machine_root_angle": 80.0},
         r"gear.*concave\.machine_root_angle = 80: beyond the blank, it must be at most face_angle .* \+ 1 = 72\.9787",
     ),
     "root angle of the blank above its pitch angle": (
-        MILLED, ("pinion", "blank"), {"root_angle": 22.0}, r"pinion\.blank: root_angle 22\.0 <= pitch_angle",
+        MILLED,
+        ("pinion", "blank"),
+        {"root_angle": 22.0},
+        r"pinion\.blank: root_angle 22\.0 <= pitch_angle",
     ),
     "both of one hand": (
-        MILLED, ("gear",), {"hand": "left"}, r"pinion and gear are both left hand: a pair has one of each hand",
+        MILLED,
+        ("gear",),
+        {"hand": "left"},
+        r"pinion and gear are both left hand: a pair has one of each hand",
     ),
     "no blade group": (HOBBED, ("pinion",), {"blade_groups": 0}, r"pinion\.blade_groups = 0: must be at least 1"),
     "blade groups of a face mill": (MILLED, ("gear",), {"blade_groups": 5}, r"blade_groups belongs to face_hobbing"),
     "indexing of a face mill": (MILLED, ("gear",), {"indexing_sign": -1}, r"indexing_sign belongs to face_hobbing"),
     "indexing neither way": (HOBBED, ("gear",), {"indexing_sign": 2}, r"gear\.indexing_sign = 2: .*1 or -1"),
     "negative size": (
-        MILLED, ("pinion", "blank"), {"mean_cone_distance": -81.0},
+        MILLED,
+        ("pinion", "blank"),
+        {"mean_cone_distance": -81.0},
         r"pinion\.blank\.mean_cone_distance = -81\.0: .*greater than 5",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", REFUSALS)
@@ -47,9 +59,7 @@ def test_set_is_refused_in_one_sentence_with_the_limit(refused, tmp_path, case):
     table.update(changes)
     target = tmp_path / "set.toml"
     target.write_text(tomlkit.dumps(document))
-    refused(
-        sentence, "flank", target, "--member", "pinion", "--flank", "convex", "-o", tmp_path / "flank.csv"
-    )  # fmt: skip
+    refused(sentence, "flank", target, "--member", "pinion", "--flank", "convex", "-o", tmp_path / "flank.csv")
     assert not (tmp_path / "flank.csv").exists()
 
 

@@ -25,9 +25,12 @@ def places(widths: Widths) -> list[float]:
 
 
 COMPLETING = (
-    ("nasa_tp3096_12x36", "gear"), ("crown_gear_formate_14x39", "gear"), ("crown_gear_universal_14x39", "gear"),
-    ("crown_gear_hobbed_14x39", "pinion"), ("crown_gear_hobbed_14x39", "gear"),
-)  # fmt: skip
+    ("nasa_tp3096_12x36", "gear"),
+    ("crown_gear_formate_14x39", "gear"),
+    ("crown_gear_universal_14x39", "gear"),
+    ("crown_gear_hobbed_14x39", "pinion"),
+    ("crown_gear_hobbed_14x39", "gear"),
+)
 
 
 @pytest.mark.parametrize(("name", "which"), COMPLETING)
@@ -60,15 +63,29 @@ def test_generated_root_is_narrower_than_its_slot_as_the_root_of_the_virtual_gea
 @pytest.mark.parametrize("ratio", [(14, 39), (17, 40), (20, 31)])
 def test_mean_slot_of_a_pinion_cut_flank_by_flank_is_that_of_agma_929(ratio: tuple[int, int]) -> None:
     """To a hundredth of the module. AGMA's slots at toe and heel are those of the mate's tooth, not of two cutters."""
-    data = BlankData.model_validate({
-        "title": "test", "source": "test", "shaft_angle": 90.0, "wheel_outer_pitch_diameter": 176.893,
-        "face_width": 25.4, "pressure_angle_drive": 20.0, "pressure_angle_coast": 20.0, "pinion_teeth": ratio[0],
-        "wheel_teeth": ratio[1], "mean_spiral_angle": 35.0,
-        "cutter": {"process": "face_milling", "cutter_radius": 114.3}, "taper": {"kind": "duplex"}, "data_type_1": {
-            "crown_gear_addendum_factor": 1.0, "crown_gear_dedendum_factor": 1.25, "profile_shift_coefficient": 0.3,
-            "thickness_modification": 0.03,
-        }, "backlash": {"outer_normal": 0.127},
-    })  # fmt: skip
+    data = BlankData.model_validate(
+        {
+            "title": "test",
+            "source": "test",
+            "shaft_angle": 90.0,
+            "wheel_outer_pitch_diameter": 176.893,
+            "face_width": 25.4,
+            "pressure_angle_drive": 20.0,
+            "pressure_angle_coast": 20.0,
+            "pinion_teeth": ratio[0],
+            "wheel_teeth": ratio[1],
+            "mean_spiral_angle": 35.0,
+            "cutter": {"process": "face_milling", "cutter_radius": 114.3},
+            "taper": {"kind": "duplex"},
+            "data_type_1": {
+                "crown_gear_addendum_factor": 1.0,
+                "crown_gear_dedendum_factor": 1.25,
+                "profile_shift_coefficient": 0.3,
+                "thickness_modification": 0.03,
+            },
+            "backlash": {"outer_normal": 0.127},
+        }
+    )
     pair, blank = crown_gear_set(data, Method("fixed_setting"), Method()), blank_of(data)
     _, wanted, _ = slots_of(blank).pinion.slot_width
     _, slots = space_widths(pair.pinion, "pinion")

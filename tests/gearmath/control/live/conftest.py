@@ -16,7 +16,7 @@ from gearmath.control.opcua import OpcUaControl
 from gearmath.control.plan import planned
 from gearmath.control.simulated.access import Access, Account
 from gearmath.control.simulated.identity import prepared
-from gearmath.control.simulated.nc import Job, Logged, Nc
+from gearmath.control.simulated.nc import Logged, Nc, NcJob
 from gearmath.control.simulated.server import Appearance, SimulatedControl
 from gearmath.machine.control.state import Setup
 from gearmath.specs.control_connection import ControlConnection, load_control_connection
@@ -65,8 +65,8 @@ NAME, PATH = "TEN.MPF", "Part Program/TEN.MPF"
 class Air:
     """A machine whose probe triggers at nine tenths of every way."""
 
-    def job(self, text: str, name: str, number: int) -> Job:
-        return Job(probe=lambda start, end: start + 0.9 * (end - start))
+    def job(self, text: str, name: str, number: int) -> NcJob:
+        return NcJob(probe=lambda start, end: start + 0.9 * (end - start))
 
 
 @dataclass

@@ -16,15 +16,15 @@ from gearmath.control import sinumerik
 from gearmath.control.opcua import OpcUaControl
 from gearmath.control.simulated.access import Access, Account
 from gearmath.control.simulated.identity import prepared
-from gearmath.control.simulated.nc import Job, Nc
+from gearmath.control.simulated.nc import Nc, NcJob
 from gearmath.control.simulated.server import Appearance, SimulatedControl
 from gearmath.errors import ComputationError
 from gearmath.specs.control_connection import ControlConnection, load_control_connection
 
 
 class _Nothing:
-    def job(self, text: str, name: str, number: int) -> Job:
-        return Job()
+    def job(self, text: str, name: str, number: int) -> NcJob:
+        return NcJob()
 
 
 @pytest.mark.slow

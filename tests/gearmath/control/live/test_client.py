@@ -39,9 +39,15 @@ def test_parameters_that_are_written_are_those_of_the_control_and_are_read_back_
 
 @pytest.mark.parametrize(
     ("values", "said"),
-    [({103: 1.0}, "handshake"), ({101: 1.0}, "handshake"), ({1: float("nan")}, "must be a number"),
-     ({1: 1e9}, "must be a number"), ({1000: 1.0}, "0 to 999"), ({-1: 1.0}, "0 to 999")],
-)  # fmt: skip
+    [
+        ({103: 1.0}, "handshake"),
+        ({101: 1.0}, "handshake"),
+        ({1: float("nan")}, "must be a number"),
+        ({1: 1e9}, "must be a number"),
+        ({1000: 1.0}, "0 to 999"),
+        ({-1: 1.0}, "0 to 999"),
+    ],
+)
 def test_what_only_the_handshake_writes_and_what_no_parameter_holds_is_refused(
     live: Any, values: dict, said: str
 ) -> None:
@@ -172,10 +178,26 @@ def test_a_program_goes_up_and_down_unchanged(live: Any, megabytes: int) -> None
 
 @pytest.mark.parametrize(
     "name",
-    ["../AB.MPF", "..\\AB.MPF", "/etc/passwd", "\\\\server\\share\\AB.MPF", "C:\\AB.MPF", "AB.MPF.MPF",
-     "A" * 300 + ".MPF", "AB\x00.MPF", "AB\n.MPF", "A\u0130B.MPF", "CON.MPF", "LPT1.SPF", "AB.TXT", "",
-     ".", "Part Program/AB.MPF", "1A.MPF"],
-)  # fmt: skip
+    [
+        "../AB.MPF",
+        "..\\AB.MPF",
+        "/etc/passwd",
+        "\\\\server\\share\\AB.MPF",
+        "C:\\AB.MPF",
+        "AB.MPF.MPF",
+        "A" * 300 + ".MPF",
+        "AB\x00.MPF",
+        "AB\n.MPF",
+        "A\u0130B.MPF",
+        "CON.MPF",
+        "LPT1.SPF",
+        "AB.TXT",
+        "",
+        ".",
+        "Part Program/AB.MPF",
+        "1A.MPF",
+    ],
+)
 def test_names_that_lead_out_of_a_folder_or_that_the_control_refuses_are_refused_here(live: Any, name: str) -> None:
     async def work() -> None:
         control = await live.connect()
@@ -283,19 +305,26 @@ def test_another_control_than_the_one_whose_certificate_was_stored_is_not_talked
         run(live.connect(server_certificate=str(live.folder / "none.der")))
 
 
-@pytest.mark.parametrize(("changes", "said"), [
-    ({"security": "Basic256"}, "security Basic256 is not offered, but Basic256Sha256"),
-    ({"security": "none"}, "this security is not offered"),
-    ({"certificate": "trusted"}, "is no certificate in PEM or DER"),
-    ({"key": "control.der"}, "is no private key without a password"),
-    ({"key": "control_key.pem"}, "does not belong to"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"security": "Basic256"}, "security Basic256 is not offered, but Basic256Sha256"),
+        ({"security": "none"}, "this security is not offered"),
+        ({"certificate": "trusted"}, "is no certificate in PEM or DER"),
+        ({"key": "control.der"}, "is no private key without a password"),
+        ({"key": "control_key.pem"}, "does not belong to"),
+    ],
+)
 def test_certificates_and_policies_that_cannot_work_are_told_from_a_control_that_is_off(
     live: Any, tmp_path: Any, changes: dict[str, str], said: str
 ) -> None:
     (live.folder / "rubbish.der").write_bytes(b"rubbish")
-    named = {key: str(live.folder / value.replace("trusted", "rubbish.der")) if "/" not in value and key != "security"
-             else value for key, value in changes.items()}  # fmt: skip
+    named = {
+        key: str(live.folder / value.replace("trusted", "rubbish.der"))
+        if "/" not in value and key != "security"
+        else value
+        for key, value in changes.items()
+    }
     with pytest.raises((ComputationError, InputError), match=said) as error:
         run(live.connect(seconds=2.0, **named))
     assert "\n" not in str(error.value)

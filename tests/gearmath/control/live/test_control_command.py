@@ -19,7 +19,7 @@ import pytest
 from gearmath import cli
 from gearmath.control import sinumerik
 from gearmath.control.simulated.nc import NcAlarm
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 
 Typed = Callable[..., tuple[int, str, str]]
 
@@ -114,7 +114,7 @@ def test_a_run_that_an_alarm_ended_is_resumed_as_its_sentence_says(live: Any, ty
         ended.set()
         person.join()
     assert (status, out) == (0, f"{store}: run 1 is complete: 10 touches\n")
-    with Store.open(Path(store), create=False) as kept:
+    with MeasurementStore.open(Path(store), create=False) as kept:
         touches = kept.run(1).touches()
     assert list(touches) == list(range(1, 11))
     assert [touch.number - touches[1].number for touch in touches.values()] == [0] * 4 + [1] * 6

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.pair import load_pair
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 from gearmath.control_demo import run_control_demo
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
@@ -54,7 +54,7 @@ def test_the_loop_over_the_control_ends_as_the_direct_one(
         settings = bundled(SET) if number == 1 else tmp_path / "demo" / "pinion_corrected.toml"
         cut, probe = ((tmp_path / "demo" / name).read_text() for name in (f"CUT_{number}.MPF", "PROBE.MPF"))
         direct = _direct(settings, cut, probe, vertical, shop, number)
-        with Store.open(tmp_path / "demo" / "runs.db", create=False) as store:
+        with MeasurementStore.open(tmp_path / "demo" / "runs.db", create=False) as store:
             touches = np.array([touch[1:6] for touch in store.run(number).touches().values()])
             assert store.run(number).is_complete
         np.testing.assert_allclose(touches, direct, rtol=0.0, atol=2e-8)  # the file has nine decimals

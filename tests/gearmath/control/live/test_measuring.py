@@ -19,7 +19,7 @@ from gearmath.control.interface import RunStart
 from gearmath.control.measuring import Measuring, Patience
 from gearmath.control.plan import planned, resuming
 from gearmath.control.simulated.nc import NcAlarm
-from gearmath.control.store import Run, Store
+from gearmath.control.store import MeasurementStore, StoredRun
 from gearmath.errors import ComputationError
 from gearmath.machine.control.state import Setup
 
@@ -31,8 +31,8 @@ Trouble = Callable[[], Awaitable[object]]
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> Iterator[Store]:
-    with Store.open(tmp_path / "runs.db") as found:
+def store(tmp_path: Path) -> Iterator[MeasurementStore]:
+    with MeasurementStore.open(tmp_path / "runs.db") as found:
         yield found
 
 
@@ -40,15 +40,21 @@ async def _nothing() -> None: ...
 
 
 async def _measure(
-    live: Any, run: Run, trouble: Trouble = _nothing, parts: tuple[int, int] = (0, 0), start: bool = True,
+    live: Any,
+    run: StoredRun,
+    trouble: Trouble = _nothing,
+    parts: tuple[int, int] = (0, 0),
+    start: bool = True,
     seconds: float = 4.0,
-) -> Measuring:  # fmt: skip
+) -> Measuring:
     """A run from the operator's start to its end, with trouble from the moment at which the host is ready."""
     told = asyncio.Event()
     one = Measuring(
-        lambda: live.connect(*RIGHTS, seconds=seconds), run, QUICK,
+        lambda: live.connect(*RIGHTS, seconds=seconds),
+        run,
+        QUICK,
         say=lambda sentence: told.set() if "start it" in sentence else None,
-    )  # fmt: skip
+    )
 
     async def operator() -> None:
         if start:
@@ -65,7 +71,7 @@ async def _measure(
     return one
 
 
-def _check(live: Any, begin: int, run: Run) -> None:
+def _check(live: Any, begin: int, run: StoredRun) -> None:
     """Every touch is there as it was offered, and each was acknowledged once."""
     offered, acknowledged = (live.since(begin, what) for what in ("offered", "acknowledged"))
     points = list(run.start.points)
@@ -77,7 +83,7 @@ def _check(live: Any, begin: int, run: Run) -> None:
 
 
 def test_every_touch_is_kept_as_the_control_offered_it_and_acknowledged_once(
-    live: Any, ten: RunStart, store: Store
+    live: Any, ten: RunStart, store: MeasurementStore
 ) -> None:
     live.load()
     begin, run = len(live.nc.log), store.begin_run(ten)
@@ -92,7 +98,7 @@ def test_every_touch_is_kept_as_the_control_offered_it_and_acknowledged_once(
 
 
 def test_a_touch_is_on_the_disk_before_it_is_acknowledged(
-    live: Any, ten: RunStart, store: Store, monkeypatch: pytest.MonkeyPatch
+    live: Any, ten: RunStart, store: MeasurementStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A disk that takes the fourth touch no more: the program waits at it, and nobody has let it go on."""
     live.load()
@@ -115,7 +121,7 @@ def test_a_touch_is_on_the_disk_before_it_is_acknowledged(
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_no_random_disconnect_loses_doubles_or_replays_a_touch(
-    live: Any, ten: RunStart, store: Store, seed: int
+    live: Any, ten: RunStart, store: MeasurementStore, seed: int
 ) -> None:
     """TCP cut, server down, slow answers, a line that is dead without a word: at random moments, two of them a run."""
     chance = random.Random(seed)
@@ -149,7 +155,7 @@ async def _at(live: Any, point: int) -> None:
         await asyncio.sleep(0.002)
 
 
-def _resume(live: Any, store: Store, run: Run) -> Run:
+def _resume(live: Any, store: MeasurementStore, run: StoredRun) -> StoredRun:
     """The operator starts the program again, with what is missing."""
     again = store.resume_run(run.id)
     plan = planned(live.TEN, live.NAME, Setup())
@@ -160,7 +166,7 @@ def _resume(live: Any, store: Store, run: Run) -> Run:
 
 @pytest.mark.parametrize("what", ["reset", "alarm of the program", "emergency stop"])
 def test_what_ends_the_program_is_one_sentence_and_the_run_goes_on_later(
-    live: Any, ten: RunStart, store: Store, what: str
+    live: Any, ten: RunStart, store: MeasurementStore, what: str
 ) -> None:
     live.load()
     run = store.begin_run(ten)
@@ -177,8 +183,11 @@ def test_what_ends_the_program_is_one_sentence_and_the_run_goes_on_later(
 
     # slow enough that the trouble comes before the end
     live.control.answer_slowly(0.03)
-    said = {"reset": "reset at point|ended before point", "alarm of the program": "alarm 65001",
-            "emergency stop": "alarm 3000: Emergency stop"}[what]  # fmt: skip
+    said = {
+        "reset": "reset at point|ended before point",
+        "alarm of the program": "alarm 65001",
+        "emergency stop": "alarm 3000: Emergency stop",
+    }[what]
     with pytest.raises(ComputationError, match=said) as error:
         asyncio.run(_measure(live, run, trouble))
     assert "\n" not in str(error.value)
@@ -196,7 +205,7 @@ def test_what_ends_the_program_is_one_sentence_and_the_run_goes_on_later(
     assert [t.X for t in again.touches().values()] == pytest.approx(_alone(live, ten, store, kept), abs=1e-12)
 
 
-def _alone(live: Any, ten: RunStart, store: Store, kept: int) -> list[float]:
+def _alone(live: Any, ten: RunStart, store: MeasurementStore, kept: int) -> list[float]:
     """What an undisturbed run measures: each way begins where the last touch was, or at 0 after a new start."""
     values, at = [], 0.0
     for point in range(1, 11):
@@ -206,7 +215,9 @@ def _alone(live: Any, ten: RunStart, store: Store, kept: int) -> list[float]:
     return values
 
 
-def test_a_host_that_died_finds_the_program_waiting_and_goes_on(live: Any, ten: RunStart, store: Store) -> None:
+def test_a_host_that_died_finds_the_program_waiting_and_goes_on(
+    live: Any, ten: RunStart, store: MeasurementStore
+) -> None:
     """The host is gone in mid-run; the program waits at its point, and nobody has started it anew."""
     live.load()
     begin, run = len(live.nc.log), store.begin_run(ten)
@@ -228,11 +239,15 @@ def test_a_host_that_died_finds_the_program_waiting_and_goes_on(live: Any, ten: 
 
 @pytest.mark.parametrize("what", ["none", "other name", "other text", "active", "no host"])
 def test_a_run_does_not_begin_with_another_program_or_in_mid_run(
-    live: Any, ten: RunStart, store: Store, what: str
+    live: Any, ten: RunStart, store: MeasurementStore, what: str
 ) -> None:
-    said = {"none": "no program is selected", "other name": r"OTHER\.MPF is selected, must be TEN\.MPF",
-            "other text": "is not the program of this run", "active": "before the program is started",
-            "no host": "before the program is started"}[what]  # fmt: skip
+    said = {
+        "none": "no program is selected",
+        "other name": r"OTHER\.MPF is selected, must be TEN\.MPF",
+        "other text": "is not the program of this run",
+        "active": "before the program is started",
+        "no host": "before the program is started",
+    }[what]
     live.load(live.TEN + "; changed\n" if what == "other text" else live.TEN)
     if what == "none":
         live.nc.selected = ""
@@ -249,7 +264,7 @@ def test_a_run_does_not_begin_with_another_program_or_in_mid_run(
 
 
 def test_a_program_that_is_replaced_between_two_halves_of_a_run_is_noticed(
-    live: Any, ten: RunStart, store: Store
+    live: Any, ten: RunStart, store: MeasurementStore
 ) -> None:
     live.load()
     run = store.begin_run(ten)
@@ -262,7 +277,9 @@ def test_a_program_that_is_replaced_between_two_halves_of_a_run_is_noticed(
         _resume(live, store, run)
 
 
-def test_a_second_start_in_mid_run_is_not_taken_for_the_same_run(live: Any, ten: RunStart, store: Store) -> None:
+def test_a_second_start_in_mid_run_is_not_taken_for_the_same_run(
+    live: Any, ten: RunStart, store: MeasurementStore
+) -> None:
     live.load()
     begin, run = len(live.nc.log), store.begin_run(ten)
 
@@ -281,7 +298,7 @@ def test_a_second_start_in_mid_run_is_not_taken_for_the_same_run(live: Any, ten:
 
 
 def test_alarms_in_mid_run_are_kept_once_and_do_not_end_a_run_that_goes_on(
-    live: Any, ten: RunStart, store: Store
+    live: Any, ten: RunStart, store: MeasurementStore
 ) -> None:
     live.load()
     begin, run = len(live.nc.log), store.begin_run(ten)
@@ -297,7 +314,7 @@ def test_alarms_in_mid_run_are_kept_once_and_do_not_end_a_run_that_goes_on(
 
 
 def test_a_run_waits_for_a_control_whose_sessions_or_subscriptions_others_keep(
-    live: Any, ten: RunStart, store: Store
+    live: Any, ten: RunStart, store: MeasurementStore
 ) -> None:
     """Left-over subscriptions of lost sessions, and then a full session table, each for a while."""
     live.load()
@@ -323,7 +340,7 @@ def test_a_run_waits_for_a_control_whose_sessions_or_subscriptions_others_keep(
     _check(live, begin, run)
 
 
-def test_no_password_is_in_store_or_sentences(live: Any, ten: RunStart, store: Store, caplog: Any) -> None:
+def test_no_password_is_in_store_or_sentences(live: Any, ten: RunStart, store: MeasurementStore, caplog: Any) -> None:
     live.load()
     caplog.set_level("DEBUG", "gearmath")
     run = store.begin_run(ten)

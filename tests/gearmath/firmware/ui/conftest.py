@@ -168,11 +168,19 @@ class Settings(ctypes.Structure):
     """gm_settings."""
 
     _fields_ = [
-        ("profile", ctypes.c_uint8), ("hob_unit", ctypes.c_uint8), ("depth_rule", ctypes.c_uint8),
-        ("starts", ctypes.c_int8), ("left", ctypes.c_uint8), ("climb", ctypes.c_uint8),
-        ("pitch_kind", ctypes.c_uint8), ("teeth", ctypes.c_uint16), ("helix", ctypes.c_uint16),
-        ("hob_size", ctypes.c_int32), ("pitch", ctypes.c_int32), ("feed", ctypes.c_int32),
-    ]  # fmt: skip
+        ("profile", ctypes.c_uint8),
+        ("hob_unit", ctypes.c_uint8),
+        ("depth_rule", ctypes.c_uint8),
+        ("starts", ctypes.c_int8),
+        ("left", ctypes.c_uint8),
+        ("climb", ctypes.c_uint8),
+        ("pitch_kind", ctypes.c_uint8),
+        ("teeth", ctypes.c_uint16),
+        ("helix", ctypes.c_uint16),
+        ("hob_size", ctypes.c_int32),
+        ("pitch", ctypes.c_int32),
+        ("feed", ctypes.c_int32),
+    ]
 
     def values(self) -> tuple[int, ...]:
         return tuple(getattr(self, name) for name, *_ in self._fields_)

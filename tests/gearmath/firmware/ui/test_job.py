@@ -87,11 +87,19 @@ def test_spur_gears_have_the_exact_ratio_in_lowest_terms(firmware, make_job, new
 @pytest.mark.parametrize(
     ("changes", "refusal"),
     [
-        ({"teeth": 0}, TEETH_REFUSED), ({"teeth": 1000}, TEETH_REFUSED), ({"starts": 0}, STARTS),
-        ({"starts": 11}, STARTS), ({"helix": 6001}, HELIX), ({"hob_size": 0}, HOB), ({"depth_rule": 0}, HOB),
-        ({"hob_unit": 2}, HOB), ({"feed": 0}, FEED), ({"profile": 1}, 1), ({"teeth": 5}, FAST),
+        ({"teeth": 0}, TEETH_REFUSED),
+        ({"teeth": 1000}, TEETH_REFUSED),
+        ({"starts": 0}, STARTS),
+        ({"starts": 11}, STARTS),
+        ({"helix": 6001}, HELIX),
+        ({"hob_size": 0}, HOB),
+        ({"depth_rule": 0}, HOB),
+        ({"hob_unit": 2}, HOB),
+        ({"feed": 0}, FEED),
+        ({"profile": 1}, 1),
+        ({"teeth": 5}, FAST),
     ],
-)  # fmt: skip
+)
 def test_refusals_have_their_reason_in_a_line(firmware, make_job, new_settings, changes, refusal):
     library = firmware("hobbing_plewes")
     library.gm_refusal_text.restype = ctypes.c_char_p

@@ -314,11 +314,18 @@ def test_one_turn_of_the_table_is_one_turn(panel):
 @pytest.mark.parametrize(
     ("counts", "verdict"),
     [
-        (4096, "OK within 1 %"), (4080, "OK within 1 %"), (-4100, "OK, but backwards"), (4000, "1000 lines, not 1024"),
-        (1024, "1/4: decoder mode?"), (2048, "1/2: decoder mode?"), (8192, "x2: decoder mode?"),
-        (16384, "x4: decoder mode?"), (3000, "WRONG: wiring, lines"), (0, "WRONG: wiring, lines"),
+        (4096, "OK within 1 %"),
+        (4080, "OK within 1 %"),
+        (-4100, "OK, but backwards"),
+        (4000, "1000 lines, not 1024"),
+        (1024, "1/4: decoder mode?"),
+        (2048, "1/2: decoder mode?"),
+        (8192, "x2: decoder mode?"),
+        (16384, "x4: decoder mode?"),
+        (3000, "WRONG: wiring, lines"),
+        (0, "WRONG: wiring, lines"),
     ],
-)  # fmt: skip
+)
 def test_one_turn_of_the_hob_names_the_mistake(panel, counts, verdict):
     p = panel("hobbing_plewes")
     p.short()

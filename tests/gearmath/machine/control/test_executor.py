@@ -60,18 +60,27 @@ def test_whole_turns_add_no_rounding_error():
 
 
 def test_units_lines_tools_and_modal_words():
-    text = "\n".join([
-        "; a comment ; another",
-        "N10 G17 G40 G90 G710 G94 G54 ; set up",
-        'N20 T="A_1" D1', "M6", "S80.5 M3", "M8",
-        "G0 Z100",
-        "G00 X-1.5 Y2 A=DC(90) B-45",
-        "G94 G1 Z50 F100",
-        "M5 M9",
-        'T="B" D1', "M6", "S20 M4", "",
-        "G0 X1 Y1 Z1 A=DC(0) B0",
-        "M30", " ; end",
-    ])  # fmt: skip
+    text = "\n".join(
+        [
+            "; a comment ; another",
+            "N10 G17 G40 G90 G710 G94 G54 ; set up",
+            'N20 T="A_1" D1',
+            "M6",
+            "S80.5 M3",
+            "M8",
+            "G0 Z100",
+            "G00 X-1.5 Y2 A=DC(90) B-45",
+            "G94 G1 Z50 F100",
+            "M5 M9",
+            'T="B" D1',
+            "M6",
+            "S20 M4",
+            "",
+            "G0 X1 Y1 Z1 A=DC(0) B0",
+            "M30",
+            " ; end",
+        ]
+    )
     path = execute(text, "P.MPF")
     expected = [[-1.5, 2, 100, np.pi / 2, -np.pi / 4], [-1.5, 2, 50, np.pi / 2, -np.pi / 4], [1, 1, 1, 0, 0]]
     np.testing.assert_allclose(path.axes, expected, rtol=1e-15)
@@ -166,9 +175,37 @@ def test_no_text_crashes_the_reader(text):
 
 
 PIECES = st.sampled_from(
-    [*" ".join(HEAD).split(), "G93", "G94", "G1", "G0", "X1.5", "Y-2", "A=DC(359)", "A=DC(179)", "B1", "F1", "F0",
-     "C=DC(181)", "C9", "SPOS=0", "M5", "M6", "M30", "N1", ";", '"', "-", ".", "9" * 9, "\r", "G55", "D0", "S0"]
-)  # fmt: skip
+    [
+        *" ".join(HEAD).split(),
+        "G93",
+        "G94",
+        "G1",
+        "G0",
+        "X1.5",
+        "Y-2",
+        "A=DC(359)",
+        "A=DC(179)",
+        "B1",
+        "F1",
+        "F0",
+        "C=DC(181)",
+        "C9",
+        "SPOS=0",
+        "M5",
+        "M6",
+        "M30",
+        "N1",
+        ";",
+        '"',
+        "-",
+        ".",
+        "9" * 9,
+        "\r",
+        "G55",
+        "D0",
+        "S0",
+    ]
+)
 
 
 @given(st.lists(st.tuples(PIECES, st.sampled_from([" ", "\n", "", "\t"])), max_size=30))
@@ -194,21 +231,45 @@ def probing(*lines, probe=None, **options):
 
 def test_logic_and_arithmetic_as_on_the_control():
     """Degrees; AND binds closer than ==; DIV truncates; FOR runs to its end value; INT rounds."""
-    done = run_program("\n".join([
-        "DEF INT UN=2.5, UF[3]", "DEF REAL UX=1.5",
-        "R1=SIN(30)+2*3-(7 DIV 2) R2=ATAN2(1,-1) R3=(7 MOD 4) R4=-(2+1)/2 R[4+1]=UN*UX",
-        "IF (R1==3.5) AND NOT (R3<>3)", "R6=1", "ELSE", "R6=2", "ENDIF",
-        "FOR R7=1 TO 3", "R8=R8+R7 UF[R7-1]=R7*10", "ENDFOR", "R9=UF[2]",
-        "WHILE R10*R10<50", "R10=R10+1", "ENDWHILE", 'MSG("R10 is "<<R10<<" now "<<-0.5)', "M30",
-    ]), "P.MPF")  # fmt: skip
+    done = run_program(
+        "\n".join(
+            [
+                "DEF INT UN=2.5, UF[3]",
+                "DEF REAL UX=1.5",
+                "R1=SIN(30)+2*3-(7 DIV 2) R2=ATAN2(1,-1) R3=(7 MOD 4) R4=-(2+1)/2 R[4+1]=UN*UX",
+                "IF (R1==3.5) AND NOT (R3<>3)",
+                "R6=1",
+                "ELSE",
+                "R6=2",
+                "ENDIF",
+                "FOR R7=1 TO 3",
+                "R8=R8+R7 UF[R7-1]=R7*10",
+                "ENDFOR",
+                "R9=UF[2]",
+                "WHILE R10*R10<50",
+                "R10=R10+1",
+                "ENDWHILE",
+                'MSG("R10 is "<<R10<<" now "<<-0.5)',
+                "M30",
+            ]
+        ),
+        "P.MPF",
+    )
     expected = {1: 3.5, 2: 135, 3: 3, 4: -1.5, 5: 4.5, 6: 1, 7: 4, 8: 6, 9: 30, 10: 8}
     assert done.parameters == pytest.approx(expected, abs=1e-14)
     assert done.messages == ("R10 is 8 now -0.5",)
 
 
 def test_axis_words_take_expressions_increments_and_the_translation():
-    done = run("R1=90 R2=12", "TRANS X100 Z=R2", "G0 X1 Y=IC(5)", "X=AC(2) Z-1", "A=DC(R2*360/R1) SUPA X3", "TRANS",
-               "X4 B=-R2/2")  # fmt: skip
+    done = run(
+        "R1=90 R2=12",
+        "TRANS X100 Z=R2",
+        "G0 X1 Y=IC(5)",
+        "X=AC(2) Z-1",
+        "A=DC(R2*360/R1) SUPA X3",
+        "TRANS",
+        "X4 B=-R2/2",
+    )
     np.testing.assert_allclose(done.axes[1:, :3], [[101, 5, 0], [102, 5, 11], [3, 5, 11], [4, 5, 11]])
     np.testing.assert_allclose(np.degrees(done.axes[-1, 3:]), [48, -6])
 
@@ -222,8 +283,14 @@ def test_acp_and_acn_turn_their_way_and_a_counting_axis_counts():
 
 def test_feed_group_tells_what_f_means_for_a_rotary_axis():
     """FGREF 57.296 mm: a degree is a millimetre; a radius of 100 mm: 90 degrees are 157.08 mm."""
-    path = run("FGROUP(X,Y,Z,A)", "FGREF[A]=100", "G94 G1 A=DC(90) F1000", "FGROUP(X,A)", "FGREF[A]=57.295779513082",
-               "X40 A=DC(120) F600")  # fmt: skip
+    path = run(
+        "FGROUP(X,Y,Z,A)",
+        "FGREF[A]=100",
+        "G94 G1 A=DC(90) F1000",
+        "FGROUP(X,A)",
+        "FGREF[A]=57.295779513082",
+        "X40 A=DC(120) F600",
+    )
     np.testing.assert_allclose(path.seconds[1:], [60 * np.pi * 50 / 1000, 5.0], rtol=1e-12)
 
 
@@ -234,8 +301,14 @@ def test_probe_stops_where_it_triggers_and_only_what_is_named_is_latched():
         seen.append((start, end))
         return start + 0.25 * (end - start)
 
-    done = probing("TRANS X5", "FGROUP(X,Y,Z,A,B)", "MEAS=1 G1 X15 Y=IC(0) A=IC(8) F100", "STOPRE",
-                   "R1=$AA_MM[X] R2=$AA_MW[X] R3=$AA_MM[A] R4=$AC_MEA[1] R5=$A_PROBE[1]", probe=probe)  # fmt: skip
+    done = probing(
+        "TRANS X5",
+        "FGROUP(X,Y,Z,A,B)",
+        "MEAS=1 G1 X15 Y=IC(0) A=IC(8) F100",
+        "STOPRE",
+        "R1=$AA_MM[X] R2=$AA_MW[X] R3=$AA_MM[A] R4=$AC_MEA[1] R5=$A_PROBE[1]",
+        probe=probe,
+    )
     assert [done.parameters[k] for k in range(1, 6)] == pytest.approx([5, 0, 352, 1, 0])
     np.testing.assert_allclose(seen[0][1] - seen[0][0], [20, 0, 0, np.radians(8), 0], atol=1e-12)
     assert done.path.measuring.tolist() == [False, True]
@@ -243,8 +316,16 @@ def test_probe_stops_where_it_triggers_and_only_what_is_named_is_latched():
 
 
 def test_probe_that_meets_nothing_goes_to_the_end_and_says_so():
-    done = probing("MEAS=1 G1 X20 F100", "STOPRE", "IF $AC_MEA[1]==0", "SETAL(65001)", "M30", "ENDIF", "R1=1",
-                   probe=lambda start, end: None)  # fmt: skip
+    done = probing(
+        "MEAS=1 G1 X20 F100",
+        "STOPRE",
+        "IF $AC_MEA[1]==0",
+        "SETAL(65001)",
+        "M30",
+        "ENDIF",
+        "R1=1",
+        probe=lambda start, end: None,
+    )
     assert done.alarm == (65001, 9)
     assert 1 not in done.parameters
     assert done.path.axes[-1, 0] == 20
@@ -296,8 +377,11 @@ def test_files_are_written_line_by_line():
         (["G94 MEAS=1 G1 X1 F1"], "line 6, column 5", "MEAS=1 needs a spindle that is held by SPOS"),
         (["MEAS=1"], "line 6, column 1", "MEAS=1 without axis words"),
         (["MEAS=2 G1 X1"], "line 6, column 1", "MEAS=2: only MEAS=1, the rising edge of probe 1, is understood"),
-        (["G93 COMPCAD"], "line 6, column 5",
-         "COMPCAD and G93 at once: a block made of several would take the time of the last one"),
+        (
+            ["G93 COMPCAD"],
+            "line 6, column 5",
+            "COMPCAD and G93 at once: a block made of several would take the time of the last one",
+        ),
         (["A12.5"], "line 6, column 1", "A12.5: A is counted on in one block and modulo in another"),
         (["B=DC(5)"], "line 6, column 1", "B=DC(5): only A and C turn without end"),
         (["X=1000*1001"], "line 6, column 1", "X=1000*1001 leads to 1.001e+06: no axis is that long"),
@@ -307,7 +391,7 @@ def test_files_are_written_line_by_line():
         (['WRITE(R1,"F","t")'], "line 6, column 1", "the first argument of WRITE must be a variable of DEF INT"),
         (["G4"], "line 6, column 1", "G4 without a time F"),
     ],
-)  # fmt: skip
+)
 def test_refusals_of_logic_and_probing(lines, where, sentence):
     assert refused(program(*lines)) == f"P.MPF, {where}: {sentence}"
 

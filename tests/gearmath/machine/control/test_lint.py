@@ -10,23 +10,28 @@ import re
 
 import pytest
 
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.calibrating import calibration_program
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.machine.writing.probing import probing_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.calibration import load_calibration
-from gearmath.specs.control import Control
+from gearmath.specs.control import ControlSettings
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 PROBE = load_calibration(bundled("probe.toml"))
-COUNTING = MACHINE.model_copy(update={"axes": MACHINE.axes.model_copy(update={
-    "A": MACHINE.axes.A.model_copy(update={"modulo": False, "travel": (-360.0, 720.0)})})})  # fmt: skip
+COUNTING = MACHINE.model_copy(
+    update={
+        "axes": MACHINE.axes.model_copy(
+            update={"A": MACHINE.axes.A.model_copy(update={"modulo": False, "travel": (-360.0, 720.0)})}
+        )
+    }
+)
 CONTROLLED = MACHINE.model_copy(
     update={
-        "control": Control(
+        "control": ControlSettings(
             path_mode="G60",
             jerk="BRISK",
             feed_forward=False,
@@ -37,18 +42,22 @@ CONTROLLED = MACHINE.model_copy(
 )
 NASA, FORMATE, UNIVERSAL, HOBBED = (
     load_bevel_set(bundled(f"{name}.toml"))
-    for name in ("nasa_tp3096_12x36", "crown_gear_formate_14x39", "crown_gear_universal_14x39",
-                 "crown_gear_hobbed_14x39")
-)  # fmt: skip
+    for name in (
+        "nasa_tp3096_12x36",
+        "crown_gear_formate_14x39",
+        "crown_gear_universal_14x39",
+        "crown_gear_hobbed_14x39",
+    )
+)
 PROGRAMS = {
-    "generated": (MACHINE, lambda m: cutting_program(NASA, "pinion", m, "LINTED", Job((0, 7)))),
-    "completing": (CONTROLLED, lambda m: cutting_program(NASA, "gear", m, "LINTED", Job((0, 35)))),
-    "formate": (MACHINE, lambda m: cutting_program(FORMATE, "gear", m, "LINTED", Job((0, 20)))),
-    "universal": (MACHINE, lambda m: cutting_program(UNIVERSAL, "pinion", m, "LINTED", Job((3,), 1e-3))),
-    "roughing": (MACHINE, lambda m: cutting_program(NASA, "gear", m, "LINTED", Job((1,), roughing_stock=0.3))),
-    "dry run": (MACHINE, lambda m: cutting_program(NASA, "gear", m, "LINTED", Job((1,), dry_run=True))),
-    "counting": (COUNTING, lambda m: cutting_program(NASA, "pinion", m, "LINTED", Job((0, 7)))),
-    "hobbed": (MACHINE, lambda m: cutting_program(HOBBED, "gear", m, "LINTED", Job(range(39), 1e-3))),
+    "generated": (MACHINE, lambda m: cutting_program(NASA, "pinion", m, "LINTED", CuttingJob((0, 7)))),
+    "completing": (CONTROLLED, lambda m: cutting_program(NASA, "gear", m, "LINTED", CuttingJob((0, 35)))),
+    "formate": (MACHINE, lambda m: cutting_program(FORMATE, "gear", m, "LINTED", CuttingJob((0, 20)))),
+    "universal": (MACHINE, lambda m: cutting_program(UNIVERSAL, "pinion", m, "LINTED", CuttingJob((3,), 1e-3))),
+    "roughing": (MACHINE, lambda m: cutting_program(NASA, "gear", m, "LINTED", CuttingJob((1,), roughing_stock=0.3))),
+    "dry run": (MACHINE, lambda m: cutting_program(NASA, "gear", m, "LINTED", CuttingJob((1,), dry_run=True))),
+    "counting": (COUNTING, lambda m: cutting_program(NASA, "pinion", m, "LINTED", CuttingJob((0, 7)))),
+    "hobbed": (MACHINE, lambda m: cutting_program(HOBBED, "gear", m, "LINTED", CuttingJob(range(39), 1e-3))),
     "probing": (MACHINE, lambda m: probing_program(NASA, "gear", m, PROBE, "LINTED")),
     "probing, counting": (COUNTING, lambda m: probing_program(HOBBED, "pinion", m, PROBE, "LINTED", topography=())),
     "calibration": (MACHINE, lambda m: calibration_program(m, PROBE, "LINTED")),
@@ -73,10 +82,19 @@ def test_lint_finds_what_it_looks_for():
     cut = next(line for line in good.split("\n") if " G93 " in line)
     x = re.search(r"X(-?\d+)\.(\d+)", cut)[0]
     for wrong in (
-        cut.replace(x, "X+1.00000"), cut.replace(x, "X.50000"), cut.replace(x, "X1.0000"), cut.replace(x, "X1E5"),
-        cut.replace("A=DC(", "A=AC("), re.sub(r" F\S+", "", cut), cut + " COMPCAD", cut + " (comment)", cut + " " * 250,
-        cut.replace(" G1 ", " G2 "), cut.lower(), re.sub(r"A=DC\(\d+", "A=DC(361", cut),
-    ):  # fmt: skip
+        cut.replace(x, "X+1.00000"),
+        cut.replace(x, "X.50000"),
+        cut.replace(x, "X1.0000"),
+        cut.replace(x, "X1E5"),
+        cut.replace("A=DC(", "A=AC("),
+        re.sub(r" F\S+", "", cut),
+        cut + " COMPCAD",
+        cut + " (comment)",
+        cut + " " * 250,
+        cut.replace(" G1 ", " G2 "),
+        cut.lower(),
+        re.sub(r"A=DC\(\d+", "A=DC(361", cut),
+    ):
         assert len(lint(good.replace(cut, wrong), modulo=True)) >= 1, wrong
     assert lint(good.replace("M30\n", ""), modulo=True)
     assert lint(good.replace("; LINTED", "; 1BAD"), modulo=True)
@@ -132,8 +150,29 @@ def _line_faults(line, modulo):
             yield f"{axis} without its {DECIMALS[axis]} decimals"
     words = code.split()
     codes = {word for word in words if re.fullmatch(r"[GM]\d+", word)}
-    known = {"G0", "G1", "G4", "G17", "G40", "G54", "G64", "G642", "G90", "G93", "G94", "G710", "M3", "M4", "M5", "M6",
-             "M8", "M9", "M30", "M0", "G60"}  # fmt: skip
+    known = {
+        "G0",
+        "G1",
+        "G4",
+        "G17",
+        "G40",
+        "G54",
+        "G64",
+        "G642",
+        "G90",
+        "G93",
+        "G94",
+        "G710",
+        "M3",
+        "M4",
+        "M5",
+        "M6",
+        "M8",
+        "M9",
+        "M30",
+        "M0",
+        "G60",
+    }
     yield from (f"{word} is not of the dialect" for word in sorted(codes - known))
     if "G93" in codes and not any(re.fullmatch(r"F\d+\.\d+", word) for word in words):
         yield "G93 without F"

@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import execute, run_program
-from gearmath.machine.control.expression import FUNCTIONS, Constant, Operation, Variable
+from gearmath.machine.control.expression import FUNCTIONS, Constant, NcVariable, Operation
 from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.refused import refused_words
 from gearmath.machine.control.text import decoded, program_text, skip_blocks
 from gearmath.machine.control.values import evaluate
 from gearmath.machine.control.vocabulary import GROUP_OF_CODE
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
@@ -35,7 +35,7 @@ def meaning(part):
     """A statement, a word or a node without the place where it stands."""
     if isinstance(part, Operation):
         return part.name, *map(meaning, part.operands)
-    if isinstance(part, Variable):
+    if isinstance(part, NcVariable):
         return part.name, part.axis, *map(meaning, part.index)
     if isinstance(part, Constant):
         return part.value
@@ -166,7 +166,7 @@ JUMP = "jumps are not read: write IF, WHILE or FOR"
         ("DEF REAL UA[200,200]", 10, "the field UA has more than 10000 values"),
         ("R1=" + "(" * 21 + "1" + ")" * 21, 25, "an expression is nested more than 20 deep"),
     ],
-)  # fmt: skip
+)
 def test_what_is_not_read_is_refused_with_column_and_reason(text, column, sentence):
     assert refused(f"{text}\nM30") == f"P, line 1, column {column}: {sentence}"
 
@@ -240,7 +240,7 @@ def as_a_shop_writes(text):
 @pytest.mark.slow
 def test_a_whole_program_as_a_shop_writes_it_moves_the_same(gear_set, tmp_path):
     machine = load_milling_machine(bundled("vertical_5axis.toml"))
-    text = cutting_program(gear_set, "pinion", machine, "CUT", Job((0, 5), 1e-2))
+    text = cutting_program(gear_set, "pinion", machine, "CUT", CuttingJob((0, 5), 1e-2))
     path = tmp_path / "CUT.MPF"
     path.write_bytes(as_a_shop_writes(text).encode())
     plain, shop = execute(text, "P"), execute(program_text(path), "P")
@@ -290,13 +290,73 @@ def test_no_bytes_crash_the_reader(content):
         run_program(decoded(content, "P"), "P", step_limit=1000)
 
 
-SHOP = st.sampled_from([
-    "g1", "G0", "x", "X1", "y.5", "1.", "ex-3", "E5", "+", "-", "/", "/2", ":", ":10", "n10", "N", "ua", "DEF REAL ",
-    "UA", "=", "==", "(", ")", "[", "]", '"', '"ä"', ";", "ä", "\r\n", "\n", "\t", " ", "PROC A_", "EXTERN AB", "MARK:",
-    "%_N_A_MPF", "ret", "M17", "IF ", "R1", "ENDIF", "while ", "endwhile", "to", "FOR R1=1 TO 3\n", "endfor", "msg(",
-    "write(", "spos", "<<", "not ", "div ", "SIN(", "dc(", "goto", "L5", "m2=3", "T=", "d1", "9" * 9, "0.123456789012",
-    "U" * 31,
-])  # fmt: skip
+SHOP = st.sampled_from(
+    [
+        "g1",
+        "G0",
+        "x",
+        "X1",
+        "y.5",
+        "1.",
+        "ex-3",
+        "E5",
+        "+",
+        "-",
+        "/",
+        "/2",
+        ":",
+        ":10",
+        "n10",
+        "N",
+        "ua",
+        "DEF REAL ",
+        "UA",
+        "=",
+        "==",
+        "(",
+        ")",
+        "[",
+        "]",
+        '"',
+        '"ä"',
+        ";",
+        "ä",
+        "\r\n",
+        "\n",
+        "\t",
+        " ",
+        "PROC A_",
+        "EXTERN AB",
+        "MARK:",
+        "%_N_A_MPF",
+        "ret",
+        "M17",
+        "IF ",
+        "R1",
+        "ENDIF",
+        "while ",
+        "endwhile",
+        "to",
+        "FOR R1=1 TO 3\n",
+        "endfor",
+        "msg(",
+        "write(",
+        "spos",
+        "<<",
+        "not ",
+        "div ",
+        "SIN(",
+        "dc(",
+        "goto",
+        "L5",
+        "m2=3",
+        "T=",
+        "d1",
+        "9" * 9,
+        "0.123456789012",
+        "U" * 31,
+    ]
+)
 
 
 @settings(max_examples=500, deadline=None)

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import execute, run_program
-from gearmath.machine.control.expression import Constant, Operation, Variable
+from gearmath.machine.control.expression import Constant, NcVariable, Operation
 from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.tree import Block, Branch, Command, Definition, Loop, Word
 from gearmath.machine.planning.clear_space import Room
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.pattern import Targets
 from gearmath.machine.planning.targets import APPROACH_FEED, MEASURING_FEED
 from gearmath.machine.writing.cutting import cutting_program
@@ -53,16 +53,31 @@ def test_blocks_keep_line_column_and_value():
         "B": ("B=IC(-R1)", 24, "IC"),
     }
     assert block.words["X"].value == Constant(-2.5)
-    assert block.words["B"].value == Operation("negative", (Variable("R", (Constant(1.0),), 30),), 29)
+    assert block.words["B"].value == Operation("negative", (NcVariable("R", (Constant(1.0),), 30),), 29)
 
 
 def test_every_kind_of_statement_becomes_its_own_node():
-    text = "\n".join([
-        "DEF INT UERR", "DEF REAL UX=1.5, UARR[4,2]", "R1=2 R[R1+1]=UX*3 UARR[1,0]=4",
-        "FOR R2=0 TO 3", "IF R2==1", "MSG(\"a;b\")", "ELSE", "STOPRE", "ENDIF", "ENDFOR",
-        "WHILE (R1<5) AND NOT (R2==0)", "R1=R1+1", "ENDWHILE",
-        "TRANS X1.5 Z=R1", "FGROUP(X,Y,A)", "SETAL(65001)", 'WRITE(UERR,"FILE","text "<<R1)',
-    ])  # fmt: skip
+    text = "\n".join(
+        [
+            "DEF INT UERR",
+            "DEF REAL UX=1.5, UARR[4,2]",
+            "R1=2 R[R1+1]=UX*3 UARR[1,0]=4",
+            "FOR R2=0 TO 3",
+            "IF R2==1",
+            'MSG("a;b")',
+            "ELSE",
+            "STOPRE",
+            "ENDIF",
+            "ENDFOR",
+            "WHILE (R1<5) AND NOT (R2==0)",
+            "R1=R1+1",
+            "ENDWHILE",
+            "TRANS X1.5 Z=R1",
+            "FGROUP(X,Y,A)",
+            "SETAL(65001)",
+            'WRITE(UERR,"FILE","text "<<R1)',
+        ]
+    )
     kinds = [type(statement) for statement in body(text)]
     assert kinds == [Definition, Definition, Block, Loop, Loop, Command, Command, Command, Command]
     loop = body(text)[3]
@@ -159,42 +174,57 @@ def written_again(text):
         dwell = blocks[line + end - begin].get("dwell") and blocks[line + end - begin]["F"].value.value
         passes.append(
             Pass(
-                path.tools[path.tool[begin]], label, int(tooth), axes[begin:end], path.seconds[begin + 1 : end],
+                path.tools[path.tool[begin]],
+                label,
+                int(tooth),
+                axes[begin:end],
+                path.seconds[begin + 1 : end],
                 dwell or 0.0,
             )
-        )  # fmt: skip
+        )
     highest = max(one.axes[:, 2].max() for one in passes)
     speeds = {words["S"].value.value for words in blocks.values() if "S" in words}
     assert len(speeds) == (0 if turning else 1)  # the cutter's axis has no S
     rpm = max(speeds, default=100.0)
     return write_program(
-        header[0], header[1:], passes, FASTER, rpm, path.axes[begins[0] - 1, 2] - highest, ROOM, 0.0,
+        header[0],
+        header[1:],
+        passes,
+        FASTER,
+        rpm,
+        path.axes[begins[0] - 1, 2] - highest,
+        ROOM,
+        0.0,
         blocks[path.line[begins[0]]]["F"].value.value,
         any(words.get("coolant", NO).text == "M8" for words in blocks.values()),
-    )  # fmt: skip
+    )
 
 
 #: Speeds that the rounding of the text cannot pass.
 FASTER = MACHINE.model_copy(
-    update={"axes": MACHINE.axes.model_copy(update={
-        axis: getattr(MACHINE.axes, axis).model_copy(update={"max_speed_per_min": 1e6, "max_acceleration": 1e9})
-        for axis in "XYZABC"
-    })}
-)  # fmt: skip
+    update={
+        "axes": MACHINE.axes.model_copy(
+            update={
+                axis: getattr(MACHINE.axes, axis).model_copy(update={"max_speed_per_min": 1e6, "max_acceleration": 1e9})
+                for axis in "XYZABC"
+            }
+        )
+    }
+)
 NO = Word("", Constant(0.0), 0)
 
 
 @pytest.mark.parametrize("member", ["pinion", "gear"])
 @pytest.mark.parametrize("options", [{}, {"roughing_stock": 0.3, "finishing_stock": 0.1}, {"dry_run": True}])
 def test_writer_reader_writer_gives_the_same_text(gear_set, member, options):
-    text = cutting_program(gear_set, member, MACHINE, "CUT", Job((0, 7), 1e-3, **options))
+    text = cutting_program(gear_set, member, MACHINE, "CUT", CuttingJob((0, 7), 1e-3, **options))
     assert but_for_the_room(written_again(text)) == but_for_the_room(text)
 
 
 @pytest.mark.parametrize("options", [{}, {"roughing_stock": 0.3, "finishing_stock": 0.1}, {"dry_run": True}])
 def test_writer_reader_writer_gives_the_same_text_on_six_axes(options):
     hobbed = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
-    text = cutting_program(hobbed, "pinion", MACHINE, "CUT", Job(range(14), 5e-3, **options))
+    text = cutting_program(hobbed, "pinion", MACHINE, "CUT", CuttingJob(range(14), 5e-3, **options))
     assert " C=DC(" in text
     assert but_for_the_room(written_again(text)) == but_for_the_room(text)
 
@@ -310,11 +340,11 @@ STEPS = 2_000
 def cutting_texts(gear_set):
     """A face milled program, a face hobbed one on six axes, of a head and its last blocks, and a probing one."""
     hobbed = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
-    long = cutting_program(hobbed, "pinion", MACHINE, "CUT", Job(range(14), 2e-2)).splitlines(keepends=True)
+    long = cutting_program(hobbed, "pinion", MACHINE, "CUT", CuttingJob(range(14), 2e-2)).splitlines(keepends=True)
     head = next(k for k, line in enumerate(long) if " G93 " in line)
     probe = load_calibration(bundled("probe.toml"))
     return [
-        cutting_program(gear_set, "pinion", MACHINE, "CUT", Job((0,), 2e-2)),
+        cutting_program(gear_set, "pinion", MACHINE, "CUT", CuttingJob((0,), 2e-2)),
         "".join(long[:head] + long[-20:]),
         probing_program(gear_set, "pinion", MACHINE, probe, "PROBE", topography=()),
     ]
@@ -345,9 +375,12 @@ def changed(text, kind, share, other, count, put):
 SHARES = st.floats(0.0, 1.0, exclude_max=True)
 PUT = st.sampled_from(["0", "-0.0", "-1", "1e9", "9" * 20, "0.000000001", "360", "R1", "1/0"]) | st.text(max_size=2)
 CHANGES = st.tuples(
-    st.sampled_from(["bytes", "number", "truncated", "joined", "exchanged", "lines"]), SHARES, SHARES,
-    st.integers(0, 2), PUT,
-)  # fmt: skip
+    st.sampled_from(["bytes", "number", "truncated", "joined", "exchanged", "lines"]),
+    SHARES,
+    SHARES,
+    st.integers(0, 2),
+    PUT,
+)
 
 
 @settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

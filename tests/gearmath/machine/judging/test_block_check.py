@@ -16,7 +16,7 @@ import pytest
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
-from gearmath.machine.control.blocks import Control
+from gearmath.machine.control.blocks import ControlState
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.tree import Block, Branch
@@ -26,7 +26,7 @@ from gearmath.machine.judging.stated import stated_tolerance
 from gearmath.machine.milling.removal import entry_along_block
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.planning.blocks import roll_nodes
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.path import Cut, flank_points
 from gearmath.machine.planning.rounding import control_share
 from gearmath.machine.writing.cutting import cutting_program
@@ -80,7 +80,7 @@ def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_
     """
     spec, height = gear_set.member(member), vertical.pivot_height
     cut = Cut.of(spec, member)[index]
-    text = cutting_program(gear_set, member, vertical, "CUT", Job((0,), TOLERANCE))
+    text = cutting_program(gear_set, member, vertical, "CUT", CuttingJob((0,), TOLERANCE))
     path = execute(text, "CUT")
     runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 7))
     run = runs[index]
@@ -106,13 +106,23 @@ def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_
         b, w = len(first), len(which)
         k, j, s = (part.ravel() for part in np.meshgrid(np.arange(b), which, SAMPLES, indexing="ij"))
         (found,) = entry(
-            first[k], last[k], s, height, vertical.pivot, 0.0, point[j], normal[j], start[j], body.annulus,
-            body.outer.vector, body.inner.vector,
-        )  # fmt: skip
+            first[k],
+            last[k],
+            s,
+            height,
+            vertical.pivot,
+            0.0,
+            point[j],
+            normal[j],
+            start[j],
+            body.annulus,
+            body.outer.vector,
+            body.inner.vector,
+        )
         return found.reshape(b, w, len(SAMPLES)).min(axis=2)
 
     program = read_program(text, "CUT")
-    control, states = Control("CUT"), {}
+    control, states = ControlState("CUT"), {}
     for block in blocks_of(program.body):
         if block.line in cutting:
             states[block.line] = snapshot(control), block
@@ -157,9 +167,12 @@ def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_
         row = int(np.flatnonzero(run.line == line)[0])
         among = np.r_[np.arange(len(run.axes)), np.full(len(rest), row)]
         tried = replace(
-            run, axes=np.vstack([run.axes, poses[rest, 0]]), cutting=run.cutting[among], space=run.space[among],
+            run,
+            axes=np.vstack([run.axes, poses[rest, 0]]),
+            cutting=run.cutting[among],
+            space=run.space[among],
             line=run.line[among],
-        )  # fmt: skip
+        )
         off = np.max([distances_off_the_way(tried, one, spec, vertical) for one in flanks], axis=0)
         unseen += [texts[k] for k, far in zip(rest, off[len(run.axes) :], strict=True) if far <= TOLERANCE]
         if n % 40 == 20:
@@ -197,7 +210,7 @@ def check_in_full(gear_set, spec, member, vertical, text, line, texts, deviation
 @pytest.mark.parametrize("member", ["pinion", "gear"])
 def test_right_program_leaves_no_more_than_it_states_and_stays_on_its_way(gear_set, vertical, host_compiler, member):
     spec = gear_set.member(member)
-    text = cutting_program(gear_set, member, vertical, "CUT", Job((0, 2)))
+    text = cutting_program(gear_set, member, vertical, "CUT", CuttingJob((0, 2)))
     assert stated_tolerance(text) == TOLERANCE
     runs = runs_of(execute(text, "CUT"), spec, member, vertical, None, tooth_space(spec, member, 7), SHARP_EDGE)
     found = watch(runs, spec, vertical, None)
@@ -211,7 +224,7 @@ def test_right_program_leaves_no_more_than_it_states_and_stays_on_its_way(gear_s
 def test_block_that_stands_off_its_way_is_named_with_what_it_is_off_by(gear_set, vertical, host_compiler):
     """By hand: Z too high by 2 um is off by 2 sin(pressure angle) along the normal, on both flanks."""
     spec = gear_set.gear
-    path = execute(cutting_program(gear_set, "gear", vertical, "CUT", Job((0,))), "CUT")
+    path = execute(cutting_program(gear_set, "gear", vertical, "CUT", CuttingJob((0,))), "CUT")
     (run,) = runs_of(path, spec, "gear", vertical, None, tooth_space(spec, "gear", 7), SHARP_EDGE)
     axes, row = run.axes.copy(), len(run.axes) // 2
     axes[row, 2] += 2e-3
@@ -235,7 +248,7 @@ def test_block_that_stands_off_its_way_is_named_with_what_it_is_off_by(gear_set,
 def test_wrong_digit_of_approach_plunge_or_retract_is_seen(gear_set, vertical, host_compiler, right, wrong):
     """On the way from space 0 to space 1; rapid blocks through the metal too. More than 1 um is left out or off."""
     spec = gear_set.gear
-    text = cutting_program(gear_set, "gear", vertical, "CUT", Job((0, 1)))
+    text = cutting_program(gear_set, "gear", vertical, "CUT", CuttingJob((0, 1)))
     begin = text.index("G94 G0 Z")
     head, rest = text[:begin], text[begin:]
     assert right in rest
@@ -246,5 +259,5 @@ def test_wrong_digit_of_approach_plunge_or_retract_is_seen(gear_set, vertical, h
 
 
 def test_program_that_leaves_stock_promises_nothing(gear_set, vertical):
-    assert stated_tolerance(cutting_program(gear_set, "gear", vertical, "CUT", Job(finishing_stock=0.1))) is None
+    assert stated_tolerance(cutting_program(gear_set, "gear", vertical, "CUT", CuttingJob(finishing_stock=0.1))) is None
     assert stated_tolerance("M30") is None

@@ -59,9 +59,12 @@ def test_depth_is_that_of_the_cutter_below_the_face_by_hand(gear_set, vertical, 
     tip = toe + run.cutter.height + 2.0
     position = [0.0, 0.0, vertical.pivot_height - tip, 0.0, math.pi / 2]
     standing = replace(
-        run, axes=np.array([position, position]), cutting=np.array([False, True]), space=np.zeros(2, int),
+        run,
+        axes=np.array([position, position]),
+        cutting=np.array([False, True]),
+        space=np.zeros(2, int),
         line=np.array([5, 6]),
-    )  # fmt: skip
+    )
     found = {(c.cutter, c.work): c for c in collisions(path, [standing], gear_set.gear, vertical)}
     assert found["head", "teeth"].depth == pytest.approx(2.0, abs=1e-6)
     assert found["head", "teeth"].lines == (6,)
@@ -75,10 +78,15 @@ def test_time_and_speeds_of_a_path_by_hand(vertical, job):
     """One block of 10 mm X in 2 s, one rapid of 100 mm Z at 15000 mm/min."""
     path, _ = job
     here = replace(
-        path, axes=np.array([[0.0] * 5, [10.0, 0, 0, 0, 0], [10.0, 0, 100, 0, 0]]), rapid=np.array([True, False, True]),
-        tool=np.zeros(3, int), line=np.array([3, 4, 5]), seconds=np.array([0.0, 2.0, 0.0]),
-        rpm=np.full(3, 100.0), measuring=np.zeros(3, bool),
-    )  # fmt: skip
+        path,
+        axes=np.array([[0.0] * 5, [10.0, 0, 0, 0, 0], [10.0, 0, 100, 0, 0]]),
+        rapid=np.array([True, False, True]),
+        tool=np.zeros(3, int),
+        line=np.array([3, 4, 5]),
+        seconds=np.array([0.0, 2.0, 0.0]),
+        rpm=np.full(3, 100.0),
+        measuring=np.zeros(3, bool),
+    )
     found = timing(here, vertical)
     assert found.feed_seconds == 2.0
     assert found.rapid_seconds == pytest.approx(100 / 15000 * 60)

@@ -15,7 +15,7 @@ from gearmath.machine.judging.cut import metal_left
 from gearmath.machine.judging.program import faults_of
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.run import runs_of
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.toml import bundled
@@ -24,7 +24,7 @@ from gearmath.specs.toml import bundled
 @pytest.fixture(scope="module")
 def text(gear_set, vertical):
     """Two neighbouring spaces of the gear, coarse."""
-    return cutting_program(gear_set, "gear", vertical, "CUT", Job((0, 1), 5e-3))
+    return cutting_program(gear_set, "gear", vertical, "CUT", CuttingJob((0, 1), 5e-3))
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +61,7 @@ def test_right_program_has_no_faults(text, judged):
 
 def test_exact_stop_needs_no_tolerance_of_the_path_and_g642_does(gear_set, vertical, text, judged):
     exact = vertical.model_copy(update={"control": vertical.control.model_copy(update={"path_mode": "G60"})})
-    assert judged(cutting_program(gear_set, "gear", exact, "CUT", Job((0, 1), 5e-3)), exact) == []
+    assert judged(cutting_program(gear_set, "gear", exact, "CUT", CuttingJob((0, 1), 5e-3)), exact) == []
     assert "the program moves before it states CTOL" in judged(text.replace("CTOL=0.000050 ", ""))
 
 
@@ -184,8 +184,11 @@ def test_feed_block_beside_the_path_is_seen_with_its_line(text, judged, axis):
 
 
 def test_fixture_in_the_way_is_said_with_the_line(text, judged, vertical):
-    wide = vertical.model_copy(update={"fixture": vertical.fixture.model_copy(
-        update={"shank_radius": 50.0, "shank_length": 1.0, "radius": 300.0})})  # fmt: skip
+    wide = vertical.model_copy(
+        update={
+            "fixture": vertical.fixture.model_copy(update={"shank_radius": 50.0, "shank_length": 1.0, "radius": 300.0})
+        }
+    )
     assert any("into the fixture" in one for one in judged(text, wide))
 
 
@@ -194,7 +197,7 @@ def test_hobbed_block_beside_its_path_is_seen_in_every_axis(vertical):
     """By hand: 0.06 mm or degrees in the middle of the roll, where 20 um are stated; A and C count together."""
     bevel_set = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
     spec = bevel_set.gear
-    text = cutting_program(bevel_set, "gear", vertical, "CUT", Job(range(39), 2e-2))
+    text = cutting_program(bevel_set, "gear", vertical, "CUT", CuttingJob(range(39), 2e-2))
 
     def said(text):
         path = execute(text, "CUT", Setup.of(vertical))
@@ -223,7 +226,7 @@ def test_stock_gouge_and_missing_metal_are_said_without_a_report(gear_set, verti
     assert left(text) == []
     unsaid = bent(text, r"^; flank tolerance: .*\n", "")
     assert any(re.search(r"leaves .* um, allowed are 1 um", one) for one in left(unsaid))
-    stock = cutting_program(gear_set, "gear", vertical, "CUT", Job((0,), 5e-3, finishing_stock=0.1))
+    stock = cutting_program(gear_set, "gear", vertical, "CUT", CuttingJob((0,), 5e-3, finishing_stock=0.1))
     assert left(stock) == []
     said = left(stock.replace("; finish: stock 0.1 mm", "; finish: stock 0 mm"))
     assert any(re.search(r"leaves \+[12]\d\d\.\d* um, the program states 5 um", one) for one in said), said
@@ -243,7 +246,7 @@ def test_program_with_index_corrections_is_judged_by_the_places_that_they_ask_fo
         runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, "gear", vertical, None, space, SHARP_EDGE)
         return [str(one) for one in metal_left(runs, spec, "gear", vertical, Stated.of(text), space).faults]
 
-    job = Job((0, 2), 1e-3)
+    job = CuttingJob((0, 2), 1e-3)
     assert left(cutting_program(corrected, "gear", vertical, "CUT", job)) == []
     assert left(cutting_program(gear_set, "gear", vertical, "CUT", job)) != []
 

@@ -25,7 +25,7 @@ from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
 from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control import values as nc_values
-from gearmath.machine.control.blocks import Control
+from gearmath.machine.control.blocks import ControlState
 from gearmath.machine.control.executor import MachinePath, execute
 from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.state import Setup
@@ -36,7 +36,7 @@ from gearmath.machine.judging.motion import feeds, speeds, spindle, travel
 from gearmath.machine.judging.program import faults_of
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.run import runs_of
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.path import Cut, flank_points
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import SIDES, load_bevel_set
@@ -156,8 +156,9 @@ class Dense:
         for cut in Cut.of(spec, self.member):
             found = [flank_points(spec, flank, blank_grid(spec, 8, 160, 0.0)) for flank in cut.flanks]
             self.points[cut.tool] = (
-                np.concatenate([one.point for one in found]), np.concatenate([one.normal for one in found])
-            )  # fmt: skip
+                np.concatenate([one.point for one in found]),
+                np.concatenate([one.normal for one in found]),
+            )
             # what lies beyond the ends of the blades is no flank: the sharp tip alone comes there, in narrow scallops
             self.reached[cut.tool] = np.concatenate([one.contact[:, 0] >= 0.0 for one in found])
         for tool, (point, normal) in self.points.items():  # of the space and of both of its neighbors
@@ -170,8 +171,10 @@ class Dense:
         ends = blank.mean_cone_distance + np.array([-0.5, 0.5]) * blank.face_width
         up = blank.mean_addendum + (ends - blank.mean_cone_distance) * np.tan(np.radians(blank.face_angle) - delta)
         share, turn = np.linspace(0, 1, 25), np.linspace(0, 2 * np.pi, 240, endpoint=False)
-        z, r = (np.interp(share, [0, 1], part) for part in (
-            ends * np.cos(delta) - up * np.sin(delta), ends * np.sin(delta) + up * np.cos(delta)))  # fmt: skip
+        z, r = (
+            np.interp(share, [0, 1], part)
+            for part in (ends * np.cos(delta) - up * np.sin(delta), ends * np.sin(delta) + up * np.cos(delta))
+        )
         self.face = np.stack([np.outer(r, np.cos(turn)), np.outer(r, np.sin(turn)), np.outer(z, turn * 0 + 1)], -1)
         self.face = self.face.reshape(-1, 3)
 
@@ -412,7 +415,9 @@ class Whole:
     def __post_init__(self):
         bevel_set = load_bevel_set(bundled(f"{self.name}.toml"))
         self.spec = bevel_set.member(self.member)
-        self.text = cutting_program(bevel_set, self.member, MACHINE, "CUT", Job(self.spaces or range(self.spec.teeth)))
+        self.text = cutting_program(
+            bevel_set, self.member, MACHINE, "CUT", CuttingJob(self.spaces or range(self.spec.teeth))
+        )
         self.lines = self.text.split("\n")
         self.space = tooth_space(self.spec, self.member, 7)
         self.stated = Stated.of(self.text)
@@ -437,7 +442,13 @@ class Whole:
 
     def _run_right(self):
         """What is in force before every block, and how many rows lie behind."""
-        control, self.blocks, self.before, self.behind, rows = Control("CUT", setup=Setup.of(MACHINE)), [], [], [], 0
+        control, self.blocks, self.before, self.behind, rows = (
+            ControlState("CUT", setup=Setup.of(MACHINE)),
+            [],
+            [],
+            [],
+            0,
+        )
         for part in acting(read_program(self.text, "CUT").body):
             if isinstance(part, Command):
                 if part.name == "FGROUP":
@@ -482,9 +493,11 @@ class Whole:
         after = [r for r in range(last, last + 4) if joined and r < len(self.path.tool) and self.path.tool[r] == tool]
         own = {
             "axes": np.array([[*row.position[:3], *np.radians(row.position[3:])] for row in rows]).reshape(-1, 5),
-            "rapid": np.array([row.rapid for row in rows], bool), "seconds": np.array([row.seconds for row in rows]),
-            "rpm": np.array([row.rpm for row in rows]), "measuring": np.array([row.measuring for row in rows], bool),
-        }  # fmt: skip
+            "rapid": np.array([row.rapid for row in rows], bool),
+            "seconds": np.array([row.seconds for row in rows]),
+            "rpm": np.array([row.rpm for row in rows]),
+            "measuring": np.array([row.measuring for row in rows], bool),
+        }
         part = {
             key: np.concatenate([getattr(self.path, key)[before], new, getattr(self.path, key)[after]])
             for key, new in own.items()
@@ -529,15 +542,16 @@ class Whole:
 
         path, runs = together(parts)
         found = [
-            *spindle(path, MACHINE, self.stated), *travel(path, MACHINE), *speeds(path, MACHINE),
+            *spindle(path, MACHINE, self.stated),
+            *travel(path, MACHINE),
+            *speeds(path, MACHINE),
             *feeds(path, runs, self.spec, MACHINE, self.stated),
             *beside_the_path(runs, self.spec, MACHINE, self.stated),
-        ]  # fmt: skip
+        ]
         seen = {one.line for one in found}
         near = [
-            part for part in parts
-            if part["line"].max() not in seen and part["rapid"][1:][part["line"][1:] > 0].any()
-        ]  # fmt: skip
+            part for part in parts if part["line"].max() not in seen and part["rapid"][1:][part["line"][1:] > 0].any()
+        ]
         if near:
             path, runs = together(near)
             both = (
@@ -562,9 +576,11 @@ def others(whole):
         if "MSG(" in line:
             continue
         for right, wrong, kind in (
-            ("G0", "G1", "G0 for G1"), ("G1", "G0", "G1 for G0"), ("M3", "M4", "M3 for M4"),
+            ("G0", "G1", "G0 for G1"),
+            ("G1", "G0", "G1 for G0"),
+            ("M3", "M4", "M3 for M4"),
             ("G54", "G55", "G54 for G55"),
-        ):  # fmt: skip
+        ):
             if re.search(rf"\b{right}\b", line):
                 yield kind, k + 1, [re.sub(rf"\b{right}\b", wrong, line)]
         if not MOTION.search(line) and re.search(r"[SF][0-9]", line):
@@ -653,9 +669,10 @@ def test_dense_check_is_not_blind_to_what_mill_sees(case):
     whole, dense = case
     random = np.random.default_rng(100)
     changed = [
-        (line, new) for kind, line, new in wrong_digits(whole, 30, 4, random)
+        (line, new)
+        for kind, line, new in wrong_digits(whole, 30, 4, random)
         if kind in ("axis digit", "sign") and moved(whole, dense, line, new) > 2 * TOLERANCE
-    ]  # fmt: skip
+    ]
     seen, _ = whole.alone(changed)
     harm = [dense.harm_of(*changed[mutant], machine=False) is not None for mutant in sorted(seen)]
     print(f"\n{whole.name} {whole.member}: {len(changed)} moved, {len(seen)} seen, {sum(harm)} of them spoil the part")
@@ -696,7 +713,7 @@ def test_what_passes_of_wrong_hobbing_programs_is_the_right_path_within_the_tole
     """
     bevel_set, tolerance = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml")), 5e-4
     spec = bevel_set.member(member)
-    text = cutting_program(bevel_set, member, MACHINE, "CUT", Job(range(spec.teeth), tolerance=tolerance))
+    text = cutting_program(bevel_set, member, MACHINE, "CUT", CuttingJob(range(spec.teeth), tolerance=tolerance))
     right, seconds = hobbed_path(text, spec, member)
     assert np.nan_to_num(np.diff(right, axis=0)).any(axis=1).all()
     cuts = seconds > 0

@@ -17,7 +17,7 @@ import pytest
 
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Setup
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.calibrating import calibration_program
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.machine.writing.probing import probing_program
@@ -27,13 +27,22 @@ from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
-COUNTING = MACHINE.model_copy(update={"axes": MACHINE.axes.model_copy(update={
-    "A": MACHINE.axes.A.model_copy(update={"modulo": False, "travel": (-720.0, 7200.0)})})})  # fmt: skip
-SHIFTED = MACHINE.model_copy(update={
-    "z_reference": "tip", "work_offset_values": (-250.0, 12.5, -900.0, 5.0, 0.25)})  # fmt: skip
+COUNTING = MACHINE.model_copy(
+    update={
+        "axes": MACHINE.axes.model_copy(
+            update={"A": MACHINE.axes.A.model_copy(update={"modulo": False, "travel": (-720.0, 7200.0)})}
+        )
+    }
+)
+SHIFTED = MACHINE.model_copy(update={"z_reference": "tip", "work_offset_values": (-250.0, 12.5, -900.0, 5.0, 0.25)})
 PROBE = load_calibration(bundled("probe.toml"))
-SETS = ("nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_universal_14x39", "crown_gear_formate_14x39",
-        "crown_gear_hobbed_14x39")  # fmt: skip
+SETS = (
+    "nasa_tp3096_12x36",
+    "crown_gear_7x43",
+    "crown_gear_universal_14x39",
+    "crown_gear_formate_14x39",
+    "crown_gear_hobbed_14x39",
+)
 STARTS = 48
 _STEP_MM, _STEP_DEG = 3.0, 1.0
 
@@ -51,7 +60,7 @@ def text_of(name, member, kind):
         return machine, probing_program(one, member, machine, PROBE, "START", topography=())
     if kind == "calibration":
         return machine, calibration_program(machine, PROBE, "START")
-    return machine, cutting_program(one, member, machine, "START", Job(spaces, 1e-2))
+    return machine, cutting_program(one, member, machine, "START", CuttingJob(spaces, 1e-2))
 
 
 def work_points(member):
@@ -70,11 +79,16 @@ def work_points(member):
     fixture = MACHINE.fixture
     shank = 0.5 * root[1]
     end = root[0] + fixture.shank_length
-    profile = [(corners[0][0], 0.0), *corners, tuple(root), (root[0], shank), (end, shank), (end, fixture.radius),
-               (end + fixture.length, fixture.radius)]  # fmt: skip
-    dense = np.concatenate([
-        np.linspace(a, b, 2 + int(math.dist(a, b) / 4.0)) for a, b in itertools.pairwise(profile)
-    ])  # fmt: skip
+    profile = [
+        (corners[0][0], 0.0),
+        *corners,
+        tuple(root),
+        (root[0], shank),
+        (end, shank),
+        (end, fixture.radius),
+        (end + fixture.length, fixture.radius),
+    ]
+    dense = np.concatenate([np.linspace(a, b, 2 + int(math.dist(a, b) / 4.0)) for a, b in itertools.pairwise(profile)])
     angle = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     z, r = (np.repeat(column, len(angle)) for column in dense.T)
     return np.column_stack([r * np.cos(np.tile(angle, len(dense))), r * np.sin(np.tile(angle, len(dense))), z])
@@ -125,19 +139,25 @@ def random_setup(random, machine, tool_names):
     tool_length = random.choice([right.tool_length] * 3 + [0.0, 150.0, 300.0])
     raised = tuple((zero + np.eye(5)[2] * 150.0).tolist())
     return Setup(
-        zero=right.zero, offset=right.offset if random.random() < 0.8 else raised,
-        tool_length=float(tool_length), probe_length=right.probe_length, position=tuple((place + zero).tolist()),
+        zero=right.zero,
+        offset=right.offset if random.random() < 0.8 else raised,
+        tool_length=float(tool_length),
+        probe_length=right.probe_length,
+        position=tuple((place + zero).tolist()),
         turned=(0.0, 0.0, 0.0) if random.random() < 0.9 else (0.0, 0.0, 3.0),
-        tool=str(random.choice([*tool_names, "DRILL"])), changed_at=tuple((change + zero).tolist()),
-    )  # fmt: skip
+        tool=str(random.choice([*tool_names, "DRILL"])),
+        changed_at=tuple((change + zero).tolist()),
+    )
 
 
 CASES = [
     *((name, member, "cutting") for name in SETS for member in MEMBERS),
     *((name, member, "probing") for name in SETS for member in MEMBERS),
-    ("nasa_tp3096_12x36", "pinion", "counting"), ("nasa_tp3096_12x36", "gear", "shifted"),
-    ("nasa_tp3096_12x36", "pinion", "calibration"), ("nasa_tp3096_12x36", "gear", "again"),
-]  # fmt: skip
+    ("nasa_tp3096_12x36", "pinion", "counting"),
+    ("nasa_tp3096_12x36", "gear", "shifted"),
+    ("nasa_tp3096_12x36", "pinion", "calibration"),
+    ("nasa_tp3096_12x36", "gear", "again"),
+]
 
 
 @pytest.mark.slow

@@ -18,7 +18,7 @@ from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.judging.collision import RAPID_CLEARANCE, collisions, rapid_approaches
 from gearmath.machine.milling.run import runs_of
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import MEMBERS
 
@@ -90,7 +90,9 @@ def in_work(points, at, height):
 @pytest.mark.parametrize("member", MEMBERS)
 def test_rapid_moves_that_meet_the_work_are_all_said(gear_set, vertical, member):
     spec, height = gear_set.member(member), vertical.gauge_line_height + vertical.tool_length
-    path = execute(cutting_program(gear_set, member, vertical, "CUT", Job((0,), 5e-3)), "CUT", Setup.of(vertical))
+    path = execute(
+        cutting_program(gear_set, member, vertical, "CUT", CuttingJob((0,), 5e-3)), "CUT", Setup.of(vertical)
+    )
     (run, *_) = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 7), SHARP_EDGE)
     solid, points = Solid(spec, vertical.fixture), tool_points(run, vertical)
     middle = run.axes[run.cutting].mean(axis=0)
@@ -104,9 +106,7 @@ def test_rapid_moves_that_meet_the_work_are_all_said(gear_set, vertical, member)
         steps = 2 + int(max(way[:3].max() / _STEP, way[4] * 100))
         poses = ends[0] + np.linspace(0, 1, steps)[:, None] * (ends[1] - ends[0])
         really = any(solid.holds(in_work(points, pose, height)).any() for pose in poses)
-        one = type(run)(
-            run.cut, run.cutter, ends, np.zeros(2, bool), np.full(2, -1), np.array([1, 2])
-        )  # fmt: skip
+        one = type(run)(run.cut, run.cutter, ends, np.zeros(2, bool), np.full(2, -1), np.array([1, 2]))
         said = bool(rapid_approaches([one], spec, vertical)) or bool(
             collisions(path, [one], spec, vertical, *obstacles(vertical))
         )

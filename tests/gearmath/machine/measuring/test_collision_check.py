@@ -110,10 +110,18 @@ def test_spindle_stands_as_far_above_the_teeth_as_the_probe_is_long(gear_set):
     """The gauge line goes up with the length of the probe, and so does the least distance to the work."""
     member = gear_set.pinion
     near, far = (
-        of(approaches(probing_program(gear_set, "pinion", MACHINE, one, "PROBE", topography=()), "P", member, "pinion",
-                      MACHINE, one))["spindle", "teeth"].distance
+        of(
+            approaches(
+                probing_program(gear_set, "pinion", MACHINE, one, "PROBE", topography=()),
+                "P",
+                member,
+                "pinion",
+                MACHINE,
+                one,
+            )
+        )["spindle", "teeth"].distance
         for one in (PROBE.model_copy(update={"length": length}) for length in (60.0, 200.0))
-    )  # fmt: skip
+    )
     assert far - near == pytest.approx(140.0, abs=1e-6)
     edge = work_profiles(member, Fixture())["teeth"]
     depth = np.linalg.norm(edge[-1] - edge[0])  # no touch is deeper under the face cone than the face is wide

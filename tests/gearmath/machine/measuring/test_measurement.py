@@ -12,7 +12,7 @@ from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.machine.measuring.measurement import measure_member
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
 from gearmath.specs.flank_csv import FlankFile, flank_file, join
-from gearmath.specs.simulated_machine import Drift, Measuring, Mounting, Probe, SimulatedMachine
+from gearmath.specs.simulated_machine import Drift, Mounting, Probe, SimulatedMachine, SimulatedMeasuring
 
 
 def true_file(gear_set, name, deviation=0.0):
@@ -24,10 +24,19 @@ def true_file(gear_set, name, deviation=0.0):
             one = nominal_flank(member, name, flank, grid, tooth=tooth)
             keep = np.full(len(one), tooth == 0) | ((one.row == 2) & (one.col == 4))
             point, normal, n = one.point[keep], one.normal[keep], int(keep.sum())
-            files.append(flank_file(
-                one.header, name, flank, tooth, one.row[keep], one.col[keep], point + deviation * normal, normal,
-                np.full(n, deviation),
-            ))  # fmt: skip
+            files.append(
+                flank_file(
+                    one.header,
+                    name,
+                    flank,
+                    tooth,
+                    one.row[keep],
+                    one.col[keep],
+                    point + deviation * normal,
+                    normal,
+                    np.full(n, deviation),
+                )
+            )
     return join(files)
 
 
@@ -70,7 +79,7 @@ def test_perfect_measurement_shows_the_metal_and_tooth_0_twice(gear_set, name):
 def test_clamping_moves_the_work_against_the_probe(gear_set, name):
     """δ = (e + ω × R)·n to first order: the opposite of what the same seat does to the cut."""
     seat = Mounting(eccentricity=0.02, eccentricity_direction=35.0, tilt=0.01, tilt_direction=-70.0)
-    clamp = Measuring(**{name: seat})
+    clamp = SimulatedMeasuring(**{name: seat})
     seen = measure_member(true_file(gear_set, name), gear_set.member(name), name, shop(measuring=clamp))
     at, about = math.radians(35.0), math.radians(-70.0)
     e = 0.02 * np.array([math.cos(at), math.sin(at), 0.0])
@@ -86,7 +95,7 @@ def test_clamping_moves_the_work_against_the_probe(gear_set, name):
 def test_drift_grows_evenly_from_the_first_touch_to_the_last(gear_set, name):
     """The work moves by d in the machine: d·(M(B) Rz(-A) n), and so the repeated tooth stands off its first touch."""
     member, d = gear_set.member(name), np.array([0.003, 0.004, -0.005])
-    drift = Measuring(drift=Drift(X_um=3.0, Y_um=4.0, Z_um=-5.0))
+    drift = SimulatedMeasuring(drift=Drift(X_um=3.0, Y_um=4.0, Z_um=-5.0))
     seen = measure_member(true_file(gear_set, name), member, name, shop(measuring=drift))
     for k in range(0, len(seen), 7):
         normal = to_machine(member, azimuth(seen, k), member.blank.root_angle) @ seen.normal[k]

@@ -20,7 +20,7 @@ from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.flank_csv import flank_file, join
 from gearmath.specs.milling_machine import load_milling_machine
-from gearmath.specs.simulated_machine import AxisErrors, Drift, Measuring, Probe, SimulatedMachine
+from gearmath.specs.simulated_machine import AxisErrors, Drift, Probe, SimulatedMachine, SimulatedMeasuring
 from gearmath.specs.toml import bundled
 from gearmath.specs.touch_csv import read_touch_csv
 
@@ -53,10 +53,19 @@ def nominal(gear_set, places):
             one = nominal_flank(gear_set.pinion, "pinion", flank, grid, tooth=tooth)
             here = places.select(flank, tooth)
             keep = here.row * 9 + here.col
-            files.append(flank_file(
-                one.header, "pinion", flank, tooth, one.row[keep], one.col[keep], one.point[keep], one.normal[keep],
-                np.zeros(len(keep)),
-            ))  # fmt: skip
+            files.append(
+                flank_file(
+                    one.header,
+                    "pinion",
+                    flank,
+                    tooth,
+                    one.row[keep],
+                    one.col[keep],
+                    one.point[keep],
+                    one.normal[keep],
+                    np.zeros(len(keep)),
+                )
+            )
     return join(files)
 
 
@@ -64,7 +73,8 @@ def nominal(gear_set, places):
 def test_drift_and_lobes_are_those_of_the_simulated_measurement(gear_set, tmp_path):
     """Program, machine and touches leave what the flank file is changed by: two ways that share the seat only."""
     errors = shop(
-        measuring=Measuring(drift=Drift(X_um=3.0, Y_um=4.0, Z_um=-5.0)), probe=Probe(lobing_um=2.0, lobing_phase=10.0)
+        measuring=SimulatedMeasuring(drift=Drift(X_um=3.0, Y_um=4.0, Z_um=-5.0)),
+        probe=Probe(lobing_um=2.0, lobing_phase=10.0),
     )
     seen = probed(gear_set, tmp_path, errors, touches=2 * (45 + 11 + 5))
     expected = measure_member(nominal(gear_set, seen), gear_set.pinion, "pinion", errors)

@@ -23,7 +23,7 @@ from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.flank_csv import join
 from gearmath.specs.milling_machine import load_milling_machine
-from gearmath.specs.simulated_machine import AxisErrors, Drift, Measuring, Mounting, Probe, SimulatedMachine
+from gearmath.specs.simulated_machine import AxisErrors, Drift, Mounting, Probe, SimulatedMachine, SimulatedMeasuring
 from gearmath.specs.toml import bundled
 from gearmath.specs.touch_csv import RING, RING_FACE, SPHERE, read_calibration_csv, read_touch_csv
 
@@ -87,12 +87,15 @@ def test_clamping_and_drift_of_a_run_are_those_of_the_simulated_measurement(gear
 
     The tip rolls by 20 um on flanks of some 20 mm radius: 10 nm; a metal frame that moved the other way would be 40 um.
     """
-    member, errors = gear_set.pinion, shop(
-        measuring=Measuring(
-            pinion=Mounting(eccentricity=0.02, eccentricity_direction=40.0, tilt=0.01, tilt_direction=-70.0),
-            drift=Drift(X_um=3.0, Y_um=4.0, Z_um=-5.0),
-        )
-    )  # fmt: skip
+    member, errors = (
+        gear_set.pinion,
+        shop(
+            measuring=SimulatedMeasuring(
+                pinion=Mounting(eccentricity=0.02, eccentricity_direction=40.0, tilt=0.01, tilt_direction=-70.0),
+                drift=Drift(X_um=3.0, Y_um=4.0, Z_um=-5.0),
+            )
+        ),
+    )
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PP", topography=(0,))
     there = ProbeMachine(member, "pinion", MACHINE, PROBE, seat=errors.measuring_clamp("pinion"))
     (tmp_path / "raw.csv").write_text(run_touches(text, "PP.MPF", there, errors, touch_count(text, "PP.MPF")))
@@ -169,6 +172,13 @@ def test_command_refuses_a_program_that_collides_and_one_of_the_mate(gear_set, r
     line = text[:at].count("\n") + 1
     refused(
         rf"PP\.MPF, line ({line}|{line + 1}): the (tip|stylus) of the probe meets the teeth, .* mm deep: it is not run",
-        "probe", program, "--set", NASA, "--member", "pinion", "-o", tmp_path / "raw.csv",
-    )  # fmt: skip
+        "probe",
+        program,
+        "--set",
+        NASA,
+        "--member",
+        "pinion",
+        "-o",
+        tmp_path / "raw.csv",
+    )
     assert [path.name for path in tmp_path.iterdir()] == ["PP.MPF"]

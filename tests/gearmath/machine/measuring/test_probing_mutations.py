@@ -121,9 +121,16 @@ class Trace:
         self.ways = []
         try:
             done = run_program(
-                text, "T", touch, host, parameters or {}, setup=setup, deflected=is_deflected,
-                files={"TT_T": "old\n"}, step_limit=200_000,
-            )  # fmt: skip
+                text,
+                "T",
+                touch,
+                host,
+                parameters or {},
+                setup=setup,
+                deflected=is_deflected,
+                files={"TT_T": "old\n"},
+                step_limit=200_000,
+            )
         except InputError:
             self.refused = True
             return
@@ -215,13 +222,19 @@ class Judged:
         ways, parts = len(whole.ways), {"pitch": 26, "repeated": 26, "ring": 2, "tip": 3, "axes": 9}[self.name]
         first = int(random.integers(1, parts + 1))
         wrong = [
-            replace(RIGHT, offset=(0, 0, 0.3, 0, 0)), replace(RIGHT, mirrored=(0, 0, 1)), replace(RIGHT, metric=False),
-            replace(RIGHT, turned=(1.0, 0, 0)), replace(RIGHT, scaled=(1, 1, 1.01)),
-            replace(RIGHT, offset=(0.2, 0, 0, 0, 0)), replace(RIGHT, offset=(0, 0, 0, 0, 0.1)),
-            replace(RIGHT, spindle_tool=lambda wanted: "CUTTER"), replace(RIGHT, probe_length=12.0),
-            replace(RIGHT, increments=(1000, 1e9)), replace(RIGHT, increments=(1e9, 1000)),
+            replace(RIGHT, offset=(0, 0, 0.3, 0, 0)),
+            replace(RIGHT, mirrored=(0, 0, 1)),
+            replace(RIGHT, metric=False),
+            replace(RIGHT, turned=(1.0, 0, 0)),
+            replace(RIGHT, scaled=(1, 1, 1.01)),
+            replace(RIGHT, offset=(0.2, 0, 0, 0, 0)),
+            replace(RIGHT, offset=(0, 0, 0, 0, 0.1)),
+            replace(RIGHT, spindle_tool=lambda wanted: "CUTTER"),
+            replace(RIGHT, probe_length=12.0),
+            replace(RIGHT, increments=(1000, 1e9)),
+            replace(RIGHT, increments=(1e9, 1000)),
             replace(RIGHT, result_file_kB=0.3),
-        ]  # fmt: skip
+        ]
         return [
             {},
             {"parameters": {90: first, 91: int(random.integers(first, parts + 1))}},
@@ -256,8 +269,10 @@ class Judged:
             if self.member:  # tip, stylus and spindle against the whole member
                 if deep is None:
                     try:
-                        deep = min(a.distance for a in approaches(text, "T", SET.pinion, "pinion", MACHINE, PROBE,
-                                                                   MACHINE.fixture))  # fmt: skip
+                        deep = min(
+                            a.distance
+                            for a in approaches(text, "T", SET.pinion, "pinion", MACHINE, PROBE, MACHINE.fixture)
+                        )
                     except InputError:
                         return True  # it stops on the nominal member, and gearmath probe says so
                 return deep > 0.0

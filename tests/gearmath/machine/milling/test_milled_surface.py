@@ -42,9 +42,16 @@ def of_form(member, flank, tooth, keep, shape=(5, 9)):
     up, along = 2 * one.row / (shape[0] - 1) - 1, 2 * one.col / (shape[1] - 1) - 1
     found = form(flank, up, along) + TURN[tooth] * lever
     return flank_file(
-        one.header, "pinion", flank, tooth, one.row[keep], one.col[keep],
-        (one.point + found[:, None] * one.normal)[keep], one.normal[keep], found[keep],
-    )  # fmt: skip
+        one.header,
+        "pinion",
+        flank,
+        tooth,
+        one.row[keep],
+        one.col[keep],
+        (one.point + found[:, None] * one.normal)[keep],
+        one.normal[keep],
+        found[keep],
+    )
 
 
 def whole(member, shape=(5, 9)):
@@ -94,9 +101,16 @@ def test_points_of_a_tooth_that_is_not_in_full_come_back(gear_set):
     own = of_form(member, "convex", 5, marked)
     off = 0.007 * ((own.row == 4) & (own.col == 0))
     moved = flank_file(
-        own.header, "pinion", "convex", 5, own.row, own.col, own.point + off[:, None] * own.normal, own.normal,
+        own.header,
+        "pinion",
+        "convex",
+        5,
+        own.row,
+        own.col,
+        own.point + off[:, None] * own.normal,
+        own.normal,
         own.deviation + off,
-    )  # fmt: skip
+    )
     metal = MilledSurface(join([file.pick((file.tooth != 5) | (file.flank != "convex")), moved]), member, "pinion", "m")
     grid = blank_grid(member)
     for k in range(len(moved)):

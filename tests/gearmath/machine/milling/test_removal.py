@@ -92,11 +92,13 @@ def test_rapid_blocks_cut_nothing():
 def test_closest_approach_is_found_within_a_block():
     """One block turns A by ±6° and moves X with it: the cutter is nearest in the middle, where no node stands."""
     half, lever = math.radians(6.0), 80.0
-    path = np.array([
-        [-lever, 0, HEIGHT + 50, -half, np.pi / 2],
-        [-lever, 0, HEIGHT - 10, -half, np.pi / 2],
-        [-lever, 0, HEIGHT - 10, half, np.pi / 2],
-    ])  # fmt: skip
+    path = np.array(
+        [
+            [-lever, 0, HEIGHT + 50, -half, np.pi / 2],
+            [-lever, 0, HEIGHT - 10, -half, np.pi / 2],
+            [-lever, 0, HEIGHT - 10, half, np.pi / 2],
+        ]
+    )
     point, normal = across(np.array([5.0]), x=lever + RADIUS + 4.0, direction=-1.0)
     left = remaining(path, np.array([False, True, True]), OUTER, HEIGHT, point, normal)
     np.testing.assert_allclose(left, 4.0 - 5.0 * math.tan(ALPHA), rtol=0, atol=1e-9)
@@ -129,9 +131,13 @@ def test_a_real_program_leaves_what_dense_sampling_finds(gear_set, vertical, pro
 
     def sample(poses):  # (n or 1, k, 5)
         t = witness.entry(
-            *witness.vertical_pose(poses, height), settings[10], settings[11], side,
-            points.point[:, None], points.normal[:, None],
-        )  # fmt: skip
+            *witness.vertical_pose(poses, height),
+            settings[10],
+            settings[11],
+            side,
+            points.point[:, None],
+            points.normal[:, None],
+        )
         return t.min(axis=1), t.argmin(axis=1)
 
     coarse = np.concatenate([axes[k - 1] + fractions * (axes[k] - axes[k - 1]) for k in ends])
@@ -188,9 +194,19 @@ def test_first_part_of_a_line_taken_away_by_an_annulus_is_what_sampling_finds(ed
     body = Body(0.0, blade(0, 1, curvature), blade(1, -1, 0.0), 12.0)
     axes = np.array([0.0, 0.0, HEIGHT, 0.0, np.pi / 2])
     (found,) = entry_along_block(body.sharp)(
-        axes, axes, 0.0, HEIGHT, np.zeros(3), 0.0, point, direction, start, body.annulus, body.outer.vector,
+        axes,
+        axes,
+        0.0,
+        HEIGHT,
+        np.zeros(3),
+        0.0,
+        point,
+        direction,
+        start,
+        body.annulus,
+        body.outer.vector,
         body.inner.vector,
-    )  # fmt: skip
+    )
     both = np.isfinite(sampled) & (found < 5.9)
     late = sampled[both] - found[both]
     assert both.sum() > 150
@@ -204,7 +220,7 @@ def test_first_part_of_a_line_taken_away_by_an_annulus_is_what_sampling_finds(ed
         np.abs(depth),
         np.abs(radius - outermost(depth, radii[0], alphas[0], edges[0], curvature, 3.0)),
         np.abs(radius - 2 * radii[1] + outermost(depth, radii[1], alphas[1], edges[1])),
-    ]  # fmt: skip
+    ]
     assert np.min(off, axis=0).max() < 1e-3  # on a surface to 1e-7, radially more where an edge is almost level
 
 

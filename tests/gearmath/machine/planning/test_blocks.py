@@ -76,9 +76,11 @@ def _points(spec, flank, margin):
     return [
         np.concatenate([values[on_blade], more[foot.converged]])
         for values, more in (
-            (points.contact[:, 2], foot.contact[:, 2]), (points.point, foot.point), (points.normal, foot.normal)
+            (points.contact[:, 2], foot.contact[:, 2]),
+            (points.point, foot.point),
+            (points.normal, foot.normal),
         )
-    ]  # fmt: skip
+    ]
 
 
 def _flank(witness, blade, roll, points):
@@ -140,9 +142,12 @@ def fewest_blocks(left, start, end, tolerance, spacing):
     for some in (origin[::_CANDIDATES], origin):
         while len(some := some[low[some] < high[some]]):
             middle = (low[some] + high[some] + 1) // 2
-            kept = np.concatenate([
-                left(nodes[some[k : k + 200]], nodes[middle[k : k + 200]]) for k in range(0, len(some), 200)
-            ]) <= tolerance  # fmt: skip
+            kept = (
+                np.concatenate(
+                    [left(nodes[some[k : k + 200]], nodes[middle[k : k + 200]]) for k in range(0, len(some), 200)]
+                )
+                <= tolerance
+            )
             low[some], high[some] = np.where(kept, middle, low[some]), np.where(kept, high[some], middle - 1)
         low, high = np.maximum.accumulate(low), np.minimum.accumulate(high[::-1])[::-1]
     count = np.full(n, n)
@@ -175,13 +180,19 @@ def test_blocks_are_near_the_fewest_that_dynamic_programming_finds(gear_set, dev
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "member", "number", "tolerances"), [
-    ("crown_gear_7x43", "pinion", 0, (1e-4, 5e-4, 2.5e-3)), ("crown_gear_7x43", "pinion", 1, (5e-4, 2.5e-3)),
-    ("crown_gear_7x43", "gear", 0, (5e-4,)), ("crown_gear_formate_14x39", "pinion", 0, (1e-4, 5e-4, 2.5e-3)),
-    ("crown_gear_formate_14x39", "pinion", 1, (5e-4,)),
-    ("crown_gear_universal_14x39", "pinion", 0, (5e-4, 2.5e-3)),
-    ("crown_gear_universal_14x39", "pinion", 1, (5e-4,)), ("crown_gear_universal_14x39", "gear", 0, (5e-4,)),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "member", "number", "tolerances"),
+    [
+        ("crown_gear_7x43", "pinion", 0, (1e-4, 5e-4, 2.5e-3)),
+        ("crown_gear_7x43", "pinion", 1, (5e-4, 2.5e-3)),
+        ("crown_gear_7x43", "gear", 0, (5e-4,)),
+        ("crown_gear_formate_14x39", "pinion", 0, (1e-4, 5e-4, 2.5e-3)),
+        ("crown_gear_formate_14x39", "pinion", 1, (5e-4,)),
+        ("crown_gear_universal_14x39", "pinion", 0, (5e-4, 2.5e-3)),
+        ("crown_gear_universal_14x39", "pinion", 1, (5e-4,)),
+        ("crown_gear_universal_14x39", "gear", 0, (5e-4,)),
+    ],
+)
 def test_blocks_of_other_sets_are_near_the_fewest(deviations, name, member, number, tolerances):
     """Small pinions, whose flank the blade does not reach everywhere, and settings that move over the roll."""
     bevel_set = load_bevel_set(bundled(f"{name}.toml"))

@@ -7,7 +7,7 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid
 from gearmath.machine.planning.chip_load import chip_loads
-from gearmath.machine.planning.cut_plan import PLUNGE_FEED, Job, cutting_plan
+from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, cutting_plan
 from gearmath.machine.planning.path import flank_points
 from gearmath.specs.bevel_set import SIDES, load_bevel_set
 from gearmath.specs.toml import bundled
@@ -16,7 +16,7 @@ RPM = 120.0
 
 
 def planned(vertical, name, member, **job):
-    return cutting_plan(load_bevel_set(bundled(name)), member, vertical, Job(spindle_rpm=RPM, **job))
+    return cutting_plan(load_bevel_set(bundled(name)), member, vertical, CuttingJob(spindle_rpm=RPM, **job))
 
 
 def loads(plan, member=None):

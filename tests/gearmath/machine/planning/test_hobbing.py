@@ -28,7 +28,7 @@ from gearmath.machine.milling.mill import expose, mill_member
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.milling.surfaces import nominal_surfaces, surface_states
 from gearmath.machine.planning.clear_space import Room
-from gearmath.machine.planning.cut_plan import Job, tooth_in_roll
+from gearmath.machine.planning.cut_plan import CuttingJob, tooth_in_roll
 from gearmath.machine.planning.passes import Pass
 from gearmath.machine.planning.path import Cut, axis_positions, flank_points
 from gearmath.machine.writing.cutting import cutting_program
@@ -56,7 +56,7 @@ def written(hobbed, vertical):
         key = (member, repr(machine), id(gear_set), *sorted(job.items()))
         if key not in texts:
             spaces = range(gear_set.member(member).teeth)
-            texts[key] = cutting_program(gear_set, member, machine, "HOB", Job(spaces, **job))
+            texts[key] = cutting_program(gear_set, member, machine, "HOB", CuttingJob(spaces, **job))
         return texts[key]
 
     return text
@@ -161,9 +161,15 @@ def test_deviation_is_that_of_a_brute_force_sweep_of_every_blade(hobbed, written
         for part, k in picks:
             point = part.point[k] - part.deviation[k] * part.normal[k]
             found = brute_force(
-                path, spec.flank(flank), edge, spec.blade_groups, vertical.pivot_height, point,
-                part.normal[k], -1.0,
-            )  # fmt: skip
+                path,
+                spec.flank(flank),
+                edge,
+                spec.blade_groups,
+                vertical.pivot_height,
+                point,
+                part.normal[k],
+                -1.0,
+            )
             assert found == pytest.approx(part.deviation[k], abs=1e-7)
 
 
@@ -315,9 +321,10 @@ def test_writer_reader_writer_gives_the_same_text(hobbed, vertical, written):
 
     def blocks(program):
         return [
-            re.sub(r" F[\d.]+$", "", line) for line in program.splitlines()
+            re.sub(r" F[\d.]+$", "", line)
+            for line in program.splitlines()
             if not (line.startswith(";") or "$AA_IM[Z]" in line or "raise Z by hand" in line)
-        ]  # fmt: skip
+        ]
 
     assert blocks(again) == blocks(text)
 
@@ -325,13 +332,16 @@ def test_writer_reader_writer_gives_the_same_text(hobbed, vertical, written):
 @pytest.mark.parametrize(
     ("job", "sentence"),
     [
-        (Job(), r"^gear: spaces = \[0\]: face hobbing cuts all spaces in one roll: it must be all 39$"),
-        (Job(range(39), tolerance=0.0), r"^tolerance = 0 um: must lie between 0\.02 and 100 um"),
-        (Job(range(39), spindle_rpm=1.0), r"^HOB: spindle speed = 1\.0 rpm"),
-        (Job(range(39), spindle_rpm=0.0), r"^gear: spindle speed = 0\.0 rpm: must be greater than 0$"),
-        (Job(range(39), spindle_rpm=math.nan), r"^gear: spindle speed = nan rpm: must be greater than 0$"),
-        (Job(range(39), feed=0.0), r"^gear: feed = 0\.0 mm/min: must be greater than 0$"),
-        (Job(range(39), feed=1e-4), r"^gear: feed = 0\.0001 mm/min: .* turns of the work in the roll, 20000 at most$"),
+        (CuttingJob(), r"^gear: spaces = \[0\]: face hobbing cuts all spaces in one roll: it must be all 39$"),
+        (CuttingJob(range(39), tolerance=0.0), r"^tolerance = 0 um: must lie between 0\.02 and 100 um"),
+        (CuttingJob(range(39), spindle_rpm=1.0), r"^HOB: spindle speed = 1\.0 rpm"),
+        (CuttingJob(range(39), spindle_rpm=0.0), r"^gear: spindle speed = 0\.0 rpm: must be greater than 0$"),
+        (CuttingJob(range(39), spindle_rpm=math.nan), r"^gear: spindle speed = nan rpm: must be greater than 0$"),
+        (CuttingJob(range(39), feed=0.0), r"^gear: feed = 0\.0 mm/min: must be greater than 0$"),
+        (
+            CuttingJob(range(39), feed=1e-4),
+            r"^gear: feed = 0\.0001 mm/min: .* turns of the work in the roll, 20000 at most$",
+        ),
     ],
 )
 def test_faulty_jobs_are_refused(hobbed, vertical, job, sentence):
@@ -347,13 +357,13 @@ def test_machine_without_c_is_refused(hobbed, vertical):
     with pytest.raises(
         InputError, match=r"^gear: is face hobbed, which turns the cutter as the sixth axis C: .*\[axes.C\]"
     ):
-        cutting_program(hobbed, "gear", with_axes(vertical, C=None), "HOB", Job(range(39)))
+        cutting_program(hobbed, "gear", with_axes(vertical, C=None), "HOB", CuttingJob(range(39)))
 
 
 def test_counting_axis_that_cannot_turn_on_is_refused_with_axis_value_and_limit(hobbed, vertical):
     short = vertical.axes.C.model_copy(update={"modulo": False, "travel": (-360.0, 7200.0)})
     with pytest.raises(InputError, match=r"^gear, all spaces.*: axis C = .* degrees at cradle angle .* -360 to 7200"):
-        cutting_program(hobbed, "gear", with_axes(vertical, C=short), "HOB", Job(range(39), COARSE))
+        cutting_program(hobbed, "gear", with_axes(vertical, C=short), "HOB", CuttingJob(range(39), COARSE))
 
 
 def test_counting_c_is_written_as_it_counts(hobbed, vertical, written):
@@ -368,7 +378,7 @@ def test_counting_c_is_written_as_it_counts(hobbed, vertical, written):
 
 
 def test_program_of_the_other_method_is_refused(hobbed, gear_set, vertical, written):
-    milled = execute(cutting_program(gear_set, "gear", vertical, "GEAR", Job((0,), COARSE)), "GEAR.MPF")
+    milled = execute(cutting_program(gear_set, "gear", vertical, "GEAR", CuttingJob((0,), COARSE)), "GEAR.MPF")
     with pytest.raises(InputError, match=r"line \d+ cuts while the spindle is no axis C; the gear is face hobbed"):
         mill_member(milled, hobbed.gear, "gear", vertical)
     path = execute(written("gear"), "HOB.MPF")
@@ -411,10 +421,13 @@ def test_roughing_leaves_its_stock_and_finishing_takes_it(hobbed, vertical, writ
     text = written("gear", roughing_stock=0.2)
     path = execute(text, "HOB.MPF")
     number = np.cumsum(path.rapid & np.roll(~path.rapid, 1))  # a retract ends a stage
-    rough = replace(path, **{
-        key: getattr(path, key)[number == 0] if key != "tools" else path.tools
-        for key in ("axes", "rapid", "tool", "tools", "line", "seconds", "rpm", "measuring", "cutter")
-    })  # fmt: skip
+    rough = replace(
+        path,
+        **{
+            key: getattr(path, key)[number == 0] if key != "tools" else path.tools
+            for key in ("axes", "rapid", "tool", "tools", "line", "seconds", "rpm", "measuring", "cutter")
+        },
+    )
     left = mill_member(rough, hobbed.gear, "gear", vertical).deviation
     assert left.min() == pytest.approx(0.2, abs=1e-3)
     assert left.max() < 0.2 + 0.02  # coarse: a part of the stock
@@ -511,15 +524,17 @@ def test_setting_errors_act_like_cutting_with_those_settings(hobbed, gear_set, v
     right = changed(given, "gear", **update)
     gear = right.gear
     off = {
-        flank: gear.flank(flank).model_copy(update={
-            **{key: getattr(gear.flank(flank), key) + value for key, value in wrong.items()},
-            "design": Settings(**{key: getattr(gear.flank(flank), key) for key in SETTINGS}),
-        })
+        flank: gear.flank(flank).model_copy(
+            update={
+                **{key: getattr(gear.flank(flank), key) + value for key, value in wrong.items()},
+                "design": Settings(**{key: getattr(gear.flank(flank), key) for key in SETTINGS}),
+            }
+        )
         for flank in FLANKS
-    }  # fmt: skip
+    }
     spaces = range(39) if kind.startswith("hobbed") else (0,)
     errors = shop(gear=wrong)
-    sets, job = (right, changed(right, "gear", **off)), Job(spaces, 3e-4)
+    sets, job = (right, changed(right, "gear", **off)), CuttingJob(spaces, 3e-4)
     paths = [execute(cutting_program(one, "gear", vertical, "CUT", job), "CUT.MPF") for one in sets]
     injected = mill_member(paths[0], gear, "gear", vertical, errors)
     meant = mill_member(paths[1], gear, "gear", vertical)
@@ -582,9 +597,7 @@ def test_toprem_takes_away_what_its_own_edge_sweeps(hobbed, written, vertical, h
     assert left[deepest] < -0.01
     radius = spec.blade_point_radius + math.tan(math.radians(20)) - math.tan(math.radians(14))
     edge = ((0.0, radius), (1.0, radius + math.tan(math.radians(14))))
-    found = brute_force(
-        path, spec, edge, 13, vertical.pivot_height, flank.point[deepest], flank.normal[deepest], -1.0
-    )  # fmt: skip
+    found = brute_force(path, spec, edge, 13, vertical.pivot_height, flank.point[deepest], flank.normal[deepest], -1.0)
     assert left[deepest] == pytest.approx(found, abs=1e-7)
 
 
@@ -628,7 +641,7 @@ def test_command_line_writes_and_mills(tmp_path, command):
     assert float(re.search(r"largest deviation ([\d.]+) um", out)[1]) <= 2.0
     status, out, err = command(
         "mill", *given, "--program", program, "--errors", "simulated_shop.toml", "-o", tmp_path / "shop.csv"
-    )  # fmt: skip
+    )
     assert (status, err) == (0, ""), err
     assert float(re.search(r"largest deviation ([\d.]+) um", out)[1]) > 20.0
     status, _, err = command("nc", "cut", *given, "--spaces", "0,1", "-o", tmp_path / "NO.MPF")

@@ -17,9 +17,12 @@ from gearmath.specs.toml import bundled
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 OFF_AXIS = MACHINE.model_copy(update={"pivot_offset": (1.5, -2.25, 30.0)})
 COUNTING = MACHINE.model_copy(
-    update={"axes": MACHINE.axes.model_copy(update={"A": MACHINE.axes.A.model_copy(
-        update={"modulo": False, "travel": (-10.0, 700.0)})})}
-)  # fmt: skip
+    update={
+        "axes": MACHINE.axes.model_copy(
+            update={"A": MACHINE.axes.A.model_copy(update={"modulo": False, "travel": (-10.0, 700.0)})}
+        )
+    }
+)
 PROBE = load_calibration(bundled("probe.toml"))
 #: How far the stem is looked at.
 STEM = 60.0

@@ -11,7 +11,7 @@ from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.control.executor import execute
 from gearmath.machine.milling.mill import mill_member
-from gearmath.machine.planning.cut_plan import Job, pass_count
+from gearmath.machine.planning.cut_plan import CuttingJob, pass_count
 from gearmath.machine.planning.passes import tooth_angles
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, Motion, load_bevel_set, settings_sha256
@@ -48,7 +48,7 @@ def test_first_pass_goes_where_the_cradle_machine_of_the_witness_goes(gear_set, 
 
 
 def test_spaces_are_cut_in_order_by_every_tool_and_differ_in_a_alone(gear_set, vertical):
-    path = execute(cutting_program(gear_set, "pinion", vertical, "PINION", Job((0, 4, 2))), "PINION.MPF")
+    path = execute(cutting_program(gear_set, "pinion", vertical, "PINION", CuttingJob((0, 4, 2))), "PINION.MPF")
     assert path.tools == ("PINION_CONCAVE", "PINION_CONVEX")
     rolls = passes(path)
     assert len(rolls) == 6
@@ -65,7 +65,7 @@ def test_index_correction_turns_its_own_space_alone(gear_set, vertical):
         update={"pinion": gear_set.pinion.model_copy(update={"index_correction": correction})}
     )
     plain, turned = (
-        passes(execute(cutting_program(s, "pinion", vertical, "PINION", Job(range(12))), "P.MPF"))
+        passes(execute(cutting_program(s, "pinion", vertical, "PINION", CuttingJob(range(12))), "P.MPF"))
         for s in (gear_set, corrected)
     )
     for k, (before, after) in enumerate(zip(plain, turned, strict=True)):
@@ -76,7 +76,7 @@ def test_index_correction_turns_its_own_space_alone(gear_set, vertical):
 
 def test_head_says_what_the_program_was_made_from_in_plain_ascii(gear_set, vertical):
     odd = gear_set.model_copy(update={"title": "Kegelräder 12×36\n; M30"})
-    lines = cutting_program(odd, "gear", vertical, "GEAR", Job(tolerance=5e-4, feed=250.0)).split("\n")
+    lines = cutting_program(odd, "gear", vertical, "GEAR", CuttingJob(tolerance=5e-4, feed=250.0)).split("\n")
     head = [line for line in lines[:14] if line.startswith(";")]
     assert "; set: Kegelr?der 12?36?; M30" in head
     assert "; member: gear, 36 teeth, right hand, completing" in head
@@ -96,7 +96,7 @@ def test_program_is_the_same_text_every_time_and_another_for_other_settings(gear
 
 def test_finer_tolerance_makes_more_blocks(gear_set, vertical):
     coarse, fine = (
-        cutting_program(gear_set, "gear", vertical, "GEAR", Job(tolerance=t)).count("G93") for t in (1e-2, 1e-4)
+        cutting_program(gear_set, "gear", vertical, "GEAR", CuttingJob(tolerance=t)).count("G93") for t in (1e-2, 1e-4)
     )
     assert fine > 5 * coarse
 
@@ -119,7 +119,7 @@ def test_what_the_control_cannot_run_is_refused(gear_set, vertical, changes, wor
     changes = dict(changes)
     program_name = changes.pop("program_name", "GEAR")
     with pytest.raises(InputError, match=words):
-        cutting_program(gear_set, "gear", vertical, program_name, Job(**changes))
+        cutting_program(gear_set, "gear", vertical, program_name, CuttingJob(**changes))
 
 
 def test_travel_that_is_too_short_is_refused_by_axis_and_limit(gear_set, vertical):
@@ -140,7 +140,7 @@ def left(vertical):
     """``left(gear_set, member, **job)``: deviations (2, 45) [mm] that a program of one space leaves on both flanks."""
 
     def run(gear_set, member, machine=vertical, **job):
-        text = cutting_program(gear_set, member, machine, "PART", Job(**job))
+        text = cutting_program(gear_set, member, machine, "PART", CuttingJob(**job))
         file = mill_member(execute(text, "PART.MPF"), gear_set.member(member), member, machine)
         return np.stack([file.select(flank, 0).deviation for flank in FLANKS])
 
@@ -158,7 +158,7 @@ def test_finishing_stock_stays_on_both_flanks_everywhere(gear_set, left, member)
 def test_roughing_goes_through_all_spaces_first_and_changes_nothing_of_the_finished_flank(
     gear_set, vertical, left, member
 ):
-    text = cutting_program(gear_set, member, vertical, "PART", Job((0, 3), roughing_stock=0.3))
+    text = cutting_program(gear_set, member, vertical, "PART", CuttingJob((0, 3), roughing_stock=0.3))
     labels = [line.partition(": ")[2] for line in text.split("\n") if line.startswith("; section")]
     passes = [["", *label.partition(", tooth")[0].split()] for label in labels]
     order = [(stage, space) for _, _, space, *_, stage in passes]
@@ -170,7 +170,7 @@ def test_roughing_goes_through_all_spaces_first_and_changes_nothing_of_the_finis
 
 
 def test_a_dry_run_is_the_same_program_sixty_millimetres_above_and_without_coolant(gear_set, vertical):
-    wet, dry = (cutting_program(gear_set, "gear", vertical, "GEAR", Job(dry_run=run)) for run in (False, True))
+    wet, dry = (cutting_program(gear_set, "gear", vertical, "GEAR", CuttingJob(dry_run=run)) for run in (False, True))
     assert "M8" in wet
     assert "M8" not in dry
     assert "; dry run: Z raised by 60 mm" in dry
@@ -192,7 +192,7 @@ def test_program_for_an_apex_off_the_b_axis_cuts_the_same_flanks(gear_set, verti
 def test_formate_plunges_and_dwells_for_more_than_a_turn(gear_set, vertical):
     """The flank is the cone at the bottom: the last position is that of cradle rotation zero."""
     formate = gear_set.model_copy(update={"gear": gear_set.gear.model_copy(update={"generation": "formate"})})
-    text = cutting_program(formate, "gear", vertical, "GEAR", Job(spindle_rpm=60.0))
+    text = cutting_program(formate, "gear", vertical, "GEAR", CuttingJob(spindle_rpm=60.0))
     path = execute(text, "GEAR.MPF")
     bottom = kernel("axis_transform")(gear_set.gear.concave.vector, 0.0, vertical.pivot_height)[0]
     (roll,) = passes(path)
@@ -207,8 +207,10 @@ def test_one_cutter_with_two_motions_is_refused(gear_set, vertical):
     with pytest.raises(InputError, match=r"^gear: motion: one cutter cuts both flanks at once"):
         cutting_program(
             gear_set.model_copy(update={"gear": gear_set.gear.model_copy(update={"convex": moving})}),
-            "gear", vertical, "GEAR",
-        )  # fmt: skip
+            "gear",
+            vertical,
+            "GEAR",
+        )
 
 
 def test_moving_settings_are_cut_to_tolerance(gear_set, left):
@@ -223,9 +225,9 @@ def test_moving_settings_are_cut_to_tolerance(gear_set, left):
 @pytest.mark.parametrize(
     ("gear_set_name", "member", "job"),
     [
-        ("nasa_tp3096_12x36", "pinion", Job((0, 3, 5), 1e-2, roughing_stock=0.3)),
-        ("nasa_tp3096_12x36", "gear", Job((0, 3), 1e-2)),
-        ("crown_gear_hobbed_14x39", "gear", Job(range(39), 1e-2)),
+        ("nasa_tp3096_12x36", "pinion", CuttingJob((0, 3, 5), 1e-2, roughing_stock=0.3)),
+        ("nasa_tp3096_12x36", "gear", CuttingJob((0, 3), 1e-2)),
+        ("crown_gear_hobbed_14x39", "gear", CuttingJob(range(39), 1e-2)),
     ],
 )
 def test_progress_hears_of_as_many_passes_as_are_announced(vertical, gear_set_name, member, job):

@@ -33,9 +33,12 @@ PROBE = load_calibration(bundled("probe.toml"))
 BENT = PROBE.model_copy(update={"offset": (0.4, -0.3, 0.2), "tip_radius": 0.9})
 OFF_AXIS = MACHINE.model_copy(update={"pivot_offset": (1.5, -2.25, 30.0)})
 COUNTING = MACHINE.model_copy(
-    update={"axes": MACHINE.axes.model_copy(update={"A": MACHINE.axes.A.model_copy(
-        update={"modulo": False, "travel": (-10.0, 700.0)})})}
-)  # fmt: skip
+    update={
+        "axes": MACHINE.axes.model_copy(
+            update={"A": MACHINE.axes.A.model_copy(update={"modulo": False, "travel": (-10.0, 700.0)})}
+        )
+    }
+)
 SET_UPS = pytest.mark.parametrize(
     ("machine", "probe"), [(MACHINE, PROBE), (OFF_AXIS, BENT), (COUNTING, PROBE)], ids=["plain", "offsets", "counting"]
 )
@@ -226,8 +229,9 @@ def test_program_waits_for_a_host_that_does_not_answer(gear_set):
 def test_missing_metal_and_metal_in_the_way_stop_the_program_after_a_retract(gear_set):
     """1 mm too little is beyond the overtravel; 5 mm too much is met on the way in."""
     for amount, alarm, message in (
-        (-1.0, NOTHING_TOUCHED, "touched nothing"), (5.0, TOUCHED_TOO_EARLY, "touched something on the way in"),
-    ):  # fmt: skip
+        (-1.0, NOTHING_TOUCHED, "touched nothing"),
+        (5.0, TOUCHED_TOO_EARLY, "touched something on the way in"),
+    ):
         there = ProbeMachine(gear_set.member("gear"), "gear", MACHINE, PROBE, lambda flank, tooth, place, a=amount: a)
         text = probing_program(gear_set, "gear", MACHINE, PROBE, "PROBE", topography=())
         there.body.point = there.body.point + amount * there.body.normal

@@ -25,7 +25,7 @@ from gearmath.machine.writing.probing import probing_program
 from gearmath.machine.writing.words import Positions, block_count
 from gearmath.quality.evaluation.touches import measured_member
 from gearmath.specs.calibration import load_calibration
-from gearmath.specs.control import Control
+from gearmath.specs.control import ControlSettings
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.simulated_machine import AxisErrors, SimulatedMachine
 from gearmath.specs.toml import bundled
@@ -33,7 +33,7 @@ from gearmath.specs.touch_csv import planned_touches, read_calibration_csv, read
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 PROBE = load_calibration(bundled("probe.toml"))
-COARSE = MACHINE.model_copy(update={"control": Control()})
+COARSE = MACHINE.model_copy(update={"control": ControlSettings()})
 
 
 def with_a(**changes):

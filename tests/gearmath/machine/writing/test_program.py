@@ -12,7 +12,7 @@ from gearmath.machine.control.state import Setup
 from gearmath.machine.planning.clear_space import Room
 from gearmath.machine.planning.feeds import block_seconds
 from gearmath.machine.writing.program import Pass, write_program
-from gearmath.specs.control import Control
+from gearmath.specs.control import ControlSettings
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
 
@@ -182,20 +182,20 @@ def test_a_counting_axis_is_written_as_it_counts():
 
 
 def test_direction_of_the_cutter_and_options_of_the_control_come_from_the_machine_file():
-    control = Control(path_mode="G60", jerk="BRISK", feed_forward=True)
+    control = ControlSettings(path_mode="G60", jerk="BRISK", feed_forward=True)
     text = written(machine=MACHINE.model_copy(update={"cutter_direction": "M4", "control": control}))
     head = text.split("\n")[3]
     assert head == "N10 G17 G40 G90 G94 G710 G54 G60 BRISK FFWON"
     assert text.count(head.partition(" ")[2]) == 1 + 24  # and once more in every section
     assert " M3\n" not in text
     assert text.count("S80.000 M4\n") == 2
-    assert "FFWON" not in written(machine=MACHINE.model_copy(update={"control": Control(feed_forward=False)}))
+    assert "FFWON" not in written(machine=MACHINE.model_copy(update={"control": ControlSettings(feed_forward=False)}))
     path = execute(text, "P.MPF")
     assert path.spindle_on[path.axes[:, 2] < MACHINE.home].all()
 
 
 def test_increments_of_the_control_decide_the_decimals():
-    coarse = MACHINE.model_copy(update={"control": Control()})
+    coarse = MACHINE.model_copy(update={"control": ControlSettings()})
     path = execute(written(machine=coarse), "P.MPF")
     np.testing.assert_allclose(path.axes[:, :3], np.round(path.axes[:, :3], 3), rtol=0, atol=1e-12)
     degrees = np.degrees(path.axes[:, 3:])

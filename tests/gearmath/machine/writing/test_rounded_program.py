@@ -10,12 +10,12 @@ import pytest
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.milling.mill import mill_member
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
-from gearmath.specs.control import Control
+from gearmath.specs.control import ControlSettings
 
 #: Of the program that is rounded: its own decimals do not count.
-FINE = Control(increments_per_mm=1_000_000, increments_per_degree=1_000_000)
+FINE = ControlSettings(increments_per_mm=1_000_000, increments_per_degree=1_000_000)
 
 
 def rounded(text, step):
@@ -37,13 +37,18 @@ def rounded(text, step):
 def test_rounding_takes_from_a_third_to_all_of_what_the_header_states(gear_set, vertical, increments, least, most):
     """``least`` and ``most`` [um] bound it by hand: half an increment of mm and of degrees in all axes."""
     spec = gear_set.gear
-    coarse = vertical.model_copy(update={"control": vertical.control.model_copy(
-        update={"increments_per_mm": increments, "increments_per_degree": increments})})  # fmt: skip
+    coarse = vertical.model_copy(
+        update={
+            "control": vertical.control.model_copy(
+                update={"increments_per_mm": increments, "increments_per_degree": increments}
+            )
+        }
+    )
     fine = vertical.model_copy(update={"control": FINE})
-    head = cutting_program(gear_set, "gear", coarse, "CUT", Job((0,), 5e-3))
+    head = cutting_program(gear_set, "gear", coarse, "CUT", CuttingJob((0,), 5e-3))
     stated = float(re.search(r"increments per mm and .*: up to ([0-9.]+) um", head)[1])
     assert least <= stated <= most
-    text = cutting_program(gear_set, "gear", fine, "CUT", Job((0,), 1e-4))
+    text = cutting_program(gear_set, "gear", fine, "CUT", CuttingJob((0,), 1e-4))
     left = [
         mill_member(execute(program, "CUT", Setup.of(fine)), spec, "gear", fine).deviation * 1000
         for program in (text, rounded(text, 1.0 / increments))

@@ -37,9 +37,7 @@ class Carried:
         turned = np.array([x * math.cos(A) + y * math.sin(A), y * math.cos(A) - x * math.sin(A), 60.0]) + e
         c, s = math.cos(B + beta), math.sin(B + beta)
         height = MACHINE.gauge_line_height + self.probe.length
-        return np.array([
-            b_x - s * turned[0] - c * turned[2], turned[1], b_z + c * turned[0] - s * turned[2] + height
-        ])  # fmt: skip
+        return np.array([b_x - s * turned[0] - c * turned[2], turned[1], b_z + c * turned[0] - s * turned[2] + height])
 
     def __call__(self, start, end):
         first, last = (where[:3] + self.probe.offset - self.center(*start[3:]) for where in (start, end))
@@ -93,8 +91,11 @@ def test_with_noise_they_are_as_sure_as_they_say(clean):
 
 def test_nominal_machine_is_found_to_be_nominal(tmp_path):
     """And with B kept from 90 degrees by its travel."""
-    short = MACHINE.model_copy(update={"axes": MACHINE.axes.model_copy(
-        update={"B": MACHINE.axes.B.model_copy(update={"travel": (-10.0, 70.0)})})})  # fmt: skip
+    short = MACHINE.model_copy(
+        update={
+            "axes": MACHINE.axes.model_copy(update={"B": MACHINE.axes.B.model_copy(update={"travel": (-10.0, 70.0)})})
+        }
+    )
     truth = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 80.0, 0.0])
     done = run_program(axis_program(short, PROBE, "AXES"), "AXES.MPF", Carried(truth=truth))
     (tmp_path / "raw.csv").write_text(done.files["AXES_T"])

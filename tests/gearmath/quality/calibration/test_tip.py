@@ -75,9 +75,11 @@ def test_tip_and_stylus_meet_ring_and_sphere_at_the_touches_only(artefacts, true
         tip = (path.axes[k - 1] + steps * way)[:, :3] + true.tip_offset
         stem = np.concatenate([tip + np.array([0.0, 0.0, h]) for h in np.arange(1.0, PROBE.stylus_length, 0.5)])
         away, beside = (
-            np.minimum.reduce([from_ring(at, ring), from_sphere(at, sphere, 0.6 * sphere.diameter),
-                               at[:, 2] - ring.face.seat]) for at in (tip, stem)
-        )  # fmt: skip
+            np.minimum.reduce(
+                [from_ring(at, ring), from_sphere(at, sphere, 0.6 * sphere.diameter), at[:, 2] - ring.face.seat]
+            )
+            for at in (tip, stem)
+        )
         away -= true.tip_radius
         at_touch = touch[k] or touch[k - 1]
         (touching if at_touch else moving).append(away.min())

@@ -57,8 +57,11 @@ def azimuth(member, flank, change, axial, radial, start):
     settings = how.settings + change
     points = solve_section(
         type(how)(settings, how.side, how.motion, how.index_ratio, how.blade_offset_angle, how.rolling),
-        section, axial, radial, start,
-    )  # fmt: skip
+        section,
+        axial,
+        radial,
+        start,
+    )
     assert points.converged.all()
     return np.unwrap(np.arctan2(points.point[:, 1], points.point[:, 0]))
 

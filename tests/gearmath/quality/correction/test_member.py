@@ -182,7 +182,7 @@ def header(file: FlankFile, **values: str) -> FlankFile:
         (lambda f: header(f, margins="0.2,0.2"), r"mm beside the nominal normal"),
         (lambda f: replace(f, tooth=f.tooth + 1), r"mm beside the nominal normal"),
     ],
-)  # fmt: skip
+)
 def test_file_that_is_not_of_this_member_is_refused(gear_set, measured, change, sentence):
     with pytest.raises(InputError, match=sentence):
         correct(gear_set.pinion, "pinion", change(measured))
@@ -197,8 +197,13 @@ def test_nominal_file_of_both_flanks_is_refused(gear_set):
 
 def without(file: FlankFile, dropped: np.ndarray) -> FlankFile:
     """The file without some of its points."""
-    return replace(file, **{name: getattr(file, name)[~dropped] for name in (
-        "flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")})  # fmt: skip
+    return replace(
+        file,
+        **{
+            name: getattr(file, name)[~dropped]
+            for name in ("flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")
+        },
+    )
 
 
 def test_points_that_are_missing_empty_or_excluded_are_left_out_and_said(gear_set, measured):

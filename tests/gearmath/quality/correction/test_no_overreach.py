@@ -66,8 +66,11 @@ def corrected(name, file, **options):
 
 
 CASES = [
-    ("pinion", ("concave",)), ("pinion", ("convex",)), ("pinion", FLANKS), ("gear", FLANKS),
-]  # fmt: skip
+    ("pinion", ("concave",)),
+    ("pinion", ("convex",)),
+    ("pinion", FLANKS),
+    ("gear", FLANKS),
+]
 
 
 @pytest.mark.parametrize(("sign", "arcsec"), [(1, 0), (-1, 30)])

@@ -57,8 +57,9 @@ def test_indexing_error_of_the_measured_tooth_changes_no_setting(gear_set, arc, 
         assert found.expected[flank] < 0.02 * UM
     said = [line for line in found.remarks if "is indexed by an arc of" in line]
     assert [line.split()[0] for line in said] == list(flanks)
-    assert all(f"an arc of {arc:+d}" in line or abs(float(line.split("arc of ")[1].split()[0]) - arc) < 0.5
-               for line in said)  # fmt: skip
+    assert all(
+        f"an arc of {arc:+d}" in line or abs(float(line.split("arc of ")[1].split()[0]) - arc) < 0.5 for line in said
+    )
 
 
 def test_error_of_a_setting_is_found_under_an_indexing_error_and_noise(gear_set):

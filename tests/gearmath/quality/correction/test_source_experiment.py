@@ -9,7 +9,7 @@ from gearmath.bevel.identify.flank_target import predicted
 from gearmath.machine.control.executor import execute
 from gearmath.machine.measuring.measurement import measure_member
 from gearmath.machine.milling.metal import metal
-from gearmath.machine.planning.cut_plan import Job
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.targets import teeth_around
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.quality.correction.analysis import LOSS_PART
@@ -60,7 +60,7 @@ def not_correctable(member, name, file):
 def cut(gear_set, name, vertical):
     """The metal that the program's text leaves on the machine of the experiment, without noise: both flanks."""
     member = gear_set.member(name)
-    text = cutting_program(gear_set, name, vertical, "EXPERIMENT", Job(range(member.teeth)))
+    text = cutting_program(gear_set, name, vertical, "EXPERIMENT", CuttingJob(range(member.teeth)))
     around = teeth_around(member.teeth)
     return metal(execute(text, "EXPERIMENT.MPF"), member, name, vertical, QUIET, around=around)
 

@@ -28,9 +28,15 @@ def gained(member, name, settings):
     middle = Grid(grid.axial[1:2, 1:2], grid.radial[1:2, 1:2])
     for flank in FLANKS:
         nominal = solve_flank(member, name, flank, middle)
-        names = {n: float(np.degrees(v) if unit else v) for n, v, unit in zip(
-            SETTINGS, settings[flank], [s.endswith(("angle", "tilt", "swivel", "offset")) and s != "blank_offset"
-                                        for s in SETTINGS], strict=True)}  # fmt: skip
+        names = {
+            n: float(np.degrees(v) if unit else v)
+            for n, v, unit in zip(
+                SETTINGS,
+                settings[flank],
+                [s.endswith(("angle", "tilt", "swivel", "offset")) and s != "blank_offset" for s in SETTINGS],
+                strict=True,
+            )
+        }
         other = member.model_copy(update={flank: member.flank(flank).model_copy(update=names)})
         t = 0.0
         for _ in range(4):  # the tangent plane of the other surface at the place where the normal is

@@ -52,9 +52,12 @@ def deviation_on_the_blank(member, flank):
         x = first + part * (how.settings - first)
         on_line = at.point + t[:, None] * at.normal
         points = solve_section(
-            replace(how, settings=x), replace(section, point_radius=x[10], pressure_angle=x[11]), on_line[:, 2],
-            np.hypot(on_line[:, 0], on_line[:, 1]), start=contact,
-        )  # fmt: skip
+            replace(how, settings=x),
+            replace(section, point_radius=x[10], pressure_angle=x[11]),
+            on_line[:, 2],
+            np.hypot(on_line[:, 0], on_line[:, 1]),
+            start=contact,
+        )
         assert points.converged.all()
         contact, off = points.contact, np.sum((points.point - on_line) * points.normal, axis=1)
         t = t + off / np.sum(at.normal * points.normal, axis=1)
@@ -74,13 +77,19 @@ def large_error(flank):
 @pytest.mark.parametrize(
     ("shape", "options"),
     [
-        (ease_off, {"free": (*FREE, "cutter_tilt", "cutter_swivel", "blade_point_radius", "blade_pressure_angle"),
-                    "bounds": "design", "root_limit": 0.025}),
+        (
+            ease_off,
+            {
+                "free": (*FREE, "cutter_tilt", "cutter_swivel", "blade_point_radius", "blade_pressure_angle"),
+                "bounds": "design",
+                "root_limit": 0.025,
+            },
+        ),
         (large_error, {}),
         (large_error, {"few": True}),
     ],
     ids=["design", "machine", "few"],
-)  # fmt: skip
+)
 def test_what_is_expected_to_remain_is_what_the_written_settings_leave(tmp_path, shape, options):
     """Measured deviations and the flank of the written set together, to a nanometre, point by point."""
     found = correct(PINION, "pinion", measured(shape), **options)

@@ -35,10 +35,16 @@ def measured(gear_set):
                 places = ((2, 4),) if tooth < 12 else again
                 one = one.pick(np.array([place in places for place in zip(one.row, one.col, strict=True)]))
             turn = 2 * math.pi * tooth / 12
-            parts.append(replace(
-                one, tooth=np.full(len(one), tooth), point=turned(one.point, turn), normal=turned(one.normal, turn),
-                deviation=index[tooth % 12] * arm(one), uncertainty=np.full(len(one), sigma),
-            ))  # fmt: skip
+            parts.append(
+                replace(
+                    one,
+                    tooth=np.full(len(one), tooth),
+                    point=turned(one.point, turn),
+                    normal=turned(one.normal, turn),
+                    deviation=index[tooth % 12] * arm(one),
+                    uncertainty=np.full(len(one), sigma),
+                )
+            )
         file = join(parts)
         noise = sigma * rng.standard_normal(len(file))
         return (

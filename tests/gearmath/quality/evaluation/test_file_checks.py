@@ -47,7 +47,7 @@ OTHERWISE = {
         lambda file: replace(file, point=file.point + np.array([0.03, 0.02, 0.04])),
         "nearly all points are, by 0.0.. mm in the middle: work offset or tool length",
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", OTHERWISE)

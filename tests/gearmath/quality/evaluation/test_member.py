@@ -102,8 +102,12 @@ def test_pitch_alone_is_judged_without_a_topography(pair, pinion):
     for flank in ("concave", "convex"):
         assert (found.flanks[flank].mean, found.flanks[flank].orders) == (None, None)
         assert set(found.flanks[flank].as_dict()) == {
-            "teeth_in_full", "F_p_um", "max_f_pt_um", "cumulative_um", "withheld",
-        }  # fmt: skip
+            "teeth_in_full",
+            "F_p_um",
+            "max_f_pt_um",
+            "cumulative_um",
+            "withheld",
+        }
         np.testing.assert_allclose(
             found.flanks[flank].pitch.cumulative, wanted.flanks[flank].pitch.cumulative, rtol=0, atol=1e-15
         )
@@ -185,8 +189,10 @@ def drifted(file, vector):
     The vector is radial, around and along the axis of the space as it stands at the touch, its middle by (15.2).
     """
     again = file.pick((file.tooth == 0) & (file.row == 2) & (file.col == 4))
-    arrays = {key: np.concatenate([getattr(file, key), getattr(again, key)])
-              for key in ("flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")}  # fmt: skip
+    arrays = {
+        key: np.concatenate([getattr(file, key), getattr(again, key)])
+        for key in ("flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")
+    }
     both = FlankFile(file.header, "pinion", **arrays)
     drift = np.empty(len(both))
     for k in range(len(both)):

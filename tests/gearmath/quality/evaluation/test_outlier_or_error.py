@@ -27,8 +27,9 @@ def measured(gear_set):
     """``measured(name, places, whole, seed)``: a perfect member with 0.5 um of noise; some teeth in full."""
     nominal = {
         (name, flank): nominal_flank(gear_set.member(name), name, flank, blank_grid(gear_set.member(name)))
-        for name in ("pinion", "gear") for flank in FLANKS
-    }  # fmt: skip
+        for name in ("pinion", "gear")
+        for flank in FLANKS
+    }
 
     def make(name, places=((2, 4),), whole=(0,), seed=0):
         member, files = gear_set.member(name), []
@@ -38,9 +39,14 @@ def measured(gear_set):
                 one = nominal[name, flank]
                 keep = [k for k in range(45) if tooth in whole or (one.row[k], one.col[k]) in places]
                 one = one.pick(np.array(keep))
-                files.append(replace(
-                    one, tooth=np.full(len(one), tooth), point=turned(one.point, turn), normal=turned(one.normal, turn)
-                ))  # fmt: skip
+                files.append(
+                    replace(
+                        one,
+                        tooth=np.full(len(one), tooth),
+                        point=turned(one.point, turn),
+                        normal=turned(one.normal, turn),
+                    )
+                )
         file = join(files)
         noise = NOISE * np.random.default_rng(seed).standard_normal(len(file))
         return moved(replace(file, deviation=np.zeros(len(file)), uncertainty=np.full(len(file), NOISE)), noise)
@@ -76,8 +82,10 @@ def test_tooth_indexed_wrongly_is_graded_as_that_bad(gear_set, measured, name, t
     file = indexed(measured(name), {tooth: arc_um * UM})
     found = evaluate_member(file, gear_set.member(name), name)
     assert found.left_out == ()
-    assert any(line.startswith(f"tooth {tooth}: both flanks are off") and "indexing error; kept" in line
-               for line in found.remarks)  # fmt: skip
+    assert any(
+        line.startswith(f"tooth {tooth}: both flanks are off") and "indexing error; kept" in line
+        for line in found.remarks
+    )
     for flank in FLANKS:
         pitch = found.flanks[flank].pitch
         assert pitch.largest_single == pytest.approx(abs(arc_um) * UM, abs=4 * UM)
@@ -147,8 +155,9 @@ def test_single_point_that_nothing_confirms_is_left_out_and_the_grade_with_it(ge
     assert values["runout"]["F_r_um"] is None
     assert values["runout"]["withheld"] == {"F_r": "both flanks: no reading of space 20 (1 of 36)"}
     assert (values["tolerance"]["grade"], values["tolerance"]["grades"]) == (
-        None, {"f_pt": None, "F_p": None, "F_r": None}
-    )  # fmt: skip
+        None,
+        {"f_pt": None, "F_p": None, "F_r": None},
+    )
     assert values["tolerance"]["withheld"]["F_p"] == reason
     assert set(values["tolerance"]["grades_of_flanks"]) == {"concave"}
     assert values["thickness"]["arc_deviation_um"] is not None

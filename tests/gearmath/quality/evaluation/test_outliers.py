@@ -66,8 +66,12 @@ def test_many_points_off_are_no_single_points():
 def teeth_file(teeth, deviations):
     """Four teeth are too few to tell; twelve, from the four by their number only."""
     file = teeth([0.0] * 4)
-    return join([replace(file.select("concave", 0), tooth=np.array([i]), deviation=np.array([d]))
-                 for i, d in enumerate(deviations)])  # fmt: skip
+    return join(
+        [
+            replace(file.select("concave", 0), tooth=np.array([i]), deviation=np.array([d]))
+            for i, d in enumerate(deviations)
+        ]
+    )
 
 
 def test_miss_among_single_points_is_told_from_uneven_pitch(teeth):

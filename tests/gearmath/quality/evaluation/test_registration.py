@@ -19,13 +19,16 @@ from gearmath.quality.evaluation.pitch import evaluate_pitch
 from gearmath.quality.evaluation.registration import register
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.flank_csv import flank_file, join
-from gearmath.specs.simulated_machine import Measuring, Mounting, SimulatedMachine
+from gearmath.specs.simulated_machine import Mounting, SimulatedMachine, SimulatedMeasuring
 from gearmath.specs.toml import bundled
 
 SETS = (
-    "nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_hobbed_14x39", "crown_gear_formate_14x39",
+    "nasa_tp3096_12x36",
+    "crown_gear_7x43",
+    "crown_gear_hobbed_14x39",
+    "crown_gear_formate_14x39",
     "crown_gear_universal_14x39",
-)  # fmt: skip
+)
 UM = 1e-3
 #: Eccentricity 15 µm and tilt 10 µm per 100 mm, as in the experiment of the source text.
 SEAT = np.array([12 * UM, -9 * UM, 6e-5, 8e-5])
@@ -61,10 +64,12 @@ def off_by(found, seat, member):
 @pytest.mark.parametrize(
     ("title", "name", "places"),
     [
-        ("nasa_tp3096_12x36", "pinion", None), ("nasa_tp3096_12x36", "gear", FIVE),
-        ("crown_gear_7x43", "pinion", FIVE), ("crown_gear_7x43", "gear", None),
+        ("nasa_tp3096_12x36", "pinion", None),
+        ("nasa_tp3096_12x36", "gear", FIVE),
+        ("crown_gear_7x43", "pinion", FIVE),
+        ("crown_gear_7x43", "gear", None),
     ],
-)  # fmt: skip
+)
 def test_seat_is_found_and_taken_out_whatever_form_and_pitch_are(clamped, title, name, places):
     """Both hands and both members: to 0.1 µm, tilt over the face width, and at least 99 % of the effect is gone."""
     member = load_bevel_set(bundled(f"{title}.toml")).member(name)
@@ -200,7 +205,7 @@ def test_members_of_every_set_and_cutting_method_are_registered(title, name):
     perfect = nominal(member, name, lambda R, n: 0 * R[:, 0], around(member))
     perfect = perfect.pick(np.isin(perfect.row * 9 + perfect.col, FIVE))
     clamp = Mounting(eccentricity=0.015, eccentricity_direction=-37.0, tilt=0.00573, tilt_direction=60.0)
-    shop = SimulatedMachine(title="clamped", seed=0, measuring=Measuring(pinion=clamp, gear=clamp))
+    shop = SimulatedMachine(title="clamped", seed=0, measuring=SimulatedMeasuring(pinion=clamp, gear=clamp))
     found = register(measure_member(perfect, member, name, shop), member, name)
     assert found.eccentricity == pytest.approx(15 * UM, abs=TENTH)
     assert found.eccentricity * abs(found.eccentricity_direction - math.radians(-37)) < TENTH

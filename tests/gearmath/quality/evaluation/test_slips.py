@@ -36,11 +36,17 @@ def part(gear_set):
                     places = set(MIDDLE if tooth < 12 else again)
                 one = one.pick(np.array([place in places for place in zip(one.row, one.col, strict=True)]))
                 turn = 2 * math.pi * tooth / 12
-                parts.append(replace(
-                    one, flank=np.full(len(one), flank), tooth=np.full(len(one), tooth), deviation=np.zeros(len(one)),
-                    point=turned(one.point, turn), normal=turned(one.normal, turn),
-                    uncertainty=np.full(len(one), np.nan),
-                ))  # fmt: skip
+                parts.append(
+                    replace(
+                        one,
+                        flank=np.full(len(one), flank),
+                        tooth=np.full(len(one), tooth),
+                        deviation=np.zeros(len(one)),
+                        point=turned(one.point, turn),
+                        normal=turned(one.normal, turn),
+                        uncertainty=np.full(len(one), np.nan),
+                    )
+                )
         return join([each for each in parts if len(each)])
 
     return {again: make(again) for again in (CORNERS, MIDDLE, NOTHING)}

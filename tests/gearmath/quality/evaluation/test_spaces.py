@@ -16,9 +16,17 @@ from gearmath.specs.flank_csv import flank_file, join
 UM = 1e-3
 HALF = math.radians(15)
 HEADER = {
-    "member": "pinion", "member_teeth": "4", "frame": "w", "unit": "mm", "grid": "5x9", "margins": "0.1,0.1",
-    "reference_point": "2,4", "phase_zeroed": "false", "tip_radius_mm": "0", "settings_sha256": "0" * 64,
-}  # fmt: skip
+    "member": "pinion",
+    "member_teeth": "4",
+    "frame": "w",
+    "unit": "mm",
+    "grid": "5x9",
+    "margins": "0.1,0.1",
+    "reference_point": "2,4",
+    "phase_zeroed": "false",
+    "tip_radius_mm": "0",
+    "settings_sha256": "0" * 64,
+}
 
 
 def about(angle):
@@ -183,9 +191,10 @@ def bevel(low, high, alphas=(0.35, 0.40), spiral=0.6, cone=0.9):
             across = side * math.cos(alpha)
             out, along = math.sin(alpha), -across * math.sin(spiral)
             normal = (
-                out * math.cos(cone) + along * math.sin(cone), across * math.cos(spiral),
+                out * math.cos(cone) + along * math.sin(cone),
+                across * math.cos(spiral),
                 -out * math.sin(cone) + along * math.cos(cone),
-            )  # fmt: skip
+            )
             files.append(row(flank, tooth, -side * math.radians(3), normal, values[tooth]))
     return join(files)
 
@@ -222,8 +231,10 @@ def test_thickness_of_a_published_pair_is_what_the_spaces_leave(gear_set, mill):
     """A perfect cut has no deviation, and arc of tooth and of space together are a pitch."""
     file = mill(gear_set, "gear", [0])
     thickness = evaluate_thickness(file, 36)
-    points = [file.select(flank).pick((file.select(flank).row == 2) & (file.select(flank).col == 4)).point[0]
-              for flank in ("concave", "convex")]  # fmt: skip
+    points = [
+        file.select(flank).pick((file.select(flank).row == 2) & (file.select(flank).col == 4)).point[0]
+        for flank in ("concave", "convex")
+    ]
     azimuth = [math.atan2(p[1], p[0]) for p in points]
     radius = math.hypot(*points[0][:2])
     space = abs(math.remainder(azimuth[0] - azimuth[1], 2 * math.pi)) * radius

@@ -29,9 +29,17 @@ coefficient = st.floats(-1e-3, 1e-3)
 def cubic(c, X, Y):
     """The surface of the source text, term by term."""
     return (
-        c[0] + c[1] * X + c[2] * Y + c[3] * X**2 + c[4] * X * Y + c[5] * Y**2
-        + c[6] * X**3 + c[7] * X**2 * Y + c[8] * X * Y**2 + c[9] * Y**3
-    )  # fmt: skip
+        c[0]
+        + c[1] * X
+        + c[2] * Y
+        + c[3] * X**2
+        + c[4] * X * Y
+        + c[5] * Y**2
+        + c[6] * X**3
+        + c[7] * X**2 * Y
+        + c[8] * X * Y**2
+        + c[9] * Y**3
+    )
 
 
 @pytest.mark.parametrize("index", range(10))
@@ -97,9 +105,16 @@ def test_local_coordinates_lie_in_the_tangent_of_a_real_flank(gear_set):
 def test_incomplete_grid_is_refused(plane):
     file = plane(lambda X, Y: 0 * X)
     few = flank_file(
-        file.header, "pinion", "concave", 0, file.row[:-1], file.col[:-1], file.point[:-1], file.normal[:-1],
+        file.header,
+        "pinion",
+        "concave",
+        0,
+        file.row[:-1],
+        file.col[:-1],
+        file.point[:-1],
+        file.normal[:-1],
         file.deviation[:-1],
-    )  # fmt: skip
+    )
     with pytest.raises(InputError, match=r"^concave flank, tooth 0: 44 points, the grid 5x9 needs 45$"):
         evaluate_topography(few, "concave")
     with pytest.raises(InputError, match=r"^convex flank, tooth 0: 0 points"):
@@ -136,9 +151,13 @@ def test_orders_of_a_quadratic_surface_by_hand(plane):
     found = orders(evaluate_topography(surface, "concave"))
     assert (found.length, found.height) == (pytest.approx(20), pytest.approx(5))
     wanted = {
-        "spiral_angle_deviation": 10, "pressure_angle_deviation": -10, "length_crowning": 4, "profile_crowning": 5,
-        "twist": 10, "mean": 7 - 0.04 * 2.5**2 * 60 / 9 - 0.8 * 1.25**2 * 10 / 5,
-    }  # fmt: skip
+        "spiral_angle_deviation": 10,
+        "pressure_angle_deviation": -10,
+        "length_crowning": 4,
+        "profile_crowning": 5,
+        "twist": 10,
+        "mean": 7 - 0.04 * 2.5**2 * 60 / 9 - 0.8 * 1.25**2 * 10 / 5,
+    }
     for name, value in wanted.items():
         assert getattr(found, name) == pytest.approx(value * um, abs=1e-12), name
     assert found.residual == pytest.approx(0, abs=1e-12)

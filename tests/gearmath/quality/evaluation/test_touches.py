@@ -163,9 +163,7 @@ def test_commands_go_from_calibration_to_measured_flank(gear_set, tmp_path, comm
     assert (status, out.split(": ")[1].split(",")[0]) == (0, "178 touches")
     there = ProbeMachine(gear_set.member("pinion"), "pinion", MACHINE, BENT)
     raw.write_text(run_program((tmp_path / "PP.MPF").read_text(), "PP", there).files["PP_T"])
-    status, out, _ = command(
-        "touches", raw, "--set", "nasa_tp3096_12x36.toml", *machine, "-o", tmp_path / "M.csv"
-    )  # fmt: skip
+    status, out, _ = command("touches", raw, "--set", "nasa_tp3096_12x36.toml", *machine, "-o", tmp_path / "M.csv")
     assert status == 0
     assert "178 points of run 1, largest deviation 0.000 um" in out
     status, out, _ = command("evaluate", tmp_path / "M.csv", "--set", "nasa_tp3096_12x36.toml")
@@ -177,9 +175,19 @@ def test_command_writes_repeated_touches(tmp_path, command, refused):
     """The reference points of twelve teeth, tooth 0 again: 26 points, three touches each."""
     nasa, target = "nasa_tp3096_12x36.toml", tmp_path / "PP.MPF"
     status, out, _ = command(
-        "nc", "probe", nasa, "--member", "pinion", "--topography", "none", "--no-registration", "--repeat", 3,
-        "-o", target,
-    )  # fmt: skip
+        "nc",
+        "probe",
+        nasa,
+        "--member",
+        "pinion",
+        "--topography",
+        "none",
+        "--no-registration",
+        "--repeat",
+        3,
+        "-o",
+        target,
+    )
     assert (status, out.split(": ")[1].split(",")[0]) == (0, "78 touches")
     assert "; 26 points, each touched 3 times" in target.read_text()
     refused("--repeat", "nc", "probe", nasa, "--member", "pinion", "--repeat", 0, "-o", tmp_path / "P2.MPF")

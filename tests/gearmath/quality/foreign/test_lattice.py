@@ -24,9 +24,13 @@ def lattice(rows, columns, lean=0.0, skew=0.0, fan=0.0, noise=0.0, seed=0):
 
 @hypothesis_settings(deadline=None, max_examples=40)
 @given(
-    rows=st.integers(3, 9), columns=st.integers(3, 15), lean=st.floats(-0.2, 0.2), skew=st.floats(-0.2, 0.2),
-    fan=st.floats(-0.2, 0.2), seed=st.integers(0, 999),
-)  # fmt: skip
+    rows=st.integers(3, 9),
+    columns=st.integers(3, 15),
+    lean=st.floats(-0.2, 0.2),
+    skew=st.floats(-0.2, 0.2),
+    fan=st.floats(-0.2, 0.2),
+    seed=st.integers(0, 999),
+)
 def test_every_grid_is_found_again(rows, columns, lean, skew, fan, seed):
     across, up, row, col = lattice(rows, columns, lean, skew, fan, 0.002, seed)
     found = find_lattice(across, up)

@@ -19,15 +19,18 @@ from gearmath.errors import InputError
 from gearmath.quality.correction.member import correct
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.quality.foreign.member import foreign_file
-from gearmath.quality.foreign.points import Frame, Part
+from gearmath.quality.foreign.points import Frame, PointPart
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, load_bevel_set
 from gearmath.specs.flank_csv import read_flank_csv
 from gearmath.specs.toml import bundled
 
 SETS = (
-    "nasa_tp3096_12x36.toml", "crown_gear_7x43.toml", "crown_gear_formate_14x39.toml", "crown_gear_hobbed_14x39.toml",
+    "nasa_tp3096_12x36.toml",
+    "crown_gear_7x43.toml",
+    "crown_gear_formate_14x39.toml",
+    "crown_gear_hobbed_14x39.toml",
     "crown_gear_universal_14x39.toml",
-)  # fmt: skip
+)
 PLAIN = Frame()
 #: Row and column of the reference point of 5x9.
 MIDDLE = 2 * 9 + 4
@@ -73,7 +76,7 @@ def test_deviations_come_back_from_shuffled_turned_points_of_every_set(bundle, n
         file = np.stack([file[:, 1], -file[:, 2], -file[:, 0]], axis=1)
         into = around(-normal, 2.5)[order]
         into = np.stack([into[:, 1], -into[:, 2], -into[:, 0]], axis=1)
-        found = foreign_file([Part("p.txt", flank, 0, file, into)], Frame("-y", 30.0), gear_set, name)
+        found = foreign_file([PointPart("p.txt", flank, 0, file, into)], Frame("-y", 30.0), gear_set, name)
         assert (found.file.header["grid"], found.file.header["phase_zeroed"]) == ("5x9", "true")
         assert "p.txt: normals point into the metal" in found.remarks
         # 0.01 um is asked; feet are solved to 1e-10 mm
@@ -99,7 +102,7 @@ def test_thickness_and_pitch_stay_where_all_files_share_one_rotation(gear_set):
             deviation = np.full(45, 0.005)
             extra = 0.020 / np.hypot(*points.point[MIDDLE, :2]) if tooth == 3 else 0.0
             laid = around(points.point + deviation[:, None] * points.normal, 1.1 + extra + 2 * np.pi * tooth / 36)
-            parts.append(Part(f"{flank}{tooth}.txt", flank, tooth, laid))
+            parts.append(PointPart(f"{flank}{tooth}.txt", flank, tooth, laid))
         middle, normal = points.point[MIDDLE], points.normal[MIDDLE]
         shifts[flank] = extra * (middle[0] * normal[1] - middle[1] * normal[0])
     found = foreign_file(parts, Frame(), gear_set, "gear")
@@ -117,11 +120,13 @@ def test_thickness_and_pitch_stay_where_all_files_share_one_rotation(gear_set):
 
 def test_rotation_is_kept_on_request(gear_set):
     point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth() + 0.007)
-    found = foreign_file([Part("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion", "kept")
+    found = foreign_file([PointPart("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion", "kept")
     assert found.file.header["phase_zeroed"] == "false"
     np.testing.assert_allclose(deviations(found.file, "concave"), smooth() + 0.007, rtol=0, atol=1e-9)
     with pytest.raises(InputError, match=r"turned by (20\.0|19\.9)\d\d degrees against tooth 0 .* --phase kept"):
-        foreign_file([Part("p.txt", "concave", 0, around(point, np.radians(20)))], Frame(), gear_set, "pinion", "kept")
+        foreign_file(
+            [PointPart("p.txt", "concave", 0, around(point, np.radians(20)))], Frame(), gear_set, "pinion", "kept"
+        )
 
 
 @pytest.mark.parametrize("burr", [3, MIDDLE])
@@ -129,7 +134,7 @@ def test_a_burr_is_kept_for_the_evaluation_and_moves_no_other_point(gear_set, bu
     deviation = smooth()
     deviation[burr] += 0.5
     point, _ = on_flank(gear_set.pinion, "pinion", "convex", deviation)
-    found = foreign_file([Part("p.txt", "convex", 0, around(point, -2))], Frame(), gear_set, "pinion")
+    found = foreign_file([PointPart("p.txt", "convex", 0, around(point, -2))], Frame(), gear_set, "pinion")
     others = np.arange(45) != burr
     # where the reference point itself is bad, the smooth surface through the others stands for it
     np.testing.assert_allclose(deviations(found.file, "convex")[others], smooth()[others], rtol=0, atol=1e-3)
@@ -140,7 +145,7 @@ def test_a_burr_is_kept_for_the_evaluation_and_moves_no_other_point(gear_set, bu
 def test_points_far_off_are_left_out_and_counted(gear_set):
     point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth())
     point[0] += 40 * normal[0]
-    found = foreign_file([Part("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion")
+    found = foreign_file([PointPart("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion")
     assert "p.txt: 1 points lie beyond the flank or far off it, left out" in found.remarks
     assert len(found.file) == 44
     judged = evaluate_member(found.file, gear_set.pinion, "pinion")
@@ -151,7 +156,7 @@ def test_points_far_off_are_left_out_and_counted(gear_set):
 def test_centers_of_the_tip_are_brought_back_by_its_radius(gear_set):
     point, normal = on_flank(gear_set.gear, "gear", "convex", smooth())
     found = foreign_file(
-        [Part("p.txt", "convex", 0, around(point + 1.5 * normal, 0.3))], Frame("+z", 0.0, 1.5), gear_set, "gear"
+        [PointPart("p.txt", "convex", 0, around(point + 1.5 * normal, 0.3))], Frame("+z", 0.0, 1.5), gear_set, "gear"
     )
     np.testing.assert_allclose(deviations(found.file, "convex"), smooth(), rtol=0, atol=1e-8)
 
@@ -175,7 +180,7 @@ def test_scattered_points_are_brought_onto_a_grid_between_them(gear_set):
     deviation = form(across, up)
     deviation[[7, 70, 170]] += 0.4
     point, _ = on_flank(member, "gear", "concave", deviation, spread)
-    found = foreign_file([Part("p.txt", "concave", 0, around(point, 1))], Frame(), gear_set, "gear")
+    found = foreign_file([PointPart("p.txt", "concave", 0, around(point, 1))], Frame(), gear_set, "gear")
     assert any("300 points form no grid" in remark for remark in found.remarks)
     assert any("3 points stand out from the others" in remark for remark in found.remarks)
     assert found.file.header["margins"] == "0.1,0.1"
@@ -224,7 +229,9 @@ def test_thickness_of_foreign_points_is_that_at_one_place_of_both_flanks(gear_se
         there = Grid(
             grid.axial + shift, grid.radial + 0.01 * np.sign(shift) + 1e-3 * np.sin(np.arange(45)).reshape(5, 9)
         )
-        parts.append(Part(f"{flank}.txt", flank, 0, on_flank(gear_set.gear, "gear", flank, np.zeros(45), there)[0]))
+        parts.append(
+            PointPart(f"{flank}.txt", flank, 0, on_flank(gear_set.gear, "gear", flank, np.zeros(45), there)[0])
+        )
     found = foreign_file(parts, Frame(), gear_set, "gear")
     assert found.file.header["margins"] == "own"
     thickness = evaluate_member(found.file, gear_set.gear, "gear").thickness
@@ -237,9 +244,9 @@ def test_a_machine_error_is_corrected_from_foreign_points(gear_set, altered):
     """Cut with the cutter 0.05 mm too far out: points on that very flank ask for a radial distance 0.05 mm less."""
     cut = altered(gear_set, "pinion", "concave", radial_distance=gear_set.pinion.concave.radial_distance + 0.05)
     points = solve_flank(cut.pinion, "pinion", "concave", places(gear_set.pinion)).point
-    parts = [Part("p.txt", "concave", 0, around(points, 3)[::-1])]
+    parts = [PointPart("p.txt", "concave", 0, around(points, 3)[::-1])]
     whole = solve_flank(gear_set.pinion, "pinion", "convex", places(gear_set.pinion)).point
-    parts.append(Part("q.txt", "convex", 0, around(whole, 3)))
+    parts.append(PointPart("q.txt", "convex", 0, around(whole, 3)))
     file = foreign_file(parts, Frame(), gear_set, "pinion", "each").file
     found = correct(gear_set.pinion, "pinion", file, ("radial_distance", "work_rotation_offset"))
     change = found.settings["concave"][0] - gear_set.pinion.concave.radial_distance
@@ -255,10 +262,10 @@ def refusal(gear_set, part, frame=PLAIN, name="pinion"):
 
 def test_points_of_something_else_are_refused_with_what_would_fit(gear_set):
     point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth())
-    part = Part("p.txt", "concave", 0, around(point, 1.0))
+    part = PointPart("p.txt", "concave", 0, around(point, 1.0))
     assert "p.txt: " in refusal(gear_set, replace(part, flank="convex"))
     exact, _ = on_flank(gear_set.pinion, "pinion", "convex", np.zeros(45))
-    exact = Part("p.txt", "convex", 0, around(exact, 1.0))  # a slope of the deviations is some 0.5 mm of offset
+    exact = PointPart("p.txt", "convex", 0, around(exact, 1.0))  # a slope of the deviations is some 0.5 mm of offset
     cases = {
         "most would fit with --flank concave": (replace(part, flank="convex"), Frame(), "pinion"),
         "most would fit with --unit inch": (replace(part, point=part.point / 25.4), Frame(), "pinion"),
@@ -286,24 +293,24 @@ def test_points_of_something_else_are_refused_with_what_would_fit(gear_set):
 
 def test_a_flank_of_another_tooth_is_named_with_its_tooth(gear_set):
     point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
-    parts = [Part(f"{k}.txt", "concave", k, around(point, -2 * np.pi * k / 12)) for k in (0, 1)]
+    parts = [PointPart(f"{k}.txt", "concave", k, around(point, -2 * np.pi * k / 12)) for k in (0, 1)]
     with pytest.raises(InputError, match=r"1\.txt: .* it would be of tooth 11, counted as the set counts"):
         foreign_file(parts, Frame(), gear_set, "pinion")
 
 
 def test_half_a_file_is_told_from_a_whole_one(gear_set):
     point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
-    found = foreign_file([Part("p.txt", "concave", 0, point[:22])], Frame(), gear_set, "pinion")
+    found = foreign_file([PointPart("p.txt", "concave", 0, point[:22])], Frame(), gear_set, "pinion")
     (covered,) = (each for each in found.remarks if "% only: is the file whole?" in each)
     assert "cover the working depth from 1" in covered
-    whole = foreign_file([Part("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion")
+    whole = foreign_file([PointPart("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion")
     assert not any("is the file whole?" in each for each in whole.remarks)
 
 
 def test_too_few_points_for_a_grid_are_refused(gear_set):
     point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
     assert "its 9 points form no grid, and cover too little" in refusal(
-        gear_set, Part("p.txt", "concave", 0, point[18:27])
+        gear_set, PointPart("p.txt", "concave", 0, point[18:27])
     )
 
 
@@ -319,25 +326,45 @@ def test_too_few_points_for_a_grid_are_refused(gear_set):
 def test_options_out_of_range_are_refused(refused, tmp_path, options, sentence):
     (tmp_path / "p.txt").write_text("1.5 2.5 3.5\n")
     refused(
-        sentence, "points", tmp_path / "p.txt", "--set", SETS[0], "--member", "pinion", "--flank", "concave", *options,
-        "-o", tmp_path / "m.csv",
-    )  # fmt: skip
+        sentence,
+        "points",
+        tmp_path / "p.txt",
+        "--set",
+        SETS[0],
+        "--member",
+        "pinion",
+        "--flank",
+        "concave",
+        *options,
+        "-o",
+        tmp_path / "m.csv",
+    )
 
 
 def test_two_files_of_one_flank_are_refused(refused, tmp_path):
     for name in "ab":
         (tmp_path / f"{name}.txt").write_text("1.5 2.5 3.5\n")
     refused(
-        r"b\.txt: is taken for the concave flank of tooth 0, as is \S*a\.txt", "points", tmp_path / "a.txt",
-        tmp_path / "b.txt", "--set", SETS[0], "--member", "pinion", "--flank", "concave", "-o", tmp_path / "m.csv",
-    )  # fmt: skip
+        r"b\.txt: is taken for the concave flank of tooth 0, as is \S*a\.txt",
+        "points",
+        tmp_path / "a.txt",
+        tmp_path / "b.txt",
+        "--set",
+        SETS[0],
+        "--member",
+        "pinion",
+        "--flank",
+        "concave",
+        "-o",
+        tmp_path / "m.csv",
+    )
 
 
 def test_a_set_without_the_mate_gives_the_same_hints(gear_set):
     """The likely cause is sought among the members that there are."""
     alone = gear_set.model_copy(update={"gear": None})
     point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
-    part = Part("p.txt", "concave", 0, around(point, 1.0))
+    part = PointPart("p.txt", "concave", 0, around(point, 1.0))
     assert "most would fit with --unit inch" in refusal(alone, replace(part, point=part.point / 25.4))
     assert "most would fit with --flank concave" in refusal(alone, replace(part, flank="convex"))
     assert "most would fit with --axis -z" in refusal(alone, replace(part, point=part.point * [1, -1, -1]))
@@ -347,7 +374,7 @@ def test_a_set_without_the_mate_gives_the_same_hints(gear_set):
 def test_a_few_points_of_one_end_are_a_file_or_one_sentence(gear_set, count):
     """A row or a little more: the reference point lies beyond them, and nothing is said of it."""
     point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
-    part = Part("p.txt", "concave", 0, around(point[:count], 1.0))
+    part = PointPart("p.txt", "concave", 0, around(point[:count], 1.0))
     try:
         file = foreign_file([part], Frame(), gear_set, "pinion", "each").file
     except InputError:
@@ -358,7 +385,8 @@ def test_a_few_points_of_one_end_are_a_file_or_one_sentence(gear_set, count):
 def both_flanks(member, name, moved=lambda point: point, tip=0.0, flanks=FLANKS):
     """Parts whose points, or centers of the tip, were moved; a third of the form of smooth()."""
     return [
-        Part(f"{flank}.txt", flank, 0, moved(on_flank(member, name, flank, smooth() / 3 + tip)[0])) for flank in flanks
+        PointPart(f"{flank}.txt", flank, 0, moved(on_flank(member, name, flank, smooth() / 3 + tip)[0]))
+        for flank in flanks
     ]
 
 
@@ -424,9 +452,18 @@ def test_text_that_contradicts_an_option_is_refused(refused, gear_set, tmp_path,
     (part,) = both_flanks(gear_set.pinion, "pinion", flanks=("concave",))
     np.savetxt(tmp_path / "p.txt", part.point, "%.5f", header=head, comments="")
     refused(
-        rf"p\.txt, {sentence}", "points", tmp_path / "p.txt", "--set", SETS[0], "--member", "pinion", "--flank",
-        "concave", "-o", tmp_path / "m.csv",
-    )  # fmt: skip
+        rf"p\.txt, {sentence}",
+        "points",
+        tmp_path / "p.txt",
+        "--set",
+        SETS[0],
+        "--member",
+        "pinion",
+        "--flank",
+        "concave",
+        "-o",
+        tmp_path / "m.csv",
+    )
 
 
 def test_one_point_is_refused(gear_set):
@@ -507,7 +544,7 @@ def test_a_scale_is_told_from_form_where_both_flanks_ask_for_it(gear_set, scale)
     said = []
     for factor in (scale, 1.0):
         parts = [
-            Part(f"{flank}.txt", flank, 0, factor * on_flank(gear_set.pinion, "pinion", flank, form)[0])
+            PointPart(f"{flank}.txt", flank, 0, factor * on_flank(gear_set.pinion, "pinion", flank, form)[0])
             for flank, form in zip(FLANKS, forms, strict=True)
         ]
         said.append(foreign_file(parts, PLAIN, gear_set, "pinion").doubts)
@@ -525,7 +562,7 @@ def test_single_point_off_by_twelve_times_the_noise_is_named_and_kept(gear_set, 
     for flank in FLANKS:
         deviation = smooth() / 4 + 5e-4 * rng.standard_normal(45)
         deviation[k] += 0.006 * (flank == "convex")
-        parts.append(Part(f"{flank}.txt", flank, 0, on_flank(gear_set.pinion, "pinion", flank, deviation)[0]))
+        parts.append(PointPart(f"{flank}.txt", flank, 0, on_flank(gear_set.pinion, "pinion", flank, deviation)[0]))
     found = foreign_file(parts, PLAIN, gear_set, "pinion")
     (doubt,) = found.doubts
     assert float(re.match(rf"convex\.txt, point {k + 1}: the point is (\d+\.\d) um off", doubt)[1]) > 4
@@ -538,12 +575,14 @@ def test_noise_and_waves_name_no_point(gear_set):
     _, col = np.divmod(np.arange(45), 9)
     for wave in (0.0, 0.004):
         parts = [
-            Part(
-                flank, flank, 0,
+            PointPart(
+                flank,
+                flank,
+                0,
                 on_flank(gear_set.pinion, "pinion", flank, wave * np.sin(col) + 5e-4 * rng.standard_normal(45))[0],
             )
             for flank in FLANKS
-        ]  # fmt: skip
+        ]
         assert foreign_file(parts, PLAIN, gear_set, "pinion").doubts == ()
 
 
@@ -565,7 +604,7 @@ def test_two_runs_in_one_file_are_said_with_what_they_differ_by(gear_set, drift)
     point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth() / 4)
     off = drift + 5e-4 * np.random.default_rng(6).standard_normal(45)
     both = np.concatenate([point, point + off[:, None] * normal])
-    doubts = foreign_file([Part("c.txt", "concave", 0, both)], PLAIN, gear_set, "pinion").doubts
+    doubts = foreign_file([PointPart("c.txt", "concave", 0, both)], PLAIN, gear_set, "pinion").doubts
     (said,) = [doubt for doubt in doubts if "two runs in one file?" in doubt]
     size = re.match(r"c\.txt: 45 places were measured twice, the later points ([+-]\d+\.\d) um off the earlier", said)
     assert float(size[1]) == pytest.approx(1000 * drift, abs=0.4)

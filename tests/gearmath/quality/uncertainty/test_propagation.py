@@ -78,9 +78,13 @@ def by_name(found, flank="concave"):
 
 
 def test_figures_are_those_of_the_evaluation(evaluation, figures):
-    values = dict(zip(
-        [(item.flank, item.name) for item in figures.items], figures.values, strict=True,
-    ))  # fmt: skip
+    values = dict(
+        zip(
+            [(item.flank, item.name) for item in figures.items],
+            figures.values,
+            strict=True,
+        )
+    )
     for flank in FLANKS:
         judged = evaluation.flanks[flank]
         assert values[flank, "max_deviation"] == pytest.approx(abs(judged.topographies[0].extreme), abs=1e-15)

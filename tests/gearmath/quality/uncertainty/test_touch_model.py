@@ -31,8 +31,16 @@ def touched(gear_set, vertical):
     def make(member: str, shift=lambda axes: 0 * axes) -> FlankFile:
         spec = gear_set.member(member)
         there = probe_targets(spec, member, vertical, PROBE)
-        touches = Touches(1, member, there.flank, there.tooth, there.row, there.col, there.touch + shift(there.touch),
-                          np.ones(len(there), dtype=bool))  # fmt: skip
+        touches = Touches(
+            1,
+            member,
+            there.flank,
+            there.tooth,
+            there.row,
+            there.col,
+            there.touch + shift(there.touch),
+            np.ones(len(there), dtype=bool),
+        )
         return measured_member(touches, spec, member, vertical, PROBE)
 
     return make
@@ -115,8 +123,14 @@ def test_every_source_alone_is_what_it_says(gear_set, vertical, touched):
 
 def test_sources_add_up(gear_set, vertical, touched):
     file = touched("pinion")
-    values = {"repeatability_um": 0.5, "pretravel_um": 0.3, "position_um": 0.7, "work_axis_arcsec": 1.0,
-              "squareness_um_per_m": 5.0, "temperature_K": 1.0}  # fmt: skip
+    values = {
+        "repeatability_um": 0.5,
+        "pretravel_um": 0.3,
+        "position_um": 0.7,
+        "work_axis_arcsec": 1.0,
+        "squareness_um_per_m": 5.0,
+        "temperature_K": 1.0,
+    }
     whole = covariance_of(gear_set, vertical, file, **values).matrix
     parts = [covariance_of(gear_set, vertical, file, **{name: value}).matrix for name, value in values.items()]
     np.testing.assert_allclose(whole, sum(parts), rtol=0, atol=1e-18)
