@@ -1,4 +1,4 @@
-"""Frames and rotations: active and right-handed, as everywhere in this house.
+"""Frames and rotations: active and right-handed, as everywhere in this package.
 
 A rotation ``R(a)`` turns a vector by the angle ``a`` and keeps the frame. The matrix whose *rows* are the axes of a
 frame w, written in frame s, takes the components of a vector in s to its components in w.

@@ -1,4 +1,4 @@
-"""Every quantity of the house, once: name, meaning, unit, LaTeX, domain.
+"""Every quantity, once: name, meaning, unit, LaTeX, domain.
 
 Names follow ISO 23509, ISO 21771 and REXS (American spelling). Lengths are mm, angles rad. The domains are where the
 expressions are valid and where the tests sample them; people's limits belong to the files in ``gearmath.specs``.

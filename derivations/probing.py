@@ -144,7 +144,7 @@ def prove_middle_of_the_space_is_on_top() -> None:
 
 
 def prove_touching_tip_has_its_point_back() -> None:
-    """(15.1, 15.5) A tip that stands off by s gives the point R + s n and the deviation s, for unit normals."""
+    """(15.1, 15.5) A tip at the distance s gives the point R + s n and the deviation s, for unit normals."""
     n, s = q.normal_w.symbol, q.standoff.symbol
     at = dict(zip(q.tip_center.symbols, probe_target()["tip_center"], strict=True))
     point = sp.Matrix(touched_point()["contact_point"]).subs(at, simultaneous=True)

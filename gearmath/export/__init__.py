@@ -1,1 +1,1 @@
-"""What leaves the house: C from Kernels, and the folders that carry it."""
+"""What is exported: C from Kernels, and the folders that carry it."""

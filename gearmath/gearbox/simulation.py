@@ -1,7 +1,7 @@
 """What a step rule does over time: patterns of encoder edges, and the error of the steps in exact integers.
 
 The rule itself is not here. It comes in as the compiled kernel, a callable from edges to steps, so that what is
-simulated is the C that leaves the house. Beside it runs the floating rule of the public firmware.
+simulated is the exported C. Beside it runs the floating rule of the public firmware.
 """
 
 from __future__ import annotations

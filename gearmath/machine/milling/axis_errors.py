@@ -171,7 +171,7 @@ class AxisBacklash:
         self._real: np.ndarray | None = None
 
     def __call__(self, position: np.ndarray) -> np.ndarray:
-        """How far A and B (2,) [rad] stand off once they have been told to go to a position X Y Z A B (5,)."""
+        """By how much A and B (2,) [rad] are off once they have been told to go to a position X Y Z A B (5,)."""
         told = position[3:5]
         real = told - self._half if self._real is None else np.clip(self._real, told - self._half, told + self._half)
         self._real = real

@@ -14,7 +14,7 @@ _STARTS = 20
 
 
 def off_the_fit(columns: np.ndarray, values: np.ndarray, least: float) -> np.ndarray:
-    """How far values (n,) stand off what their columns (n,p) make of most of them.
+    """How far values (n,) deviate from what their columns (n,p) make of most of them.
 
     Of the fits that several starts lead to, the one with the least of Tukey's loss, all at one scale: the median of
     the distances from the fit of least absolute values, or what ``least`` is ``SIGMAS`` of.

@@ -1,4 +1,4 @@
-"""The house itself: layers, what may be committed, and that the documents say what is there."""
+"""The repository itself: layers, what may be committed, and that the documents say what is there."""
 
 from __future__ import annotations
 
