@@ -157,7 +157,8 @@ def about(file: Path) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        raise InputError(f"{file}: {error}") from error
+        words = str(error)
+        raise InputError(words if words.startswith(f"{file}: ") else f"{file}: {words}") from error
 
 
 def echo_json(values: Any) -> None:

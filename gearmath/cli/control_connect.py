@@ -31,7 +31,7 @@ def quiet() -> None:
     try:
         import asyncua  # noqa: F401
     except ImportError as error:
-        raise InputError("asyncua is missing: install it with pip install 'gearmath[control]'") from error
+        raise InputError("asyncua is missing: install it with pip install '.[control]'") from error
     logging.getLogger("asyncua").setLevel(logging.CRITICAL + 1)
     logging.getLogger("asyncio").setLevel(logging.CRITICAL + 1)
 

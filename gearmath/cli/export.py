@@ -54,7 +54,7 @@ def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None
     """Closed solids for CAD: a member in its work frame, or, without --member, the pair in mesh.
 
     Flanks, fillets, roots and lands are B-splines: flanks within 0.05 um, fillets within 1 um of what the cutter
-    leaves. Needs the extra cad: pip install 'gearmath[cad]'.
+    leaves. Needs the extra cad: pip install '.[cad]'.
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.exchange.body import member_patches

@@ -270,7 +270,7 @@ def _executor(address: str | None) -> Iterator[Executor | None]:
     try:
         from distributed import Client
     except ImportError as error:
-        raise InputError("--cluster: needs dask: pip install 'gearmath[cluster]'") from error
+        raise InputError("--cluster: needs dask: pip install '.[cluster]'") from error
     try:
         client = Client(address, timeout="10s")
     except (OSError, ValueError, TypeError) as error:

@@ -111,7 +111,7 @@ def require_kernel() -> None:
     try:
         import OCP.STEPControl  # noqa: F401
     except ImportError as error:
-        raise InputError("STEP needs the CAD kernel: install it with pip install 'gearmath[cad]'") from error
+        raise InputError("STEP needs the CAD kernel: install it with pip install '.[cad]'") from error
 
 
 @contextlib.contextmanager
