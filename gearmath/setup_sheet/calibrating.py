@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from gearmath.machine.planning.artefact_targets import axis_sections, sphere_positions, tip_sections
-from gearmath.machine.planning.setup_facts import NOT_ON_METAL, PROBING, R_D, VARIABLES
+import math
+from collections.abc import Iterator
+
+from gearmath.machine.planning.artefact_targets import axis_sections, sphere_directions, sphere_positions, tip_sections
+from gearmath.machine.planning.setup_facts import CALIBRATING, NOT_ON_METAL, R_D, VARIABLES
 from gearmath.machine.planning.targets import POSITIONING_FEED
 from gearmath.machine.writing.axis_cycle import above_all
 from gearmath.machine.writing.calibrating import sideways_level
@@ -15,6 +18,7 @@ from gearmath.specs.calibration import Calibration, WorkSphere
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.version import __version__
 
+_FROM = "a touch starts from the surface, in the bore from its middle, at"
 _NOT_KNOWN = "The program knows no table, seat, stem or work: the ways of probe and spindle must be clear of them."
 
 
@@ -37,7 +41,7 @@ def calibration_sheet(machine: MillingMachine, probe: Calibration, axes: bool, p
             ("Set up by, date", [""]),
         ],
     )
-    page.first("Unconfirmed", [f"{text}." for text in (NOT_ON_METAL, VARIABLES, PROBING)])
+    page.first("Unconfirmed", [f"{text}." for text in (NOT_ON_METAL, VARIABLES, CALIBRATING)])
     page.first("To be watched", _watched(machine, probe, sphere))
     page.heading("What is touched")
     if sphere is None:
@@ -54,7 +58,7 @@ def calibration_sheet(machine: MillingMachine, probe: Calibration, axes: bool, p
         "Probe and touches",
         ["what", "value", "unit"],
         [
-            *touch_rows(probe, touches, "a touch starts off the surface by; in the bore from its middle"),
+            *touch_rows(probe, touches, "a touch starts from the surface at" if axes else _FROM),
             ["feed sideways and down from home", f"{POSITIONING_FEED:g}", "mm/min"],
         ],
     )
@@ -130,11 +134,23 @@ def _on_table(page: Page, machine: MillingMachine, probe: Calibration) -> None:
     page.paragraph(
         f"X and Y are readings in {machine.work_offset} with the tip's center at that place, Z is that of the gauge "
         f"line there, with a probe of {probe.length:g} mm: another length needs other Z in the calibration file. "
-        "The ring is touched along X, along Y through the middle that was found, and along X once more; its face from "
-        "above, in the middle of the wall, at four sides; the sphere at its pole and along its normals, down to 5° "
-        "above its equator. The first ring tells the radius of the tip and its offset in X and Y, the face that in Z, "
-        "the sphere all of them: where both were touched, the sphere is taken."
+        + " ".join(_touched(probe))
     )
+
+
+def _touched(probe: Calibration) -> Iterator[str]:
+    """How each artefact is touched, and what it tells."""
+    if probe.ring is not None:
+        yield "The ring is touched along X, along Y through the middle that was found, and along X once more."
+        yield "It tells the radius of the tip and its offset in X and Y."
+        if probe.ring.face is not None:
+            yield "Its face is touched from above, in the middle of the wall, at four sides: it tells the offset in Z."
+    if probe.sphere is not None:
+        lowest = math.degrees(math.asin(sphere_directions()[:, 2].min()))
+        yield f"The sphere is touched along its normals, from its pole to {lowest:.0f}° above its equator."
+        yield "It tells radius and offset."
+    if probe.ring is not None and probe.sphere is not None:
+        yield "Where both were touched, the sphere is taken."
 
 
 def _on_work(page: Page, machine: MillingMachine, probe: Calibration, sphere: WorkSphere) -> None:

@@ -131,9 +131,12 @@ def test_machine_that_swivels_less_has_no_position_beyond_its_travel(vertical):
 @pytest.mark.parametrize("name", OTHERS)
 def test_what_the_calibration_file_lacks_is_not_on_the_sheet(vertical, name):
     probe = OTHERS[name]
-    found = cells(calibration_sheet(vertical, probe, False, "TIP.MPF"))
+    html = calibration_sheet(vertical, probe, False, "TIP.MPF")
+    found = cells(html)
     assert ("diameter of the bore" in found) is (probe.ring is not None)
     assert ("diameter of the sphere" in found) is (probe.sphere is not None)
+    assert ("The sphere is touched" in html) is (probe.sphere is not None)
+    assert ("The ring is touched" in html) is (probe.ring is not None)
     assert ("width of the wall" in found) is (probe.ring is not None and probe.ring.face is not None)
     for svg in (plan_drawing(probe), section_drawing(probe)):
         width, height = (float(size) for size in re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', svg).groups())
