@@ -12,6 +12,9 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from gearmath.machine.control.executor import run_program
+from gearmath.machine.control.state import Setup
+from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.writing.axis_cycle import axis_program
 from gearmath.machine.writing.calibrating import calibration_program
 from gearmath.setup_sheet import calibration_sheet
@@ -163,3 +166,20 @@ def test_sheets_fit_a_telephone_and_no_word_of_a_drawing_is_over_another(browser
         assert found["width"] <= 420
         assert found["smallest"] >= 12.0
         assert found["inside"] >= 0.0
+
+
+@pytest.mark.parametrize("way", [(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)])
+def test_ring_and_sphere_are_found_within_the_distance_of_the_sheet_and_not_beyond(vertical, way):
+    """The sheet says within 0.5 mm: the program runs with everything 0.45 mm aside, and stops with 0.6 mm."""
+    text = calibration_program(vertical, PROBE, "TIP")
+    for distance, alarm in ((0.45, None), (0.6, 65001)):
+        there = {}
+        for name in ("ring", "sphere"):
+            one = getattr(PROBE, name)
+            moved = tuple(at + distance * share for at, share in zip(one.center, way, strict=True))
+            there[name] = one.model_copy(update={"center": moved})
+        face = RING.face.model_copy(update={"seat": RING.face.seat + distance * way[2]})
+        there["ring"] = there["ring"].model_copy(update={"face": face})
+        probe = Artefacts(vertical, changed(**there))
+        run = run_program(text, "TIP", probe, setup=Setup.of(vertical, PROBE.length))
+        assert (run.alarm and run.alarm[0]) == alarm, (distance, run.messages[-2:])
