@@ -163,8 +163,9 @@ def refuse_faults(found: list[Fault], program: Path, end: str = "it is not run")
     show_default=True,
     help="Ring and sphere on the table for the tip, or the sphere on the work side for the rotary axes.",
 )
+@SHEET
 @output(_PROGRAM)
-def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> None:
+def nc_calibrate(machine: str, calibration: str, cycle: str, sheet: Path | None, target: Path) -> None:
     """Write the program that calibrates the probe on ring and sphere, or the rotary axes on a sphere on the work side.
 
     'gearmath probe' runs it on the machine model, 'gearmath calibrate' reads its touches.
@@ -186,8 +187,16 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, target: Path) -> No
         text = make(at, known, target.stem)
     with bar(text.count("MEAS=1"), "block") as progress:
         refuse_faults(judge_calibration(text, str(target), at, known, progress), target, "the program is not written")
+    page = None
+    if sheet is not None:
+        from gearmath.setup_sheet import calibration_sheet
+
+        page = calibration_sheet(at, known, cycle == "axes", target.name)
     write_text(target, text)
     click.echo(f"{target}: {planned_touches(text)} touches, {block_count(text)} blocks")
+    if sheet is not None and page is not None:
+        write_text(sheet, page)
+        click.echo(f"{sheet}: set-up sheet, prints on A4")
 
 
 @click.command(epilog=f"{TOUCH_CSV} {FLANK_CSV}")

@@ -73,7 +73,7 @@ def machine_drawing(
     drawing.dimension("tips above the B axis", (left + 14 / scale, 0.0), (left + 14 / scale, tips), f"tips {tips:g}")
     drawing.dimension("R_d", (ruler, zero), (ruler, 0.0), f"R_d {machine.gauge_line_height:g}")
     drawing.dot("B axis", 0.0, 0.0, 6.0, filled=False)
-    apex = _places(machine, np.zeros((1, 3)), b)[0]
+    apex = places_at(machine, np.zeros((1, 3)), b)[0]
     drawing.dot("pitch apex", float(apex[0]), float(apex[1]), 2.5)
     px, py = drawing.at(0.0, 0.0)
     drawing.words(px + 9, py + LETTER + 4, "B axis,")
@@ -129,10 +129,10 @@ def _tool(drawing: Drawing, tool: Sequence[DrawnRing], x: float, tips: float, ga
 def _outline(machine: MillingMachine, outline: np.ndarray, b: float) -> np.ndarray:
     """An outline (n,2) of z_w and x_w as X and height over the B axis."""
     z, r = outline.T
-    return _places(machine, np.column_stack([r, np.zeros(len(r)), z]), b)
+    return places_at(machine, np.column_stack([r, np.zeros(len(r)), z]), b)
 
 
-def _places(machine: MillingMachine, points: np.ndarray, b: float) -> np.ndarray:
+def places_at(machine: MillingMachine, points: np.ndarray, b: float) -> np.ndarray:
     """X and height over the B axis (n,2) of points (n,3) of the work at A = 0 (5.4)."""
     axes = np.tile([0.0, 0.0, 0.0, 0.0, b], (len(points), 1))
     (seen,) = kernel("seen_from_tool")(axes, points, 0.0, machine.pivot)

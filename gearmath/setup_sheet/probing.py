@@ -77,19 +77,12 @@ def probing_sheet(job: ProbingJob, program: str) -> str:
         tall=True,
     )
     page.heading("Before the start", new_sheet=True)
-    references(page, machine, "center of the tip", probe.length, "length of the probe", _MORE)
+    references(page, machine, "center of the tip", probe.length, "length of the probe", STOPS)
     page.table(
         "Probe and touches",
         ["what", "value", "unit"],
         [
-            ["effective radius of the tip", f"{probe.tip_radius:.5f}", "mm"],
-            ["offset of the tip in X, Y, Z", ", ".join(f"{value:.5f}" for value in probe.offset), "mm"],
-            ["radius of the stylus", f"{probe.stylus_radius:g}", "mm"],
-            ["free length of the stylus", f"{probe.stylus_length:g}", "mm"],
-            ["touches", str(job.touches), ""],
-            ["a touch starts from the flank at most", f"{APPROACH:g}", "mm"],
-            ["and is searched beyond it for", f"{probe.overtravel:g}", "mm"],
-            ["feed of a touch, of an approach", f"{MEASURING_FEED:g}, {APPROACH_FEED:g}", "mm/min"],
+            *touch_rows(probe, job.touches, "a touch starts from the flank at most"),
             ["radius of the fixture, of the spindle", f"{job.fixture.radius:g}, {job.spindle_radius:g}", "mm"],
         ],
     )
@@ -111,4 +104,19 @@ def probing_sheet(job: ProbingJob, program: str) -> str:
     return page.html
 
 
-_MORE = "and where the probe is deflected before its first touch or on its way, or touches nothing"
+def touch_rows(probe: Calibration, touches: int, start: str) -> list[list[str]]:
+    """Rows of a table: the probe, how often it touches, from where and how fast; ``start`` says what APPROACH is."""
+    return [
+        ["effective radius of the tip", f"{probe.tip_radius:.5f}", "mm"],
+        ["offset of the tip in X, Y, Z", ", ".join(f"{value:.5f}" for value in probe.offset), "mm"],
+        ["radius of the stylus", f"{probe.stylus_radius:g}", "mm"],
+        ["free length of the stylus", f"{probe.stylus_length:g}", "mm"],
+        ["touches", str(touches), ""],
+        [start, f"{APPROACH:g}", "mm"],
+        ["and is searched beyond it for", f"{probe.overtravel:g}", "mm"],
+        ["feed of a touch, of an approach", f"{MEASURING_FEED:g}, {APPROACH_FEED:g}", "mm/min"],
+    ]
+
+
+#: What a probing program stops for beside its references.
+STOPS = "and where the probe is deflected before its first touch or on its way, or touches nothing"

@@ -13,10 +13,22 @@ _Z_MODES = {
 }
 
 
-def references(page: Page, machine: MillingMachine, tips: str, length: float, length_name: str, more: str) -> None:
+#: What else stops a program of a work before its first motion.
+UNDER_THE_WORK = ", and where the tool may be under the work"
+
+
+def references(
+    page: Page,
+    machine: MillingMachine,
+    tips: str,
+    length: float,
+    length_name: str,
+    more: str,
+    more_before: str = UNDER_THE_WORK,
+) -> None:
     """Table and sentences; ``tips`` is the end of the tool, ``length`` [mm] its length, with the name of its key.
 
-    ``more`` says what else the program stops for.
+    ``more`` says what else the program stops for, ``more_before`` for what before its first motion.
     """
     above = machine.home - machine.gauge_line_height
     offsets = " ".join(f"{axis}{value:g}" for axis, value in zip(AXES, machine.work_offset_values, strict=True))
@@ -51,8 +63,8 @@ def references(page: Page, machine: MillingMachine, tips: str, length: float, le
     page.paragraph(
         "The program stops with a message before its first motion where the basic system is not metric, where the "
         f"increments are fewer or {machine.work_offset}, with all frames, is not as above, where a frame turns, "
-        f"mirrors or scales, and where the tool may be under the work; after a tool change, where the name of the tool "
-        f"or its length 1 is another one; {more}."
+        f"mirrors or scales{more_before}; after a tool change, where the name of the tool or its length 1 is another "
+        f"one; {more}."
     )
 
 

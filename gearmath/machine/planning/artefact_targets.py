@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,6 +21,14 @@ FACE_SIDES = ((-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0))
 #: Touches on the sphere: the pole, then rings at these angles from it, with so many touches each.
 _RINGS = (30.0, 60.0, 85.0)
 _ON_RING = 8
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a calibration program that R90 and R91 choose: its name, and how many touches it makes."""
+
+    what: str
+    touches: int
 
 
 def sphere_directions() -> np.ndarray:
@@ -42,6 +51,14 @@ def calibration_touches(calibration: Calibration) -> dict[str, int]:
     return dict(Counter([*pairs, *face, *sphere]))
 
 
+def tip_sections(calibration: Calibration) -> list[Section]:
+    """The parts of the program that calibrates the tip, as far as the calibration file has them, in their order."""
+    counts = calibration_touches(calibration)
+    names = {"ring": RING, "face of the ring": (RING_FACE,), "sphere": (SPHERE,)}
+    found = [Section(what, sum(counts.get(target, 0) for target in targets)) for what, targets in names.items()]
+    return [one for one in found if one.touches]
+
+
 #: Positions of B, as far as the travel allows, and of A from that which has the sphere on top.
 _SWIVELS = np.radians([0.0, 45.0, 90.0])
 _TURNS = np.radians([-60.0, 0.0, 60.0])
@@ -54,10 +71,17 @@ _FROM_STEM = 1.0
 def axis_touches(machine: MillingMachine, calibration: Calibration) -> int:
     """How many touches the program makes; none where the calibration file has no sphere on the work side."""
     sphere = calibration.work_sphere
-    if sphere is None:
-        return 0
-    positions = sphere_positions(machine, calibration, sphere)
-    return sum(len(work_sphere_directions(one, sphere, calibration)) for one in positions)
+    return 0 if sphere is None else sum(one.touches for one in axis_sections(machine, calibration, sphere))
+
+
+def axis_sections(machine: MillingMachine, calibration: Calibration, sphere: WorkSphere) -> list[Section]:
+    """The parts of the program that finds the rotary axes: one for every position of A and B, in their order."""
+    found = []
+    for center in sphere_positions(machine, calibration, sphere):
+        a, b = np.degrees(center[3:]).round(3)
+        touches = len(work_sphere_directions(center, sphere, calibration))
+        found.append(Section(f"sphere on the work, A {a:g} B {b:g}", touches))
+    return found
 
 
 def sphere_positions(machine: MillingMachine, calibration: Calibration, sphere: WorkSphere) -> np.ndarray:

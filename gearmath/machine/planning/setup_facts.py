@@ -38,6 +38,7 @@ PATH = "names of the path tolerances CTOL and OTOL"
 PROBING = (
     "return codes of DELETE and WRITE, the memory that the table of points takes, and that MEAS stops A on its way"
 )
+CALIBRATING = "return codes of DELETE and WRITE, and that MEAS stops an axis on its way"
 _C_AXIS = "whether C needs M70 after SPOS=0, and whether its sense is that of M3"
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.machine.bodies.probe_tip import probe_height
-from gearmath.machine.planning.artefact_targets import sphere_positions, work_sphere_directions
+from gearmath.machine.planning.artefact_targets import axis_sections, sphere_positions, work_sphere_directions
 from gearmath.machine.planning.targets import APPROACH, CLEARANCE
 from gearmath.machine.writing.calibrating import touch_sphere
 from gearmath.machine.writing.probe_words import Blocks, ProbingPlan
@@ -31,7 +31,7 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     if sphere is None:
         raise InputError("the calibration file has no work_sphere: there is nothing to touch")
     centers = sphere_positions(machine, calibration, sphere)
-    anywhere = _above_all(machine, calibration, sphere)
+    anywhere = above_all(machine, calibration, sphere)
     _check_travel(centers, anywhere, sphere, calibration, machine)
     if machine.home < anywhere:
         raise InputError(
@@ -47,14 +47,14 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
     )
 
     above = f"G0 {blocks.length('Z', anywhere)}"
-    plan = ProbingPlan.of_sections([len(work_sphere_directions(one, sphere, calibration)) for one in centers])
+    sections = axis_sections(machine, calibration, sphere)
+    plan = ProbingPlan.of_sections([one.touches for one in sections])
 
     def body() -> Iterator[str]:
         yield from blocks.start(plan, CALIBRATION_COLUMNS)
-        for number, center in enumerate(centers, 1):  # to the first one from the home of Z
-            a, b = np.degrees(center[3:]).round(3)
-            what = f"sphere on the work, A {a:g} B {b:g}"
-            yield from blocks.section(plan, number, what, (*_position(blocks, center, sphere, calibration), above))
+        for number, (section, center) in enumerate(zip(sections, centers, strict=True), 1):  # the first one from home
+            way = (*_position(blocks, center, sphere, calibration), above)
+            yield from blocks.section(plan, number, section.what, way)
         yield from blocks.end()
 
     return blocks.text(header, body())
@@ -71,7 +71,7 @@ def _position(blocks: Blocks, center: np.ndarray, sphere: WorkSphere, calibratio
     yield from touch_sphere(blocks, calibration, center[:3], sphere.diameter, directions, level, WORK_SPHERE)
 
 
-def _above_all(machine: MillingMachine, calibration: Calibration, sphere: WorkSphere) -> float:
+def above_all(machine: MillingMachine, calibration: Calibration, sphere: WorkSphere) -> float:
     """Z [mm] at which the tip is above the sphere wherever A and B turn it."""
     farthest = float(np.linalg.norm(sphere.place) + np.linalg.norm(machine.pivot)) + sphere.diameter / 2
     height = probe_height(machine, calibration) - calibration.offset[2]

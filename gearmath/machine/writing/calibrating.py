@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.machine.planning.artefact_targets import FACE_SIDES, PAIRS, sphere_directions
+from gearmath.machine.planning.artefact_targets import FACE_SIDES, PAIRS, sphere_directions, tip_sections
 from gearmath.machine.planning.targets import APPROACH, APPROACH_FEED, CLEARANCE, MEASURING_FEED
 from gearmath.machine.writing.probe_words import STILL, Blocks, ProbingPlan
 from gearmath.specs.calibration import Calibration, Face, Ring
@@ -26,30 +26,30 @@ def calibration_program(machine: MillingMachine, calibration: Calibration, progr
     blocks = Blocks(program_name, machine, calibration.length)
     header = (f"gearmath {__version__} calibration program", f"machine: {machine.name}", f"probe: {calibration.name}")
 
-    level, top = _level(machine, calibration), blocks.length("Z", float(machine.travel[2, 1]))
-    ring, sphere, sections = calibration.ring, calibration.sphere, []
+    level, top = sideways_level(machine, calibration), blocks.length("Z", float(machine.travel[2, 1]))
+    ring, sphere, ways = calibration.ring, calibration.sphere, []
     if ring is not None:
-        sections.append(("ring", len(PAIRS) * 2 + 2, _ring(blocks, calibration, ring, level)))
+        ways.append(_ring(blocks, calibration, ring, level))
         if ring.face is not None:
-            sections.append(("face of the ring", len(FACE_SIDES), _face(blocks, calibration, ring, ring.face, level)))
+            ways.append(_face(blocks, calibration, ring, ring.face, level))
     if sphere is not None:
         center, directions = np.array(sphere.center) - calibration.tip_offset, sphere_directions()
-        touches = touch_sphere(blocks, calibration, center, sphere.diameter, directions, level, SPHERE)
-        sections.append(("sphere", len(directions), touches))
-    plan = ProbingPlan.of_sections([count for _, count, _ in sections])
+        ways.append(touch_sphere(blocks, calibration, center, sphere.diameter, directions, level, SPHERE))
+    sections = tip_sections(calibration)
+    plan = ProbingPlan.of_sections([one.touches for one in sections])
 
     def body() -> Iterator[str]:
         yield from blocks.start(plan, CALIBRATION_COLUMNS)
         yield f"G0 {top}"
         yield f"G0 {' '.join(blocks.axes(np.zeros(5))[3:])}"
-        for number, (what, _, touches) in enumerate(sections, 1):
-            yield from blocks.section(plan, number, what, (*touches, f"G0 {top}"))
+        for number, (section, touches) in enumerate(zip(sections, ways, strict=True), 1):
+            yield from blocks.section(plan, number, section.what, (*touches, f"G0 {top}"))
         yield from blocks.end()
 
     return blocks.text(header, body())
 
 
-def _level(machine: MillingMachine, calibration: Calibration) -> float:
+def sideways_level(machine: MillingMachine, calibration: Calibration) -> float:
     """Z of all sideways motion: well above ring and sphere. Raises InputError where the travel does not allow it."""
     ring, sphere = calibration.ring, calibration.sphere
     heights = [0.0 if ring is None else ring.center[2] + calibration.stylus_length]

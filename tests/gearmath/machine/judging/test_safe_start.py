@@ -18,6 +18,7 @@ import pytest
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Setup
 from gearmath.machine.planning.cut_plan import CuttingJob
+from gearmath.machine.writing.axis_cycle import axis_program
 from gearmath.machine.writing.calibrating import calibration_program
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.machine.writing.probing import probing_program
@@ -43,6 +44,9 @@ SETS = (
     "crown_gear_formate_14x39",
     "crown_gear_hobbed_14x39",
 )
+#: Programs that touch a work, and all that have a probe.
+PROBING = ("probing", "again")
+TOUCHING = (*PROBING, "calibration", "axes")
 STARTS = 48
 _STEP_MM, _STEP_DEG = 3.0, 1.0
 
@@ -56,10 +60,12 @@ def gear_set(name):
 def text_of(name, member, kind):
     one, machine = gear_set(name), {"counting": COUNTING, "shifted": SHIFTED}.get(kind, MACHINE)
     spaces = range(one.member(member).teeth) if one.member(member).process == "face_hobbing" else (0, 1)
-    if kind in ("probing", "again"):
+    if kind in PROBING:
         return machine, probing_program(one, member, machine, PROBE, "START", topography=())
     if kind == "calibration":
         return machine, calibration_program(machine, PROBE, "START")
+    if kind == "axes":
+        return machine, axis_program(machine, PROBE, "START")
     return machine, cutting_program(one, member, machine, "START", CuttingJob(spaces, 1e-2))
 
 
@@ -94,6 +100,17 @@ def work_points(member):
     return np.column_stack([r * np.cos(np.tile(angle, len(dense))), r * np.sin(np.tile(angle, len(dense))), z])
 
 
+def sphere_points(sphere):
+    """Points (n,3) on what the sphere on the work side sweeps about the work axis, with 40 mm of its stem."""
+    around, angle = np.meshgrid(*(np.linspace(0, 2 * np.pi, n, endpoint=False) for n in (24, 72)))
+    z, r = sphere.diameter / 2 * np.cos(around), sphere.diameter / 2 * np.sin(around)
+    stem = np.linspace(0, 40, 24)[None].repeat(len(angle), axis=0)
+    axial = sphere.axial + np.concatenate([z, stem])
+    radius = sphere.radius + np.concatenate([r, np.full_like(stem, sphere.stem_diameter / 2)])
+    turned = np.concatenate([angle, angle])
+    return np.stack([radius * np.cos(turned), radius * np.sin(turned), axial], axis=-1).reshape(-1, 3)
+
+
 def meets(points, positions, columns):
     """Whether any of the work is in the columns of the tool at positions X Y Z A B (n,5) in mm and rad.
 
@@ -119,7 +136,7 @@ def columns_of(member, kind, table_length):
     It is as long as it should be, or as the tool table says if that is more.
     """
     spindle = MACHINE.cutter_head.spindle_radius
-    if kind in ("probing", "calibration", "again"):
+    if kind in TOUCHING:
         more = max(table_length - PROBE.length, 0.0)
         return [(PROBE.length + PROBE.tip_radius + more, PROBE.tip_radius), (more, spindle)]
     flanks = (member.concave, member.convex)
@@ -157,6 +174,7 @@ CASES = [
     ("nasa_tp3096_12x36", "gear", "shifted"),
     ("nasa_tp3096_12x36", "pinion", "calibration"),
     ("nasa_tp3096_12x36", "gear", "again"),
+    ("nasa_tp3096_12x36", "pinion", "axes"),
 ]
 
 
@@ -166,7 +184,7 @@ def test_nothing_is_touched_before_the_first_cut_or_the_program_stops(number):
     name, member, kind = CASES[number]
     spec = gear_set(name).member(member)
     machine, text = text_of(name, member, kind)
-    points = work_points(spec)
+    points = sphere_points(PROBE.work_sphere) if kind == "axes" else work_points(spec)
     random, stopped, clear, tried = np.random.default_rng(number), 0, 0, 0
     names = re.findall(r'T="(\w+)"', text)
     while stopped + clear < STARTS:
@@ -179,23 +197,23 @@ def test_nothing_is_touched_before_the_first_cut_or_the_program_stops(number):
         begun = {90: int(random.integers(2, 14))} if kind == "again" else {}  # a program that is continued
         run = run_program(text, "START", lambda a, b: None, setup=setup, parameters=begun)
         rows = run.path.axes
-        if run.alarm is not None and not (kind in ("probing", "calibration", "again") and run.alarm[0] == 65001):
+        if run.alarm is not None and not (kind in TOUCHING and run.alarm[0] == 65001):
             assert len(rows) <= 3, run.messages  # at most Z has gone home
             stopped += 1
         else:
             clear += 1
         # a probe comes down from home and goes sideways in measuring blocks, then into a space
-        cutting = np.flatnonzero(~run.path.rapid)[2 if kind in ("probing", "again") else 0 :]
+        cutting = np.flatnonzero(~run.path.rapid)[2 if kind in PROBING else 0 :]
         first_cut = int(cutting[0]) if len(cutting) else len(rows)
         before = start
         for k in range(first_cut):
             here = rows[k]
-            if k == 2 and kind in ("probing", "again"):
+            if k == 2 and kind in TOUCHING:
                 # the probe has been fetched, and its length compared: what was in the spindle before is not there now
                 columns = columns_of(spec, kind, 0.0)
             if k > 0 and run.path.tool[k] != run.path.tool[k - 1]:
                 before = None  # the change itself is the machine's
-            if before is not None and kind != "calibration":
+            if before is not None:
                 assert not meets(points, followed(before, here), columns), (k, before, here)
             before = here
             if k == 0:
