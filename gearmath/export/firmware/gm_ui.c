@@ -442,6 +442,9 @@ static void gm_break_off(gm_ui *ui) {
   if (ui->page == GM_PAGE_DIVIDE_GO) {
     gm_go(ui, GM_PAGE_DIVIDE);
   }
+  if (ui->page == GM_PAGE_STOPPED) {
+    ui->choice = GM_STOPPED_WAIT; /* so that one press more does not begin it again */
+  }
   if (ui->shifting) { /* the carriage is between two starts */
     ui->shifting = 0;
     ui->phase = 0;

@@ -19,7 +19,8 @@ def asked_to_run(rows: list[str], event: int) -> bool:
 def asked_to_move(rows: list[str], event: int) -> bool:
     armed = rows[2].startswith("ARMED") and event in (UP, DOWN)
     turn = rows[3].startswith("Turn it?") and ">yes<" in rows[3]
-    return armed or (event == SHORT and (turn or rows[3].startswith("Press: go") or rows[3].startswith(">next start")))
+    chosen = any(row.startswith((">back to start", ">next start")) for row in rows)
+    return armed or (event == SHORT and (turn or rows[3].startswith("Press: go") or chosen))
 
 
 @pytest.mark.parametrize("machine", ["hobbing_plewes", "hobbing_helical", "lathe_example"])
