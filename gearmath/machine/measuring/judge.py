@@ -29,7 +29,7 @@ from gearmath.machine.planning.targets import targets_of_space
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
-from gearmath.specs.touch_csv import WORK_SPHERE
+from gearmath.specs.touch_csv import RING, WORK_SPHERE
 
 #: A touch may be searched for this far beside the line on which its place is [mm], A and B be turned by this [rad].
 _BESIDE, _TURNED = 0.1, math.radians(0.05)
@@ -142,6 +142,11 @@ def _on_artefacts(there: Artefacts) -> Place:
         gap = there.gap_of(cells["target"])
         if gap is None or way.met is None or not abs(float(gap(way.met[None])[0])) < _MET:
             return f"it did not meet the {cells['target']}"
+        ring = there.calibration.ring
+        if ring is not None and cells["target"] in RING:  # the bore of the model has no end in Z
+            off = float(way.met[2] + there.calibration.offset[2] - ring.center[2])
+            if abs(off) > _BESIDE:
+                return f"it is {off:+.3f} mm off the height at which the tip stands in the ring"
         side = {"ring_x_low": (0, -1), "ring_x_high": (0, 1), "ring_y_low": (1, -1), "ring_y_high": (1, 1)}
         axis, sign = side.get(cells["target"], (0, 0))
         return "" if sign == 0 or (way.end - way.start)[axis] * sign > 0.0 else f"it is not the {cells['target']}"
