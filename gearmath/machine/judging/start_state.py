@@ -53,8 +53,11 @@ def _stops(text: str, setup: Setup) -> bool:
         if left < 0:
             raise _Moving
 
+    def touches(start: np.ndarray, end: np.ndarray) -> None:
+        raise _Moving  # an alarm that follows would be of the touch
+
     try:
-        return run_program(text, "the program", lambda start, end: None, setup=setup, moved=moved).alarm is not None
+        return run_program(text, "the program", touches, setup=setup, moved=moved).alarm is not None
     except _Moving:
         return False
     except InputError:  # the model does not run on: neither would the control

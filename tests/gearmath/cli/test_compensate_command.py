@@ -117,7 +117,9 @@ def test_motions_are_corrected_when_asked_and_kept_in_the_file(command, measured
     how = cut_generation_of(new, "concave")
     np.testing.assert_allclose(
         whole(how.settings, how.motion)[NAMES.index("sliding_base.1")],
-        cut_generation_of(old, "concave").motion[5, 0] + changed["sliding_base.1"]["new"] - 0.8,
+        cut_generation_of(old, "concave").motion[5, 0]
+        + changed["sliding_base.1"]["new"]
+        - old.concave.motion.sliding_base[0],
         atol=1e-9,
     )
     # a second round starts from the corrected file and its own design

@@ -49,6 +49,10 @@ READ_A_SET = [
     "contact",
     "control measure",
     "control simulate",
+    "export points",
+    "export rexs",
+    "export step",
+    "export stl",
 ]
 
 

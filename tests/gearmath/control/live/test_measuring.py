@@ -6,6 +6,7 @@ The log of the simulated control says what was offered with which values, and wh
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import os
 import random
 from collections.abc import Awaitable, Callable, Iterator
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from asyncua import ua
 
 from gearmath.control import sinumerik
 from gearmath.control.interface import RunStart
@@ -322,7 +324,10 @@ def test_a_run_waits_for_a_control_whose_sessions_or_subscriptions_others_keep(
 
     async def work() -> None:
         other = await live.connect()
-        kept = [await other._client.create_subscription(100, None) for _ in range(10)]
+        kept = []
+        with contextlib.suppress(ua.uaerrors.BadTooManySubscriptions):  # some of lost sessions may be there still
+            for _ in range(10):
+                kept.append(await other._client.create_subscription(100, None))
         task = asyncio.create_task(_measure(live, run))
         await asyncio.sleep(1.0)
         assert not live.nc.channel

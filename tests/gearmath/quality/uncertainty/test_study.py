@@ -223,7 +223,7 @@ def test_results_file_with_a_damaged_byte_is_refused(tmp_path, place):
 _NAME = """
 import casadi as ca
 from gearmath.kernels import kernel
-from gearmath.quality.study import monte_carlo
+from gearmath.quality.uncertainty.study import monte_carlo
 x = ca.MX.sym("x", 12)
 value, _ = kernel("deviation_surface").function(x[0], x[1], x[2:])
 print(monte_carlo(ca.Function("surface", [x], [value]), 10).sha256)
