@@ -688,7 +688,10 @@ def test_blocks_judged_among_their_neighbors_are_judged_as_in_the_whole_program(
     seen, open_ = whole.alone([(line, new) for _, line, new in changed])
     told = [mutant for mutant in range(len(changed)) if mutant not in open_]
     assert len(told) > 15
-    assert [mutant for mutant in told if whole.faults(whole.with_lines(*changed[mutant][1:]))] == sorted(seen)
+    # what shows only where a part of the program is run alone is none of the blocks'
+    said = {mutant: whole.faults(whole.with_lines(*changed[mutant][1:])) for mutant in told}
+    as_a_whole = {k: [fault for fault in some if not fault.startswith("with R90=")] for k, some in said.items()}
+    assert [mutant for mutant, some in as_a_whole.items() if some] == sorted(seen)
 
 
 def hobbed_path(text, spec, member):
