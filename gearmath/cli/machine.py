@@ -311,7 +311,7 @@ def _judge_metal(
     from gearmath.machine.judging.cut import as_cut, metal_left
     from gearmath.machine.judging.stated import Stated
 
-    made = as_cut(spec)
+    made = as_cut(spec, space)
     with bar(1, "space") as progress:
         own = space if made == spec else tooth_space(made, member, 7)
         left = metal_left(runs, made, member, machine, Stated.of(text), own, progress)

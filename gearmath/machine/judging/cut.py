@@ -10,6 +10,7 @@ import numpy as np
 
 from gearmath.bevel.method import motion_of
 from gearmath.bevel.tooth import ToothSpace
+from gearmath.machine.bodies.cutter import point_width
 from gearmath.machine.judging.alike import alike
 from gearmath.machine.judging.block_check import Watch, watch
 from gearmath.machine.judging.faults import Fault
@@ -113,7 +114,7 @@ def metal_left(
     """Stock and gouges that a face milling program leaves on flanks, fillets and root, the work of its settings.
 
     Spaces that are cut alike are exposed once. ``runs`` are those of a machine without errors, with sharp blades;
-    ``space`` is the space that the settings cut. ``progress`` is called for every space exposed.
+    ``member`` is :func:`as_cut`, ``space`` the space that it has. ``progress`` is called for every space exposed.
     """
     groups = alike(runs, member, machine)
     found = watch(runs, member, machine, None, progress, groups)
@@ -189,8 +190,15 @@ def hobbed(deviation: float, stated: Stated) -> Iterator[Fault]:
         )
 
 
-def as_cut(member: Member) -> Member:
-    """The member that its settings make, whatever it was corrected from."""
-    return member.model_copy(
-        update={flank: member.flank(flank).model_copy(update={"design": None}) for flank in FLANKS}
-    )
+def as_cut(member: Member, space: ToothSpace | None = None) -> Member:
+    """The member that its settings make, whatever it was corrected from, with the cutters that it was corrected with.
+
+    Corrected settings change no cutter: where fixed settings state no point width, it is the one chosen for the nominal
+    ``space``, as in the program and its runs. The corrected root has another slot, even beside a flank left as it was.
+    """
+    specs = {flank: member.flank(flank) for flank in FLANKS}
+    changed: dict[str, dict[str, object]] = {flank: {"design": None} for flank in FLANKS}
+    if space is not None and member.cutting == "fixed_setting" and any(spec.design for spec in specs.values()):
+        for flank, spec in specs.items():
+            changed[flank]["blade_point_width"] = point_width(spec, space.slots[flank])
+    return member.model_copy(update={flank: specs[flank].model_copy(update=changed[flank]) for flank in FLANKS})
