@@ -86,7 +86,9 @@ def noticed(across: np.ndarray, up: np.ndarray, deviation: np.ndarray, row: np.n
         return found
     surface = np.polynomial.polynomial.polyvander2d(across[known], up[known], (4, 4))[:, _FOURTH_DEGREE]
     off = off_the_fit(surface, deviation[known], _LEAST_NOTICED)
-    alone = _alone(np.abs(off) > limit_of(off, _LEAST_NOTICED), off, row[known], col[known])
+    leverage = np.sum(np.linalg.qr(surface)[0] ** 2, axis=1)  # the others tell a corner less well than the middle
+    limit = np.maximum(_LEAST_NOTICED, limit_of(off, 0.0) / np.sqrt(1 - leverage))
+    alone = _alone(np.abs(off) > limit, off, row[known], col[known])
     if alone.sum() <= _MOST_NOTICED:
         found[np.flatnonzero(known)[alone]] = off[alone]
     return found
@@ -123,7 +125,7 @@ def find_outliers(file: FlankFile, teeth: int) -> Outliers:
         if not together:
             clean = np.where(mask[rows], np.nan, file.deviation[rows])
             less[rows] = noticed(_unit(along), _unit(upward), clean, file.row[rows], file.col[rows])
-    for k in np.flatnonzero(less):
+    for k in np.flatnonzero(less).tolist():
         mask[k] = missed = _is_reference(file, k) and not _again(file, less, k)
         what = f"is {abs(less[k]) * 1000:.1f} um off the surface of fourth degree through the others"
         if missed:

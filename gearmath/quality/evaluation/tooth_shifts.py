@@ -108,6 +108,8 @@ def _off_the_other_teeth(file: FlankFile, teeth: int, single: np.ndarray) -> tup
     """
     turned, between, alone = (np.full(len(file), np.nan) for _ in range(3))
     _, arc = kernel("flank_turning")(1.0, file.point, file.normal)
+    radius = np.hypot(file.point[:, 0], file.point[:, 1])
+    arc = arc * np.median(radius) / radius  # at one radius, so that points that turned together agree
     for flank in FLANKS:
         of_flank = (file.flank == flank) & np.isfinite(file.deviation)
         for row, col in sorted(set(zip(file.row[of_flank].tolist(), file.col[of_flank].tolist(), strict=True))):
@@ -124,8 +126,8 @@ def _off_the_other_teeth(file: FlankFile, teeth: int, single: np.ndarray) -> tup
 def _within_the_teeth(file: FlankFile, teeth: int, turned: np.ndarray, limits: _Limits) -> tuple[np.ndarray, _Limits]:
     """The same arcs (n,) without what a place has from tooth to tooth beside its tooth, and the limits within a tooth.
 
-    The other points of a place are not always on the same teeth: their mean and first harmonic, compared with the
-    middle of each tooth, are taken off again, so that uneven pitch does not tell points of one tooth apart.
+    Not every place is measured on the same teeth. Its mean and first harmonic beside the mean of each tooth are taken
+    off again, so that uneven pitch does not tell points of one tooth apart.
     """
     turned, within = turned.copy(), limits.within.copy()
     for flank in FLANKS:
@@ -135,7 +137,7 @@ def _within_the_teeth(file: FlankFile, teeth: int, turned: np.ndarray, limits: _
         beside = np.full(len(file), np.nan)
         for each in tooth[count > 1]:
             here = rows[file.tooth[rows] == each]
-            beside[here] = turned[here] - np.median(turned[here])
+            beside[here] = turned[here] - turned[here].mean()  # linear, so that harmonics stay harmonics
         found = []
         for place in np.unique(np.stack([file.row[rows], file.col[rows]], axis=1), axis=0):
             here = rows[(file.row[rows] == place[0]) & (file.col[rows] == place[1])]
