@@ -1,11 +1,12 @@
 """Points that are not of the flank: a probe that missed, dirt, a burr. Said in words and left out, never fitted.
 
 A single point off its neighbors is an outlier. Where a tooth has a grid, its deviations are fitted by a surface of
-third degree that single points do not pull; neighbors that are off together are form, or a burr, and kept. Elsewhere a
-place that many teeth have is fitted by its mean and first harmonic over the teeth, and the points of each tooth are
-compared with each other (module ``tooth_shifts``). A point counts as off where its distance exceeds six standard
-deviations of the others, told by the median of their distances, and a least size: uneven flanks and uneven pitch are
-what is measured, and must not be flagged.
+third degree that single points do not pull; neighbors that are off together are form, or a burr, and kept. A point
+that is off a surface of fourth degree by less is said and kept, but for the reference point: it zeroes and indexes its
+tooth, and is left out. Elsewhere a place that many teeth have is fitted by its mean and first harmonic over the teeth,
+and the points of each tooth are compared with each other (module ``tooth_shifts``). A point counts as off where its
+distance exceeds six standard deviations of the others, told by the median of their distances, and a least size: uneven
+flanks and uneven pitch are what is measured, and must not be flagged.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
+from gearmath.quality.evaluation.pitch import reference_point
 from gearmath.quality.evaluation.robust import limit_of, off_the_fit
 from gearmath.quality.evaluation.tooth_shifts import Shifts, tooth_shifts
 from gearmath.quality.evaluation.topography import grid_shape, local_coordinates
@@ -31,6 +33,12 @@ _LEAST_POINTS = 20
 _MOST = 0.2
 #: So many neighbors that are off to the same side are form.
 _FORM = 3
+#: A point of a grid is noticed from here on, where it is off by six standard deviations of the others. [mm]
+_LEAST_NOTICED = 0.004
+#: So many points tell the fifteen terms of a surface of fourth degree and their noise; more than so many are no single
+#: points.
+_LEAST_TO_NOTICE, _MOST_NOTICED = 30, 2
+_FOURTH_DEGREE = [5 * i + j for i in range(5) for j in range(5 - i)]
 
 
 @dataclass(frozen=True)
@@ -67,10 +75,37 @@ def flag_outliers(along: np.ndarray, upward: np.ndarray, deviation: np.ndarray) 
     return flags, off
 
 
+def noticed(across: np.ndarray, up: np.ndarray, deviation: np.ndarray, row: np.ndarray, col: np.ndarray) -> np.ndarray:
+    """How far n points of a grid are off the surface of fourth degree through the others [mm]; zero where they are not.
+
+    ``across`` and ``up`` are their places from -1 to 1, ``row`` and ``col`` their numbers; NaN deviations [mm] are left
+    out. An outlier is told by the noise of the others, but so little may be form: one or two points alone are noticed.
+    """
+    found, known = np.zeros(len(deviation)), np.isfinite(deviation)
+    if known.sum() < _LEAST_TO_NOTICE:
+        return found
+    surface = np.polynomial.polynomial.polyvander2d(across[known], up[known], (4, 4))[:, _FOURTH_DEGREE]
+    off = off_the_fit(surface, deviation[known], _LEAST_NOTICED)
+    leverage = np.sum(np.linalg.qr(surface)[0] ** 2, axis=1)  # the others tell a corner less well than the middle
+    limit = np.maximum(_LEAST_NOTICED, limit_of(off, 0.0) / np.sqrt(1 - leverage))
+    alone = _alone(np.abs(off) > limit, off, row[known], col[known])
+    if alone.sum() <= _MOST_NOTICED:
+        found[np.flatnonzero(known)[alone]] = off[alone]
+    return found
+
+
+def _alone(flags: np.ndarray, off: np.ndarray, row: np.ndarray, col: np.ndarray) -> np.ndarray:
+    """The flagged points (n,) beside which none is off to the same side by a third: neighbors together are form."""
+    near = (np.abs(row[:, None] - row) <= 1) & (np.abs(col[:, None] - col) <= 1) & ~np.eye(len(row), dtype=bool)
+    alike = near & (off[:, None] * off > 0) & (np.abs(off) > np.abs(off[:, None]) / 3)
+    return flags & ~alike.any(axis=1)
+
+
 def find_outliers(file: FlankFile, teeth: int) -> Outliers:
     """The points of a measured file to leave out; where too many are off to be single points, all are kept."""
     mask, on_grid = np.zeros(len(file), dtype=bool), np.zeros(len(file), dtype=bool)
     reasons, kept = [], []
+    less = np.zeros(len(file))
     for rows, along, upward in _grids(file):
         on_grid[rows] = True
         try:
@@ -87,6 +122,16 @@ def find_outliers(file: FlankFile, teeth: int) -> Outliers:
             mask[rows[k]] = True
             what = f"is {abs(off[k]) * 1000:.1f} um off the smooth surface through the others; left out"
             reasons.append(f"{_place(file, rows[k])} {what}")
+        if not together:
+            clean = np.where(mask[rows], np.nan, file.deviation[rows])
+            less[rows] = noticed(_unit(along), _unit(upward), clean, file.row[rows], file.col[rows])
+    for k in np.flatnonzero(less).tolist():
+        mask[k] = missed = _is_reference(file, k) and not _again(file, less, k)
+        what = f"is {abs(less[k]) * 1000:.1f} um off the surface of fourth degree through the others"
+        if missed:
+            reasons.append(f"{_place(file, k)} {what}, and the tooth would be zeroed and indexed by it; left out")
+        else:
+            kept.append(f"{_place(file, k)} {what}; kept")
     shifts = tooth_shifts(replace(file, deviation=np.where(mask, np.nan, file.deviation)), teeth, ~on_grid)
     reasons += _words(file, shifts)
     mask[list(shifts.misses) + list(shifts.doubtful)] = True
@@ -105,6 +150,21 @@ def _together(flags: np.ndarray, off: np.ndarray, columns: int) -> list[list[int
             group += alike
         groups.append(sorted(group))
     return [group for group in groups if len(group) >= _FORM]
+
+
+def _unit(place: np.ndarray) -> np.ndarray:
+    """Places (n,) from -1 to 1."""
+    return 2 * (place - place.min()) / np.ptp(place) - 1
+
+
+def _is_reference(file: FlankFile, at: int) -> bool:
+    return (int(file.row[at]), int(file.col[at])) == reference_point(file)
+
+
+def _again(file: FlankFile, off: np.ndarray, at: int) -> bool:
+    """Whether another tooth has the same place of the flank off alike: that is form."""
+    alike = (file.flank == file.flank[at]) & (file.row == file.row[at]) & (file.col == file.col[at])
+    return bool(np.sum(alike & (off * off[at] > 0)) > 1)
 
 
 def _words(file: FlankFile, shifts: Shifts) -> Iterator[str]:

@@ -10,22 +10,17 @@ import numpy as np
 
 from gearmath.bevel.grid import blank_fractions
 from gearmath.errors import InputError
-from gearmath.quality.evaluation.outliers import flag_outliers
-from gearmath.quality.evaluation.robust import limit_of, off_the_fit
+from gearmath.quality.evaluation.outliers import flag_outliers, noticed
 from gearmath.quality.foreign.lattice import Lattice, find_lattice
 from gearmath.quality.foreign.points import LARGEST_FORM, Laid, PointPart
 from gearmath.specs.bevel_set import Member
 
 #: A file whose points cover less than this part of face width or depth may have been cut off.
 _LEAST_COVERED = 0.6
-#: A point is said to be off from here on, where it is by six standard deviations of the others. [mm]
-_LEAST_NOTICED = 0.004
-#: So many points tell the fifteen terms of a surface of fourth degree and their noise; more than so many are no single
-#: points.
-_LEAST_TO_NOTICE, _MOST_NOTICED = 30, 2
+#: So many points tell whether places were measured twice.
+_LEAST_TO_COMPARE = 30
 #: Points are at one place within this part of the mean step from point to point; of more points nobody made two grids.
 _SAME_PLACE, _MOST_TO_COMPARE = 0.05, 2000
-_FOURTH_DEGREE = [5 * i + j for i in range(5) for j in range(5 - i)]
 
 
 def fractions(one: Laid, member: Member) -> tuple[np.ndarray, np.ndarray]:
@@ -49,26 +44,12 @@ def standing_out(one: Laid, member: Member) -> np.ndarray:
 def noticeable(one: Laid, lattice: Lattice, member: Member) -> np.ndarray:
     """How far points (n,) of a grid are off the surface of fourth degree through the others, by their noise [mm].
 
-    They are said, and kept: an outlier is told by the noise of the others, but less than a form is never left out.
+    They are said, and kept: less than a form is never left out.
     """
     found = np.zeros(len(one.part.point))
-    if len(one.kept) < _LEAST_TO_NOTICE:
-        return found
     across, up = (2 * part - 1 for part in fractions(one, member))
-    surface = np.polynomial.polynomial.polyvander2d(across, up, (4, 4))[:, _FOURTH_DEGREE]
-    off = off_the_fit(surface, one.deviation, _LEAST_NOTICED)
-    alone = _alone(np.abs(off) > limit_of(off, _LEAST_NOTICED), off, lattice)
-    if alone.sum() <= _MOST_NOTICED:
-        found[one.kept[alone]] = off[alone]
+    found[one.kept] = noticed(across, up, one.deviation, lattice.row, lattice.col)
     return found
-
-
-def _alone(flags: np.ndarray, off: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """The flagged points (n,) beside which none is off to the same side by a third: neighbors together are form."""
-    row, col = lattice.row, lattice.col
-    near = (np.abs(row[:, None] - row) <= 1) & (np.abs(col[:, None] - col) <= 1) & ~np.eye(len(row), dtype=bool)
-    alike = near & (off[:, None] * off > 0) & (np.abs(off) > np.abs(off[:, None]) / 3)
-    return flags & ~alike.any(axis=1)
 
 
 def only(one: Laid, keep: np.ndarray) -> Laid:
@@ -126,7 +107,7 @@ def unlike_words(laid: Sequence[Laid], member: Member) -> Iterator[str]:
 def repeated_words(one: Laid, member: Member) -> Iterator[str]:
     """What to say of points half of which and more have another one at their place: two runs in one file."""
     n = len(one.kept)
-    if not _LEAST_TO_NOTICE <= n <= _MOST_TO_COMPARE:
+    if not _LEAST_TO_COMPARE <= n <= _MOST_TO_COMPARE:
         return
     place = np.stack(fractions(one, member), axis=1)
     apart = np.linalg.norm(place[:, None] - place, axis=2) + np.diag(np.full(n, np.inf))
