@@ -37,7 +37,7 @@ def given(n: int) -> list[np.ndarray]:
 
 def test_compiled_kept_and_interpreted_give_the_same_bits(place: Path, host_compiler, monkeypatch) -> None:
     monkeypatch.setattr(run, "_ASK", 0.0)
-    first = run.Runner(rolling(), (True, False))
+    first = run.KernelRunner(rolling(), (True, False))
     interpreted = first(given(1001), 1001)
     assert first._compiled is None
     assert not list(place.glob("kernel-*"))
@@ -46,7 +46,7 @@ def test_compiled_kept_and_interpreted_give_the_same_bits(place: Path, host_comp
     assert first._compiled is not None
     assert len(list(place.glob("kernel-*"))) == 1
     monkeypatch.setattr(run, "_COMPILE", np.inf)
-    second = run.Runner(rolling(), (True, False))
+    second = run.KernelRunner(rolling(), (True, False))
     kept = second(given(1001), 1001)
     assert second._compiled is not None
     for one, two, three in zip(interpreted, compiled, kept, strict=True):
@@ -62,7 +62,7 @@ def test_results_do_not_depend_on_the_number_of_threads(threads, place, host_com
     monkeypatch.setattr(run, "_ASK", 0.0)
     monkeypatch.setattr(run, "_COMPILE", 0.0)
     monkeypatch.setattr(run, "_SPREAD", 1.0)
-    one = run.Runner(rolling(), (True, False))
+    one = run.KernelRunner(rolling(), (True, False))
     expected = one(given(1001), 1001)
     monkeypatch.setattr(run, "_threads", lambda: threads)
     for got, wanted in zip(one(given(1001), 1001), expected, strict=True):
@@ -72,10 +72,10 @@ def test_results_do_not_depend_on_the_number_of_threads(threads, place, host_com
 def test_a_damaged_library_is_compiled_anew(place: Path, host_compiler, monkeypatch) -> None:
     monkeypatch.setattr(run, "_ASK", 0.0)
     monkeypatch.setattr(run, "_COMPILE", 0.0)
-    run.Runner(rolling(), (True, False))(given(9), 9)
+    run.KernelRunner(rolling(), (True, False))(given(9), 9)
     (library,) = place.glob("kernel-*")
     library.write_bytes(library.read_bytes()[:-100])
-    again = run.Runner(rolling(), (True, False))
+    again = run.KernelRunner(rolling(), (True, False))
     again(given(9), 9)
     assert again._compiled is not None
     assert cache.read(library.name) is not None
@@ -89,7 +89,7 @@ def test_without_a_compiler_it_is_said_once_and_the_virtual_machine_runs(place, 
     run._can_compile.cache_clear()
     try:
         for _ in range(2):
-            (value, _) = run.Runner(rolling(), (True, False))(given(5), 5)
+            (value, _) = run.KernelRunner(rolling(), (True, False))(given(5), 5)
         assert value.shape == (5, 2)
         assert capsys.readouterr().err.count("no C compiler was found") == 1
     finally:
@@ -116,7 +116,7 @@ def test_a_process_with_kept_kernels_loads_no_sympy(place: Path) -> None:
 def test_kernel_of_no_points_gives_no_points_and_of_one_what_the_map_gives() -> None:
     """One point goes to the virtual machine without a map and without conversion: the same bits."""
     function = rolling()
-    one = run.Runner(function, (True, False))(given(1), 1)
+    one = run.KernelRunner(function, (True, False))(given(1), 1)
     mapped = function.map(1)(given(1)[0].T, given(1)[1].reshape(2, 3, order="F"))
     for ours, theirs in zip(one, mapped, strict=True):
         np.testing.assert_array_equal(ours[0], np.asarray(theirs).ravel(order="F"))

@@ -28,7 +28,7 @@ TABLES: dict[str, type[BaseModel]] = {
     "`[pinion.concave]`, `[pinion.convex]`, `[gear.concave]`, `[gear.convex]`": bevel_set.Flank,
     "`[pinion.concave.motion]` and the others": bevel_set.Motion,
     "Design data of a blank": blank_data.BlankData,
-    "`[cutter]`": blank_data.Cutter,
+    "`[cutter]`": blank_data.BlankCutter,
     "`[taper]`": blank_data.Taper,
     "`[data_type_1]`": blank_data.DataType1,
     "`[data_type_2]`": blank_data.DataType2,
@@ -132,7 +132,7 @@ DESIGN_TABLES: dict[str, type[BaseModel]] = {
     "`[cutter]`": design.DesignCutter,
     "`[pinion]`": design.PinionMethod,
     "`[gear]`": design.GearMethod,
-    "`[drive]` and `[coast]`": design.Contact,
+    "`[drive]` and `[coast]`": design.ContactRequest,
     "`[shop]`": design.Shop,
 }
 
@@ -174,7 +174,7 @@ MACHINE_TABLES: dict[str, type[BaseModel]] = MACHINE_FILES | {
     "`[work_sphere]`": calibration.WorkSphere,
 }
 #: Tables that hold only tables.
-INSIDE = {milling_machine.Axes, simulated_machine.Measuring}
+INSIDE = {milling_machine.Axes, simulated_machine.SimulatedMeasuring}
 
 
 def machine_section(heading):
