@@ -157,7 +157,7 @@ MACHINE_FILES: dict[str, type[BaseModel]] = {
 MACHINE_TABLES: dict[str, type[BaseModel]] = MACHINE_FILES | {
     "`[axes.X]`, `[axes.Y]`, `[axes.Z]`, `[axes.B]`": milling_machine.TravelAxis,
     "`[axes.A]`, `[axes.C]`": milling_machine.TurningAxis,
-    "`[control]`": milling_machine.Control,
+    "`[control]`": milling_machine.ControlSettings,
     "`[pinion]` and `[gear]`": simulated_machine.SettingErrors,
     "`[work_axis]`": simulated_machine.WorkAxis,
     "`[axes]`": simulated_machine.AxisErrors,
