@@ -210,12 +210,12 @@ MEASURE = """
 import os, signal, sys
 from pathlib import Path
 from gearmath.control.interface import RunStart, Touch
-from gearmath.control.store import Store
+from gearmath.control.store import MeasurementStore
 
 def measure(most):
     columns = ("run", "point", "target", "X", "Y", "Z", "A", "B", "triggered")
     points = {k: ("sphere",) for k in range(1, int(sys.argv[2]) + 1)}
-    store = Store.open(Path(sys.argv[1]))
+    store = MeasurementStore.open(Path(sys.argv[1]))
     run = store.resume_run(1) if store.runs() else store.begin_run(RunStart("sim", "CAL.MPF", b"M30", columns, points))
     for count, point in enumerate(run.missing()):
         if count == most:
