@@ -9,22 +9,14 @@ import click
 
 from gearmath.cli.common import bar
 from gearmath.cli.control_connect import CONNECTION, INSECURE, connection_of, connector
+from gearmath.cli.runs import store_option
 
 
 @click.command()
 @CONNECTION
 @INSECURE
 @click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF", required=False)
-@click.option(
-    "--store",
-    "store_path",
-    type=click.Path(path_type=Path),
-    default="runs.db",
-    show_default=True,
-    envvar="GEARMATH_STORE",
-    show_envvar=True,
-    help="The measurement store; made where there is none.",
-)
+@store_option("The measurement store; made where there is none.")
 @click.option("--set", "gear_set", metavar="SET.toml", help="Gear set of the member, to be kept with the run.")
 @click.option("--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine, to be kept too.")
 @click.option("--calibration", default="probe.toml", show_default=True, help="Calibrated probe, to be kept too.")
@@ -40,7 +32,7 @@ def measure(
     connection: Path,
     insecure: bool,
     program: Path | None,
-    store_path: Path,
+    store_file: Path,
     gear_set: str | None,
     machine: str,
     calibration: str,
@@ -71,7 +63,7 @@ def measure(
     connect = connector(
         connection, insecure, sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS, sinumerik.READ_FILES
     )
-    with MeasurementStore.open(store_path) as store:
+    with MeasurementStore.open(store_file) as store:
         if resume is not None:
             run = store.resume_run(resume)
             parts = resumed(run)
@@ -83,7 +75,7 @@ def measure(
             run = store.begin_run(start)
         with bar(len(run.missing()), "touch") as progress:
             asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(parts))
-        click.echo(f"{store_path}: run {run.id} is complete: {len(run.start.points)} touches")
+        click.echo(f"{store_file}: run {run.id} is complete: {len(run.start.points)} touches")
 
 
 def _say(sentence: str) -> None:

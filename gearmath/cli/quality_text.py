@@ -7,18 +7,10 @@ from typing import Any
 
 from gearmath.cli.common import table
 from gearmath.quality.evaluation.member import MemberEvaluation
+from gearmath.quality.evaluation.topography import ORDER_KEYS
 from gearmath.quality.uncertainty.propagation import Uncertain
 
 _FIGURES = ("max_deviation_um", "rms_um", "cubic_surface_residual_um", "F_p_um", "max_f_pt_um")
-_ORDERS = (
-    "mean_um",
-    "pressure_angle_deviation_um",
-    "spiral_angle_deviation_um",
-    "profile_crowning_um",
-    "length_crowning_um",
-    "twist_um",
-    "residual_um",
-)
 
 #: Less than this is shown as this: no uncertainty is zero.
 _LEAST_SHOWN = 0.01
@@ -55,13 +47,13 @@ def _without_suffix(lines: Sequence[str]) -> Iterator[str]:
 
 def _orders(flanks: dict[str, Any]) -> Iterator[str]:
     rows = [
-        [flank, *(f"{row['orders'][name]:+.3f}" for name in _ORDERS)]
+        [flank, *(f"{row['orders'][name]:+.3f}" for name in ORDER_KEYS)]
         for flank, row in flanks.items()
         if row.get("orders")
     ]
     if rows:
         yield "first and second order / um:"
-        yield table(["flank", *(name.removesuffix("_um") for name in _ORDERS)], rows)
+        yield table(["flank", *(name.removesuffix("_um") for name in ORDER_KEYS)], rows)
         yield ""
 
 

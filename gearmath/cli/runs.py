@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,16 +20,22 @@ if TYPE_CHECKING:
     from gearmath.control.store_compare import Comparison
     from gearmath.control.store_evaluation import EvaluatedRun
 
-STORE = click.option(
-    "--store",
-    "store_file",
-    type=click.Path(path_type=Path),
-    default="runs.db",
-    show_default=True,
-    envvar="GEARMATH_STORE",
-    show_envvar=True,
-    help="The measurement store.",
-)
+
+def store_option(words: str = "The measurement store.") -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """``--store``, the same file for all verbs that read or write runs."""
+    return click.option(
+        "--store",
+        "store_file",
+        type=click.Path(path_type=Path),
+        default="runs.db",
+        show_default=True,
+        envvar="GEARMATH_STORE",
+        show_envvar=True,
+        help=words,
+    )
+
+
+STORE = store_option()
 _RUN = click.argument("run", type=click.IntRange(1), metavar="RUN")
 _RUNS = click.argument("numbers", type=click.IntRange(1), metavar="RUN...", nargs=-1, required=True)
 #: What --format gives, by the ending of the file where it is not said.

@@ -14,6 +14,7 @@ import numpy as np
 from gearmath.control.store_evaluation import EvaluatedRun
 from gearmath.control.store_summary import summary
 from gearmath.errors import InputError
+from gearmath.quality.evaluation.topography import ORDER_KEYS
 from gearmath.quality.uncertainty.covariance import independent, stated
 from gearmath.quality.uncertainty.figures import figures_of
 from gearmath.quality.uncertainty.propagation import uncertain_figures
@@ -21,17 +22,8 @@ from gearmath.specs.bevel_set import FLANKS, design_sha256
 
 #: Both flanks together, where a figure is of the member.
 BOTH = "both"
-#: Figures of a flank and, of its mean topography, the first orders; of the spaces. Names as in the JSON of evaluate.
+#: Figures of a flank, beside the orders of its mean topography; of the spaces. Names as in the JSON of evaluate.
 _OF_FLANK = ("max_deviation_um", "rms_um", "F_p_um", "max_f_pt_um")
-_OF_FORM = (
-    "mean_um",
-    "pressure_angle_deviation_um",
-    "spiral_angle_deviation_um",
-    "profile_crowning_um",
-    "length_crowning_um",
-    "twist_um",
-    "residual_um",
-)
 #: What the same figure is called in `figures_of`, where it is not the name without its unit.
 _UNCERTAIN = {"arc_deviation_um": "mean_thickness"}
 #: A change of more than so many of its standard uncertainties is not noise; draws for those of maxima.
@@ -153,7 +145,7 @@ def _figures(run: EvaluatedRun) -> dict[tuple[str, str], float | None]:
     for flank, row in values["flanks"].items():
         found |= {(flank, name): row[name] for name in _OF_FLANK if name in row}
         if row.get("orders"):
-            found |= {(flank, name): row["orders"][name] for name in _OF_FORM}
+            found |= {(flank, name): row["orders"][name] for name in ORDER_KEYS}
     if values["runout"] is not None:
         found[BOTH, "F_r_um"] = values["runout"]["F_r_um"]
     if values["thickness"] is not None:

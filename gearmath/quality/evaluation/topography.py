@@ -29,6 +29,16 @@ ORDERS = (
     "twist",
     "profile_crowning",
 )
+#: Keys of these orders and of what they leave, as they are listed for people.
+ORDER_KEYS = (
+    "mean_um",
+    "pressure_angle_deviation_um",
+    "spiral_angle_deviation_um",
+    "profile_crowning_um",
+    "length_crowning_um",
+    "twist_um",
+    "residual_um",
+)
 
 
 @dataclass(frozen=True)
