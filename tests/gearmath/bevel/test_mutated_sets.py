@@ -179,7 +179,7 @@ def _exchanges(base: dict) -> Iterator[tuple[str, dict]]:
             yield f"{member}: {key} of the flanks exchanged", new
     for table in ("blank", *FLANKS):
         yield f"{table} of the members exchanged", exchanged(base, ("pinion", table), ("gear", table))
-        for key in base["pinion"][table].keys() & base["gear"][table].keys():
+        for key in sorted(base["pinion"][table].keys() & base["gear"][table].keys()):
             new = exchanged(base, ("pinion", table, key), ("gear", table, key))
             yield f"{table}.{key} of the members exchanged", new
     yield "members exchanged", exchanged(base, ("pinion",), ("gear",))
