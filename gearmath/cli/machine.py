@@ -307,11 +307,14 @@ def _judge_metal(
     """Print what the blocks leave on a machine without errors; a sentence for each way in which that is wrong."""
     import math
 
+    from gearmath.bevel.ridge import RIDGE, ridge, ridge_words
     from gearmath.bevel.tooth import tooth_space
     from gearmath.machine.judging.cut import as_cut, metal_left
     from gearmath.machine.judging.stated import Stated
 
     made = as_cut(spec, space)
+    if (left_between := ridge(made, space)) > RIDGE:
+        click.echo(f"the root: {ridge_words(left_between)}")
     with bar(1, "space") as progress:
         own = space if made == spec else tooth_space(made, member, 7)
         left = metal_left(runs, made, member, machine, Stated.of(text), own, progress)

@@ -13,7 +13,7 @@ from gearmath.engine.run import KernelRunner
 
 @pytest.fixture(scope="session")
 def timed(request: pytest.FixtureRequest) -> bool:
-    """Whether the run asks for times; else the benchmarks only have to work, with as little of everything as shows that."""
+    """Whether the run asks for times; else the benchmarks only have to work, with little of everything."""
     return not (request.config.getoption("benchmark_disable") or hasattr(request.config, "workerinput"))
 
 

@@ -39,7 +39,9 @@ def test_draws_of_an_identification(benchmark, timed) -> None:
     study = monte_carlo(noise.drawn(function, form), draws)
     values = benchmark.pedantic(run, (study,), rounds=2 if timed else 1, iterations=1)
     np.testing.assert_array_equal(values, run(study, workers=1))
-    threads, single = (min(timeit.repeat(lambda n=n: run(study, workers=n), number=1, repeat=2 if timed else 1)) for n in (None, 1))
+    threads, single = (
+        min(timeit.repeat(lambda n=n: run(study, workers=n), number=1, repeat=2 if timed else 1)) for n in (None, 1)
+    )
     by_loop = draws / looped * timeit.timeit(lambda: identify([target], FREE), number=looped)
     print(
         f"\n{draws / threads:.0f} draws/s on {os.cpu_count()} processors: {single / threads:.2f} x one, "
