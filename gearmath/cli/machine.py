@@ -290,8 +290,12 @@ def _judge_metal(
     """Print what the blocks leave on a machine without errors; a sentence for each way in which that is wrong."""
     import math
 
+    from gearmath.bevel.ridge import RIDGE, ridge, ridge_words
+    from gearmath.machine.judging.cut import as_cut
     from gearmath.machine.judging.program import metal_faults
 
+    if space is not None and (left_between := ridge(as_cut(spec, space), space)) > RIDGE:
+        click.echo(f"the root: {ridge_words(left_between)}")
     with bar(spec.teeth, "space") as progress:
         faults, found = metal_faults(text, path, runs, spec, member, machine, space, progress)
     if found is not None and math.isfinite(found.lowest):
