@@ -27,6 +27,8 @@ from gearmath.control.run_start import begun
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_run import StoredRun
 from gearmath.control.store_touches import touch_csv
+from gearmath.errors import ComputationError
+from gearmath.kernels import kernel
 from gearmath.machine.bodies.probe_tip import probe_height
 from gearmath.machine.planning.pattern import Targets
 from gearmath.machine.planning.targets import MEASURING_FEED
@@ -62,13 +64,15 @@ def calibration() -> Calibration:
     return load_calibration(bundled("probe.toml"))
 
 
-def ten_points(bevel_set: BevelSet, machine: MillingMachine, calibration: Calibration) -> tuple[str, Targets]:
-    """A program that touches the reference points of both flanks of five teeth."""
+def some_points(
+    teeth: int, bevel_set: BevelSet, machine: MillingMachine, calibration: Calibration
+) -> tuple[str, Targets]:
+    """A program that touches the reference points of both flanks of some teeth."""
     member = bevel_set.member(MEMBER)
-    targets, level, room = probed(member, MEMBER, machine, calibration, "TEN", (), True, ())
-    targets = targets.pick(targets.tooth < 5)
+    targets, level, room = probed(member, MEMBER, machine, calibration, "POINTS", (), True, ())
+    targets = targets.pick(targets.tooth < teeth)
     notes = (*probing_notes(bevel_set, MEMBER, machine, calibration, len(targets), 1),)
-    text = write_touches("TEN", notes, targets, MEMBER, member.teeth, machine, calibration, level, room)
+    text = write_touches("POINTS", notes, targets, MEMBER, member.teeth, machine, calibration, level, room)
     return text, targets
 
 
@@ -132,7 +136,9 @@ def flanks_in_c(
         angle = 2 * np.pi * targets.tooth[k] / member.teeth
         point, normal = (turned(one[at], angle) for one in (points.point, points.normal))
         rows.append("{" + ", ".join(f"{value!r}" for value in (*point.tolist(), *normal.tolist(), STOCK[flank])) + "}")
-    pivot = ", ".join(f"{value!r}" for value in machine.pivot.tolist())
+    pivot, zero = (
+        ", ".join(f"{value!r}" for value in one) for one in (machine.pivot.tolist(), machine.work_offset_values)
+    )
     return f"""
 #undef CASADI_PREFIX
 #include "{sources["gm_tool_pose"]}"
@@ -146,8 +152,11 @@ static const double surface[{len(rows)}][7] = {{
 static int gearmath_touched(const double at[5])
 {{
     const double pivot[3] = {{{pivot}}};
+    const double zero[5] = {{{zero}}};
     const double radian = 0.017453292519943295;
-    const double axes[5] = {{at[0], at[1], at[2], at[3] * radian, at[4] * radian}};
+    const double axes[5] = {{
+        at[0] - zero[0], at[1] - zero[1], at[2] - zero[2], (at[3] - zero[3]) * radian, (at[4] - zero[4]) * radian
+    }};
     double tip[3], direction[3], deviation, away;
     int k, i;
     gm_tool_pose(axes, {probe_height(machine, calibration)!r}, pivot, tip, direction);
@@ -188,26 +197,42 @@ def surface(tmp_path: Path) -> Iterator[Callable[[str], str]]:
         (MODULES / f"{SURFACE}.so").unlink(missing_ok=True)
 
 
+def set_up(
+    folder: Path,
+    live: Start,
+    surface: Callable[[str], str],
+    text: str,
+    bevel_set: BevelSet,
+    there: Targets,
+    machine: MillingMachine,
+    calibration: Calibration,
+) -> LiveLinuxCnc:
+    """A LinuxCNC with a program selected, and metal where the probe is to find it; a host will hear its errors."""
+    cli.main(["export", "cnc", "-o", str(folder / "c")])
+    sources = {name: next((folder / "c").rglob(f"{name}.c")) for name in ("gm_tool_pose", "gm_point_deviation")}
+    hal = surface(flanks_in_c(bevel_set, there, machine, calibration, sources))
+    length = calibration.length if machine.z_reference == "tip" else 0.0
+    control = live("POINTS", text, machine, {"PROBE": (99, length)}, hal)
+    (control.folder / "host").touch()
+    return control
+
+
 @pytest.mark.slow
 def test_ten_touches_are_stored_before_they_are_acknowledged_and_late_by_one_servo_cycle_at_most(
     live: Start, surface: Callable[[str], str], machine: MillingMachine, calibration: Calibration, tmp_path: Path
 ) -> None:
     bevel_set = load_bevel_set(bundled(SET))
-    text, targets = ten_points(bevel_set, machine, calibration)
+    text, targets = some_points(5, bevel_set, machine, calibration)
     assert len(targets) == 10
-    cli.main(["export", "cnc", "-o", str(tmp_path / "c")])
-    sources = {name: next((tmp_path / "c").rglob(f"{name}.c")) for name in ("gm_tool_pose", "gm_point_deviation")}
-    hal = surface(flanks_in_c(bevel_set, targets, machine, calibration, sources))
-    control = live("TEN", text, machine, {"PROBE": (99, 0.0)}, hal)
-    (control.folder / "host").touch()
+    control = set_up(tmp_path, live, surface, text, bevel_set, targets, machine, calibration)
 
     database = tmp_path / "runs.db"
     with MeasurementStore.open(database) as store:
-        start, parts = begun("LinuxCNC", control.folder / "TEN.ngc", SET, "vertical_5axis.toml", "probe.toml")
+        start, parts = begun("LinuxCNC", control.folder / "POINTS.ngc", SET, "vertical_5axis.toml", "probe.toml")
         run = store.begin_run(start)
         acknowledged = asyncio.run(measured(control, run, parts, database))
     ended = control.wait("ended", 30)
-    result = (control.folder / "TEN_T.csv").read_text()
+    result = (control.folder / "POINTS_T.csv").read_text()
     control.leave()
 
     assert acknowledged == [(point, point) for point in range(1, 11)]
@@ -225,3 +250,37 @@ def test_ten_touches_are_stored_before_they_are_acknowledged_and_late_by_one_ser
     late = stock - found.deviation
     assert late.min() > -1e-6
     assert late.max() < CYCLE + 1e-6
+
+
+@pytest.mark.slow
+def test_offsets_and_tool_lengths_are_in_the_touches_and_a_point_that_is_not_there_ends_the_run_with_its_alarm(
+    live: Start, surface: Callable[[str], str], machine: MillingMachine, calibration: Calibration, tmp_path: Path
+) -> None:
+    zero = {"z_reference": "tip", "work_offset": "G55", "work_offset_values": (5.0, -3.0, 40.0, 12.0, 0.5)}
+    shifted = machine.model_copy(update=zero)
+    bevel_set = load_bevel_set(bundled(SET))
+    text, targets = some_points(2, bevel_set, shifted, calibration)
+    control = set_up(tmp_path, live, surface, text, bevel_set, targets.pick(np.arange(4) < 3), shifted, calibration)
+
+    database = tmp_path / "runs.db"
+    with MeasurementStore.open(database) as store:
+        start, parts = begun("LinuxCNC", control.folder / "POINTS.ngc", SET, "vertical_5axis.toml", "probe.toml")
+        run = store.begin_run(start)
+        with pytest.raises(ComputationError, match=r"before point 4 \(alarm 1: point 4: touched nothing\); 3 of 4"):
+            asyncio.run(measured(control, run, parts, database))
+        control.wait("ended", 30)
+        control.leave()
+        assert [alarm.text for alarm in run.alarms()] == ["point 4: touched nothing"]
+        touches = np.array([touch[1:6] for touch in run.touches().values()])
+
+    touches[:, 3:] = np.radians(touches[:, 3:])
+    offset, height = calibration.tip_offset, probe_height(shifted, calibration)
+    tip, _ = kernel("probe_tip")(touches, height, offset, shifted.pivot)
+    member = bevel_set.member(MEMBER)
+    for k, (flank, tooth) in enumerate(zip(targets.flank[:3], targets.tooth[:3], strict=True)):
+        points = solve_flank(member, MEMBER, flank, blank_grid(member))
+        at = len(points.point) // 2  # the reference point
+        angle = 2 * np.pi * tooth / member.teeth
+        away = (tip[k] - turned(points.point[at], angle)) @ turned(points.normal[at], angle)
+        late = STOCK[flank] - (away - calibration.tip_radius)
+        assert -1e-6 < late < CYCLE + 1e-6
