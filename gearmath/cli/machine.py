@@ -117,7 +117,7 @@ def cut(
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
     with bar(pass_count(spec, member, job), "pass") as progress:
         plan = cutting_plan(bevel_set, member, milling_machine, job, progress)
-        text = program_of(plan, target.stem)
+        text = (linuxcnc.program_of if dialect == LINUXCNC else program_of)(plan, target.stem)
     path = execute(text, str(target), Setup.of(milling_machine))
     space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
     runs = _right_runs(path, spec, member, milling_machine, space)
@@ -132,10 +132,7 @@ def cut(
         from gearmath.setup_sheet import setup_sheet
 
         page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
-    blocks = block_count(text)
-    if dialect == LINUXCNC:  # judged as the other dialect, it is the same plan
-        text = linuxcnc.program_of(plan, target.stem)
-        blocks = linuxcnc_blocks(text)
+    blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(text)
     write_text(target, text)
     click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {blocks} blocks")
     if configuration:
