@@ -128,7 +128,9 @@ def run_program(
     ``step_limit`` steps.
     """
     if is_for_linuxcnc(text):
-        return _on_linuxcnc(LinuxCncRunner(name, setup, probe, parameters or {}, step_limit, moved), text, files or {})
+        return _on_linuxcnc(
+            LinuxCncRunner(name, setup, probe, parameters or {}, step_limit, deflected, moved), text, files or {}
+        )
     program = parsed(text, name)
     runner = StatementRunner(
         ControlState(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved, watch

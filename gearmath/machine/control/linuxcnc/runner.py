@@ -18,7 +18,7 @@ from gearmath.machine.control.expression import AXES, CUTTER_AXIS, refuse
 from gearmath.machine.control.linuxcnc.expression import Cursor
 from gearmath.machine.control.linuxcnc.lines import Line, lines_of, partners
 from gearmath.machine.control.runner import Halt
-from gearmath.machine.control.state import PROBE_TOOL, Blind, Follower, Probe, Setup
+from gearmath.machine.control.state import PROBE_TOOL, Blind, Deflected, Follower, Probe, Setup
 
 #: The alarm that stands for ABORT, which has no number.
 ABORTED = 1
@@ -88,9 +88,11 @@ class LinuxCncRunner:
         probe: Probe | None,
         parameters: Mapping[int, float],
         step_limit: int,
+        deflected: Deflected,
         moved: Follower,
     ) -> None:
-        self.name, self.probe, self.steps_left, self.moved = name, probe, step_limit, moved
+        self.name, self.probe, self.steps_left = name, probe, step_limit
+        self.deflected, self.moved = deflected, moved
         self.control = LinuxCncState(setup)
         self.parameters = dict(parameters)
         self.named: dict[str, float] = {}
@@ -105,7 +107,7 @@ class LinuxCncRunner:
         self.unset: dict[int, int] = {}
         self.alarm: tuple[int, int] | None = None
         self._log: str | None = None
-        self._steps = step_limit
+        self._steps, self._latched = step_limit, -1
 
     def run(self, text: str) -> None:
         """The whole program, from its first line to M2."""
@@ -168,6 +170,8 @@ class LinuxCncRunner:
             if first <= number < first + 20 and (setup.work_offset in (None, code)):
                 at = number - first
                 return setup.offset[at] if at < 5 else setup.turned[2] if at == 9 else 0.0
+        if 5061 <= number < 5061 + len(AXES) and self._latched >= 0:
+            self.taken.add(self._latched)
         if number == 5400:
             return float(state.fetched)
         if number == 5403:
@@ -388,13 +392,17 @@ class LinuxCncRunner:
         if any(axis not in before for axis in AXES):
             refuse(self.name, line.number, 1, "probing from an unknown position")
         start, end = (np.array([place[axis] for axis in AXES]) for place in (before, state.position))
+        if towards and self.deflected(_internal(start)):
+            self.messages.append("the probe is deflected before it is moved")
+            self.alarm, state.ended = (ABORTED, line.number), True
+            state.position = dict(before)
+            return
         met = self.probe(_internal(start), _internal(end)) if self.probe is not None and towards else None
         if met is not None:
             state.position |= dict(zip(AXES, _external(met).tolist(), strict=True))
         self.parameters[5070] = float(met is not None)
         self.parameters |= {5061 + k: self._shown(axis) for k, axis in enumerate(AXES)}
-        if towards:
-            self.taken.add(len(self.rows))
+        self._latched = len(self.rows) if towards else -1
 
 
 def _internal(position: np.ndarray | tuple[float, ...]) -> np.ndarray:
