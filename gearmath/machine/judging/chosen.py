@@ -29,10 +29,8 @@ def reads_choice(text: str) -> bool:
 def chosen_faults(text: str, name: str, path: MachinePath, setup: Setup) -> Iterator[Fault]:
     """What is wrong with the parts of a cutting program that are run alone; ``path`` is that of the whole run."""
 
-    numbers = (3090, 3091) if is_for_linuxcnc(text) else (90, 91)
-
     def run(first: int, last: int) -> ProgramRun:
-        return run_program(text, name, parameters={numbers[0]: float(first), numbers[1]: float(last)}, setup=setup)
+        return run_program(text, name, parameters={90: float(first), 91: float(last)}, setup=setup)
 
     whole, done = cut_rows(path), 0
     for number in range(1, _MOST):

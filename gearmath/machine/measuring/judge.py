@@ -97,7 +97,7 @@ def _judged(
     found = [] if linuxcnc else [*outside_faults(parsed(text, name))]
     found += guard_faults(seen, machine, clear, free)
     found += [*record_faults(text, seen, place), *start_faults(text, machine, calibration.length, size)]
-    if found or linuxcnc:  # what follows counts on a program that is right where nothing goes wrong
+    if found:  # what follows counts on a program that is right where nothing goes wrong
         return first_of_each(found)
     parts = parts_of(text, name, probe, seen, setup)
     if isinstance(parts, Fault):
@@ -105,7 +105,8 @@ def _judged(
     done = set[int]()
     for part in parts:
         found += reaction_faults(text, name, part.seen, setup, part.parameters, done, progress)
-    found += [*host_faults(text, name, seen, setup), *part_faults(text, name, probe, seen, parts, setup)]
+    found += [] if linuxcnc else [*host_faults(text, name, seen, setup)]
+    found += [*part_faults(text, name, probe, seen, parts, setup)]
     return first_of_each(found)
 
 

@@ -23,6 +23,8 @@ from gearmath.machine.control.state import PROBE_TOOL, Blind, Deflected, Followe
 #: The alarm that stands for ABORT, which has no number.
 ABORTED = 1
 _UP_AND_AWAY = 1e9
+#: R parameters that are handed in, and what they are here: the first and the last part that is run.
+_SAME = {90: 3090, 91: 3091}
 #: Number of a tool that no program means.
 _ANOTHER = 99_998
 _WORD = re.compile(r"[A-Z]")
@@ -94,7 +96,7 @@ class LinuxCncRunner:
         self.name, self.probe, self.steps_left = name, probe, step_limit
         self.deflected, self.moved = deflected, moved
         self.control = LinuxCncState(setup)
-        self.parameters = dict(parameters)
+        self.parameters = {_SAME.get(number, number): value for number, value in parameters.items()}
         self.named: dict[str, float] = {}
         self.local: list[dict[int, float]] = [{}]
         self.tools: dict[int, str] = {}
