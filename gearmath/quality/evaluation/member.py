@@ -199,7 +199,10 @@ def evaluate_member(
     seat, remarks = None, (*closing.said, *left_out, *outliers.kept, *_silent(as_measured))
     if registered:
         try:
-            seat = register(measured, member, name, untold_drift(whole, member.teeth, closing.course))
+            untold = [untold_drift(whole, member.teeth, closing.course)]
+            if closing.doubt is not None:
+                untold.append(closing.doubt[whole.tooth < member.teeth])
+            seat = register(measured, member, name, np.hstack(untold))
             remarks += (*seat.remarks, *([seat.remark] if seat.remark else []))
         except InputError as error:
             remarks += (f"not registered: {error}",)
