@@ -18,7 +18,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.quality.evaluation.courses import LEAST_TEETH, Told, by_flank, references, tell_course
+from gearmath.quality.evaluation.courses import LEAST_TEETH, Told, by_flank, references, slip_patterns, tell_course
 from gearmath.quality.evaluation.drift import evenly, measured_twice, moved_by
 from gearmath.quality.evaluation.pitch import reference_point
 from gearmath.quality.evaluation.registration import stated_noise
@@ -168,8 +168,7 @@ def close_run(file: FlankFile, teeth: int) -> Closing:
     if slip is not None:
         course = (np.arange(len(file)) >= slip.row).astype(float)
         taken = moved_by(file, *measured_twice(file, teeth), course) if closing.arcs else np.zeros(len(file))
-        (_, lever) = kernel("flank_turning")(1.0, file.point, file.normal)
-        doubt = course[:, None] * np.stack([np.ones(len(file)), 1 / lever], axis=1)
+        doubt = slip_patterns(file, course)
         return replace(closing, kind="step", course=course, taken=taken, teeth=None, slip=slip, doubt=doubt)
     full = {tooth for flank in FLANKS for tooth in teeth_in_full(file, flank)}
     before, after = closing.teeth or (-1, -1)
@@ -235,10 +234,10 @@ def _closed(file: FlankFile, teeth: int) -> Closing:
     even = Closing("still", course, moved_by(file, first, again, course), arcs, u)
     if not _has_moved(arcs, points, u) or not len(first):
         return even
-    kind, course, doubt = tell_course(file, teeth, first, again, even.taken, noise)
-    if course is None:
+    kind, told, doubt = tell_course(file, teeth, first, again, even.taken, noise)
+    if told is None:
         return replace(even, kind=kind, doubt=doubt)
-    return replace(even, kind=kind, course=course.part, taken=course.taken, teeth=course.teeth, doubt=doubt)
+    return replace(even, kind=kind, course=told.part, taken=told.taken, teeth=told.teeth, doubt=doubt)
 
 
 def _together(change: np.ndarray, flank: np.ndarray, arcs: dict[str, float]) -> np.ndarray:

@@ -1,8 +1,8 @@
 """How work or machine moved while teeth were measured, told by the teeth: a steady drift, an uneven one, or a slip.
 
-Tooth 0 measured again tells by how much, the reference points of the teeth when. Each course is taken off them, and what
-remains of every flank beyond its mean and first harmonic is compared. An uneven drift begins late, ends early, or both:
-a machine that warms up, a clamping that gives way at last.
+Tooth 0 measured again tells by how much, the reference points of the teeth when. Each course is taken off them, and
+what is left of every flank beyond its mean and first harmonic is compared. An uneven drift begins late, ends early, or
+both: a machine that warms up, a clamping that gives way at last.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from gearmath.kernels import kernel
-from gearmath.quality.evaluation.drift import moved_by
+from gearmath.quality.evaluation.drift import in_space, moved_by
 from gearmath.quality.evaluation.pitch import reference_point
 from gearmath.quality.evaluation.robust import limit_of, off_the_fit
 from gearmath.quality.evaluation.tooth_shifts import LEAST_BETWEEN_TEETH
@@ -60,7 +60,8 @@ def tell_course(
     """What kind of course the reference points tell, the course where it is not the even one, and the doubt in it.
 
     ``even`` (n,) [mm] is what an even drift takes off. The doubt (n,2) [mm] is how the deviations would differ by the
-    likeliest step and by the likeliest uneven drift; None where the teeth are too few to tell anything.
+    likeliest step and by the likeliest uneven drift, after a step by any motion then (n,4); None where the teeth are
+    too few to tell anything.
     """
     rows = references(file, teeth)
     series = [each for each in by_flank(file, rows) if len(each) >= LEAST_TEETH]
@@ -77,7 +78,7 @@ def tell_course(
     step = _placed(file, rows, teeth, step)
     doubt = np.stack([even - step.taken, even - ramp.taken], axis=1)
     if of_step - steady < -_TOLD and of_step < of_ramp:
-        return "step", step, doubt
+        return "step", step, slip_patterns(file, step.part)
     if of_ramp - steady < -_TOLD:
         return "uneven", ramp, doubt
     likely = [even]
@@ -86,6 +87,12 @@ def tell_course(
     if _depend(file, series, likely):
         return "not told", None, doubt
     return ("steady" if of_step - steady > _TOLD else "small"), None, doubt
+
+
+def slip_patterns(file: FlankFile, part: np.ndarray) -> np.ndarray:
+    """What a slip in an unknown direction makes of the deviations (n,4) after it: a shift, or a turn of the work."""
+    turn = np.cross(file.point, file.normal)[:, 2:] / np.hypot(*file.point[:, :2].T).mean()
+    return part[:, None] * np.hstack([in_space(file), turn])
 
 
 def _likeliest(
