@@ -77,7 +77,7 @@ def tell_course(
     ramp, of_ramp = _likeliest(file, series, list(_ramps(file, rows, first, again)), teeth, noise)
     step = _placed(file, rows, teeth, step)
     doubt = np.stack([even - step.taken, even - ramp.taken], axis=1)
-    if of_step - steady < -_TOLD and of_step < of_ramp:
+    if of_step - steady < -_TOLD and of_step - of_ramp <= _TOLD:
         return "step", step, slip_patterns(file, step.part)
     if of_ramp - steady < -_TOLD:
         return "uneven", ramp, doubt
@@ -183,11 +183,9 @@ def _placed(file: FlankFile, rows: np.ndarray, teeth: int, step: Course) -> Cour
     # the points from the start on have moved, those before it have not
     cost = [float(np.sum(off[:k] ** 2) + np.sum((off[k:] - size) ** 2)) for k in range(len(between) + 1)]
     begin = int([*between, start][int(np.argmin(cost))])
-    if begin == start:
-        return step
     part = (np.arange(len(file)) >= begin).astype(float)
     taken = np.where((part > 0) & (step.part == 0), size / lever, step.taken)
-    return Course(part, taken, (int(file.tooth[begin - 1]), int(file.tooth[begin])))
+    return Course(part, taken, (int(file.tooth[begin - 1]), int(file.tooth[begin]) % teeth))
 
 
 def _off_its_tooth(file: FlankFile, arc: np.ndarray, at: int, rows: np.ndarray) -> float:
