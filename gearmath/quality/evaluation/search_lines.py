@@ -61,9 +61,8 @@ def check_search_lines(
     alike = len(touches) >= _LEAST_TOUCHES and explained.mean() >= _MOST
     size = np.linalg.norm(_beside(along, common), axis=1).max()
     if alike and size > BESIDE:
-        raise InputError(
-            f"{_who(explained)} lie {_words(common)} from the planned lines, the limit is {BESIDE} mm: {_causes(common)}"
-        )
+        where = f"{_who(explained)} lie {_words(common)} from the planned lines"
+        raise InputError(f"{where}, the limit is {BESIDE} mm: {_causes(common)}")
     if (distance > BESIDE).any():
         k = int(np.argmax(distance > BESIDE))
         raise InputError(
