@@ -80,9 +80,7 @@ def test_plan_tells_what_the_acceleration_allows(plewes):
     assert motion.catch_up_s == pytest.approx(2.808, abs=2e-3)
     assert motion.catch_up_turns == pytest.approx(2.808 * 800 / 60, abs=0.03)
     assert motion.engage_rpm == 800.0
-    fast = plan(
-        plewes, 6, rpm=800.0
-    ).motion  # 35.6 kHz of 40: 4.4 kHz more overtake 79 000 steps, in 290 turns of the hob
+    fast = plan(plewes, 6, rpm=800.0).motion  # 35.6 kHz of 40: 4.4 kHz more overtake 79 000 steps, in 290 hob turns
     assert (fast.catch_up_s, fast.catch_up_turns) == (None, None)
     assert 300 < fast.engage_rpm < 800
 
