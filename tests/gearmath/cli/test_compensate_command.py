@@ -85,7 +85,7 @@ def test_corrected_set_cuts_the_nominal_flank_on_the_machine_that_errs(command, 
 def test_corrected_set_says_what_it_was_corrected_from_and_when(command, measured, tmp_path):
     """And points of it are said to be nominal ones."""
     before, target = datetime.now(UTC), tmp_path / "corrected.toml"
-    file = measured(STEEP, "pinion", radial_distance=0.03)
+    file = measured(bundled(STEEP), "pinion", radial_distance=0.03)
     assert command("compensate", STEEP, "--measured", file, "-o", target)[0] == 0
     head = target.read_text("utf-8").splitlines()[0]
     found = re.match(
