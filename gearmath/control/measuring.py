@@ -85,9 +85,8 @@ class Measuring:
         self._run.finish("complete")
 
     async def _whole(self, parts: tuple[int, int]) -> None:
-        control = await self._again(self._patience.first)
+        control, ready = await self._again(self._patience.first), False
         try:
-            ready = False
             while True:
                 try:
                     if not ready:
@@ -105,6 +104,8 @@ class Measuring:
                     control = await self._again(self._patience.give_up)
                     self.reconnected += 1
         finally:
+            if ready:
+                await _release(control)
             await _leave(control)
 
     async def _again(self, seconds: float) -> Control:
@@ -243,6 +244,13 @@ class Measuring:
     def _because(self) -> str:
         """The alarms of this run, in words."""
         return "".join(f" (alarm {alarm.number}: {alarm.text})" for alarm in list(self._alarms.values())[-2:])
+
+
+async def _release(control: Control) -> None:
+    """A program that is started later does not wait for a host that has gone. One that runs goes on waiting for it."""
+    with suppress(ComputationError, InputError, OSError):
+        if (await control.status()).channel is ChannelState.RESET:
+            await control.finished()
 
 
 async def _leave(control: Control) -> None:
