@@ -95,9 +95,8 @@ class Measuring:
         self._run.finish("complete")
 
     async def _whole(self, parts: tuple[int, int]) -> None:
-        control = await self._again(self._patience.first)
+        control, ready = await self._again(self._patience.first), False
         try:
-            ready = False
             while True:
                 try:
                     if not ready:
@@ -115,6 +114,8 @@ class Measuring:
                     control = await self._again(self._patience.give_up)
                     self.reconnected += 1
         finally:
+            if ready:
+                await _release(control)
             await _leave(control)
 
     async def _again(self, seconds: float) -> Control:
@@ -278,6 +279,13 @@ async def _selected(control: Control, start: RunStart) -> Status:
 
 def _started(control: Control, status: Status) -> _Stopped:
     return _Stopped(f"{control.name}: the channel is {status.channel}: measuring begins before the program is started")
+
+
+async def _release(control: Control) -> None:
+    """A program that is started later does not wait for a host that has gone. One that runs goes on waiting for it."""
+    with suppress(ComputationError, InputError, OSError):
+        if (await control.status()).channel is ChannelState.RESET:
+            await control.finished()
 
 
 async def _leave(control: Control) -> None:
