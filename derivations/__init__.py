@@ -44,6 +44,7 @@ CHAPTERS = (
     "local_synthesis",
     "chip",
     "design",
+    "virtual_hobbing",
 )
 
 #: An expression of a chapter, as its source says it.
