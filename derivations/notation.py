@@ -562,6 +562,11 @@ left_deviation = _length("left_deviation", r"\delta_L", -1.0, 1.0, "deviation of
 circle_angle = _angle("circle_angle", r"\alpha_{yt}", 0.1, 1.2, "transverse pressure angle where it is measured")
 right_position = Quantity("right_position", "where the right flank stands along the circle", "mm", "s_R", scale=1.0)
 left_position = Quantity("left_position", "where the left flank stands along the circle", "mm", "s_L", scale=1.0)
+harmonic_turn = _angle("harmonic_turn", "u", -1e3, 1e3, "how far a part has turned")
+harmonic_amplitude = Quantity("harmonic_amplitude", "amplitude of a sine, in its unit", "1", "A", (0.0, 100.0))
+harmonic_order = _count("harmonic_order", "n", 1, 1000, "how many periods it has in a turn")
+harmonic_phase = _angle("harmonic_phase", r"\chi_0", -7.0, 7.0, "its phase at the start")
+harmonic_value = Quantity("harmonic_value", "value of the sine", "1", r"A_n", scale=1e6)
 ball_height = Quantity("ball_height", "how far a ball in a space stands out", "mm", r"\Delta r", scale=1.0)
 
 # --- bevel blank ------------------------------------------------------------------------------------------------

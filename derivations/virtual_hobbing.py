@@ -60,6 +60,10 @@ Measured along a circle of transverse pressure angle α_yt, positive towards gro
 
     s_R = -δ_R/(cos β_b cos α_yt),  s_L = δ_L/(cos β_b cos α_yt)                               (30.15)
     Δr = (δ_R + δ_L)/(2 cos β_b sin α_yt)                                                      (30.16)
+
+What a part does wrong in every turn, worm, wheel, encoder, hob or screw, is a sum of sines of its turn u, each
+
+    A sin(n u + χ)                                                                             (30.17)
 """
 
 from __future__ import annotations
@@ -380,6 +384,19 @@ def ball_radial() -> Expression:
     )
 
 
+@cache
+def harmonic() -> Expression:
+    """(30.17) as an Expression."""
+    angle = q.harmonic_order.symbol * q.harmonic_turn.symbol + q.harmonic_phase.symbol
+    return Expression(
+        "harmonic",
+        "One sine of what a turning part does wrong (30.17).",
+        (q.harmonic_turn, q.harmonic_amplitude, q.harmonic_order, q.harmonic_phase),
+        ((q.harmonic_value, q.harmonic_amplitude.symbol * sp.sin(angle)),),
+        source="Fourier series of a part that turns",
+    )
+
+
 #: Gears and hobs of proofs by numbers: s_h, s_β, k, d_0, z, m_n, α_n, β, x.
 _CASES = (
     (1, 1, 1, 50, 24, 1, "0.349", 0, 0),
@@ -518,3 +535,13 @@ def prove_ball_and_circle_see_a_shifted_gear_as_it_is() -> None:
     turned = {q.right_deviation.symbol: -turn * r * sp.cos(angle), q.left_deviation.symbol: turn * r * sp.cos(angle)}
     for name in ("right_position", "left_position"):
         assert sp.simplify(circle_positions()[name].subs(turned).subs(spur) - r * turn) == 0
+
+
+def prove_harmonic_repeats_as_often_as_its_order_says_with_its_amplitude() -> None:
+    """(30.17) One period is 2π/n; the mean square over a turn is A²/2, for the first orders."""
+    value, turn, order = harmonic()["harmonic_value"], q.harmonic_turn.symbol, q.harmonic_order.symbol
+    amplitude = q.harmonic_amplitude.symbol
+    for n in (1, 2, 7):
+        sine = value.subs({order: n, q.harmonic_phase.symbol: 0})
+        assert sp.simplify(sine.subs(turn, turn + 2 * sp.pi / n) - sine) == 0
+        assert sp.simplify(sp.integrate(sine**2, (turn, 0, 2 * sp.pi)) / (2 * sp.pi) - amplitude**2 / 2) == 0

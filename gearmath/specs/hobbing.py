@@ -24,6 +24,7 @@ from gearmath.specs.counters import (
     filter_setting,
     pins_in_words,
 )
+from gearmath.specs.cutting_errors import CuttingErrors
 from gearmath.specs.drive import Encoder, Feed, LeadScrew, Table
 from gearmath.specs.drivers import Driver
 from gearmath.specs.hob import Hob
@@ -82,6 +83,8 @@ class HobbingMachine(Spec):
     display: Display = Display()
     limits: Limits
     hobs: tuple[Hob, ...] = Field(default=(), strict=False)
+    errors: CuttingErrors = CuttingErrors()
+    """What is wrong with the machine: for virtual cutting only, the firmware does not know it."""
 
     @model_validator(mode="before")
     @classmethod

@@ -1,0 +1,189 @@
+"""The flank that is left: at each of its points the least of what single gashes leave, (30.5).
+
+Which gash, which turn of the table: the line of action says when an ideal hob touches there; the gashes and turns next
+to that are tried, so many that a further one could only cut if the errors were larger than they are. Where the edge of
+such a pass crosses the foot of the point is a root of (30.6) in h and τ, found by Newton's method for all points and
+passes in one call.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Protocol
+
+import casadi as ca
+import numpy as np
+
+from gearmath.engine.points import Points
+from gearmath.gearbox.hobbed.job import TURN, HobbingJob
+from gearmath.gearbox.kernels import evaluate, kernel
+
+#: Newton steps, and the distance [mm] from the foot at which a root counts as found.
+STEPS, FOUND = 7, 1e-9
+#: Steps after which the errors of the machine are not asked for again.
+SETTLED = 3
+#: Passes of one block.
+BLOCK = 200_000
+#: Most passes to either side that are tried.
+MOST = 60
+
+
+class CuttingErrorModel(Protocol):
+    """What the machine does other than ideally, at hob turns ψ."""
+
+    @property
+    def spread(self) -> float:
+        """Bound of what two passes at one point may differ by, along the normal [mm]."""
+        ...
+
+    def table(self, psi: np.ndarray, side: int) -> np.ndarray:
+        """Δφ (n,) [rad] while the flank ``side`` is cut."""
+        ...
+
+    def displacement(self, psi: np.ndarray, thread: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """D (n, 3) [mm] at thread angles (n,) and places of the cut (n, 3)."""
+        ...
+
+
+@dataclass(frozen=True)
+class NoErrors:
+    """An ideal machine."""
+
+    spread: float = 0.0
+
+    def table(self, psi: np.ndarray, side: int) -> np.ndarray:
+        """Nothing."""
+        return np.zeros(len(psi))
+
+    def displacement(self, psi: np.ndarray, thread: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """Nothing."""
+        return np.zeros((len(psi), 3))
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A gear as a job with these errors leaves it."""
+
+    job: HobbingJob
+    errors: CuttingErrorModel = NoErrors()
+
+    def deviation(
+        self,
+        side: int,
+        space: np.ndarray,
+        length: np.ndarray,
+        height: np.ndarray,
+        progress: Callable[[int], object] = lambda done: None,
+    ) -> np.ndarray:
+        """δ (n,) [mm] of the flank ``side`` of ``space`` (n,), at lengths of roll and heights (n,) on the gear.
+
+        nan where no straight edge cuts: below the form circle. ``progress`` is told how many points are done.
+        """
+        spaces, lengths, heights = np.broadcast_arrays(space, np.asarray(length, float), np.asarray(height, float))
+        gashes, turns = self._window(float(lengths.max(initial=0.0)))
+        size = max(1, BLOCK // ((2 * gashes + 1) * (2 * turns + 1)))
+        parts = []
+        for start in range(0, len(spaces), size):
+            part = slice(start, start + size)
+            parts.append(self._least(side, spaces[part], lengths[part], heights[part], gashes, turns))
+            progress(len(parts[-1]))
+        return np.concatenate(parts) if parts else np.empty(0)
+
+    def _window(self, longest: float) -> tuple[int, int]:
+        """How many gashes and turns of the table to either side can leave less than their neighbors."""
+        job, spread = self.job, self.errors.spread
+        (flat,) = evaluate("generating_flat", longest, job.hob.starts, job.gear.teeth, job.hob.gashes)
+        shape = (0.0, job.hob.diameter, job.gear.alpha, job.gear.beta)
+        (mark,) = evaluate("feed_mark", job.feed, *shape)
+        return tuple(min(MOST, 1 + math.ceil(0.5 * math.sqrt(spread / ridge))) for ridge in (flat, mark))  # type: ignore[return-value]
+
+    def _least(
+        self, side: int, space: np.ndarray, length: np.ndarray, height: np.ndarray, gashes: int, turns: int
+    ) -> np.ndarray:
+        job = self.job
+        on_gear, edge, tau, thread = job.contact(side, length)
+        hob, teeth = job.hob, job.gear.teeth
+        # the turn of the hob, and of the table, at which an ideal hob touches there
+        psi = (height - on_gear - job.start_height) / job.travel_per_rad
+        first = hob.sign * space
+        turned = np.rint(((psi - tau + thread) / TURN * hob.starts - first) / teeth)
+        nearby = turned[:, None] + np.arange(-turns, turns + 1)
+        ridge = (first[:, None] + teeth * nearby).astype(np.int64)  # R of (30.2)
+        gash = np.rint(hob.gashes * (ridge / hob.starts - (thread / TURN)[:, None]))
+        gash = (gash[:, :, None] + np.arange(-gashes, gashes + 1)).astype(np.int64)
+        at = (ridge[:, :, None] * hob.gashes - gash * hob.starts) * (TURN / (hob.gashes * hob.starts))
+        shape = at.shape
+        passes = _Passes(
+            side,
+            (gash * (TURN / hob.gashes)).ravel(),
+            at.ravel(),
+            *(np.broadcast_to(value[:, None, None], shape).ravel() for value in (length, height, edge, tau)),
+        )
+        return passes.solve(job, self.errors).reshape(len(space), -1).min(axis=1)
+
+
+@dataclass(frozen=True)
+class _Passes:
+    """Gashes that may cut points of flanks: hob turn ψ_c and thread of each, foot of its point, start of the search."""
+
+    side: int
+    psi: np.ndarray
+    thread: np.ndarray
+    length: np.ndarray
+    height: np.ndarray
+    edge: np.ndarray
+    tau: np.ndarray
+
+    def solve(self, job: HobbingJob, errors: CuttingErrorModel) -> np.ndarray:
+        """δ (n,) [mm], infinite for passes that do not reach the foot with their straight edge."""
+        pair = np.array(job.pair(self.side))
+        hob_height = job.hob_height(self.psi)
+        target = np.column_stack([self.length, self.height - hob_height])
+        shared = np.array([job.travel_per_rad])
+        unknown = np.column_stack([self.edge, self.tau])
+        limits = 0.9 * np.array([job.hob.diameter / 2, math.pi])
+        for k in range(STEPS):
+            if k < SETTLED:
+                psi = self.psi + unknown[:, 1]
+                place = self._place(job, psi)
+                given = np.column_stack(
+                    [
+                        self.thread,
+                        errors.table(psi, self.side),
+                        errors.displacement(psi, self.thread, place),
+                    ]
+                )
+            step, delta, miss = newton_step()(unknown, target, given, shared, pair)
+            off, left = np.abs(miss[:, :, 0]).max(axis=1), delta[:, 0, 0]
+            if k > SETTLED and not (off > FOUND).any():
+                break
+            unknown = np.clip(unknown + step[:, :, 0], -limits, limits)
+        reached = (off < FOUND) & (unknown[:, 0] <= job.form_height + FOUND)
+        return np.where(reached, left, np.inf)
+
+    def _place(self, job: HobbingJob, psi: np.ndarray) -> np.ndarray:
+        """About where the flank is cut, in space from the middle of the gear's lower face."""
+        radius = np.hypot(job.base_radius, self.length)
+        return np.column_stack([radius, np.zeros_like(radius), self.height])
+
+
+@cache
+def newton_step() -> Points:
+    """One step of Newton's method for h and τ of a pass: arguments unknown, foot wanted, thread with Δφ and D, v, PAIR.
+
+    Results: the step, δ, and how far the foot is off.
+    """
+    rule = kernel("hobbed_deviation")
+    unknown, target, given = ca.SX.sym("unknown", 2), ca.SX.sym("target", 2), ca.SX.sym("given", 5)
+    travel, pair = ca.SX.sym("travel"), ca.SX.sym("pair", 10)
+    place = (unknown[0], 0, unknown[1], given[0], travel, given[1], given[2:])
+    foot, height, delta = rule.function(*place, *ca.vertsplit(pair))
+    miss = ca.vertcat(foot, height) - target
+    slope = ca.jacobian(miss, unknown)
+    step = -ca.solve(slope, miss)
+    return Points(
+        ca.Function("hobbing_newton", [unknown, target, given, travel, pair], [step, delta, miss]), shared=(3, 4)
+    )
