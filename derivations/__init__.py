@@ -45,6 +45,7 @@ CHAPTERS = (
     "chip",
     "design",
     "virtual_hobbing",
+    "cylindrical_tolerance",
 )
 
 #: An expression of a chapter, as its source says it.

@@ -111,10 +111,6 @@ def worst_error(edges: np.ndarray, steps: np.ndarray, numerator: int, denominato
     return Fraction(int(np.abs(values).max(initial=0)), denominator)
 
 
-#: Edges after which a jump of the product is made up for, one step an edge.
-_LOOK_BACK = 64
-
-
 class FloatRule:
     """The floating rule of the public firmware, in float32, vectorised.
 
@@ -143,7 +139,8 @@ class FloatRule:
     def positions(self, counts: np.ndarray) -> np.ndarray:
         """Steps delivered (n,) after so many edges forward, (n,): as if it had run through all of them."""
         delivered = _first_not_below(self._product(counts))
-        for before in range(1, _LOOK_BACK):
+        coarse = int(np.spacing(np.float32(counts.max(initial=1))))  # whole counts that float32 cannot tell apart
+        for before in range(1, 2 * coarse + 2):
             earlier = np.maximum(counts - before, 0)
             delivered = np.minimum(delivered, _first_not_below(self._product(earlier)) + (counts - earlier))
         return self.sign * delivered

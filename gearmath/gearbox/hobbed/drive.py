@@ -57,6 +57,13 @@ class DriveTrain:
         """Turn of the table by a motor step [rad]."""
         return TURN / float(self.machine.motor_steps)
 
+    @property
+    def jump(self) -> float:
+        """What a motor step, or those of one edge, change at once along the normal [mm]."""
+        if self.rule == "ideal":
+            return 0.0
+        return self.step * self.ratio.steps_per_edge * self.job.base_radius * math.cos(self.job.base_helix)
+
     # --- the table ------------------------------------------------------------------------------------------------
     def table(self, psi: np.ndarray, side: int) -> np.ndarray:
         """Δφ (n,) [rad] at hob turns (n,)."""

@@ -23,8 +23,12 @@ from gearmath.gearbox.kernels import evaluate, kernel
 
 #: Newton steps, and the distance [mm] from the foot at which a root counts as found.
 STEPS, FOUND = 7, 1e-9
-#: Steps after which the errors of the machine are not asked for again.
-SETTLED = 3
+#: Steps at which the errors of the machine are asked for: where a pass is, is known well enough by then.
+ASKED = (1, 3)
+#: How much of the distance from the foot can be missing from δ at most, and a distance that counts as none [mm].
+STEEPEST, CERTAIN = 0.5, 1e-6
+#: Distance from the foot [mm] from which that bound is trusted.
+NEAR = 0.1
 #: Passes of one block.
 BLOCK = 200_000
 #: Most passes to either side that are tried.
@@ -37,6 +41,11 @@ class CuttingErrorModel(Protocol):
     @property
     def spread(self) -> float:
         """Bound of what two passes at one point may differ by, along the normal [mm]."""
+        ...
+
+    @property
+    def jump(self) -> float:
+        """How much that changes at once, along the normal [mm]: a motor step."""
         ...
 
     def table(self, psi: np.ndarray, side: int) -> np.ndarray:
@@ -53,6 +62,7 @@ class NoErrors:
     """An ideal machine."""
 
     spread: float = 0.0
+    jump: float = 0.0
 
     def table(self, psi: np.ndarray, side: int) -> np.ndarray:
         """Nothing."""
@@ -122,7 +132,7 @@ class Cut:
             at.ravel(),
             *(np.broadcast_to(value[:, None, None], shape).ravel() for value in (length, height, edge, tau)),
         )
-        return passes.solve(job, self.errors).reshape(len(space), -1).min(axis=1)
+        return passes.solve(job, self.errors, shape[1] * shape[2]).reshape(len(space), -1).min(axis=1)
 
 
 @dataclass(frozen=True)
@@ -137,37 +147,54 @@ class _Passes:
     edge: np.ndarray
     tau: np.ndarray
 
-    def solve(self, job: HobbingJob, errors: CuttingErrorModel) -> np.ndarray:
-        """δ (n,) [mm], infinite for passes that do not reach the foot with their straight edge."""
-        pair = np.array(job.pair(self.side))
-        hob_height = job.hob_height(self.psi)
-        target = np.column_stack([self.length, self.height - hob_height])
-        shared = np.array([job.travel_per_rad])
-        unknown = np.column_stack([self.edge, self.tau])
+    def solve(self, job: HobbingJob, errors: CuttingErrorModel, together: int) -> np.ndarray:
+        """δ (n,) [mm], infinite for passes that do not reach the foot with their straight edge.
+
+        ``together`` passes in a row belong to one point: those that cannot be its least are left where they are seen to
+        be too high, with a bound of what a root not found yet may still change.
+        """
+        pair, shared = np.array(job.pair(self.side)), np.array([job.travel_per_rad])
+        target = np.column_stack([self.length, self.height - job.hob_height(self.psi)])
+        given = np.column_stack([self.thread, np.zeros((len(self.psi), 4))])
         limits = 0.9 * np.array([job.hob.diameter / 2, math.pi])
+        unknown = np.column_stack([self.edge, self.tau])
+        left, off = (np.full(len(self.psi), np.inf) for _ in range(2))
+        open_ = np.arange(len(self.psi))
         for k in range(STEPS):
-            if k < SETTLED:
-                psi = self.psi + unknown[:, 1]
-                place = self._place(job, psi)
-                given = np.column_stack(
-                    [
-                        self.thread,
-                        errors.table(psi, self.side),
-                        errors.displacement(psi, self.thread, place),
-                    ]
-                )
-            step, delta, miss = newton_step()(unknown, target, given, shared, pair)
-            off, left = np.abs(miss[:, :, 0]).max(axis=1), delta[:, 0, 0]
-            if k > SETTLED and not (off > FOUND).any():
+            if k in ASKED:
+                given[open_, 1:] = self._errors(job, errors, open_, self.psi[open_] + unknown[open_, 1])
+            step, delta, miss = newton_step()(unknown[open_], target[open_], given[open_], shared, pair)
+            left[open_], off[open_] = delta[:, 0, 0], np.abs(miss[:, :, 0]).max(axis=1)
+            if k > max(ASKED) and not (off[open_] > FOUND).any():
                 break
-            unknown = np.clip(unknown + step[:, :, 0], -limits, limits)
+            # nan where an edge does not come to the involute at all: it stays where it is, and is not counted
+            unknown[open_] = np.clip(unknown[open_] + np.nan_to_num(step[:, :, 0]), -limits, limits)
+            if k in ASKED:
+                jump = errors.jump if k < max(ASKED) else 0.0
+                straight = unknown[:, 0] <= job.form_height
+                open_ = self._in_question(left, off, straight, together, jump)
+        off[np.isnan(left)] = np.inf
         reached = (off < FOUND) & (unknown[:, 0] <= job.form_height + FOUND)
         return np.where(reached, left, np.inf)
 
-    def _place(self, job: HobbingJob, psi: np.ndarray) -> np.ndarray:
+    @staticmethod
+    def _in_question(left: np.ndarray, off: np.ndarray, straight: np.ndarray, together: int, jump: float) -> np.ndarray:
+        """Which passes may still be the least of their point; those that are not ``straight`` there decide nothing."""
+        doubt = STEEPEST * np.nan_to_num(off, nan=0.0) + jump + CERTAIN
+        low = np.nan_to_num(left, nan=np.inf) - doubt
+        highest = np.where(straight & (off < NEAR), low + 2 * doubt, np.inf)
+        sure = highest.reshape(-1, together).min(axis=1)
+        return np.flatnonzero(low <= np.repeat(sure, together))
+
+    def _errors(self, job: HobbingJob, errors: CuttingErrorModel, which: np.ndarray, psi: np.ndarray) -> np.ndarray:
+        """Δφ and D (n, 4) of some passes."""
+        moved = errors.displacement(psi, self.thread[which], self._place(job, which))
+        return np.column_stack([errors.table(psi, self.side), moved])
+
+    def _place(self, job: HobbingJob, which: np.ndarray) -> np.ndarray:
         """About where the flank is cut, in space from the middle of the gear's lower face."""
-        radius = np.hypot(job.base_radius, self.length)
-        return np.column_stack([radius, np.zeros_like(radius), self.height])
+        radius = np.hypot(job.base_radius, self.length[which])
+        return np.column_stack([radius, np.zeros_like(radius), self.height[which]])
 
 
 @cache
