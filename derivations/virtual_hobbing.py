@@ -61,6 +61,10 @@ Measured along a circle of transverse pressure angle α_yt, positive towards gro
     s_R = -δ_R/(cos β_b cos α_yt),  s_L = δ_L/(cos β_b cos α_yt)                               (30.15)
     Δr = (δ_R + δ_L)/(2 cos β_b sin α_yt)                                                      (30.16)
 
+The point of the flank σ of space i at L and z, ξ = σ (π/(2z) - 2x tan α_n/z - inv α_t + L/r_b) + s_β 2π z/L + 2π i/z,
+
+    p = r_b (cos ξ, sin ξ) + σ L (sin ξ, -cos ξ),   n = (cos β_b sin ξ, -cos β_b cos ξ, ...) for σ = 1 (30.18)
+
 What a part does wrong in every turn, worm, wheel, encoder, hob or screw, is a sum of sines of its turn u, each
 
     A sin(n u + χ)                                                                             (30.17)
@@ -397,6 +401,39 @@ def harmonic() -> Expression:
     )
 
 
+@cache
+def involute_flank() -> Expression:
+    """(30.18) as an Expression."""
+    base, beta_b, side = _base_radius(), gear.base_helix(), q.flank_side.symbol
+    z, length, height = q.teeth.symbol, q.roll_length.symbol, q.flank_height.symbol
+    half_space = sp.pi / (2 * z) - 2 * q.profile_shift.symbol * sp.tan(q.pressure_angle.symbol) / z
+    screwed = q.helix_sign.symbol * 2 * sp.pi * hobbing.turns_per_travel() * height
+    xi = side * (half_space - gear.involute(gear.transverse_angle()) + length / base)
+    xi += screwed + 2 * sp.pi * q.space_index.symbol / z
+    outward = sp.Matrix([side * sp.sin(xi), -side * sp.cos(xi)])
+    point = sp.Matrix([base * sp.cos(xi) + length * outward[0], base * sp.sin(xi) + length * outward[1], height])
+    tilt = side * q.helix_sign.symbol * sp.sin(beta_b)
+    normal = sp.Matrix([sp.cos(beta_b) * outward[0], sp.cos(beta_b) * outward[1], tilt])
+    return Expression(
+        "involute_flank",
+        "A point of an involute helicoid, and the normal out of the metal (30.18).",
+        (
+            q.roll_length,
+            q.flank_height,
+            q.space_index,
+            q.flank_side,
+            q.helix_sign,
+            q.teeth,
+            q.module,
+            q.pressure_angle,
+            q.helix_angle,
+            q.profile_shift,
+        ),
+        ((q.gear_flank_point, point), (q.gear_flank_normal, normal)),
+        source="ISO 21771",
+    )
+
+
 #: Gears and hobs of proofs by numbers: s_h, s_β, k, d_0, z, m_n, α_n, β, x.
 _CASES = (
     (1, 1, 1, 50, 24, 1, "0.349", 0, 0),
@@ -545,3 +582,30 @@ def prove_harmonic_repeats_as_often_as_its_order_says_with_its_amplitude() -> No
         sine = value.subs({order: n, q.harmonic_phase.symbol: 0})
         assert sp.simplify(sine.subs(turn, turn + 2 * sp.pi / n) - sine) == 0
         assert sp.simplify(sp.integrate(sine**2, (turn, 0, 2 * sp.pi)) / (2 * sp.pi) - amplitude**2 / 2) == 0
+
+
+def prove_involute_has_the_thickness_of_the_standard_and_its_normal_is_across_both_directions() -> None:
+    """(30.18) n is across ∂p/∂L and ∂p/∂z; at the reference cylinder a spur space is m (π/2 - 2x tan α) wide."""
+    rule = involute_flank()
+    point, normal = (sp.Matrix(rule[name]) for name in ("gear_flank_point", "gear_flank_normal"))
+    at = {
+        q.teeth.symbol: 17,
+        q.module.symbol: 2,
+        q.pressure_angle.symbol: sp.pi / 9,
+        q.helix_angle.symbol: sp.pi / 10,
+        q.profile_shift.symbol: sp.Rational(1, 5),
+        q.space_index.symbol: 3,
+        q.helix_sign.symbol: -1,
+        q.flank_height.symbol: 7,
+        q.roll_length.symbol: 5,
+    }
+    for side in (1, -1):
+        for along in (q.roll_length.symbol, q.flank_height.symbol):
+            across = point.diff(along).dot(normal).subs(at | {q.flank_side.symbol: side})
+            assert abs(sp.N(across, 30)) < 1e-20
+        assert abs(sp.N(normal.norm().subs(at | {q.flank_side.symbol: side}), 30) - 1) < 1e-20
+    spur = at | {q.helix_angle.symbol: 0, q.space_index.symbol: 0, q.flank_height.symbol: 0, q.flank_side.symbol: 1}
+    spur[q.roll_length.symbol] = 17 * sp.sin(sp.pi / 9)
+    place = point.subs(spur)
+    width = 2 * 17 * sp.atan2(place[1], place[0])
+    assert abs(sp.N(width - 2 * (sp.pi / 2 - sp.Rational(2, 5) * sp.tan(sp.pi / 9)), 30)) < 1e-20

@@ -29,7 +29,7 @@ from gearmath.specs.drive import Encoder, Feed, LeadScrew, Table
 from gearmath.specs.drivers import Driver
 from gearmath.specs.hob import Hob
 from gearmath.specs.ratio import EXACT_INCH
-from gearmath.specs.toml import Spec, load
+from gearmath.specs.toml import Spec, find, load
 
 __all__ = ["Hob", "HobbingMachine", "load_hobbing_machine"]
 
@@ -328,3 +328,8 @@ class HobbingMachine(Spec):
 def load_hobbing_machine(path: Path) -> HobbingMachine:
     """Read a machine file. Raises InputError with file, key, value and limit in one sentence."""
     return load(path, HobbingMachine)
+
+
+def find_hobbing_machine(name: str) -> HobbingMachine:
+    """A machine file by its path, or by the name of a bundled one. Raises InputError."""
+    return load_hobbing_machine(find(name))

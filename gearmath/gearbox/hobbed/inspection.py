@@ -34,12 +34,16 @@ _FORM_STEPS = 400
 
 @dataclass(frozen=True)
 class Trace:
-    """Deviations (n,) [mm] of one flank along ``place`` (n,) [mm]: length of roll, or height on the gear."""
+    """Deviations (n,) [mm] of one flank along ``place`` (n,) [mm]: length of roll, or height on the gear.
+
+    ``across`` is the other of the two, the same for all points.
+    """
 
     side: Side
     tooth: int
     place: np.ndarray
     deviation: np.ndarray
+    across: float
 
     @cached_property
     def line(self) -> np.ndarray:
@@ -224,7 +228,8 @@ def inspect(cut: Cut, where: Layout, progress: Callable[[int], object] = lambda 
                 progress,
             ).reshape(len(spaces), size)
             rows = zip(where.teeth, found, strict=True)
-            traces.extend(Trace(name, int(tooth), place, deviation) for tooth, deviation in rows)
+            across = where.middle_height if traces is profiles else where.middle
+            traces.extend(Trace(name, int(tooth), place, deviation, across) for tooth, deviation in rows)
     return Inspection(
         tuple(profiles),
         tuple(helices),

@@ -15,6 +15,7 @@ from gearmath.gearbox.hobbed.drive import DriveTrain, Rule
 from gearmath.gearbox.hobbed.envelope import Cut
 from gearmath.gearbox.hobbed.inspection import Inspection, Layout, inspect, layout
 from gearmath.gearbox.hobbed.job import HobbingJob, HobTool
+from gearmath.gearbox.kernels import evaluate
 from gearmath.gearbox.train import plan
 from gearmath.specs.hobbing import Hob, HobbingMachine
 
@@ -110,6 +111,15 @@ def cut_and_inspect(cut: CutSetup, rule: Rule, progress: Callable[[int], object]
     train = DriveTrain(cut.train.machine, cut.job, cut.train.ratio, rule, cut.train.rpm, cut.train.seconds)
     found = inspect(Cut(cut.job, train), cut.where, progress)
     return VirtualGear(rule, found, classes(cut.job, found))
+
+
+def ridges(job: HobbingJob) -> tuple[float, float]:
+    """Height of the ridges between flats and between feed marks at the reference cylinder [mm] (30.9, 30.10)."""
+    gear, hob = job.gear, job.hob
+    length = job.reference_diameter / 2 * math.sin(job.transverse[1])
+    (flat,) = evaluate("generating_flat", length, hob.starts, gear.teeth, hob.gashes)
+    (mark,) = evaluate("feed_mark", job.feed, 0.0, hob.diameter, gear.alpha, gear.beta)
+    return flat, mark
 
 
 def blame(
