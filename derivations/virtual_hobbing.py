@@ -39,10 +39,12 @@ Between neighboring gashes stay ridges of the height δ_y, between neighboring f
 L of a spur gear, and where the hob's edge has the height h,
 
     δ_y = L (π k/(z n_i))²/2,    at the reference cylinder π² k² m_n sin α_n/(4 z n_i²)        (30.9)
-    δ_x = (f_a/cos β)² sin α_n/(8 (r_0 + h))                                                   (30.10)
+    δ_x = (f_a/cos β)² sin α_n (1/(r_0 + h) + 2 sin² β/d)/8                                    (30.10)
 
-Textbooks have the tip diameter of the hob in (30.10); where a point of the flank is cut it is 2 (r_0 + h), and the
-quotient of both is the error of theirs. Rounding the tip of the edge, centre at h_a0 - ρ_a0, normal direction γ:
+Textbooks have only the first term of (30.10), with the tip diameter of the hob. Where a point of the flank is cut it is
+2 (r_0 + h); and a helical tooth curves away from the hob along its trace, by 2 sin² β/d, which may be the larger term.
+(30.10) is exact for a spur gear; a helical one has some per cent more or less, by the hands.
+Rounding of the tip of the edge, centre at h_a0 - ρ_a0, normal direction γ:
 
     h_r = h_a0 - ρ_a0 (1 - sin γ),   w_r cos λ = ρ_a0 ((1 - sin α_n sin γ)/cos α_n - cos γ)    (30.11)
     h_F = h_a0 - ρ_a0 (1 - sin α_n),   w_a = π m_n/4 - (h_a0 - ρ_a0) tan α_n - ρ_a0/cos α_n    (30.12)
@@ -274,13 +276,22 @@ def feed_mark() -> Expression:
     """(30.10) as an Expression."""
     along = q.axial_feed.symbol / sp.cos(q.helix_angle.symbol)
     radius = q.hob_diameter.symbol / 2 + q.edge_height.symbol
+    curvature = 1 / radius + 2 * sp.sin(q.helix_angle.symbol) ** 2 / gear.diameter()
     return Expression(
         "feed_mark",
         "Height of the ridges that the feed leaves, where a flank is cut by the edge at a height (30.10).",
-        (q.axial_feed, q.edge_height, q.hob_diameter, q.pressure_angle, q.helix_angle),
-        ((q.feed_mark_height, along**2 * sp.sin(q.pressure_angle.symbol) / (8 * radius)),),
+        (
+            q.axial_feed,
+            q.edge_height,
+            q.hob_diameter,
+            q.teeth,
+            q.module,
+            q.pressure_angle,
+            q.helix_angle,
+        ),
+        ((q.feed_mark_height, along**2 * sp.sin(q.pressure_angle.symbol) * curvature / 8),),
         requires=(radius - 1,),
-        source="feed marks of hobbing, textbooks; corrected where they take the tip diameter",
+        source="feed marks of hobbing, textbooks; with the diameter that cuts, and the curvature of the tooth",
     )
 
 
@@ -514,7 +525,7 @@ def prove_ridges_between_flats_and_feed_marks_are_the_textbooks() -> None:
             half_way = mpmath.pi / 12  # of 12 gashes, in turns of the hob
             (flat,) = generating_flat().function(length, 1, 24, 12)
             assert abs(by_thread * half_way**2 / 2 / flat - 1) < mpmath.mpf("1e-3")  # a large hob is nearly a rack
-            (mark,) = feed_mark().function(1, contact[1], pair[4], pair[7], 0)
+            (mark,) = feed_mark().function(1, contact[1], pair[4], 24, 1, pair[7], 0)
             assert abs(by_height / 8 / mark - 1) < mpmath.mpf("1e-3")
 
 
@@ -609,3 +620,19 @@ def prove_involute_has_the_thickness_of_the_standard_and_its_normal_is_across_bo
     place = point.subs(spur)
     width = 2 * 17 * sp.atan2(place[1], place[0])
     assert abs(sp.N(width - 2 * (sp.pi / 2 - sp.Rational(2, 5) * sp.tan(sp.pi / 9)), 30)) < 1e-20
+
+
+def prove_helix_curves_away_from_its_tangent_by_the_second_term_of_the_feed_mark() -> None:
+    """(30.10) A helix on the reference cylinder, s along it: normal part of its second derivative is 2 sin² β sin α/d.
+
+    The normal of the flank makes the angle 90° - α_n with the radius, and the curvature of a helix points along it.
+    """
+    s, r, beta = sp.symbols("s r beta", positive=True)
+    turn = s * sp.sin(beta) / r
+    helix = sp.Matrix([r * sp.cos(turn), r * sp.sin(turn), s * sp.cos(beta)])
+    assert sp.simplify(helix.diff(s).norm() - 1) == 0
+    assert sp.simplify(helix.diff(s, 2).norm() - sp.sin(beta) ** 2 / r) == 0
+    no_hob = feed_mark()["feed_mark_height"].subs(q.edge_height.symbol, sp.oo)
+    way = q.axial_feed.symbol / sp.cos(q.helix_angle.symbol)
+    curved = (sp.sin(beta) ** 2 / r).subs({beta: q.helix_angle.symbol, r: gear.diameter() / 2})
+    assert sp.simplify(no_hob - way**2 / 8 * curved * sp.sin(q.pressure_angle.symbol)) == 0

@@ -25,6 +25,7 @@ SOURCES = {
     "hob_eccentricity_um": ("eccentricity of the hob", "the runout of the hob on its arbor"),
     "hob_axial_runout_um": ("wobble of the hob along its axis", "the faces of the hob and its spacers"),
     "hob_lead_um_per_turn": ("lead of the hob", "the hob, or its grinding"),
+    "hob_starts_um": ("spacing of the hob's starts", "the hob: a single start, or tooth numbers that hunt"),
     "feed": ("screw of the feed", "the screw of the feed, or a scale"),
     "blank_eccentricity_um": ("eccentricity of the blank", "the clamping of the blank: true it with an indicator"),
     "blank_tilt_um_per_100mm": ("tilt of the blank", "the faces of the blank and of the arbor"),

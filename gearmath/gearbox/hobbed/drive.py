@@ -156,7 +156,8 @@ class DriveTrain:
             psi, errors.hob_axial_runout_um * UM, 1, math.radians(errors.hob_axial_runout_phase)
         )[0]
         longer = job.hob.sign * errors.hob_lead_um_per_turn * UM * thread / TURN
-        hob_shift = np.column_stack([size * np.cos(phase), size * np.sin(phase), wobble + longer])
+        along = wobble + longer + self._start_error(psi, thread)
+        hob_shift = np.column_stack([size * np.cos(phase), size * np.sin(phase), along])
         table = job.table_angle(psi)
         eccentric = table + math.radians(errors.blank_eccentricity_phase)
         tilted = table + math.radians(errors.blank_tilt_phase)
@@ -176,6 +177,14 @@ class DriveTrain:
             job.hob.diameter,
         )[0]
 
+    def _start_error(self, psi: np.ndarray, thread: np.ndarray) -> np.ndarray:
+        """How far the thread that cuts stands off along the hob (n,) [mm]: thread R of chapter 30 is start R mod k."""
+        given, starts = self.errors.hob_starts_um, self.job.hob.starts
+        if not given:
+            return np.zeros_like(psi)
+        off = np.resize(np.array(given) * UM, starts)
+        return off[np.rint(starts * (thread + psi) / TURN).astype(np.int64) % starts]
+
     @cached_property
     def _is_displaced(self) -> bool:
         errors = self.errors
@@ -184,6 +193,7 @@ class DriveTrain:
             or errors.hob_eccentricity_um
             or errors.hob_axial_runout_um
             or errors.hob_lead_um_per_turn
+            or errors.hob_starts_um
             or errors.blank_eccentricity_um
             or errors.blank_tilt_um_per_100mm
         )
@@ -207,6 +217,7 @@ class DriveTrain:
             lag = errors.motor_time_constant_ms / 1000 * self.rpm / 60 * TURN * abs(self._steps_per_rad) * self.step
             angle += 2 * lag * sum(each.amplitude_percent / 100 for each in errors.speed_ripple)
         hob = 2 * errors.hob_eccentricity_um * math.sin(job.gear.alpha) + 2 * errors.hob_axial_runout_um
+        hob += float(np.ptp(errors.hob_starts_um)) if errors.hob_starts_um else 0.0
         hob += abs(errors.hob_lead_um_per_turn) + sum(2 * each.amplitude_um for each in errors.feed)
         blank = slow * (errors.blank_eccentricity_um + errors.blank_tilt_um_per_100mm * job.face_width / 100)
         return (job.base_radius + job.gear.module) * angle + (hob + blank) * UM

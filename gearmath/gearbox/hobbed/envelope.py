@@ -106,7 +106,8 @@ class Cut:
         """How many gashes and turns of the table to either side can leave less than their neighbors."""
         job, spread = self.job, self.errors.spread
         (flat,) = evaluate("generating_flat", longest, job.hob.starts, job.gear.teeth, job.hob.gashes)
-        shape = (0.0, job.hob.diameter, job.gear.alpha, job.gear.beta)
+        gear = job.gear
+        shape = (0.0, job.hob.diameter, gear.teeth, gear.module, gear.alpha, gear.beta)
         (mark,) = evaluate("feed_mark", job.feed, *shape)
         return tuple(min(MOST, 1 + math.ceil(0.5 * math.sqrt(spread / ridge))) for ridge in (flat, mark))  # type: ignore[return-value]
 

@@ -89,6 +89,11 @@ def setup(
     gear = Gear(teeth, chosen.module_mm, chosen.alpha, 0.0 if helix is None else helix.beta, shift)
     tool = hob_tool(chosen, planned.hob_starts, SIGNS[machine.hob_hand])
     job = HobbingJob(gear, 1 if helix is None else helix.sign, tool, width, feed, climb)
+    if len(machine.errors.hob_starts_um) not in (0, tool.starts):
+        raise InputError(
+            f"{machine.name}: errors.hob_starts_um has {len(machine.errors.hob_starts_um)} values, the hob has "
+            f"{tool.starts} starts"
+        )
     train = DriveTrain(machine, job, planned.ratio, rule, planned.rpm, seconds)
     return CutSetup(train, layout(job), chosen.name, chosen.diameter is None)
 
@@ -118,7 +123,7 @@ def ridges(job: HobbingJob) -> tuple[float, float]:
     gear, hob = job.gear, job.hob
     length = job.reference_diameter / 2 * math.sin(job.transverse[1])
     (flat,) = evaluate("generating_flat", length, hob.starts, gear.teeth, hob.gashes)
-    (mark,) = evaluate("feed_mark", job.feed, 0.0, hob.diameter, gear.alpha, gear.beta)
+    (mark,) = evaluate("feed_mark", job.feed, 0.0, hob.diameter, gear.teeth, gear.module, gear.alpha, gear.beta)
     return flat, mark
 
 
