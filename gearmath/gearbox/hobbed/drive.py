@@ -28,8 +28,6 @@ ARCSEC = math.pi / 648_000
 UM = 1e-3
 #: Times of a first-order lag that stand for all of them, each as likely as the others.
 _LAGS = -np.log(1.0 - (np.arange(32) + 0.5) / 32)
-#: Passes of a hob that may follow each other at one point of a flank, in gashes, for the bound of their errors.
-_NEAR = 8
 
 
 @dataclass(frozen=True)
@@ -198,29 +196,62 @@ class DriveTrain:
             or errors.blank_tilt_um_per_100mm
         )
 
-    @cached_property
-    def spread(self) -> float:
-        """Bound of what two passes at one point may differ by, along the normal [mm]."""
+    # --- how much all that changes --------------------------------------------------------------------------------
+    def variation(self, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Bounds (n,) of how much the errors differ along the normal [mm], ``away`` gashes, and turns of the table."""
+        job = self.job
+        turn = TURN * job.gear.teeth / job.hob.starts
+        found = []
+        for hob_turn in (TURN / job.hob.gashes, turn):
+            ends = job.table_angle(np.array([0.0, hob_turn]))
+            table, travel = float(ends[1] - ends[0]), job.travel_per_rad * hob_turn
+            total = np.full_like(away, self._step_variation)
+            for size, turned in self._swings(hob_turn, table, travel):
+                back = abs((turned + math.pi) % TURN - math.pi)  # whole turns bring a sine back
+                total += size * np.minimum(2.0, back * away)
+            total += abs(self.errors.hob_lead_um_per_turn) * UM * abs(hob_turn) / TURN * away * (hob_turn < turn)
+            found.append(total)
+        return found[0], found[1]
+
+    @property
+    def _step_variation(self) -> float:
+        """Of the rounding to steps and counts, of microsteps and lag, and of starts [mm]."""
         errors, job = self.errors, self.job
-        table = self.machine.table
-        assert table is not None
-        slow = min(2.0, TURN * _NEAR * job.hob.starts / (job.gear.teeth * job.hob.gashes))  # within some gashes
-        angle = sum(2 * each.amplitude_arcsec * ARCSEC for each in errors.worm)
-        angle += sum(min(2.0, slow * each.order) * each.amplitude_arcsec * ARCSEC for each in errors.wheel)
+        starts = float(np.ptp(errors.hob_starts_um)) * UM if errors.hob_starts_um else 0.0
+        if self.rule == "ideal":
+            return starts
+        per_turn = abs(self._steps_per_rad) * TURN
+        steps = (1.0 if self.rule == "exact" else 12.0) + per_turn / float(self.machine.encoder_counts)
+        steps += 2 * errors.microstep_percent / 100 * (self.machine.drive.microsteps or 1)
+        ripple = sum(each.amplitude_percent / 100 for each in errors.speed_ripple)
+        steps += 2 * errors.motor_time_constant_ms / 1000 * self.rpm / 60 * per_turn * ripple
+        return starts + steps * self.step * job.base_radius
+
+    def _swings(self, hob: float, table: float, travel: float) -> Iterable[tuple[float, float]]:
+        """Amplitude along the normal [mm] of every sine, and by how much its argument turns."""
+        errors, job, wheel = self.errors, self.job, self.machine.table
+        assert wheel is not None
+        radius = job.base_radius
+        for series, turned in ((errors.worm, table * float(wheel.worm)), (errors.wheel, table)):
+            for each in series:
+                yield each.amplitude_arcsec * ARCSEC * radius, each.order * turned
         if self.rule != "ideal":
-            encoder = sum(2 * each.amplitude_arcsec * ARCSEC for each in errors.encoder)
-            angle += encoder * job.hob.starts / job.gear.teeth / float(self.machine.encoder.belt)
-            steps = 1.0 if self.rule == "exact" else 3.0
-            microsteps = self.machine.drive.microsteps or 1
-            angle += self.step * (steps + abs(self._steps_per_rad) * TURN / float(self.machine.encoder_counts))
-            angle += self.step * 2 * errors.microstep_percent / 100 * microsteps
-            lag = errors.motor_time_constant_ms / 1000 * self.rpm / 60 * TURN * abs(self._steps_per_rad) * self.step
-            angle += 2 * lag * sum(each.amplitude_percent / 100 for each in errors.speed_ripple)
-        hob = 2 * errors.hob_eccentricity_um * math.sin(job.gear.alpha) + 2 * errors.hob_axial_runout_um
-        hob += float(np.ptp(errors.hob_starts_um)) if errors.hob_starts_um else 0.0
-        hob += abs(errors.hob_lead_um_per_turn) + sum(2 * each.amplitude_um for each in errors.feed)
-        blank = slow * (errors.blank_eccentricity_um + errors.blank_tilt_um_per_100mm * job.face_width / 100)
-        return (job.base_radius + job.gear.module) * angle + (hob + blank) * UM
+            belt = float(self.machine.encoder.belt)
+            for each in errors.encoder:
+                yield (
+                    each.amplitude_arcsec * ARCSEC / belt * job.hob.starts / job.gear.teeth * radius,
+                    each.order * hob * belt,
+                )
+        # what it does along the tooth does not matter; a tenth more, as a shift across the axis is not quite that
+        yield 1.1 * math.sin(job.gear.alpha) * errors.hob_eccentricity_um * UM, hob
+        yield errors.hob_axial_runout_um * UM, hob
+        for wave in errors.feed:
+            yield (
+                wave.amplitude_um * UM * math.sin(job.base_helix),
+                wave.order * TURN * travel / errors.feed_screw_pitch,
+            )
+        yield errors.blank_eccentricity_um * UM, table
+        yield errors.blank_tilt_um_per_100mm * UM * (job.face_width + radius) / 100, table
 
 
 def harmonics(

@@ -22,7 +22,7 @@ from gearmath.gearbox.hobbed.job import TURN, HobbingJob
 from gearmath.gearbox.kernels import evaluate, kernel
 
 #: Newton steps, and the distance [mm] from the foot at which a root counts as found.
-STEPS, FOUND = 7, 1e-9
+STEPS, FOUND = 10, 1e-9
 #: Steps at which the errors of the machine are asked for: where a pass is, is known well enough by then.
 ASKED = (1, 3)
 #: How much of the distance from the foot can be missing from δ at most, and a distance that counts as none [mm].
@@ -38,9 +38,8 @@ MOST = 60
 class CuttingErrorModel(Protocol):
     """What the machine does other than ideally, at hob turns ψ."""
 
-    @property
-    def spread(self) -> float:
-        """Bound of what two passes at one point may differ by, along the normal [mm]."""
+    def variation(self, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Bounds (n,) of how much the errors differ along the normal [mm], ``away`` gashes, and turns of the table."""
         ...
 
     @property
@@ -61,8 +60,11 @@ class CuttingErrorModel(Protocol):
 class NoErrors:
     """An ideal machine."""
 
-    spread: float = 0.0
     jump: float = 0.0
+
+    def variation(self, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Nothing."""
+        return np.zeros_like(away), np.zeros_like(away)
 
     def table(self, psi: np.ndarray, side: int) -> np.ndarray:
         """Nothing."""
@@ -103,13 +105,24 @@ class Cut:
         return np.concatenate(parts) if parts else np.empty(0)
 
     def _window(self, longest: float) -> tuple[int, int]:
-        """How many gashes and turns of the table to either side can leave less than their neighbors."""
-        job, spread = self.job, self.errors.spread
-        (flat,) = evaluate("generating_flat", longest, job.hob.starts, job.gear.teeth, job.hob.gashes)
-        gear = job.gear
+        """How many gashes and turns of the table to either side can leave less than their neighbors.
+
+        A pass that is so many gashes or turns off leaves the ridge more, which grows with the square of that; it can be
+        the least only if the errors change by as much until there.
+        """
+        job, gear = self.job, self.job.gear
+        (flat,) = evaluate("generating_flat", 0.5 * longest, job.hob.starts, gear.teeth, job.hob.gashes)
         shape = (0.0, job.hob.diameter, gear.teeth, gear.module, gear.alpha, gear.beta)
         (mark,) = evaluate("feed_mark", job.feed, *shape)
-        return tuple(min(MOST, 1 + math.ceil(0.5 * math.sqrt(spread / ridge))) for ridge in (flat, mark))  # type: ignore[return-value]
+        away = np.arange(MOST + 1.0)
+        gains = [
+            change - 4 * ridge * np.maximum(away - 0.5, 0.0) ** 2
+            for change, ridge in zip(self.errors.variation(away), (flat, mark), strict=True)
+        ]
+        by_gash, by_turn = (
+            1 + int(np.flatnonzero(own + other.max() >= 0).max(initial=0)) for own, other in (gains, gains[::-1])
+        )
+        return min(by_gash, MOST), min(by_turn, MOST)
 
     def _least(
         self, side: int, space: np.ndarray, length: np.ndarray, height: np.ndarray, gashes: int, turns: int
@@ -159,6 +172,7 @@ class _Passes:
         given = np.column_stack([self.thread, np.zeros((len(self.psi), 4))])
         limits = 0.9 * np.array([job.hob.diameter / 2, math.pi])
         unknown = np.column_stack([self.edge, self.tau])
+        last = unknown.copy()
         left, off = (np.full(len(self.psi), np.inf) for _ in range(2))
         open_ = np.arange(len(self.psi))
         for k in range(STEPS):
@@ -168,8 +182,11 @@ class _Passes:
             left[open_], off[open_] = delta[:, 0, 0], np.abs(miss[:, :, 0]).max(axis=1)
             if k > max(ASKED) and not (off[open_] > FOUND).any():
                 break
-            # nan where an edge does not come to the involute at all: it stays where it is, and is not counted
-            unknown[open_] = np.clip(unknown[open_] + np.nan_to_num(step[:, :, 0]), -limits, limits)
+            # nan where the edge is inside the base cylinder: half of the last step is taken back
+            fine = np.isfinite(step[:, :, 0]).all(axis=1)[:, None]
+            ahead = np.where(fine, unknown[open_] + np.nan_to_num(step[:, :, 0]), 0.5 * (unknown[open_] + last[open_]))
+            last[open_] = np.where(fine, unknown[open_], last[open_])
+            unknown[open_] = np.clip(ahead, -limits, limits)
             if k in ASKED:
                 jump = errors.jump if k < max(ASKED) else 0.0
                 straight = unknown[:, 0] <= job.form_height

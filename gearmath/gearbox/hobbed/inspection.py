@@ -189,7 +189,7 @@ def form_length(job: HobbingJob, tip: float) -> float:
         return tip
     # the edges of two gashes meet there: the upper one must have a straight edge still
     ((flat,),) = (evaluate("generating_flat", tip, job.hob.starts, job.gear.teeth, job.hob.gashes),)
-    per_gash = math.sqrt(2 * flat / tip) * job.base_radius  # length of roll from gash to gash
+    per_gash = 2 * math.sqrt(2 * flat / tip) * job.base_radius  # length of roll from gash to gash
     return float(lengths[cut[0]] + per_gash)
 
 

@@ -103,10 +103,13 @@ def test_feed_marks_are_those_of_the_textbooks_with_the_curvatures_that_are_ther
 class _Sines:
     """Smooth errors of every kind, written here again: table three times a turn of it, hob and blank eccentric."""
 
-    spread, jump = 0.05, 0.0
+    jump = 0.0
 
     def __init__(self, of: HobbingJob) -> None:
         self.job = of
+
+    def variation(self, away):
+        return np.full_like(away, 0.04), np.full_like(away, 0.04)
 
     def table(self, psi, side):
         return 4e-4 * np.sin(3 * psi * self.job.hob.starts / self.job.gear.teeth + 0.3)
