@@ -44,6 +44,7 @@ CHAPTERS = (
     "local_synthesis",
     "chip",
     "design",
+    "polynomial_blocks",
 )
 
 #: An expression of a chapter, as its source says it.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -64,6 +64,13 @@ nc.add_command(nc_calibrate)
 @click.option("--rpm", type=float, default=120.0, show_default=True, help="Spindle speed.")
 @click.option("--roughing-stock", type=float, default=0.0, help="Rough first and leave this much, mm; 0 for none.")
 @click.option("--finishing-stock", type=float, default=0.0, help="Stock that stays on the finished flanks, mm.")
+@click.option(
+    "--blocks",
+    type=click.Choice(["g1", "poly"]),
+    default="g1",
+    show_default=True,
+    help="Straight blocks, or polynomials where the cutter rolls (an option of the control).",
+)
 @click.option("--dry-run", is_flag=True, help="Cut air: everything above the work, without coolant.")
 @SHEET
 @output(".MPF; its name becomes the program name")
@@ -77,6 +84,7 @@ def cut(
     rpm: float,
     roughing_stock: float,
     finishing_stock: float,
+    blocks: Literal["g1", "poly"],
     dry_run: bool,
     sheet: Path | None,
     target: Path,
@@ -101,7 +109,7 @@ def cut(
     from gearmath.specs.toml import find
 
     check_name(target.stem)
-    job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
+    job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
     milling_machine = load_milling_machine(find(machine))
     check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))

@@ -185,13 +185,13 @@ class StatementRunner:
         for target, value in block.assignments:
             self._assign(target, self._number(value, block.line, target.column), block.line)
         row = self.control.run(block, lambda node, column: self._number(node, block.line, column))
-        if row is not None:
-            self.rows.append(row)
+        for part in row.parts() if row is not None else ():
+            self.rows.append(part)
             self.said.append(self.messages[-1] if self.messages else "")
-            if row.measuring:
+            if part.measuring:
                 self._latched = len(self.rows) - 1
-            self.moved(internal(row.position))
-            self._watched(block.line, row)
+            self.moved(internal(part.position))
+            self._watched(block.line, part)
         for key in ("dwell", "program stop"):
             if key in block.words:
                 self.halts.append(Halt(block.line, key != "dwell", len(self.rows), len(self.control.blind)))
