@@ -21,6 +21,7 @@ from gearmath.cli.common import (
     member_of,
     output,
 )
+from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.errors import ComputationError, InputError
 
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
 
 @click.group()
 def nc() -> None:
-    """NC programs for the vertical 5-axis machine (SINUMERIK 840D sl)."""
+    """NC programs for the vertical 5-axis machine (SINUMERIK 840D sl, or LinuxCNC)."""
 
 
 nc.add_command(probe)
@@ -72,8 +73,9 @@ nc.add_command(nc_calibrate)
     help="Straight blocks, or polynomials where the cutter rolls (an option of the control).",
 )
 @click.option("--dry-run", is_flag=True, help="Cut air: everything above the work, without coolant.")
+@TARGET
 @SHEET
-@output(".MPF; its name becomes the program name")
+@output(".MPF, or .ngc for LinuxCNC; its name becomes the program name")
 def cut(
     gear_set: str,
     member: str | None,
@@ -86,6 +88,8 @@ def cut(
     finishing_stock: float,
     blocks: Literal["g1", "poly"],
     dry_run: bool,
+    control: str | None,
+    configuration: bool,
     sheet: Path | None,
     target: Path,
 ) -> None:
@@ -105,6 +109,8 @@ def cut(
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
     from gearmath.machine.writing.cutting import program_of
+    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
+    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
     from gearmath.machine.writing.words import block_count, check_name
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -112,6 +118,7 @@ def cut(
     check_name(target.stem)
     job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
     milling_machine = load_milling_machine(find(machine))
+    dialect = dialect_of(milling_machine, control, configuration, sheet)
     check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
@@ -133,8 +140,14 @@ def cut(
         from gearmath.setup_sheet import setup_sheet
 
         page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
+    blocks = block_count(text)
+    if dialect == LINUXCNC:  # judged as the other dialect, it is the same plan
+        text = linuxcnc.program_of(plan, target.stem)
+        blocks = linuxcnc_blocks(text)
     write_text(target, text)
-    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {block_count(text)} blocks")
+    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {blocks} blocks")
+    if configuration:
+        write_configuration(target, milling_machine, linuxcnc.tools_of(plan))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")

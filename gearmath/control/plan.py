@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearmath.control.linuxcnc_plan import is_for_linuxcnc, touches_of
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Setup
@@ -39,6 +40,8 @@ def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0
 
     Raises InputError for a text that cannot be run, that makes no touches, or that refuses these parts.
     """
+    if is_for_linuxcnc(text):
+        return RunPlan(*touches_of(text, program, first, last))
 
     def trigger(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
         return end if is_touch(start, end) else None

@@ -1,7 +1,7 @@
-"""How fast a control with look-ahead runs along a path: speed, acceleration and jerk of every axis, tolerance of corners.
+"""How fast a control with look-ahead runs along a path: speed, acceleration, jerk of the axes, tolerance of corners.
 
-The path is a row of straight parts. Its length counts a degree as a mm; the speed v along it is sought at all ends of the
-parts. With the unit vectors u of the axes along the parts, a corner asks the axes for a change v (u' - u). It is
+The path is a row of straight parts. Its length counts a degree as a mm; the speed v along it is sought at the ends of
+all parts. With the unit vectors u of the axes along the parts, a corner asks the axes for a change v (u' - u). It is
 rounded by constant acceleration within the time T: T = max v |u' - u|/a, more with a jerk j, and the rounding is off
 the corner by v |u' - u| T/8. So the tolerance bounds v at a corner, and so do both of its parts, which must be long
 enough for half of T each. Within a block of POLY there are no corners; there the bend of the path asks for

@@ -1,7 +1,7 @@
 """How fast LinuxCNC runs along straight blocks with rotary axes: parabolic blending, which looks one block ahead.
 
-A block of length l should run at v, and its axes allow a; half of that, where two blocks run at once. Each block must be
-able to stop at its end: it reaches no more than v_r = min(v, sqrt(a l)). Where it slows down below the speed of the
+A block of length l should run at v, and its axes allow a; half of that, where two blocks run at once. Each block must
+be able to stop at its end: it reaches no more than v_r = min(v, sqrt(a l)). Where it slows down below the speed of the
 blend, the next one begins, and both add up, until the first stands. A blend takes no longer than the shorter block
 lasts, nor than the slower start: t = min(l/v_r of both, max v_r/a of both), so that it begins at min(v_r, a t), and no
 faster than 2 sqrt(a P/cos θ), where P is the tolerance of G64, and 2 θ the angle between both blocks in X Y Z.

@@ -1,11 +1,12 @@
 """A program as a control moves the axes: how long it takes, where it is slow, and how far it leaves the path.
 
-The axes stand at the ends of rapid blocks, at dwells and stops, and where the tool is changed; feed blocks between these
-are one run. The spindle, the tool change and the waiting of a program take what the program says, and no more.
+The axes stand at the ends of rapid blocks, at dwells and stops, and where the tool is changed; feed blocks between
+these are one run. The spindle, the tool change and the waiting of a program take what the program says, and no more.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -101,7 +102,7 @@ def _runs(path: MachinePath) -> list[np.ndarray]:
     for halt in path.halts:
         still[halt.rows] = True
     bounds = np.flatnonzero(still)
-    runs = [np.arange(a, b) for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
+    runs = [np.arange(a, b) for a, b in itertools.pairwise(bounds)]
     return [rows for rows in runs if rows[0] > 0 and path.tool[rows[0] - 1] == path.tool[rows[0]]]
 
 

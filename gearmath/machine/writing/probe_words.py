@@ -87,6 +87,31 @@ class Blocks:
         """The word of one linear axis [mm]."""
         return self.positions.z(value) if axis == "Z" else self.positions.word(axis, value)
 
+    def number(self, value: float) -> str:
+        """A number in an expression; a negative one in brackets."""
+        text = f"{value:.5f}"
+        return f"({text})" if value < 0 else text
+
+    def variable(self, number: int) -> str:
+        """A number that the program keeps."""
+        return f"R{number}"
+
+    def kept(self, values: Sequence[tuple[int, str]]) -> str:
+        """The block that keeps numbers or expressions."""
+        return " ".join(f"{self.variable(number)}={value}" for number, value in values)
+
+    def measured(self, axis: str) -> str:
+        """Where the last touch met, as an expression."""
+        return self.variable(200 + AXES.index(axis))
+
+    def middle(self, one: int, other: int) -> str:
+        """The mean of two kept numbers, as an expression."""
+        return f"({self.variable(one)}+{self.variable(other)})/2"
+
+    def at(self, axis: str, number: int, off: str = "") -> str:
+        """The word of an axis at a kept number, and so much ``off`` it: an expression that begins with its sign."""
+        return f"{axis}={self.variable(number)}{off}"
+
     def start(self, plan: ProbingPlan, columns: Sequence[str] = COLUMNS, room: Room | None = None) -> Iterator[str]:
         """Head: Z home, the probe is fetched and held, the run is numbered, the result file gets its plan and columns.
 
