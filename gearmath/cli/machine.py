@@ -23,6 +23,7 @@ from gearmath.cli.common import (
 )
 from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
 from gearmath.cli.probe import nc_calibrate, probe
+from gearmath.cli.program_time import program_time
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ def nc() -> None:
 
 nc.add_command(probe)
 nc.add_command(nc_calibrate)
+nc.add_command(program_time)
 
 
 @nc.command()
@@ -140,12 +142,12 @@ def cut(
         from gearmath.setup_sheet import setup_sheet
 
         page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
-    blocks = block_count(text)
+    count = block_count(text)
     if dialect == LINUXCNC:  # judged as the other dialect, it is the same plan
         text = linuxcnc.program_of(plan, target.stem)
-        blocks = linuxcnc_blocks(text)
+        count = linuxcnc_blocks(text)
     write_text(target, text)
-    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {blocks} blocks")
+    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {count} blocks")
     if configuration:
         write_configuration(target, milling_machine, linuxcnc.tools_of(plan))
     if sheet is not None and page is not None:

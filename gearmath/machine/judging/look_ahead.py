@@ -17,8 +17,8 @@ import numpy as np
 
 from gearmath.specs.milling_machine import AxisLimits
 
-#: Parts in which each straight part is followed, so that speed may rise and fall within it.
-_PARTS = 16
+#: Moments at which the way of a rising or falling speed is known, between which it counts as even.
+_KNOTS = 8
 #: Slower than this the path stands still; it is nothing beside any feed. [mm/s]
 _LEAST = 1e-6
 #: Times that the bounds at corners are lowered by what smoothing adds to them.
@@ -151,36 +151,27 @@ def _timed(
     ``delay`` [s] is the time in which the acceleration comes up: the speed is its mean over that time, and a stop takes
     so much longer. What smoothing adds to the speed at a corner is taken off its bound before.
     """
-    cells = np.repeat(length / _PARTS, _PARTS)
-    corner = np.arange(len(length) + 1) * _PARTS
     bound = at_ends.copy()
-    for _ in range(_SMOOTHED if delay > 0.0 else 1):
-        speed = _passes(bound, cells, highest, gain)
-        seconds = _seconds(speed, cells, gain)
-        if delay == 0.0:
-            break
-        smooth = _mean_over(speed, seconds, delay)
-        over = smooth[corner] > at_ends * (1 + 1e-3)
+    speed = _passes(bound, length, gain)
+    if delay == 0.0:
+        return _phases(speed, length, highest, gain)[0].sum(axis=1), speed
+    for _ in range(_SMOOTHED):
+        smooth = _mean_over(speed, length, highest, gain, delay)
+        over = smooth > at_ends * (1 + 1e-3)
         over[[0, -1]] = False
         if not over.any():
             break
-        bound = np.where(over, bound * np.maximum(at_ends / np.maximum(smooth[corner], _LEAST), 0.5), bound)
-    reached = speed[corner] if delay == 0.0 else np.minimum(_mean_over(speed, seconds, delay)[corner], at_ends)
-    each = seconds.reshape(-1, _PARTS).sum(axis=1)
-    stops = (at_ends[:-1] == 0.0) | (at_ends[1:] == 0.0)
-    each = each + delay / 2 * ((at_ends[:-1] == 0.0).astype(float) + (at_ends[1:] == 0.0)) * stops
-    return each, reached
+        bound = np.where(over, bound * np.maximum(at_ends / np.maximum(smooth, _LEAST), 0.5), bound)
+        speed = _passes(bound, length, gain)
+    seconds = _phases(speed, length, highest, gain)[0].sum(axis=1)
+    stands = at_ends == 0.0
+    later = delay / 2 * (stands[:-1].astype(float) + stands[1:])
+    return seconds + later, np.minimum(_mean_over(speed, length, highest, gain, delay), at_ends)
 
 
-def _passes(bound: np.ndarray, cells: np.ndarray, highest: np.ndarray, gain: np.ndarray) -> np.ndarray:
-    """Speeds at the ends of the cells: forwards as they may rise, backwards as they may fall."""
-    squared = np.repeat(highest, _PARTS) ** 2
-    squared = np.append(squared, squared[-1])
-    squared[1:-1] = np.minimum(squared[1:-1], squared[:-2])
-    corner = np.arange(len(bound)) * _PARTS
-    squared[corner] = np.minimum(squared[corner], bound**2)
-    gained = (2.0 * np.repeat(gain, _PARTS) * cells).tolist()
-    values = squared.tolist()
+def _passes(bound: np.ndarray, length: np.ndarray, gain: np.ndarray) -> np.ndarray:
+    """Speeds at the ends of the parts: forwards as they may rise, backwards as they may fall."""
+    values, gained = (bound**2).tolist(), (2.0 * gain * length).tolist()
     for k, more in enumerate(gained):
         if values[k] + more < values[k + 1]:
             values[k + 1] = values[k] + more
@@ -190,15 +181,31 @@ def _passes(bound: np.ndarray, cells: np.ndarray, highest: np.ndarray, gain: np.
     return np.sqrt(np.array(values))
 
 
-def _seconds(speed: np.ndarray, cells: np.ndarray, gain: np.ndarray) -> np.ndarray:
-    """Time (n,) in each cell, its speed changing evenly; a cell from standstill to standstill rises and falls."""
-    mean = (speed[1:] + speed[:-1]) / 2
-    alone = 2.0 * np.sqrt(cells / np.repeat(gain, _PARTS))
-    return np.where(mean > _LEAST, cells / np.maximum(mean, _LEAST), alone)
+def _phases(
+    speed: np.ndarray, length: np.ndarray, highest: np.ndarray, gain: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Seconds (n,3) of rising, running evenly and falling in each part, and the speed (n,) between."""
+    first, last = speed[:-1], speed[1:]
+    peak = np.minimum(highest, np.sqrt(gain * length + (first**2 + last**2) / 2))
+    peak = np.maximum(peak, np.maximum(first, last))
+    even = np.maximum(length - (2 * peak**2 - first**2 - last**2) / (2 * gain), 0.0)
+    return np.column_stack([(peak - first) / gain, even / np.maximum(peak, _LEAST), (peak - last) / gain]), peak
 
 
-def _mean_over(speed: np.ndarray, seconds: np.ndarray, delay: float) -> np.ndarray:
-    """The speed at the ends of the cells as its mean over ``delay`` around them; still before and after the run."""
-    time = np.concatenate([[0.0], np.cumsum(seconds)])
-    way = np.concatenate([[0.0], np.cumsum(seconds * (speed[1:] + speed[:-1]) / 2)])
-    return (np.interp(time + delay / 2, time, way) - np.interp(time - delay / 2, time, way)) / delay
+def _mean_over(
+    speed: np.ndarray, length: np.ndarray, highest: np.ndarray, gain: np.ndarray, delay: float
+) -> np.ndarray:
+    """The speed at the ends of the parts as its mean over ``delay`` around them; still before and after the run."""
+    seconds, peak = _phases(speed, length, highest, gain)
+    begins = np.column_stack([speed[:-1], peak, peak])
+    rates = np.column_stack([gain, np.zeros_like(gain), -gain])
+    share = np.arange(_KNOTS) / _KNOTS
+    within = seconds[..., None] * share
+    way = begins[..., None] * within + rates[..., None] * within**2 / 2
+    whole = begins * seconds + rates * seconds**2 / 2
+    starts = np.concatenate([[0.0], np.cumsum(seconds.ravel())])
+    places = np.concatenate([[0.0], np.cumsum(whole.ravel())])
+    time = np.append((starts[:-1].reshape(seconds.shape)[..., None] + within).ravel(), starts[-1])
+    place = np.append((places[:-1].reshape(seconds.shape)[..., None] + way).ravel(), places[-1])
+    at = starts[::3]
+    return (np.interp(at + delay / 2, time, place) - np.interp(at - delay / 2, time, place)) / delay

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
+from gearmath.errors import InputError
 from gearmath.machine.control.executor import MachinePath
 from gearmath.machine.judging.look_ahead import FollowedRun, RoundedCorners, follow, path_length
 from gearmath.machine.judging.parabolic import follow_parabolic
@@ -19,7 +20,8 @@ from gearmath.specs.milling_machine import AxisLimits, MillingMachine
 
 #: Where a control is slow: this part of the speed that the block asks for, or less.
 SLOW = 0.5
-_MODES = ("look_ahead", "parabolic")
+#: Where two blocks of POLY meet, the path has a corner if it turns by more than this times what it does beside.
+_AS_SMOOTH = 3.0
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,7 @@ class Trajectory:
     """
 
     blocks: int
+    polynomial_blocks: int
     asked_seconds: float
     feed_seconds: float
     rapid_seconds: float
@@ -47,6 +50,11 @@ class Trajectory:
     worst_line: int
     seconds: np.ndarray
     """What each row of the path takes, (n,) s."""
+
+    def as_dict(self) -> dict[str, float]:
+        """For JSON: all figures, and the time of all together."""
+        figures = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "seconds"}
+        return {"total_seconds": self.total_seconds} | figures
 
     @property
     def total_seconds(self) -> float:
@@ -63,19 +71,21 @@ def trajectory(
     path: MachinePath,
     machine: MillingMachine,
     corners: RoundedCorners | None = None,
-    dwells: float = 0.0,
-    blending: str = "look_ahead",
 ) -> Trajectory:
-    """The motion of an executed program. ``corners`` are those of the machine file, or others; ``dwells`` [s] add up.
+    """The motion of an executed program on the control that the machine file names.
 
-    ``blending`` is that of a control with look-ahead, or "parabolic" as LinuxCNC has it.
+    Corners are rounded as that file says, or as ``corners`` do. Raises InputError for polynomials on a LinuxCNC.
     """
-    if blending not in _MODES:
-        raise ValueError(f"blending = {blending!r}: must be one of {_MODES}")
+    parabolic = machine.control.kind == "linuxcnc"
+    if parabolic and path.inner.any():
+        line = int(path.line[np.argmax(path.inner)])
+        raise InputError(f"line {line} is a block of POLY: LinuxCNC, which {machine.name} has, reads none")
     corners = corners_of(machine) if corners is None else corners
     cutter = np.isfinite(path.cutter).any() and machine.axes.C is not None
     where = np.column_stack([path.axes, np.nan_to_num(path.cutter)]) if cutter else path.axes
     limits = machine.limits(where.shape[1])
+    if machine.control.jerk == "BRISK":
+        limits = replace(limits, max_jerk=np.full(len(limits.max_jerk), np.inf))
     found = _Found(path, limits)
     inner = path.inner if len(path.inner) else np.zeros(len(path.axes), dtype=bool)
     for rows in _runs(path):
@@ -83,12 +93,12 @@ def trajectory(
         if path.rapid[rows[0]]:
             positions = _short_way(positions)
             run = follow(positions, np.zeros(len(rows)), np.zeros(0, dtype=bool), limits, RoundedCorners(0.0, 0.0))
-        elif blending == "parabolic":
+        elif parabolic:
             run = follow_parabolic(positions, path.seconds[rows], limits, corners)
         else:
-            run = follow(positions, path.seconds[rows], inner[rows[:-1]], limits, corners)
+            run = follow(positions, path.seconds[rows], _smooth(positions, inner[rows[:-1]], limits), limits, corners)
         found.add(rows, positions, run, inner[rows[:-1]])
-    return found.result(dwells)
+    return found.result(sum(halt.seconds for halt in path.halts))
 
 
 def _runs(path: MachinePath) -> list[np.ndarray]:
@@ -104,6 +114,16 @@ def _runs(path: MachinePath) -> list[np.ndarray]:
     bounds = np.flatnonzero(still)
     runs = [np.arange(a, b) for a, b in itertools.pairwise(bounds)]
     return [rows for rows in runs if rows[0] > 0 and path.tool[rows[0] - 1] == path.tool[rows[0]]]
+
+
+def _smooth(positions: np.ndarray, inner: np.ndarray, limits: AxisLimits) -> np.ndarray:
+    """Whether the path has no corner at inner positions (n,): within blocks of POLY, and where these meet smoothly."""
+    steps = np.diff(positions, axis=0) * limits.scale
+    unit = steps / np.maximum(np.linalg.norm(steps, axis=1), 1e-12)[:, None]
+    turn = np.linalg.norm(np.diff(unit, axis=0), axis=1)
+    before, after = np.insert(inner[:-1], 0, False), np.append(inner[1:], False)
+    beside = np.maximum(np.insert(turn[:-1], 0, 0.0), np.append(turn[1:], 0.0))
+    return inner | (before & after & (turn <= _AS_SMOOTH * beside))
 
 
 def _short_way(positions: np.ndarray) -> np.ndarray:
@@ -148,6 +168,7 @@ class _Found:
         inner = path.inner if len(path.inner) else np.zeros(len(rapid), dtype=bool)
         return Trajectory(
             blocks=int((~rapid & ~inner).sum()),
+            polynomial_blocks=int((np.diff(inner.astype(int), append=0) == -1).sum()),
             asked_seconds=float(path.seconds.sum()),
             feed_seconds=float(self.seconds[~rapid].sum()),
             rapid_seconds=float(self.seconds[rapid].sum()),

@@ -79,7 +79,7 @@ def tolerance_notes(plan: CuttingPlan) -> tuple[str, ...]:
         rounding = share.rounding * 1000
         blocks = wanted - min(rounding, wanted / 2)
     total = max(wanted, blocks + rounding)
-    kind = "polynomial" if job.blocks == "poly" and member.generation == "generated" else "straight"
+    kind = "straight" if plan.passes[0].bends is None else "polynomial"
     return (
         f"flank tolerance: {upwards(total)} um along the tooth normal, by {kind} blocks and rounding",
         f"of which rounding to {control.increments_per_mm} increments per mm and {control.increments_per_degree} per "

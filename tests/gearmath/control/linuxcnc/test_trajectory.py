@@ -24,7 +24,10 @@ ROLLS = ((3000.0, 1e-4), (3000.0, 1e-3), (3000.0, 0.0), (1000.0, 5e-3))
 
 @pytest.mark.slow
 def test_the_model_takes_as_long_for_a_roll_as_linuxcnc_does(live: Start) -> None:
-    machine, bevel_set = load_milling_machine(bundled("vertical_5axis.toml")), load_bevel_set(bundled("nasa_tp3096_12x36.toml"))
+    machine, bevel_set = (
+        load_milling_machine(bundled("vertical_5axis.toml")),
+        load_bevel_set(bundled("nasa_tp3096_12x36.toml")),
+    )
     lines = ["G21 G90 G17 G40 G94 F100", "G61"]
     expected, first = [], []
     for feed, tolerance in ROLLS:

@@ -31,15 +31,19 @@ from gearmath.specs.toml import bundled
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 QUINTIC = MACHINE.model_copy(update={"control": MACHINE.control.model_copy(update={"polynomial_values": 25})})
+MACHINES = {3: MACHINE, 5: QUINTIC}
 SETS = ("nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_universal_14x39", "spiral_7x43")
 ROLLING = [(name, member) for name in SETS for member in ("pinion", "gear")]
 WORD = re.compile(r"(?:PO\[([XYZAB])\]=\(|([XYZAB])=PO\()([-0-9.,]+)\)")
 
 
 @lru_cache
-def text_of(name, member, tolerance=1e-4, machine=None, spaces=(0,), **job):
-    made = CuttingJob(spaces, tolerance, blocks="poly", **job)
-    return cutting_program(load_bevel_set(bundled(f"{name}.toml")), member, machine or MACHINE, "POLY_CUT", made)
+def text_of(name, member, tolerance=1e-4, degree=3):
+    return made(name, member, MACHINES[degree], CuttingJob((0,), tolerance, blocks="poly"))
+
+
+def made(name, member, machine, job):
+    return cutting_program(load_bevel_set(bundled(f"{name}.toml")), member, machine, "POLY_CUT", job)
 
 
 def rolls(text):
@@ -95,12 +99,10 @@ def test_six_cubic_blocks_are_enough_for_a_roll_and_twelve_for_a_tenth(name, mem
             assert 1 <= len(blocks) <= most
 
 
-@pytest.mark.parametrize(
-    ("name", "member", "machine"), [(*ROLLING[0], MACHINE), (*ROLLING[5], MACHINE), (*ROLLING[4], QUINTIC)]
-)
-def test_the_text_cuts_the_flanks_within_its_tolerance(name, member, machine, witness):
+@pytest.mark.parametrize(("name", "member", "degree"), [(*ROLLING[0], 3), (*ROLLING[5], 3), (*ROLLING[4], 5)])
+def test_the_text_cuts_the_flanks_within_its_tolerance(name, member, degree, witness):
     """The smallest distance of entry along normals over all poses of the text, by cone and machine of the witness."""
-    text = text_of(name, member, machine=machine)
+    text = text_of(name, member, degree=degree)
     spec, height = load_bevel_set(bundled(f"{name}.toml")).member(member), MACHINE.pivot_height
     stated = float(re.search(r"flank tolerance: ([0-9.]+) um", text)[1]) / 1000
     flanks = ["concave", "convex"] if spec.cutting != "completing" else [("concave", "convex")]
@@ -112,7 +114,8 @@ def test_the_text_cuts_the_flanks_within_its_tolerance(name, member, machine, wi
         for flank in [cut] if isinstance(cut, str) else cut:
             one, points = spec.flank(flank), flank_points(spec, flank, blank_grid(spec, 5, 17, 0.05))
             cone = one.blade_point_radius, math.radians(one.blade_pressure_angle), SIDES[flank]
-            t = witness.entry(*pose, *cone, points.point[:, None], points.normal[:, None])
+            flat = points.contact[:, 0] > 0.1  # below is the fillet, which the edge of the blade cuts
+            t = witness.entry(*pose, *cone, points.point[flat, None], points.normal[flat, None])
             left = t.min(axis=1)
             assert np.abs(left).max() <= stated + 2e-6  # mm: poses so far apart leave as much
 
@@ -137,9 +140,9 @@ def test_every_axis_is_a_function_of_one_parameter_that_the_reader_follows():
     assert path.seconds[first : last + 1].sum() == pytest.approx(sum(seconds for _, seconds in blocks), rel=1e-9)
 
 
-@pytest.mark.parametrize("machine", [MACHINE, QUINTIC])
-def test_what_is_read_is_written_again_byte_for_byte(machine):
-    text = text_of(*ROLLING[4], machine=machine)
+@pytest.mark.parametrize("degree", [3, 5])
+def test_what_is_read_is_written_again_byte_for_byte(degree):
+    text = text_of(*ROLLING[4], degree=degree)
 
     def blocks(body):
         for part in body:
@@ -152,7 +155,7 @@ def test_what_is_read_is_written_again_byte_for_byte(machine):
     lines, per_internal = text.splitlines(), np.array([1, 1, 1, 180 / math.pi, 180 / math.pi])
     assert len(found) == text.count("G93 POLY ")
     for block in found:
-        ends, bends = np.zeros((2, 5)), np.zeros((1, 5, 4 if machine is QUINTIC else 2))
+        ends, bends = np.zeros((2, 5)), np.zeros((1, 5, 4 if degree == 5 else 2))
         for k, axis in enumerate("XYZAB"):
             word = block.words[axis]
             ends[1, k] = number(word.value, None, "", 0, 0)
@@ -161,15 +164,15 @@ def test_what_is_read_is_written_again_byte_for_byte(machine):
         assert " ".join(words) in lines[block.line - 1]
 
 
-@pytest.mark.parametrize("machine", [MACHINE, QUINTIC])
-def test_without_its_word_poly_the_control_drives_straight_and_mill_sees_it(machine):
+@pytest.mark.parametrize("degree", [3, 5])
+def test_without_its_word_poly_the_control_drives_straight_and_mill_sees_it(degree):
     name, member = ROLLING[0]
-    text = text_of(name, member, machine=machine)
-    assert judged(text, name, member, machine) == []
+    text = text_of(name, member, degree=degree)
+    assert judged(text, name, member, MACHINES[degree]) == []
     straight = text.replace("G93 POLY ", "G93 G1 ")
-    path = execute(straight, "CUT", Setup.of(machine))
+    path = execute(straight, "CUT", Setup.of(MACHINES[degree]))
     assert not path.inner.any()
-    assert any("leaves" in sentence for sentence in judged(straight, name, member, machine))
+    assert any("leaves" in sentence for sentence in judged(straight, name, member, MACHINES[degree]))
 
 
 def test_one_block_without_its_word_is_seen_too():
@@ -181,11 +184,9 @@ def test_one_block_without_its_word_is_seen_too():
         assert judged(changed, name, member) != []
 
 
+@pytest.mark.slow
 def test_wrong_digits_that_move_the_tool_are_seen_and_those_that_do_not_pass():
-    """Every digit of one block of a roll, changed: refused where an axis is off by much, passed where by nothing.
-
-    How far the flank is from that is up to the axis: between 1 nm and 10 um either may be right, and X Y Z A B move it.
-    """
+    """The first and last digits of the numbers of a block, changed."""
     name, member = ROLLING[0]
     text = text_of(name, member)
     lines = text.splitlines()
@@ -193,10 +194,12 @@ def test_wrong_digits_that_move_the_tool_are_seen_and_those_that_do_not_pass():
     (start, blocks) = rolls(text)[0]
     u, scale = np.linspace(0, 1, 101), np.array([1.0, 1.0, 1.0, 60.0, 60.0])
     right = positions_of(start, blocks, u)
+    numbers = list(re.finditer(r"(?<=[(,F])-?([0-9]+)\.[0-9]+", lines[at]))
+    leading = [one.start(1) for one in numbers if one.start() > 16][::2]  # X, a3 of X, a2 of Y, Z, B
+    last = [m.start() - 1 for m in re.finditer(r"\)", lines[at])][:2]  # of coefficients of X and Y
     rng = np.random.default_rng(17)
-    places = [m.start() for m in re.finditer(r"[0-9]", lines[at]) if m.start() > 16]
     seen, passed = 0, 0
-    for place in rng.choice(places, 12, replace=False):
+    for place in [*leading, *last]:
         digit = str((int(lines[at][place]) + rng.integers(1, 9)) % 10)
         changed = lines[at][:place] + digit + lines[at][place + 1 :]
         mutant = "\n".join([*lines[:at], changed, *lines[at + 1 :]]) + "\n"
@@ -207,11 +210,10 @@ def test_wrong_digits_that_move_the_tool_are_seen_and_those_that_do_not_pass():
         if moved > 0.01 or (other[0][1] < blocks[0][1] and slower > 0.05):
             assert verdict != [], changed
             seen += 1
-        elif moved < 1e-6 and slower < 0.005:
+        elif moved < 2e-6 and slower < 0.005:
             assert verdict == [], changed
             passed += 1
-    assert seen >= 3
-    assert passed >= 1
+    assert (seen, passed) == (len(leading), len(last))
 
 
 def test_feeds_keep_speed_acceleration_and_jerk_of_every_axis():
@@ -226,7 +228,7 @@ def test_feeds_keep_speed_acceleration_and_jerk_of_every_axis():
         }
     )
     machine = MACHINE.model_copy(update={"axes": axes})
-    text = text_of(*ROLLING[5], machine=machine, feed=20000.0)
+    text = made(*ROLLING[5], machine, CuttingJob((0,), feed=20000.0, blocks="poly"))
     per_internal = np.array([1, 1, 1, 180 / math.pi, 180 / math.pi])
     used = []
     for start, blocks in rolls(text):
