@@ -19,6 +19,8 @@ from gearmath.specs.milling_machine import AxisLimits
 
 #: Moments at which the way of a rising or falling speed is known, between which it counts as even.
 _KNOTS = 8
+#: A way shorter than this is none: far less than an increment. [mm]
+NO_WAY = 1e-9
 #: Slower than this the path stands still; it is nothing beside any feed. [mm/s]
 _LEAST = 1e-6
 #: Times that the bounds at corners are lowered by what smoothing adds to them.
@@ -60,7 +62,7 @@ def follow(
     """
     steps = np.diff(where, axis=0)
     length = path_length(steps, limits)
-    moves = length > 0.0
+    moves = length > NO_WAY
     seconds, speed = np.zeros(len(steps)), np.zeros(len(steps) + 1)
     rounded, turned = np.zeros(max(len(steps) - 1, 0)), np.zeros(max(len(steps) - 1, 0))
     if not moves.any():

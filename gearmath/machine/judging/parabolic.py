@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from gearmath.machine.judging.look_ahead import FollowedRun, RoundedCorners
+from gearmath.machine.judging.look_ahead import NO_WAY, FollowedRun, RoundedCorners
 from gearmath.specs.milling_machine import AxisLimits
 
 #: Cosines of θ from which on the tolerance counts.
@@ -24,8 +24,8 @@ def follow_parabolic(where: np.ndarray, asked: np.ndarray, limits: AxisLimits, c
     """Run along positions (n+1,k) [mm, rad], whose blocks should take ``asked`` (n,) s; standstill at both ends."""
     steps = np.diff(where, axis=0)
     length, by_turning = np.linalg.norm(steps[:, :3], axis=1), np.linalg.norm(steps[:, 3:] * limits.scale[3:], axis=1)
-    length = np.where(length > 0.0, length, by_turning)
-    index = np.flatnonzero(length > 0.0)
+    length = np.where(length > NO_WAY, length, by_turning)
+    index = np.flatnonzero(length > NO_WAY)
     count = max(len(steps) - 1, 0)
     result = FollowedRun(np.zeros(len(steps)), np.zeros(len(steps) + 1), np.zeros(count), np.zeros(count))
     if not len(index):

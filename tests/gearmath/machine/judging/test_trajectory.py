@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -93,19 +94,20 @@ def test_a_curve_is_as_fast_as_its_bend_allows():
     assert slow == pytest.approx(np.cbrt(20000.0 * radius**2), rel=3e-3)
 
 
-@settings(max_examples=25, deadline=None)
-@given(
-    st.lists(st.tuples(*[st.floats(-5, 5)] * 2), min_size=3, max_size=8, unique=True), st.sampled_from([NO_JERK, JERK])
-)
-def test_more_tolerance_is_never_slower_and_no_axis_is_too_fast(points, limits):
+PLACE = st.integers(-50, 50).map(lambda k: k / 10)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.lists(st.tuples(PLACE, PLACE), min_size=3, max_size=8, unique=True))
+def test_more_tolerance_is_never_slower_and_no_axis_is_too_fast(points):
     where = line(*points)
-    times = [run(where, 0.0, limits, RoundedCorners(t, t)).seconds for t in (1e-4, 1e-3, 1e-2)]
-    totals = [float(seconds.sum()) for seconds in times]
-    assert totals[0] >= totals[1] * (1 - 2e-2) >= totals[2] * (1 - 4e-2)
-    for seconds in times:
-        steps = np.abs(np.diff(where, axis=0))
-        assert (steps <= limits.max_speed * seconds[:, None] * (1 + 1e-6)).all()
-    assert run(where, 0.0, limits, RoundedCorners(0.0, 0.0)).seconds.sum() >= totals[0] * (1 - 1e-6)
+    steps, stops = np.abs(np.diff(where, axis=0)), RoundedCorners(0.0, 0.0)
+    for limits in (NO_JERK, JERK):
+        times = [run(where, 0.0, limits, RoundedCorners(t, t)).seconds for t in (1e-4, 1e-3, 1e-2)]
+        for seconds in times:
+            assert (steps <= limits.max_speed * seconds[:, None] * (1 + 1e-6)).all()
+        totals = [float(seconds.sum()) for seconds in (run(where, 0.0, limits, stops).seconds, *times)]
+        assert all(later <= earlier * (1 + 1e-6) for earlier, later in pairwise(totals))
 
 
 @pytest.fixture(scope="module")
