@@ -105,7 +105,7 @@ def _runs(path: MachinePath) -> list[np.ndarray]:
     """Rows of the path from standstill to standstill; the first row has no known way to it."""
     count = len(path.rapid)
     still = np.zeros(count + 1, dtype=bool)
-    still[[0, -1]] = True
+    still[[0, 1, -1]] = True  # the first row is where the axes stand
     still[1:][path.rapid] = True  # after a rapid block
     still[:-1][path.rapid] = True  # and before one
     still[1:-1][path.tool[1:] != path.tool[:-1]] = True
@@ -139,13 +139,14 @@ class _Found:
 
     def __init__(self, path: MachinePath, limits: AxisLimits) -> None:
         self.path, self.limits = path, limits
-        self.seconds = np.zeros(len(path.rapid))
+        self.seconds, self.asked = np.zeros(len(path.rapid)), 0.0
         self.shares: list[tuple[float, int]] = []
         self.errors: list[tuple[float, float, float, int]] = []
 
     def add(self, rows: np.ndarray, positions: np.ndarray, run: FollowedRun, inner: np.ndarray) -> None:
         """Take one run to the others."""
         self.seconds[rows] = run.seconds
+        self.asked += float(self.path.seconds[rows].sum())
         if self.path.rapid[rows[0]] or len(rows) < 2:
             return
         length = path_length(np.diff(positions, axis=0), self.limits)
@@ -167,9 +168,9 @@ class _Found:
         worst = max(self.errors, default=(0.0, 0.0, 0.0, 0))
         inner = path.inner if len(path.inner) else np.zeros(len(rapid), dtype=bool)
         return Trajectory(
-            blocks=int((~rapid & ~inner).sum()),
+            blocks=int((~rapid & ~inner)[1:].sum()),
             polynomial_blocks=int((np.diff(inner.astype(int), append=0) == -1).sum()),
-            asked_seconds=float(path.seconds.sum()),
+            asked_seconds=self.asked,
             feed_seconds=float(self.seconds[~rapid].sum()),
             rapid_seconds=float(self.seconds[rapid].sum()),
             dwell_seconds=dwells,
