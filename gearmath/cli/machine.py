@@ -127,7 +127,7 @@ def cut(
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
     with bar(pass_count(spec, member, job), "pass") as progress:
         plan = cutting_plan(bevel_set, member, milling_machine, job, progress)
-        text = program_of(plan, target.stem)
+        text = (linuxcnc.program_of if dialect == LINUXCNC else program_of)(plan, target.stem)
     path = execute(text, str(target), Setup.of(milling_machine))
     space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
     runs = _right_runs(path, spec, member, milling_machine, space)
@@ -142,10 +142,7 @@ def cut(
         from gearmath.setup_sheet import setup_sheet
 
         page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
-    count = block_count(text)
-    if dialect == LINUXCNC:  # judged as the other dialect, it is the same plan
-        text = linuxcnc.program_of(plan, target.stem)
-        count = linuxcnc_blocks(text)
+    count = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(text)
     write_text(target, text)
     click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {count} blocks")
     if configuration:
@@ -313,8 +310,12 @@ def _judge_metal(
     """Print what the blocks leave on a machine without errors; a sentence for each way in which that is wrong."""
     import math
 
+    from gearmath.bevel.ridge import RIDGE, ridge, ridge_words
+    from gearmath.machine.judging.cut import as_cut
     from gearmath.machine.judging.program import metal_faults
 
+    if space is not None and (left_between := ridge(as_cut(spec, space), space)) > RIDGE:
+        click.echo(f"the root: {ridge_words(left_between)}")
     with bar(spec.teeth, "space") as progress:
         faults, found = metal_faults(text, path, runs, spec, member, machine, space, progress)
     if found is not None and math.isfinite(found.lowest):

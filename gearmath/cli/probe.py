@@ -109,7 +109,7 @@ def probe(
     simulated = load_simulated_machine(find(errors)) if errors else None
     head, fixture = obstacles(milling_machine, simulated)
     arguments = bevel_set, member, milling_machine, known, target.stem, teeth, pitch, repeat, around
-    text = probing_program(*arguments)
+    text = (linuxcnc.probing_program if dialect == LINUXCNC else probing_program)(*arguments)
     points = planned_touches(text) // repeat
     with bar(points * (2 + repeat) + text.count("\n"), "step") as progress:
         found = approaches(
@@ -134,10 +134,7 @@ def probe(
             bevel_set.title, member, spec, milling_machine, known, fixture, head.spindle_radius, repeat * points, clear
         )
         page = probing_sheet(job, target.name)
-    blocks = block_count(text)
-    if dialect == LINUXCNC:  # judged as the other dialect: the touches are the same
-        text = linuxcnc.probing_program(*arguments)
-        blocks = linuxcnc_blocks(text)
+    blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(text)
     write_text(target, text)
     click.echo(f"{target}: {repeat * points} touches, {blocks} blocks; {clear}")
     if configuration:
@@ -208,6 +205,7 @@ def nc_calibrate(
     from gearmath.machine.writing.calibrating import calibration_program
     from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
     from gearmath.machine.writing.linuxcnc.probe_words import LinuxCncBlocks
+    from gearmath.machine.writing.probe_words import Blocks
     from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
@@ -219,18 +217,15 @@ def nc_calibrate(
     at, known = load_milling_machine(find(machine)), load_calibration(source)
     dialect = dialect_of(at, control, configuration, sheet)
     with about(source):
-        text = make(at, known, target.stem)
-    with bar(text.count("MEAS=1"), "block") as progress:
+        text = make(at, known, target.stem, LinuxCncBlocks if dialect == LINUXCNC else Blocks)
+    with bar(planned_touches(text), "touch") as progress:
         refuse_faults(judge_calibration(text, str(target), at, known, progress), target, "the program is not written")
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import calibration_sheet
 
         page = calibration_sheet(at, known, cycle == "axes", target.name)
-    blocks = block_count(text)
-    if dialect == LINUXCNC:  # judged as the other dialect: the touches are the same
-        text = make(at, known, target.stem, LinuxCncBlocks)
-        blocks = linuxcnc_blocks(text)
+    blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(text)
     write_text(target, text)
     click.echo(f"{target}: {planned_touches(text)} touches, {blocks} blocks")
     if configuration:

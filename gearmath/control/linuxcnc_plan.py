@@ -7,15 +7,9 @@ import re
 from gearmath.errors import InputError
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
 
-_OURS = re.compile(r"^; control: LinuxCNC$", re.MULTILINE)
 _PART = re.compile(r"; (?:point|section) (\d+)\b")
 _TOUCH = re.compile(r"\(LOG,%d#\d+,(\d+),(.*?),%\.\d+f#")
 _COLUMNS = re.compile(r"\(LOG,(run,point,[A-Za-z,]+)\)")
-
-
-def is_for_linuxcnc(text: str) -> bool:
-    """Whether a program says that it is for LinuxCNC."""
-    return _OURS.search(text) is not None
 
 
 def touches_of(text: str, program: str, first: int, last: int) -> tuple[tuple[str, ...], dict[int, tuple[str, ...]]]:

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.control.linuxcnc_plan import is_for_linuxcnc, touches_of
+from gearmath.control.linuxcnc_plan import touches_of
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.measuring.collision_check import enough_steps, is_touch
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
 

@@ -7,14 +7,13 @@ from pathlib import Path
 
 from gearmath.control.file_names import control_name, linuxcnc_name
 from gearmath.control.interface import RunStart
-from gearmath.control.linuxcnc_plan import is_for_linuxcnc
 from gearmath.control.plan import RunPlan, planned, resuming
 from gearmath.control.store_run import StoredRun
 from gearmath.control.store_summary import parts
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
 from gearmath.machine.control.state import Setup
-from gearmath.machine.control.text import decoded
+from gearmath.machine.control.text import decoded, is_for_linuxcnc
 from gearmath.machine.measuring.probe_run import touches_artefacts
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.milling_machine import load_milling_machine

@@ -9,9 +9,11 @@ import numpy as np
 
 from gearmath.machine.control.blocks import ControlState
 from gearmath.machine.control.expression import AXES, refuse
+from gearmath.machine.control.linuxcnc.runner import LinuxCncRunner
 from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.runner import Halt, Host, StatementRunner, Stopped, Watch
 from gearmath.machine.control.state import Blind, Deflected, Follower, Probe, Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.control.tree import ParsedProgram
 
 #: Blocks and turns of loops that a program may run through.
@@ -130,6 +132,10 @@ def run_program(
     Raises InputError with ``name``, line and column for what a program must not do, and for one that takes more than
     ``step_limit`` steps.
     """
+    if is_for_linuxcnc(text):
+        return _on_linuxcnc(
+            LinuxCncRunner(name, setup, probe, parameters or {}, step_limit, deflected, moved), text, files or {}
+        )
     program = parsed(text, name)
     runner = StatementRunner(
         ControlState(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved, watch
@@ -142,10 +148,19 @@ def run_program(
     else:
         if not runner.control.ended:
             refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
-    files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
+    return _done(runner)
+
+
+def _on_linuxcnc(runner: LinuxCncRunner, text: str, files: Mapping[str, str]) -> ProgramRun:
+    runner.files = {file: content.splitlines() for file, content in files.items()}
+    runner.run(text)
+    return _done(runner)
+
+
+def _done(runner: StatementRunner | LinuxCncRunner) -> ProgramRun:
     return ProgramRun(
         _path(runner),
-        files,
+        {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()},
         tuple(runner.messages),
         runner.parameters,
         runner.alarm,
@@ -154,7 +169,7 @@ def run_program(
     )
 
 
-def _path(runner: StatementRunner) -> MachinePath:
+def _path(runner: StatementRunner | LinuxCncRunner) -> MachinePath:
     """The rows as arrays, in mm and rad."""
     rows, control = runner.rows, runner.control
     positions = np.array([row.position for row in rows]).reshape(-1, len(AXES))

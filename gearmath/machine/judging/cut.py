@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.method import motion_of
+from gearmath.bevel.ridge import point_width
 from gearmath.bevel.tooth import ToothSpace
-from gearmath.machine.bodies.cutter import point_width
 from gearmath.machine.judging.alike import alike
 from gearmath.machine.judging.block_check import Watch, watch
 from gearmath.machine.judging.faults import Fault
@@ -206,6 +206,6 @@ def as_cut(member: Member, space: ToothSpace | None = None) -> Member:
     specs = {flank: member.flank(flank) for flank in FLANKS}
     changed: dict[str, dict[str, object]] = {flank: {"design": None} for flank in FLANKS}
     if space is not None and member.cutting == "fixed_setting" and any(spec.design for spec in specs.values()):
-        for flank, spec in specs.items():
-            changed[flank]["blade_point_width"] = point_width(spec, space.slots[flank])
+        for flank in FLANKS:
+            changed[flank]["blade_point_width"] = point_width(member, flank, space.slots[flank])
     return member.model_copy(update={flank: specs[flank].model_copy(update=changed[flank]) for flank in FLANKS})

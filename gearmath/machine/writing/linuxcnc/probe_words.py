@@ -145,6 +145,14 @@ class LinuxCncBlocks(Blocks):
         yield "(LOGCLOSE)"
         yield from self.dialect.end()
 
+    def aside(self, to: str) -> Iterator[str]:
+        """Turned first, and then moved: the feed of LinuxCNC is that of X Y Z wherever one of them moves, and A and B
+        would turn as fast as they can."""
+        x, y, a, b = to.split(" ")
+        for words in ((a, b), (x, y)):
+            if moved := [word for word in words if not word.endswith("=IC(0)")]:
+                yield from self._guarded(" ".join(moved), POSITIONING_FEED, "on the way to a point", None)
+
     def _off(self, up: str) -> Iterator[str]:
         """Off what was met, and up: as far as the contact lasts by G38.5."""
         yield f"G38.5 {up} F{POSITIONING_FEED:.3f}"

@@ -17,7 +17,7 @@ from configparser import ConfigParser
 from configparser import Error as IniError
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from gearmath.control.interface import Alarm, ChannelState, ConnectionLost, Handshake, Status, Touch
 from gearmath.errors import ComputationError, InputError
@@ -45,8 +45,8 @@ class LinuxCncControl:
         self._alarms: list[Alarm] = []
         self._turn = asyncio.Lock()
 
-    @staticmethod
-    async def connect(ini: Path, python: Sequence[str] = PYTHON) -> LinuxCncControl:
+    @classmethod
+    async def connect(cls, ini: Path, python: Sequence[str] = PYTHON) -> Self:
         """To the LinuxCNC that was started with this INI file. ``python`` is the command of the system's Python.
 
         Raises InputError for a file that is missing, ConnectionLost where no LinuxCNC runs.
@@ -60,7 +60,7 @@ class LinuxCncControl:
             )
         except OSError as error:
             raise InputError(f"{python[0]}: cannot be run: {error.strerror}: is LinuxCNC installed?") from error
-        one = LinuxCncControl(ini, process)
+        one = cls(ini, process)
         try:
             await one._answer()
         except ConnectionLost:
