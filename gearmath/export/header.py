@@ -57,12 +57,15 @@ def comment(paragraphs: Iterable[str]) -> str:
     return "/*\n" + "".join(f" * {line}".rstrip() + "\n" for line in lines) + " */\n"
 
 
-def kernel_comment(kernel: Kernel, memory: str) -> str:
-    """The head of a kernel's header file; ``memory`` is the sentence about its work memory."""
-    return comment(_paragraphs(kernel, memory))
+def kernel_comment(kernel: Kernel, memory: str, function: ca.Function | None = None) -> str:
+    """The head of a kernel's header file; ``memory`` is the sentence about its work memory.
+
+    ``function`` is what its C computes, where that is more than the kernel itself.
+    """
+    return comment(_paragraphs(kernel, memory, function or kernel.function))
 
 
-def _paragraphs(kernel: Kernel, memory: str) -> Iterator[str]:
+def _paragraphs(kernel: Kernel, memory: str, function: ca.Function) -> Iterator[str]:
     yield f"gm_{kernel.name}: generated, do not edit."
     yield ""
     yield kernel.description
@@ -75,7 +78,7 @@ def _paragraphs(kernel: Kernel, memory: str) -> Iterator[str]:
         yield f"requires: {requirement}"
     if kernel.source:
         yield f"source: {kernel.source}"
-    yield operations(kernel)
+    yield operations(function)
     yield memory
     yield f"written by {versions()}"
 
@@ -101,11 +104,11 @@ def _number(value: float) -> str:
     return str(value) if isinstance(value, int) else f"{value:.12g}"
 
 
-def operations(kernel: Kernel) -> str:
+def operations(function: ca.Function) -> str:
     """How many operations one call executes, and of which kind: a budget that a golden copy keeps."""
     unknown = "ops: not counted, the number depends on an iteration"
     try:
-        flat = kernel.function.expand()
+        flat = function.expand()
     except RuntimeError:
         return unknown
     names = (OPERATIONS[flat.instruction_id(k)] for k in range(flat.n_instructions()))
