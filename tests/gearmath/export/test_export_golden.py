@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from gearmath.export import teensy
-from gearmath.export.cnc import cnc_files
+from gearmath.export.cnc import by_hand, cnc_files
 from gearmath.export.folder import MANIFEST, manifest, write_folder
 from gearmath.specs.hobbing import load_hobbing_machine
 from gearmath.specs.toml import bundled

@@ -17,7 +17,7 @@
  *     [10] blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis
  *     [11] blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
  * in theta [rad] -1 ... 1: cradle rotation (roll position)
- * in pivot_height [mm] 0 ... 400: R_d + C_t: reading of Z with the blade tips level with the B axis
+ * in pivot_height [mm] -1000 ... 1000: R_d + C_t: reading of Z with the blade tips level with the B axis
  * in pivot_offset[3] [mm] -100 ... 100: B axis to pitch apex, in the axes of the work at A = 0; zero where none
  *     is given
  * out axes[5] [mixed]: axis positions X, Y, Z, A, B of the vertical machine
@@ -32,37 +32,34 @@
  *     sin(cutter_tilt)**2*sin(machine_root_angle)**2*cos(cradle_angle + cutter_swivel + theta)**2 +
  *     sin(cutter_tilt)**2*cos(machine_root_angle)**2*cos(cradle_angle + cutter_swivel + theta)**2) - 1/20 > 0
  * source: Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, with atan2
- * ops: 89 (add 19, atan2 2, cos 4, div 5, mul 38, neg 3, sin 4, sq 5, sqrt 1, sub 8)
+ * ops: 105 (add 24, atan2 2, cos 5, div 5, mul 43, neg 3, sin 5, sq 7, sqrt 2, sub 9)
  * work memory: none
  * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
  */
 #ifndef GM_AXIS_TRANSFORM_H
 #define GM_AXIS_TRANSFORM_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_axis_transform(
+GM_API int gm_axis_transform(
     const double settings[12],
     double theta,
     double pivot_height,
     const double pivot_offset[3],
     double axes[5]);
 
-void gm_axis_transform_batch(
-    long n,
-    const double *settings, long settings_stride,
-    const double *theta, long theta_stride,
-    const double *pivot_height, long pivot_height_stride,
-    const double *pivot_offset, long pivot_offset_stride,
-    double *axes);
+GM_API int gm_axis_transform_batch(
+    int64_t n,
+    const double *settings, int64_t settings_stride,
+    const double *theta, int64_t theta_stride,
+    const double *pivot_height, int64_t pivot_height_stride,
+    const double *pivot_offset, int64_t pivot_offset_stride,
+    double *axes,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

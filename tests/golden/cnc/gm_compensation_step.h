@@ -22,17 +22,13 @@
 #ifndef GM_COMPENSATION_STEP_H
 #define GM_COMPENSATION_STEP_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_compensation_step(
+GM_API int gm_compensation_step(
     const double normal_matrix[144],
     const double gradient[12],
     const double variables[12],
@@ -42,16 +38,17 @@ void gm_compensation_step(
     double step[12],
     double *promised);
 
-void gm_compensation_step_batch(
-    long n,
-    const double *normal_matrix, long normal_matrix_stride,
-    const double *gradient, long gradient_stride,
-    const double *variables, long variables_stride,
-    const double *lower, long lower_stride,
-    const double *upper, long upper_stride,
-    const double *damping, long damping_stride,
+GM_API int gm_compensation_step_batch(
+    int64_t n,
+    const double *normal_matrix, int64_t normal_matrix_stride,
+    const double *gradient, int64_t gradient_stride,
+    const double *variables, int64_t variables_stride,
+    const double *lower, int64_t lower_stride,
+    const double *upper, int64_t upper_stride,
+    const double *damping, int64_t damping_stride,
     double *step,
-    double *promised);
+    double *promised,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

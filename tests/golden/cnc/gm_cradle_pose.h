@@ -30,17 +30,13 @@
 #ifndef GM_CRADLE_POSE_H
 #define GM_CRADLE_POSE_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_cradle_pose(
+GM_API int gm_cradle_pose(
     const double settings[12],
     double theta,
     double V_c[3],
@@ -48,14 +44,15 @@ void gm_cradle_pose(
     double V_ls[3],
     double *work_angle);
 
-void gm_cradle_pose_batch(
-    long n,
-    const double *settings, long settings_stride,
-    const double *theta, long theta_stride,
+GM_API int gm_cradle_pose_batch(
+    int64_t n,
+    const double *settings, int64_t settings_stride,
+    const double *theta, int64_t theta_stride,
     double *V_c,
     double *V_p,
     double *V_ls,
-    double *work_angle);
+    double *work_angle,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

@@ -19,17 +19,13 @@
 #ifndef GM_CUTTER_SURFACE_H
 #define GM_CUTTER_SURFACE_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_cutter_surface(
+GM_API int gm_cutter_surface(
     double u,
     double beta,
     double blade_point_radius,
@@ -38,15 +34,16 @@ void gm_cutter_surface(
     double point_c[3],
     double normal_c[3]);
 
-void gm_cutter_surface_batch(
-    long n,
-    const double *u, long u_stride,
-    const double *beta, long beta_stride,
-    const double *blade_point_radius, long blade_point_radius_stride,
-    const double *blade_pressure_angle, long blade_pressure_angle_stride,
-    const double *side, long side_stride,
+GM_API int gm_cutter_surface_batch(
+    int64_t n,
+    const double *u, int64_t u_stride,
+    const double *beta, int64_t beta_stride,
+    const double *blade_point_radius, int64_t blade_point_radius_stride,
+    const double *blade_pressure_angle, int64_t blade_pressure_angle_stride,
+    const double *side, int64_t side_stride,
     double *point_c,
-    double *normal_c);
+    double *normal_c,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

@@ -18,30 +18,27 @@
 #ifndef GM_DEVIATION_SURFACE_H
 #define GM_DEVIATION_SURFACE_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_deviation_surface(
+GM_API int gm_deviation_surface(
     double lengthwise,
     double profilewise,
     const double surface_coefficients[10],
     double *surface_deviation,
     double monomials[10]);
 
-void gm_deviation_surface_batch(
-    long n,
-    const double *lengthwise, long lengthwise_stride,
-    const double *profilewise, long profilewise_stride,
-    const double *surface_coefficients, long surface_coefficients_stride,
+GM_API int gm_deviation_surface_batch(
+    int64_t n,
+    const double *lengthwise, int64_t lengthwise_stride,
+    const double *profilewise, int64_t profilewise_stride,
+    const double *surface_coefficients, int64_t surface_coefficients_stride,
     double *surface_deviation,
-    double *monomials);
+    double *monomials,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

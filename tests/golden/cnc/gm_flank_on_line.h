@@ -40,17 +40,13 @@
 #ifndef GM_FLANK_ON_LINE_H
 #define GM_FLANK_ON_LINE_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_flank_on_line(
+GM_API int gm_flank_on_line(
     const double contact_guess[3],
     const double settings[12],
     double side,
@@ -61,17 +57,18 @@ void gm_flank_on_line(
     double sensitivity[12],
     double *residual_size);
 
-void gm_flank_on_line_batch(
-    long n,
-    const double *contact_guess, long contact_guess_stride,
-    const double *settings, long settings_stride,
-    const double *side, long side_stride,
-    const double *line_point, long line_point_stride,
-    const double *line_direction, long line_direction_stride,
+GM_API int gm_flank_on_line_batch(
+    int64_t n,
+    const double *contact_guess, int64_t contact_guess_stride,
+    const double *settings, int64_t settings_stride,
+    const double *side, int64_t side_stride,
+    const double *line_point, int64_t line_point_stride,
+    const double *line_direction, int64_t line_direction_stride,
     double *contact,
     double *deviation,
     double *sensitivity,
-    double *residual_size);
+    double *residual_size,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

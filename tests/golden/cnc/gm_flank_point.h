@@ -40,17 +40,13 @@
 #ifndef GM_FLANK_POINT_H
 #define GM_FLANK_POINT_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_flank_point(
+GM_API int gm_flank_point(
     const double contact_guess[3],
     const double settings[12],
     double side,
@@ -61,17 +57,18 @@ void gm_flank_point(
     double normal_w[3],
     double *residual_size);
 
-void gm_flank_point_batch(
-    long n,
-    const double *contact_guess, long contact_guess_stride,
-    const double *settings, long settings_stride,
-    const double *side, long side_stride,
-    const double *axial, long axial_stride,
-    const double *radial, long radial_stride,
+GM_API int gm_flank_point_batch(
+    int64_t n,
+    const double *contact_guess, int64_t contact_guess_stride,
+    const double *settings, int64_t settings_stride,
+    const double *side, int64_t side_stride,
+    const double *axial, int64_t axial_stride,
+    const double *radial, int64_t radial_stride,
     double *contact,
     double *point_w,
     double *normal_w,
-    double *residual_size);
+    double *residual_size,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

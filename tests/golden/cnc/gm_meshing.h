@@ -30,17 +30,13 @@
 #ifndef GM_MESHING_H
 #define GM_MESHING_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_meshing(
+GM_API int gm_meshing(
     double u,
     double beta,
     double theta,
@@ -48,14 +44,15 @@ void gm_meshing(
     double side,
     double *meshing_residual);
 
-void gm_meshing_batch(
-    long n,
-    const double *u, long u_stride,
-    const double *beta, long beta_stride,
-    const double *theta, long theta_stride,
-    const double *settings, long settings_stride,
-    const double *side, long side_stride,
-    double *meshing_residual);
+GM_API int gm_meshing_batch(
+    int64_t n,
+    const double *u, int64_t u_stride,
+    const double *beta, int64_t beta_stride,
+    const double *theta, int64_t theta_stride,
+    const double *settings, int64_t settings_stride,
+    const double *side, int64_t side_stride,
+    double *meshing_residual,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

@@ -17,30 +17,27 @@
 #ifndef GM_POINT_DEVIATION_H
 #define GM_POINT_DEVIATION_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_point_deviation(
+GM_API int gm_point_deviation(
     const double tip_center[3],
     double tip_radius,
     const double point_w[3],
     const double normal_w[3],
     double *deviation);
 
-void gm_point_deviation_batch(
-    long n,
-    const double *tip_center, long tip_center_stride,
-    const double *tip_radius, long tip_radius_stride,
-    const double *point_w, long point_w_stride,
-    const double *normal_w, long normal_w_stride,
-    double *deviation);
+GM_API int gm_point_deviation_batch(
+    int64_t n,
+    const double *tip_center, int64_t tip_center_stride,
+    const double *tip_radius, int64_t tip_radius_stride,
+    const double *point_w, int64_t point_w_stride,
+    const double *normal_w, int64_t normal_w_stride,
+    double *deviation,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

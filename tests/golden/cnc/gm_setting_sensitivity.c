@@ -1,5 +1,6 @@
 /* gm_setting_sensitivity: generated, do not edit. */
 #include "gm_setting_sensitivity.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -292,7 +293,80 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_setting_sensitivity(
+static int gm_setting_sensitivity_u_inside(const double *x)
+{
+  static const double low[1] = {-1.5000000000000002e-08};
+  static const double high[1] = {150.000000015};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_setting_sensitivity_beta_inside(const double *x)
+{
+  static const double low[1] = {-3.141592656731386};
+  static const double high[1] = {3.141592656731386};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_setting_sensitivity_theta_inside(const double *x)
+{
+  static const double low[1] = {-1.000000001};
+  static const double high[1] = {1.000000001};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_setting_sensitivity_settings_inside(const double *x)
+{
+  static const double low[12] = {
+    1.9999998,
+    -1.5000000015,
+    -0.4000000004,
+    -3.141592656731386,
+    -400.00000004,
+    -200.00000002,
+    -200.00000002,
+    0.04999999855,
+    0.499999992,
+    -3.141592656731386,
+    1.99999975,
+    0.0499999994};
+  static const double high[12] = {
+    2000.0000002,
+    1.5000000015,
+    0.4000000004,
+    3.141592656731386,
+    400.00000004,
+    200.00000002,
+    200.00000002,
+    1.4500000014499999,
+    8.000000008,
+    3.141592656731386,
+    2500.00000025,
+    0.6000000006};
+  return gm_inside(x, 12, low, high);
+}
+static int gm_setting_sensitivity_side_inside(const double *x)
+{
+  return x[0] == -1.0 || x[0] == 1.0;
+}
+
+static int gm_setting_sensitivity_point(
+    const double *u,
+    const double *beta,
+    const double *theta,
+    const double *settings,
+    const double *side,
+    double *sensitivity)
+{
+  const double *arg[5];
+  double *res[1];
+  arg[0] = u;
+  arg[1] = beta;
+  arg[2] = theta;
+  arg[3] = settings;
+  arg[4] = side;
+  res[0] = sensitivity;
+  (void)casadi_f0(arg, res, 0, 0, 0);
+  return gm_finite(sensitivity, 12) ? GM_OK : GM_E_NO_RESULT;
+}
+
+int gm_setting_sensitivity(
     double u,
     double beta,
     double theta,
@@ -300,34 +374,65 @@ void gm_setting_sensitivity(
     double side,
     double sensitivity[12])
 {
-  const double *arg[5];
-  double *res[1];
-  arg[0] = &u;
-  arg[1] = &beta;
-  arg[2] = &theta;
-  arg[3] = settings;
-  arg[4] = &side;
-  res[0] = sensitivity;
-  (void)casadi_f0(arg, res, 0, 0, 0);
+  int status = GM_E_DOMAIN;
+  if (!settings || !sensitivity) return GM_E_NULL;
+  if (gm_setting_sensitivity_u_inside(&u)
+      && gm_setting_sensitivity_beta_inside(&beta)
+      && gm_setting_sensitivity_theta_inside(&theta)
+      && gm_setting_sensitivity_settings_inside(settings)
+      && gm_setting_sensitivity_side_inside(&side)) {
+    status = gm_setting_sensitivity_point(&u, &beta, &theta, settings, &side, sensitivity);
+  }
+  if (status != GM_OK) {
+    gm_nan(sensitivity, 12);
+  }
+  return status;
 }
 
-void gm_setting_sensitivity_batch(
-    long n,
-    const double *u, long u_stride,
-    const double *beta, long beta_stride,
-    const double *theta, long theta_stride,
-    const double *settings, long settings_stride,
-    const double *side, long side_stride,
-    double *sensitivity)
+int gm_setting_sensitivity_batch(
+    int64_t n,
+    const double *u, int64_t u_stride,
+    const double *beta, int64_t beta_stride,
+    const double *theta, int64_t theta_stride,
+    const double *settings, int64_t settings_stride,
+    const double *side, int64_t side_stride,
+    double *sensitivity,
+    int64_t *first_bad)
 {
-  long k;
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || u_stride < 0 || beta_stride < 0 || theta_stride < 0 || settings_stride < 0 || side_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!u || !beta || !theta || !settings || !side || !sensitivity) return GM_E_NULL;
+  shared = (u_stride != 0 || gm_setting_sensitivity_u_inside(u))
+      && (beta_stride != 0 || gm_setting_sensitivity_beta_inside(beta))
+      && (theta_stride != 0 || gm_setting_sensitivity_theta_inside(theta))
+      && (settings_stride != 0 || gm_setting_sensitivity_settings_inside(settings))
+      && (side_stride != 0 || gm_setting_sensitivity_side_inside(side));
   for (k = 0; k < n; ++k) {
-    gm_setting_sensitivity(
-        u[k * u_stride],
-        beta[k * beta_stride],
-        theta[k * theta_stride],
-        settings + k * settings_stride,
-        side[k * side_stride],
-        sensitivity + k * 12);
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (u_stride == 0 || gm_setting_sensitivity_u_inside(u + k * u_stride))
+        && (beta_stride == 0 || gm_setting_sensitivity_beta_inside(beta + k * beta_stride))
+        && (theta_stride == 0 || gm_setting_sensitivity_theta_inside(theta + k * theta_stride))
+        && (settings_stride == 0 || gm_setting_sensitivity_settings_inside(settings + k * settings_stride))
+        && (side_stride == 0 || gm_setting_sensitivity_side_inside(side + k * side_stride))) {
+      now = gm_setting_sensitivity_point(
+          u + k * u_stride,
+          beta + k * beta_stride,
+          theta + k * theta_stride,
+          settings + k * settings_stride,
+          side + k * side_stride,
+          sensitivity + k * 12);
+    }
+    if (now != GM_OK) {
+      gm_nan(sensitivity + k * 12, 12);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
   }
+  return status;
 }
