@@ -119,8 +119,9 @@ def _assemble(
     """``includes`` of the header, and more of the source."""
     name = f"gm_{kernel.name}"
     guard = f"{name.upper()}_H"
+    taken = contract.taken if function else None  # what is in whole numbers does not look at its inputs
     header = (
-        f"{kernel_comment(kernel, memory, function)}#ifndef {guard}\n#define {guard}\n\n{includes[0]}\n"
+        f"{kernel_comment(kernel, memory, function, taken)}#ifndef {guard}\n#define {guard}\n\n{includes[0]}\n"
         f'#ifdef __cplusplus\nextern "C" {{\n#endif\n\n{declarations}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif\n'
     )
     source = f'/* {name}: generated, do not edit. */\n#include "{name}.h"\n{includes[1]}\n{body.text}\n{typed}'

@@ -6,11 +6,12 @@ README, and the vectors of the self-test.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from types import MappingProxyType
 
 from gearmath.bevel.flank import flank_point
 from gearmath.bevel.identify.bounded_step import compensation_step
@@ -74,9 +75,12 @@ def _texts(folder: Traversable, inside: str) -> Iterator[tuple[str, str]]:
             yield inside + entry.name, entry.read_text("utf-8")
 
 
-def export_cnc(folder: Path) -> tuple[str, ...]:
-    """Write the folder and return the names of its files. Raises InputError where it holds other files."""
-    files = cnc_files()
+def export_cnc(folder: Path, settings: Mapping[str, str] = MappingProxyType({})) -> tuple[str, ...]:
+    """Write the folder and return the names of its files. Raises InputError where it holds other files.
+
+    ``settings`` are settings files for ``gm-post``: name to text, as ``post.post_file`` makes them.
+    """
+    files = {**cnc_files(), **settings}
     write_folder(folder, files)
     return tuple(sorted(files))
 

@@ -7,6 +7,7 @@ first bad one.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import casadi as ca
@@ -18,8 +19,8 @@ from gearmath.export.wrapper import Sizes, columns, transposed, wrapped
 
 #: An input may be outside its range by this part of the larger end: a unit vector has components of 1 + 2e-16.
 _SLACK = 1e-9
-#: A length may be this many times outside the range that its header states: the equations know no size.
-LENGTH_FACTOR = 10.0
+#: The range of a header is the one that is tested; numbers are taken up to this many times beyond it.
+_BEYOND = 10.0
 
 
 def with_margins(kernel: Kernel) -> ca.Function:
@@ -86,13 +87,23 @@ def _folded(numbers: str) -> str:
     return numbers if len(numbers) < 80 else "\n    " + numbers.replace(", ", ",\n    ")
 
 
-def _ends(element: Quantity) -> tuple[float, float]:
-    """The least and the greatest number that are taken."""
+def taken(element: Quantity) -> tuple[float, float]:
+    """The least and the greatest number that is taken for an input.
+
+    Sizes, rolls and directions may be far beyond what is tested. Components of unit vectors may not, and angles that
+    are never zero go to a right one at most: beyond, they are of another unit.
+    """
     low, high = map(float, element.domain)
+    if element.unit == "1" and (low, high) == (-1.0, 1.0):
+        return low, high
+    low = low / _BEYOND if low > 0 else low * _BEYOND
+    high = high * _BEYOND if high > 0 else high / _BEYOND
+    return (low, min(high, math.pi / 2)) if element.unit == "rad" and low > 0 else (low, high)
+
+
+def _ends(element: Quantity) -> tuple[float, float]:
+    low, high = taken(element)
     slack = _SLACK * max(abs(low), abs(high))
-    if element.unit == "mm":
-        low = low / LENGTH_FACTOR if low > 0 else low * LENGTH_FACTOR
-        high = high * LENGTH_FACTOR if high > 0 else high / LENGTH_FACTOR
     return (low - slack, high + slack) if slack < float("inf") else (low, high)
 
 

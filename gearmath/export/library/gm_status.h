@@ -5,8 +5,8 @@
  * output of that point is NaN. Nothing is allocated, nothing is kept between calls and nothing is global, so threads may
  * call whatever they like at the same time. Outputs must not overlap inputs.
  *
- * Every number must be in the range that the header of its function states; a length may be up to ten times outside of
- * it, since the equations know no size.
+ * The header of a function states for every input the range that is tested, and where it takes more, what it takes:
+ * outside of that a number is refused.
  *
  * gm_<name>_batch(n, ...) runs over n points. Every input is an array with a stride, in doubles: the size of the input
  * where the points follow each other, 0 where all points share it. Outputs stand one point behind the other. Each point

@@ -177,9 +177,9 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Cut
         raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
     (cut,) = Cut.of(member, name)
     _check_motions(member, name, cut)
-    tooth, lift = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
+    tooth, above = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
-        one = hobbing_pass(member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth)
+        one = hobbing_pass(member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, above, PLUNGE_FEED, tooth)
         one.axes[:, 2] += lift(member, cut, stock, job.dry_run)
         label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
         axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")

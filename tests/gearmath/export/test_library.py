@@ -161,37 +161,62 @@ def batch(library: ctypes.CDLL, name: str, n: int, inputs: list, sizes: list[int
     return function(n, *given, *map(pointer, outputs), bad), bad.value
 
 
-def domain_faults() -> Iterator[tuple[str, int, int, float]]:
-    """Kernel, input, element, and a number that must be refused there."""
-    for kernel in cnc_kernels():
-        for which, quantity in enumerate(kernel.inputs):
-            for k, element in enumerate(quantity.elements):
-                if k > 11:
-                    break  # further elements of a matrix are like those
-                if element.values:
-                    yield from ((kernel.name, which, k, wrong) for wrong in (0.0, 0.5, np.nan, np.inf))
-                    continue
-                low, high = element.domain
-                beyond = 10.0 if element.unit == "mm" else 1.0
-                far = 1.001 * beyond * max(abs(low), abs(high)) + 1e-6
-                yield from ((kernel.name, which, k, wrong) for wrong in (far, -far, np.nan, np.inf, -np.inf))
+_NUMBER = r"-?[\d.]+(?:e[+-]?\d+)?"
 
 
-def test_every_input_outside_its_range_is_refused_point_by_point(loaded: ctypes.CDLL, samples: Callable) -> None:
-    """What is beyond the larger end, on either side, is beyond both ends: no knowledge of how ranges are stored."""
-    drawn = {kernel.name: samples(kernel.name, 4) for kernel in cnc_kernels()}
-    kernels = {kernel.name: kernel for kernel in cnc_kernels()}
+def promised(header: str) -> Iterator[tuple[str, int, float, float]]:
+    """Input, element and the numbers that are taken, as the comment of a header has them."""
+    name = ""
+    # lines that the comment broke are joined again
+    for line in re.sub(r"\n \*     (?!\[)\s*", " ", header).splitlines():
+        if argument := re.match(r" \* in (\w+)", line):
+            name = argument[1]
+        elif not line.startswith(" *     ["):
+            name = ""
+        element = re.match(r" \*     \[(\d+)\]", line)
+        ends = re.search(rf"taken: ({_NUMBER}) \.\.\. ({_NUMBER})\)", line) or re.search(
+            rf"\] ({_NUMBER}) \.\.\. ({_NUMBER})", line
+        )
+        if name and ends:
+            yield name, int(element[1]) if element else 0, float(ends[1]), float(ends[2])
+
+
+def test_what_a_header_does_not_take_is_refused_point_by_point(
+    library: Path, loaded: ctypes.CDLL, samples: Callable
+) -> None:
     count = 0
-    for name, which, element, wrong in domain_faults():
-        kernel = kernels[name]
-        inputs = [np.array(values, order="C") for values in drawn[name]]
-        inputs[which].reshape(4, -1)[2, element] = wrong
-        outputs = [np.zeros((4, quantity.size)) for quantity in kernel.outputs]
+    for kernel in cnc_kernels():
+        drawn, names = samples(kernel.name, 4), [quantity.name for quantity in kernel.inputs]
         sizes = [quantity.size for quantity in kernel.inputs]
-        assert batch(loaded, name, 4, inputs, sizes, outputs) == (3, 2), (name, which, element, wrong)
-        assert all(np.isnan(values[2]).all() and np.isfinite(values[[0, 1, 3]]).all() for values in outputs)
-        count += 1
-    assert count > 500
+        for name, element, low, high in promised((library / f"gm_{kernel.name}.h").read_text()):
+            beyond = 1e-6 * max(abs(low), abs(high))
+            for value, refused in (
+                (low - beyond, True),
+                (high + beyond, True),
+                (np.nan, True),
+                (np.inf, True),
+                (low, False),
+                (high, False),
+            ):
+                inputs = [np.array(values, order="C") for values in drawn]
+                inputs[names.index(name)].reshape(4, -1)[2, element] = value
+                outputs = [np.zeros((4, quantity.size)) for quantity in kernel.outputs]
+                status, bad = batch(loaded, kernel.name, 4, inputs, sizes, outputs)
+                assert (status == 3) == refused, (kernel.name, name, element, value)
+                assert bad == (-1 if status == 0 else 2)
+                assert status == 0 or all(np.isnan(values[2]).all() for values in outputs)
+                assert all(np.isfinite(values[[0, 1, 3]]).all() for values in outputs)
+                count += 1
+    assert count > 900
+
+
+def test_a_flank_is_on_one_side_or_the_other(loaded: ctypes.CDLL, samples: Callable) -> None:
+    u, beta, theta, settings, side = samples("flank_family", 4)
+    for wrong in (0.0, 0.5, 2.0, np.nan):
+        side[3] = wrong
+        outputs = [np.zeros((4, 3)), np.zeros((4, 3))]
+        given = [u, beta, theta, settings, side]
+        assert batch(loaded, "flank_family", 4, given, [1, 1, 1, 12, 1], outputs) == (3, 3)
 
 
 def test_what_a_header_requires_is_refused_at_a_singular_pose(loaded: ctypes.CDLL, samples: Callable) -> None:

@@ -64,6 +64,19 @@ static char *contents(const char *file, size_t *length)
 
 static int letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 
+/* Whether an operating system keeps the name for itself: CON PRN AUX NUL COM1-9 LPT1-9, in any case. */
+static int reserved(const char *name)
+{
+  static const char *const words[] = {"CON", "PRN", "AUX", "NUL", "COM", "LPT"};
+  const size_t length = strlen(name);
+  int k, j;
+  for (k = 0; k < 6; ++k) {
+    for (j = 0; j < 3 && (name[j] == words[k][j] || name[j] == words[k][j] + 32); ++j) {}
+    if (j == 3 && (k < 4 ? length == 3 : length == 4 && name[3] >= '1' && name[3] <= '9')) return 1;
+  }
+  return 0;
+}
+
 /* The name of the program out of that of its file; controls take letters, digits and _ only. */
 static void program_name(const char *file, char *name)
 {
@@ -80,6 +93,7 @@ static void program_name(const char *file, char *name)
     if (!letter(name[k]) && name[k] != '_' && !(name[k] >= '0' && name[k] <= '9')) break;
   if (k < length || length < 2 || !(letter(name[1]) && (letter(name[0]) || name[0] == '_')))
     failed(file, "the name of the program must be letters, digits and _, and begin with two letters or _ and a letter", 2);
+  if (reserved(name)) failed(file, "the name of the program is a reserved name of the operating system", 2);
 }
 
 int main(int count, char **arguments)

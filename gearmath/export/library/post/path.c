@@ -71,18 +71,17 @@ static void positions(const Job *job, int64_t number)
   Roll *roll = job->rolls + number;
   double *settings = roll->settings;
   int64_t stride = 0, bad;
+  int status;
   if (roll->motion_rows) {
     settings = grown(NULL, roll->nodes * SETTINGS, sizeof *settings);
     stride = SETTINGS;
-    computed(job, number,
-        gm_moved_settings_batch(
-            roll->nodes, roll->settings, 0, roll->motion, 0, roll->theta, 1, settings, &bad),
-        bad, "moving settings");
+    status = gm_moved_settings_batch(
+        roll->nodes, roll->settings, 0, roll->motion, 0, roll->theta, 1, settings, &bad);
+    computed(job, number, status, bad, "moving settings");
   }
-  computed(job, number,
-      gm_axis_transform_batch(roll->nodes, settings, stride, roll->theta, 1, &job->pivot_height, 0, job->pivot_offset, 0,
-          roll->axes, &bad),
-      bad, "axis positions");
+  status = gm_axis_transform_batch(
+      roll->nodes, settings, stride, roll->theta, 1, &job->pivot_height, 0, job->pivot_offset, 0, roll->axes, &bad);
+  computed(job, number, status, bad, "axis positions");
   if (stride) free(settings);
   unwrap(roll->axes, roll->nodes);
   roll->axes[2] += roll->plunge;
@@ -147,11 +146,10 @@ static void times(const Job *job, int64_t number)
   double *seen = grown(NULL, 3 * roll->nodes, sizeof *seen), *clock = grown(NULL, n, sizeof *clock);
   double *steps = grown(NULL, AXES * n, sizeof *steps), *slower = grown(NULL, n, sizeof *slower), factor;
   int64_t k, bad;
-  int j;
-  computed(job, number,
-      gm_seen_from_tool_batch(
-          roll->nodes, roll->axes, AXES, roll->tooth, 0, &job->pivot_height, 0, job->pivot_offset, 0, seen, &bad),
-      bad, "way past the tooth");
+  int j, status;
+  status = gm_seen_from_tool_batch(
+      roll->nodes, roll->axes, AXES, roll->tooth, 0, &job->pivot_height, 0, job->pivot_offset, 0, seen, &bad);
+  computed(job, number, status, bad, "way past the tooth");
   for (k = 0; k < n; ++k) {
     const double *at = seen + 3 * k;
     const double dx = at[3] - at[0], dy = at[4] - at[1], dz = at[5] - at[2];
