@@ -44,8 +44,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def gm_post(folder: Path, gcc: str) -> Path:
     """The program under ASan and UBSan, warnings being errors."""
-    sources = [*sorted(folder.glob("post/*.c")), *sorted(folder.glob("gm_*.c"))]
-    subprocess.run([gcc, *STRICT, *ASAN, "-I.", *map(str, sources), "-o", "gm-post", "-lm"], cwd=folder, check=True)
+    flags = " ".join((*STRICT[1:], *ASAN))
+    subprocess.run(["make", "-s", f"CC={gcc}", f"CFLAGS={flags}", "gm-post"], cwd=folder, check=True)
     return folder / "gm-post"
 
 
@@ -127,9 +127,10 @@ def test_edited_settings_move_the_axes_as_the_set_would_and_the_head_says_so(
     concave = altered(gear_set, "pinion", "concave", radial_distance=wrong).member("pinion").concave
     wanted = axis_positions(concave, plan.passes[0].theta, vertical.pivot_height, vertical.pivot)
     path = execute(program, "CUT.MPF")
-    found = np.array([block.end[:5] for block in path.blocks if block.feed_motion])  # type: ignore[attr-defined]
-    assert len(found) > len(wanted)
-    assert np.abs(found[: len(wanted), :3] - wanted[:, :3]).max() < 1e-5
+    concave_cut = path.axes[(path.tool == 0) & ~path.rapid]
+    assert len(concave_cut) == len(wanted)
+    assert np.abs(concave_cut[:, :3] - wanted[:, :3]).max() < 1e-5
+    assert np.abs(concave_cut - axis_positions(plan.member.concave, plan.passes[0].theta, 500.0)).max() > 0.01
 
 
 def test_carriage_returns_of_a_transfer_do_not_count_as_an_edit(
@@ -157,7 +158,7 @@ def small(gear_set: BevelSet, vertical: MillingMachine) -> str:
         (r"^feed .*", "speeed 1", "speeed: no such key"),
         (r"^decimals .*", "decimals 5 6.5", "decimals: number 2 = 6.5: must be a whole number from 1 to 9"),
         (r"^speed .*", "speed 1 2 3", "speed: has 3 numbers, must have 5"),
-        (r"^speed .*", "speed 1 2 3 0 5", "speed: number 4 = 0: must be at least 1e-09"),
+        (r"^speed .*", "speed 1 2 3 0 5", "speed: number 4 = 0: must be at least 1e-9"),
         (r"^settings \S+", "settings nan", "settings: number 1 is no number"),
         (r"^settings \S+", "settings 5000", "roll 0: axis positions at node 0: an input is not a number, or outside"),
         (r"^travel X .*", "travel X -1 1", r"pass 0: axis X = -\d+.\d+ mm at node 0: travel is -1 to 1"),
@@ -166,7 +167,7 @@ def small(gear_set: BevelSet, vertical: MillingMachine) -> str:
         (r"^pass \d+", "pass 9", "pass: number 1 = 9: must be a whole number from 0 to 1"),
         (r"^node .*\n", "", "roll 0: has 0 nodes, must have at least 2"),
         (r"\{X\}", "{W}", r"\{W\}: no such slot here"),
-        (r"\{X\}", "{X", r"\{X Y\{Y: no such slot here|a slot has no end"),
+        (r"\{X\}", "{X", r"\{X Y\{Y\}: no such slot here"),
         (r"^n G17", "q G17", "q: must be one of c n b s e pass"),
         (r"^pass .*\n", "", r"b: stands before the first pass|there is no pass to write"),
         (r"^c ; PART.*", "c \x01", "no settings file of gm-post"),
@@ -183,25 +184,26 @@ def test_what_is_no_settings_file_is_refused_in_one_sentence(
     assert re.search(words, message), message
 
 
-@pytest.mark.parametrize("name", ["1CUT.MPF", "C.MPF", "CON.MPF", "COM1.MPF", "MUCH_TOO_LONG_FOR_A_CONTROL.MPF", "A-B.MPF"])
+@pytest.mark.parametrize(
+    "name", ["1CUT.MPF", "C.MPF", "CON.MPF", "COM1.MPF", "MUCH_TOO_LONG_FOR_A_CONTROL.MPF", "A-B.MPF"]
+)
 def test_name_that_a_control_does_not_take_is_refused(name: str, small: str, gm_post: Path, tmp_path: Path) -> None:
     assert "the name of the program" in post(gm_post, small, tmp_path, 2, name)[1]
 
 
 def test_fuzzed_settings_files_never_crash_and_say_one_sentence(
-    small: str, folder: Path, gcc: str, tmp_path: Path
+    small: str, gm_post: Path, gcc: str, tmp_path: Path
 ) -> None:
-    """Under ASan and UBSan, 5 000 mutations of a short file, each in a process of its own."""
+    """Under ASan and UBSan, 5 000 mutations of a short file."""
     lines = small.splitlines(keepends=True)
     starts = [k for k, line in enumerate(lines) if line.startswith("pass ")]
     (tmp_path / "small.settings").write_text("".join(lines[: starts[0] + 14]))
     harness = Path(__file__).with_name("fuzz_post.c")
-    sources = [*sorted(folder.glob("post/[!g]*.c")), *sorted(folder.glob("gm_*.c"))]
-    command = [gcc, "-std=gnu99", "-O1", *ASAN, "-I.", "-Ipost", harness, *map(str, sources), "-o", "fuzz", "-lm"]
-    subprocess.run(command, cwd=folder, check=True)
-    done = subprocess.run(
-        [folder / "fuzz", "small.settings", str(FUZZED), "17"], cwd=tmp_path, capture_output=True, text=True
-    )
+    flags, library = ("-std=gnu99", "-O1", *ASAN), gm_post.with_name("libgearmath.a")
+    command = [gcc, *flags, "-I.", "-Ipost", str(harness), str(library), "-o", "fuzz", "-lm"]
+    subprocess.run(command, cwd=library.parent, check=True)
+    command = [library.with_name("fuzz"), "small.settings", str(FUZZED), "17"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     refused, written = map(int, re.findall(r"\d+", done.stdout))
     assert refused + written == FUZZED

@@ -51,10 +51,15 @@ void *grown(void *array, int64_t count, size_t size)
 static char *contents(const char *file, size_t *length)
 {
   FILE *stream = fopen(file, "rb");
-  char *text;
+  char *text = NULL;
+  size_t room = 65536;
   if (!stream) failed(file, strerror(errno), 2);
-  text = grown(NULL, MOST_BYTES + 1, 1);
-  *length = fread(text, 1, MOST_BYTES + 1, stream);
+  *length = 0;
+  do {
+    room *= 2;
+    text = grown(text, (int64_t)room + 1, 1);
+    *length += fread(text + *length, 1, room - *length, stream);
+  } while (*length == room && room <= MOST_BYTES);
   if (ferror(stream)) failed(file, "cannot be read", 2);
   fclose(stream);
   if (*length > MOST_BYTES) failed(file, "is longer than 16 MB: this is no settings file of gm-post", 2);

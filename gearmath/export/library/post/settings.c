@@ -21,7 +21,8 @@ static void numbers(const Job *job, int64_t line, const char *key, const char *t
     char *end;
     while (*text == ' ') ++text;
     if (*text == '\0') refuse(job, line, "%s: has %d numbers, must have %d", key, k, count);
-    if (strspn(text, "+-.0123456789eE") == 0) refuse(job, line, "%s: number %d is no number", key, k + 1);
+    if (strspn(text, "+-.0123456789eE") != strcspn(text, " ")) /* strtod reads 0x10, inf and nan as well */
+      refuse(job, line, "%s: number %d is no number", key, k + 1);
     values[k] = strtod(text, &end);
     if (end == text || (*end != ' ' && *end != '\0')) refuse(job, line, "%s: number %d is no number", key, k + 1);
     if (!(fabs(values[k]) <= 1e9)) refuse(job, line, "%s: number %d: must be at most 1e9", key, k + 1);
