@@ -46,7 +46,7 @@ lint: $(VENV)/.test
 
 # filterwarnings is emptied for pytest itself; in the notebooks every warning is an error
 notebooks: $(VENV)/.test
-	$(if $(NOTEBOOKS),PYTHONWARNINGS=error MPLBACKEND=agg $(BIN)/pytest -o filterwarnings= --nbval-lax --nbval-current-env \
+	$(if $(NOTEBOOKS),PYTHONWARNINGS=error MPLBACKEND=agg $(BIN)/pytest -p nbval.plugin -o filterwarnings= --nbval-lax --nbval-current-env \
 		--nbval-cell-timeout 60 -n $(JOBS) --dist loadscope --durations 5 notebooks)
 
 # every warning is an error: a link that leads nowhere, a reference without a target
