@@ -4,22 +4,30 @@
  * Axis positions of the vertical machine that put the cutter where the cradle machine has it (5.1-5.3).
  *
  * in settings[12] [mixed]: machine and cutter settings of one flank
- *     [0] radial_distance [mm] 20 ... 200: machine centre to cutter centre in the machine plane
- *     [1] cradle_angle [rad] -1.5 ... 1.5: polar angle of the cutter centre at cradle rotation zero
- *     [2] cutter_tilt [rad] -0.4 ... 0.4: tilt of the cutter axis against the cradle axis
- *     [3] cutter_swivel [rad] -3.14159265359 ... 3.14159265359: direction of the tilt, about the cradle axis
- *     [4] blank_offset [mm] -40 ... 40: work axis to machine centre, along machine axis j
- *     [5] sliding_base [mm] -20 ... 20: withdrawal of the work along the cradle axis
- *     [6] machine_center_to_crossing_point [mm] -20 ... 20: advance of the work along its own axis
- *     [7] machine_root_angle [rad] 0.05 ... 1.45: work axis against the machine plane
- *     [8] ratio_of_roll [1] 0.5 ... 8: work rotation per cradle rotation
- *     [9] work_rotation_offset [rad] -3.14159265359 ... 3.14159265359: work rotation at cradle rotation zero
- *     [10] blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis
- *     [11] blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
- * in theta [rad] -1 ... 1: cradle rotation (roll position)
- * in pivot_height [mm] -1000 ... 1000: R_d + C_t: reading of Z with the blade tips level with the B axis
- * in pivot_offset[3] [mm] -100 ... 100: B axis to pitch apex, in the axes of the work at A = 0; zero where none
- *     is given
+ *     [0] radial_distance [mm] 20 ... 200 (taken: 2 ... 2000): machine centre to cutter centre in the machine
+ *         plane
+ *     [1] cradle_angle [rad] -1.5 ... 1.5 (taken: -15 ... 15): polar angle of the cutter centre at cradle
+ *         rotation zero
+ *     [2] cutter_tilt [rad] -0.4 ... 0.4 (taken: -4 ... 4): tilt of the cutter axis against the cradle axis
+ *     [3] cutter_swivel [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359):
+ *         direction of the tilt, about the cradle axis
+ *     [4] blank_offset [mm] -40 ... 40 (taken: -400 ... 400): work axis to machine centre, along machine axis j
+ *     [5] sliding_base [mm] -20 ... 20 (taken: -200 ... 200): withdrawal of the work along the cradle axis
+ *     [6] machine_center_to_crossing_point [mm] -20 ... 20 (taken: -200 ... 200): advance of the work along its
+ *         own axis
+ *     [7] machine_root_angle [rad] 0.05 ... 1.45 (taken: 0.005 ... 1.57079632679): work axis against the machine
+ *         plane
+ *     [8] ratio_of_roll [1] 0.5 ... 8 (taken: 0.05 ... 80): work rotation per cradle rotation
+ *     [9] work_rotation_offset [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359):
+ *         work rotation at cradle rotation zero
+ *     [10] blade_point_radius [mm] 20 ... 250 (taken: 2 ... 2500): radius of the blade tip about the cutter axis
+ *     [11] blade_pressure_angle [rad] 0.05 ... 0.6 (taken: 0.005 ... 1.57079632679): angle between blade and
+ *         cutter axis
+ * in theta [rad] -1 ... 1 (taken: -10 ... 10): cradle rotation (roll position)
+ * in pivot_height [mm] -1000 ... 1000 (taken: -10000 ... 10000): R_d + C_t: reading of Z with the blade tips
+ *     level with the B axis
+ * in pivot_offset[3] [mm] -100 ... 100 (taken: -1000 ... 1000): B axis to pitch apex, in the axes of the work at
+ *     A = 0; zero where none is given
  * out axes[5] [mixed]: axis positions X, Y, Z, A, B of the vertical machine
  *     [0] X [mm] -500 ... 500: position of axis X
  *     [1] Y [mm] -500 ... 500: position of axis Y

@@ -3,13 +3,15 @@
  *
  * One bounded Levenberg-Marquardt step of 12 scaled settings, and the fall of the sum of squares it promises.
  *
- * in normal_matrix[12][12] [mixed] -10000 ... 10000: transposed Jacobian times Jacobian of the residuals,
- *     scaled, row by row
- * in gradient[12] [mixed] -10000 ... 10000: transposed Jacobian times residuals, scaled
- * in variables[12] [mixed] -1 ... 1: scaled variables now
- * in lower[12] [mixed] -1 ... 1: least scaled variables; as the greatest where a variable is not free
- * in upper[12] [mixed] -1 ... 1: greatest scaled variables
- * in damping [1] 0 ... 1000000000: damping against the mean of the diagonal
+ * in normal_matrix[12][12] [mixed] -10000 ... 10000 (taken: -100000 ... 100000): transposed Jacobian times
+ *     Jacobian of the residuals, scaled, row by row
+ * in gradient[12] [mixed] -10000 ... 10000 (taken: -100000 ... 100000): transposed Jacobian times residuals,
+ *     scaled
+ * in variables[12] [mixed] -1 ... 1 (taken: -10 ... 10): scaled variables now
+ * in lower[12] [mixed] -1 ... 1 (taken: -10 ... 10): least scaled variables; as the greatest where a variable is
+ *     not free
+ * in upper[12] [mixed] -1 ... 1 (taken: -10 ... 10): greatest scaled variables
+ * in damping [1] 0 ... 1000000000 (taken: 0 ... 10000000000): damping against the mean of the diagonal
  * out step[12] [mixed] -2 ... 2: change of the scaled variables
  * out promised [mm2]: fall of the sum of squares by the linear model
  *

@@ -55,26 +55,26 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 
 static int gm_cutter_surface_u_inside(const double *x)
 {
-  static const double low[1] = {-1.5000000000000002e-08};
-  static const double high[1] = {150.000000015};
+  static const double low[1] = {-1.5000000000000002e-07};
+  static const double high[1] = {150.00000015};
   return gm_inside(x, 1, low, high);
 }
 static int gm_cutter_surface_beta_inside(const double *x)
 {
-  static const double low[1] = {-3.141592656731386};
-  static const double high[1] = {3.141592656731386};
+  static const double low[1] = {-31.415926567313857};
+  static const double high[1] = {31.415926567313857};
   return gm_inside(x, 1, low, high);
 }
 static int gm_cutter_surface_blade_point_radius_inside(const double *x)
 {
-  static const double low[1] = {1.99999975};
-  static const double high[1] = {2500.00000025};
+  static const double low[1] = {1.9999975};
+  static const double high[1] = {2500.0000025};
   return gm_inside(x, 1, low, high);
 }
 static int gm_cutter_surface_blade_pressure_angle_inside(const double *x)
 {
-  static const double low[1] = {0.0499999994};
-  static const double high[1] = {0.6000000006};
+  static const double low[1] = {0.004999998429203673};
+  static const double high[1] = {1.570796328365693};
   return gm_inside(x, 1, low, high);
 }
 static int gm_cutter_surface_side_inside(const double *x)

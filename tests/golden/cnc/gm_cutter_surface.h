@@ -3,10 +3,12 @@
  *
  * Point and inward unit normal of a straight-bladed face mill (1.1, 1.2).
  *
- * in u [mm] 0 ... 15: height of the blade point above the tip plane, along the cutter axis
- * in beta [rad] -3.14159265359 ... 3.14159265359: cutter angle of the blade point, about the cutter axis
- * in blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis
- * in blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
+ * in u [mm] 0 ... 15 (taken: 0 ... 150): height of the blade point above the tip plane, along the cutter axis
+ * in beta [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359): cutter angle of the
+ *     blade point, about the cutter axis
+ * in blade_point_radius [mm] 20 ... 250 (taken: 2 ... 2500): radius of the blade tip about the cutter axis
+ * in blade_pressure_angle [rad] 0.05 ... 0.6 (taken: 0.005 ... 1.57079632679): angle between blade and cutter
+ *     axis
  * in side [1] one of -1, 1: +1 outer blade (concave flank), -1 inner blade (convex flank)
  * out point_c[3] [mm] -250 ... 250: point of the cutter surface, cutter frame T
  * out normal_c[3] [1] -1 ... 1: unit normal of the cutter surface into the cutter, frame T

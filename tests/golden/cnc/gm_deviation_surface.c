@@ -81,40 +81,40 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 
 static int gm_deviation_surface_lengthwise_inside(const double *x)
 {
-  static const double low[1] = {-500.00000005};
-  static const double high[1] = {500.00000005};
+  static const double low[1] = {-500.0000005};
+  static const double high[1] = {500.0000005};
   return gm_inside(x, 1, low, high);
 }
 static int gm_deviation_surface_profilewise_inside(const double *x)
 {
-  static const double low[1] = {-200.00000002};
-  static const double high[1] = {200.00000002};
+  static const double low[1] = {-200.0000002};
+  static const double high[1] = {200.0000002};
   return gm_inside(x, 1, low, high);
 }
 static int gm_deviation_surface_surface_coefficients_inside(const double *x)
 {
   static const double low[10] = {
-    -1.000000001,
-    -1.000000001,
-    -1.000000001,
-    -1.000000001,
-    -1.000000001,
-    -1.000000001,
-    -1.000000001,
-    -1.000000001,
-    -1.000000001,
-    -1.000000001};
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001};
   static const double high[10] = {
-    1.000000001,
-    1.000000001,
-    1.000000001,
-    1.000000001,
-    1.000000001,
-    1.000000001,
-    1.000000001,
-    1.000000001,
-    1.000000001,
-    1.000000001};
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001};
   return gm_inside(x, 10, low, high);
 }
 

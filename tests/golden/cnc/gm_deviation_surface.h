@@ -3,10 +3,12 @@
  *
  * Cubic deviation surface in the local system at the reference point (6.3).
  *
- * in lengthwise [mm] -50 ... 50: distance from the reference point along the tooth, toe to heel
- * in profilewise [mm] -20 ... 20: distance from the reference point up the profile, root to tip
- * in surface_coefficients[10] [mixed] -1 ... 1: coefficients c_1 ... c_10 of the cubic deviation surface, mm per
- *     mm^k
+ * in lengthwise [mm] -50 ... 50 (taken: -500 ... 500): distance from the reference point along the tooth, toe to
+ *     heel
+ * in profilewise [mm] -20 ... 20 (taken: -200 ... 200): distance from the reference point up the profile, root
+ *     to tip
+ * in surface_coefficients[10] [mixed] -1 ... 1 (taken: -10 ... 10): coefficients c_1 ... c_10 of the cubic
+ *     deviation surface, mm per mm^k
  * out surface_deviation [mm]: deviation that the cubic surface gives at one point
  * out monomials[10] [mixed]: 1, X, Y, X^2, XY, Y^2, X^3, X^2 Y, X Y^2, Y^3
  *

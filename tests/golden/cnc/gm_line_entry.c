@@ -168,20 +168,20 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 
 static int gm_line_entry_axes_inside(const double *x)
 {
-  static const double low[5] = {-5000.0000005, -5000.0000005, -5000.0000009, -10.00000001, -0.2000000017};
-  static const double high[5] = {5000.0000005, 5000.0000005, 9000.0000009, 10.00000001, 1.7000000016999999};
+  static const double low[5] = {-5000.000005, -5000.000005, -5000.000009, -100.0000001, -2.000000017};
+  static const double high[5] = {5000.000005, 5000.000005, 9000.000009, 100.0000001, 17.000000017};
   return gm_inside(x, 5, low, high);
 }
 static int gm_line_entry_pivot_height_inside(const double *x)
 {
-  static const double low[1] = {-10000.000001};
-  static const double high[1] = {10000.000001};
+  static const double low[1] = {-10000.00001};
+  static const double high[1] = {10000.00001};
   return gm_inside(x, 1, low, high);
 }
 static int gm_line_entry_line_point_inside(const double *x)
 {
-  static const double low[3] = {-2000.0000002, -2000.0000002, -2000.0000002};
-  static const double high[3] = {2000.0000002, 2000.0000002, 2000.0000002};
+  static const double low[3] = {-2000.000002, -2000.000002, -2000.000002};
+  static const double high[3] = {2000.000002, 2000.000002, 2000.000002};
   return gm_inside(x, 3, low, high);
 }
 static int gm_line_entry_line_direction_inside(const double *x)
@@ -192,14 +192,14 @@ static int gm_line_entry_line_direction_inside(const double *x)
 }
 static int gm_line_entry_blade_point_radius_inside(const double *x)
 {
-  static const double low[1] = {1.99999975};
-  static const double high[1] = {2500.00000025};
+  static const double low[1] = {1.9999975};
+  static const double high[1] = {2500.0000025};
   return gm_inside(x, 1, low, high);
 }
 static int gm_line_entry_blade_pressure_angle_inside(const double *x)
 {
-  static const double low[1] = {0.0499999994};
-  static const double high[1] = {0.6000000006};
+  static const double low[1] = {0.004999998429203673};
+  static const double high[1] = {1.570796328365693};
   return gm_inside(x, 1, low, high);
 }
 static int gm_line_entry_side_inside(const double *x)
@@ -208,8 +208,8 @@ static int gm_line_entry_side_inside(const double *x)
 }
 static int gm_line_entry_pivot_offset_inside(const double *x)
 {
-  static const double low[3] = {-1000.0000001, -1000.0000001, -1000.0000001};
-  static const double high[3] = {1000.0000001, 1000.0000001, 1000.0000001};
+  static const double low[3] = {-1000.000001, -1000.000001, -1000.000001};
+  static const double high[3] = {1000.000001, 1000.000001, 1000.000001};
   return gm_inside(x, 3, low, high);
 }
 

@@ -116,50 +116,50 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 
 static int gm_meshing_u_inside(const double *x)
 {
-  static const double low[1] = {-1.5000000000000002e-08};
-  static const double high[1] = {150.000000015};
+  static const double low[1] = {-1.5000000000000002e-07};
+  static const double high[1] = {150.00000015};
   return gm_inside(x, 1, low, high);
 }
 static int gm_meshing_beta_inside(const double *x)
 {
-  static const double low[1] = {-3.141592656731386};
-  static const double high[1] = {3.141592656731386};
+  static const double low[1] = {-31.415926567313857};
+  static const double high[1] = {31.415926567313857};
   return gm_inside(x, 1, low, high);
 }
 static int gm_meshing_theta_inside(const double *x)
 {
-  static const double low[1] = {-1.000000001};
-  static const double high[1] = {1.000000001};
+  static const double low[1] = {-10.00000001};
+  static const double high[1] = {10.00000001};
   return gm_inside(x, 1, low, high);
 }
 static int gm_meshing_settings_inside(const double *x)
 {
   static const double low[12] = {
-    1.9999998,
-    -1.5000000015,
-    -0.4000000004,
-    -3.141592656731386,
-    -400.00000004,
-    -200.00000002,
-    -200.00000002,
-    0.04999999855,
-    0.499999992,
-    -3.141592656731386,
-    1.99999975,
-    0.0499999994};
+    1.999998,
+    -15.000000015,
+    -4.000000004,
+    -31.415926567313857,
+    -400.0000004,
+    -200.0000002,
+    -200.0000002,
+    0.004999998429203673,
+    0.04999992,
+    -31.415926567313857,
+    1.9999975,
+    0.004999998429203673};
   static const double high[12] = {
-    2000.0000002,
-    1.5000000015,
-    0.4000000004,
-    3.141592656731386,
-    400.00000004,
-    200.00000002,
-    200.00000002,
-    1.4500000014499999,
-    8.000000008,
-    3.141592656731386,
-    2500.00000025,
-    0.6000000006};
+    2000.000002,
+    15.000000015,
+    4.000000004,
+    31.415926567313857,
+    400.0000004,
+    200.0000002,
+    200.0000002,
+    1.570796328365693,
+    80.00000008,
+    31.415926567313857,
+    2500.0000025,
+    1.570796328365693};
   return gm_inside(x, 12, low, high);
 }
 static int gm_meshing_side_inside(const double *x)

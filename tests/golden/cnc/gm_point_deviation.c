@@ -47,20 +47,20 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 
 static int gm_point_deviation_tip_center_inside(const double *x)
 {
-  static const double low[3] = {-5000.0000005, -5000.0000005, -5000.0000005};
-  static const double high[3] = {5000.0000005, 5000.0000005, 5000.0000005};
+  static const double low[3] = {-5000.000005, -5000.000005, -5000.000005};
+  static const double high[3] = {5000.000005, 5000.000005, 5000.000005};
   return gm_inside(x, 3, low, high);
 }
 static int gm_point_deviation_tip_radius_inside(const double *x)
 {
-  static const double low[1] = {-5e-09};
-  static const double high[1] = {50.000000005};
+  static const double low[1] = {-5.0000000000000004e-08};
+  static const double high[1] = {50.00000005};
   return gm_inside(x, 1, low, high);
 }
 static int gm_point_deviation_point_w_inside(const double *x)
 {
-  static const double low[3] = {-5000.0000005, -5000.0000005, -5000.0000005};
-  static const double high[3] = {5000.0000005, 5000.0000005, 5000.0000005};
+  static const double low[3] = {-5000.000005, -5000.000005, -5000.000005};
+  static const double high[3] = {5000.000005, 5000.000005, 5000.000005};
   return gm_inside(x, 3, low, high);
 }
 static int gm_point_deviation_normal_w_inside(const double *x)

@@ -67,20 +67,20 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 
 static int gm_tool_pose_axes_inside(const double *x)
 {
-  static const double low[5] = {-5000.0000005, -5000.0000005, -5000.0000009, -10.00000001, -0.2000000017};
-  static const double high[5] = {5000.0000005, 5000.0000005, 9000.0000009, 10.00000001, 1.7000000016999999};
+  static const double low[5] = {-5000.000005, -5000.000005, -5000.000009, -100.0000001, -2.000000017};
+  static const double high[5] = {5000.000005, 5000.000005, 9000.000009, 100.0000001, 17.000000017};
   return gm_inside(x, 5, low, high);
 }
 static int gm_tool_pose_pivot_height_inside(const double *x)
 {
-  static const double low[1] = {-10000.000001};
-  static const double high[1] = {10000.000001};
+  static const double low[1] = {-10000.00001};
+  static const double high[1] = {10000.00001};
   return gm_inside(x, 1, low, high);
 }
 static int gm_tool_pose_pivot_offset_inside(const double *x)
 {
-  static const double low[3] = {-1000.0000001, -1000.0000001, -1000.0000001};
-  static const double high[3] = {1000.0000001, 1000.0000001, 1000.0000001};
+  static const double low[3] = {-1000.000001, -1000.000001, -1000.000001};
+  static const double high[3] = {1000.000001, 1000.000001, 1000.000001};
   return gm_inside(x, 3, low, high);
 }
 
