@@ -55,10 +55,13 @@ class _Body:
     sizes: wrapper.Sizes
 
 
+_SHARED = ("gm_status.h", "gm_status.c", "gm_check.h", "gm_lane.h")
+
+
 def contract_files() -> dict[str, str]:
     """What the C of every double kernel includes: the contract, the checks, and the sentences of the status."""
     folder = resources.files("gearmath") / "export" / "library"
-    files = {name: (folder / name).read_text("utf-8") for name in ("gm_status.h", "gm_status.c", "gm_check.h")}
+    files = {name: (folder / name).read_text("utf-8") for name in _SHARED}
     return files | {"gm_version.h": f'/* generated, do not edit. */\n#define GM_VERSION "{__version__}"\n'}
 
 
@@ -70,7 +73,7 @@ def double_kernel(kernel: Kernel) -> CKernel:
     _check_names(kernel)
     function = _dense(contract.with_margins(kernel))
     body = _generate(function, f"gm_{kernel.name}", {"casadi_real": "double", "include_math": True})
-    typed = contract.definitions(kernel, body.entry, body.sizes, may_fail=not function.is_a("SXFunction"))
+    typed = contract.definitions(kernel, function, body.entry, body.sizes)
     memory = "work memory: none"
     if body.sizes.w + body.sizes.iw:
         memory = f"work memory: {body.sizes.w} doubles and {body.sizes.iw} integers, on the stack"

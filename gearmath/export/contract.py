@@ -15,6 +15,7 @@ import sympy as sp
 
 from derivations.expression import Expression, Quantity
 from gearmath.engine.kernel import Kernel
+from gearmath.engine.vector_c import split_c
 from gearmath.export.wrapper import Sizes, columns, transposed, wrapped
 
 #: An input may be outside its range by this part of the larger end: a unit vector has components of 1 + 2e-16.
@@ -43,14 +44,21 @@ def with_margins(kernel: Kernel) -> ca.Function:
     return ca.Function(kernel.name, arguments, results, *names)
 
 
+#: Kernels whose batches mostly follow a roll: what does not depend on the cradle rotation is computed once for all.
+_ALONG_A_ROLL = frozenset({"axis_transform"})
+
+
 def declarations(kernel: Kernel) -> str:
     """``int gm_<name>(...)`` and ``int gm_<name>_batch(...)``."""
     return f"GM_API {_declaration(kernel)};\n\nGM_API {_batch_declaration(kernel)};\n"
 
 
-def definitions(kernel: Kernel, entry: str, sizes: Sizes, may_fail: bool) -> str:
-    """Both functions, and what they share."""
-    return "\n".join((_domains(kernel), _point(kernel, entry, sizes, may_fail), _single(kernel), _batch(kernel)))
+def definitions(kernel: Kernel, function: ca.Function, entry: str, sizes: Sizes) -> str:
+    """Both functions, and what they share. ``function`` is that of ``with_margins``, ``entry`` its name in C."""
+    may_fail = not function.is_a("SXFunction")
+    roll = _roll(kernel, function) if kernel.name in _ALONG_A_ROLL else ""
+    point = _point(kernel, entry, sizes, may_fail)
+    return "\n".join((_domains(kernel), point, roll, _single(kernel), _batch(kernel, bool(roll))))
 
 
 def _declaration(kernel: Kernel) -> str:
@@ -134,6 +142,39 @@ def _point(kernel: Kernel, entry: str, sizes: Sizes, may_fail: bool) -> str:
     return "\n".join((head, "{", *lines, "}\n"))
 
 
+def _roll(kernel: Kernel, function: ca.Function) -> str:
+    """The points of a batch that differ in theta only; the same operations as one by one, and so the same bits."""
+    name = f"gm_{kernel.name}_roll"
+    size, text = split_c(function, [q.name == "theta" for q in kernel.inputs], f"{name}_point")
+    shared = [q.name for q in kernel.inputs if q.name != "theta"]
+    (output,) = kernel.outputs
+    arguments = ["int64_t n", *(f"const double *{q}" for q in shared), "const double *theta, int64_t theta_stride"]
+    head = wrapped(f"static int {name}", [*arguments, f"double *{output.name}", "int64_t *first_bad"])
+    lines = [
+        f"  double table[{size}], margin;",
+        "  int status = GM_OK;",
+        "  int64_t k;",
+        f"  {name}_point_shared({', '.join(shared)}, table);",
+        "  for (k = 0; k < n; ++k) {",
+        f"    double *now = {output.name} + k * {output.size};",
+        "    int bad = GM_E_DOMAIN;",
+        f"    if (gm_{kernel.name}_theta_inside(theta + k * theta_stride)) {{",
+        f"      {name}_point(theta + k * theta_stride, table, now, &margin);",
+        f"      bad = !(margin > 0.0) ? GM_E_REQUIRES : gm_finite(now, {output.size}) ? GM_OK : GM_E_NO_RESULT;",
+        "    }",
+        "    if (bad != GM_OK) {",
+        f"      gm_nan(now, {output.size});",
+        "      if (status == GM_OK) {",
+        "        status = bad;",
+        "        if (first_bad) *first_bad = k;",
+        "      }",
+        "    }",
+        "  }",
+        "  return status;",
+    ]
+    return "\n".join((f'#include "gm_lane.h"\n{text}', head, "{", *lines, "}\n"))
+
+
 def _single(kernel: Kernel) -> str:
     pointers = [q.name for q in (*kernel.inputs, *kernel.outputs) if q.shape or q in kernel.outputs]
     inside = [f"gm_{kernel.name}_{q.name}_inside({_address(q)})" for q in kernel.inputs]
@@ -154,7 +195,7 @@ def _single(kernel: Kernel) -> str:
     return "\n".join((_declaration(kernel), "{", *lines, "}\n"))
 
 
-def _batch(kernel: Kernel) -> str:
+def _batch(kernel: Kernel, has_roll: bool) -> str:
     """The loop over n points: what all points share is looked at once."""
     inputs, outputs = kernel.inputs, kernel.outputs
     pointers = [q.name for q in (*inputs, *outputs)]
@@ -174,6 +215,7 @@ def _batch(kernel: Kernel) -> str:
         "  if (n == 0) return GM_OK;",
         f"  if ({_any(f'!{name}' for name in pointers)}) return GM_E_NULL;",
         "  shared = " + "\n      && ".join(shared) + ";",
+        *(_along_a_roll(kernel) if has_roll else ()),
         "  for (k = 0; k < n; ++k) {",
         "    int now = GM_E_DOMAIN;",
         "    if (shared\n        && " + "\n        && ".join(own) + ") {",
@@ -190,6 +232,14 @@ def _batch(kernel: Kernel) -> str:
         "  return status;",
     ]
     return "\n".join((_batch_declaration(kernel), "{", *lines, "}\n"))
+
+
+def _along_a_roll(kernel: Kernel) -> Iterator[str]:
+    shared = [q.name for q in kernel.inputs if q.name != "theta"]
+    yield f"  if (shared && {' && '.join(f'{name}_stride == 0' for name in shared)}) {{"
+    arguments = ["n", *shared, "theta, theta_stride", *(q.name for q in kernel.outputs), "first_bad"]
+    yield f"{wrapped(f'    return gm_{kernel.name}_roll', arguments)};"
+    yield "  }"
 
 
 def _any(conditions: Iterator[str]) -> str:

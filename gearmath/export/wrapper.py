@@ -12,7 +12,8 @@ _WORDS = """\
     auto break case char const continue default do double else enum extern float for goto if inline int long
     register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while bool
     true false class delete new private protected public template this throw try catch namespace operator virtual
-    friend using and or not xor NAN INFINITY n k arg res iw w status now shared margin first_bad"""
+    friend using and or not xor NAN INFINITY n k arg res iw w status now shared margin table bad
+    first_bad"""
 #: Names that a quantity cannot have: words of C and C++, and the variables of the functions below.
 RESERVED = frozenset(_WORDS.split())
 

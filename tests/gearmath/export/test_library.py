@@ -230,6 +230,32 @@ def test_what_a_header_requires_is_refused_at_a_singular_pose(loaded: ctypes.CDL
     assert np.isfinite(axes[[0, 2]]).all()
 
 
+def test_a_batch_along_a_roll_gives_the_bits_of_its_points(
+    loaded: ctypes.CDLL, samples: Callable, same_bits: Callable
+) -> None:
+    """What only the settings decide is computed once there: the same operations, and the same refusals."""
+    settings, theta, height, offset = samples("axis_transform", 300)
+    for k in range(20):
+        shared = [settings[k], theta, height[k : k + 1], offset[k]]
+        along, alone = np.zeros((300, 5)), np.zeros((300, 5))
+        repeated = [np.tile(settings[k], (300, 1)), theta, np.full(300, height[k]), np.tile(offset[k], (300, 1))]
+        for bad in (None, 17):
+            if bad is not None:
+                theta[bad] = np.nan
+            wanted = batch(loaded, "axis_transform", 300, repeated, [12, 1, 1, 3], [alone])
+            assert batch(loaded, "axis_transform", 300, shared, [0, 1, 0, 0], [along]) == wanted
+            assert same_bits(along, alone)
+            assert bad is None or np.isnan(along[bad]).all()
+        theta[17] = 0.0
+    tilted = settings[0].copy()
+    tilted[[1, 2, 3, 7]] = 0.0, 0.4, np.pi / 2, np.pi / 2 - 0.4  # singular where theta is zero
+    rolled = [tilted, np.array([0.5, 0.4, 0.0, 0.3]), height[:1], offset[0]]
+    axes = np.zeros((4, 5))
+    assert batch(loaded, "axis_transform", 4, rolled, [0, 1, 0, 0], [axes]) == (4, 2)
+    assert np.isnan(axes[2]).all()
+    assert np.isfinite(axes[[0, 1, 3]]).all()
+
+
 def test_sizes_strides_and_null_pointers_are_refused(loaded: ctypes.CDLL, samples: Callable) -> None:
     tip, radius, point, normal = samples("point_deviation", 3)
     inputs, sizes, out = [tip, radius, point, normal], [3, 1, 3, 3], np.zeros(3)

@@ -228,6 +228,196 @@ static int gm_axis_transform_point(
   return gm_finite(axes, 5) ? GM_OK : GM_E_NO_RESULT;
 }
 
+#include "gm_lane.h"
+static void gm_axis_transform_roll_point_shared(const double *x0, const double *x2, const double *x3, double *restrict t)
+{
+    const double b1 = x0[2];
+    const double b2 = cos(b1);
+    const double b3 = x0[7];
+    const double b4 = sin(b3);
+    const double b5 = b2 * b4;
+    const double b6 = cos(b3);
+    const double b7 = sin(b1);
+    const double b8 = x0[1];
+    t[0] = b8;
+    const double b11 = x0[3];
+    t[1] = b11;
+    t[2] = b7;
+    t[3] = b6;
+    t[4] = b5;
+    const double b17 = x3[0];
+    t[5] = b17;
+    const double b19 = b2 * b6;
+    t[6] = b4;
+    t[7] = b19;
+    const double b25 = b7 * b7;
+    t[8] = b25;
+    const double b27 = b6 * b6;
+    t[9] = b27;
+    const double b30 = b4 * b4;
+    t[10] = b30;
+    const double b34 = x3[2];
+    t[11] = b34;
+    const double b37 = x0[4];
+    const double b38 = x0[0];
+    t[12] = b38;
+    t[13] = b37;
+    const double b52 = x0[6];
+    const double b53 = b4 * b52;
+    const double b54 = x0[5];
+    const double b55 = b53 - b54;
+    t[14] = b55;
+    const double b63 = b6 * b52;
+    t[15] = b63;
+    t[16] = b2;
+    const double b74 = x3[1];
+    t[17] = b74;
+    const double b83 = x2[0];
+    t[18] = b83;
+    const double b90 = b2 * b55;
+    t[19] = b90;
+    const double b94 = x0[9];
+    t[20] = b94;
+    const double b98 = x0[8];
+    t[21] = b98;
+    const double b102 = (1.5707963267948966);
+    t[22] = b102;
+    const double b105 = (-0.05);
+    const double b106 = b6 * b2;
+    const double b107 = b7 * b4;
+    const double b108 = b8 + b11;
+    t[23] = b108;
+    t[24] = b107;
+    t[25] = b106;
+    t[26] = b105;
+}
+static void gm_axis_transform_roll_point(const V *x1, const double *restrict t, V *y0, V *y1)
+{
+    const V a9 = x1[0];
+    const V a10 = t[0] + a9;
+    const V a12 = a10 + t[1];
+    V a13, a13_c; v_sincos(a12, &a13, &a13_c);
+    const V a14 = t[2] * a13;
+    const V a15 = t[3] * a14;
+    const V a16 = t[4] + a15;
+    const V a18 = a16 * t[5];
+    const V a20 = t[6] * a14;
+    const V a21 = t[7] - a20;
+    const V a22 = a21 * a21;
+    const V a24 = a13_c * a13_c;
+    const V a26 = a24 * t[8];
+    const V a28 = a26 * t[9];
+    const V a29 = a22 + a28;
+    const V a31 = a26 * t[10];
+    const V a32 = a29 + a31;
+    const V a33 = v_sqrt(a32);
+    const V a35 = a33 * t[11];
+    const V a36 = a18 + a35;
+    V a39, a39_c; v_sincos(a10, &a39, &a39_c);
+    const V a40 = t[12] * a39;
+    const V a41 = t[13] + a40;
+    const V a42 = t[2] * a13_c;
+    const V a43 = a42 / a33;
+    const V a44 = t[4] * a43;
+    const V a45 = t[3] / a33;
+    const V a46 = t[8] * a45;
+    const V a47 = a46 * a13;
+    const V a48 = a47 * a13_c;
+    const V a49 = a44 + a48;
+    const V a50 = a41 * a49;
+    const V a51 = a36 + a50;
+    const V a56 = a26 / a33;
+    const V a57 = a56 * t[6];
+    const V a58 = a21 / a33;
+    const V a59 = a58 * a14;
+    const V a60 = a57 - a59;
+    const V a61 = t[14] * a60;
+    const V a62 = a51 + a61;
+    const V a65 = t[12] * a39_c;
+    const V a66 = t[15] + a65;
+    const V a67 = t[16] * a58;
+    const V a68 = t[3] * a26;
+    const V a69 = a68 / a33;
+    const V a70 = a67 + a69;
+    const V a71 = a66 * a70;
+    const V a72 = a62 + a71;
+    const V a73 = -a72;
+    y0[0] = a73;
+    const V a75 = a41 * a58;
+    const V a76 = t[17] + a75;
+    const V a77 = a45 * a42;
+    const V a78 = a77 * t[14];
+    const V a79 = a76 + a78;
+    const V a80 = a43 * t[6];
+    const V a81 = a80 * a66;
+    const V a82 = a79 - a81;
+    y0[1] = a82;
+    const V a84 = a33 * t[5];
+    const V a85 = t[18] + a84;
+    const V a86 = a41 * a42;
+    const V a87 = a85 + a86;
+    const V a88 = a16 * t[11];
+    const V a89 = a87 - a88;
+    const V a91 = a89 - t[19];
+    const V a92 = a66 * a14;
+    const V a93 = a91 - a92;
+    y0[2] = a93;
+    const V a95 = -a42;
+    const V a96 = v_atan2(a95, a21);
+    const V a97 = t[20] + a96;
+    const V a99 = t[21] * a9;
+    const V a100 = a97 + a99;
+    const V a101 = -a100;
+    y0[3] = a101;
+    const V a103 = v_atan2(a33, a16);
+    const V a104 = t[22] - a103;
+    y0[4] = a104;
+    const V a109 = t[23] + a9;
+    V a110, a110_c; v_sincos(a109, &a110, &a110_c);
+    const V a111 = t[24] * a110;
+    const V a112 = t[25] - a111;
+    const V a113 = a112 * a112;
+    const V a115 = a110_c * a110_c;
+    const V a116 = t[8] * a115;
+    const V a117 = a116 * t[9];
+    const V a118 = a113 + a117;
+    const V a119 = a116 * t[10];
+    const V a120 = a118 + a119;
+    const V a121 = v_sqrt(a120);
+    const V a122 = t[26] + a121;
+    y1[0] = a122;
+}
+static int gm_axis_transform_roll(
+    int64_t n,
+    const double *settings,
+    const double *pivot_height,
+    const double *pivot_offset,
+    const double *theta, int64_t theta_stride,
+    double *axes,
+    int64_t *first_bad)
+{
+  double table[27], margin;
+  int status = GM_OK;
+  int64_t k;
+  gm_axis_transform_roll_point_shared(settings, pivot_height, pivot_offset, table);
+  for (k = 0; k < n; ++k) {
+    double *now = axes + k * 5;
+    int bad = GM_E_DOMAIN;
+    if (gm_axis_transform_theta_inside(theta + k * theta_stride)) {
+      gm_axis_transform_roll_point(theta + k * theta_stride, table, now, &margin);
+      bad = !(margin > 0.0) ? GM_E_REQUIRES : gm_finite(now, 5) ? GM_OK : GM_E_NO_RESULT;
+    }
+    if (bad != GM_OK) {
+      gm_nan(now, 5);
+      if (status == GM_OK) {
+        status = bad;
+        if (first_bad) *first_bad = k;
+      }
+    }
+  }
+  return status;
+}
+
 int gm_axis_transform(
     const double settings[12],
     double theta,
@@ -268,6 +458,16 @@ int gm_axis_transform_batch(
       && (theta_stride != 0 || gm_axis_transform_theta_inside(theta))
       && (pivot_height_stride != 0 || gm_axis_transform_pivot_height_inside(pivot_height))
       && (pivot_offset_stride != 0 || gm_axis_transform_pivot_offset_inside(pivot_offset));
+  if (shared && settings_stride == 0 && pivot_height_stride == 0 && pivot_offset_stride == 0) {
+    return gm_axis_transform_roll(
+        n,
+        settings,
+        pivot_height,
+        pivot_offset,
+        theta, theta_stride,
+        axes,
+        first_bad);
+  }
   for (k = 0; k < n; ++k) {
     int now = GM_E_DOMAIN;
     if (shared

@@ -3050,6 +3050,7 @@ static int gm_compensation_step_point(
   return gm_finite(step, 12) && gm_finite(promised, 1) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_compensation_step(
     const double normal_matrix[144],
     const double gradient[12],

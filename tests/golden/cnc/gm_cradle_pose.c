@@ -126,6 +126,7 @@ static int gm_cradle_pose_point(
   return gm_finite(V_c, 3) && gm_finite(V_p, 3) && gm_finite(V_ls, 3) && gm_finite(work_angle, 1) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_cradle_pose(
     const double settings[12],
     double theta,

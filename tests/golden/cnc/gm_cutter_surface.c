@@ -104,6 +104,7 @@ static int gm_cutter_surface_point(
   return gm_finite(point_c, 3) && gm_finite(normal_c, 3) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_cutter_surface(
     double u,
     double beta,

@@ -136,6 +136,7 @@ static int gm_deviation_surface_point(
   return gm_finite(surface_deviation, 1) && gm_finite(monomials, 10) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_deviation_surface(
     double lengthwise,
     double profilewise,

@@ -209,6 +209,7 @@ static int gm_flank_family_point(
   return gm_finite(point_w, 3) && gm_finite(normal_w, 3) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_flank_family(
     double u,
     double beta,

@@ -1183,6 +1183,7 @@ static int gm_flank_on_line_point(
   return gm_finite(contact, 3) && gm_finite(deviation, 1) && gm_finite(sensitivity, 12) && gm_finite(residual_size, 1) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_flank_on_line(
     const double contact_guess[3],
     const double settings[12],

@@ -922,6 +922,7 @@ static int gm_flank_point_point(
   return gm_finite(contact, 3) && gm_finite(point_w, 3) && gm_finite(normal_w, 3) && gm_finite(residual_size, 1) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_flank_point(
     const double contact_guess[3],
     const double settings[12],

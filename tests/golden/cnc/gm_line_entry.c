@@ -239,6 +239,7 @@ static int gm_line_entry_point(
   return gm_finite(line_distance, 1) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_line_entry(
     const double axes[5],
     double pivot_height,

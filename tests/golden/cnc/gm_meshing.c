@@ -187,6 +187,7 @@ static int gm_meshing_point(
   return gm_finite(meshing_residual, 1) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_meshing(
     double u,
     double beta,

@@ -530,6 +530,7 @@ static int gm_moved_settings_point(
   return gm_finite(settings_at, 12) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_moved_settings(
     const double settings[12],
     const double motion[70],

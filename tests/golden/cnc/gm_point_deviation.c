@@ -88,6 +88,7 @@ static int gm_point_deviation_point(
   return gm_finite(deviation, 1) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_point_deviation(
     const double tip_center[3],
     double tip_radius,

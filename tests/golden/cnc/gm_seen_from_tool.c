@@ -107,6 +107,7 @@ static int gm_seen_from_tool_point(
   return gm_finite(point_m, 3) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_seen_from_tool(
     const double axes[5],
     const double point_w[3],

@@ -366,6 +366,7 @@ static int gm_setting_sensitivity_point(
   return gm_finite(sensitivity, 12) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_setting_sensitivity(
     double u,
     double beta,

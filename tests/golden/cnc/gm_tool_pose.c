@@ -102,6 +102,7 @@ static int gm_tool_pose_point(
   return gm_finite(cutter_center_w, 3) && gm_finite(cutter_axis_w, 3) ? GM_OK : GM_E_NO_RESULT;
 }
 
+
 int gm_tool_pose(
     const double axes[5],
     double pivot_height,
