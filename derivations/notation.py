@@ -139,8 +139,8 @@ axes = Quantity(
 pivot_height = _length(
     "pivot_height",
     "(R_d + C_t)",
-    0.0,
-    400.0,
+    -1000.0,
+    1000.0,
     "R_d + C_t: reading of Z with the blade tips level with the B axis",
 )
 pivot_offset = Quantity(
