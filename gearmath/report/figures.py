@@ -27,13 +27,8 @@ def spacing_section(page: Page, one: ReportedMeasurement) -> None:
     """Pitch and runout with tolerance and grade beside each value, then thickness."""
     found = one.evaluation
     rows = [
-        [
-            f"{words}, {flank}",
-            *_graded(found.verdict, flank, name, value, one.uncertain(flank, figure)),
-            *_again(one, flank, name),
-        ]
-        for name, (figure, words) in _SPACING.items()
-        for flank, value in _values(found, name)
+        [f"{_SPACING[name][1]}, {flank}", *graded, *_again(one, flank, name)]
+        for name, flank, graded in spacing_rows(one)
     ]
     if rows:
         caveat = f" {found.verdict.remark}." if found.verdict is not None else ""
@@ -63,6 +58,14 @@ def spacing_section(page: Page, one: ReportedMeasurement) -> None:
                 ["chord", f"{thickness.chord:.4f}", micro(thickness.mean * thickness.chord_factor), *then[1]],
             ],
         )
+
+
+def spacing_rows(one: ReportedMeasurement) -> Iterator[tuple[str, str, list[str]]]:
+    """Name (f_pt, F_p, F_r) and flank of a figure, then value [µm], 95 % interval, grade, tolerance of the grade."""
+    found = one.evaluation
+    for name, (figure, _) in _SPACING.items():
+        for flank, value in _values(found, name):
+            yield name, flank, _graded(found.verdict, flank, name, value, one.uncertain(flank, figure))
 
 
 def _values(found: MemberEvaluation, name: str) -> Iterator[tuple[str, float]]:
