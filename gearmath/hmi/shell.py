@@ -1,0 +1,77 @@
+"""What stands around every page: navigation, language, look, and the banner of a lost connection."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import resources
+
+from nicegui import ui
+from starlette.requests import Request
+
+from gearmath.hmi.messages import LANGUAGES, Text
+from gearmath.hmi.pages import PAGES
+from gearmath.hmi.state import Shared
+
+LANGUAGE, LOOK = "gearmath_language", "gearmath_look"
+
+
+def language_of(request: Request) -> str:
+    """What the operator chose, or the first language of the browser that there is."""
+    chosen = request.cookies.get(LANGUAGE, "")
+    if chosen in LANGUAGES:
+        return chosen
+    asked = [part.split(";")[0].strip()[:2].lower() for part in request.headers.get("accept-language", "").split(",")]
+    return next((one for one in asked if one in LANGUAGES), "en")
+
+
+def is_dark(request: Request) -> bool:
+    """Whether the operator chose the dark look."""
+    return request.cookies.get(LOOK) == "dark"
+
+
+def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], request: Request) -> None:
+    """One whole page."""
+    text = Text(language_of(request))
+    ui.add_head_html(f"<style>{_file('style.css')}</style>")
+    ui.add_body_html(f"<script>{_file('page.js')}</script>")
+    ui.page_title(f"{text(f'{name}.title')} · {text('shell.product')}")
+    ui.query("body").classes("gm-body")
+    ui.colors(primary="#0b6478")
+    with ui.element("header").classes("gm-head"):
+        ui.label(text("shell.product")).classes("gm-product")
+        with ui.element("h1").classes("gm-title"):
+            ui.label(text(f"{name}.title")).classes("gm-inline")
+        ui.element("div").classes("gm-fill")
+        _switch(text, text("shell.language"), LANGUAGE, LANGUAGES, text.language)
+        looks = {"light": text("shell.light"), "dark": text("shell.dark")}
+        _switch(text, text("shell.look"), LOOK, looks, "dark" if is_dark(request) else "light")
+    with ui.element("nav").classes("gm-nav") as nav:
+        nav.props["aria-label"] = text("shell.pages")
+        for page, icon in PAGES.items():
+            with ui.element("a").classes("gm-link") as link:
+                link.props["href"] = f"/{page}"
+                if page == name:
+                    link.props["aria-current"] = "page"
+                ui.icon(icon).props('aria-hidden="true"')
+                ui.label(text(f"{page}.title"))
+    lost = ui.element("div").classes("gm-lost").props('role="alert" id="gm-lost"')
+    with lost:
+        ui.label(text("shell.server_lost"))
+    with ui.element("main").classes("gm-main"):
+        build(shared, text)
+
+
+def _switch(text: Text, label: str, cookie: str, options: dict[str, str], value: str) -> None:
+    """Buttons of which one is on; the choice is kept in a cookie of this browser."""
+    with ui.element("div").classes("gm-switch").props('role="group"') as group:
+        group.props["aria-label"] = label
+        for key, word in options.items():
+            on = "true" if key == value else "false"
+            one = ui.element("button").classes("gm-option").props(f'type="button" aria-pressed="{on}"')
+            one.on("click", js_handler=f"() => gearmathChoose('{cookie}', '{key}')")
+            with one:
+                ui.label(word).classes("gm-inline")
+
+
+def _file(name: str) -> str:
+    return resources.files("gearmath.hmi").joinpath("static", name).read_text("utf-8")

@@ -1,0 +1,40 @@
+"""What the server holds. Pages read it and ask for changes; none of them owns anything."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from gearmath.hmi.tickets import Tickets
+from gearmath.hmi.work import Work
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Set, member, machine and probe that the operator works with; files, or names of bundled ones."""
+
+    gear_set: str = "nasa_tp3096_12x36.toml"
+    member: str = "pinion"
+    machine: str = "vertical_5axis.toml"
+    calibration: str = "probe.toml"
+
+
+@dataclass
+class Shared:
+    """The state of the server. ``store`` is the measurement store; sets and programs lie in its folder."""
+
+    store: Path
+    choice: Choice = field(default_factory=Choice)
+    works: dict[str, Work] = field(default_factory=lambda: defaultdict(Work))
+    """Long computations by name, such as ``programs.cut``."""
+    tickets: Tickets = field(default_factory=Tickets)
+
+    @property
+    def folder(self) -> Path:
+        """Where sets and programs are written."""
+        return self.store.absolute().parent
+
+    def choose(self, **changes: str) -> None:
+        """Change the choice: ``gear_set``, ``member``, ``machine``, ``calibration``."""
+        self.choice = replace(self.choice, **changes)
