@@ -12,8 +12,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from matplotlib.figure import Figure
-
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.control.run_start import MACHINE, SET
 from gearmath.control.store_evaluation import EvaluatedRun
@@ -23,6 +21,7 @@ from gearmath.files import write_text
 from gearmath.front.machines import Machine
 from gearmath.front.programs import cutting
 from gearmath.front.sets import GearSet
+from gearmath.hmi.drawing import drawn
 from gearmath.hmi.judged_runs import JudgedRuns, stored_files
 from gearmath.plot.sheet import topography_chart
 from gearmath.plot.topography import um_per_row
@@ -58,30 +57,39 @@ class Proposal:
         return correction_values(self.evaluated.member, self.correction)
 
     @cached_property
-    def before(self) -> dict[str, Topography]:
-        """The tooth that was corrected, of each flank, not zeroed [mm]."""
-        found = self.evaluated.found
-        return {flank: form for flank, form in first(found).items() if flank in self.after}
-
-    @cached_property
     def after(self) -> dict[str, Topography]:
         """What is expected to remain of it [mm]."""
         return expected_topographies(self.evaluated.member, self.evaluated.found, self.correction)
 
-    def figures(self) -> dict[str, tuple[Figure, Figure]]:
-        """Each flank before and after, all at one scale, the reference point of each turned to zero."""
+    def charts(self, drawn_before: dict[tuple[str, float], str]) -> dict[str, tuple[str, str]]:
+        """Each flank before and after as SVG, all at one scale, the reference point of each turned to zero.
+
+        ``drawn_before`` keeps the charts before by flank and scale: they are those of every correction of the run.
+        """
         file = self.evaluated.found.file
-        pairs = {flank: (self.before[flank], self.after[flank]) for flank in self.after}
-        shown = {flank: tuple(zeroed(form, file) for form in pair) for flank, pair in pairs.items()}
-        scale = um_per_row(form for pair in shown.values() for form in pair)
-        made = {}
-        for flank, pair in shown.items():
-            old, new = (
-                topography_chart(form, scale, whole.at_reference)
-                for form, whole in zip(pair, pairs[flank], strict=True)
-            )
-            made[flank] = (old, new)
-        return made
+        later = {flank: (zeroed(form, file), form.at_reference) for flank, form in self.after.items()}
+        scale = max(um_per_row(form for form, _ in later.values()), scale_before(self.evaluated))
+        before = charts_before(self.evaluated, scale, drawn_before)
+        return {
+            flank: (before[flank], drawn(lambda form=form, taken=taken: topography_chart(form, scale, taken)))  # type: ignore[misc]
+            for flank, (form, taken) in later.items()
+        }
+
+
+def scale_before(evaluated: EvaluatedRun) -> float:
+    """The scale [µm] that suits the first tooth of each flank as it was measured."""
+    found = evaluated.found
+    return um_per_row(zeroed(form, found.file) for form in first(found).values())
+
+
+def charts_before(evaluated: EvaluatedRun, scale: float, kept: dict[tuple[str, float], str]) -> dict[str, str]:
+    """The first tooth of each flank as it was measured, as SVG; those that are ``kept`` are not drawn again."""
+    file = evaluated.found.file
+    for flank, form in first(evaluated.found).items():
+        if (flank, scale) not in kept:
+            shown = zeroed(form, file)
+            kept[flank, scale] = drawn(lambda s=shown, f=form: topography_chart(s, scale, f.at_reference))  # type: ignore[misc]
+    return {flank: kept[flank, scale] for flank in first(evaluated.found)}
 
 
 def propose(evaluated: EvaluatedRun, which: str = WHICH[0]) -> Proposal:

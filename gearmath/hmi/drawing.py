@@ -12,15 +12,15 @@ from matplotlib.figure import Figure
 from gearmath.page import own_names
 from gearmath.plot import svg
 
-#: Fonts and settings of matplotlib belong to the process, not to a figure.
-_ONE_AT_A_TIME = threading.Lock()
+#: Whoever draws holds it: fonts and settings of matplotlib belong to the process, not to a figure.
+PENCIL = threading.RLock()
 _NUMBERS = itertools.count(1)
 _TEXT = re.compile(r"(?<=>)[^<>]+(?=</text>)")
 
 
 def drawn(make: Callable[[], Figure]) -> str:
     """A figure as ``<svg>``; any number of them may stand on one page. Called from any thread."""
-    with _ONE_AT_A_TIME:
+    with PENCIL:
         found = svg(make())
     return named(found)
 

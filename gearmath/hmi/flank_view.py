@@ -19,7 +19,7 @@ from gearmath.plot.style import LESS, MORE
 from gearmath.plot.tooth import ToothFlank, enlargement, tooth_flanks
 from gearmath.plot.topography import um_per_row
 from gearmath.quality.evaluation.member import MemberEvaluation
-from gearmath.quality.evaluation.topography import Topography, evaluate_topography, zeroed
+from gearmath.quality.evaluation.topography import Topography, evaluate_topography
 
 #: From missing to left on: the colors of the flat charts at the ends.
 _SHADES = [[0.0, LESS], [0.5, "#dcdcdc"], [1.0, MORE]]
@@ -106,17 +106,10 @@ def space_figure(view: FlankView, name: str, names: Mapping[str, str], dark: boo
     }
 
 
-def flat_figures(view: FlankView, measurement: Any, at_reference: bool) -> dict[str, Figure]:
-    """The same flanks as the plane net of a chart, one for each flank at one scale.
-
-    ``measurement`` is the flank file; with ``at_reference`` each flank is turned until its reference point is zero.
-    """
-    shown = {flank: zeroed(form, measurement) if at_reference else form for flank, form in view.forms.items()}
-    scale = um_per_row(shown.values())
-    return {
-        flank: topography_chart(form, scale, view.forms[flank].at_reference if at_reference else None)
-        for flank, form in shown.items()
-    }
+def flat_figures(view: FlankView) -> dict[str, Figure]:
+    """The same flanks as the plane net of a chart, one for each flank, at one scale."""
+    scale = um_per_row(view.forms.values())
+    return {flank: topography_chart(form, scale, None) for flank, form in view.forms.items()}
 
 
 def _net(point: np.ndarray) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,6 +15,7 @@ from gearmath.control.run_start import CALIBRATION, MACHINE, SET
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_evaluation import EvaluatedRun, evaluate_run
 from gearmath.control.store_summary import RunSummary, summaries
+from gearmath.hmi.drawing import PENCIL
 from gearmath.quality.uncertainty.corrected import point_covariance
 from gearmath.quality.uncertainty.touch_model import touch_covariance
 from gearmath.report import ReportedMeasurement, inspection_sheet
@@ -25,6 +27,8 @@ from gearmath.specs.toml import bundled
 
 #: So many runs are kept in memory, the last ones used.
 _KEPT = 12
+#: How long the list of runs is taken for that of now. [s]
+_FRESH = 1.0
 #: How well a machine measures, where a run does not say it.
 _ASSUMED = "measurement.toml"
 
@@ -51,13 +55,19 @@ class JudgedRuns:
         self._evaluated: OrderedDict[int, EvaluatedRun] = OrderedDict()
         self._judged: OrderedDict[int, JudgedRun] = OrderedDict()
         self._lock = threading.Lock()
+        self._listed: tuple[float, list[RunSummary]] = (-_FRESH, [])
 
     def summaries(self) -> list[RunSummary]:
-        """All runs, the oldest first; none where there is no store yet."""
-        if not self.path.exists():
-            return []
-        with self.opened() as store:
-            return summaries(store)
+        """All runs, the oldest first; none where there is no store yet. A list of a moment ago will do."""
+        at, listed = self._listed
+        if time.monotonic() - at < _FRESH:
+            return listed
+        found: list[RunSummary] = []
+        if self.path.exists():
+            with self.opened() as store:
+                found = summaries(store)
+        self._listed = (time.monotonic(), found)
+        return found
 
     def of_members(self) -> list[RunSummary]:
         """The runs that touched every point of a member, or, with the run that they refer to, did so again."""
@@ -97,7 +107,9 @@ class JudgedRuns:
         one = reported(
             evaluated.gear_set, title, file, evaluated.found, covariance, source, head, drawn=_less(progress)
         )
-        found = JudgedRun(evaluated, one, inspection_sheet([one], progress).html)
+        with PENCIL:
+            sheet = inspection_sheet([one], progress).html
+        found = JudgedRun(evaluated, one, sheet)
         if summary.is_complete:
             self._keep(self._judged, run, found)
         return found

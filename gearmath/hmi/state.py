@@ -6,6 +6,8 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from gearmath.hmi.desk import Desk
+from gearmath.hmi.judged_runs import JudgedRuns
 from gearmath.hmi.tickets import Tickets
 from gearmath.hmi.work import Work
 
@@ -29,6 +31,10 @@ class Shared:
     works: dict[str, Work] = field(default_factory=lambda: defaultdict(Work))
     """Long computations by name, such as ``programs.cut``."""
     tickets: Tickets = field(default_factory=Tickets)
+    desk: Desk = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.desk = Desk(JudgedRuns(self.store))
 
     @property
     def folder(self) -> Path:

@@ -141,7 +141,7 @@ def _flank_table(page: Page, found: MemberEvaluation, what: str) -> None:
     flanks = _with_topography(found)
     rows = [
         ["at the reference point", *(micro(each.mean.at_reference) for each in flanks.values() if each.mean)],
-        ["largest, with its sign", *(_largest(each) for each in flanks.values())],
+        ["largest, with its sign", *(largest_cell(each) for each in flanks.values())],
         ["RMS", *(micro(each.mean.rms) for each in flanks.values() if each.mean)],
         ["RMS, zero at the reference point", *(micro(each.chart.rms) for each in flanks.values() if each.chart)],
     ]
@@ -156,7 +156,8 @@ def _flank_table(page: Page, found: MemberEvaluation, what: str) -> None:
     )
 
 
-def _largest(figures: FlankFigures) -> str:
+def largest_cell(figures: FlankFigures) -> str:
+    """The largest deviation [µm] with its sign, or that it is withheld."""
     withheld = figures.mean is None or figures.mean.left_out or "max_deviation" in figures.withheld
     return "withheld" if withheld or figures.mean is None else micro(figures.mean.extreme)
 
@@ -175,7 +176,7 @@ def uncertainty_section(page: Page, one: ReportedMeasurement) -> None:
         rows = [
             [
                 known.figure.name.replace("_", " ") + ("" if known.method == "GUM" else " *"),
-                *_shown(known),
+                *figure_cells(known),
                 in_words(known.figure.unit),
             ]
             for known in shown
@@ -185,7 +186,7 @@ def uncertainty_section(page: Page, one: ReportedMeasurement) -> None:
         page.table(f"Values and uncertainties, {words}", ["figure", "value", "u", "from", "to", "unit"], rows)
 
 
-def _shown(known: Uncertain) -> list[str]:
+def figure_cells(known: Uncertain) -> list[str]:
     """Value, uncertainty and interval, with as many digits as the uncertainty asks for: none of those is zero."""
     values = [value * known.figure.factor for value in (known.value, known.uncertainty, *known.interval)]
     digits = 2
