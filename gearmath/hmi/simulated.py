@@ -1,4 +1,4 @@
-"""A simulated control inside the server, to learn and to try on: what the operator does at the machine is on the page."""
+"""A simulated control inside the server, to learn on: what the operator does at the machine is on the page."""
 
 from __future__ import annotations
 
