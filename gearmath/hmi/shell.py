@@ -86,7 +86,8 @@ def _sign(page: str) -> Callable[[str, str], None]:
 
     def show(words: str, kind: str) -> None:
         label.text = words
-        sign.classes(replace=f"gm-sign gm-{kind}")
+        others = " ".join(f"gm-{one}" for one in ("info", "good", "warning", "error") if one != kind)
+        sign.classes(add=f"gm-{kind}", remove=others)
 
     return show
 

@@ -36,6 +36,13 @@ def heading(title: str) -> None:
 
 
 @contextmanager
+def fields() -> Iterator[ui.element]:
+    """Fields beside each other, as far as there is room."""
+    with ui.element("div").classes("gm-fields") as element:
+        yield element
+
+
+@contextmanager
 def row() -> Iterator[ui.element]:
     """Things side by side, as far as there is room."""
     with ui.element("div").classes("gm-row") as element:
@@ -60,7 +67,7 @@ class Message:
         """Say something else; an empty text hides the message."""
         self._label.text = words
         self._icon.name = _ICONS[kind]
-        self._box.classes(replace=f"gm-message gm-{kind}")
+        self._box.classes(add=f"gm-{kind}", remove=" ".join(f"gm-{one}" for one in _ICONS if one != kind))
         self._box.visible = bool(words)
 
 

@@ -41,13 +41,14 @@ def _cutting(shared: Shared, text: Text) -> None:
     work = shared.works[_CUT]
     with widgets.panel(text("programs.cut")):
         name = _head(shared, text, f"CUT_{shared.choice.member.upper()}")
-        fields = {
-            "feed": widgets.NumberField(text, text("programs.feed"), 300.0, "mm/min", 1.0, 5000.0),
-            "spindle_rpm": widgets.NumberField(text, text("programs.rpm"), 120.0, "1/min", 1.0, 20000.0),
-            "tolerance": widgets.NumberField(text, text("programs.tolerance"), 0.1, "µm", 0.01, 100.0),
-            "roughing_stock": widgets.NumberField(text, text("programs.roughing"), 0.0, "mm", 0.0, 5.0),
-            "finishing_stock": widgets.NumberField(text, text("programs.finishing"), 0.0, "mm", 0.0, 5.0),
-        }
+        with widgets.fields():
+            fields = {
+                "feed": widgets.NumberField(text, text("programs.feed"), 300.0, "mm/min", 1.0, 5000.0),
+                "spindle_rpm": widgets.NumberField(text, text("programs.rpm"), 120.0, "1/min", 1.0, 20000.0),
+                "tolerance": widgets.NumberField(text, text("programs.tolerance"), 0.1, "µm", 0.01, 100.0),
+                "roughing_stock": widgets.NumberField(text, text("programs.roughing"), 0.0, "mm", 0.0, 5.0),
+                "finishing_stock": widgets.NumberField(text, text("programs.finishing"), 0.0, "mm", 0.0, 5.0),
+            }
         dry = ui.checkbox(text("programs.dry_run"))
 
         def write() -> None:
@@ -74,8 +75,9 @@ def _probing(shared: Shared, text: Text) -> None:
     work = shared.works[_PROBE]
     with widgets.panel(text("programs.probe")):
         name = _head(shared, text, f"PROBE_{shared.choice.member.upper()}")
-        teeth = widgets.NumberField(text, text("programs.topography"), 1, "", 0, 200, digits=0)
-        repeat = widgets.NumberField(text, text("programs.repeat"), 1, "", 1, 100, digits=0)
+        with widgets.fields():
+            teeth = widgets.NumberField(text, text("programs.topography"), 1, "", 0, 200, digits=0)
+            repeat = widgets.NumberField(text, text("programs.repeat"), 1, "", 1, 100, digits=0)
         pitch = ui.checkbox(text("programs.pitch"), value=True)
         around = ui.checkbox(text("programs.registration"), value=True)
 
