@@ -59,7 +59,7 @@ def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], reque
     lost = ui.element("div").classes("gm-lost").props('role="alert" id="gm-lost"')
     with lost:
         ui.label(text("shell.server_lost"))
-    with ui.element("main").classes("gm-main"):
+    with ui.element("div").classes("gm-main"):
         build(shared, text)
 
 
