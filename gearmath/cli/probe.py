@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,8 +27,6 @@ from gearmath.cli.common import (
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from gearmath.machine.judging.faults import Fault
-    from gearmath.machine.measuring.collision_check import Approach
     from gearmath.quality.calibration.axes import AxisCalibration
     from gearmath.quality.calibration.tip import Fit, Tip
     from gearmath.specs.calibration import Calibration
@@ -82,75 +81,52 @@ def probe(
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
     from gearmath.machine.bodies.profiles import obstacles
-    from gearmath.machine.measuring.collision_check import approaches
-    from gearmath.machine.measuring.judge import judge_probing
-    from gearmath.machine.planning.targets import teeth_around
-    from gearmath.machine.writing.probing import probing_program
+    from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
     from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import planned_touches
 
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
-    count = spec.teeth
-    teeth, around = _teeth(topography, count), teeth_around(count) if registration else ()
+    choice = ProbingChoice(_teeth(topography, spec.teeth), pitch, registration, repeat)
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     simulated = load_simulated_machine(find(errors)) if errors else None
-    head, fixture = obstacles(milling_machine, simulated)
-    text = probing_program(bevel_set, member, milling_machine, known, target.stem, teeth, pitch, repeat, around)
-    points = planned_touches(text) // repeat
-    with bar(points * (2 + repeat) + text.count("\n"), "step") as progress:
-        found = approaches(
-            text,
-            str(target),
-            spec,
+    with ExitStack() as stack:
+        made = checked_probing(
+            bevel_set,
             member,
             milling_machine,
             known,
-            fixture,
-            head.spindle_radius,
-            progress,
+            choice,
+            target.stem,
+            str(target),
+            simulated,
+            lambda steps: stack.enter_context(bar(steps, "step")),
         )
-    clear = clearances(found, target, "the program is not written")
-    judged = judge_probing(text, str(target), spec, member, milling_machine, known)
-    refuse_faults(judged, target, "the program is not written")
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import ProbingJob, probing_sheet
 
+        head, fixture = obstacles(milling_machine, simulated)
         job = ProbingJob(
-            bevel_set.title, member, spec, milling_machine, known, fixture, head.spindle_radius, repeat * points, clear
+            bevel_set.title,
+            member,
+            spec,
+            milling_machine,
+            known,
+            fixture,
+            head.spindle_radius,
+            made.touches,
+            made.clearance,
         )
         page = probing_sheet(job, target.name)
-    write_text(target, text)
-    click.echo(f"{target}: {repeat * points} touches, {block_count(text)} blocks; {clear}")
+    write_text(target, made.text)
+    click.echo(f"{target}: {made.touches} touches, {block_count(made.text)} blocks; {made.clearance}")
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
-
-
-def clearances(found: list[Approach], program: Path, end: str) -> str:
-    """The least clearance of every part of the probe in words. Raises InputError for the deepest collision."""
-    worst = min(found, key=lambda one: one.distance)
-    if worst.distance <= 0.0:
-        raise InputError(
-            f"{program}, line {worst.line}: the {worst.probe} of the probe meets the {worst.work}, "
-            f"{-worst.distance:.3f} mm deep: {end}" + (f" ({worst.said})" if worst.said else "")
-        )
-    nearest: dict[str, Approach] = {}
-    for one in sorted(found, key=lambda one: -one.distance):
-        nearest[one.probe] = one
-    parts = (f"{part} {nearest[part].distance:.3f} mm ({nearest[part].work})" for part in ("tip", "stylus", "spindle"))
-    return f"least clearance: {', '.join(parts)}"
-
-
-def refuse_faults(found: list[Fault], program: Path, end: str = "it is not run") -> None:
-    """Raise InputError where a program has faults."""
-    if found:
-        raise InputError(f"{program}: {'; '.join(map(str, found))}: {end}")
 
 
 @click.command("calibrate")
@@ -171,6 +147,7 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, sheet: Path | None,
     'gearmath probe' runs it on the machine model, 'gearmath calibrate' reads its touches.
     """
     from gearmath.files import write_text
+    from gearmath.machine.measuring.checked import refuse_faults
     from gearmath.machine.measuring.judge import judge_calibration
     from gearmath.machine.writing.axis_cycle import axis_program
     from gearmath.machine.writing.calibrating import calibration_program
@@ -186,7 +163,8 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, sheet: Path | None,
     with about(source):
         text = make(at, known, target.stem)
     with bar(text.count("MEAS=1"), "block") as progress:
-        refuse_faults(judge_calibration(text, str(target), at, known, progress), target, "the program is not written")
+        found = judge_calibration(text, str(target), at, known, progress)
+    refuse_faults(found, str(target), "the program is not written")
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import calibration_sheet

@@ -8,9 +8,11 @@ from importlib import resources
 from nicegui import ui
 from starlette.requests import Request
 
+from gearmath.hmi import widgets
 from gearmath.hmi.messages import LANGUAGES, Text
 from gearmath.hmi.pages import PAGES
 from gearmath.hmi.state import Shared
+from gearmath.hmi.words import connection, run_strip
 
 LANGUAGE, LOOK = "gearmath_language", "gearmath_look"
 
@@ -41,7 +43,7 @@ def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], reque
         ui.label(text("shell.product")).classes("gm-product")
         with ui.element("h1").classes("gm-title"):
             ui.label(text(f"{name}.title")).classes("gm-inline")
-        ui.element("div").classes("gm-fill")
+        _strip(shared, text)
         _switch(text, text("shell.language"), LANGUAGE, LANGUAGES, text.language)
         looks = {"light": text("shell.light"), "dark": text("shell.dark")}
         _switch(text, text("shell.look"), LOOK, looks, "dark" if is_dark(request) else "light")
@@ -57,8 +59,37 @@ def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], reque
     lost = ui.element("div").classes("gm-lost").props('role="alert" id="gm-lost"')
     with lost:
         ui.label(text("shell.server_lost"))
-    with ui.element("main").classes("gm-main"):
+    with ui.element("div").classes("gm-main"):
         build(shared, text)
+
+
+def _strip(shared: Shared, text: Text) -> None:
+    """Control, run and alarms in a few words, on every page; each leads where there is more."""
+    with ui.element("div").classes("gm-strip").props('role="status"'):
+        signs = {page: _sign(page) for page in ("machine", "measure", "alarms")}
+
+    def look() -> None:
+        signs["machine"](*connection(text, shared.link))
+        signs["measure"](run_strip(text, shared.measuring), "info")
+        count = shared.book.unseen()
+        words = text("machine.strip_alarms", n=count) if count else text("machine.strip_no_alarms")
+        signs["alarms"](words, "error" if count else "info")
+
+    look()
+    ui.timer(2 * widgets.LOOK, look)
+
+
+def _sign(page: str) -> Callable[[str, str], None]:
+    with ui.element("a").classes("gm-sign") as sign:
+        sign.props["href"] = "/measure" if page == "measure" else "/machine"
+        label = ui.label().classes("gm-inline")
+
+    def show(words: str, kind: str) -> None:
+        label.text = words
+        others = " ".join(f"gm-{one}" for one in ("info", "good", "warning", "error") if one != kind)
+        sign.classes(add=f"gm-{kind}", remove=others)
+
+    return show
 
 
 def _switch(text: Text, label: str, cookie: str, options: dict[str, str], value: str) -> None:

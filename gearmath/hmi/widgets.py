@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -36,6 +36,13 @@ def heading(title: str) -> None:
 
 
 @contextmanager
+def fields() -> Iterator[ui.element]:
+    """Fields beside each other, as far as there is room."""
+    with ui.element("div").classes("gm-fields") as element:
+        yield element
+
+
+@contextmanager
 def row() -> Iterator[ui.element]:
     """Things side by side, as far as there is room."""
     with ui.element("div").classes("gm-row") as element:
@@ -60,7 +67,7 @@ class Message:
         """Say something else; an empty text hides the message."""
         self._label.text = words
         self._icon.name = _ICONS[kind]
-        self._box.classes(replace=f"gm-message gm-{kind}")
+        self._box.classes(add=f"gm-{kind}", remove=" ".join(f"gm-{one}" for one in _ICONS if one != kind))
         self._box.visible = bool(words)
 
 
@@ -118,7 +125,27 @@ class NumberField:
             self._changed(self.value)
 
 
-def choice(label: str, options: Sequence[str] | dict[str, str], value: str, changed: Callable[[str], object]) -> Any:
+def numbers(fields: Mapping[str, NumberField]) -> dict[str, float]:
+    """The values of fields by name. Raises InputError naming the first that is refused."""
+    found = {}
+    for name, one in fields.items():
+        if one.value is None:
+            one.field.validate()
+            raise InputError(f"{one.field.props['label']}: {one.field.error}")
+        found[name] = one.value
+    return found
+
+
+def word(label: str, value: str, hint: str) -> ui.input:
+    """A name or other short text."""
+    found = ui.input(label, value=value).classes("gm-number")
+    found.props('outlined dense hide-bottom-space autocomplete="off" maxlength="40"')
+    if hint:
+        found.props["hint"] = hint
+    return found
+
+
+def choice(label: str, options: Sequence[str] | dict[Any, str], value: Any, changed: Callable[[Any], object]) -> Any:
     """One of several, by keyboard or touch."""
     given = list(options) if not isinstance(options, dict) else options
     found = ui.select(given, label=label, value=value, on_change=lambda event: changed(event.value))

@@ -123,7 +123,7 @@ class _GearPage:
 
     def _fields(self, found: Draft, fields: dict[Place, widgets.NumberField]) -> None:
         text = self.text
-        with ui.element("div").classes("gm-fields"):
+        with ui.element("div").classes("gm-settings"):
             for one in setting_fields(found.member):
                 label = f"{text(f'gear.{one.key}')}, {self.names[one.flanks[0] if len(one.flanks) == 1 else 'both']}"
                 shown = self.desk.typed.get(one.place, one.value)

@@ -15,8 +15,7 @@ function gearmathChoose(cookie, value) {
     if (document.body.classList.contains("gm-is-lost") !== lost) {
       document.body.classList.toggle("gm-is-lost", lost);
       // nothing is pressed while nobody hears it: a browser would send it later
-      const main = document.querySelector("main");
-      if (main) main.inert = lost;
+      for (const part of document.querySelectorAll(".gm-head, .gm-nav, .gm-main")) part.inert = lost;
     }
   }, 250);
 })();
