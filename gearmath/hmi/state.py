@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearmath.hmi.alarm_book import AlarmBook
+from gearmath.hmi.desk import Desk
+from gearmath.hmi.judged_runs import JudgedRuns
 from gearmath.hmi.tickets import Tickets
 from gearmath.hmi.work import Work
 
@@ -43,6 +45,11 @@ class Shared:
     """The measuring run, where there is a control."""
     simulated: SimulatedMachine | None = None
     """The operator's side of the simulated control, where it is that."""
+    desk: Desk = field(init=False)
+    """What the pages of the gear side look at together."""
+
+    def __post_init__(self) -> None:
+        self.desk = Desk(JudgedRuns(self.store))
 
     @property
     def folder(self) -> Path:
