@@ -38,6 +38,8 @@ class AlarmBook:
     def __init__(self, file: Path | None = None) -> None:
         self._file, self._lock = file, threading.Lock()
         self._entries = _kept(file) if file is not None and file.exists() else []
+        # beside the entries: of a flood not all are kept, and none comes twice
+        self._active = {one.key for one in self._entries if not one.gone}
 
     def entries(self) -> list[AlarmEntry]:
         """Those that are active or were not seen yet, the newest first."""
@@ -53,8 +55,8 @@ class AlarmBook:
         """What is active now: the new ones are added, those that are not named any more are gone."""
         now = {alarm.key: alarm for alarm in active}
         with self._lock:
-            before = list(self._entries)
-            known = {one.key for one in before if not one.gone}
+            before, known = list(self._entries), self._active
+            self._active = set(now)
             for k, one in enumerate(before):
                 if not one.gone and one.key not in now:
                     self._entries[k] = replace(one, gone=_time())

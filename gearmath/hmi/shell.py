@@ -69,7 +69,8 @@ def _strip(shared: Shared, text: Text) -> None:
         signs = {page: _sign(page) for page in ("machine", "measure", "alarms")}
 
     def look() -> None:
-        signs["machine"](*connection(text, shared.link))
+        words, kind = connection(text, shared.link)
+        signs["machine"](words if shared.link is not None else text("machine.strip_control"), kind)
         signs["measure"](run_strip(text, shared.measuring), "info")
         count = shared.book.unseen()
         words = text("machine.strip_alarms", n=count) if count else text("machine.strip_no_alarms")

@@ -30,6 +30,14 @@ from tests.gearmath.control.live.conftest import PASSWORD, TEN, Live, _live, liv
 #: Screenshots are left here, to be looked at.
 PICTURES = Path(__file__).parents[3] / "build" / "screenshots"
 _SHOWN = re.compile(r"open (http://\S+)")
+#: What Chromium itself asks for, page or no page.
+OF_THE_BROWSER = {
+    "update.googleapis.com",
+    "content-autofill.googleapis.com",
+    "accounts.google.com",
+    "www.google.com",
+    "clients2.google.com",
+}
 #: What a test waits for at most [ms], on a computer that does other things too.
 PATIENCE = 20_000
 
@@ -153,7 +161,9 @@ def chromium(elsewhere: Elsewhere) -> Iterator[Browser]:
         found = playwright.chromium.launch(executable_path=path, args=arguments)
         yield found
         found.close()
-    assert elsewhere.asked == []
+    hosts = {re.sub(r"^\w+ (?:http://)?([^:/ ]+).*", r"\1", line) for line in elsewhere.asked if line}
+    foreign = hosts - OF_THE_BROWSER
+    assert foreign == set()
 
 
 @dataclass
@@ -239,6 +249,7 @@ def operator(chromium: Browser) -> Iterator[Callable[..., Operator]]:
         context.add_cookies([look])
         one = Operator(served, context, context.new_page())
         one.page.on("console", lambda said: _hear(one, said.type, said.text))
+        one.context.on("request", lambda request: _follow(one, request.url))
         one.page.on("pageerror", lambda error: one.complaints.append(str(error)))
         made.append(one)
         one.page.goto(served.address)
@@ -254,3 +265,19 @@ def operator(chromium: Browser) -> Iterator[Callable[..., Operator]]:
 def _hear(one: Operator, kind: str, text: str) -> None:
     if kind == "error":
         one.complaints.append(text)
+
+
+def _follow(one: Operator, url: str) -> None:
+    if not url.startswith((one.served.base, "data:", "blob:")):
+        one.complaints.append(f"asks for {url}")
+
+
+@pytest.fixture(scope="module")
+def page(serve: Callable[..., Served], _live: Live) -> Served:  # noqa: F811
+    """The page on the simulated control of these tests, with the program of ten touches in its folder."""
+    text = (_live.folder / "control.toml").read_text("utf-8")
+    file = _live.folder / "page.toml"
+    file.write_text(re.sub(r'url = ".*"', f'url = "{_live.control.url}"', text), "utf-8")
+    served = serve("--control", str(file))
+    (served.folder / Live.NAME).write_text(TEN, "utf-8")
+    return served
