@@ -24,6 +24,8 @@ from gearmath.quality.evaluation.topography import Topography, evaluate_topograp
 #: From missing to left on: the colors of the flat charts at the ends.
 _SHADES = [[0.0, LESS], [0.5, "#dcdcdc"], [1.0, MORE]]
 _LINES = "#7d7d7d"
+#: The tooth a little from above, with room for the words of the axes below.
+_CAMERA = {"eye": {"x": 1.4, "y": 1.2, "z": 0.55}, "center": {"x": 0.0, "y": 0.0, "z": -0.16}}
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,7 @@ def space_figure(view: FlankView, name: str, names: Mapping[str, str], dark: boo
             "font": {"color": text},
             "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
             "showlegend": False,
-            "scene": {**scene, "aspectmode": "data", "camera": {"eye": {"x": 1.5, "y": 1.1, "z": 0.7}}},
+            "scene": {**scene, "aspectmode": "data", "camera": _CAMERA},
         },
         "config": {"displaylogo": False, "responsive": True, "scrollZoom": True},
     }
