@@ -16,7 +16,7 @@ from nicegui import ui
 from gearmath.errors import InputError
 from gearmath.hmi import shell
 from gearmath.hmi.gate import LOGIN, LOOPBACK, Gate
-from gearmath.hmi.pages import PAGES
+from gearmath.hmi.shell import PAGES
 from gearmath.hmi.state import Shared
 
 #: How long the server keeps a page whose browser is gone. [s]
