@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from gearmath.errors import ComputationError, InputError
-from gearmath.front.sets import Member, load_set
+from gearmath.front.sets import GearSet, Member, load_set
 from gearmath.hmi.flank_view import FlankView, view_of_run, view_of_settings
 from gearmath.hmi.gear_settings import Place, changes, with_edits
 from gearmath.hmi.hobbing_job import HobbingWish
@@ -90,13 +91,19 @@ class Draft:
     no_view: str
 
 
+@functools.lru_cache(maxsize=4)
+def _loaded(path: Path, changed: int) -> GearSet:
+    """A set as its file was when it was ``changed`` [ns]: judging it takes longer than anything that is typed."""
+    return load_set(path)
+
+
 def draft(path: Path, name: str, typed: dict[Place, float], runs: JudgedRuns, run: int | None) -> Draft:
     """The draft of a member of a set file; what was typed is taken together if it can be, else one after the other.
 
     ``run`` is the run whose deviations are shown, None for those of the settings. Raises InputError for a file that is
     no pair, and for one without this member.
     """
-    member = load_set(path).member(name)
+    member = _loaded(path, path.stat().st_mtime_ns).member(name)
     typed = changes(member, typed)
     refused: dict[Place, str] = {}
     try:

@@ -15,16 +15,16 @@ from gearmath.specs.sheet import unit_of
 
 #: A setting of a flank, or of both that share it.
 Place = tuple[tuple[str, ...], str]
-#: What was typed, by place [mm, degrees, 1].
+#: What was typed, by place [mm, degrees, none].
 Edits = Mapping[Place, float]
 #: Decimals of a field. What a field shows of a value is that value.
 DECIMALS = 6
-_UNITS = {"mm": "mm", "degree": "°", None: "1"}
+_UNITS = {"mm": "mm", "degree": "°", None: ""}
 
 
 @dataclass(frozen=True)
 class SettingField:
-    """One field: ``value`` as the file has it [mm, degrees, 1], within ``low`` and ``high`` of the model of the set."""
+    """One field: ``value`` as the file has it [``unit``], within ``low`` and ``high`` of the model of the set."""
 
     flanks: tuple[str, ...]
     key: str
@@ -52,7 +52,7 @@ def setting_fields(member: Member) -> list[SettingField]:
 
 
 def setting_limits(key: str) -> tuple[float, float]:
-    """Least and largest value of a setting [mm, degrees, 1], as the model of the file has them."""
+    """Least and largest value of a setting [mm, degrees, none], as the model of the file has them."""
     marks = Settings.model_fields[key].metadata
     low = next(bound for mark in marks for name in ("ge", "gt") if (bound := getattr(mark, name, None)) is not None)
     high = next(bound for mark in marks for name in ("le", "lt") if (bound := getattr(mark, name, None)) is not None)

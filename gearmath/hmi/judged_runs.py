@@ -7,7 +7,6 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -35,15 +34,6 @@ _ASSUMED = "measurement.toml"
 Progress = Callable[[int], object]
 
 
-@dataclass(frozen=True)
-class JudgedRun:
-    """A run with what the inspection sheet says of it, and the sheet itself as a page."""
-
-    evaluated: EvaluatedRun
-    reported: ReportedMeasurement
-    sheet: str
-
-
 class JudgedRuns:
     """The runs of a store as they are asked for; a complete run does not change, so it is judged once.
 
@@ -53,7 +43,7 @@ class JudgedRuns:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._evaluated: OrderedDict[int, EvaluatedRun] = OrderedDict()
-        self._judged: OrderedDict[int, JudgedRun] = OrderedDict()
+        self._judged: OrderedDict[int, ReportedMeasurement] = OrderedDict()
         self._lock = threading.Lock()
         self._listed: tuple[float, list[RunSummary]] = (-_FRESH, [])
 
@@ -86,15 +76,13 @@ class JudgedRuns:
             self._keep(self._evaluated, run, found)
         return found
 
-    def judged(self, run: int, progress: Progress = lambda _: None) -> JudgedRun:
-        """The same with uncertainties, correction and sheet: some seconds."""
+    def judged(self, run: int, progress: Progress = lambda _: None) -> ReportedMeasurement:
+        """What the inspection sheet says of a run, with uncertainties and correction: some seconds."""
         with self._lock:
             if run in self._judged:
                 self._judged.move_to_end(run)
                 return self._judged[run]
         evaluated = self.evaluated(run, progress)
-        with self.opened() as store:
-            summary = next(one for one in summaries(store) if one.run == run)
         file, member, name = evaluated.file, evaluated.member, evaluated.name
         covariance, source = point_covariance(file, None), "u_um of the file"
         if covariance is None:
@@ -102,17 +90,35 @@ class JudgedRuns:
             with stored_files(evaluated) as folder:
                 at = load_milling_machine(folder / MACHINE), load_calibration(folder / CALIBRATION)
             covariance, source = touch_covariance(file, member, name, how, *at), f"{_ASSUMED}: {how.title} (assumed)"
-        head = {"date": summary.begun, "operator": summary.operator, "machine": summary.control}
-        title = f"run {run}, {summary.program}"
-        one = reported(
-            evaluated.gear_set, title, file, evaluated.found, covariance, source, head, drawn=_less(progress)
+        head, title = self._head(run)
+        found = reported(
+            evaluated.gear_set,
+            title,
+            file,
+            evaluated.found,
+            covariance,
+            source,
+            head,
+            drawn=lambda _: progress(0),  # nothing but whether to go on
         )
-        with PENCIL:
-            sheet = inspection_sheet([one], progress).html
-        found = JudgedRun(evaluated, one, sheet)
-        if summary.is_complete:
+        if self.is_complete(run):
             self._keep(self._judged, run, found)
         return found
+
+    def sheet(self, run: int, progress: Progress = lambda _: None) -> str:
+        """The inspection sheet of a run, as ``gearmath report`` writes it."""
+        found = self.judged(run, progress)
+        with PENCIL:
+            return inspection_sheet([found], progress).html
+
+    def is_complete(self, run: int) -> bool:
+        """Whether a run takes no more touches."""
+        return any(one.run == run and one.is_complete for one in self.summaries())
+
+    def _head(self, run: int) -> tuple[dict[str, str], str]:
+        """What the store knows for the head of the sheet, and what the run is called there."""
+        one = next(one for one in self.summaries() if one.run == run)
+        return {"date": one.begun, "operator": one.operator, "machine": one.control}, f"run {run}, {one.program}"
 
     @contextmanager
     def opened(self) -> Iterator[MeasurementStore]:
@@ -134,8 +140,3 @@ def stored_files(evaluated: EvaluatedRun) -> Iterator[Path]:
         for each in (SET, MACHINE, CALIBRATION):
             (Path(name) / each).write_bytes(evaluated.run.start.files[each])
         yield Path(name)
-
-
-def _less(progress: Progress) -> Progress:
-    """Draws come by thousands, stages one by one: progress is only told that it may end."""
-    return lambda _: progress(0)

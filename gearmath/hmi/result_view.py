@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from gearmath.hmi.drawing import PENCIL
-from gearmath.hmi.judged_runs import JudgedRun, JudgedRuns, Progress
+from gearmath.hmi.judged_runs import JudgedRuns, Progress
 from gearmath.quality.evaluation.topography import ORDERS
 from gearmath.report.charts import flank_charts, means, pitch_charts, pitches, space_charts
 from gearmath.report.figures import figure_cells, largest_cell, spacing_rows
@@ -31,10 +31,10 @@ class ResultView:
     """A run on the page. Charts are SVG by flank, of the runout under "both"; sentences come as the sheet has them.
 
     ``spacing`` has value [µm], 95 % interval, grade and its tolerance [µm]; ``thickness`` nominal [mm] and deviation
-    [µm]; ``forms`` a value [µm]; ``sure`` value, u, from, to, unit, and how it was found.
+    [µm]; ``forms`` a value [µm].
     """
 
-    judged: JudgedRun
+    run: int
     topographies: dict[str, str]
     pitches: dict[str, str]
     first: tuple[str, ...]
@@ -43,34 +43,52 @@ class ResultView:
     caveat: str
     thickness: tuple[ResultRow, ...]
     forms: tuple[ResultRow, ...]
-    sure: tuple[ResultRow, ...]
-    how_sure: str
 
 
 def result_of(runs: JudgedRuns, run: int, progress: Progress = lambda _: None) -> ResultView:
-    """A stored run judged and drawn. Raises InputError as :meth:`JudgedRuns.judged`."""
-    judged = runs.judged(run, progress)
-    one = judged.reported
-    found = one.evaluation
+    """A stored run evaluated and drawn, without uncertainties. Raises InputError as :meth:`JudgedRuns.evaluated`."""
+    evaluated = runs.evaluated(run, progress)
+    found = evaluated.found
+    one = ReportedMeasurement(evaluated.gear_set.title, f"run {run}", evaluated.member, found, None)
     with PENCIL:
         forms = dict(zip(means(found), (svg for svg, _ in flank_charts(one, {})), strict=True))
         spaces = dict(zip((each.flank for each in pitches(found)), (svg for svg, _ in pitch_charts(one)), strict=True))
         spaces |= dict(zip(("both",), (svg for svg, _ in space_charts(one)), strict=False))
-    first = (*found.first, *found.withheld)
-    others = (*(text for text in found.remarks if text not in found.first), *one.remarks)
+    others = dict.fromkeys(text for text in found.remarks if text not in found.first)
     return ResultView(
-        judged,
+        run,
         forms,
         spaces,
-        tuple(map(in_words, first)),
-        tuple(map(in_words, dict.fromkeys(others))),
-        tuple(ResultRow(name, flank, tuple(cells)) for name, flank, cells in spacing_rows(one)),
+        tuple(map(in_words, (*found.first, *found.withheld))),
+        tuple(map(in_words, others)),
+        tuple(_spacing(one)),
         "" if found.verdict is None else found.verdict.remark,
         tuple(_thickness(one)),
         tuple(_forms(one)),
-        tuple(_sure(one)),
-        in_words(one.how_sure),
     )
+
+
+@dataclass(frozen=True)
+class SureView:
+    """The figures of a run once more, now with uncertainties: ``spacing`` with intervals and the grades of their ends.
+
+    ``figures`` have value, u, from, to, unit, and how it was found; ``source`` says where the uncertainties come from.
+    """
+
+    spacing: tuple[ResultRow, ...]
+    figures: tuple[ResultRow, ...]
+    source: str
+
+
+def sure_of(runs: JudgedRuns, run: int, progress: Progress = lambda _: None) -> SureView:
+    """How sure the figures of a stored run are: some seconds. Raises InputError as :meth:`JudgedRuns.judged`."""
+    one = runs.judged(run, progress)
+    return SureView(tuple(_spacing(one)), tuple(_sure(one)), in_words(one.how_sure))
+
+
+def _spacing(one: ReportedMeasurement) -> Iterator[ResultRow]:
+    for name, flank, cells in spacing_rows(one):
+        yield ResultRow(name, flank, tuple(cells))
 
 
 def _thickness(one: ReportedMeasurement) -> Iterator[ResultRow]:

@@ -92,7 +92,7 @@ class _GearPage:
         """What the set is, and the blank of the member."""
         text, spec = self.text, found.member.spec
         ui.label(found.member.gear_set.title).classes("gm-value gm-start")
-        blocks.facts([(text("gear.teeth"), str(spec.teeth), "1"), (text("gear.hand"), text(f"gear.{spec.hand}"), "")])
+        blocks.facts([(text("gear.teeth"), str(spec.teeth), ""), (text("gear.hand"), text(f"gear.{spec.hand}"), "")])
         method = f"{text(f'gear.{spec.process}')}, {text(f'gear.{spec.cutting}')}, {text(f'gear.{spec.generation}')}"
         blocks.facts([(text("gear.method"), method, "")])
         for key in Blank.model_fields:
@@ -249,6 +249,8 @@ class _GearPage:
         if found.view is None:
             return ""
         member, largest = self.text(f"blocks.{found.member.name}"), f"{found.view.largest_um:.1f}"
+        if float(largest) == 0.0:
+            return self.text("gear.no_deviation", member=member)
         return self.text("gear.view", member=member, largest=largest, times=f"{found.view.times:g}")
 
     def contact(self) -> None:

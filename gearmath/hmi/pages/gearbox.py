@@ -95,16 +95,16 @@ class _GearboxPage:
             pitch = ui.input(text("gearbox.pitch"), value=wish.pitch or "").classes("gm-number")
             pitch.props('outlined dense autocomplete="off"').props["hint"] = text("gearbox.pitch_like")
             pitch.on("change", lambda: self.wish(pitch=pitch.value))
-            self._number("starts", starts, "1", 0)
+            self._number("starts", starts, "", 0)
             widgets.choice(text("gearbox.hand"), hands, wish.hand, lambda hand: self.wish(hand=hand))
         else:
-            self._number("teeth", wish.teeth, "1", 0)
+            self._number("teeth", wish.teeth, "", 0)
             every = {_EVERY: text("gearbox.every"), **{hob.name: hob.name for hob in machine.hobs}}
             chosen = wish.hob or _EVERY
             widgets.choice(
                 text("gearbox.hob"), every, chosen, lambda hob: self.wish(hob=None if hob == _EVERY else hob)
             )
-            self._number("starts", starts, "1", 0)
+            self._number("starts", starts, "", 0)
             self._number("helix", wish.helix, "°", 4)
             widgets.choice(text("gearbox.helix_hand"), hands, wish.hand, lambda hand: self.wish(hand=hand))
             cuts = {cut: text(f"gearbox.{cut}") for cut in ("climb", "conventional")}
@@ -185,8 +185,8 @@ class _GearboxPage:
         text, desk = self.text, self.desk
         widgets.note(text("gearbox.rules"))
         with widgets.row():
-            edges = widgets.NumberField(text, text("gearbox.edges"), _EDGES, "1", 1000, _MOST_EDGES, digits=0)
-            start = widgets.NumberField(text, text("gearbox.start"), 0, "1", 0, _LATEST, digits=0)
+            edges = widgets.NumberField(text, text("gearbox.edges"), _EDGES, "", 1000, _MOST_EDGES, digits=0)
+            start = widgets.NumberField(text, text("gearbox.start"), 0, "", 0, _LATEST, digits=0)
 
         def begin() -> None:
             if edges.value is not None and start.value is not None:
