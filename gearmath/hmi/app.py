@@ -16,7 +16,7 @@ from nicegui import ui
 from gearmath.errors import InputError
 from gearmath.hmi import shell
 from gearmath.hmi.gate import LOGIN, LOOPBACK, Gate
-from gearmath.hmi.pages import PAGES
+from gearmath.hmi.shell import PAGES
 from gearmath.hmi.state import Shared
 
 #: How long the server keeps a page whose browser is gone. [s]
@@ -61,8 +61,10 @@ def _register(shared: Shared, name: str) -> None:
 def serve(shared: Shared, host: str, port: int, show: Callable[[str], object]) -> None:
     """Serve until Ctrl-C. ``show`` gets the address with the token as soon as it answers.
 
-    Raises InputError where the port cannot be used.
+    Raises InputError where the port cannot be used, and for an address that is none of this computer alone.
     """
+    if host in ("0.0.0.0", "::", ""):
+        raise InputError(f"--host {host}: must be one address of this computer: it is the name that browsers may use")
     listening = _listen(host, port)
     port = listening.getsockname()[1]
     token = secrets.token_urlsafe(24)

@@ -10,10 +10,20 @@ from starlette.requests import Request
 
 from gearmath.hmi import widgets
 from gearmath.hmi.messages import LANGUAGES, Text
-from gearmath.hmi.pages import PAGES
 from gearmath.hmi.state import Shared
 from gearmath.hmi.words import connection, run_strip
 
+#: The pages in the order of the work: name (of the module, the address and the table of messages), Material icon.
+PAGES = {
+    "machine": "precision_manufacturing",
+    "gear": "settings",
+    "programs": "description",
+    "measure": "my_location",
+    "result": "insights",
+    "correct": "tune",
+    "history": "history",
+    "gearbox": "sync_alt",
+}
 LANGUAGE, LOOK = "gearmath_language", "gearmath_look"
 
 

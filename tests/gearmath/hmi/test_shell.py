@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from gearmath.hmi.messages import Text, messages
-from gearmath.hmi.pages import PAGES
+from gearmath.hmi.shell import PAGES
 from tests.gearmath.hmi.conftest import Operator, Served
 
 
