@@ -106,8 +106,10 @@ def draft(path: Path, name: str, typed: dict[Place, float], runs: JudgedRuns, ru
     refused: dict[Place, str] = {}
     try:
         accepted, edited = typed, with_edits(member, typed)
-    except (InputError, ComputationError):
+    except (InputError, ComputationError) as error:
         accepted, edited = {}, member
+        if len(typed) == 1:
+            refused, typed = dict.fromkeys(typed, str(error)), {}
         for place, value in typed.items():
             try:
                 edited = with_edits(member, {**accepted, place: value})
