@@ -153,7 +153,7 @@ def setting_name(text: Text, name: str) -> str:
 
 
 def has_webgl(then: Callable[[bool], object]) -> None:
-    """Tell whether this browser can draw in space."""
+    """Tell whether this browser can draw in space; one that is too busy to say so is taken to be able to."""
 
     async def ask() -> None:
         try:
@@ -163,7 +163,7 @@ def has_webgl(then: Callable[[bool], object]) -> None:
                 timeout=5.0,
             )
         except TimeoutError:
-            return  # a browser that is busy has said nothing
+            found = True
         then(bool(found))
 
     ui.timer(0.05, ask, once=True)

@@ -73,7 +73,7 @@ class Desk:
         return whole[-1].run if whole else None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Draft:
     """A member with the settings that were typed, as far as they are those of a pair; ``refused`` says why by place.
 

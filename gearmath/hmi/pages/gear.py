@@ -48,7 +48,8 @@ class _GearPage:
     def __init__(self, shared: Shared, text: Text) -> None:
         self.shared, self.text, self.desk = shared, text, shared.desk
         self.names = blocks.flank_names(text)
-        self.is_flat = False
+        self.look = ""
+        """How flanks are drawn, space or flat; nothing until the browser has said what it can."""
         self.mine: dict[Place, float] = {}
         """What this page has typed, or has shown as typed."""
         self.plot: ui.plotly | None = None
@@ -193,6 +194,11 @@ class _GearPage:
         def source(name: str) -> None:
             desk.source = name
 
+        def draw_as(kind: str) -> None:
+            self.look = kind
+            if seen:
+                show(seen[0], anew=True)
+
         sources = {name: text(f"gear.of_{name}") for name in SOURCES}
         kinds = {"space": text("gear.space"), "flat": text("gear.flat")}
         with widgets.row():
@@ -200,8 +206,9 @@ class _GearPage:
                 lambda: desk.source, lambda: widgets.choice(text("gear.deviations"), sources, desk.source, source)
             )
             blocks.run_choice(self.shared, text)
-            look = widgets.choice(text("gear.look"), kinds, "space", lambda kind: flat(kind == "flat"))
+            look = widgets.choice(text("gear.look"), kinds, "space", draw_as)
         words = widgets.note("")
+        no_webgl = widgets.Message()
         drawing = ui.element("div").classes("gm-follow")
         seen: list[Draft] = []
 
@@ -215,30 +222,34 @@ class _GearPage:
             with drawing:
                 self._flanks(found)
 
-        def flat(is_flat: bool) -> None:
-            self.is_flat = is_flat
-            if seen:
-                show(seen[0], anew=True)
-
         self.kept(show)
 
-        def without_webgl(there: bool) -> None:
+        def answered(there: bool) -> None:
             if not there:
-                look.value = "flat"
-                widgets.Message(text("gear.no_webgl"), "info")
+                no_webgl.show(text("gear.no_webgl"))
+                look.value = "flat"  # which draws
+            elif not self.look:
+                draw_as("space")
 
-        blocks.has_webgl(without_webgl)
+        blocks.has_webgl(answered)
 
     def _flanks(self, found: Draft) -> None:
         text, view = self.text, found.view
         if view is None:
             widgets.Message(found.no_view, "warning")
-        elif self.is_flat:
-            with ui.element("div").classes("gm-charts"):
-                for flank, figure in flat_figures(view).items():
-                    blocks.chart(text, drawn(lambda figure=figure: figure), self.names[flank])  # type: ignore[misc]
-        else:
+        elif self.look == "flat":
+
+            def compute() -> Callable[[Progress], dict[str, str]]:
+                return lambda progress: {flank: drawn(lambda f=f: f) for flank, f in flat_figures(view).items()}  # type: ignore[misc]
+
+            blocks.kept(text, self.desk.of("gear.flat"), lambda: found, text("gear.drawing"), compute, self._flat)
+        elif self.look == "space":
             self.plot = widgets.figure(self._space(found), text("gear.flanks")).classes("gm-space")
+
+    def _flat(self, found: dict[str, str]) -> None:
+        with ui.element("div").classes("gm-charts"):
+            for flank, svg in found.items():
+                blocks.chart(self.text, svg, self.names[flank])
 
     def _space(self, found: Draft) -> dict[str, Any]:
         assert found.view is not None  # asked before

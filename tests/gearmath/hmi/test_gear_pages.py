@@ -18,6 +18,13 @@ from tests.gearmath.hmi.stored import stored_runs  # noqa: F401
 
 #: A computation of some seconds, on a computer that does other things too. [ms]
 LONG = 90_000
+#: What a browser without WebGL says when it is asked for it.
+_NO_WEBGL = """
+const known = HTMLCanvasElement.prototype.getContext;
+HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+  return kind.includes("webgl") ? null : known.call(this, kind, ...rest);
+};
+"""
 
 
 @pytest.fixture(scope="module")
@@ -30,8 +37,12 @@ def served(serve: Callable[..., Served], stored_runs: Path) -> Served:  # noqa: 
 def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one_is_shown_against_the_file(
     served: Served, operator: Callable[..., Operator]
 ) -> None:
-    one = operator(served, "gear")
+    one = operator(served)
+    one.context.add_init_script(_NO_WEBGL)
+    one.go("gear")
     settings = one.panel("Settings")
+    one.sees("This browser has no WebGL: the flanks are shown flat.")
+    one.panel("Flanks of a tooth").locator("figure svg").nth(1).wait_for(timeout=LONG)
     one.sees("All settings are those of the file.")
     one.fill("Cutter swivel, convex", "400")
     one.sees("400 °: must lie between -360 and 360 °", settings)
@@ -44,7 +55,9 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
     assert row[-5:] == ["concave", "0.296487", "0.360000", "+0.063513", "mm"]
     assert one.page.get_by_label("Cutter swivel, convex", exact=True).input_value() == "400"
     assert one.page.get_by_role("button", name="Save as new set").count() == 0
-    other = operator(served, "gear")  # a second page shows the same
+    other = operator(served)  # a second page shows the same
+    other.context.add_init_script(_NO_WEBGL)
+    other.go("gear")
     other.page.get_by_text("Changed against the file").wait_for(timeout=LONG)
     assert other.page.get_by_label("Sliding base, concave", exact=True).input_value() == "0.36"
     one.picture("gear_refused")
