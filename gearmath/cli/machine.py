@@ -101,13 +101,10 @@ def cut(
     within the tolerance.
     """
     from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.tooth import tooth_space
     from gearmath.files import write_text
-    from gearmath.machine.control.executor import execute
-    from gearmath.machine.control.state import Setup
-    from gearmath.machine.judging.program import faults_of, metal_faults
+    from gearmath.machine.judging.checked import checked_cut
     from gearmath.machine.judging.timing import timing
-    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, cutting_plan, pass_count
+    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, pass_count
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
     from gearmath.machine.writing.cutting import program_of
@@ -126,27 +123,18 @@ def cut(
     member, spec = member_of(bevel_set, member)
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
     with bar(pass_count(spec, member, job), "pass") as progress:
-        plan = cutting_plan(bevel_set, member, milling_machine, job, progress)
-        text = (linuxcnc.program_of if dialect == LINUXCNC else program_of)(plan, target.stem)
-    path = execute(text, str(target), Setup.of(milling_machine))
-    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
-    runs = _right_runs(path, spec, member, milling_machine, space)
-    faults = faults_of(text, path, runs, spec, member, milling_machine)
-    if not job.dry_run:  # which cuts nothing
-        with bar(spec.teeth, "space") as progress:
-            faults += metal_faults(text, path, runs, spec, member, milling_machine, space, progress)[0]
-    if faults:
-        raise InputError(f"{target}: {'; '.join(map(str, faults))}: the program is not written")
+        write = linuxcnc.program_of if dialect == LINUXCNC else program_of
+        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), progress, write)
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import setup_sheet
 
-        page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
-    count = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(text)
-    write_text(target, text)
+        page = setup_sheet(SetupFacts.of(made.plan, PLUNGE_FEED), target.name, timing(made.path, milling_machine))
+    count = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
+    write_text(target, made.text)
     click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {count} blocks")
     if configuration:
-        write_configuration(target, milling_machine, linuxcnc.tools_of(plan))
+        write_configuration(target, milling_machine, linuxcnc.tools_of(made.plan))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")

@@ -161,7 +161,7 @@ def _passes(member: Member, name: str, machine: MillingMachine, job: CuttingJob,
         _check_motions(member, name, cut)
         for stage, stock, tolerance in job.stages:
             theta, first = _first_pass(member, cut, machine, replace(job, tolerance=tolerance), share)
-            first.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
+            first.axes[:, 2] += lift(member, cut, stock, job.dry_run)
             for space in job.spaces:
                 label = f"space {space} {' and '.join(cut.flanks)}" + (f" {stage}" if len(job.stages) > 1 else "")
                 indexed = first.axes + np.array([0, 0, 0, angles[space], 0])
@@ -183,10 +183,10 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Cut
         raise InputError(f"{name}: blocks = poly: face hobbing turns the cutter as well, and has straight blocks only")
     (cut,) = Cut.of(member, name)
     _check_motions(member, name, cut)
-    tooth, lift = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
+    tooth, above = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
-        one = hobbing_pass(member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth)
-        one.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
+        one = hobbing_pass(member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, above, PLUNGE_FEED, tooth)
+        one.axes[:, 2] += lift(member, cut, stock, job.dry_run)
         label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
         axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
         yield Pass(cut.tool, label, 0, axes, one.seconds, theta=one.theta)
@@ -201,7 +201,7 @@ def _first_pass(
     if member.generation == "formate":
         theta = np.zeros(2)
         axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
-        axes[0, 2] += _PLUNGE_DEPTHS * _depth(member) + _PLUNGE_MARGIN
+        axes[0, 2] += plunge_lift(member)
         dwell = _SPARK_OUT_TURNS * 60.0 / job.spindle_rpm if job.spindle_rpm > 0 else 0.0
     elif job.blocks == "poly":
         return _curved_pass(member, cut, machine, job, share)
@@ -244,6 +244,16 @@ def _depth(member: Member) -> float:
 def _short(spaces: Sequence[int]) -> str:
     listed = ", ".join(map(str, spaces[:5]))
     return f"[{listed}]" if len(spaces) <= 5 else f"[{listed}, ...]"
+
+
+def lift(member: Member, cut: Cut, stock: float, dry_run: bool) -> float:
+    """How far Z is raised [mm] to leave a stock [mm] along the tooth normal, and for a dry run."""
+    return stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if dry_run else 0.0)
+
+
+def plunge_lift(member: Member) -> float:
+    """How far above the bottom a plunge of a Formate cut begins [mm]."""
+    return _PLUNGE_DEPTHS * _depth(member) + _PLUNGE_MARGIN
 
 
 def _flattest(member: Member, cut: Cut) -> float:
