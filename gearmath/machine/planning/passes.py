@@ -24,6 +24,8 @@ class Pass:
     """Time that the cutter turns at the last position, s."""
     theta: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Cradle rotation at each position, (n,) rad; where it stands still the cutter plunges. Empty where not known."""
+    bends: np.ndarray | None = None
+    """Where blocks are polynomials: a_2, a_3 .. of X Y Z A B in each, by a parameter from 0 to 1, (n-1, 5, k)."""
 
 
 def tooth_angles(teeth: int, correction: Sequence[float] = ()) -> np.ndarray:
