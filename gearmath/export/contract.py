@@ -13,10 +13,12 @@ from collections.abc import Iterator
 import casadi as ca
 import sympy as sp
 
+import derivations
 from derivations.expression import Expression, Quantity
 from gearmath.engine.kernel import Kernel
 from gearmath.engine.vector_c import split_c
 from gearmath.export.wrapper import Sizes, columns, transposed, wrapped
+from gearmath.kernels import kernel as chapter_kernel
 
 #: An input may be outside its range by this part of the larger end: a unit vector has components of 1 + 2e-16.
 _SLACK = 1e-9
@@ -27,16 +29,21 @@ _BEYOND = 10.0
 def with_margins(kernel: Kernel) -> ca.Function:
     """The function of a kernel with one more output, the least of its requirements, which must be above zero.
 
-    What both need is computed once. A kernel without requirements keeps its function.
+    What both need is computed once: those of a chapter are lowered together. A kernel without requirements keeps its
+    function.
     """
     if not kernel.requires:
         return kernel.function
-    symbols = {s.name: s for quantity in kernel.inputs for s in quantity.symbols}
+    from gearmath.lowering import lower  # loads SymPy
+
     margin = Quantity("margin", "least of the requirements", "1", "m")
+    if kernel.name in derivations.index() and kernel is chapter_kernel(kernel.name):
+        whole = derivations.derive(kernel.name)
+        outputs = (*whole.outputs, (margin, sp.Min(*whole.requires)))
+        return lower(Expression(kernel.name, kernel.description, kernel.inputs, outputs)).function
+    symbols = {s.name: s for quantity in kernel.inputs for s in quantity.symbols}
     relations = [sp.sympify(requirement, locals=symbols) for requirement in kernel.requires]
     least = sp.Min(*(relation.lhs - relation.rhs for relation in relations))  # each reads "... > 0"
-    from gearmath.lowering import lower
-
     required = lower(Expression(f"{kernel.name}_margin", "Requirement.", kernel.inputs, ((margin, least),))).function
     arguments = [ca.SX.sym(q.name, *kernel.function.size_in(k)) for k, q in enumerate(kernel.inputs)]
     results = ca.cse([*kernel.function.call(arguments), *required.call(arguments)])

@@ -11,9 +11,9 @@ import timeit
 import numpy as np
 import pytest
 
-from derivations import axes, notation
+from derivations import notation
 from gearmath.export.host import compile_kernel
-from gearmath.lowering import lower
+from gearmath.kernels import kernel
 
 N = 20_000
 
@@ -47,7 +47,7 @@ def poses() -> tuple[np.ndarray, np.ndarray, float]:
 
 @pytest.mark.benchmark(group="axis transform")
 def test_axis_transforms_per_second_in_c_against_numpy(benchmark, poses, host_compiler) -> None:
-    compiled = compile_kernel(lower(axes.axis_transform()))
+    compiled = compile_kernel(kernel("axis_transform"))
     (ours,) = benchmark(compiled, *poses, np.zeros(3))
     np.testing.assert_allclose(ours, numpy_axes(*poses), atol=1e-8)  # mm and rad
     in_c, in_numpy = (
@@ -65,7 +65,7 @@ def test_positions_along_a_roll_in_c_against_vm_and_numpy(benchmark, poses, by_v
     """As a post-processor asks: settings shared, one cradle rotation a point, on one core."""
     settings, height = poses[0][0], poses[2]
     theta = np.linspace(-0.5, 0.5, 10 * N)
-    compiled, interpreted = compile_kernel(lower(axes.axis_transform())), by_vm(lower(axes.axis_transform()))
+    compiled, interpreted = compile_kernel(kernel("axis_transform")), by_vm(kernel("axis_transform"))
     (ours,) = benchmark(compiled, settings, theta, height, np.zeros(3))
     repeated = np.broadcast_to(settings, (len(theta), 12))
     np.testing.assert_allclose(ours, numpy_axes(repeated, theta, height), atol=1e-8)  # mm and rad

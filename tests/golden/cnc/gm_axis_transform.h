@@ -40,7 +40,7 @@
  *     sin(cutter_tilt)**2*sin(machine_root_angle)**2*cos(cradle_angle + cutter_swivel + theta)**2 +
  *     sin(cutter_tilt)**2*cos(machine_root_angle)**2*cos(cradle_angle + cutter_swivel + theta)**2) - 1/20 > 0
  * source: Coordinate Control Method for Full CNC Vertical Spiral Bevel Gear Milling Machine, with atan2
- * ops: 105 (add 24, atan2 2, cos 5, div 5, mul 43, neg 3, sin 5, sq 7, sqrt 2, sub 9)
+ * ops: 90 (add 20, atan2 2, cos 4, div 5, mul 38, neg 3, sin 4, sq 5, sqrt 1, sub 8)
  * work memory: none
  * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
  */
