@@ -46,6 +46,8 @@ CHAPTERS = (
     "local_synthesis",
     "chip",
     "design",
+    "virtual_hobbing",
+    "cylindrical_tolerance",
 )
 
 #: An expression of a chapter, as its source says it.

@@ -31,7 +31,7 @@ _TAPER = 4.0
 _SPIRAL = (0.5, 0.5)
 _PRESSURE = 1.1
 #: Transverse backlash at the mean point over the module: 0.02 to 0.08 are usual, the finer the pitch the more.
-_BACKLASH = (0.0, 0.12)
+BACKLASH = (0.0, 0.12)
 #: Part of the module by which a pair without backlash may seem to clamp: rounding of its settings.
 _ROUNDED = 1e-6
 
@@ -225,10 +225,10 @@ def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[st
     gear = members["gear"]
     pitch = 2 * math.pi * mean_pitch_radius(gear) / gear.teeth
     backlash, module = spaces["pinion"] + spaces["gear"] - pitch, transverse_module(gear)
-    if not (_BACKLASH[0] - _ROUNDED) * module <= backlash <= _BACKLASH[1] * module:
+    if not (BACKLASH[0] - _ROUNDED) * module <= backlash <= BACKLASH[1] * module:
         settings = "; ".join(f"{name} {_phase(member)}" for name, member in members.items())
         raise InputError(
             f"pinion and gear: {settings}: the pair has a transverse backlash of {backlash:.4g} mm at the mean point, "
-            f"which must lie between {_BACKLASH[0] * module:.3g} and {_BACKLASH[1] * module:.3g} mm, {_BACKLASH[0]:g} "
-            f"and {_BACKLASH[1]:g} of the module"
+            f"which must lie between {BACKLASH[0] * module:.3g} and {BACKLASH[1] * module:.3g} mm, {BACKLASH[0]:g} "
+            f"and {BACKLASH[1]:g} of the module"
         )

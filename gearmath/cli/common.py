@@ -111,6 +111,12 @@ def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> t
     return name, pair.member(name)
 
 
+def nominal_words(member: Member, flank: str) -> str:
+    """What to add where nominal points of a flank are written that is cut with other settings; else nothing."""
+    changed = member.flank(flank).design is not None
+    return ": the nominal flank, by the settings under 'design', not what the corrected ones cut" if changed else ""
+
+
 def plot(what: str) -> Any:
     """The option --plot for one picture."""
     return click.option(
