@@ -87,11 +87,10 @@ def cut(
     within the tolerance.
     """
     from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.tooth import tooth_space
     from gearmath.files import write_text
     from gearmath.machine.control.executor import execute
     from gearmath.machine.control.state import Setup
-    from gearmath.machine.judging.program import faults_of, metal_faults
+    from gearmath.machine.judging.program import written_faults
     from gearmath.machine.judging.timing import timing
     from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, cutting_plan, pass_count
     from gearmath.machine.planning.limits import check_spindle_speed
@@ -112,12 +111,8 @@ def cut(
         plan = cutting_plan(bevel_set, member, milling_machine, job, progress)
         text = program_of(plan, target.stem)
     path = execute(text, str(target), Setup.of(milling_machine))
-    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
-    runs = _right_runs(path, spec, member, milling_machine, space)
-    faults = faults_of(text, path, runs, spec, member, milling_machine)
-    if not job.dry_run:  # which cuts nothing
-        with bar(spec.teeth, "space") as progress:
-            faults += metal_faults(text, path, runs, spec, member, milling_machine, space, progress)[0]
+    with bar(spec.teeth, "space") as progress:
+        faults = written_faults(text, path, spec, member, milling_machine, progress)
     if faults:
         raise InputError(f"{target}: {'; '.join(map(str, faults))}: the program is not written")
     page = None
