@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import MachinePath, execute
 from gearmath.machine.control.state import Setup
-from gearmath.machine.judging.program import faults_of, metal_faults
-from gearmath.machine.milling.run import runs_of
+from gearmath.machine.judging.program import written_faults
 from gearmath.machine.planning.cut_plan import CuttingJob, CuttingPlan, cutting_plan
 from gearmath.machine.writing.cutting import program_of
 from gearmath.specs.bevel_set import BevelSet
@@ -43,11 +41,7 @@ def checked_cut(
     plan = cutting_plan(bevel_set, member, machine, job, progress)
     text = write(plan, name)
     path, spec = execute(text, file, Setup.of(machine)), bevel_set.member(member)
-    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
-    runs = runs_of(path, spec, member, machine, None, space, SHARP_EDGE)
-    faults = faults_of(text, path, runs, spec, member, machine)
-    if not job.dry_run:  # which cuts nothing
-        faults += metal_faults(text, path, runs, spec, member, machine, space)[0]
+    faults = written_faults(text, path, spec, member, machine)
     if faults:
         raise InputError(f"{file}: {'; '.join(map(str, faults))}: the program is not written")
     return CheckedCut(plan, text, path)
