@@ -163,7 +163,7 @@ def has_webgl(then: Callable[[bool], object]) -> None:
                 timeout=5.0,
             )
         except TimeoutError:
-            found = False
+            return  # a browser that is busy has said nothing
         then(bool(found))
 
     ui.timer(0.05, ask, once=True)

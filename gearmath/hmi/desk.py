@@ -16,8 +16,6 @@ from gearmath.hmi.hobbing_job import HobbingWish
 from gearmath.hmi.judged_runs import JudgedRuns
 from gearmath.hmi.work import Progress, Work
 
-#: The grid on which the flanks of settings are shown, rows and columns.
-_GRID = (9, 17)
 #: What the deviations of a flank are from: of the settings, or of a stored run.
 SOURCES = ("settings", "run")
 
@@ -108,8 +106,10 @@ def draft(path: Path, name: str, typed: dict[Place, float], runs: JudgedRuns, ru
     refused: dict[Place, str] = {}
     try:
         accepted, edited = typed, with_edits(member, typed)
-    except (InputError, ComputationError):
+    except (InputError, ComputationError) as error:
         accepted, edited = {}, member
+        if len(typed) == 1:
+            refused, typed = dict.fromkeys(typed, str(error)), {}
         for place, value in typed.items():
             try:
                 edited = with_edits(member, {**accepted, place: value})
@@ -119,7 +119,7 @@ def draft(path: Path, name: str, typed: dict[Place, float], runs: JudgedRuns, ru
     view, why = None, ""
     try:
         if run is None:
-            view = view_of_settings(edited.deviations(_GRID))
+            view = view_of_settings(edited)
         else:
             evaluated = runs.evaluated(run)
             view = view_of_run(evaluated.found, evaluated.member.teeth)

@@ -31,10 +31,18 @@ def named(found: str) -> str:
 
 
 def translated(found: str, words: Mapping[str, str]) -> str:
-    """An ``<svg>`` with texts, or parts of texts between commas and colons, as ``words`` has them; others stay."""
+    """An ``<svg>`` whose texts are as ``words`` has them: a text as a whole, a part of it between commas and colons, or
+    a phrase of several words within it; others stay.
+    """
+    phrases = sorted((phrase for phrase in words if " " in phrase), key=len, reverse=True)
 
     def other(match: re.Match[str]) -> str:
-        parts = re.split(r"([,;:] ?)", match[0])
-        return words.get(match[0], "".join(words.get(part, part) for part in parts))
+        if match[0] in words:
+            return words[match[0]]
+        parts = [words.get(part, part) for part in re.split(r"([,;:] ?)", match[0])]
+        text = "".join(parts)
+        for phrase in phrases:
+            text = text.replace(phrase, words[phrase])
+        return text
 
     return _TEXT.sub(other, found)

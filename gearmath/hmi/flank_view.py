@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gearmath.bevel.turning import turned
-from gearmath.front.measured import Measurement
+from gearmath.front.sets import Member
 from gearmath.plot.sheet import topography_chart
 from gearmath.plot.style import LESS, MORE
 from gearmath.plot.tooth import ToothFlank, enlargement, tooth_flanks
@@ -24,6 +24,10 @@ from gearmath.quality.evaluation.topography import Topography, evaluate_topograp
 #: From missing to left on: the colors of the flat charts at the ends.
 _SHADES = [[0.0, LESS], [0.5, "#dcdcdc"], [1.0, MORE]]
 _LINES = "#7d7d7d"
+#: Rows and columns of the flanks of settings: in space, and flat, where every point has its number.
+_FINE, _PLAIN = (9, 17), (5, 9)
+#: The tooth a little from above, with room for the words of the axes below.
+_CAMERA = {"eye": {"x": 1.4, "y": 1.2, "z": 0.55}, "center": {"x": 0.0, "y": 0.0, "z": -0.16}}
 
 
 @dataclass(frozen=True)
@@ -43,21 +47,20 @@ class FlankView:
         return max(float(np.nanmax(np.abs(one.deviation))) for one in self.flanks.values())
 
 
-def view_of_settings(measurement: Measurement) -> FlankView:
-    """The flanks that settings cut, as deviations from the nominal ones (:meth:`Member.deviations`)."""
-    file = measurement.file
-    forms = {str(flank): evaluate_topography(file, str(flank)) for flank in dict.fromkeys(file.flank)}
-    return _view(measurement.file, forms, measurement.member.teeth)
+def view_of_settings(member: Member) -> FlankView:
+    """The flanks that the settings of a member cut, as deviations from the nominal ones."""
+    fine, plain = (member.deviations(grid).file for grid in (_FINE, _PLAIN))
+    names = [str(flank) for flank in dict.fromkeys(fine.flank)]
+    flanks = tooth_flanks(fine, {name: evaluate_topography(fine, name) for name in names}, member.teeth)
+    return FlankView(flanks, {name: evaluate_topography(plain, name) for name in names}, enlargement(flanks))
 
 
 def view_of_run(found: MemberEvaluation, teeth: int) -> FlankView | None:
     """The flanks as measured: the mean of the teeth measured in full; None where there is none."""
     forms = {flank: one.mean for flank, one in found.flanks.items() if one.mean is not None}
-    return _view(found.file, forms, teeth) if forms else None
-
-
-def _view(file: Any, forms: Mapping[str, Topography], teeth: int) -> FlankView:
-    flanks = tooth_flanks(file, forms, teeth)
+    if not forms:
+        return None
+    flanks = tooth_flanks(found.file, forms, teeth)
     return FlankView(flanks, forms, enlargement(flanks))
 
 
@@ -100,7 +103,7 @@ def space_figure(view: FlankView, name: str, names: Mapping[str, str], dark: boo
             "font": {"color": text},
             "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
             "showlegend": False,
-            "scene": {**scene, "aspectmode": "data", "camera": {"eye": {"x": 1.5, "y": 1.1, "z": 0.7}}},
+            "scene": {**scene, "aspectmode": "data", "camera": _CAMERA},
         },
         "config": {"displaylogo": False, "responsive": True, "scrollZoom": True},
     }

@@ -116,7 +116,7 @@ class _CorrectPage:
     def _proposal(self, found: tuple[Proposal, dict[str, tuple[str, str]]]) -> None:
         text, (proposal, charts) = self.text, found
         with widgets.panel(text("correct.title"), wide=True):
-            with ui.element("div").classes("gm-charts"):
+            with ui.element("div").classes("gm-charts gm-pairs"):
                 for flank, (before, after) in charts.items():
                     blocks.chart(text, before, f"{self.names[flank]}, {text('correct.before')}")
                     blocks.chart(text, after, f"{self.names[flank]}, {text('correct.after')}")
@@ -154,7 +154,7 @@ class _CorrectPage:
             unit = one["unit"].replace("deg", "°")
             numbers = (f"{one['old']:.6f}", f"{one['new']:.6f}", f"{one['new'] - one['old']:+.6f}")
             rows.append([f"{name}, {self.names[one['flank']]}", *numbers, unit])
-        head = [text(f"gear.{key}") for key in ("setting", "in_file", "now", "change", "unit")]
+        head = [text(key) for key in ("gear.setting", "correct.old", "correct.new", "gear.change", "gear.unit")]
         blocks.plain_table(text("correct.changes"), head, rows)
         index = proposal.values["index_correction_deg"]
         if index:

@@ -194,11 +194,13 @@ class _GearPage:
             desk.source = name
 
         sources = {name: text(f"gear.of_{name}") for name in SOURCES}
+        kinds = {"space": text("gear.space"), "flat": text("gear.flat")}
         with widgets.row():
             blocks.follow(
                 lambda: desk.source, lambda: widgets.choice(text("gear.deviations"), sources, desk.source, source)
             )
             blocks.run_choice(self.shared, text)
+            look = widgets.choice(text("gear.look"), kinds, "space", lambda kind: flat(kind == "flat"))
         words = widgets.note("")
         drawing = ui.element("div").classes("gm-follow")
         seen: list[Draft] = []
@@ -219,8 +221,6 @@ class _GearPage:
                 show(seen[0], anew=True)
 
         self.kept(show)
-        kinds = {"space": text("gear.space"), "flat": text("gear.flat")}
-        look = widgets.choice(text("gear.look"), kinds, "space", lambda kind: flat(kind == "flat"))
 
         def without_webgl(there: bool) -> None:
             if not there:

@@ -12,6 +12,7 @@ from gearmath.hmi.messages import Text
 from gearmath.hmi.result_view import ResultRow, ResultView, SureView, result_of, sure_of
 from gearmath.hmi.state import Shared
 from gearmath.hmi.work import Progress
+from gearmath.quality.evaluation.tolerance import CAVEAT
 
 
 def build(shared: Shared, text: Text) -> None:
@@ -66,7 +67,8 @@ def _show(shared: Shared, text: Text, found: ResultView) -> None:
         with place:
             _spacing(text, found.spacing, names)
         if found.caveat:
-            widgets.Message(found.caveat, "warning")
+            known = found.caveat == CAVEAT
+            widgets.Message(text("result.caveat") if known else found.caveat, "warning")
         _thickness(text, found)
     with widgets.panel(text("result.uncertainty"), wide=True):
 
