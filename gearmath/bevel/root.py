@@ -107,6 +107,11 @@ def slot_widths(
     return Widths.of(width)
 
 
+def cone_distances(blank: Blank) -> tuple[tuple[float, float], np.ndarray]:
+    """Direction of the pitch cone in the axial plane, and the cone distances (13,) [mm] of the places ``ACROSS``."""
+    return _along(blank), _heights(blank)[0]
+
+
 def _across(blank: Blank, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Widths (25,) between two traces (13,3), toe to heel: from points of one to the nearest of the other, counted at
     the cone distance of the middle between both."""

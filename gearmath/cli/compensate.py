@@ -168,6 +168,7 @@ def compensate(
         correction.motions,
         correction.curvatures,
         check=check_pair,
+        origin=f"{measured.name} and {source.name}",
     )
     values = correction_values(spec, correction) | {"remarks": [*evaluation.remarks, *correction.remarks]}
     values |= _uncertainty(spec, file, evaluation, correction, noise, root_limit or ROOT_LIMIT)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import JSON, MEMBER, SET, about, bar, echo_json, member_of, output
+from gearmath.cli.common import JSON, MEMBER, SET, about, bar, echo_json, member_of, nominal_words, output
 from gearmath.errors import InputError
 
 _FOLDER = click.option(
@@ -131,7 +131,7 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
     with about(source):
         found = solve_flank(spec, name, flank, blank_grid(spec, *shape, margin))
     write_points(target, name, flank, found.point, found.normal)
-    click.echo(f"{target}: {len(found.point)} points")
+    click.echo(f"{target}: {len(found.point)} points{nominal_words(spec, flank)}")
 
 
 @export.command()

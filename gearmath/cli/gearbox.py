@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gearmath.cli.common import JSON, echo_json, plot, save_plot
+from gearmath.cli.gearbox_cut import cut
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,7 +48,9 @@ def _job_options(command: Callable) -> Callable:
     @functools.wraps(command)
     def with_plan(machine: str, **options: Any) -> Any:
         own = {key: options.pop(key) for key in list(options) if key not in _KEYS}
-        return command(job=_plan(_machine(machine), options), **own)
+        from gearmath.specs.hobbing import find_hobbing_machine
+
+        return command(job=_plan(find_hobbing_machine(machine), options), **own)
 
     for option in reversed(_JOB):
         with_plan = option(with_plan)
@@ -60,10 +63,13 @@ _THREAD_KEYS = ("pitch", "starts", "hand", "run_up", "rpm")
 
 @click.group()
 def gearbox() -> None:
-    """Electronic gearbox of a hobbing machine or a lathe: plan a job, simulate the rule.
+    """Electronic gearbox of a hobbing machine or a lathe: plan a job, simulate the rule, cut a gear virtually.
 
     MACHINE is a TOML file, or the name of one that comes with the package, such as hobbing_plewes.toml.
     """
+
+
+gearbox.add_command(cut)
 
 
 @gearbox.command("plan")
@@ -113,14 +119,6 @@ def simulate(
         echo_json(_values({key: getattr(job, key) for key in terms} | asdict(result)))
     else:
         click.echo(simulation_text(result, job))
-
-
-def _machine(name: str) -> HobbingMachine:
-    """A machine file by its path, or by the name of a bundled one."""
-    from gearmath.specs.hobbing import load_hobbing_machine
-    from gearmath.specs.toml import find
-
-    return load_hobbing_machine(find(name))
 
 
 def _plan(machine: HobbingMachine, options: dict[str, Any]) -> GearboxPlan | ThreadPlan:

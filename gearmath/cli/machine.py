@@ -18,6 +18,7 @@ from gearmath.cli.common import (
     Number,
     about,
     bar,
+    bars,
     member_of,
     output,
 )
@@ -83,13 +84,14 @@ def cut(
 ) -> None:
     """The cutting program of a member.
 
-    Before it is written it is run: it must keep the limits of the machine, and collide with nothing.
+    Before it is written it is run: it must keep the limits of the machine, collide with nothing, and leave both flanks
+    within the tolerance.
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
     from gearmath.machine.judging.checked import checked_cut
     from gearmath.machine.judging.timing import timing
-    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, pass_count
+    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
     from gearmath.machine.writing.words import block_count, check_name
@@ -103,8 +105,8 @@ def cut(
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
-    with bar(pass_count(spec, member, job), "pass") as progress:
-        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), progress)
+    with bars() as begin:
+        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin)
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import setup_sheet
@@ -197,10 +199,7 @@ def mill(
     worst = float(abs(file.deviation).max())
     click.echo(f"{target}: {len(file)} points, largest deviation {worst * 1000:.3f} um")
     with about(program):
-        if space is not None:
-            faults = _judge_metal(text, runs, spec, member, milling_machine, space)
-        else:
-            faults = _judge_hobbed(text, path, runs, spec, member, milling_machine, worst, simulated is None)
+        faults = _judge_metal(text, path, runs, spec, member, milling_machine, space)
         faults += map(str, faults_of(text, path, runs, spec, member, milling_machine))
     if report is not None:
         found = _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000, space)
@@ -266,54 +265,34 @@ def _milled(
         return measure_member(left, spec, member, simulated, measurement)
 
 
-def _judge_hobbed(
+def _judge_metal(
     text: str,
     path: MachinePath,
     runs: list[CuttingRun],
     spec: Member,
     member: str,
     machine: MillingMachine,
-    worst: float,
-    right: bool,
-) -> list[str]:
-    """Whether the flanks of a hobbed member deviate from those of its settings by more than the program states.
-
-    ``worst`` [mm] is how far they do from the design, on a machine without errors where that is ``right``.
-    """
-    from gearmath.machine.judging.cut import as_cut, hobbed
-    from gearmath.machine.judging.stated import Stated
-    from gearmath.machine.milling.mill import mill_member
-
-    made = as_cut(spec)
-    if not right or made != spec:
-        with bar(2 * spec.teeth, "flank") as progress:
-            worst = float(abs(mill_member(path, made, member, machine, None, progress, runs).deviation).max())
-    return [str(fault) for fault in hobbed(worst, Stated.of(text))]
-
-
-def _judge_metal(
-    text: str, runs: list[CuttingRun], spec: Member, member: str, machine: MillingMachine, space: ToothSpace
+    space: ToothSpace | None,
 ) -> list[str]:
     """Print what the blocks leave on a machine without errors; a sentence for each way in which that is wrong."""
     import math
 
-    from gearmath.bevel.tooth import tooth_space
-    from gearmath.machine.judging.cut import as_cut, metal_left
-    from gearmath.machine.judging.stated import Stated
+    from gearmath.bevel.ridge import RIDGE, ridge, ridge_words
+    from gearmath.machine.judging.cut import as_cut
+    from gearmath.machine.judging.program import metal_faults
 
-    made = as_cut(spec, space)
-    with bar(1, "space") as progress:
-        own = space if made == spec else tooth_space(made, member, 7)
-        left = metal_left(runs, made, member, machine, Stated.of(text), own, progress)
-    found = left.watch
-    if math.isfinite(found.lowest):
+    if space is not None and (left_between := ridge(as_cut(spec, space), space)) > RIDGE:
+        click.echo(f"the root: {ridge_words(left_between)}")
+    with bar(spec.teeth, "space") as progress:
+        faults, found = metal_faults(text, path, runs, spec, member, machine, space, progress)
+    if found is not None and math.isfinite(found.lowest):
         _, (number, flank, line) = found.worst
         click.echo(
             f"every block checked on {found.lines} normals of the flanks of these settings: {found.lowest * 1000:.3f} "
             f"to {found.highest * 1000:.3f} um, the largest by line {line} of the program (space {number}, {flank} "
             "flank)"
         )
-    return [str(fault) for fault in left.faults]
+    return [str(fault) for fault in faults]
 
 
 def _write_report(

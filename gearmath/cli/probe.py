@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +20,7 @@ from gearmath.cli.common import (
     TOUCH_CSV,
     about,
     bar,
+    bars,
     member_of,
     output,
 )
@@ -93,7 +93,7 @@ def probe(
     choice = ProbingChoice(_teeth(topography, spec.teeth), pitch, registration, repeat)
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     simulated = load_simulated_machine(find(errors)) if errors else None
-    with ExitStack() as stack:
+    with bars() as begin:
         made = checked_probing(
             bevel_set,
             member,
@@ -103,7 +103,7 @@ def probe(
             target.stem,
             str(target),
             simulated,
-            lambda steps: stack.enter_context(bar(steps, "step")),
+            begin,
         )
     page = None
     if sheet is not None:

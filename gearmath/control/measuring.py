@@ -13,7 +13,17 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from dataclasses import dataclass
 
-from gearmath.control.interface import Alarm, ChannelState, ConnectionLost, Control, Handshake, NoSession, Run
+from gearmath.control.interface import (
+    Alarm,
+    ChannelState,
+    ConnectionLost,
+    Control,
+    Handshake,
+    NoSession,
+    Run,
+    RunStart,
+    Status,
+)
 from gearmath.errors import ComputationError, InputError
 
 Connect = Callable[[], Awaitable[Control]]
@@ -93,9 +103,8 @@ class Measuring:
         self._run.finish("complete")
 
     async def _whole(self, parts: tuple[int, int]) -> None:
-        control = await self._again(self._patience.first)
+        control, ready = await self._again(self._patience.first), False
         try:
-            ready = False
             while True:
                 try:
                     if not ready:
@@ -114,31 +123,17 @@ class Measuring:
                     control = await self._again(self._patience.give_up)
                     self.reconnected += 1
         finally:
+            if ready:
+                await _release(control)
             await _leave(control)
 
     async def _again(self, seconds: float) -> Control:
-        """A new connection, with growing breaks."""
-        begin, pause = time.monotonic(), self._patience.first_retry
-        while True:
-            try:
-                control = await self._connect()
-            except ConnectionLost as error:
-                if time.monotonic() - begin > seconds:
-                    raise _Stopped(f"{error}, after {seconds:.0f} s of trying") from error
-                await asyncio.sleep(pause)
-                pause = min(2 * pause, self._patience.last_retry)
-                continue
-            return control
+        return await _connected(self._connect, seconds, self._patience)
 
     async def _prepare(self, control: Control, parts: tuple[int, int]) -> None:
         """The selected program must be the run's own; a channel in reset is told what to make."""
         start = self._run.start
-        status = await control.status()
-        if status.selected != start.program:
-            selected = f"{status.selected} is selected" if status.selected else "no program is selected"
-            raise _Stopped(f"{control.name}: {selected}, must be {start.program}")
-        if await control.get(start.program) != start.program_text:
-            raise _Stopped(f"{control.name}: {start.program} on the control is not the program of this run")
+        status = await _selected(control, start)
         for alarm in await control.alarms():
             self._alarms[alarm.key] = alarm
         handshake = await control.handshake()
@@ -151,9 +146,7 @@ class Measuring:
         elif self._baseline is not None:
             pass  # started while the connection was lost
         elif not self._resumed(handshake):
-            raise _Stopped(
-                f"{control.name}: the channel is {status.channel}: measuring begins before the program is started"
-            )
+            raise _started(control, status)
         else:
             self._number = handshake.number
 
@@ -256,6 +249,56 @@ class Measuring:
     def _because(self) -> str:
         """The alarms of this run, in words."""
         return "".join(f" (alarm {alarm.number}: {alarm.text})" for alarm in list(self._alarms.values())[-2:])
+
+
+async def check_ready(connect: Connect, start: RunStart, patience: Patience | None = None) -> None:
+    """Raise ComputationError where a new run could not begin: nothing is kept of one that never did.
+
+    The selected program must be that of the run, and the channel in reset.
+    """
+    patience = patience or Patience()
+    control = await _connected(connect, patience.first, patience)
+    try:
+        status = await _selected(control, start)
+        if status.channel is not ChannelState.RESET:
+            raise _started(control, status)
+    finally:
+        await _leave(control)
+
+
+async def _connected(connect: Connect, seconds: float, patience: Patience) -> Control:
+    """A new connection, with growing breaks."""
+    begin, pause = time.monotonic(), patience.first_retry
+    while True:
+        try:
+            return await connect()
+        except ConnectionLost as error:
+            if time.monotonic() - begin > seconds:
+                raise _Stopped(f"{error}, after {seconds:.0f} s of trying") from error
+            await asyncio.sleep(pause)
+            pause = min(2 * pause, patience.last_retry)
+
+
+async def _selected(control: Control, start: RunStart) -> Status:
+    """The state of a control whose selected program is that of the run, byte for byte."""
+    status = await control.status()
+    if status.selected != start.program:
+        selected = f"{status.selected} is selected" if status.selected else "no program is selected"
+        raise _Stopped(f"{control.name}: {selected}, must be {start.program}: select it at the machine")
+    if await control.get(start.program) != start.program_text:
+        raise _Stopped(f"{control.name}: {start.program} on the control is not the program of this run")
+    return status
+
+
+def _started(control: Control, status: Status) -> _Stopped:
+    return _Stopped(f"{control.name}: the channel is {status.channel}: measuring begins before the program is started")
+
+
+async def _release(control: Control) -> None:
+    """A program that is started later does not wait for a host that has gone. One that runs goes on waiting for it."""
+    with suppress(ComputationError, InputError, OSError):
+        if (await control.status()).channel is ChannelState.RESET:
+            await control.finished()
 
 
 async def _leave(control: Control) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -115,8 +115,10 @@ class Member:
     ) -> Member:
         """The member with settings changed by so much [mm, degrees], by the keys of the set file.
 
-        The flanks as they were stay the nominal ones, so that :meth:`deviations` tells what the change does. Raises
-        InputError for a key that is no setting, and where the change makes the member no part of the pair.
+        The flanks as they were stay the nominal ones, so that :meth:`deviations` tells what the change does;
+        :meth:`flank`, and files of nominal points of a set that is saved so, are of them, until :meth:`as_nominal` is
+        asked for. Raises InputError for a key that is no setting, and where the change makes the member no part of the
+        pair.
 
         >>> import gearmath as gm
         >>> pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion
@@ -143,6 +145,20 @@ class Member:
         found = checked(members, BevelSet, self.gear_set.title)
         check_pair(found)
         return GearSet(found).member(self.name)
+
+    def as_nominal(self) -> Member:
+        """The member whose nominal flanks are those that its settings cut, as of a new design: nothing is changed then.
+
+        Raises InputError where they are no part of the pair.
+
+        >>> import gearmath as gm
+        >>> pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion.with_settings(concave={"radial_distance": +0.05})
+        >>> bool(abs(pinion.as_nominal().flank("concave").point - pinion.flank("concave").point).max() > 0.001)
+        True
+        """
+        flanks = {name: self.spec.flank(name).model_copy(update={"design": None}) for name in FLANKS}
+        spec = self.spec.model_copy(update=flanks)
+        return self.gear_set.with_member(replace(self, spec=spec)).member(self.name)
 
     def flank(self, flank: str, grid: tuple[int, int] = (5, 9), margin: float = 0.1) -> FlankSurface:
         """Nominal points and outward normals of a flank on a grid, rows root to tip and columns toe to heel.

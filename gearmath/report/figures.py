@@ -32,9 +32,10 @@ def spacing_section(page: Page, one: ReportedMeasurement) -> None:
     ]
     if rows:
         caveat = f" {found.verdict.remark}." if found.verdict is not None else ""
-        head = ["figure / µm", "value", "95 % interval", "grade", "tolerance"]
+        head = ["figure / µm", "value", "95 % interval", "grade found", "tolerance of that grade"]
         page.table(
-            f"Single pitch f_pt, cumulative pitch F_p, runout F_r; tolerance of the grade that was found.{caveat}",
+            "Single pitch f_pt, cumulative pitch F_p, runout F_r; tolerance of the grade that was found, the finest "
+            f"that holds the value: none was asked for.{caveat}",
             [*head, *([] if one.again is None else ["measured again", "grade then"])],
             rows,
         )
@@ -142,12 +143,15 @@ def _flank_table(page: Page, found: MemberEvaluation, what: str) -> None:
     rows = [
         ["at the reference point", *(micro(each.mean.at_reference) for each in flanks.values() if each.mean)],
         ["largest, with its sign", *(largest_cell(each) for each in flanks.values())],
-        ["RMS", *(micro(each.mean.rms) for each in flanks.values() if each.mean)],
-        ["RMS, zero at the reference point", *(micro(each.chart.rms) for each in flanks.values() if each.chart)],
+        ["RMS, tooth thickness in it", *(micro(each.mean.rms) for each in flanks.values() if each.mean)],
+        [
+            "RMS of the chart, zero at the reference",
+            *(micro(each.chart.rms) for each in flanks.values() if each.chart),
+        ],
     ]
     orders = {flank: each.orders for flank, each in flanks.items() if each.orders is not None}
     rows += [[name.replace("_", " "), *(micro(getattr(each, name)) for each in orders.values())] for name in ORDERS]
-    rows.append(["residual (RMS)", *(micro(each.residual) for each in orders.values())])
+    rows.append(["RMS that the surface of second order leaves", *(micro(each.residual) for each in orders.values())])
     page.table(
         f"{what} of the mean of the teeth measured in full, {taken_out(found)}, but for one row not zeroed at the "
         "reference point: size, mean, first and second order, and what they leave",
@@ -215,4 +219,4 @@ def clamping_section(page: Page, found: MemberEvaluation) -> None:
     ]
     if rows:
         page.subheading("Taken out before judging")
-        page.table("Clamping, rotation and drift", ["figure", "value", "u", "unit", ""], rows)
+        page.table("Clamping, rotation and drift", ["figure", "value", "u by the scatter alone", "unit", ""], rows)

@@ -8,6 +8,7 @@ way although its neighbours cut the flank clean.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
@@ -106,6 +107,7 @@ def watch(
     errors: SimulatedMachine | None = None,
     progress: Callable[[int], object] = lambda _: None,
     groups: Mapping[int, list[int]] | None = None,
+    withdrawn: float = 0.0,
 ) -> Watch:
     """What the passes of every space leave on the flanks of that space, the ``runs`` with rounded blades.
 
@@ -114,9 +116,11 @@ def watch(
     Rapid blocks that end as low as the tool cuts take metal away like the others, in every space.
 
     ``progress`` is called for every space exposed. ``groups`` are spaces known to be cut alike, by the one that is
-    exposed for all of them; where rapid motion takes metal away, it is every space.
+    exposed for all of them; where rapid motion takes metal away, it is every space. A cutter that is ``withdrawn`` [mm]
+    for a stock passes above the foot of the flanks: what stays there is root, and does not count as ``highest``.
     """
     flanks = watched_flanks(member, runs)
+    reached = {one.flank: _height(one, member, runs, machine) >= withdrawn for one in flanks}
     numbers = np.concatenate([run.line for run in runs])
     rows: list[tuple[float, float, int, int, int, str, int]] = []
     turns = tooth_angles(member.teeth, member.index_correction)
@@ -130,7 +134,7 @@ def watch(
             left = expose(own, machine, errors, *lines)
             met = np.isfinite(left.distance)
             low = int(np.argmin(np.where(met, left.distance, np.inf)))
-            high = int(np.argmax(np.where(met, left.distance, -np.inf)))
+            high = int(np.argmax(np.where(met & reached[one.flank], left.distance, -np.inf)))
             rows.append(
                 (
                     float(left.distance[low]) if met.any() else np.inf,
@@ -152,6 +156,17 @@ def watch(
         highest_at=(full[6], full[5], full[3]),
         uncut=sum(row[4] for row in rows),
     )
+
+
+def _height(lines: WatchedFlank, member: Member, runs: list[CuttingRun], machine: MillingMachine) -> np.ndarray:
+    """How far (n,) [mm] along the cutter's axis lines lie from the end of the straight blade that generates them."""
+    (run,) = (one for one in runs if lines.flank in one.cut.flanks)
+    spec = member.flank(run.cut.flanks[0])
+    axes = axis_positions(spec, lines.theta, machine.pivot_height, machine.pivot)
+    center, axis = kernel("tool_pose")(axes, machine.pivot_height, machine.pivot)
+    own = member.flank(lines.flank)
+    edge = (own.blade_edge_radius or 0.0) * (1 - math.sin(math.radians(own.blade_pressure_angle)))
+    return np.abs(((lines.point - center) * axis).sum(axis=1)) - edge
 
 
 def _rapid_in_metal(run: CuttingRun) -> np.ndarray:
