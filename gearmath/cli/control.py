@@ -116,18 +116,11 @@ def put(connection: Path, insecure: bool, program: Path, replace: bool) -> None:
 
     Refused while the channel is active, and for the program that is selected.
     """
-    from gearmath.control.sinumerik import READ_FILES, READ_STATE, WRITE_FILES
-    from gearmath.errors import ComputationError
+    from gearmath.control.delivery import RIGHTS, deliver
     from gearmath.files import read_bytes
 
     content, name = read_bytes(program), file_name(program.name)
-
-    async def work(one: Control) -> bytes:
-        await one.put(name, content, replace)
-        return await one.get(name)
-
-    if ask(connection, insecure, (READ_STATE, READ_FILES, WRITE_FILES), work) != content:
-        raise ComputationError(f"{name} on the control is not what {program} holds: write it again")
+    ask(connection, insecure, RIGHTS, lambda one: deliver(one, name, content, replace))
     click.echo(f"{name}: {len(content)} bytes on the control, read back alike")
 
 

@@ -48,7 +48,7 @@ def measure(
     connection it goes on by itself; after a reset, with --resume.
     """
     from gearmath.control import sinumerik
-    from gearmath.control.measuring import Measuring
+    from gearmath.control.measuring import Measuring, check_ready
     from gearmath.control.run_start import begun, resumed
     from gearmath.control.store import MeasurementStore
 
@@ -72,6 +72,7 @@ def measure(
             start, parts = begun(
                 name_of(connection, insecure), program, gear_set, machine, calibration, points, again_of
             )
+            asyncio.run(check_ready(connect, start))
             run = store.begin_run(start)
         with bar(len(run.missing()), "touch") as progress:
             asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(parts))

@@ -46,6 +46,7 @@ class Bridge:
             "out": list(self.stat.aout[:8]),
             "in": self.stat.ain[0],
             "host": bool(self.stat.din[0]),
+            "probe": bool(self.stat.probe_val),
             "idle": linuxcnc.INTERP_IDLE,
             "modes": [linuxcnc.MODE_MANUAL, linuxcnc.MODE_MDI, linuxcnc.MODE_AUTO],
         }

@@ -113,6 +113,9 @@ class LinuxCncControl:
             yield time.monotonic(), (await self.status()).position
             await asyncio.sleep(interval)
 
+    async def probe_deflected(self) -> bool | None:
+        return bool((await self._now())["probe"])
+
     async def handshake(self) -> Handshake:
         return _handshake(await self._now())
 

@@ -41,6 +41,8 @@ class ControlSettings(Spec):
     """CTOL: how far G642 may take X Y Z off the programmed path."""
     orientation_tolerance_arcsec: float = Field(default=0.1, ge=0.01, le=100)
     """OTOL: how far it may take A and B off."""
+    polynomial_values: int = Field(default=15, ge=1, le=1000)
+    """End points and coefficients that a block may have: a cubic of five axes has 15, a quintic 25."""
     jerk: Literal["BRISK", "SOFT"] = "SOFT"
     feed_forward: bool = True
     spindle_start_seconds: float = Field(default=3.0, ge=0.0, le=60.0)

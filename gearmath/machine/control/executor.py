@@ -23,7 +23,10 @@ _KEPT: dict[str, ParsedProgram] = {}
 
 @dataclass(frozen=True)
 class MachinePath:
-    """What a program commands, one row for each motion block that ends at a known position of all five axes."""
+    """What a program commands, one row for each motion block that ends at a known position of all five axes.
+
+    A block of POLY has many rows: it is followed in straight parts, so short that they are it within ``CHORD``.
+    """
 
     axes: np.ndarray
     """Positions X Y Z A B at the ends of the blocks, (n, 5) mm and rad; A counted on as the control turns it."""
@@ -56,6 +59,8 @@ class MachinePath:
     """Whether coolant is on, (n,)."""
     halts: tuple[Halt, ...] = ()
     """Where the axes wait: dwells and stops."""
+    inner: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    """Whether the row ends within a block of POLY, (n,)."""
     unset: dict[int, int] = field(default_factory=dict)
     """R parameters that are read before the program sets them, with the line: they keep what another program left."""
 
@@ -187,5 +192,6 @@ def _path(runner: StatementRunner | LinuxCncRunner) -> MachinePath:
         dynamics=dict(control.dynamics),
         coolant=np.array([row.coolant for row in rows], dtype=bool),
         halts=tuple(runner.halts),
+        inner=np.array([row.inner for row in rows], dtype=bool),
         unset=runner.unset,
     )

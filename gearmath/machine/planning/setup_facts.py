@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 #: The sentence for R_d, wherever it is explained.
 R_D = (
     "R_d is the reading of Z at which the gauge line of the spindle is level with the B axis; "
-    "a gauge line 650 mm above it at Z = 0 is -650"
+    "it is -650 where the gauge line is 650 mm above it at Z = 0"
 )
 _TURNS = {
     "M3": "M3: clockwise, seen along the spindle towards the work (a right-hand cutter)",

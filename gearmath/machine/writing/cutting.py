@@ -48,6 +48,7 @@ def program_of(plan: CuttingPlan, program_name: str) -> str:
         f"spindle: {job.spindle_rpm:g} rpm {machine.cutter_direction}, plunge: {PLUNGE_FEED:g} mm/min",
         *space_notes(job),
         *_hobbing_notes(member),
+        *_polynomial_notes(plan),
         *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
         f"machine: {plain(machine.name)}",
         z_note(machine),
@@ -78,8 +79,9 @@ def tolerance_notes(plan: CuttingPlan) -> tuple[str, ...]:
         rounding = share.rounding * 1000
         blocks = wanted - min(rounding, wanted / 2)
     total = max(wanted, blocks + rounding)
+    kind = "straight" if plan.passes[0].bends is None else "polynomial"
     return (
-        f"flank tolerance: {upwards(total)} um along the tooth normal, by straight blocks and rounding",
+        f"flank tolerance: {upwards(total)} um along the tooth normal, by {kind} blocks and rounding",
         f"of which rounding to {control.increments_per_mm} increments per mm and {control.increments_per_degree} per "
         f"degree: up to {upwards(share.rounding * 1000)} um",
     )
@@ -96,6 +98,18 @@ def space_notes(job: CuttingJob) -> Iterator[str]:
     spaces = list(job.spaces)
     for k in range(0, len(spaces), _LISTED):
         yield "spaces: " + ",".join(str(space) for space in spaces[k : k + _LISTED])
+
+
+def _polynomial_notes(plan: CuttingPlan) -> tuple[str, ...]:
+    """What the header says of polynomial blocks."""
+    if (bends := plan.passes[0].bends) is None:
+        return ()
+    degree, most = bends.shape[2] + 1, max(len(one.seconds) for one in plan.passes)
+    counting = "; PO of A counts on through 360 [unconfirmed]" if plan.machine.axes.A.modulo else ""
+    return (
+        f"blocks: POLY of degree {degree}, up to {most} in a roll; without the word POLY the control drives straight",
+        f"POLY is an option of the control; POLY with G93 [unconfirmed]{counting}",
+    )
 
 
 def upwards(um: float) -> str:

@@ -27,8 +27,6 @@ STILL = "A=IC(0) B=IC(0)"
 FROM, TO = "UFROM", "UTO"
 #: Touches up to the end of each section.
 _ENDS = "UENDS"
-#: FGREF with which a degree counts as a mm.
-_ONE_MM_A_DEGREE = "57.29578"
 #: Characters of the longest line of a touch, with nine decimals in every position; lines of heads, and of one part
 #: that is touched again.
 _LONGEST_LINE, _HEADS = 125, 10
@@ -124,7 +122,7 @@ class Blocks:
         yield f"DEF INT UERR,{FROM},{TO}" + (f",{_ENDS}[{plan.parts + 1}]" if plan.ends else "")
         yield from start.head(machine)
         yield "FGROUP(X,Y,Z,A,B)"
-        yield f"FGREF[A]={_ONE_MM_A_DEGREE} FGREF[B]={_ONE_MM_A_DEGREE}"
+        yield f"FGREF[A]={start.ONE_MM_A_DEGREE} FGREF[B]={start.ONE_MM_A_DEGREE}"
         yield from start.checks(machine)
         yield from self._file_size(plan)
         if room is not None:

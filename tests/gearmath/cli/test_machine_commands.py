@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 
 import numpy as np
 import pytest
+import tomlkit
 
 from gearmath.machine.control.executor import execute
 from gearmath.machine.writing.cutting import cutting_program
@@ -67,10 +69,10 @@ def test_program_with_roughing_and_finishing_stock_passes_its_own_check_and_that
 
 
 def test_program_that_gouges_the_opposite_flank_is_not_written(refused, tmp_path):
-    text = bundled("crown_gear_universal_14x39.toml").read_text("utf-8")
-    head, tail = text.split("sliding_base = [", 1)
-    assert head.rindex("[pinion.concave.motion]") > head.rindex("[pinion.blank]")
-    (tmp_path / "set.toml").write_text(head + "sliding_base = [-" + tail, "utf-8")
+    values = tomllib.loads(bundled("crown_gear_universal_14x39.toml").read_text("utf-8"))
+    del values["gear"]  # which would tell that they are no mates
+    values["pinion"]["concave"]["motion"]["sliding_base"][0] *= -1
+    (tmp_path / "set.toml").write_text(tomlkit.dumps(values), "utf-8")
     target = tmp_path / "GOUGES.MPF"
     cut = ("nc", "cut", tmp_path / "set.toml", "--member", "pinion", "--tolerance-um", "5", "-o", target)
     refused("gouges the convex flank of space 0: -163.* um, the limit is -6 um: the program is not written", *cut)

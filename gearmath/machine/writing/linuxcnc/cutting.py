@@ -29,6 +29,8 @@ from gearmath.version import __version__
 def program_of(plan: CuttingPlan, program_name: str) -> str:
     """The text of a planned program. Raises InputError where the machine cannot do it."""
     machine, job = plan.machine, plan.job
+    if job.blocks == "poly":
+        raise InputError(f"{program_name}: blocks = poly: LinuxCNC has no polynomials, write straight blocks")
     dialect = Dialect(program_name, machine, machine.tool_length)
     check_process(program_name, machine, job.spindle_rpm, CLEARANCE, PLUNGE_FEED)
     check_home(plan.room, machine, machine.tool_length, program_name)
