@@ -132,7 +132,7 @@ class LinuxCncMotion:
         if "M66" in codes:
             self.parameters[5399] = 0.0
         if "G4" in codes:
-            self._halt(line, False)
+            self._halt(line, False, words.get("P", 0.0))
         elif any(axis in words for axis in _ALL):
             self._move(line, words, "G53" in codes)
         if "M0" in codes:
@@ -156,8 +156,8 @@ class LinuxCncMotion:
             state.fetched = state.selected if state.setup.spindle_tool(meant) == meant else _ANOTHER
             state.position.clear()
 
-    def _halt(self, line: Line, stop: bool) -> None:
-        self.halts.append(Halt(line.number, stop, len(self.rows), len(self.control.blind)))
+    def _halt(self, line: Line, stop: bool, seconds: float = 0.0) -> None:
+        self.halts.append(Halt(line.number, stop, len(self.rows), len(self.control.blind), seconds))
 
     def _move(self, line: Line, words: dict[str, float], machine: bool) -> None:
         """One motion; nothing is kept of it while the position of an axis is unknown."""
