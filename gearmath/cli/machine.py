@@ -18,6 +18,7 @@ from gearmath.cli.common import (
     Number,
     about,
     bar,
+    bars,
     member_of,
     output,
 )
@@ -104,7 +105,7 @@ def cut(
     from gearmath.files import write_text
     from gearmath.machine.judging.checked import checked_cut
     from gearmath.machine.judging.timing import timing
-    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, pass_count
+    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
     from gearmath.machine.writing.cutting import program_of
@@ -122,9 +123,9 @@ def cut(
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
-    with bar(pass_count(spec, member, job), "pass") as progress:
-        write = linuxcnc.program_of if dialect == LINUXCNC else program_of
-        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), progress, write)
+    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
+    with bars() as begin:
+        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin, write)
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import setup_sheet

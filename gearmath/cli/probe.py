@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +20,7 @@ from gearmath.cli.common import (
     TOUCH_CSV,
     about,
     bar,
+    bars,
     member_of,
     output,
 )
@@ -103,7 +103,7 @@ def probe(
     dialect = dialect_of(milling_machine, control, configuration, sheet)
     simulated = load_simulated_machine(find(errors)) if errors else None
     write = linuxcnc.probing_program if dialect == LINUXCNC else probing_program
-    with ExitStack() as stack:
+    with bars() as begin:
         made = checked_probing(
             bevel_set,
             member,
@@ -113,7 +113,7 @@ def probe(
             target.stem,
             str(target),
             simulated,
-            lambda steps: stack.enter_context(bar(steps, "step")),
+            begin,
             write,
         )
     page = None

@@ -23,25 +23,27 @@ def program_time(program: Path, machine: str, as_json: bool, picture: Path | Non
     """How long a program takes: a model of the control with the limits of the machine file.
 
     Speed, acceleration and jerk of every axis bound the motion, the tolerance of the path mode the speed at corners.
-    Where [control] kind is linuxcnc, blocks are blended as LinuxCNC does it. The spindle's start is waited for as the
-    program says; tool changes take no time.
+    Programs for LinuxCNC, and others where [control] kind is linuxcnc, are blended as LinuxCNC does it. Dwells take
+    their time, tool changes none.
     """
     from gearmath.machine.control.executor import execute
     from gearmath.machine.control.state import Setup
-    from gearmath.machine.control.text import program_text
+    from gearmath.machine.control.text import is_for_linuxcnc, program_text
     from gearmath.machine.judging.trajectory import trajectory
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
-    milling_machine = load_milling_machine(find(machine))
-    text = program_text(program)
+    milling_machine, text = load_milling_machine(find(machine)), program_text(program)
+    if is_for_linuxcnc(text):
+        control = milling_machine.control.model_copy(update={"kind": "linuxcnc"})
+        milling_machine = milling_machine.model_copy(update={"control": control})
     with about(program), bar(1, "program", as_json) as progress:
         path = execute(text, str(program), Setup.of(milling_machine))
         found = trajectory(path, milling_machine)
         progress(1)
     if as_json:
-        control = milling_machine.control.dialect(None)
-        echo_json({"program": program.name, "machine": milling_machine.name, "control": control} | found.as_dict())
+        kind = milling_machine.control.kind or "sinumerik"
+        echo_json({"program": program.name, "machine": milling_machine.name, "control": kind} | found.as_dict())
     else:
         click.echo(_table(program, milling_machine, found))
     if picture is not None:

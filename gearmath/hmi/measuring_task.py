@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from gearmath.control.interface import Touch
-from gearmath.control.measuring import Measuring
+from gearmath.control.measuring import Measuring, check_ready
 from gearmath.control.run_start import begun, resumed
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_run import StoredRun
@@ -148,6 +148,7 @@ class MeasuringTask:
         start, parts = await asyncio.to_thread(
             begun, self._link.name, program, choice.gear_set, choice.machine, choice.calibration, points, again_of
         )
+        await check_ready(self._link.connect, start)
         with MeasurementStore.open(self._store) as store:
             await self._measure(store.begin_run(start), parts)
 

@@ -20,7 +20,7 @@ from gearmath.machine.control.text import decoded
 from gearmath.machine.judging.checked import checked_cut
 from gearmath.machine.judging.timing import timing
 from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
-from gearmath.machine.planning.cut_plan import CuttingJob, pass_count
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.limits import check_spindle_speed
 from gearmath.machine.writing.words import block_count, check_name
 from gearmath.specs.calibration import load_calibration
@@ -70,8 +70,7 @@ def write_cutting(folder: Path, choice: Choice, name: str, job: CuttingJob, prog
     machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
     check_spindle_speed(file.stem, machine, job.spindle_rpm)
     whole = replace(job, spaces=range(pair.member(choice.member).teeth))
-    progress.total = pass_count(pair.member(choice.member), choice.member, whole)
-    made = checked_cut(pair, choice.member, machine, whole, file.stem, file.name, progress)
+    made = checked_cut(pair, choice.member, machine, whole, file.stem, file.name, progress.begin)
     times = timing(made.path, machine)
     write_text(file, made.text)
     return WrittenProgram(file, block_count(made.text), times.feed_seconds + times.rapid_seconds, None, "")
@@ -80,14 +79,11 @@ def write_cutting(folder: Path, choice: Choice, name: str, job: CuttingJob, prog
 def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice, progress: Progress) -> WrittenProgram:
     """Write the probing program ``name``.MPF. It is run before it is written: the probe stays clear of everything."""
     file = _file(folder, name)
-
-    def begin(steps: int) -> Progress:
-        progress.total = steps
-        return progress
-
     machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
     calibration = load_calibration(find(choice.calibration))
-    made = checked_probing(pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, begin)
+    made = checked_probing(
+        pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, progress.begin
+    )
     write_text(file, made.text)
     return WrittenProgram(file, block_count(made.text), None, made.touches, made.clearance)
 

@@ -24,6 +24,8 @@ PAGES = {
     "history": "history",
     "gearbox": "sync_alt",
 }
+#: How often the server lets the browser know that it is there. [s]
+_BEAT = 1.0
 LANGUAGE, LOOK = "gearmath_language", "gearmath_look"
 
 
@@ -69,6 +71,8 @@ def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], reque
     lost = ui.element("div").classes("gm-lost").props('role="alert" id="gm-lost"')
     with lost:
         ui.label(text("shell.server_lost"))
+    beat = ui.label("0").classes("gm-beat").props('aria-hidden="true"')
+    ui.timer(_BEAT, lambda: beat.set_text(str(int(beat.text) + 1)))
     with ui.element("div").classes("gm-main"):
         build(shared, text)
 

@@ -240,7 +240,7 @@ def progress(text: Text, work: Work, ended: Callable[[], object] = lambda: None)
 def figure(content: dict[str, Any], label: str) -> ui.plotly:
     """A plotly figure as a dict: needs WebGL where it is in space. ``label`` is for readers of the screen."""
     found = ui.plotly(content).classes("gm-figure")
-    found.props["role"] = "img"
+    found.props["role"] = "figure"
     found.props["aria-label"] = label
     return found
 

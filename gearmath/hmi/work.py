@@ -23,6 +23,11 @@ class Progress:
     done: int = 0
     cancelled: bool = False
 
+    def begin(self, steps: int, unit: str) -> Progress:
+        """A further part of the computation, of so many steps."""
+        self.total += steps
+        return self
+
     def __call__(self, steps: int = 1) -> None:
         self.done += steps
         if self.cancelled:

@@ -269,9 +269,11 @@ class _GearPage:
         text, desk = self.text, self.desk
 
         def begin() -> None:
-            ended = desk.of("gear.draft")
-            if ended.has(self.key()):
-                desk.wanted["contact"] = self.key()
+            desk.wanted["contact"] = self.key()
+
+        def key() -> Hashable:
+            now = self.key()
+            return now if desk.wanted.get("contact") == now and desk.of("gear.draft").has(now) else None
 
         def compute() -> Callable[[Progress], Any]:
             found: Draft = desk.of("gear.draft").work.result
@@ -283,7 +285,7 @@ class _GearPage:
         blocks.kept(
             text,
             desk.of("gear.contact"),
-            lambda: desk.wanted.get("contact") if desk.wanted.get("contact") == self.key() else None,
+            key,
             text("gear.contact"),
             compute,
             self._contact,

@@ -5,13 +5,16 @@ function gearmathChoose(cookie, value) {
 }
 
 (function () {
-  let before = Date.now();
+  const silence = 4000; // ms without the beat of the server, which comes every second
+  let beat = "", heard = Date.now();
   setInterval(() => {
-    const now = Date.now();
-    const slept = now - before > 5000;
-    before = now;
+    const now = document.querySelector(".gm-beat")?.textContent ?? "";
+    if (now !== beat) {
+      beat = now;
+      heard = Date.now();
+    }
     const socket = window.socket;
-    const lost = slept || (window.did_handshake === true && !(socket && socket.connected));
+    const lost = Date.now() - heard > silence || (window.did_handshake === true && !(socket && socket.connected));
     if (document.body.classList.contains("gm-is-lost") !== lost) {
       document.body.classList.toggle("gm-is-lost", lost);
       // nothing is pressed while nobody hears it: a browser would send it later

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearmath.machine.control.blocks import ControlState
 from gearmath.machine.control.expression import AXES, refuse
-from gearmath.machine.control.linuxcnc.runner import LinuxCncRunner
+from gearmath.machine.control.linuxcnc_runner import LinuxCncRunner
 from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.runner import Halt, Host, StatementRunner, Stopped, Watch
 from gearmath.machine.control.state import Blind, Deflected, Follower, Probe, Setup

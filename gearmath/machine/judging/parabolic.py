@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from gearmath.machine.judging.look_ahead import NO_WAY, FollowedRun, RoundedCorners
+from gearmath.machine.judging.look_ahead import NO_WAY, FollowedRun, RoundedCorners, path_length
 from gearmath.specs.milling_machine import AxisLimits
 
 #: Cosines of θ from which on the tolerance counts.
@@ -41,7 +41,8 @@ def follow_parabolic(where: np.ndarray, asked: np.ndarray, limits: AxisLimits, c
     first, last = _blends(along, length, gain, reached, corners)
     starts, speed = _starts(length, gain, wanted, first, last)
     result.seconds[index] = np.diff(starts)
-    result.speed[1:][index] = np.append(speed, 0.0)
+    # as the path is measured elsewhere, with the ways of A and B in it
+    result.speed[1:][index] = np.append(speed, 0.0) * path_length(steps, limits) / length
     if len(index) > 1:
         change = np.abs(np.diff(along, axis=0))
         time = speed / gain[:-1]

@@ -62,9 +62,15 @@ class Trajectory:
         return self.feed_seconds + self.rapid_seconds + self.dwell_seconds
 
 
-def corners_of(machine: MillingMachine) -> RoundedCorners:
-    """What the path mode of the machine file allows."""
-    return RoundedCorners(*machine.control.path_tolerance)
+def corners_of(path: MachinePath, machine: MillingMachine) -> RoundedCorners:
+    """What the path mode of the program allows, at most; of the machine file where the program says no tolerance."""
+    modes = list(path.path_modes)
+    if modes and all(mode == "G60" for mode, _, _ in modes):
+        return RoundedCorners(0.0, 0.0)
+    stated = [(linear, math.radians(turning)) for mode, linear, turning in modes if mode == "G642"]
+    if not stated:
+        return RoundedCorners(*machine.control.path_tolerance)
+    return RoundedCorners(max(linear for linear, _ in stated), max(turning for _, turning in stated))
 
 
 def trajectory(
@@ -74,13 +80,13 @@ def trajectory(
 ) -> Trajectory:
     """The motion of an executed program on the control that the machine file names.
 
-    Corners are rounded as that file says, or as ``corners`` do. Raises InputError for polynomials on a LinuxCNC.
+    Corners are rounded as the program says, or as ``corners`` do. Raises InputError for polynomials on a LinuxCNC.
     """
     parabolic = machine.control.kind == "linuxcnc"
     if parabolic and path.inner.any():
         line = int(path.line[np.argmax(path.inner)])
         raise InputError(f"line {line} is a block of POLY: LinuxCNC, which {machine.name} has, reads none")
-    corners = corners_of(machine) if corners is None else corners
+    corners = corners_of(path, machine) if corners is None else corners
     cutter = np.isfinite(path.cutter).any() and machine.axes.C is not None
     where = np.column_stack([path.axes, np.nan_to_num(path.cutter)]) if cutter else path.axes
     limits = machine.limits(where.shape[1])

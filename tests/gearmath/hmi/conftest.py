@@ -211,7 +211,7 @@ class Operator:
     def picture(self, name: str) -> Path:
         """Leave a screenshot."""
         PICTURES.mkdir(parents=True, exist_ok=True)
-        self.page.screenshot(path=PICTURES / f"{name}.png", full_page=True)
+        self.page.screenshot(path=PICTURES / f"{name}.png", full_page=True, timeout=60_000)
         return PICTURES / f"{name}.png"
 
     def axe(self) -> list[str]:
@@ -246,15 +246,14 @@ def operator(chromium: Browser) -> Iterator[Callable[..., Operator]]:
         )
         context.set_default_timeout(PATIENCE)
         look = {"name": "gearmath_look", "value": "dark" if dark else "light", "url": served.base}
-        context.add_cookies([look])
+        token = {"name": f"gearmath_{served.port}", "value": served.token, "url": served.base, "httpOnly": True}
+        context.add_cookies([look, token])  # type: ignore[list-item]
         one = Operator(served, context, context.new_page())
         one.page.on("console", lambda said: _hear(one, said.type, said.text))
         one.context.on("request", lambda request: _follow(one, request.url))
         one.page.on("pageerror", lambda error: one.complaints.append(str(error)))
         made.append(one)
-        one.page.goto(served.address)
-        one.page.wait_for_url("**/machine")
-        return one.go(page) if page != "machine" else one
+        return one.go(page)
 
     yield begin
     for one in made:

@@ -41,7 +41,6 @@ def _check_probe(one: Operator, live: Live) -> None:
 
 def _record(one: Operator, live: Live) -> None:
     """Up to the moment at which the program may be started."""
-    one.go("measure")
     _check_probe(one, live)
     one.choose("Probing program", Live.NAME)
     one.press("Start recording")

@@ -22,7 +22,7 @@ from gearmath.machine.judging.program import faults_of
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
-from gearmath.machine.planning.path import flank_points
+from gearmath.machine.planning.path import axis_positions, flank_points
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.machine.writing.words import Positions
 from gearmath.specs.bevel_set import SIDES, load_bevel_set
@@ -279,3 +279,17 @@ def test_an_axis_that_fgroup_leaves_out_is_refused():
     text = text_of(*ROLLING[0])
     with pytest.raises(InputError, match=r"A=?.* while FGROUP leaves A out: what it follows depends on UPATH or SPATH"):
         execute(text.replace("FGROUP(X,Y,Z,A,B)", "FGROUP(X,Y,Z)"), "CUT", Setup.of(MACHINE))
+
+
+@pytest.mark.parametrize("degree", [3, 5])
+def test_a_pass_in_straight_parts_is_the_exact_path_at_every_cradle_angle(degree):
+    """Chip loads are taken from these: the way past the blades within a block is that of the exact path."""
+    bevel_set = load_bevel_set(bundled("crown_gear_universal_14x39.toml"))
+    plan = cutting_plan(bevel_set, "pinion", MACHINES[degree], CuttingJob((0,), blocks="poly"))
+    for one in plan.passes:
+        fine, spec = one.in_straight_parts(), plan.member.flank(one.tool.partition("_")[2].lower())
+        exact = axis_positions(spec, fine.theta, MACHINE.pivot_height, MACHINE.pivot)
+        off = fine.axes - exact
+        off[:, 3] -= 2 * math.pi * np.round(off[:, 3] / (2 * math.pi))
+        assert np.abs(off).max() < 2e-3  # mm and rad: the flank, along its normal, keeps 1e-4
+        assert fine.seconds.sum() == pytest.approx(one.seconds.sum())

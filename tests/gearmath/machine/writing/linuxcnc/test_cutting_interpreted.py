@@ -55,8 +55,14 @@ def test_the_interpreter_of_linuxcnc_reads_the_positions_and_times_that_our_read
 ) -> None:
     plan = plan_of(gear_set, name, machine)
     ours = execute(cutting.program_of(plan, "CUT"), "CUT", Setup.of(machine))
-    theirs = interpreted(program_of(plan, "CUT"), dict(tools_of(plan).values()))
+    text = program_of(plan, "CUT")
+    theirs = interpreted(text, dict(tools_of(plan).values()))
     assert theirs.error == ""
+    read = execute(text, "CUT", Setup.of(machine))  # by our reader of this dialect, which knows where A has turned to
+    known = np.searchsorted(theirs.line, read.line)
+    np.testing.assert_array_equal(theirs.line[known], read.line)
+    np.testing.assert_allclose(theirs.position[known, :3], read.axes[:, :3], rtol=0, atol=ROUNDING)
+    np.testing.assert_allclose(theirs.position[known, 3:5], np.degrees(read.axes[:, 3:]), rtol=0, atol=ROUNDING)
     # at home our reader does not know where the axes stand after a tool change
     here, there = theirs.position[:, 2] != machine.home, ours.axes[:, 2] != machine.home
     rapid, position = np.array(theirs.kind)[here] == "rapid", theirs.position[here]

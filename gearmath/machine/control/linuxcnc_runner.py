@@ -15,8 +15,8 @@ import numpy as np
 
 from gearmath.machine.control.blocks import PathRow
 from gearmath.machine.control.expression import AXES, CUTTER_AXIS, refuse
-from gearmath.machine.control.linuxcnc.expression import Cursor
-from gearmath.machine.control.linuxcnc.lines import Line, lines_of, partners
+from gearmath.machine.control.linuxcnc_expression import Cursor
+from gearmath.machine.control.linuxcnc_lines import Line, lines_of, partners
 from gearmath.machine.control.runner import Halt
 from gearmath.machine.control.state import PROBE_TOOL, Blind, Deflected, Follower, Probe, Setup
 

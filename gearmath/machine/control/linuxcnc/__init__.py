@@ -1,1 +1,0 @@
-"""Programs for LinuxCNC, read and run as its interpreter would: the words that programs of this package have."""
