@@ -36,6 +36,7 @@ VERBS = {
     "uncertainty": ("uncertainty", "How sure the figures of a measured member are."),
     "control": ("control", "The machine control over OPC UA: state, files, alarms, measuring; a simulated one."),
     "runs": ("runs", "The measurement store: list, show, export, compare and resume runs."),
+    "hmi": ("hmi", "The operator's page: the loop from a browser."),
     "rexs": ("rexs", "A gear set out of a REXS file."),
     "export": ("export", "C for the machines; STEP, STL, REXS and points for other programs."),
 }

@@ -13,6 +13,7 @@ from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
 from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control.executor import MachinePath, parsed
 from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.judging.block_check import Watch
 from gearmath.machine.judging.chosen import chosen_faults, reads_choice
 from gearmath.machine.judging.collision import RAPID_CLEARANCE, collisions, rapid_approaches
@@ -44,7 +45,9 @@ def faults_of(
         *missing(stated, runs, member, name),
         *beside_the_path(runs, member, machine, stated),
     ]
-    asked = [*outside_faults(parsed(text, _NAME)), *header_faults(text, member, name, machine)]
+    asked = [*header_faults(text, member, name, machine)]
+    if not is_for_linuxcnc(text):
+        asked = [*outside_faults(parsed(text, _NAME)), *asked]
     if reads_choice(text):
         asked += chosen_faults(text, _NAME, path, Setup.of(machine))
     started = start_faults(text, machine) if stated.is_ours else ()
