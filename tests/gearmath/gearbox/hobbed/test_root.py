@@ -63,7 +63,7 @@ def test_small_hob_leaves_nearly_the_same_root():
     [(24, 0.0, False), (18, 0.0, False), (10, 0.42, False), (10, 0.0, True), (12, 0.0, True), (6, 0.0, True)],
 )
 def test_undercut_of_a_micrometre_is_there_far_below_the_least_number_of_teeth_and_never_above(teeth, shift, is_cut):
-    """z_min = 2 (h_F/m - x)/sin² α, h_F = 1.25 - 0.38 (1 - sin α) of basic rack A: 17.1 without shift, 9.9 with 0.42."""
+    """z_min = 2 (h_F/m - x)/sin² α, h_F = 1.25 - 0.38 (1 - sin α) of basic rack A: 17.1, and 9.9 for x = 0.42."""
     least = 2 * (1.25 - 0.38 * (1 - math.sin(ALPHA)) - shift) / math.sin(ALPHA) ** 2
     assert (teeth < least) == is_cut
     found = undercut_radius(job(teeth, shift, 1000.0), teeth / 2 + shift + 1)
