@@ -31,11 +31,11 @@ demo: $(VENV)/.run compiler
 	$(BIN)/gearmath demo
 
 test: $(VENV)/.test compiler lint
-	$(BIN)/pytest -n $(JOBS) --dist loadscope --benchmark-disable --durations 10 tests
+	$(BIN)/pytest -n $(JOBS) --dist loadscope --no-loadscope-reorder --benchmark-disable --durations 10 tests
 	$(MAKE) --no-print-directory notebooks
 
 quick: $(VENV)/.test compiler
-	$(BIN)/pytest -n $(JOBS) --dist loadscope --benchmark-disable -m 'not slow' -q tests
+	$(BIN)/pytest -n $(JOBS) --dist loadscope --no-loadscope-reorder --benchmark-disable -m 'not slow' -q tests
 
 lint: $(VENV)/.test
 	$(BIN)/ruff check .
@@ -46,7 +46,7 @@ lint: $(VENV)/.test
 
 # filterwarnings is emptied for pytest itself; in the notebooks every warning is an error
 notebooks: $(VENV)/.test
-	$(if $(NOTEBOOKS),PYTHONWARNINGS=error MPLBACKEND=agg $(BIN)/pytest -o filterwarnings= --nbval-lax --nbval-current-env \
+	$(if $(NOTEBOOKS),PYTHONWARNINGS=error MPLBACKEND=agg $(BIN)/pytest -p nbval.plugin -o filterwarnings= --nbval-lax --nbval-current-env \
 		--nbval-cell-timeout 60 -n $(JOBS) --dist loadscope --durations 5 notebooks)
 
 # every warning is an error: a link that leads nowhere, a reference without a target

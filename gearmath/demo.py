@@ -152,7 +152,15 @@ def run_closed_loop(member: str, folder: Path) -> MemberResult:
     write_flank_csv(folder / f"{member}_measured.csv", measured)
     spec = load_pair(source).member(member)
     correction = correct(spec, member, measured)
-    save_corrected(source, corrected, member, correction.settings, correction.index, check=check_pair)
+    save_corrected(
+        source,
+        corrected,
+        member,
+        correction.settings,
+        correction.index,
+        check=check_pair,
+        origin=f"{member}_measured.csv",
+    )
     second, again = _cut_and_measure(corrected, member, shop, folder / f"{member.upper()}_2.MPF")
     write_flank_csv(folder / f"{member}_measured_again.csv", again)
     before, after = ({flank: evaluate_topography(file, flank) for flank in FLANKS} for file in (first, second))

@@ -23,22 +23,22 @@ from gearmath.specs.bevel_set import FLANKS, Member
 #: Part, +1 for the mean of both flanks or -1 for half their difference (concave less convex), what it is, and limits:
 #: ease-off at the edge of the grid over the transverse module, both in mm.
 _LIMITS: tuple[tuple[str, int, str, float, float], ...] = (
-    ("slope", -1, "slope along the tooth, a spiral angle that is not that of the mate,", -0.016, 0.016),
+    ("slope", -1, "slope along the tooth, a spiral angle that is not that of the mate,", -0.0125, 0.0125),
     ("slope", 1, "slope along the tooth, a space that does not taper as the mating tooth,", -0.150, 0.150),
     ("profile_slope", 1, "slope from root to tip, a pressure angle that is not that of the mate,", -0.014, 0.014),
-    ("profile_slope", -1, "difference of slope from root to tip between the flanks", -0.090, 0.090),
+    ("profile_slope", -1, "difference of slope from root to tip between the flanks", -0.014, 0.014),
     ("crowning", 1, "lengthwise crowning", -0.010, 0.060),
     ("crowning", -1, "difference of lengthwise crowning between the flanks", -0.010, 0.010),
     ("twist", 1, "bias", -0.012, 0.012),
-    ("twist", -1, "difference of bias between the flanks", -0.028, 0.028),
+    ("twist", -1, "difference of bias between the flanks", -0.020, 0.020),
     ("profile_crowning", 1, "profile crowning", -0.010, 0.024),
     ("profile_crowning", -1, "difference of profile crowning between the flanks", -0.010, 0.010),
 )
 #: What no part of second degree describes may be this much of the module.
 _REST = 0.010
-#: How far the second order of a flank's ease-off may fall below zero on its grid, over the module: 0.0082 of the set
-#: 7 x 43, whose gear is cut by blades of one angle, at most 0.0012 of all other bundled sets.
-_HOLLOW = 0.0085
+#: How far the second order of a flank's ease-off may fall below zero on its grid, over the module: of the bundled sets
+#: at most 0.0012, that of NASA CR-191009.
+_HOLLOW = 0.003
 
 
 def check_ease_off(pinion: Member, gear: Member, shaft_angle: float, share: float = 1.0) -> None:

@@ -24,13 +24,14 @@ _LEAST_WIDTH = 0.8
 _DEPTH = (1.2, 2.6)
 #: Differences at the mean point [degree]: of the spiral angles of both flanks of a member, which taper, ...
 _TAPER = 4.0
-#: ... and of mating flanks, which touch there: so much for what both pairs of flanks have in common, and so much for
-#: what they have oppositely, beyond what a cut of both flanks at once explains. The limits are at least twice what the
-#: bundled sets have: 0.53 degree of pressure angle in common (NASA CR-191009), 0.72 oppositely (motions of the
-#: universal pinion), 0.23 and 0.05 of spiral angle.
-_MATING = {"spiral_angle": (0.5, 0.5), "pressure_angle": (1.1, 1.5)}
+#: ... and of mating flanks, which touch there. Of spiral angles, so much for what both pairs of flanks have in common,
+#: and so much for what they have oppositely, beyond what a cut of both flanks at once explains; of pressure angles so
+#: much for each pair of flanks. The limits are at least twice what the bundled sets have: 0.54 degree of pressure angle
+#: (NASA CR-191009), 0.23 and 0.05 of spiral angle.
+_SPIRAL = (0.5, 0.5)
+_PRESSURE = 1.1
 #: Transverse backlash at the mean point over the module: 0.02 to 0.08 are usual, the finer the pitch the more.
-_BACKLASH = (0.0, 0.12)
+BACKLASH = (0.0, 0.12)
 #: Part of the module by which a pair without backlash may seem to clamp: rounding of its settings.
 _ROUNDED = 1e-6
 
@@ -170,61 +171,76 @@ def _mating_angles(cut: dict[str, Cut], key: str) -> str:
     return f"{key.replace('_', ' ')} at the mean point {', '.join(pairs)}"
 
 
-def _given_by_one_cut(member: Member, cut: dict[str, Cut], name: str, key: str) -> tuple[float, float]:
-    """What a cut of both flanks at once gives to an angle [degree] of both of them, and oppositely, half of what that
-    of the concave flank is larger by: a tilted root line does it to the pressure angles of blades of one angle, a
-    plunged cutter takes some off both, the point width does it to spiral angles."""
+def _given_by_one_cut(member: Member, cut: dict[str, Cut], name: str) -> float:
+    """What a cut of both flanks at once gives to the spiral angles [degree] of its flanks oppositely, by its point
+    width: half of what that of the concave flank is larger by."""
     if member.cutting != "completing":
-        return 0.0, 0.0
-    concave, convex = (_seen(cut, name, flank, key) for flank in FLANKS)
-    if key == "spiral_angle":
-        return 0.0, (concave - convex) / 2
-    concave -= member.concave.nominal.blade_pressure_angle
-    convex -= member.convex.nominal.blade_pressure_angle
-    return (concave + convex) / 2, (concave - convex) / 2
+        return 0.0
+    concave, convex = (_seen(cut, name, flank, "spiral_angle") for flank in FLANKS)
+    return (concave - convex) / 2
+
+
+def _apart(cut: dict[str, Cut], key: str) -> list[float]:
+    """What the mates of both pairs of flanks differ by in an angle [degree], pinion less gear."""
+    pairs = zip(FLANKS, reversed(FLANKS), strict=True)
+    return [_seen(cut, "pinion", flank, key) - _seen(cut, "gear", mating, key) for flank, mating in pairs]
 
 
 def _between(given: float, limit: float) -> tuple[float, float]:
     return min(given, 0.0) - limit, max(given, 0.0) + limit
 
 
+def _width_hangs_on(members: dict[str, Member], spaces: dict[str, float], pitch: float) -> str:
+    """How wide the spaces are, and what else makes them so: not only the settings that are meant for it."""
+    widths = " and ".join(f"{name} {width:.4g} mm" for name, width in spaces.items())
+    others = ["blade_point_radius", "radial_distance", "sliding_base"]
+    if any(member.cutting == "fixed_setting" for member in members.values()):
+        # the roll makes of it the same turn of the work
+        others.insert(0, "a cradle_angle of one flank of a fixed-setting cut, which acts as work_rotation_offset does")
+    return (
+        f"spaces of {widths} of a pitch of {pitch:.4g} mm; they hang as well on {', '.join(others)}: compare these too"
+    )
+
+
 def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[str, float], share: float = 1.0) -> None:
     """Refuse flanks that do not touch as mates at the mean point, and a pair with too much or too little backlash.
 
-    Both flanks of a pair are judged together: half the sum of what the angles of mates differ by is an error of a
-    member, half the difference an opposite error of its flanks. Between perfect mates and the plain crown gear, which
+    The spiral angles of both flanks of a pair are judged together: half the sum of what mates differ by is an error of
+    a member, half the difference an opposite error of its flanks. Between perfect mates and the plain crown gear, which
     leaves as it is what a cut of both flanks at once does to them, any difference may be designed. ``share`` is the
     part of the limits of the angles that may be used.
     """
-    for key, limits in _MATING.items():
-        apart = [
-            _seen(cut, "pinion", flank, key) - _seen(cut, "gear", mating, key)
-            for flank, mating in zip(FLANKS, reversed(FLANKS), strict=True)
-        ]
-        given = {name: _given_by_one_cut(member, cut, name, key) for name, member in members.items()}
-        common, opposite = (apart[0] + apart[1]) / 2, (apart[0] - apart[1]) / 2
-        low, high = _between(given["pinion"][0] - given["gear"][0], share * limits[0])
-        if not low <= common <= high:
-            error = f"mates differ by {common:+.3g} degrees on both, which must lie between {low:.3g} and {high:.3g}"
-        else:
-            low, high = _between(given["pinion"][1] + given["gear"][1], share * limits[1])
-            if low <= opposite <= high:
-                continue
-            error = (
-                f"mates differ by {opposite:+.3g} degrees on the first and by as much the other way on the second, "
-                f"which must lie between {low:.3g} and {high:.3g}"
-            )
+    apart = dict(zip(FLANKS, _apart(cut, "pressure_angle"), strict=True))
+    wrong = {flank: found for flank, found in apart.items() if not abs(found) <= share * _PRESSURE}
+    if wrong:
+        flank = max(wrong, key=lambda one: abs(wrong[one]))
+        mating = {one: FLANKS[1 - FLANKS.index(one)] for one in wrong}
         raise Misfit(
-            f"pinion and gear: {_mating_angles(cut, key)}: {error}",
-            *((name, flank) for name in members for flank in FLANKS),
+            f"pinion and gear: {_mating_angles(cut, 'pressure_angle')}: pinion {flank} and gear {mating[flank]} differ "
+            f"by {wrong[flank]:+.3g} degrees, which must be at most {share * _PRESSURE:.3g}",
+            *(("pinion", one) for one in wrong),
+            *(("gear", one) for one in mating.values()),
         )
+    first, second = _apart(cut, "spiral_angle")
+    common, opposite = (first + second) / 2, (first - second) / 2
+    given = sum(_given_by_one_cut(member, cut, name) for name, member in members.items())
+    for found, low, high, what in (
+        (common, *_between(0.0, share * _SPIRAL[0]), "on both"),
+        (opposite, *_between(given, share * _SPIRAL[1]), "on the first and by as much the other way on the second"),
+    ):
+        if not low <= found <= high:
+            raise Misfit(
+                f"pinion and gear: {_mating_angles(cut, 'spiral_angle')}: mates differ by {found:+.3g} degrees {what}, "
+                f"which must lie between {low:.3g} and {high:.3g}",
+                *((name, flank) for name in members for flank in FLANKS),
+            )
     gear = members["gear"]
     pitch = 2 * math.pi * mean_pitch_radius(gear) / gear.teeth
     backlash, module = spaces["pinion"] + spaces["gear"] - pitch, transverse_module(gear)
-    if not (_BACKLASH[0] - _ROUNDED) * module <= backlash <= _BACKLASH[1] * module:
+    if not (BACKLASH[0] - _ROUNDED) * module <= backlash <= BACKLASH[1] * module:
         settings = "; ".join(f"{name} {_phase(member)}" for name, member in members.items())
         raise InputError(
             f"pinion and gear: {settings}: the pair has a transverse backlash of {backlash:.4g} mm at the mean point, "
-            f"which must lie between {_BACKLASH[0] * module:.3g} and {_BACKLASH[1] * module:.3g} mm, {_BACKLASH[0]:g} "
-            f"and {_BACKLASH[1]:g} of the module"
+            f"which must lie between {BACKLASH[0] * module:.3g} and {BACKLASH[1] * module:.3g} mm, {BACKLASH[0]:g} "
+            f"and {BACKLASH[1]:g} of the module; {_width_hangs_on(members, spaces, pitch)}"
         )

@@ -16,6 +16,7 @@ from gearmath.bevel.check_blade import check_blades, check_methods, check_offset
 from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, check_mate, transverse_module
 from gearmath.bevel.check_ease_off import check_ease_off
 from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
+from gearmath.bevel.check_index import check_index
 from gearmath.bevel.check_mates import Cut, check_mates, check_space
 from gearmath.bevel.check_motion import check_motions
 from gearmath.bevel.method import cut_generation_of, generation_of
@@ -103,6 +104,11 @@ def _check_cut(members: dict[str, Member], cut: dict[str, Cut], share: float) ->
         check_offset(member, name, sum(found.spiral_angle for found in cut[name].values()) / len(FLANKS))
     if len(members) == len(MEMBERS):
         check_mates(members, cut, spaces, share)
+    gear = members.get("gear")
+    pitch = 2 * math.pi * mean_pitch_radius(gear) / gear.teeth if gear is not None else math.nan
+    backlash = sum(spaces.values()) - pitch if len(members) == len(MEMBERS) else None
+    for name, member in members.items():
+        check_index(member, name, backlash)
     for name, member in members.items():
         for flank in FLANKS:
             check_grid(member, name, flank)

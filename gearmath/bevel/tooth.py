@@ -123,7 +123,7 @@ def flank_surface(
 ) -> SpaceFlank:
     """One flank of space 0 from the face cone to the bottom of its fillet."""
     spec = member.flank(flank)
-    sharp = _edged(spec)
+    sharp = sharp_edged(spec)
     sections = blade_sections(sharp, SIDES[flank])
     how = generation_of(member, flank)
     across = np.linspace(0.0, 1.0, columns)
@@ -207,8 +207,8 @@ def mean_backlash(pinion: Member, gear: Member) -> float:
     return pitch - mean_tooth_thickness(pinion) - mean_tooth_thickness(gear)
 
 
-def _edged(spec: Flank) -> Flank:
-    """The flank with the smallest edge radius that a blade has."""
+def sharp_edged(spec: Flank) -> Flank:
+    """The flank with the smallest edge radius that a blade has, where it states none."""
     return spec.model_copy(update={"blade_edge_radius": SHARP_EDGE}) if spec.blade_edge_radius == 0 else spec
 
 

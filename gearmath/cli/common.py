@@ -6,7 +6,7 @@ import functools
 import json
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -111,6 +111,12 @@ def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> t
     return name, pair.member(name)
 
 
+def nominal_words(member: Member, flank: str) -> str:
+    """What to add where nominal points of a flank are written that is cut with other settings; else nothing."""
+    changed = member.flank(flank).design is not None
+    return ": the nominal flank, by the settings under 'design', not what the corrected ones cut" if changed else ""
+
+
 def plot(what: str) -> Any:
     """The option --plot for one picture."""
     return click.option(
@@ -196,3 +202,15 @@ def bar(total: int, unit: str, quiet: bool = False) -> Iterator[Any]:
 
     with hidden(), tqdm(total=total, unit=unit, disable=True if quiet else None, leave=False) as progress:
         yield progress.update
+
+
+@contextmanager
+def bars() -> Iterator[Callable[[int, str], Any]]:
+    """Progress bars one after the other: each begins, with its total and unit, when the one before ends."""
+    with ExitStack() as stack:
+
+        def begin(total: int, unit: str) -> Any:
+            stack.close()
+            return stack.enter_context(bar(total, unit))
+
+        yield begin

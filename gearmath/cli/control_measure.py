@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from gearmath.cli.common import bar
-from gearmath.cli.control_connect import CONNECTION, INSECURE, connection_of, connector
+from gearmath.cli.control_connect import CONNECTION, INSECURE, connector, name_of
 from gearmath.cli.runs import store_option
 
 
@@ -48,7 +48,7 @@ def measure(
     connection it goes on by itself; after a reset, with --resume.
     """
     from gearmath.control import sinumerik
-    from gearmath.control.measuring import Measuring
+    from gearmath.control.measuring import Measuring, check_ready
     from gearmath.control.run_start import begun, resumed
     from gearmath.control.store import MeasurementStore
 
@@ -70,8 +70,9 @@ def measure(
         else:
             assert program is not None
             start, parts = begun(
-                connection_of(connection, insecure).name, program, gear_set, machine, calibration, points, again_of
+                name_of(connection, insecure), program, gear_set, machine, calibration, points, again_of
             )
+            asyncio.run(check_ready(connect, start))
             run = store.begin_run(start)
         with bar(len(run.missing()), "touch") as progress:
             asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(parts))

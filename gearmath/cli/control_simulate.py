@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import secrets
+import socket
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -88,6 +89,7 @@ def simulate(
     for gear_set in gear_sets:
         workshop.load(find(gear_set))
     password = os.environ.get(PASSWORD)
+    port = port or _free_port()  # CONTROL.toml has it
     access = Access({"operator": Account(password or secrets.token_urlsafe(9))})
     control = SimulatedControl(Nc(workshop, speed), access, None, Appearance(unencrypted=unencrypted), port)
 
@@ -104,6 +106,12 @@ def simulate(
         asyncio.run(serve())
     except OSError as error:
         raise InputError(f"--port {port}: cannot be used: {error.strerror}") from error
+
+
+def _free_port() -> int:
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return int(one.getsockname()[1])
 
 
 async def _console(control: SimulatedControl) -> None:

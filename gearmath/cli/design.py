@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +59,8 @@ def design(data: str, target: Path, given: str | None, as_json: bool, picture: P
 
 def _text(title: str, figures: dict[str, Any]) -> str:
     """The figures of a design for people."""
+    from gearmath.bevel.ridge import RIDGE, ridge_words
+
     backlash, lands = figures["backlash_mm"], figures["top_land_mm"]
     rows = [
         ["cutter radius", f"{figures['cutter_radius_mm']:g} mm"],
@@ -66,6 +69,11 @@ def _text(title: str, figures: dict[str, Any]) -> str:
         *(
             [f"top land of the {name}, normal, toe mean heel", " ".join(f"{one:.3f}" for one in land.values()) + " mm"]
             for name, land in lands.items()
+        ),
+        *(
+            [f"root of the {name}", ridge_words(math.inf if height is None else height / 1000)]
+            for name, height in figures["root_ridge_um"].items()
+            if height is None or height > 1000 * RIDGE
         ),
     ]
     parts = [title, table(["figure", "value"], rows)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gearmath.gearbox.job import GearboxJob, ThreadPlan
+from gearmath.gearbox.job import PROPOSED, GearboxJob, ThreadPlan
 from gearmath.gearbox.simulation import Simulation
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
 from gearmath.specs.ratio import EXACT_INCH, INCH
@@ -37,7 +37,9 @@ def simulation_text(result: Simulation, job: GearboxJob) -> str:
 
 
 def _rates(job: GearboxJob, what: str) -> Iterator[str]:
-    most = f"({job.highest_rpm:.1f} rpm at most)"
+    proposed = abs(job.rpm - PROPOSED * job.highest_rpm) < 1e-9 * job.highest_rpm
+    margin = f", {1 - PROPOSED:.0%} of it kept as a margin" if proposed else ""
+    most = f"({job.highest_rpm:.1f} rpm at most{margin})"
     yield f"  {what:7s}{job.rpm:9.1f} rpm   {job.hob_rpm_percent:5.1f} % of the limit {most}"
     yield f"  edges  {job.edge_rate_hz:9.0f} Hz    {job.edge_rate_percent:5.1f} % of the limit"
     yield f"  steps  {job.step_rate_hz:9.0f} Hz    {job.step_rate_percent:5.1f} % of the limit"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -18,10 +18,13 @@ from gearmath.cli.common import (
     Number,
     about,
     bar,
+    bars,
     member_of,
     output,
 )
+from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
 from gearmath.cli.probe import nc_calibrate, probe
+from gearmath.cli.program_time import program_time
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -36,11 +39,12 @@ if TYPE_CHECKING:
 
 @click.group()
 def nc() -> None:
-    """NC programs for the vertical 5-axis machine (SINUMERIK 840D sl)."""
+    """NC programs for the vertical 5-axis machine (SINUMERIK 840D sl, or LinuxCNC)."""
 
 
 nc.add_command(probe)
 nc.add_command(nc_calibrate)
+nc.add_command(program_time)
 
 
 @nc.command()
@@ -64,9 +68,17 @@ nc.add_command(nc_calibrate)
 @click.option("--rpm", type=float, default=120.0, show_default=True, help="Spindle speed.")
 @click.option("--roughing-stock", type=float, default=0.0, help="Rough first and leave this much, mm; 0 for none.")
 @click.option("--finishing-stock", type=float, default=0.0, help="Stock that stays on the finished flanks, mm.")
+@click.option(
+    "--blocks",
+    type=click.Choice(["g1", "poly"]),
+    default="g1",
+    show_default=True,
+    help="Straight blocks, or polynomials where the cutter rolls (an option of the control).",
+)
 @click.option("--dry-run", is_flag=True, help="Cut air: everything above the work, without coolant.")
+@TARGET
 @SHEET
-@output(".MPF; its name becomes the program name")
+@output(".MPF, or .ngc for LinuxCNC; its name becomes the program name")
 def cut(
     gear_set: str,
     member: str | None,
@@ -77,51 +89,53 @@ def cut(
     rpm: float,
     roughing_stock: float,
     finishing_stock: float,
+    blocks: Literal["g1", "poly"],
     dry_run: bool,
+    control: str | None,
+    configuration: bool,
     sheet: Path | None,
     target: Path,
 ) -> None:
     """The cutting program of a member.
 
-    Before it is written it is run: it must keep the limits of the machine, and collide with nothing.
+    Before it is written it is run: it must keep the limits of the machine, collide with nothing, and leave both flanks
+    within the tolerance.
     """
     from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.tooth import tooth_space
     from gearmath.files import write_text
-    from gearmath.machine.control.executor import execute
-    from gearmath.machine.control.state import Setup
-    from gearmath.machine.judging.program import faults_of
+    from gearmath.machine.judging.checked import checked_cut
     from gearmath.machine.judging.timing import timing
-    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, cutting_plan, pass_count
+    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
     from gearmath.machine.writing.cutting import program_of
+    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
+    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
     from gearmath.machine.writing.words import block_count, check_name
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     check_name(target.stem)
-    job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
+    job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
     milling_machine = load_milling_machine(find(machine))
+    dialect = dialect_of(milling_machine, control, configuration, sheet)
     check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
-    with bar(pass_count(spec, member, job), "pass") as progress:
-        plan = cutting_plan(bevel_set, member, milling_machine, job, progress)
-        text = program_of(plan, target.stem)
-    path = execute(text, str(target), Setup.of(milling_machine))
-    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
-    runs = _right_runs(path, spec, member, milling_machine, space)
-    if faults := faults_of(text, path, runs, spec, member, milling_machine):
-        raise InputError(f"{target}: {'; '.join(map(str, faults))}: the program is not written")
+    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
+    with bars() as begin:
+        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin, write)
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import setup_sheet
 
-        page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
-    write_text(target, text)
-    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {block_count(text)} blocks")
+        page = setup_sheet(SetupFacts.of(made.plan, PLUNGE_FEED), target.name, timing(made.path, milling_machine))
+    count = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
+    write_text(target, made.text)
+    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {count} blocks")
+    if configuration:
+        write_configuration(target, milling_machine, linuxcnc.tools_of(made.plan))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
@@ -207,10 +221,7 @@ def mill(
     worst = float(abs(file.deviation).max())
     click.echo(f"{target}: {len(file)} points, largest deviation {worst * 1000:.3f} um")
     with about(program):
-        if space is not None:
-            faults = _judge_metal(text, runs, spec, member, milling_machine, space)
-        else:
-            faults = _judge_hobbed(text, path, runs, spec, member, milling_machine, worst, simulated is None)
+        faults = _judge_metal(text, path, runs, spec, member, milling_machine, space)
         faults += map(str, faults_of(text, path, runs, spec, member, milling_machine))
     if report is not None:
         found = _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000, space)
@@ -276,54 +287,34 @@ def _milled(
         return measure_member(left, spec, member, simulated, measurement)
 
 
-def _judge_hobbed(
+def _judge_metal(
     text: str,
     path: MachinePath,
     runs: list[CuttingRun],
     spec: Member,
     member: str,
     machine: MillingMachine,
-    worst: float,
-    right: bool,
-) -> list[str]:
-    """Whether the flanks of a hobbed member deviate from those of its settings by more than the program states.
-
-    ``worst`` [mm] is how far they do from the design, on a machine without errors where that is ``right``.
-    """
-    from gearmath.machine.judging.cut import as_cut, hobbed
-    from gearmath.machine.judging.stated import Stated
-    from gearmath.machine.milling.mill import mill_member
-
-    made = as_cut(spec)
-    if not right or made != spec:
-        with bar(2 * spec.teeth, "flank") as progress:
-            worst = float(abs(mill_member(path, made, member, machine, None, progress, runs).deviation).max())
-    return [str(fault) for fault in hobbed(worst, Stated.of(text))]
-
-
-def _judge_metal(
-    text: str, runs: list[CuttingRun], spec: Member, member: str, machine: MillingMachine, space: ToothSpace
+    space: ToothSpace | None,
 ) -> list[str]:
     """Print what the blocks leave on a machine without errors; a sentence for each way in which that is wrong."""
     import math
 
-    from gearmath.bevel.tooth import tooth_space
-    from gearmath.machine.judging.cut import as_cut, metal_left
-    from gearmath.machine.judging.stated import Stated
+    from gearmath.bevel.ridge import RIDGE, ridge, ridge_words
+    from gearmath.machine.judging.cut import as_cut
+    from gearmath.machine.judging.program import metal_faults
 
-    made = as_cut(spec, space)
-    with bar(1, "space") as progress:
-        own = space if made == spec else tooth_space(made, member, 7)
-        left = metal_left(runs, made, member, machine, Stated.of(text), own, progress)
-    found = left.watch
-    if math.isfinite(found.lowest):
+    if space is not None and (left_between := ridge(as_cut(spec, space), space)) > RIDGE:
+        click.echo(f"the root: {ridge_words(left_between)}")
+    with bar(spec.teeth, "space") as progress:
+        faults, found = metal_faults(text, path, runs, spec, member, machine, space, progress)
+    if found is not None and math.isfinite(found.lowest):
         _, (number, flank, line) = found.worst
         click.echo(
             f"every block checked on {found.lines} normals of the flanks of these settings: {found.lowest * 1000:.3f} "
             f"to {found.highest * 1000:.3f} um, the largest by line {line} of the program (space {number}, {flank} "
             "flank)"
         )
-    return [str(fault) for fault in left.faults]
+    return [str(fault) for fault in faults]
 
 
 def _write_report(

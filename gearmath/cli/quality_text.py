@@ -35,7 +35,8 @@ def _cell(row: dict[str, Any], name: str) -> str:
 
 def _gaps(found: MemberEvaluation) -> Iterator[str]:
     """Whether the work moved, what was left out, and which figures are withheld for that."""
-    lines = [*found.closing.said, *(f"left out: {line}" for line in _without_suffix(found.left_out)), *found.withheld]
+    left_out = [f"left out: {line}" for line in _without_suffix(found.left_out)]
+    lines = [*found.closing.said, *found.suspicions, *left_out, *found.withheld]
     yield from lines
     if lines:
         yield ""

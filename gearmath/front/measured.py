@@ -160,6 +160,7 @@ class Correction:
                 found.motions,
                 found.curvatures,
                 check=check_pair,
+                origin=f"a measurement, and {member.gear_set.title}",
             )
         return Path(path)
 

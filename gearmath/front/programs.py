@@ -55,16 +55,14 @@ class Program:
         return Measurement(self.member, file)
 
     def faults(self) -> list[str]:
-        """What the machine must not run: travel, speed, collisions, modes left as they were; empty where it may."""
-        from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-        from gearmath.machine.judging.program import faults_of
-        from gearmath.machine.milling.run import runs_of
+        """What the machine must not run: travel, speed, collisions, modes, metal that is left or gouged; empty where it
+        may.
+        """
+        from gearmath.machine.judging.program import written_faults
 
-        spec, name, machine = self.member.spec, self.member.name, self.machine.spec
-        space = None if spec.process == "face_hobbing" else tooth_space(spec, name, 7)
-        path = self._path()
-        runs = runs_of(path, spec, name, machine, None, space, SHARP_EDGE)
-        return [str(fault) for fault in faults_of(self.text, path, runs, spec, name, machine)]
+        member = self.member
+        found = written_faults(self.text, self._path(), member.spec, member.name, self.machine.spec)
+        return [str(fault) for fault in found]
 
     def _path(self) -> MachinePath:
         return execute(self.text, self.name, Setup.of(self.machine.spec))

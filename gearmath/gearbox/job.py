@@ -24,6 +24,10 @@ TRIP = Fraction(101, 100)
 LARGEST_BASE = int(q.base_step.domain[1])
 
 
+#: The speed that is proposed, as part of the highest: a load or a supply that is off must not stop the job.
+PROPOSED = 0.9
+
+
 @dataclass(frozen=True)
 class GearboxJob:
     """One job. N/D motor steps per encoder count, reduced if the hob leads alone; R = D/N encoder counts per step.
@@ -86,7 +90,7 @@ def job_values(
     hob, feed = ratio.numerators
     exact = Fraction(hob, ratio.denominator)
     highest = _highest_rpm(machine, abs(exact))
-    speed = highest if rpm is None else rpm
+    speed = PROPOSED * highest if rpm is None else rpm
     _check_speed(machine, what, speed, highest)
     moved = motion(machine, exact, speed)
     check_run_up(machine, moved, speed, run_up, what)

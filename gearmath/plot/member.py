@@ -74,7 +74,7 @@ def _flank(axes: Axes, before: Topography, after: Topography | None, scale: floa
         draw_topography(axes, after, before if same_grid else None, scale, taken)
     shown = [("", before)] if after is None else [("before ", before), ("after ", after)]
     words = ", ".join(f"{when}{_largest(each)}" for when, each in shown)
-    axes.set_title(f"{before.flank} flank: largest {words}", fontsize=9)
+    axes.set_title(f"{before.flank} flank, zero at its reference point: largest {words}", fontsize=9)
     axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncol=3, frameon=False)
 
 

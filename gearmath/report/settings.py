@@ -49,7 +49,7 @@ def _limits_section(page: Page, measurement: ReportedMeasurement, correction: Me
     for group, result in correction.identified.items():
         values = (correction.measured_rms(group), correction.reachable[group], result.rms_after)
         rows.append([" and ".join(group), *map(micro, values)])
-    head = ["flanks", "RMS measured", "best that settings reach", "expected"]
+    head = ["flanks", "RMS of the tooth, turned to the least", "best that settings reach", "expected"]
     turned = ", turned so that least is left" if correction.rotation.angles.any() else ""
     page.table(
         f"RMS of the flanks / µm: of the tooth that was corrected, {taken_out(measurement.evaluation)}{turned}, not "

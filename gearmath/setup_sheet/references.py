@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from gearmath.page import Page
+from gearmath.setup_sheet.machine_drawing import CUTTER_TIP
 from gearmath.specs.milling_machine import AXES, MillingMachine
 
 _Z_MODES = {
@@ -11,10 +12,17 @@ _Z_MODES = {
     "length, after grinding too, needs its length in the machine file and the program written anew.",
     "tip": "Z of a program is that of the tips, with D1 active: length 1 of the tool in the table must be its length.",
 }
+_Z_OF_PROBE = {
+    "gauge_line": "Z of a program is that of the gauge line: length 1 of the probe in the table must be 0. Nothing on "
+    "the control checks how long the probe really is: one that is longer touches late or runs into the work. After "
+    "another stylus or tip it must be calibrated, and the program written anew.",
+    "tip": "Z of a program is that of the center of the tip, with D1 active: length 1 of the probe in the tool table "
+    "must be its length.",
+}
 
 
 #: What else stops a program of a work before its first motion.
-UNDER_THE_WORK = ", and where the tool may be under the work"
+UNDER_THE_WORK = ", and where it may be under the work"
 
 
 def references(
@@ -33,7 +41,9 @@ def references(
     above = machine.home - machine.gauge_line_height
     offsets = " ".join(f"{axis}{value:g}" for axis, value in zip(AXES, machine.work_offset_values, strict=True))
     pivot, control = ", ".join(f"{value:g}" for value in machine.pivot_offset), machine.control
-    checked = f"by the program: length 1 = {length:g}" if machine.z_reference == "tip" else "by hand: measure the tool"
+    tool, modes = ("tool", _Z_MODES) if tips == CUTTER_TIP else ("probe", _Z_OF_PROBE)
+    by_program = machine.z_reference == "tip"
+    checked = f"by the program: length 1 = {length:g}" if by_program else f"by hand: measure the {tool}"
     page.table(
         "References",
         ["what", "value", "unit", "checked"],
@@ -56,14 +66,14 @@ def references(
         ],
     )
     page.paragraph(
-        f"{_Z_MODES[machine.z_reference]} The zero of {machine.work_offset} is on the B axis in X and Y; in Z it is "
+        f"{modes[machine.z_reference]} The zero of {machine.work_offset} is on the B axis in X and Y; in Z it is "
         "where the gauge line reads 0. A turns the work clockwise, seen from its back towards the pitch apex. At B = 0 "
         "the work axis is level, with the toe of the teeth towards X+; B lowers the back."
     )
     page.paragraph(
         "The program stops with a message before its first motion where the basic system is not metric, where the "
         f"increments are fewer or {machine.work_offset}, with all frames, is not as above, where a frame turns, "
-        f"mirrors or scales{more_before}; after a tool change, where the name of the tool or its length 1 is another "
+        f"mirrors or scales{more_before}; after a tool change, where the name of the {tool} or its length 1 is another "
         f"one; {more}."
     )
 

@@ -115,7 +115,7 @@ class Member(Sheet):
     blade_groups: int | None = Field(default=None, ge=1, le=60)
     #: Sign of the indexing by the cutter's angle: -1 where cutter and crown gear roll on each other from outside, which
     #: gives the epicycloid of ISO 23509; 1 from inside. A hobbed member has to state it.
-    indexing_sign: Literal[1, -1] = 1
+    indexing_sign: Literal[1, -1] = Field(default=1, json_schema_extra={"default": "required in face hobbing"})
     blank: Blank
     concave: Flank
     convex: Flank

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from gearmath.specs.bevel_set import ADVANCE, BEYOND, FLANKS, MACHINE_SETTINGS, 
 from gearmath.specs.cut import ANGULAR, CRADLE_PER_WORK, RATIO, STRAIGHT
 from gearmath.specs.sheet import UNITS, angle_text, unit_of
 from gearmath.specs.toml import parse
+from gearmath.version import __version__
 
 
 def save_corrected(
@@ -27,13 +29,15 @@ def save_corrected(
     motions: dict[str, np.ndarray] | None = None,
     curvatures: dict[str, float] | None = None,
     check: Callable[[BevelSet], object] = lambda _: None,
+    origin: str = "",
 ) -> None:
     """Write the set of ``source``, comments kept, with new settings (12,) of each flank, to ``target``.
 
     A setting that stays is left as it is written. The nominal settings are kept under ``design``.
     ``index_correction`` (z,) in rad replaces that of the member, and ``motions`` (10,7) of each flank, without the
     modified roll, its motion, and ``curvatures`` [1/mm] those of its blade. The text is checked as a set, and by
-    ``check`` besides, before anything is written. Raises InputError naming the target.
+    ``check`` besides, before anything is written. ``origin`` says what it was corrected from: with the time it becomes
+    the first line of the file, above those of earlier corrections. Raises InputError naming the target.
     """
     content = read_text(source)
     before, document = parse(content, BevelSet, str(source)).member(member), tomlkit.parse(content)
@@ -53,13 +57,21 @@ def save_corrected(
         _save_curvature(table[flank], curvature, mm)
     if index_correction is not None:
         table["index_correction"] = [round(math.degrees(value), 7) + 0.0 for value in index_correction]
-    text = tomlkit.dumps(document)
+    text = _head(member, origin) + tomlkit.dumps(document)
     corrected = parse(text, BevelSet, str(target))
     try:
         check(corrected)
     except InputError as error:
         raise InputError(f"{target}: {error}") from error
     write_text(target, text)
+
+
+def _head(member: str, origin: str) -> str:
+    if not origin:
+        return ""
+    now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+    what = f"Corrected settings of the {member}, from {origin}, {now}, gearmath {__version__}"
+    return f"# {what}; nominal ones: under design.\n"
 
 
 def _written(table: Any, vector: np.ndarray, mm: float, beyond: float) -> dict[str, float | str]:

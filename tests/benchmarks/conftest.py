@@ -12,6 +12,12 @@ from gearmath.engine.run import KernelRunner
 
 
 @pytest.fixture(scope="session")
+def timed(request: pytest.FixtureRequest) -> bool:
+    """Whether the run asks for times; else the benchmarks only have to work, with little of everything."""
+    return not (request.config.getoption("benchmark_disable") or hasattr(request.config, "workerinput"))
+
+
+@pytest.fixture(scope="session")
 def by_vm() -> Callable[[Kernel], Callable[..., list[np.ndarray]]]:
     """Kernel to a function of arrays, one point a row; what has no such axis is the same for all points."""
 

@@ -21,12 +21,12 @@ from gearmath.specs.simulated_machine import load_simulated_machine
 from gearmath.specs.toml import bundled
 
 FREE = ("radial_distance", "cradle_angle", "machine_center_to_crossing_point", "machine_root_angle")
-DRAWS = 1000
 
 
 @pytest.mark.benchmark(group="studies")
-def test_draws_of_an_identification(benchmark) -> None:
+def test_draws_of_an_identification(benchmark, timed) -> None:
     """Mapped on all processors, on one, and as a loop over the solver: 45 points, four settings, exact surface."""
+    draws, looped = (1000, 20) if timed else (40, 1)
     spec = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
     one = target_of(spec, "concave", solve_flank(spec, "pinion", "concave", blank_grid(spec)))
     errors = load_simulated_machine(bundled("simulated_shop.toml")).setting_errors("pinion")
@@ -36,12 +36,14 @@ def test_draws_of_an_identification(benchmark) -> None:
     d = ca.MX.sym("measured", 45)
     function = ca.Function("identified", [d], [kernel.function(d, ca.DM(found.values))[0]])
     noise = independent(np.full(45, 0.5e-3))
-    study = monte_carlo(noise.drawn(function, form), DRAWS)
-    values = benchmark.pedantic(run, (study,), rounds=2, iterations=1)
+    study = monte_carlo(noise.drawn(function, form), draws)
+    values = benchmark.pedantic(run, (study,), rounds=2 if timed else 1, iterations=1)
     np.testing.assert_array_equal(values, run(study, workers=1))
-    threads, single = (min(timeit.repeat(lambda n=n: run(study, workers=n), number=1, repeat=2)) for n in (None, 1))
-    looped = DRAWS / 20 * timeit.timeit(lambda: [identify([target], FREE) for _ in range(20)], number=1)
+    threads, single = (
+        min(timeit.repeat(lambda n=n: run(study, workers=n), number=1, repeat=2 if timed else 1)) for n in (None, 1)
+    )
+    by_loop = draws / looped * timeit.timeit(lambda: identify([target], FREE), number=looped)
     print(
-        f"\n{DRAWS / threads:.0f} draws/s on {os.cpu_count()} processors: {single / threads:.2f} x one, "
-        f"{looped / threads:.1f} x a loop over the solver"
+        f"\n{draws / threads:.0f} draws/s on {os.cpu_count()} processors: {single / threads:.2f} x one, "
+        f"{by_loop / threads:.1f} x a loop over the solver"
     )

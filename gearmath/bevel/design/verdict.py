@@ -16,6 +16,7 @@ from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
 from gearmath.bevel.design.route import Designed
 from gearmath.bevel.pair import check_pair
+from gearmath.bevel.ridge import ridge
 from gearmath.bevel.tooth import mean_backlash, tooth_space
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
@@ -112,11 +113,18 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
         "data_type_2": None if made.blank_data.data_type_2 is None else made.blank_data.data_type_2.model_dump(),
         "backlash_mm": {"asked": made.backlash, "found": mean_backlash(pinion, gear)},
         "top_land_mm": lands,
+        "root_ridge_um": {name: _root_ridge(made.pair.member(name), name) for name in lands},
     }
     stepped = any(made.data.shop.model_dump().values())
     for side, run in runs.items():
         figures[side] = _side(made, side, run, stepped)
     return figures, runs
+
+
+def _root_ridge(member: Member, name: str) -> float | None:
+    """The ridge [um] that cuts of single flanks leave in the root, None where a fin stays."""
+    height = 1000 * ridge(member, tooth_space(member, name))
+    return height if math.isfinite(height) else None
 
 
 def mean_module(made: Designed) -> float:

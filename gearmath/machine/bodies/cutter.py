@@ -13,13 +13,10 @@ import numpy as np
 
 from gearmath.bevel.generation import Section
 from gearmath.bevel.method import blade_sections
-from gearmath.bevel.root import Widths
+from gearmath.bevel.ridge import opposite, other_side, point_width
 from gearmath.bevel.tooth import ToothSpace
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
-#: Point width of a fixed-setting cutter of which none is stated, as a part of the slot at its widest: more than half,
-#: so that the cuts of both flanks overlap; and the most of the slot at its narrowest that it may fill. [1]
-DEFAULT_WIDTH_SHARE, MOST_OF_SLOT = 0.55, 0.95
 #: Stands for a blade that is not there. [mm]
 _AWAY = 1e4
 
@@ -125,7 +122,7 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
     """The tool that cuts ``flanks`` of a member. ``edge_radius`` [mm] is given to blades that state none.
 
     A completing cutter has a blade for each flank. A fixed-setting cutter has the other flank's pressure angle on its
-    other side, at the blade point width of the flank, or where none is stated at 55 % of the widest slot of
+    other side, at the blade point width of the flank, or where none is stated at the one chosen for the slot of
     ``space``; without a space, that side is out of reach.
     """
     own = {flank: member.flank(flank) for flank in flanks}
@@ -136,8 +133,7 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
         return one_blade(spec.blade_point_radius, angle, SIDES[flanks[0]], spec.blade_profile_height)
     if len(flanks) == 1 and space is not None:
         (flank,) = flanks
-        other = FLANKS[1 - FLANKS.index(flank)]
-        own[other] = _other_side(own[flank], flank, member.flank(other), point_width(own[flank], space.slots[flank]))
+        own[opposite(flank)] = other_side(member, flank, point_width(member, flank, space.slots[flank]))
     sections = {flank: blade_sections(_edged(_as_cut(spec), edge_radius), SIDES[flank]) for flank, spec in own.items()}
     toprem = max(sections[flank]["toprem"].upper if "toprem" in sections[flank] else 0.0 for flank in own)
     lowest = [_profile(sections[flank], own[flank], SIDES[flank]) for flank in FLANKS]
@@ -149,31 +145,6 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
         ]
         bodies.append(Body(toprem, mains[0], mains[1], height - toprem))
     return Cutter(tuple(bodies), height)
-
-
-def point_width(spec: Flank, slot: Widths) -> float:
-    """Point width [mm] of a fixed-setting cutter: as stated, or chosen for the ``slot`` of its flank.
-
-    Chosen, it is ``DEFAULT_WIDTH_SHARE`` of the slot at its widest, so that two cuts leave no ridge between them, and
-    never more than that part of the room which the slot leaves at its narrowest.
-    """
-    if spec.blade_point_width is not None:
-        return spec.blade_point_width
-    return min(DEFAULT_WIDTH_SHARE * slot.most, MOST_OF_SLOT * slot.least)
-
-
-def _other_side(spec: Flank, flank: str, other: Flank, width: float) -> Flank:
-    """The blade on the side that cuts no flank."""
-    return spec.model_copy(
-        update={
-            "blade_point_radius": spec.blade_point_radius - SIDES[flank] * width,
-            "blade_pressure_angle": other.blade_pressure_angle,
-            "blade_spheric_radius": None,
-            "toprem_angle": None,
-            "toprem_height": 0.0,
-            "design": None,
-        }
-    )
 
 
 def _as_cut(spec: Flank) -> Flank:

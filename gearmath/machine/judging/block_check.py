@@ -8,6 +8,7 @@ way although its neighbours cut the flank clean.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
@@ -28,8 +29,8 @@ from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
 
-#: Lines on each curve for a block of mean length.
-_PER_BLOCK = 2.0
+#: Lines on each curve for a block of mean length, and for a block of POLY, which leaves a smooth flank.
+_PER_BLOCK, _PER_CURVE = 2.0, 60.0
 #: Where curves lie along the tooth, as parts of the working depth, and up the tooth, as parts of the face width.
 _UP, _ACROSS = (1.0,), (0.0, 1.0)
 #: X and Y so far off the path are wrong wherever the flank is. [mm]
@@ -71,9 +72,9 @@ def watched_flanks(member: Member, runs: list[CuttingRun]) -> list[WatchedFlank]
     """Lines on all flanks that the tools of a program cut, as many as their blocks ask for."""
     found = []
     for run in runs:
-        blocks = int(np.bincount(np.cumsum(~run.cutting)[run.cutting]).max())
+        count = _line_count(run)
         for flank in run.cut.flanks:
-            theta, point, normal = _lines(member, run, flank, blocks)
+            theta, point, normal = _lines(member, run, flank, count)
             (other,) = (each for each in FLANKS if each != flank)
             opposite = flank_points(member, other, blank_grid(member, 5, 9)).point
             start = -0.5 * thickness(point, opposite, member.teeth)
@@ -81,13 +82,23 @@ def watched_flanks(member: Member, runs: list[CuttingRun]) -> list[WatchedFlank]
     return found
 
 
-def _lines(member: Member, run: CuttingRun, flank: str, blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _line_count(run: CuttingRun) -> float:
+    """How many lines a curve of the flanks has: the pass with most blocks counts."""
+    number = np.cumsum(~run.cutting)[run.cutting]
+    ends, begins = run.at_ends, np.append(False, run.at_ends[:-1])
+    curved = ~ends & begins  # the first part of a block of POLY
+    straight = ends & np.append(True, ends[:-1])
+    each = np.where(curved, _PER_CURVE, np.where(straight, _PER_BLOCK, 0.0))[run.cutting]
+    return float(np.bincount(number, each).max())
+
+
+def _lines(member: Member, run: CuttingRun, flank: str, count: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     if member.generation == "formate":
         points = flank_points(member, flank, blank_grid(member, 5, 17, 0.0))
         return points.contact[:, 2], points.point, points.normal
     shared = on_one_machine(member, run.cut)
     first, last = roll_range(shared, run.cut)
-    wanted = np.arange(first, last, (last - first) / (_PER_BLOCK * blocks))
+    wanted = np.arange(first, last, (last - first) / count)
     curves = [flank_curve(shared, flank, up=up) for up in _UP]
     curves += [flank_curve(shared, flank, across=across) for across in _ACROSS]
     chosen = []
@@ -106,6 +117,7 @@ def watch(
     errors: SimulatedMachine | None = None,
     progress: Callable[[int], object] = lambda _: None,
     groups: Mapping[int, list[int]] | None = None,
+    withdrawn: float = 0.0,
 ) -> Watch:
     """What the passes of every space leave on the flanks of that space, the ``runs`` with rounded blades.
 
@@ -114,9 +126,11 @@ def watch(
     Rapid blocks that end as low as the tool cuts take metal away like the others, in every space.
 
     ``progress`` is called for every space exposed. ``groups`` are spaces known to be cut alike, by the one that is
-    exposed for all of them; where rapid motion takes metal away, it is every space.
+    exposed for all of them; where rapid motion takes metal away, it is every space. A cutter that is ``withdrawn`` [mm]
+    for a stock passes above the foot of the flanks: what stays there is root, and does not count as ``highest``.
     """
     flanks = watched_flanks(member, runs)
+    reached = {one.flank: _height(one, member, runs, machine) >= withdrawn for one in flanks}
     numbers = np.concatenate([run.line for run in runs])
     rows: list[tuple[float, float, int, int, int, str, int]] = []
     turns = tooth_angles(member.teeth, member.index_correction)
@@ -130,7 +144,7 @@ def watch(
             left = expose(own, machine, errors, *lines)
             met = np.isfinite(left.distance)
             low = int(np.argmin(np.where(met, left.distance, np.inf)))
-            high = int(np.argmax(np.where(met, left.distance, -np.inf)))
+            high = int(np.argmax(np.where(met & reached[one.flank], left.distance, -np.inf)))
             rows.append(
                 (
                     float(left.distance[low]) if met.any() else np.inf,
@@ -152,6 +166,17 @@ def watch(
         highest_at=(full[6], full[5], full[3]),
         uncut=sum(row[4] for row in rows),
     )
+
+
+def _height(lines: WatchedFlank, member: Member, runs: list[CuttingRun], machine: MillingMachine) -> np.ndarray:
+    """How far (n,) [mm] along the cutter's axis lines lie from the end of the straight blade that generates them."""
+    (run,) = (one for one in runs if lines.flank in one.cut.flanks)
+    spec = member.flank(run.cut.flanks[0])
+    axes = axis_positions(spec, lines.theta, machine.pivot_height, machine.pivot)
+    center, axis = kernel("tool_pose")(axes, machine.pivot_height, machine.pivot)
+    own = member.flank(lines.flank)
+    edge = (own.blade_edge_radius or 0.0) * (1 - math.sin(math.radians(own.blade_pressure_angle)))
+    return np.abs(((lines.point - center) * axis).sum(axis=1)) - edge
 
 
 def _rapid_in_metal(run: CuttingRun) -> np.ndarray:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.method import motion_of
+from gearmath.bevel.ridge import point_width
 from gearmath.bevel.tooth import ToothSpace
-from gearmath.machine.bodies.cutter import point_width
 from gearmath.machine.judging.alike import alike
 from gearmath.machine.judging.block_check import Watch, watch
 from gearmath.machine.judging.faults import Fault
@@ -47,6 +47,8 @@ def missing(stated: Stated, runs: list[CuttingRun], member: Member, name: str) -
 def beside_the_path(runs: list[CuttingRun], member: Member, machine: MillingMachine, stated: Stated) -> Iterator[Fault]:
     """Feed blocks that end where the settings have no position: X Y A B beside their path, or Z below it, or above.
 
+    What blocks of POLY do between their ends, the flanks tell.
+
     Above it only where it rolls, between the first and the last block of a pass, by its median: a stock raises all of
     it.
     """
@@ -66,14 +68,15 @@ def beside_the_path(runs: list[CuttingRun], member: Member, machine: MillingMach
                 own = inner & (number == one)
                 above[own] = np.abs(off[own, 2] - np.median(off[own, 2]))
         aside = np.maximum(np.hypot(aside, below), above)
-        for k in np.flatnonzero(aside > limit):
+        for k in np.flatnonzero((aside > limit) & run.at_ends[rows]):
             yield Fault(f"ends {aside[k]:.6f} mm beside the path of these settings", int(run.line[rows[k]]), "beside")
 
 
 def off_the_path(run: CuttingRun, member: Member, machine: MillingMachine) -> tuple[np.ndarray, np.ndarray]:
     """Rows (m,) of a run that cut, and how far X Y Z A B are off the path (m,5), rotations in mm at the flank.
 
-    The cradle rotation is that whose X and Y are nearest. In face hobbing A belongs to C besides, and goes on with it.
+    The cradle rotation is that whose X and Y are nearest. In face hobbing A belongs to C besides, and goes on with it
+    through a pass.
     """
     spec = member.flank(run.cut.flanks[0])
     reach = float(member.blank.mean_cone_distance + member.blank.face_width / 2)
@@ -89,7 +92,11 @@ def off_the_path(run: CuttingRun, member: Member, machine: MillingMachine) -> tu
     if run.blades is not None:
         off[:, 3] += index_ratio(member) * (run.turned[rows] - spindle_phase(spec, theta))
         period /= member.teeth
-    off[:, 3] -= period * np.round((off[:1, 3] if run.blades is not None else off[:, 3]) / period)
+    if run.blades is not None:  # every pass begins at any tooth, and keeps to its teeth from there
+        _, first, of_pass = np.unique(np.cumsum(~run.cutting)[rows], return_index=True, return_inverse=True)
+        off[:, 3] -= period * np.round(off[first, 3] / period)[of_pass]
+    else:
+        off[:, 3] -= period * np.round(off[:, 3] / period)
     off[:, 3:] *= reach
     return rows, off
 
@@ -117,11 +124,11 @@ def metal_left(
     ``member`` is :func:`as_cut`, ``space`` the space that it has. ``progress`` is called for every space exposed.
     """
     groups = alike(runs, member, machine)
-    found = watch(runs, member, machine, None, progress, groups)
     tolerance, stock = allowed(stated), stated.stock
     flattest = min(member.flank(flank).blade_pressure_angle for run in runs for flank in run.cut.flanks)
     # the cutter is withdrawn by this along its axis, and leaves as much at the foot of the flanks
     most = stock / math.sin(math.radians(flattest))
+    found = watch(runs, member, machine, None, progress, groups, most)
     faults = []
     says = "the program states" if stated.tolerance is not None else "allowed are"
     for value, (number, flank, line), wrong in (
@@ -199,6 +206,6 @@ def as_cut(member: Member, space: ToothSpace | None = None) -> Member:
     specs = {flank: member.flank(flank) for flank in FLANKS}
     changed: dict[str, dict[str, object]] = {flank: {"design": None} for flank in FLANKS}
     if space is not None and member.cutting == "fixed_setting" and any(spec.design for spec in specs.values()):
-        for flank, spec in specs.items():
-            changed[flank]["blade_point_width"] = point_width(spec, space.slots[flank])
+        for flank in FLANKS:
+            changed[flank]["blade_point_width"] = point_width(member, flank, space.slots[flank])
     return member.model_copy(update={flank: specs[flank].model_copy(update=changed[flank]) for flank in FLANKS})

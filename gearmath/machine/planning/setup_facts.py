@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gearmath.bevel.blank import evaluate
+from gearmath.bevel.ridge import RIDGE, ridge, ridge_words
 from gearmath.machine.bodies.profiles import work_profiles
 from gearmath.machine.planning.chip_load import Bite, ChipLoad, chip_loads
 from gearmath.machine.planning.tooling import PointWidth, Tool, tools_of
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 #: The sentence for R_d, wherever it is explained.
 R_D = (
     "R_d is the reading of Z at which the gauge line of the spindle is level with the B axis; "
-    "a gauge line 650 mm above it at Z = 0 is -650"
+    "it is -650 where the gauge line is 650 mm above it at Z = 0"
 )
 _TURNS = {
     "M3": "M3: clockwise, seen along the spindle towards the work (a right-hand cutter)",
@@ -94,13 +95,14 @@ class Sections:
 
 @dataclass(frozen=True)
 class SetupFacts:
-    """All of it for one planned program."""
+    """All of it for one planned program; ``ridge`` [mm] is what stays in the root between the cuts of both flanks."""
 
     plan: CuttingPlan
     sizes: BlankSizes
     tools: tuple[Tool, ...]
     chips: tuple[ChipLoad, ...]
     sections: tuple[Sections, ...]
+    ridge: float
 
     @staticmethod
     def of(plan: CuttingPlan, plunge_feed: float) -> SetupFacts:
@@ -108,7 +110,8 @@ class SetupFacts:
         member, machine = plan.member, plan.machine
         chips = chip_loads(member, plan.name, machine, plan.passes, plan.job.spindle_rpm, plunge_feed)
         tools = tools_of(member, plan.name, plan.space)
-        return SetupFacts(plan, BlankSizes.of(member, machine), tools, chips, tuple(_sections(plan)))
+        left = 0.0 if plan.space is None else ridge(member, plan.space)
+        return SetupFacts(plan, BlankSizes.of(member, machine), tools, chips, tuple(_sections(plan)), left)
 
     @property
     def turning(self) -> str:
@@ -139,7 +142,7 @@ class SetupFacts:
             if load.blades is None:
                 unknown = "no blade_count, the chip is for a whole turn: divide by the blades"
                 said.setdefault(unknown, []).append(load.flank)
-        others = []
+        others = [] if self.ridge <= RIDGE else [f"the root: {ridge_words(self.ridge)}"]
         if self.plan.machine.fixture.shank_radius == 0.0:
             others.append("the fixture has no shank_radius, 60 % of the root radius at the heel is taken")
         others.append("the set does not have the back face of the blank, the collision check takes its own")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from gearmath.bevel.ridge import edge_taken, point_width
 from gearmath.bevel.tooth import ToothSpace
-from gearmath.machine.bodies.cutter import cutter_of, point_width
+from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.planning.path import Cut
 from gearmath.specs.bevel_set import Flank, Member
 
@@ -15,8 +16,9 @@ class PointWidth:
     """Between the tips of outer and inner blade [mm].
 
     A cutter for one flank has limits, the slot widths of the finished space: where its point is wider than the slot
-    is at its narrowest, its other side cuts the other flank; where it is narrower than half of the slot at its widest,
-    a ridge stays between the two cuts. ``stated`` tells whether the set has the width, or it was chosen here.
+    is at its narrowest, its other side cuts the other flank; where the flat of its tip is narrower than half of the
+    slot at its widest, a ridge stays between two such cuts. ``stated`` tells whether the set has the width, or it was
+    chosen.
     """
 
     width: float
@@ -58,6 +60,7 @@ def tools_of(member: Member, name: str, space: ToothSpace | None) -> tuple[Tool,
         else:
             ((flank, spec),) = blades.items()
             slot, stated = space.slots[flank], spec.blade_point_width is not None
-            point = PointWidth(point_width(spec, slot), stated, slot.most / 2, slot.least)
+            least = slot.most / 2 + edge_taken(member, flank)
+            point = PointWidth(point_width(member, flank, slot), stated, least, slot.least)
         found.append(Tool(cut.tool, blades, cutter.height, point))
     return tuple(found)

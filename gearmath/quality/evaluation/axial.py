@@ -35,6 +35,7 @@ _OTHERS = (
 class Axial:
     """Axial shift [mm] that would explain the mean form best, each flank free to turn, and its standard uncertainty.
 
+    ``explains`` is the part of the sum of squares, each flank turned until it is least, that it takes.
     ``share`` says how much of its effect, as part of the sum of squares, others can imitate: the setting that is its
     twin (always all), the other settings together (None where their sensitivities are not known), the clamping.
     """
@@ -42,6 +43,7 @@ class Axial:
     shift: float
     uncertainty: float
     share: dict[str, float | None]
+    explains: float
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -61,7 +63,7 @@ def axial_shift(file: FlankFile, member: Member, name: str, rows: NominalRows, c
     left = axial - _projected(turning, axial)
     size = float(left @ left)
     if size <= 1e-12 * float(axial @ axial):
-        return Axial(math.nan, math.nan, {TWIN: 1.0, "other settings": None, "clamping": None})
+        return Axial(math.nan, math.nan, {TWIN: 1.0, "other settings": None, "clamping": None}, 0.0)
     values = file.deviation[used]
     shift = float(left @ values) / size
     rest = values - _projected(np.hstack([turning, axial[:, None]]), values)
@@ -72,7 +74,9 @@ def axial_shift(file: FlankFile, member: Member, name: str, rows: NominalRows, c
         "other settings": _by_settings(file, member, name, rows, used, axial),
         "clamping": _share(clamping, axial),
     }
-    return Axial(shift, uncertainty, share)
+    before, after = values - _projected(turning, values), float(rest @ rest)
+    explains = 1 - after / max(float(before @ before), 1e-18)
+    return Axial(shift, uncertainty, share, explains)
 
 
 def _by_settings(

@@ -79,7 +79,7 @@ def moved_by(file: FlankFile, first: np.ndarray, again: np.ndarray, course: np.n
 
 def _motion(file: FlankFile, first: np.ndarray, again: np.ndarray, course: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The whole motion (3,) [mm] in the axes of a space, and the normals (n,3) in them."""
-    normal = _in_space(file)
+    normal = in_space(file)
     change = file.deviation[again] - file.deviation[first]
     motion, *_ = np.linalg.lstsq((course[again] - course[first])[:, None] * normal[first], change, rcond=_FELT)
     return motion, normal
@@ -94,7 +94,7 @@ def untold_drift(file: FlankFile, teeth: int, course: np.ndarray) -> np.ndarray:
     first = np.concatenate([_twice(file, teeth, flank)[0] for flank in FLANKS])
     if not len(first):
         return np.empty((int(keep.sum()), 0))
-    normal = _in_space(file)
+    normal = in_space(file)
     _, sizes, directions = np.linalg.svd(normal[first])
     told = int((sizes > _FELT * sizes[0]).sum())
     return (course[:, None] * (normal @ directions[told:].T))[keep]
@@ -109,7 +109,7 @@ def _twice(file: FlankFile, teeth: int, flank: str) -> tuple[np.ndarray, np.ndar
     return np.array(first, dtype=int), np.array(again, dtype=int)
 
 
-def _in_space(file: FlankFile) -> np.ndarray:
+def in_space(file: FlankFile) -> np.ndarray:
     """Normals (n,3) in the axes of the space as it stands at the touch: middle of the space, across, along the work.
 
     The middle is that between the two flanks; where the other flank was not touched at the same place, it is as far

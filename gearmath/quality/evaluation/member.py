@@ -21,6 +21,7 @@ from gearmath.quality.evaluation.pitch import Pitch, evaluate_pitch, pitch_uncer
 from gearmath.quality.evaluation.registration import Registration, register, stated_noise
 from gearmath.quality.evaluation.rotation import Rotation, common_rotation
 from gearmath.quality.evaluation.spaces import Runout, Thickness, evaluate_runout, evaluate_thickness
+from gearmath.quality.evaluation.suspicions import suspicions
 from gearmath.quality.evaluation.tolerance import Verdict
 from gearmath.quality.evaluation.topography import (
     Orders,
@@ -103,6 +104,7 @@ class MemberEvaluation:
     ``flanks`` and ``runout`` are those of ``file``, without clamping and the rotation that both flanks have in common;
     ``as_measured`` are those before either was taken out.
     ``registration`` is what was found of the clamping, whether or not it was taken out (``is_significant``).
+    ``suspicions`` are sentences on what the whole of it looks like beside an error of the gear.
     ``left_out`` are sentences on the points that were left out, and ``remarks`` all sentences: these, teeth that are
     far off and were kept, what was not found and why.
     """
@@ -121,11 +123,13 @@ class MemberEvaluation:
     verdict: Verdict | None
     left_out: tuple[str, ...]
     remarks: tuple[str, ...]
+    suspicions: tuple[str, ...]
 
     @property
     def first(self) -> tuple[str, ...]:
-        """What is to be said before any figure: whether the work moved while it was measured, and what was left out."""
-        return (*self.closing.said, *self.left_out)
+        """What is to be said before any figure: whether the work moved while it was measured, what was left out, and
+        what the whole measurement looks like."""
+        return (*self.closing.said, *self.left_out, *self.suspicions)
 
     @property
     def taken_out(self) -> Registration | None:
@@ -163,6 +167,7 @@ class MemberEvaluation:
             "rotation": self.rotation.as_dict() if self.rotation else None,
             "tolerance": self.verdict.as_dict() if self.verdict else None,
             "remarks": list(self.remarks),
+            "suspicions": list(self.suspicions),
         }
 
 
@@ -199,7 +204,10 @@ def evaluate_member(
     seat, remarks = None, (*closing.said, *left_out, *outliers.kept, *_silent(as_measured))
     if registered:
         try:
-            seat = register(measured, member, name, untold_drift(whole, member.teeth, closing.course))
+            untold = [untold_drift(whole, member.teeth, closing.course)]
+            if closing.doubt is not None:
+                untold.append(closing.doubt[whole.tooth < member.teeth])
+            seat = register(measured, member, name, np.hstack(untold))
             remarks += (*seat.remarks, *([seat.remark] if seat.remark else []))
         except InputError as error:
             remarks += (f"not registered: {error}",)
@@ -232,6 +240,10 @@ def evaluate_member(
     thickness = thickness and replace(thickness, reason=spaces)
     pitches = {flank: figures.pitch for flank, figures in flanks.items() if figures.pitch is not None}
     verdict = grade_member(member, name, pitches, runout, closing, pitch_uncertainties(judged, member.teeth, noise))
+    suspected: tuple[str, ...] = ()
+    if not closing.topography_withheld:
+        in_full = {flank: figures.topographies for flank, figures in flanks.items()}
+        suspected = suspicions(judged, member, name, in_full, seat)
     progress(1)
     return MemberEvaluation(
         name,
@@ -247,7 +259,8 @@ def evaluate_member(
         turn,
         verdict,
         left_out,
-        remarks,
+        (*remarks, *suspected),
+        suspected,
     )
 
 

@@ -6,7 +6,8 @@ that is off a surface of fourth degree by less is said and kept, but for the ref
 tooth, and is left out. Elsewhere a place that many teeth have is fitted by its mean and first harmonic over the teeth,
 and the points of each tooth are compared with each other (module ``tooth_shifts``). A point counts as off where its
 distance exceeds six standard deviations of the others, told by the median of their distances, and a least size: uneven
-flanks and uneven pitch are what is measured, and must not be flagged.
+flanks and uneven pitch are what is measured, and must not be flagged. A point of tooth 0 that was touched again is
+compared with the others that were.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
+from gearmath.quality.evaluation.drift import measured_twice
 from gearmath.quality.evaluation.pitch import reference_point
 from gearmath.quality.evaluation.robust import limit_of, off_the_fit
 from gearmath.quality.evaluation.tooth_shifts import Shifts, tooth_shifts
@@ -38,6 +40,8 @@ _LEAST_NOTICED = 0.004
 #: So many points tell the fifteen terms of a surface of fourth degree and their noise; more than so many are no single
 #: points.
 _LEAST_TO_NOTICE, _MOST_NOTICED = 30, 2
+#: Points touched again that tell one of them from the others, and how far off it must be at least. [mm]
+_LEAST_PAIRS, _LEAST_AGAIN = 5, 0.006
 _FOURTH_DEGREE = [5 * i + j for i in range(5) for j in range(5 - i)]
 
 
@@ -135,7 +139,24 @@ def find_outliers(file: FlankFile, teeth: int) -> Outliers:
     shifts = tooth_shifts(replace(file, deviation=np.where(mask, np.nan, file.deviation)), teeth, ~on_grid)
     reasons += _words(file, shifts)
     mask[list(shifts.misses) + list(shifts.doubtful)] = True
+    for first, again, change in _unlike_again(file, teeth, mask):
+        mask[[first, again]] = True
+        reasons.append(f"{_place(file, first)} differs by {change * 1000:+.1f} um where it was touched again; left out")
     return Outliers(mask, tuple(reasons), (*kept, *shifts.kept))
+
+
+def _unlike_again(file: FlankFile, teeth: int, mask: np.ndarray) -> Iterator[tuple[int, int, float]]:
+    """Rows of points of tooth 0 whose second touch differs otherwise than those of the others, and by how much [mm]."""
+    first, again = measured_twice(file, teeth)
+    keep = ~(mask[first] | mask[again]) if len(first) else np.empty(0, dtype=bool)
+    first, again = first[keep], again[keep]
+    if len(first) < _LEAST_PAIRS:
+        return
+    (_, lever) = kernel("flank_turning")(1.0, file.point[first], file.normal[first])
+    change = (file.deviation[again] - file.deviation[first]) * lever
+    off = change - np.median(change)
+    for k in np.flatnonzero(np.abs(off) > limit_of(off, _LEAST_AGAIN)).tolist():
+        yield int(first[k]), int(again[k]), float(file.deviation[again[k]] - file.deviation[first[k]])
 
 
 def _together(flags: np.ndarray, off: np.ndarray, columns: int) -> list[list[int]]:

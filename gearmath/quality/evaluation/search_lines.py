@@ -60,9 +60,9 @@ def check_search_lines(
     distance = np.hypot(np.linalg.norm(beside, axis=1), np.maximum(0.0, np.maximum(-run, run - length)))
     alike = len(touches) >= _LEAST_TOUCHES and explained.mean() >= _MOST
     size = np.linalg.norm(_beside(along, common), axis=1).max()
-    who = "all touches lie" if explained.all() else f"{int(explained.sum())} of {len(touches)} touches lie"
     if alike and size > BESIDE:
-        raise InputError(f"{who} {_words(common)} from the planned lines, the limit is {BESIDE} mm: {_causes(common)}")
+        where = f"{_who(explained)} lie {_words(common)} from the planned lines"
+        raise InputError(f"{where}, the limit is {BESIDE} mm: {_causes(common)}")
     if (distance > BESIDE).any():
         k = int(np.argmax(distance > BESIDE))
         raise InputError(
@@ -70,7 +70,11 @@ def check_search_lines(
             f"the limit is {BESIDE} mm"
         )
     if alike and size > _WORTH_A_WORD:
-        said = f"{who} {_words(common)} from the planned lines: {_causes(common)}"
+        # of an offset this small, those that have more than half of it
+        has_it = np.linalg.norm(beside - _beside(along, common), axis=1) <= np.linalg.norm(beside, axis=1)
+        felt = np.linalg.norm(_beside(along, common), axis=1) > size / 2
+        are = has_it | ~felt
+        said = f"{_who(are)} lie {_words(common)} from the planned lines{_since(are)}: {_causes(common)}"
         said += f"; evaluate takes points up to {SAME_POINT} mm beside their normals only" if size > SAME_POINT else ""
     return said
 
@@ -100,13 +104,14 @@ def _check_turned(touches: Touches, turned: np.ndarray) -> str:
     for axis, off in zip("AB", turned.T, strict=True):
         middle = float(np.median(off))
         alike = np.abs(off - middle) <= _TURNED
-        who = f"all touches stand {math.degrees(middle):+.4f} degrees in {axis} from the planned positions"
+        by = f"stand {math.degrees(middle):+.4f} degrees in {axis} from the planned positions"
         cause = "a work offset, or another set or --machine than that of the program"
         if abs(middle) > _TURNED and len(off) >= _LEAST_TOUCHES and alike.mean() >= _MOST:
-            raise InputError(f"{who}, the limit is {math.degrees(_TURNED):.2f} degrees: {cause}")
+            raise InputError(f"{_who(alike)} {by}, the limit is {math.degrees(_TURNED):.2f} degrees: {cause}")
         if not (far := np.abs(off) > _TURNED).any():
             if abs(middle) > _TURNED_WORD and len(off) >= _LEAST_TOUCHES:
-                said = f"{who}: {cause}"
+                are = np.abs(off - middle) <= np.abs(off)
+                said = f"{_who(are)} {by}{_since(are)}: {cause}"
             continue
         k = int(np.argmax(far))
         raise InputError(
@@ -114,6 +119,16 @@ def _check_turned(touches: Touches, turned: np.ndarray) -> str:
             f"the limit is {math.degrees(_TURNED):.2f} degrees"
         )
     return said
+
+
+def _who(are: np.ndarray) -> str:
+    """All touches, or how many of them (n,)."""
+    return "all touches" if are.all() else f"{int(are.sum())} of {len(are)} touches"
+
+
+def _since(are: np.ndarray) -> str:
+    """That not all touches (n,) are so; it has changed while they were made."""
+    return "" if are.all() else ", the others do not, so it changed while they were measured"
 
 
 def _beside(along: np.ndarray, vector: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ than the check: by the whole grid of points, and by cutting a space of some and 
 from __future__ import annotations
 
 import copy
+import hashlib
 import itertools
 import math
 import re
@@ -23,6 +24,8 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.tooth import tooth_space
 from gearmath.errors import InputError
+from gearmath.front.programs import cutting
+from gearmath.front.sets import GearSet
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member
 from gearmath.specs.toml import bundled, checked
 
@@ -176,7 +179,7 @@ def _exchanges(base: dict) -> Iterator[tuple[str, dict]]:
             yield f"{member}: {key} of the flanks exchanged", new
     for table in ("blank", *FLANKS):
         yield f"{table} of the members exchanged", exchanged(base, ("pinion", table), ("gear", table))
-        for key in base["pinion"][table].keys() & base["gear"][table].keys():
+        for key in sorted(base["pinion"][table].keys() & base["gear"][table].keys()):
             new = exchanged(base, ("pinion", table, key), ("gear", table, key))
             yield f"{table}.{key} of the members exchanged", new
     yield "members exchanged", exchanged(base, ("pinion",), ("gear",))
@@ -214,6 +217,11 @@ def assert_is_a_member(member: Member, name: str, what: str) -> None:
     assert (tooth_space(member, name, 3).top_land > 0).all(), what
 
 
+def by_name(case: tuple) -> str:
+    """An order that does not change where a figure beside a limit comes out otherwise on another processor."""
+    return hashlib.sha256(f"{case[0]} {case[1]} {case[3]}".encode()).hexdigest()
+
+
 @pytest.mark.slow
 def test_mutated_set_is_refused_in_one_sentence_or_is_a_pair(bases, mill, monkeypatch) -> None:
     monkeypatch.setattr("gearmath.bevel.pair.likely", lambda *_: "")  # the advice has its own tests, and takes longer
@@ -241,10 +249,16 @@ def test_mutated_set_is_refused_in_one_sentence_or_is_a_pair(bases, mill, monkey
     for name, what, pair, member in changed:
         assert_is_a_member(pair.member(member), member, f"{name}: {what}")
     rolled = [case for case in changed if case[2].member(case[3]).process == "face_milling"]
-    for k in np.random.default_rng(5).permutation(len(rolled))[:CUT]:
-        name, what, pair, member = rolled[k]
+    refused = []
+    for name, what, pair, member in sorted(rolled, key=by_name)[:CUT]:
+        try:  # a cutter that gouges the opposite flank of its own space shows only where the program is run
+            cutting(GearSet(pair).member(member), name="CUT", spaces=(0,), tolerance=TOLERANCE)
+        except InputError as error:
+            refused.append(str(error))
+            continue
         left = mill(pair, member, tolerance=TOLERANCE)
         assert np.abs(left.deviation).max() <= TOLERANCE, f"{name}: {what}, {member}"
+    assert len(refused) <= CUT / 3, refused
 
 
 ONE_SETTING = re.compile(r"(pinion|gear)\.(?:concave|convex|both)\.(\w+): ")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from gearmath.specs.toml import bundled
 
 ERRORS = {"radial_distance": 0.03, "sliding_base": 0.01, "machine_root_angle": 2e-4}
 UNIVERSAL, HOBBED = "crown_gear_universal_14x39.toml", "crown_gear_hobbed_14x39.toml"
+STEEP = "crown_gear_7x43.toml"
 
 
 def left_by(member, name, flank, **errors):
@@ -78,6 +80,24 @@ def test_corrected_set_cuts_the_nominal_flank_on_the_machine_that_errs(command, 
     pair, old = load_bevel_set(new), load_bevel_set(bundled(source))
     assert design_sha256(pair.member(name)) == design_sha256(old.member(name))
     assert settings_sha256(pair.member(name)) != settings_sha256(old.member(name))
+
+
+def test_corrected_set_says_what_it_was_corrected_from_and_when(command, measured, tmp_path):
+    """And points of it are said to be nominal ones."""
+    before, target = datetime.now(UTC), tmp_path / "corrected.toml"
+    file = measured(bundled(STEEP), "pinion", radial_distance=0.03)
+    assert command("compensate", STEEP, "--measured", file, "-o", target)[0] == 0
+    head = target.read_text("utf-8").splitlines()[0]
+    found = re.match(
+        rf"# Corrected settings of the pinion, from pinion\.csv and {STEEP}, (\S+ \S+) UTC, gearmath "
+        r"\S+; nominal ones: under design\.$",
+        head,
+    )
+    when = datetime.strptime(found[1], "%Y-%m-%d %H:%M").replace(tzinfo=UTC)
+    assert before - timedelta(minutes=1) <= when <= datetime.now(UTC)
+    points = ("points", target, "--member", "pinion", "--flank", "convex", "-o", tmp_path / "points.txt")
+    assert "the nominal flank, by the settings under 'design'" in command("export", *points)[1]
+    assert "nominal" not in command("export", "points", STEEP, *points[2:])[1]
 
 
 def test_tables_are_shown_when_asked_and_standard_settings_leave_nothing(command, measured, tmp_path):

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 
 import numpy as np
 import pytest
+import tomlkit
 
 from gearmath.machine.control.executor import execute
 from gearmath.machine.writing.cutting import cutting_program
@@ -47,6 +49,34 @@ def test_tolerance_feed_and_speed_reach_the_program(command, tmp_path):
         path = execute(text, "P.MPF")
         times.append(path.seconds[~path.rapid & ~np.roll(path.rapid, 1)].sum())  # without plunging
     assert times[1] / times[0] == pytest.approx(2, rel=0.01)  # half the default feed of 300 mm/min
+
+
+@pytest.mark.parametrize("member", ["pinion", "gear"])
+@pytest.mark.parametrize("name", ["crown_gear_7x43", "crown_gear_formate_14x39", "crown_gear_hobbed_14x39"])
+def test_program_with_roughing_and_finishing_stock_passes_its_own_check_and_that_of_mill(
+    command, tmp_path, name, member
+):
+    stocks = ("--roughing-stock", "0.3", "--finishing-stock", "0.1", "--tolerance-um", "1")
+    spaces = () if "hobbed" in name else ("--spaces", "0,3")
+    cut = ("nc", "cut", f"{name}.toml", "--member", member, *stocks, *spaces, "-o", tmp_path / "STOCK.MPF")
+    assert command(*cut)[0] == 0
+    mill = ("mill", f"{name}.toml", "--member", member, "--program", tmp_path / "STOCK.MPF", "-o", tmp_path / "m.csv")
+    status, out, err = command(*mill)
+    assert (status, err) == (0, "")
+    assert "passed" in out
+    left = read_flank_csv(tmp_path / "m.csv").deviation
+    assert left.min() == pytest.approx(0.1, abs=0.001)  # the flatter blade leaves the stock, a steeper one more
+
+
+def test_program_that_gouges_the_opposite_flank_is_not_written(refused, tmp_path):
+    values = tomllib.loads(bundled("crown_gear_universal_14x39.toml").read_text("utf-8"))
+    del values["gear"]  # which would tell that they are no mates
+    values["pinion"]["concave"]["motion"]["sliding_base"][0] *= -1
+    (tmp_path / "set.toml").write_text(tomlkit.dumps(values), "utf-8")
+    target = tmp_path / "GOUGES.MPF"
+    cut = ("nc", "cut", tmp_path / "set.toml", "--member", "pinion", "--tolerance-um", "5", "-o", target)
+    refused("gouges the convex flank of space 0: -163.* um, the limit is -6 um: the program is not written", *cut)
+    assert not target.exists()
 
 
 def test_milling_without_errors_leaves_at_most_a_tenth_of_a_micrometre(command, tmp_path, pinion_program):

@@ -343,6 +343,21 @@ def test_touches_turned_alike_are_said(command, raw, tmp_path):
     assert "all touches stand +0.0300 degrees in A from the planned positions: a work offset, or" in err
 
 
+@pytest.mark.parametrize(
+    ("axis", "by", "verb"), [("X", 0.02, r"lie \+0\.0(19|20) mm"), ("B", 0.005, r"stand \+0\.0050 degrees")]
+)
+def test_offset_of_a_part_of_the_touches_is_not_said_of_all(command, raw, tmp_path, axis, by, verb):
+    path = tmp_path / "raw.csv"
+    lines, moved = raw.splitlines(), shifted(raw, **{axis: by}).splitlines()
+    k = 45 * len(lines) // 100
+    path.write_text("\n".join(lines[:k] + moved[k:]) + "\n")
+    _, _, err = command("touches", path, "--set", SET, "-o", tmp_path / "m.csv")
+    count = len(lines) - 1
+    assert re.search(rf"raw\.csv: {count - k + 1} of {count} touches {verb} in {axis} from the planned", err)
+    assert "all touches" not in err
+    assert "it changed while they were measured" in err
+
+
 def test_touch_that_met_nothing_is_one_missing_point_and_costs_only_what_needs_it(command, raw, tmp_path):
     """The reference point of tooth 5 on one flank, and one point of a grid: named, all other figures stand."""
     path, out = tmp_path / "raw.csv", tmp_path / "m.csv"

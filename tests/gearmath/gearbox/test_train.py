@@ -74,28 +74,28 @@ def test_rates_of_the_field_reference(plewes):
 def test_plan_tells_what_the_acceleration_allows(plewes):
     """24 teeth at 800 rpm: 8888.9 steps/s at 8000 steps/s^2. By hand: 1.111 s, 720 rpm/s; engaged at speed 4938 steps
     are missed, which 5819 steps/s more (sqrt(3/7) w) overtake, in 1.111 + 0.727 + 0.970 s."""
-    motion = plan(plewes, 24).motion
+    motion = plan(plewes, 24, rpm=800.0).motion
     assert motion.run_up_s == pytest.approx(1.1111, abs=1e-4)
     assert motion.hob_acceleration_rpm_per_s == pytest.approx(720.0)
     assert motion.catch_up_s == pytest.approx(2.808, abs=2e-3)
     assert motion.catch_up_turns == pytest.approx(2.808 * 800 / 60, abs=0.03)
     assert motion.engage_rpm == 800.0
-    fast = plan(plewes, 6).motion  # 35.6 kHz of 40: 4.4 kHz more overtake 79 000 steps, in 290 turns of the hob
+    fast = plan(plewes, 6, rpm=800.0).motion  # 35.6 kHz of 40: 4.4 kHz more overtake 79 000 steps, in 290 hob turns
     assert (fast.catch_up_s, fast.catch_up_turns) == (None, None)
     assert 300 < fast.engage_rpm < 800
 
 
 def test_hob_that_runs_up_too_fast_is_refused_with_the_nearest_speed(plewes):
-    assert plan(plewes, 24, run_up=1.2).rpm == 800.0
+    assert plan(plewes, 24, rpm=800.0, run_up=1.2).rpm == 800.0
     with pytest.raises(
         InputError, match=r"run_up = 0.5 s: .* at least 1.11 s to 800 rpm .* nearest speed .* is 3\d\d rpm"
     ):
-        plan(plewes, 24, run_up=0.5)  # 4000 steps/s are 360 rpm
+        plan(plewes, 24, rpm=800.0, run_up=0.5)  # 4000 steps/s are 360 rpm
     quick = plewes.model_copy(update={"limits": plewes.limits.model_copy(update={"run_up_s": 0.5})})
     with pytest.raises(InputError, match=r"limits.run_up_s = 0.5 s"):
-        plan(quick, 24)
-    assert plan(quick, 24, run_up=2.0).rpm == 800.0  # what is asked for counts
-    assert plan(quick, 127).rpm == 800.0
+        plan(quick, 24, rpm=800.0)
+    assert plan(quick, 24, rpm=800.0, run_up=2.0).rpm == 800.0  # what is asked for counts
+    assert plan(quick, 127, rpm=800.0).rpm == 800.0
 
 
 def test_resolution_at_the_pitch_circle(plewes):
@@ -105,10 +105,17 @@ def test_resolution_at_the_pitch_circle(plewes):
     assert blank.count_um == pytest.approx(0.6088, abs=1e-3)
 
 
+def test_proposed_speed_keeps_a_tenth_of_what_is_possible_as_a_margin():
+    job = plan(machine(step_rate_hz="20000.0"), 10)
+    assert job.rpm == pytest.approx(0.9 * job.highest_rpm, rel=1e-14)
+    assert max(job.step_rate_percent, job.hob_rpm_percent) < 91
+
+
 def test_highest_speed_keeps_both_limits():
     job = plan(machine(step_rate_hz="20000.0"), 10)
-    assert job.rpm == job.highest_rpm == pytest.approx(750.0 / 1.01, rel=1e-14)  # 20 kHz / 1600 steps a hob turn
-    assert job.step_rate_percent == pytest.approx(100.0 / 1.01, rel=1e-14)
+    assert job.highest_rpm == pytest.approx(750.0 / 1.01, rel=1e-14)  # 20 kHz / 1600 steps a hob turn
+    at_most = plan(machine(step_rate_hz="20000.0"), 10, rpm=job.highest_rpm)
+    assert at_most.step_rate_percent == pytest.approx(100.0 / 1.01, rel=1e-14)
     assert plan(machine(), 160).highest_rpm == 800.0
 
 

@@ -70,6 +70,8 @@ def parts(annotation: Any) -> list[Any]:
 def default(field: FieldInfo) -> str:
     if field.is_required():
         return "required"
+    if isinstance(field.json_schema_extra, dict):  # one that nobody is given
+        return str(field.json_schema_extra["default"])
     union = get_origin(field.annotation) in (Union, UnionType) and type(None) in get_args(field.annotation)
     value = field.default
     return "" if union or value == () or isinstance(value, BaseModel) else f"`{value!r}`".replace("'", '"')

@@ -103,7 +103,7 @@ def test_fitted_pinion_has_the_ease_off_and_the_backlash_that_its_set_states(pai
 
 
 @pytest.mark.parametrize("member", MEMBERS)
-@pytest.mark.parametrize("name", [*ENTRIES, "crown_gear_7x43.toml"])
+@pytest.mark.parametrize("name", ENTRIES)
 def test_bundled_set_has_whole_teeth(name, member):
     """All 45 points of both flanks, no undercut, no pointed tooth, and the pair does not jam."""
     gear_set = load_bevel_set(bundled(name))

@@ -54,12 +54,12 @@ def judged(widened, vertical):
     made = as_cut(spec, space)
     own = tooth_space(made, "pinion", 7)
 
-    def judge(runs):
+    def judge(runs, made=made):
         faults = [str(one) for one in metal_left(runs, made, "pinion", vertical, Stated.of(text), own).faults]
         *_, root = surface_states(None, made, "pinion", vertical, None, (0,), runs=runs, space=own)
         return faults, root
 
-    return spec, runs, own, judge
+    return made, runs, judge
 
 
 @pytest.mark.parametrize("flanks", [FLANKS, ("concave",), ("convex",)])
@@ -86,7 +86,7 @@ def test_stated_point_width_and_a_member_that_was_not_corrected_stay_as_they_are
 
 
 def test_right_program_of_two_corrected_cuts_keeps_its_tolerance_on_the_root(judged, host_compiler):
-    _, runs, _, judge = judged
+    _, runs, judge = judged
     faults, root = judge(runs)
     assert faults == []
     assert root.lowest >= -1e-4  # mm, as the program states
@@ -97,17 +97,17 @@ def test_right_program_of_two_corrected_cuts_keeps_its_tolerance_on_the_root(jud
 @pytest.mark.parametrize(("wrong", "says"), [(-3e-3, "gouges the"), (3e-3, "the root of space 0 keeps")])
 def test_one_of_two_cuts_at_the_wrong_depth_is_seen_on_the_root(judged, host_compiler, wrong, says):
     """By hand: Z is along the cutter axis, and the tip plane of the convex side's tool leaves the root as much off."""
-    _, (concave, convex), _, judge = judged
+    _, (concave, convex), judge = judged
     faults, root = judge([concave, replace(convex, axes=convex.axes + np.array([0.0, 0.0, wrong, 0.0, 0.0]))])
     assert any(says in one for one in faults), faults
     assert (root.lowest if wrong < 0 else root.highest) == pytest.approx(wrong, abs=2e-4)
 
 
 def test_wider_cutters_than_those_of_the_set_are_seen_on_the_root(judged, host_compiler):
-    """Chosen for the wider root, they take away what those of the set leave between the two cuts."""
-    spec, runs, own, judge = judged
-    wider = [replace(run, cutter=cutter_of(spec, run.cut.flanks, own, SHARP_EDGE)) for run in runs]
-    faults, root = judge(wider)
+    """They take away the ridge that those of the set leave between the two cuts, here of 1.1 mm with edges of 0.5."""
+    made, wider, judge = judged
+    narrow = {flank: made.flank(flank).model_copy(update={"blade_point_width": 1.1}) for flank in FLANKS}
+    faults, root = judge(wider, made.model_copy(update=narrow))
     assert any("gouges the root of space 0" in one for one in faults), faults
     assert root.lowest < -5e-3  # mm
 

@@ -1,0 +1,86 @@
+"""What a whole measurement looks like beside an error of the gear is said before any figure: zero, tip, seat, u."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gearmath as gm
+from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.nominal_file import nominal_flank
+from gearmath.quality.evaluation.member import evaluate_member
+from gearmath.specs.bevel_set import FLANKS
+from gearmath.specs.flank_csv import FlankFile, join, write_flank_csv
+
+UM, NASA = 1e-3, "nasa_tp3096_12x36.toml"
+
+
+@pytest.fixture(scope="module")
+def flanks(gear_set) -> dict[str, FlankFile]:
+    """Both flanks of tooth 0 in full, with 0.5 um of noise, by member."""
+    found = {}
+    for k, (name, spec) in enumerate(gear_set.members.items()):
+        file = join([nominal_flank(spec, name, flank, blank_grid(spec)) for flank in FLANKS])
+        file = replace(file, deviation=np.zeros(len(file)), uncertainty=np.full(len(file), 0.5 * UM))
+        found[name] = moved(file, 0.5 * UM * np.random.default_rng(k).standard_normal(len(file)))
+    return found
+
+
+def moved(file: FlankFile, change: np.ndarray) -> FlankFile:
+    return replace(file, point=file.point + change[:, None] * file.normal, deviation=file.deviation + change)
+
+
+@pytest.mark.parametrize("member", ["pinion", "gear"])
+@pytest.mark.parametrize("shift", [0.1, -0.1])
+def test_work_off_its_seat_along_the_axis_is_said_first_with_its_size(flanks, gear_set, member, shift) -> None:
+    file = flanks[member]
+    off = moved(file, shift * file.normal[:, 2])  # a shift along z_w, to first order
+    (line,) = evaluate_member(off, gear_set.member(member), member).first
+    assert line.startswith("the work may stand ")
+    assert float(line.split()[4]) == pytest.approx(shift * 1000, abs=10)
+    assert "check the seat before a setting is corrected" in line
+
+
+@pytest.mark.parametrize("member", ["pinion", "gear"])
+@pytest.mark.parametrize("offset_um", [300, -60])
+def test_points_that_are_all_out_alike_are_said_to_be_first(flanks, gear_set, member, offset_um) -> None:
+    file = flanks[member]
+    (line,) = evaluate_member(moved(file, np.full(len(file), offset_um * UM)), gear_set.member(member), member).first
+    assert line.startswith(f"all points of both flanks stand {offset_um:+d} um out, evenly within ")
+    assert "tip radius" in line
+
+
+@pytest.mark.parametrize(("u_um", "said"), [(0.05, True), (0.5, False), (2.0, False)])
+def test_uncertainty_far_below_the_scatter_of_the_points_is_said(flanks, gear_set, u_um, said) -> None:
+    file = replace(flanks["pinion"], uncertainty=np.full(len(flanks["pinion"]), u_um * UM))
+    found = evaluate_member(file, gear_set.pinion, "pinion").first
+    assert [line.startswith(f"u_um of the file, {u_um:g} um, is far below") for line in found] == [True] * said
+
+
+@pytest.mark.parametrize("member", ["pinion", "gear"])
+@pytest.mark.parametrize(
+    ("key", "change"),
+    [
+        ("radial_distance", 0.05),
+        ("sliding_base", 0.05),
+        ("blank_offset", 0.05),
+        ("machine_root_angle", 0.02),
+        ("blade_point_radius", 0.05),
+        ("ratio_of_roll", 0.003),
+    ],
+)
+def test_error_of_another_setting_is_not_taken_for_the_seat_or_the_zero(gear_set, member, key, change) -> None:
+    spec = gm.load_set(NASA).member(member).with_settings(concave={key: change}, convex={key: change})
+    file = spec.deviations().file
+    noise = 0.5 * UM * np.random.default_rng(1).standard_normal(len(file))
+    assert evaluate_member(moved(file, noise), gear_set.member(member), member).suspicions == ()
+
+
+def test_compensate_says_first_that_the_work_may_stand_off_its_seat(flanks, command, tmp_path) -> None:
+    file, source = flanks["pinion"], tmp_path / "measured.csv"
+    write_flank_csv(source, moved(file, 0.1 * file.normal[:, 2]))
+    status, out, _ = command("compensate", NASA, "--measured", source, "-o", tmp_path / "corrected.toml")
+    assert status == 0
+    assert out.startswith("the work may stand +")
