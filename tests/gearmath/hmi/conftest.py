@@ -40,7 +40,7 @@ OF_THE_BROWSER = {
     "clients2.google.com",
 }
 #: What a test waits for at most [ms], on a computer that does other things too.
-PATIENCE = 20_000
+PATIENCE = 60_000
 
 
 @dataclass
