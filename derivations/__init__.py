@@ -48,6 +48,7 @@ CHAPTERS = (
     "design",
     "virtual_hobbing",
     "cylindrical_tolerance",
+    "polynomial_blocks",
 )
 
 #: An expression of a chapter, as its source says it.

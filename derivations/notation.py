@@ -139,8 +139,8 @@ axes = Quantity(
 pivot_height = _length(
     "pivot_height",
     "(R_d + C_t)",
-    0.0,
-    400.0,
+    -1000.0,
+    1000.0,
     "R_d + C_t: reading of Z with the blade tips level with the B axis",
 )
 pivot_offset = Quantity(
@@ -1151,3 +1151,31 @@ gear_path_angle = _angle(
     "gear_path_angle", r"\eta_2", 0.2, 2.9, "direction of the path on the gear, from its root line towards the tip"
 )
 along_tooth = _length("along_tooth", r"\xi", -20.0, 20.0, "place along the tooth, from the mean point")
+
+# --- polynomial blocks --------------------------------------------------------------------------------------------
+block_start = Quantity("block_start", "position of an axis at the start of a block", "mixed", "a_0", (-500.0, 500.0))
+block_end = Quantity("block_end", "position of an axis at the end of a block", "mixed", "x_e", (-500.0, 500.0))
+slope_start = Quantity("slope_start", "its derivative by the parameter at the start", "mixed", "v_0", (-200.0, 200.0))
+slope_end = Quantity("slope_end", "its derivative by the parameter at the end", "mixed", "v_1", (-200.0, 200.0))
+bend_start = Quantity("bend_start", "its second derivative at the start", "mixed", "w_0", (-200.0, 200.0))
+bend_end = Quantity("bend_end", "its second derivative at the end", "mixed", "w_1", (-200.0, 200.0))
+block_interval = Quantity(
+    "block_interval", "value of the parameter at the end of a block (PL)", "1", "L", (0.5, 10.0), default=1.0
+)
+cubic_coefficients = Quantity(
+    "cubic_coefficients", "a_2, a_3 of a block", "mixed", r"(a_2, a_3)", shape=(2,), scale=1e4
+)
+quintic_coefficients = Quantity(
+    "quintic_coefficients", "a_2 to a_5 of a block", "mixed", r"(a_2 .. a_5)", shape=(4,), scale=1e6
+)
+axis_slopes = Quantity(
+    "axis_slopes",
+    "derivatives of X, Y, Z, A, B by the parameter",
+    "mixed",
+    r"\dot{\mathbf{a}}",
+    (-200.0, 200.0),
+    shape=(5,),
+)
+feed_radius_A = _length("feed_radius_A", "r_A", 1.0, 500.0, "radius at which F counts the way of A (FGREF)")
+feed_radius_B = _length("feed_radius_B", "r_B", 1.0, 500.0, "radius at which F counts the way of B (FGREF)")
+path_rate = Quantity("path_rate", "length of the path per unit of the parameter", "mm", r"ds/dp", scale=1e5)

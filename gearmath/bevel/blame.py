@@ -30,6 +30,9 @@ _STEP = 0.5
 _TRIALS, _VALUES, _SAID = 10, 2, 2
 #: A repair that leaves more than this part of what is wrong explains nothing.
 _EXPLAINED = 0.6
+#: Settings that leave at most so many times what the best one leaves may be to blame as well; more than so many of them
+#: say nothing.
+_ALIKE, _MOST_SAID = 1.5, 3
 #: A second repair that passes is said too where it moves the cutter at most so many times as far.
 _NO_FARTHER = 1.2
 
@@ -105,10 +108,22 @@ def likely(
     if good:
         said = [f"{one.place} = {one.repair.value:.6g}: {one.repair.other:.6g} would fit{one.where}" for one in good]
         return f"; the setting that alone explains it is {', or '.join(said)}"
-    if trials and total > 1 and trials[0].left <= _EXPLAINED * total:
-        best = trials[0]
-        return f"; no single setting puts all of it right, most of it hangs on {best.place} = {best.repair.value:.6g}"
+    if trials and total > 1 and (most := _explain_most(trials, total)):
+        said = [f"{one.place} = {one.repair.value:.6g}" for one in most]
+        return f"; no single setting puts all of it right, most of it hangs on {', or '.join(said)}"
     return "; no single setting puts it right"
+
+
+def _explain_most(trials: Sequence[_Trial], total: float) -> list[_Trial]:
+    """The settings that explain most of what is wrong, the best first; none where they are too many to help."""
+    best: dict[str, _Trial] = {}
+    for one in trials:
+        if one.place not in best or one.left < best[one.place].left:
+            best[one.place] = one
+    ordered = sorted(best.values(), key=lambda one: (one.left, one.moved))
+    least = ordered[0].left
+    alike = [one for one in ordered if one.left <= max(least + _STEP, _ALIKE * least)]
+    return alike if least <= _EXPLAINED * total and len(alike) <= _MOST_SAID else []
 
 
 def _trials(members: Members, flanks: Mapping[Where, list[Repair]], total: float) -> Iterator[_Trial]:

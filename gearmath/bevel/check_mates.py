@@ -190,6 +190,18 @@ def _between(given: float, limit: float) -> tuple[float, float]:
     return min(given, 0.0) - limit, max(given, 0.0) + limit
 
 
+def _width_hangs_on(members: dict[str, Member], spaces: dict[str, float], pitch: float) -> str:
+    """How wide the spaces are, and what else makes them so: not only the settings that are meant for it."""
+    widths = " and ".join(f"{name} {width:.4g} mm" for name, width in spaces.items())
+    others = ["blade_point_radius", "radial_distance", "sliding_base"]
+    if any(member.cutting == "fixed_setting" for member in members.values()):
+        # the roll makes of it the same turn of the work
+        others.insert(0, "a cradle_angle of one flank of a fixed-setting cut, which acts as work_rotation_offset does")
+    return (
+        f"spaces of {widths} of a pitch of {pitch:.4g} mm; they hang as well on {', '.join(others)}: compare these too"
+    )
+
+
 def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[str, float], share: float = 1.0) -> None:
     """Refuse flanks that do not touch as mates at the mean point, and a pair with too much or too little backlash.
 
@@ -230,5 +242,5 @@ def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[st
         raise InputError(
             f"pinion and gear: {settings}: the pair has a transverse backlash of {backlash:.4g} mm at the mean point, "
             f"which must lie between {BACKLASH[0] * module:.3g} and {BACKLASH[1] * module:.3g} mm, {BACKLASH[0]:g} "
-            f"and {BACKLASH[1]:g} of the module"
+            f"and {BACKLASH[1]:g} of the module; {_width_hangs_on(members, spaces, pitch)}"
         )

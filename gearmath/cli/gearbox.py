@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gearmath.cli.common import JSON, echo_json, plot, save_plot
-from gearmath.cli.gearbox_cut import cut
+from gearmath.cli.gearbox_cut import choose, cut
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -70,6 +70,7 @@ def gearbox() -> None:
 
 
 gearbox.add_command(cut)
+gearbox.add_command(choose)
 
 
 @gearbox.command("plan")
@@ -135,7 +136,9 @@ def _plan(machine: HobbingMachine, options: dict[str, Any]) -> GearboxPlan | Thr
         unfit = sorted(set(given) - set(_THREAD_KEYS))
         if unfit:
             raise click.UsageError(f"--{unfit[0]} has no meaning for a thread")
-        return plan_thread(machine, _pitch(given.pop("pitch")), **given)
+        from gearmath.specs.ratio import pitch_of
+
+        return plan_thread(machine, pitch_of(given.pop("pitch")), **given)
     gear = {key: given[key] for key in ("teeth", "starts", "hob", "rpm", "run_up", "shift", "pin") if key in given}
     return plan(machine, **gear, helix=_helix(given))
 
@@ -156,16 +159,6 @@ def _helix(given: dict[str, Any]) -> Helix | None:
         except (ValueError, ZeroDivisionError):
             raise InputError(f"feed = {given['feed']!r}: must be a number of mm per turn of the table") from None
     return Helix(given["helix"], given.get("hand", "right"), given.get("cut", "climb"), feed)
-
-
-def _pitch(text: str) -> Fraction:
-    from gearmath.errors import InputError
-    from gearmath.specs.ratio import pitch
-
-    try:
-        return pitch(text)
-    except ValueError as error:
-        raise InputError(f"pitch = {text!r}: {error}") from None
 
 
 def _values(values: dict[str, Any]) -> dict[str, Any]:

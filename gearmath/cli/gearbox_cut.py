@@ -11,6 +11,8 @@ import click
 from gearmath.cli.common import JSON, NewFile, Number, bar, echo_json
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from gearmath.gearbox.helix import Helix
     from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear
     from gearmath.specs.hobbing import HobbingMachine
@@ -117,14 +119,20 @@ def _helix(machine: HobbingMachine, job: dict[str, Any]) -> Helix | None:
 
 
 def _chart(path: Path, prepared: CutSetup, gears: list[VirtualGear], text: str, as_json: bool) -> None:
-    from gearmath.files import write_text
-    from gearmath.page import Page
     from gearmath.plot.hobbed import inspection_figure
-    from gearmath.plot.saving import save, save_svg, svg
 
     job = prepared.job
     title = f"{prepared.train.machine.name}: {job.gear.teeth} teeth, module {job.gear.module:.4g} mm, virtual"
     figure = inspection_figure(title, [(gear.rule, gear.found) for gear in gears])
+    _save(path, figure, title, text, as_json)
+
+
+def _save(path: Path, figure: Figure, title: str, text: str, as_json: bool) -> None:
+    """A chart by the suffix of its name; HTML has the text above it."""
+    from gearmath.files import write_text
+    from gearmath.page import Page
+    from gearmath.plot.saving import save, save_svg, svg
+
     if path.suffix.lower() == ".html":
         page = Page(title)
         for line in text.splitlines():
@@ -146,4 +154,49 @@ def _cut_thread(
     compare: str | None,
     job: dict[str, Any],
 ) -> None:
-    raise click.UsageError(f"{machine.name} is a lathe")
+    from gearmath.cli.gearbox_cut_text import thread_text, thread_values
+    from gearmath.gearbox.hobbed.thread import cut_thread
+    from gearmath.gearbox.job import plan_thread
+    from gearmath.specs.ratio import pitch_of
+
+    if job["pitch"] is None or any(job[key] is not None for key in ("teeth", "hob", "helix")):
+        raise click.UsageError(f"{machine.name} is a lathe: give --pitch, and no --teeth, --hob or --helix")
+    if points is not None:
+        raise click.UsageError("--csv has no meaning for a thread")
+    given = {"starts": job["starts"] or 1, "hand": job["hand"] or "right", "rpm": job["rpm"]}
+    planned = plan_thread(machine, pitch_of(job["pitch"]), **given)
+    rules = [job["rule"]] + ([compare] if compare not in (None, job["rule"]) else [])
+    traces = [cut_thread(machine, planned, job["length"], rule, job["seconds"]) for rule in rules]
+    if chart is not None:
+        from gearmath.plot.hobbed import thread_figure
+
+        _save(chart, thread_figure(machine.name, traces), machine.name, thread_text(planned, traces), as_json)
+    if as_json:
+        echo_json(thread_values(planned, traces))
+    else:
+        click.echo(thread_text(planned, traces))
+
+
+@click.command()
+@click.argument("machine", default="hobbing_default.toml")
+@click.option("--class", "wanted", type=int, required=True, help="Class of ISO 1328-1 to reach, 1 to 11.")
+@click.option("--module", type=Number(0.1, 25.0, "mm"), required=True, help="Normal module in mm.")
+@click.option("--teeth", type=click.IntRange(min=1), required=True, help="Teeth of the gear.")
+@click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@JSON
+def choose(machine: str, wanted: int, module: float, teeth: int, width: float | None, as_json: bool) -> None:
+    """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach a class.
+
+    The rest is that of MACHINE, hobbing_default.toml if left out, with its section [errors].
+    """
+    from gearmath.cli.gearbox_cut_text import choice_text, choice_values
+    from gearmath.gearbox.hobbed.choice import MOST_CUTS
+    from gearmath.gearbox.hobbed.choice import choose as search
+    from gearmath.specs.hobbing import find_hobbing_machine
+
+    with bar(MOST_CUTS, "cut", quiet=as_json) as progress:
+        found = search(find_hobbing_machine(machine), wanted, module, teeth, width, progress)
+    if as_json:
+        echo_json(choice_values(found))
+    else:
+        click.echo(choice_text(found))

@@ -7,9 +7,12 @@ from dataclasses import asdict
 from typing import Any
 
 from gearmath.cli.common import table
+from gearmath.gearbox.hobbed.choice import Choice
 from gearmath.gearbox.hobbed.classes import NOT_CONFIRMED, outside
 from gearmath.gearbox.hobbed.contributions import Contribution
 from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear, ridges
+from gearmath.gearbox.hobbed.thread import ThreadTrace
+from gearmath.gearbox.job import ThreadPlan
 
 #: Shares below this are not printed [percent].
 _LEAST_SHARE = 0.5
@@ -118,3 +121,65 @@ def _shares(shares: Sequence[Contribution]) -> Iterator[str]:
     ]
     yield table(["source", "profile", "helix", "pitch"], rows)
     yield f"change first: {shares[0].change}"
+
+
+def thread_text(planned: ThreadPlan, traces: Sequence[ThreadTrace]) -> str:
+    """Pitch error of a thread over its length, by rule."""
+    rows = [
+        [trace.rule, *(f"{value * 1000:.2f}" for value in (trace.single_lead, trace.total, trace.drift))]
+        for trace in traces
+    ]
+    length = traces[0].place[-1]
+    head = f"{planned.machine}: pitch {float(planned.pitch):.6g} mm, {length:g} mm long, {planned.rpm:.0f} rpm"
+    return "\n".join([head, table(["rule", "one lead / um", "whole length / um", "drift / um"], rows)])
+
+
+def thread_values(planned: ThreadPlan, traces: Sequence[ThreadTrace]) -> dict[str, Any]:
+    """The same for programs."""
+    return {
+        "machine": planned.machine,
+        "pitch": float(planned.pitch),
+        "lead": float(planned.lead),
+        "length": float(traces[0].place[-1]),
+        "rpm": planned.rpm,
+        "threads": [
+            {
+                "rule": trace.rule,
+                "single_lead_um": trace.single_lead * 1000,
+                "total_um": trace.total * 1000,
+                "drift_um": trace.drift * 1000,
+            }
+            for trace in traces
+        ],
+    }
+
+
+def choice_text(found: Choice) -> str:
+    """The parts, and the figures of the gear that they cut."""
+    parts = found.parts
+    rows = [
+        [row.figure, f"{row.value_um:.2f}", "-" if row.accuracy_class is None else str(row.accuracy_class)]
+        for row in found.gear.classes
+    ]
+    return "\n".join(
+        [
+            f"class {found.wanted} of ISO 1328-1:2013 is reached with",
+            f"  {parts.microsteps} microsteps, an encoder of {parts.lines} lines, a hob of {parts.gashes} gashes,",
+            f"  a feed of {parts.feed:g} mm per turn of the table, up to {found.rpm:.0f} rpm",
+            table(["figure", "um", "class"], rows),
+            f"  {NOT_CONFIRMED}",
+        ]
+    )
+
+
+def choice_values(found: Choice) -> dict[str, Any]:
+    """The same for programs."""
+    return {
+        "class": found.wanted,
+        **asdict(found.parts),
+        "rpm": found.rpm,
+        "cuts": found.tried,
+        "reached": found.gear.accuracy_class,
+        "figures": [asdict(row) for row in found.gear.classes],
+        "tolerances": NOT_CONFIRMED,
+    }

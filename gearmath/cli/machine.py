@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -22,7 +22,9 @@ from gearmath.cli.common import (
     member_of,
     output,
 )
+from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
 from gearmath.cli.probe import nc_calibrate, probe
+from gearmath.cli.program_time import program_time
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -37,11 +39,12 @@ if TYPE_CHECKING:
 
 @click.group()
 def nc() -> None:
-    """NC programs for the vertical 5-axis machine (SINUMERIK 840D sl)."""
+    """NC programs for the vertical 5-axis machine (SINUMERIK 840D sl, or LinuxCNC)."""
 
 
 nc.add_command(probe)
 nc.add_command(nc_calibrate)
+nc.add_command(program_time)
 
 
 @nc.command()
@@ -65,9 +68,17 @@ nc.add_command(nc_calibrate)
 @click.option("--rpm", type=float, default=120.0, show_default=True, help="Spindle speed.")
 @click.option("--roughing-stock", type=float, default=0.0, help="Rough first and leave this much, mm; 0 for none.")
 @click.option("--finishing-stock", type=float, default=0.0, help="Stock that stays on the finished flanks, mm.")
+@click.option(
+    "--blocks",
+    type=click.Choice(["g1", "poly"]),
+    default="g1",
+    show_default=True,
+    help="Straight blocks, or polynomials where the cutter rolls (an option of the control).",
+)
 @click.option("--dry-run", is_flag=True, help="Cut air: everything above the work, without coolant.")
+@TARGET
 @SHEET
-@output(".MPF; its name becomes the program name")
+@output(".MPF, or .ngc for LinuxCNC; its name becomes the program name")
 def cut(
     gear_set: str,
     member: str | None,
@@ -78,7 +89,10 @@ def cut(
     rpm: float,
     roughing_stock: float,
     finishing_stock: float,
+    blocks: Literal["g1", "poly"],
     dry_run: bool,
+    control: str | None,
+    configuration: bool,
     sheet: Path | None,
     target: Path,
 ) -> None:
@@ -94,26 +108,34 @@ def cut(
     from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
+    from gearmath.machine.writing.cutting import program_of
+    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
+    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
     from gearmath.machine.writing.words import block_count, check_name
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     check_name(target.stem)
-    job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
+    job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
     milling_machine = load_milling_machine(find(machine))
+    dialect = dialect_of(milling_machine, control, configuration, sheet)
     check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
+    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
     with bars() as begin:
-        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin)
+        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin, write)
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import setup_sheet
 
         page = setup_sheet(SetupFacts.of(made.plan, PLUNGE_FEED), target.name, timing(made.path, milling_machine))
+    count = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
     write_text(target, made.text)
-    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {block_count(made.text)} blocks")
+    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {count} blocks")
+    if configuration:
+        write_configuration(target, milling_machine, linuxcnc.tools_of(made.plan))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")

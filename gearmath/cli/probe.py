@@ -24,15 +24,17 @@ from gearmath.cli.common import (
     member_of,
     output,
 )
+from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.quality.calibration.axes import AxisCalibration
     from gearmath.quality.calibration.tip import Fit, Tip
     from gearmath.specs.calibration import Calibration
+    from gearmath.specs.milling_machine import MillingMachine
     from gearmath.specs.touch_csv import CalibrationTouches, Touches
 
-_PROGRAM = ".MPF; its name becomes the program name"
+_PROGRAM = ".MPF, or .ngc for LinuxCNC; its name becomes the program name"
 CALIBRATION = click.option(
     "--calibration", default="probe.toml", show_default=True, help="Calibrated probe: a file, or a bundled one."
 )
@@ -59,6 +61,7 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
 )
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Touches of every point.")
 @click.option("--errors", help="Simulated machine whose [fixture] and spindle the probe must clear.")
+@TARGET
 @SHEET
 @output(_PROGRAM)
 def probe(
@@ -71,6 +74,8 @@ def probe(
     registration: bool,
     repeat: int,
     errors: str | None,
+    control: str | None,
+    configuration: bool,
     sheet: Path | None,
     target: Path,
 ) -> None:
@@ -82,6 +87,9 @@ def probe(
     from gearmath.files import write_text
     from gearmath.machine.bodies.profiles import obstacles
     from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
+    from gearmath.machine.writing.linuxcnc import probing as linuxcnc
+    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
+    from gearmath.machine.writing.probing import probing_program
     from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
@@ -92,7 +100,9 @@ def probe(
     member, spec = member_of(bevel_set, member)
     choice = ProbingChoice(_teeth(topography, spec.teeth), pitch, registration, repeat)
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
+    dialect = dialect_of(milling_machine, control, configuration, sheet)
     simulated = load_simulated_machine(find(errors)) if errors else None
+    write = linuxcnc.probing_program if dialect == LINUXCNC else probing_program
     with bars() as begin:
         made = checked_probing(
             bevel_set,
@@ -104,6 +114,7 @@ def probe(
             str(target),
             simulated,
             begin,
+            write,
         )
     page = None
     if sheet is not None:
@@ -122,11 +133,22 @@ def probe(
             made.clearance,
         )
         page = probing_sheet(job, target.name)
+    blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
     write_text(target, made.text)
-    click.echo(f"{target}: {made.touches} touches, {block_count(made.text)} blocks; {made.clearance}")
+    click.echo(f"{target}: {made.touches} touches, {blocks} blocks; {made.clearance}")
+    if configuration:
+        write_configuration(target, milling_machine, probe_in_table(milling_machine, known))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
+
+
+def probe_in_table(machine: MillingMachine, calibration: Calibration) -> dict[str, tuple[int, float]]:
+    """Number and length of the probe in the tool table of LinuxCNC, by its name."""
+    from gearmath.machine.writing.linuxcnc.dialect import PROBE, PROBE_NUMBER
+
+    length = calibration.length if machine.z_reference == "tip" else 0.0
+    return {PROBE: (machine.control.tool_numbers.get(PROBE, PROBE_NUMBER), length)}
 
 
 @click.command("calibrate")
@@ -139,9 +161,18 @@ def probe(
     show_default=True,
     help="Ring and sphere on the table for the tip, or the sphere on the work side for the rotary axes.",
 )
+@TARGET
 @SHEET
 @output(_PROGRAM)
-def nc_calibrate(machine: str, calibration: str, cycle: str, sheet: Path | None, target: Path) -> None:
+def nc_calibrate(
+    machine: str,
+    calibration: str,
+    cycle: str,
+    control: str | None,
+    configuration: bool,
+    sheet: Path | None,
+    target: Path,
+) -> None:
     """Write the program that calibrates the probe on ring and sphere, or the rotary axes on a sphere on the work side.
 
     'gearmath probe' runs it on the machine model, 'gearmath calibrate' reads its touches.
@@ -151,6 +182,9 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, sheet: Path | None,
     from gearmath.machine.measuring.judge import judge_calibration
     from gearmath.machine.writing.axis_cycle import axis_program
     from gearmath.machine.writing.calibrating import calibration_program
+    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
+    from gearmath.machine.writing.linuxcnc.probe_words import LinuxCncBlocks
+    from gearmath.machine.writing.probe_words import Blocks
     from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
@@ -160,9 +194,10 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, sheet: Path | None,
     source = find(calibration)
     make = axis_program if cycle == "axes" else calibration_program
     at, known = load_milling_machine(find(machine)), load_calibration(source)
+    dialect = dialect_of(at, control, configuration, sheet)
     with about(source):
-        text = make(at, known, target.stem)
-    with bar(text.count("MEAS=1"), "block") as progress:
+        text = make(at, known, target.stem, LinuxCncBlocks if dialect == LINUXCNC else Blocks)
+    with bar(planned_touches(text), "touch") as progress:
         found = judge_calibration(text, str(target), at, known, progress)
     refuse_faults(found, str(target), "the program is not written")
     page = None
@@ -170,8 +205,11 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, sheet: Path | None,
         from gearmath.setup_sheet import calibration_sheet
 
         page = calibration_sheet(at, known, cycle == "axes", target.name)
+    blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(text)
     write_text(target, text)
-    click.echo(f"{target}: {planned_touches(text)} touches, {block_count(text)} blocks")
+    click.echo(f"{target}: {planned_touches(text)} touches, {blocks} blocks")
+    if configuration:
+        write_configuration(target, at, probe_in_table(at, known))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearmath.control.linuxcnc_plan import touches_of
 from gearmath.control.parts import part_of
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Probe, Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.measuring.collision_check import enough_steps, is_touch
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
 
@@ -36,6 +38,8 @@ def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0
     A calibration program works out later ways from its first touches: it needs the artefacts as ``probe``. Raises
     InputError for a text that cannot be run, that makes no touches, or that refuses these parts.
     """
+    if is_for_linuxcnc(text):
+        return RunPlan(*touches_of(text, program, first, last))
     run = run_program(
         text,
         program,

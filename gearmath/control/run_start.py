@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from gearmath.control.file_names import control_name
+from gearmath.control.file_names import control_name, linuxcnc_name
 from gearmath.control.interface import RunStart
 from gearmath.control.plan import RunPlan, planned, resuming, triggers
 from gearmath.control.store_run import StoredRun
@@ -13,7 +13,7 @@ from gearmath.control.store_summary import parts
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
 from gearmath.machine.control.state import Setup
-from gearmath.machine.control.text import decoded
+from gearmath.machine.control.text import decoded, is_for_linuxcnc
 from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.probe_run import touches_artefacts
 from gearmath.specs.calibration import load_calibration
@@ -37,8 +37,9 @@ def begun(
 
     Raises InputError where the program offers no touches, or has not these points.
     """
-    content, name = read_bytes(program), control_name(program.name)
+    content = read_bytes(program)
     text = decoded(content, str(program))
+    name = linuxcnc_name(program.name) if is_for_linuxcnc(text) else control_name(program.name)
     paths = {MACHINE: find(machine), CALIBRATION: find(calibration)}
     if gear_set is not None:
         paths[SET] = find(gear_set)

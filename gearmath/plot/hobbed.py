@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearmath.gearbox.hobbed.inspection import Inspection, PitchRow, Side, Trace
+from gearmath.gearbox.hobbed.thread import ThreadTrace
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 
 #: Rules with their colors: the gear itself, and the one beside it.
@@ -31,6 +32,18 @@ def inspection_figure(title: str, gears: Sequence[tuple[str, Inspection]]) -> Fi
         axes = figure.add_subplot(rows[2, column])
         _pitch(axes, side, gears)
     _runout(figure.add_subplot(rows[3, :]), gears)
+    return figure
+
+
+def thread_figure(title: str, traces: Sequence[ThreadTrace]) -> Figure:
+    """Pitch error of a thread over its length, by rule."""
+    figure = Figure(figsize=(8.3, 4.0), layout="constrained")
+    axes = figure.subplots()
+    for trace, color in zip(traces, _COLORS, strict=False):
+        label = f"{trace.rule}: {trace.total * 1000:.1f} µm over the length"
+        axes.plot(trace.place, trace.deviation * 1000, color=color, linewidth=0.7, label=label)
+    axes.set_title(f"{title}: pitch error", fontsize=9)
+    _finish(axes, "along the thread / mm", "µm")
     return figure
 
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import MachinePath, execute
 from gearmath.machine.control.state import Setup
-from gearmath.machine.judging.program import faults_of, metal_faults
-from gearmath.machine.milling.run import runs_of
+from gearmath.machine.judging.program import written_faults
 from gearmath.machine.planning.cut_plan import CuttingJob, CuttingPlan, cutting_plan, pass_count
 from gearmath.machine.writing.cutting import program_of
 from gearmath.specs.bevel_set import BevelSet
@@ -34,8 +32,9 @@ def checked_cut(
     name: str,
     file: str,
     begin: Callable[[int, str], Callable[[int], object]] = lambda steps, unit: lambda done: None,
+    write: Callable[[CuttingPlan, str], str] = program_of,
 ) -> CheckedCut:
-    """The program ``name`` of a member, for a ``file`` that sentences name.
+    """The program ``name`` of a member, for a ``file`` that sentences name; ``write`` is the writer of its dialect.
 
     ``begin`` gets the number and the unit of steps, and gives what hears of those that are done; it is called for the
     passes, and for the spaces that are looked at after them. Raises InputError where the machine cannot make the
@@ -43,13 +42,9 @@ def checked_cut(
     """
     spec = bevel_set.member(member)
     plan = cutting_plan(bevel_set, member, machine, job, begin(pass_count(spec, member, job), "pass"))
-    text = program_of(plan, name)
+    text = write(plan, name)
     path = execute(text, file, Setup.of(machine))
-    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
-    runs = runs_of(path, spec, member, machine, None, space, SHARP_EDGE)
-    faults = faults_of(text, path, runs, spec, member, machine)
-    if not job.dry_run:  # which cuts nothing
-        faults += metal_faults(text, path, runs, spec, member, machine, space, begin(spec.teeth, "space"))[0]
+    faults = written_faults(text, path, spec, member, machine, begin(spec.teeth, "space"))
     if faults:
         raise InputError(f"{file}: {'; '.join(map(str, faults))}: the program is not written")
     return CheckedCut(plan, text, path)

@@ -47,6 +47,8 @@ def missing(stated: Stated, runs: list[CuttingRun], member: Member, name: str) -
 def beside_the_path(runs: list[CuttingRun], member: Member, machine: MillingMachine, stated: Stated) -> Iterator[Fault]:
     """Feed blocks that end where the settings have no position: X Y A B beside their path, or Z below it, or above.
 
+    What blocks of POLY do between their ends, the flanks tell.
+
     Above it only where it rolls, between the first and the last block of a pass, by its median: a stock raises all of
     it.
     """
@@ -66,7 +68,7 @@ def beside_the_path(runs: list[CuttingRun], member: Member, machine: MillingMach
                 own = inner & (number == one)
                 above[own] = np.abs(off[own, 2] - np.median(off[own, 2]))
         aside = np.maximum(np.hypot(aside, below), above)
-        for k in np.flatnonzero(aside > limit):
+        for k in np.flatnonzero((aside > limit) & run.at_ends[rows]):
             yield Fault(f"ends {aside[k]:.6f} mm beside the path of these settings", int(run.line[rows[k]]), "beside")
 
 

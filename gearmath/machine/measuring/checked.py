@@ -51,8 +51,10 @@ def checked_probing(
     file: str,
     shop: SimulatedMachine | None = None,
     begin: Callable[[int, str], Callable[[int], object]] = lambda steps, unit: lambda done: None,
+    write: Callable[..., str] = probing_program,
 ) -> CheckedProbing:
-    """The program ``name`` that probes a member, for a ``file`` that sentences name.
+    """The program ``name`` that probes a member, for a ``file`` that sentences name; ``write`` is the writer of its
+    dialect.
 
     ``begin`` gets the number and the unit of steps, and gives what hears of those that are done. Raises InputError
     for the deepest collision, and where the machine must not run the program.
@@ -60,9 +62,7 @@ def checked_probing(
     spec = bevel_set.member(member)
     around = teeth_around(spec.teeth) if choice.registration else ()
     head, fixture = obstacles(machine, shop)
-    text = probing_program(
-        bevel_set, member, machine, calibration, name, choice.topography, choice.pitch, choice.repeat, around
-    )
+    text = write(bevel_set, member, machine, calibration, name, choice.topography, choice.pitch, choice.repeat, around)
     touches = planned_touches(text)
     progress = begin(touches // choice.repeat * (2 + choice.repeat) + text.count("\n"), "step")
     found = approaches(text, file, spec, member, machine, calibration, fixture, head.spindle_radius, progress)

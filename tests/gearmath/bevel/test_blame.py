@@ -107,3 +107,27 @@ def test_odd_key_or_long_value_keeps_the_sentence_to_one_short_line(line: str, s
         parse(f'title = "a"\nsource = "b"\nshaft_angle = 90.0\n{line}'.replace("'teeth': ", "teeth="), BevelSet, "set")
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 300
+
+
+@pytest.mark.parametrize(
+    ("key", "by", "flanks", "others"),
+    [
+        ("sliding_base", 2.0, ("convex",), {"blade_point_radius": 72.0}),
+        ("machine_center_to_crossing_point", -2.0, FLANKS, {}),
+    ],
+)
+def test_setting_that_was_changed_is_among_those_that_explain_most(key, by, flanks, others) -> None:
+    """Work moved along its axis, cutter plunged: both lower the root, and others of them may explain it as well."""
+    values = tomllib.loads(bundled(f"{NASA}.toml").read_text("utf-8"))["pinion"]
+    changes = {f"pinion.{flank}.{key}": values[flank][key] + by for flank in flanks}
+    text = refusal(NASA, changes | {f"pinion.convex.{other}": value for other, value in others.items()})
+    assert f".{key} = " in text.split("most of it hangs on ")[1]
+
+
+def test_refusal_of_the_backlash_names_the_cradle_angle_that_was_changed() -> None:
+    """0.3 degrees of the cradle turn the work as 0.97 degrees of work_rotation_offset do: the teeth clamp or rattle."""
+    value = tomllib.loads(bundled(f"{NASA}.toml").read_text("utf-8"))["pinion"]["convex"]["cradle_angle"]
+    for change in (0.3, -0.3):
+        text = refusal(NASA, {"pinion.convex.cradle_angle": value + change})
+        assert "the pair has a transverse backlash of " in text
+        assert "a cradle_angle of one flank of a fixed-setting cut, which acts as work_rotation_offset does" in text

@@ -663,3 +663,31 @@ def test_index_corrections_of_a_member_without_its_mate_stay_within_the_largest_
                 load_pair(file)
         else:
             load_pair(file)
+
+
+def _exchanged(member: dict, keys: tuple[str, ...]) -> None:
+    for key in keys:
+        one, two = (member[flank].get(key) for flank in FLANKS)
+        member["concave"][key], member["convex"][key] = two, one
+
+
+ALONE = {
+    "flanks exchanged": lambda member: member.update(concave=member["convex"], convex=member["concave"]),
+    "hand of the mate": lambda member: member.update(hand={"left": "right", "right": "left"}[member["hand"]]),
+    "blades exchanged": lambda member: _exchanged(member, ("blade_point_radius", "blade_pressure_angle")),
+    "other hand but for the word": lambda member: [
+        member[flank].update({key: -member[flank][key] for key in ("cradle_angle", "blank_offset")}) for flank in FLANKS
+    ],
+}
+
+
+@pytest.mark.parametrize("case", ALONE)
+@pytest.mark.parametrize("member", MEMBERS)
+@pytest.mark.parametrize("name", BUNDLED)
+def test_member_without_its_mate_is_refused_with_its_flanks_or_hand_exchanged(name: str, member: str, case: str):
+    """Its own spiral, pressure angles, root and space tell; a whole machine of the other hand is another good gear."""
+    values = changed(name, {})
+    del values[MEMBERS[1 - MEMBERS.index(member)]]
+    ALONE[case](values[member])
+    with pytest.raises(InputError, match=member):
+        check_pair(checked(values, BevelSet, name))

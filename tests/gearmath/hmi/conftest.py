@@ -26,6 +26,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Locator, Page, sync_playwright
 
 from tests.gearmath.control.live.conftest import PASSWORD, TEN, Live, _live, live  # noqa: F401
+from tests.gearmath.hmi.stored import own_runs, stored_runs  # noqa: F401
 
 #: Screenshots are left here, to be looked at.
 PICTURES = Path(__file__).parents[3] / "build" / "screenshots"
