@@ -20,7 +20,7 @@ def export_c(
 ) -> list[Path]:
     """Write the C of kernels or expressions into a folder: ``gm_<name>.h`` and ``gm_<name>.c`` of each.
 
-    In double precision, with the files of the contract that these share (``gm_status.h``), or with ``bits`` = 32 or
+    In double precision, beside them what they share (``gm_status.h``), or with ``bits`` = 32 or
     64 in whole numbers of that size. Raises ExportError (a ComputationError) naming what cannot become such C,
     InputError where the folder holds other files.
     """
@@ -29,8 +29,7 @@ def export_c(
     files: dict[str, str] = {}
     for one in made:
         files |= (integer_kernel(one, bits) if bits else double_kernel(one)).files
-    files |= {} if bits else contract_files()
-    write_folder(Path(folder), files)
+    write_folder(Path(folder), files if bits else contract_files() | files)
     return [Path(folder) / name for name in files]
 
 
