@@ -31,11 +31,11 @@ demo: $(VENV)/.run compiler
 	$(BIN)/gearmath demo
 
 test: $(VENV)/.test compiler lint
-	$(BIN)/pytest -n $(JOBS) --dist loadscope --benchmark-disable --durations 10 tests
+	$(BIN)/pytest -n $(JOBS) --dist loadscope --no-loadscope-reorder --benchmark-disable --durations 10 tests
 	$(MAKE) --no-print-directory notebooks
 
 quick: $(VENV)/.test compiler
-	$(BIN)/pytest -n $(JOBS) --dist loadscope --benchmark-disable -m 'not slow' -q tests
+	$(BIN)/pytest -n $(JOBS) --dist loadscope --no-loadscope-reorder --benchmark-disable -m 'not slow' -q tests
 
 lint: $(VENV)/.test
 	$(BIN)/ruff check .

@@ -5,7 +5,9 @@ from __future__ import annotations
 import importlib
 import importlib.resources
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from derivations.quantity import Quantity
@@ -44,6 +46,9 @@ CHAPTERS = (
     "local_synthesis",
     "chip",
     "design",
+    "virtual_hobbing",
+    "cylindrical_tolerance",
+    "polynomial_blocks",
 )
 
 #: An expression of a chapter, as its source says it.
@@ -52,12 +57,13 @@ _EXPRESSION = re.compile(r"^def ([a-z]\w*)\(\) -> Expression:", re.MULTILINE)
 __all__ = ["CHAPTERS", "Expression", "Quantity", "derive", "expressions", "index", "proofs"]
 
 
-def index() -> dict[str, str]:
+@cache
+def index() -> Mapping[str, str]:
     """Name of every Expression, in reading order, to its chapter: read from the sources, nothing is derived.
 
     An Expression is what a chapter's function without arguments returns, ``def name() -> Expression:``.
     """
-    return {name: chapter for chapter in CHAPTERS for name in _EXPRESSION.findall(source(chapter))}
+    return MappingProxyType({name: chapter for chapter in CHAPTERS for name in _EXPRESSION.findall(source(chapter))})
 
 
 def source(chapter: str) -> str:

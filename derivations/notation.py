@@ -139,8 +139,8 @@ axes = Quantity(
 pivot_height = _length(
     "pivot_height",
     "(R_d + C_t)",
-    0.0,
-    400.0,
+    -1000.0,
+    1000.0,
     "R_d + C_t: reading of Z with the blade tips level with the B axis",
 )
 pivot_offset = Quantity(
@@ -444,7 +444,7 @@ feed_sign = Quantity(
     (-1, 1),
     values=(-1, 1),
 )
-profile_shift = Quantity("profile_shift", "profile shift in normal modules", "1", "x", (-0.4, 1.0))
+profile_shift = Quantity("profile_shift", "profile shift in normal modules", "1", "x", (-0.5, 1.0))
 hob_diameter = _length("hob_diameter", "d_0", 5.0, 500.0, "reference diameter of the hob")
 hob_lead_angle = _angle("hob_lead_angle", r"\lambda", 0.0, 1.5, "lead angle of the hob at its reference diameter")
 hob_swivel = _angle(
@@ -501,6 +501,85 @@ lead_screw_pitch = _length("lead_screw_pitch", "P_L", 0.01, 100.0, "travel of th
 lead_screw_ratio = Quantity(
     "lead_screw_ratio", "motor steps per count of the spindle, signed", "1", r"\kappa_t", scale=1e6
 )
+
+# --- virtual hobbing --------------------------------------------------------------------------------------------
+flank_side = Quantity(
+    "flank_side",
+    "+1 the flank that bounds a space towards growing angles, right seen from +z; -1 the other",
+    "1",
+    r"\sigma",
+    (-1, 1),
+    values=(-1, 1),
+)
+edge_height = _length(
+    "edge_height", "h_e", -30.0, 30.0, "height of a point of an edge above the hob's reference cylinder"
+)
+edge_relief = _length("edge_relief", "w_e", 0.0, 30.0, "how far an edge is inside the thread, along the hob's axis")
+hob_turn = _angle("hob_turn", r"\tau", -0.6, 0.6, "turn of a gash past the common perpendicular")
+thread_angle = _angle("thread_angle", r"\vartheta", -7.0, 7.0, "where the thread stands, as a turn of the hob")
+hob_feed = Quantity("hob_feed", "travel of the hob along the gear per radian of its turn", "mm/rad", "v", (-0.5, 0.5))
+table_error = _angle("table_error", r"\Delta\varphi", -0.1, 0.1, "table angle beyond that of ideal meshing")
+tool_displacement = _vector(
+    "tool_displacement", r"\mathbf{D}", "mm", 1.0, 1.0, "displacement of the hob against the gear, machine frame"
+)
+roll_length = _length("roll_length", "L", 0.1, 5000.0, "length of roll of a flank's point, from the base cylinder")
+cut_radius = _length("cut_radius", r"\rho", 0.0, 1e4, "radius at which an edge cuts")
+cut_angle = Quantity("cut_angle", "angle at which it cuts, from the middle of the space", "rad", r"\theta", scale=1e1)
+cut_height = Quantity("cut_height", "height at which it cuts, from the hob", "mm", r"P_z", scale=1e3)
+roll_foot = _length("roll_foot", "L_0", 0.0, 1e5, "length of roll of the flank's point that is cut")
+height_foot = Quantity("height_foot", "its height on the gear, from the hob", "mm", "z_0", scale=1e3)
+cut_deviation = Quantity(
+    "cut_deviation", "what the edge leaves on the flank, along its normal", "mm", r"\delta_e", scale=1e3
+)
+contact_height = Quantity("contact_height", "where hob and flank touch, from the hob", "mm", "z_c", scale=1e3)
+contact_edge = Quantity("contact_edge", "height of the hob's edge there", "mm", "h_c", scale=1e3)
+contact_turn = Quantity("contact_turn", "turn of the hob there, from the common perpendicular", "rad", r"\tau_c")
+contact_thread = Quantity("contact_thread", "where the thread stands then", "rad", r"\vartheta_c", scale=1e2)
+hob_addendum = _length("hob_addendum", "h_{a0}", 0.1, 60.0, "height of a hob's tooth above its reference cylinder")
+tip_radius = _length("tip_radius", r"\rho_{a0}", 0.0, 12.0, "radius of the rounding at the tip of a hob's tooth")
+tip_turn = _angle("tip_turn", r"\gamma", 0.15, pi / 2, "direction of the normal of the rounding, from the hob's axis")
+tip_height = Quantity("tip_height", "height of a point of the rounding", "mm", "h_r", scale=1e2)
+tip_relief = Quantity("tip_relief", "how far it is inside the thread, along the hob's axis", "mm", "w_r", scale=1e2)
+form_height = Quantity("form_height", "height up to which the edge is straight", "mm", "h_F", scale=1e2)
+land_half_width = Quantity("land_half_width", "half the land between both roundings", "mm", "w_a", scale=1e2)
+hob_gashes = _count("hob_gashes", "n_i", 4, 40, "gashes of a hob")
+axial_feed = _length("axial_feed", "f_a", 0.01, 20.0, "travel of the hob along the gear per turn of the table")
+flat_height = Quantity("flat_height", "height of the ridges between flats", "mm", r"\delta_y", scale=1e1)
+feed_mark_height = Quantity("feed_mark_height", "height of the ridges between feed marks", "mm", r"\delta_x", scale=1e1)
+least_teeth = Quantity("least_teeth", "teeth below which a flank is undercut", "1", r"z_{min}", scale=1e3)
+hob_shift = _vector("hob_shift", r"\mathbf{e}_0", "mm", 1.0, 1.0, "shift of the hob: towards gear, up, along its axis")
+feed_shift = _length("feed_shift", r"\Delta z", -1.0, 1.0, "error of the travel along the gear")
+blank_shift = Quantity(
+    "blank_shift", "offset of the gear's axis from the table's, x and y", "mm", r"\mathbf{e}_2", (-1.0, 1.0), (2,)
+)
+blank_tilt = Quantity(
+    "blank_tilt", "tilt of the gear's axis, about x and y", "rad", r"\boldsymbol{\omega}", (-0.01, 0.01), (2,)
+)
+cut_place = _vector("cut_place", r"\mathbf{P}", "mm", 1e4, 5e3, "where it cuts, from the middle of the blank's seat")
+displacement = _vector("displacement", r"\mathbf{D}'", "mm", 1e2, 1e3, "displacement of the hob against the gear")
+right_deviation = _length("right_deviation", r"\delta_R", -1.0, 1.0, "deviation of a space's right flank")
+left_deviation = _length("left_deviation", r"\delta_L", -1.0, 1.0, "deviation of a space's left flank")
+circle_angle = _angle("circle_angle", r"\alpha_{yt}", 0.1, 1.2, "transverse pressure angle where it is measured")
+right_position = Quantity("right_position", "where the right flank stands along the circle", "mm", "s_R", scale=1.0)
+left_position = Quantity("left_position", "where the left flank stands along the circle", "mm", "s_L", scale=1.0)
+accuracy_class = _count("accuracy_class", "A", 1, 11, "flank tolerance class of ISO 1328-1")
+gear_face_width = _length("gear_face_width", "b_2", 1.0, 1200.0, "face width of a cylindrical gear")
+profile_slope_tolerance = Quantity("profile_slope_tolerance", "allowed slope", "um", r"f_{H\alpha T}", scale=100.0)
+profile_form_tolerance = Quantity("profile_form_tolerance", "allowed form", "um", r"f_{f\alpha T}", scale=100.0)
+profile_tolerance = Quantity("profile_tolerance", "allowed profile deviation", "um", r"F_{\alpha T}", scale=100.0)
+helix_slope_tolerance = Quantity("helix_slope_tolerance", "allowed slope", "um", r"f_{H\beta T}", scale=100.0)
+helix_form_tolerance = Quantity("helix_form_tolerance", "allowed form", "um", r"f_{f\beta T}", scale=100.0)
+helix_tolerance = Quantity("helix_tolerance", "allowed helix deviation", "um", r"F_{\beta T}", scale=100.0)
+flank_height = _length("flank_height", "z_f", -1000.0, 1000.0, "height of a point of a flank on the gear")
+space_index = _count("space_index", "i", -999, 999, "which space of the gear a flank bounds")
+gear_flank_point = _vector("gear_flank_point", r"\mathbf{p}", "mm", 1e4, 1e5, "point of a cylindrical gear's flank")
+gear_flank_normal = _vector("gear_flank_normal", r"\mathbf{n}_f", "1", 1.0, 1.0, "normal there, out of the metal")
+harmonic_turn = _angle("harmonic_turn", "u", -1e3, 1e3, "how far a part has turned")
+harmonic_amplitude = Quantity("harmonic_amplitude", "amplitude of a sine, in its unit", "1", "A", (0.0, 100.0))
+harmonic_order = _count("harmonic_order", "n", 1, 1000, "how many periods it has in a turn")
+harmonic_phase = _angle("harmonic_phase", r"\chi_0", -7.0, 7.0, "its phase at the start")
+harmonic_value = Quantity("harmonic_value", "value of the sine", "1", r"A_n", scale=1e6)
+ball_height = Quantity("ball_height", "how far a ball in a space stands out", "mm", r"\Delta r", scale=1.0)
 
 # --- bevel blank ------------------------------------------------------------------------------------------------
 pitch_angle = _angle("pitch_angle", r"\delta", 0.1, 1.5, "pitch cone against the member's axis")
@@ -1072,3 +1151,31 @@ gear_path_angle = _angle(
     "gear_path_angle", r"\eta_2", 0.2, 2.9, "direction of the path on the gear, from its root line towards the tip"
 )
 along_tooth = _length("along_tooth", r"\xi", -20.0, 20.0, "place along the tooth, from the mean point")
+
+# --- polynomial blocks --------------------------------------------------------------------------------------------
+block_start = Quantity("block_start", "position of an axis at the start of a block", "mixed", "a_0", (-500.0, 500.0))
+block_end = Quantity("block_end", "position of an axis at the end of a block", "mixed", "x_e", (-500.0, 500.0))
+slope_start = Quantity("slope_start", "its derivative by the parameter at the start", "mixed", "v_0", (-200.0, 200.0))
+slope_end = Quantity("slope_end", "its derivative by the parameter at the end", "mixed", "v_1", (-200.0, 200.0))
+bend_start = Quantity("bend_start", "its second derivative at the start", "mixed", "w_0", (-200.0, 200.0))
+bend_end = Quantity("bend_end", "its second derivative at the end", "mixed", "w_1", (-200.0, 200.0))
+block_interval = Quantity(
+    "block_interval", "value of the parameter at the end of a block (PL)", "1", "L", (0.5, 10.0), default=1.0
+)
+cubic_coefficients = Quantity(
+    "cubic_coefficients", "a_2, a_3 of a block", "mixed", r"(a_2, a_3)", shape=(2,), scale=1e4
+)
+quintic_coefficients = Quantity(
+    "quintic_coefficients", "a_2 to a_5 of a block", "mixed", r"(a_2 .. a_5)", shape=(4,), scale=1e6
+)
+axis_slopes = Quantity(
+    "axis_slopes",
+    "derivatives of X, Y, Z, A, B by the parameter",
+    "mixed",
+    r"\dot{\mathbf{a}}",
+    (-200.0, 200.0),
+    shape=(5,),
+)
+feed_radius_A = _length("feed_radius_A", "r_A", 1.0, 500.0, "radius at which F counts the way of A (FGREF)")
+feed_radius_B = _length("feed_radius_B", "r_B", 1.0, 500.0, "radius at which F counts the way of B (FGREF)")
+path_rate = Quantity("path_rate", "length of the path per unit of the parameter", "mm", r"ds/dp", scale=1e5)

@@ -126,7 +126,7 @@ class Page:
         figures = []
         for svg, caption in drawings:
             self._drawings += 1
-            named = f'<svg role="img" aria-label="{escape(caption)}"' + _own_names(svg, f"d{self._drawings}-")[4:]
+            named = f'<svg role="img" aria-label="{escape(caption)}"' + own_names(svg, f"d{self._drawings}-")[4:]
             figures.append(f"<figure><figcaption>{escape(caption)}</figcaption>{named}</figure>")
         if tall:
             figures = [figures[0], "<div>" + "\n".join(figures[1:]) + "</div>"]
@@ -146,7 +146,7 @@ class Page:
         )
 
 
-def _own_names(svg: str, prefix: str) -> str:
+def own_names(svg: str, prefix: str) -> str:
     """A drawing whose names are of no other drawing of the page."""
     return re.sub(r'(\bid="|\bhref="#|url\(#)', rf"\g<1>{prefix}", svg)
 

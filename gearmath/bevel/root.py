@@ -118,18 +118,22 @@ def _across(blank: Blank, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     along = np.array(_along(blank))
     one, other = _fine(one), _fine(other)
     start, step = other[:-1], np.diff(other, axis=0)
-    share = np.einsum("ikj,kj->ik", one[:, None] - start, step) / np.einsum("kj,kj->k", step, step)
-    foot = start + np.clip(share, 0.0, 1.0)[..., None] * step
+    # of the segments the nearest is one beside the nearest point
+    point = (np.einsum("kj,kj->k", other, other) - 2 * one @ other.T).argmin(axis=1)
+    beside = np.clip(np.stack([point - 1, point], axis=1), 0, len(step) - 1)
+    share = np.einsum("ikj,ikj->ik", one[:, None] - start[beside], step[beside])
+    share /= np.einsum("kj,kj->k", step, step)[beside]
+    foot = start[beside] + np.clip(share, 0.0, 1.0)[..., None] * step[beside]
     apart = np.linalg.norm(one[:, None] - foot, axis=2)
-    row, nearest = np.arange(len(one)), apart.argmin(axis=1)
-    before, beyond = share[row, nearest] < 0, share[row, nearest] > 1
-    inside = ~((before & (nearest == 0)) | (beyond & (nearest == len(step) - 1)))
-    middle = (one + foot[row, nearest])[inside] / 2
+    row, chosen = np.arange(len(one)), apart.argmin(axis=1)
+    nearest, share, foot, apart = (part[row, chosen] for part in (beside, share, foot, apart))
+    inside = ~(((share < 0) & (nearest == 0)) | ((share > 1) & (nearest == len(step) - 1)))
+    middle = (one + foot)[inside] / 2
     place = np.stack([middle[:, 2], np.hypot(middle[:, 0], middle[:, 1])], axis=1) @ along
     order = np.argsort(place)
     distance, _ = _heights(blank)
     wanted = np.linspace(distance[ENDS[0]], distance[ENDS[-1]], 25)
-    return np.interp(wanted, place[order], apart[row, nearest][inside][order])
+    return np.interp(wanted, place[order], apart[inside][order])
 
 
 def _along(blank: Blank) -> tuple[float, float]:
@@ -150,4 +154,4 @@ def _fine(trace: np.ndarray) -> np.ndarray:
     found = np.isfinite(trace).all(axis=1)
     at, degree = ACROSS[found] - 0.5, min(int(found.sum()) - 1, 8)
     fine = np.linspace(at[0], at[-1], _FINE)
-    return np.stack([np.polyval(np.polyfit(at, trace[found, k], degree), fine) for k in range(3)], axis=1)
+    return np.vander(fine, degree + 1) @ np.polyfit(at, trace[found], degree)

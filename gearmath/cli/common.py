@@ -6,7 +6,7 @@ import functools
 import json
 import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -202,3 +202,15 @@ def bar(total: int, unit: str, quiet: bool = False) -> Iterator[Any]:
 
     with hidden(), tqdm(total=total, unit=unit, disable=True if quiet else None, leave=False) as progress:
         yield progress.update
+
+
+@contextmanager
+def bars() -> Iterator[Callable[[int, str], Any]]:
+    """Progress bars one after the other: each begins, with its total and unit, when the one before ends."""
+    with ExitStack() as stack:
+
+        def begin(total: int, unit: str) -> Any:
+            stack.close()
+            return stack.enter_context(bar(total, unit))
+
+        yield begin

@@ -121,12 +121,13 @@ def compensate(
     what, and which limit binds.
     """
     from gearmath.bevel.pair import check_pair, load_pair
-    from gearmath.cli.compensate_text import correction_values, say_analysis, say_changes, say_result, verdict
-    from gearmath.cli.uncertainty import noise_of_points
+    from gearmath.cli.compensate_text import say_analysis, say_changes, say_result, verdict
     from gearmath.quality.correction import member as correcting
     from gearmath.quality.correction.member import ROOT_LIMIT, correct
     from gearmath.quality.correction.thickness import with_thickness
+    from gearmath.quality.correction.values import correction_values
     from gearmath.quality.evaluation.member import STAGES, evaluate_member
+    from gearmath.quality.uncertainty.corrected import noise_of_points
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.set_text import save_corrected
     from gearmath.specs.toml import find
@@ -202,7 +203,8 @@ def _uncertainty(
     root_limit: float,
 ) -> dict[str, Any]:
     """Standard uncertainties of the corrected settings, and what errors of measurement do to the flanks."""
-    from gearmath.cli.uncertainty import effects_um, point_covariance
+    from gearmath.cli.uncertainty import effects_um
+    from gearmath.quality.uncertainty.corrected import point_covariance
     from gearmath.quality.uncertainty.judged import judged_by_measured
     from gearmath.quality.uncertainty.settings import uncertain_settings
 

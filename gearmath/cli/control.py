@@ -12,22 +12,30 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gearmath.cli.common import JSON, NewFile, echo_json, table
-from gearmath.cli.control_connect import CONNECTION, INSECURE, ask, connection_of
+from gearmath.cli.control_connect import CONNECTION, INSECURE, ask, choose_linuxcnc, connection_of, file_name
 from gearmath.cli.control_measure import measure
 from gearmath.cli.control_simulate import simulate
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
+    from gearmath.control.interface import Control
+    from gearmath.control.linuxcnc_client import LinuxCncControl
     from gearmath.control.opcua import OpcUaControl
 
 
 @click.group()
-def control() -> None:
-    """The machine control over OPC UA: a SINUMERIK 840D sl, or the simulated one.
+@click.option(
+    "--linuxcnc",
+    is_flag=True,
+    help="The control is a LinuxCNC on this computer: its INI file in place of CONTROL.toml.",
+)
+def control(linuxcnc: bool) -> None:
+    """The machine control over OPC UA: a SINUMERIK 840D sl, or the simulated one; or a LinuxCNC.
 
     CONTROL.toml says where it is and who logs in: docs/control.md. The password is asked for, or read from the
     environment variable GEARMATH_CONTROL_PASSWORD. No command selects or starts a program.
     """
+    choose_linuxcnc(linuxcnc)
 
 
 def verb(name: str | None = None) -> Callable[[Callable[..., Any]], click.Command]:
@@ -50,7 +58,7 @@ def status(connection: Path, insecure: bool, as_json: bool) -> None:
     from gearmath.control.interface import AXES
     from gearmath.control.sinumerik import READ_STATE
 
-    async def work(one: OpcUaControl) -> tuple[Any, list[str]]:
+    async def work(one: OpcUaControl | LinuxCncControl) -> tuple[Any, list[str]]:
         return await one.status(), sorted(one.rights)
 
     found, rights = ask(connection, insecure, (READ_STATE,), work)
@@ -82,7 +90,7 @@ def watch(connection: Path, insecure: bool, interval: float, seconds: float | No
     from gearmath.control.interface import AXES
     from gearmath.control.sinumerik import READ_STATE
 
-    async def work(one: OpcUaControl) -> None:
+    async def work(one: Control) -> None:
         begin: float | None = None
         async for at, position in one.watch(interval):
             begin = at if begin is None else begin
@@ -108,19 +116,11 @@ def put(connection: Path, insecure: bool, program: Path, replace: bool) -> None:
 
     Refused while the channel is active, and for the program that is selected.
     """
-    from gearmath.control.file_names import control_name
-    from gearmath.control.sinumerik import READ_FILES, READ_STATE, WRITE_FILES
-    from gearmath.errors import ComputationError
+    from gearmath.control.delivery import RIGHTS, deliver
     from gearmath.files import read_bytes
 
-    content, name = read_bytes(program), control_name(program.name)
-
-    async def work(one: OpcUaControl) -> bytes:
-        await one.put(name, content, replace)
-        return await one.get(name)
-
-    if ask(connection, insecure, (READ_STATE, READ_FILES, WRITE_FILES), work) != content:
-        raise ComputationError(f"{name} on the control is not what {program} holds: write it again")
+    content, name = read_bytes(program), file_name(program.name)
+    ask(connection, insecure, RIGHTS, lambda one: deliver(one, name, content, replace))
     click.echo(f"{name}: {len(content)} bytes on the control, read back alike")
 
 
@@ -129,11 +129,10 @@ def put(connection: Path, insecure: bool, program: Path, replace: bool) -> None:
 @click.option("-o", "--output", "target", type=NewFile(), help="File to write.  [default: NAME.MPF here]")
 def get(connection: Path, insecure: bool, name: str, target: Path | None) -> None:
     """Read a program or result file from the control."""
-    from gearmath.control.file_names import control_name
     from gearmath.control.sinumerik import READ_FILES
     from gearmath.files import check_place, write_bytes
 
-    name = control_name(name)
+    name = file_name(name)
     target = target or Path(name)
     check_place(target)
     content = ask(connection, insecure, (READ_FILES,), lambda one: one.get(name))
@@ -154,7 +153,7 @@ def rparam(connection: Path, insecure: bool, parameters: tuple[str, ...], as_jso
     reading, writing = _parameters(parameters)
     numbers = [*dict.fromkeys([*writing, *reading])]
 
-    async def work(one: OpcUaControl) -> list[float]:
+    async def work(one: Control) -> list[float]:
         if writing:
             await one.write_parameters(writing)
         return await one.read_parameters(numbers)

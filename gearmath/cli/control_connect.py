@@ -15,11 +15,14 @@ import click
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
+    from gearmath.control.linuxcnc_client import LinuxCncControl
     from gearmath.control.opcua import OpcUaControl
     from gearmath.specs.control_connection import ControlConnection
 
 PASSWORD = "GEARMATH_CONTROL_PASSWORD"
-_Work = Callable[["OpcUaControl"], Awaitable[Any]]
+#: Where the group keeps that its control is a LinuxCNC on this computer.
+_LINUXCNC = "gearmath.control.linuxcnc"
+_Work = Callable[[Any], Awaitable[Any]]
 CONNECTION = click.argument("connection", type=click.Path(path_type=Path), metavar="CONTROL.toml")
 INSECURE = click.option(
     "--insecure", is_flag=True, help="Allow what CONTROL.toml says of an older security policy, or of none."
@@ -36,8 +39,36 @@ def quiet() -> None:
     logging.getLogger("asyncio").setLevel(logging.CRITICAL + 1)
 
 
-def connector(path: Path, insecure: bool, *needed: str) -> Callable[[], Coroutine[Any, Any, OpcUaControl]]:
+def choose_linuxcnc(wanted: bool) -> None:
+    """Keep, for the verb that follows, whether its file is the INI file of a LinuxCNC."""
+    click.get_current_context().meta[_LINUXCNC] = wanted
+
+
+def is_linuxcnc() -> bool:
+    """Whether the control is a LinuxCNC on this computer."""
+    return bool(click.get_current_context().meta.get(_LINUXCNC))
+
+
+def name_of(path: Path, insecure: bool) -> str:
+    """The name of the control of a file."""
+    return f"LinuxCNC, {path.name}" if is_linuxcnc() else connection_of(path, insecure).name
+
+
+def file_name(name: str) -> str:
+    """A name as the control keeps it. Raises InputError for what it would not, or what names a path."""
+    from gearmath.control.file_names import control_name, linuxcnc_name
+
+    return linuxcnc_name(name) if is_linuxcnc() else control_name(name)
+
+
+def connector(
+    path: Path, insecure: bool, *needed: str
+) -> Callable[[], Coroutine[Any, Any, OpcUaControl | LinuxCncControl]]:
     """What connects to the control of a file, each time anew, with the rights that are needed."""
+    if is_linuxcnc():
+        from gearmath.control.linuxcnc_client import LinuxCncControl
+
+        return lambda: LinuxCncControl.connect(path)
     from gearmath.control.opcua import OpcUaControl
 
     known = connection_of(path, insecure)
@@ -49,6 +80,8 @@ def connection_of(path: Path, insecure: bool) -> ControlConnection:
     """The file, checked. Raises InputError for a security that must be asked for by --insecure, and was not."""
     from gearmath.specs.control_connection import load_control_connection
 
+    if is_linuxcnc():
+        raise InputError("a LinuxCNC has no connection file: this verb is for a control with OPC UA")
     quiet()
     known = load_control_connection(path)
     if known.security != "Basic256Sha256" and not insecure:

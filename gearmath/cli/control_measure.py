@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from gearmath.cli.common import bar
-from gearmath.cli.control_connect import CONNECTION, INSECURE, connection_of, connector
+from gearmath.cli.control_connect import CONNECTION, INSECURE, connector, name_of
 from gearmath.cli.runs import store_option
 
 
@@ -70,7 +70,7 @@ def measure(
         else:
             assert program is not None
             start, parts = begun(
-                connection_of(connection, insecure).name, program, gear_set, machine, calibration, points, again_of
+                name_of(connection, insecure), program, gear_set, machine, calibration, points, again_of
             )
             asyncio.run(check_ready(connect, start))
             run = store.begin_run(start)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gearmath.cli.common import JSON, echo_json, plot, save_plot
+from gearmath.cli.gearbox_cut import choose, cut
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -47,7 +48,9 @@ def _job_options(command: Callable) -> Callable:
     @functools.wraps(command)
     def with_plan(machine: str, **options: Any) -> Any:
         own = {key: options.pop(key) for key in list(options) if key not in _KEYS}
-        return command(job=_plan(_machine(machine), options), **own)
+        from gearmath.specs.hobbing import find_hobbing_machine
+
+        return command(job=_plan(find_hobbing_machine(machine), options), **own)
 
     for option in reversed(_JOB):
         with_plan = option(with_plan)
@@ -60,10 +63,14 @@ _THREAD_KEYS = ("pitch", "starts", "hand", "run_up", "rpm")
 
 @click.group()
 def gearbox() -> None:
-    """Electronic gearbox of a hobbing machine or a lathe: plan a job, simulate the rule.
+    """Electronic gearbox of a hobbing machine or a lathe: plan a job, simulate the rule, cut a gear virtually.
 
     MACHINE is a TOML file, or the name of one that comes with the package, such as hobbing_plewes.toml.
     """
+
+
+gearbox.add_command(cut)
+gearbox.add_command(choose)
 
 
 @gearbox.command("plan")
@@ -115,14 +122,6 @@ def simulate(
         click.echo(simulation_text(result, job))
 
 
-def _machine(name: str) -> HobbingMachine:
-    """A machine file by its path, or by the name of a bundled one."""
-    from gearmath.specs.hobbing import load_hobbing_machine
-    from gearmath.specs.toml import find
-
-    return load_hobbing_machine(find(name))
-
-
 def _plan(machine: HobbingMachine, options: dict[str, Any]) -> GearboxPlan | ThreadPlan:
     """The plan of a gear or of a thread, by the machine's profile."""
     from gearmath.gearbox.job import plan_thread
@@ -137,7 +136,9 @@ def _plan(machine: HobbingMachine, options: dict[str, Any]) -> GearboxPlan | Thr
         unfit = sorted(set(given) - set(_THREAD_KEYS))
         if unfit:
             raise click.UsageError(f"--{unfit[0]} has no meaning for a thread")
-        return plan_thread(machine, _pitch(given.pop("pitch")), **given)
+        from gearmath.specs.ratio import pitch_of
+
+        return plan_thread(machine, pitch_of(given.pop("pitch")), **given)
     gear = {key: given[key] for key in ("teeth", "starts", "hob", "rpm", "run_up", "shift", "pin") if key in given}
     return plan(machine, **gear, helix=_helix(given))
 
@@ -158,16 +159,6 @@ def _helix(given: dict[str, Any]) -> Helix | None:
         except (ValueError, ZeroDivisionError):
             raise InputError(f"feed = {given['feed']!r}: must be a number of mm per turn of the table") from None
     return Helix(given["helix"], given.get("hand", "right"), given.get("cut", "climb"), feed)
-
-
-def _pitch(text: str) -> Fraction:
-    from gearmath.errors import InputError
-    from gearmath.specs.ratio import pitch
-
-    try:
-        return pitch(text)
-    except ValueError as error:
-        raise InputError(f"pitch = {text!r}: {error}") from None
 
 
 def _values(values: dict[str, Any]) -> dict[str, Any]:

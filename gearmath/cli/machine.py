@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -18,10 +18,13 @@ from gearmath.cli.common import (
     Number,
     about,
     bar,
+    bars,
     member_of,
     output,
 )
+from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
 from gearmath.cli.probe import nc_calibrate, probe
+from gearmath.cli.program_time import program_time
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
@@ -36,11 +39,12 @@ if TYPE_CHECKING:
 
 @click.group()
 def nc() -> None:
-    """NC programs for the vertical 5-axis machine (SINUMERIK 840D sl)."""
+    """NC programs for the vertical 5-axis machine (SINUMERIK 840D sl, or LinuxCNC)."""
 
 
 nc.add_command(probe)
 nc.add_command(nc_calibrate)
+nc.add_command(program_time)
 
 
 @nc.command()
@@ -64,9 +68,17 @@ nc.add_command(nc_calibrate)
 @click.option("--rpm", type=float, default=120.0, show_default=True, help="Spindle speed.")
 @click.option("--roughing-stock", type=float, default=0.0, help="Rough first and leave this much, mm; 0 for none.")
 @click.option("--finishing-stock", type=float, default=0.0, help="Stock that stays on the finished flanks, mm.")
+@click.option(
+    "--blocks",
+    type=click.Choice(["g1", "poly"]),
+    default="g1",
+    show_default=True,
+    help="Straight blocks, or polynomials where the cutter rolls (an option of the control).",
+)
 @click.option("--dry-run", is_flag=True, help="Cut air: everything above the work, without coolant.")
+@TARGET
 @SHEET
-@output(".MPF; its name becomes the program name")
+@output(".MPF, or .ngc for LinuxCNC; its name becomes the program name")
 def cut(
     gear_set: str,
     member: str | None,
@@ -77,7 +89,10 @@ def cut(
     rpm: float,
     roughing_stock: float,
     finishing_stock: float,
+    blocks: Literal["g1", "poly"],
     dry_run: bool,
+    control: str | None,
+    configuration: bool,
     sheet: Path | None,
     target: Path,
 ) -> None:
@@ -87,46 +102,40 @@ def cut(
     within the tolerance.
     """
     from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.tooth import tooth_space
     from gearmath.files import write_text
-    from gearmath.machine.control.executor import execute
-    from gearmath.machine.control.state import Setup
-    from gearmath.machine.judging.program import faults_of, metal_faults
+    from gearmath.machine.judging.checked import checked_cut
     from gearmath.machine.judging.timing import timing
-    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob, cutting_plan, pass_count
+    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
     from gearmath.machine.writing.cutting import program_of
+    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
+    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
     from gearmath.machine.writing.words import block_count, check_name
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     check_name(target.stem)
-    job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run)
+    job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
     milling_machine = load_milling_machine(find(machine))
+    dialect = dialect_of(milling_machine, control, configuration, sheet)
     check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
-    with bar(pass_count(spec, member, job), "pass") as progress:
-        plan = cutting_plan(bevel_set, member, milling_machine, job, progress)
-        text = program_of(plan, target.stem)
-    path = execute(text, str(target), Setup.of(milling_machine))
-    space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
-    runs = _right_runs(path, spec, member, milling_machine, space)
-    faults = faults_of(text, path, runs, spec, member, milling_machine)
-    if not job.dry_run:  # which cuts nothing
-        with bar(spec.teeth, "space") as progress:
-            faults += metal_faults(text, path, runs, spec, member, milling_machine, space, progress)[0]
-    if faults:
-        raise InputError(f"{target}: {'; '.join(map(str, faults))}: the program is not written")
+    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
+    with bars() as begin:
+        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin, write)
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import setup_sheet
 
-        page = setup_sheet(SetupFacts.of(plan, PLUNGE_FEED), target.name, timing(path, milling_machine))
-    write_text(target, text)
-    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {block_count(text)} blocks")
+        page = setup_sheet(SetupFacts.of(made.plan, PLUNGE_FEED), target.name, timing(made.path, milling_machine))
+    count = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
+    write_text(target, made.text)
+    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {count} blocks")
+    if configuration:
+        write_configuration(target, milling_machine, linuxcnc.tools_of(made.plan))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")

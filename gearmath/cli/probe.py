@@ -20,20 +20,21 @@ from gearmath.cli.common import (
     TOUCH_CSV,
     about,
     bar,
+    bars,
     member_of,
     output,
 )
+from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from gearmath.machine.judging.faults import Fault
-    from gearmath.machine.measuring.collision_check import Approach
     from gearmath.quality.calibration.axes import AxisCalibration
     from gearmath.quality.calibration.tip import Fit, Tip
     from gearmath.specs.calibration import Calibration
+    from gearmath.specs.milling_machine import MillingMachine
     from gearmath.specs.touch_csv import CalibrationTouches, Touches
 
-_PROGRAM = ".MPF; its name becomes the program name"
+_PROGRAM = ".MPF, or .ngc for LinuxCNC; its name becomes the program name"
 CALIBRATION = click.option(
     "--calibration", default="probe.toml", show_default=True, help="Calibrated probe: a file, or a bundled one."
 )
@@ -60,6 +61,7 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
 )
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Touches of every point.")
 @click.option("--errors", help="Simulated machine whose [fixture] and spindle the probe must clear.")
+@TARGET
 @SHEET
 @output(_PROGRAM)
 def probe(
@@ -72,6 +74,8 @@ def probe(
     registration: bool,
     repeat: int,
     errors: str | None,
+    control: str | None,
+    configuration: bool,
     sheet: Path | None,
     target: Path,
 ) -> None:
@@ -82,75 +86,69 @@ def probe(
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
     from gearmath.machine.bodies.profiles import obstacles
-    from gearmath.machine.measuring.collision_check import approaches
-    from gearmath.machine.measuring.judge import judge_probing
-    from gearmath.machine.planning.targets import teeth_around
+    from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
+    from gearmath.machine.writing.linuxcnc import probing as linuxcnc
+    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
     from gearmath.machine.writing.probing import probing_program
     from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import planned_touches
 
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)
-    count = spec.teeth
-    teeth, around = _teeth(topography, count), teeth_around(count) if registration else ()
+    choice = ProbingChoice(_teeth(topography, spec.teeth), pitch, registration, repeat)
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
+    dialect = dialect_of(milling_machine, control, configuration, sheet)
     simulated = load_simulated_machine(find(errors)) if errors else None
-    head, fixture = obstacles(milling_machine, simulated)
-    text = probing_program(bevel_set, member, milling_machine, known, target.stem, teeth, pitch, repeat, around)
-    points = planned_touches(text) // repeat
-    with bar(points * (2 + repeat) + text.count("\n"), "step") as progress:
-        found = approaches(
-            text,
-            str(target),
-            spec,
+    write = linuxcnc.probing_program if dialect == LINUXCNC else probing_program
+    with bars() as begin:
+        made = checked_probing(
+            bevel_set,
             member,
             milling_machine,
             known,
-            fixture,
-            head.spindle_radius,
-            progress,
+            choice,
+            target.stem,
+            str(target),
+            simulated,
+            begin,
+            write,
         )
-    clear = clearances(found, target, "the program is not written")
-    judged = judge_probing(text, str(target), spec, member, milling_machine, known)
-    refuse_faults(judged, target, "the program is not written")
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import ProbingJob, probing_sheet
 
+        head, fixture = obstacles(milling_machine, simulated)
         job = ProbingJob(
-            bevel_set.title, member, spec, milling_machine, known, fixture, head.spindle_radius, repeat * points, clear
+            bevel_set.title,
+            member,
+            spec,
+            milling_machine,
+            known,
+            fixture,
+            head.spindle_radius,
+            made.touches,
+            made.clearance,
         )
         page = probing_sheet(job, target.name)
-    write_text(target, text)
-    click.echo(f"{target}: {repeat * points} touches, {block_count(text)} blocks; {clear}")
+    blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
+    write_text(target, made.text)
+    click.echo(f"{target}: {made.touches} touches, {blocks} blocks; {made.clearance}")
+    if configuration:
+        write_configuration(target, milling_machine, probe_in_table(milling_machine, known))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
 
 
-def clearances(found: list[Approach], program: Path, end: str) -> str:
-    """The least clearance of every part of the probe in words. Raises InputError for the deepest collision."""
-    worst = min(found, key=lambda one: one.distance)
-    if worst.distance <= 0.0:
-        raise InputError(
-            f"{program}, line {worst.line}: the {worst.probe} of the probe meets the {worst.work}, "
-            f"{-worst.distance:.3f} mm deep: {end}" + (f" ({worst.said})" if worst.said else "")
-        )
-    nearest: dict[str, Approach] = {}
-    for one in sorted(found, key=lambda one: -one.distance):
-        nearest[one.probe] = one
-    parts = (f"{part} {nearest[part].distance:.3f} mm ({nearest[part].work})" for part in ("tip", "stylus", "spindle"))
-    return f"least clearance: {', '.join(parts)}"
+def probe_in_table(machine: MillingMachine, calibration: Calibration) -> dict[str, tuple[int, float]]:
+    """Number and length of the probe in the tool table of LinuxCNC, by its name."""
+    from gearmath.machine.writing.linuxcnc.dialect import PROBE, PROBE_NUMBER
 
-
-def refuse_faults(found: list[Fault], program: Path, end: str = "it is not run") -> None:
-    """Raise InputError where a program has faults."""
-    if found:
-        raise InputError(f"{program}: {'; '.join(map(str, found))}: {end}")
+    length = calibration.length if machine.z_reference == "tip" else 0.0
+    return {PROBE: (machine.control.tool_numbers.get(PROBE, PROBE_NUMBER), length)}
 
 
 @click.command("calibrate")
@@ -163,17 +161,30 @@ def refuse_faults(found: list[Fault], program: Path, end: str = "it is not run")
     show_default=True,
     help="Ring and sphere on the table for the tip, or the sphere on the work side for the rotary axes.",
 )
+@TARGET
 @SHEET
 @output(_PROGRAM)
-def nc_calibrate(machine: str, calibration: str, cycle: str, sheet: Path | None, target: Path) -> None:
+def nc_calibrate(
+    machine: str,
+    calibration: str,
+    cycle: str,
+    control: str | None,
+    configuration: bool,
+    sheet: Path | None,
+    target: Path,
+) -> None:
     """Write the program that calibrates the probe on ring and sphere, or the rotary axes on a sphere on the work side.
 
     'gearmath probe' runs it on the machine model, 'gearmath calibrate' reads its touches.
     """
     from gearmath.files import write_text
+    from gearmath.machine.measuring.checked import refuse_faults
     from gearmath.machine.measuring.judge import judge_calibration
     from gearmath.machine.writing.axis_cycle import axis_program
     from gearmath.machine.writing.calibrating import calibration_program
+    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
+    from gearmath.machine.writing.linuxcnc.probe_words import LinuxCncBlocks
+    from gearmath.machine.writing.probe_words import Blocks
     from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
@@ -183,17 +194,22 @@ def nc_calibrate(machine: str, calibration: str, cycle: str, sheet: Path | None,
     source = find(calibration)
     make = axis_program if cycle == "axes" else calibration_program
     at, known = load_milling_machine(find(machine)), load_calibration(source)
+    dialect = dialect_of(at, control, configuration, sheet)
     with about(source):
-        text = make(at, known, target.stem)
-    with bar(text.count("MEAS=1"), "block") as progress:
-        refuse_faults(judge_calibration(text, str(target), at, known, progress), target, "the program is not written")
+        text = make(at, known, target.stem, LinuxCncBlocks if dialect == LINUXCNC else Blocks)
+    with bar(planned_touches(text), "touch") as progress:
+        found = judge_calibration(text, str(target), at, known, progress)
+    refuse_faults(found, str(target), "the program is not written")
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import calibration_sheet
 
         page = calibration_sheet(at, known, cycle == "axes", target.name)
+    blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(text)
     write_text(target, text)
-    click.echo(f"{target}: {planned_touches(text)} touches, {block_count(text)} blocks")
+    click.echo(f"{target}: {planned_touches(text)} touches, {blocks} blocks")
+    if configuration:
+        write_configuration(target, at, probe_in_table(at, known))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gearmath.cli.common import MACHINE, MEMBER, about, bar, member_of, output
-from gearmath.cli.probe import CALIBRATION, clearances, refuse_faults
+from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -76,6 +76,7 @@ def probe(
     from gearmath.machine.control.text import program_text
     from gearmath.machine.judging.stated import stated_member
     from gearmath.machine.measuring.artefacts import Artefacts
+    from gearmath.machine.measuring.checked import refuse_faults
     from gearmath.machine.measuring.judge import judge_calibration, judge_probing
     from gearmath.machine.measuring.probe_run import run_touches, touch_count, touches_artefacts
     from gearmath.specs.calibration import load_calibration
@@ -94,7 +95,8 @@ def probe(
             raise InputError(f"--measured {measured}: {program} touches ring and spheres, not a member")
         count, there = None, Artefacts(milling_machine, known)
         with bar(text.count("MEAS=1"), "block") as progress:
-            refuse_faults(judge_calibration(text, str(program), milling_machine, known, progress), program)
+            faults = judge_calibration(text, str(program), milling_machine, known, progress)
+        refuse_faults(faults, str(program))
     else:
         if gear_set is None:
             raise InputError(f"--set is missing: {program} probes a member")
@@ -104,8 +106,8 @@ def probe(
         count = touch_count(text, str(program), setup)
         _check_clear(text, program, at_member, milling_machine, shop, 3 * count + text.count("\n"))
         with bar(text.count("MEAS=1"), "block") as progress:
-            found = judge_probing(text, str(program), spec, name, milling_machine, known, progress)
-        refuse_faults(found, program)
+            faults = judge_probing(text, str(program), spec, name, milling_machine, known, progress)
+        refuse_faults(faults, str(program))
     blocks = 3 * count if count is not None else text.count("MEAS=1")
     with bar(blocks, "block") as progress:
         raw = run_touches(text, str(program), there, shop, count, run, progress, setup)
@@ -119,6 +121,7 @@ def _check_clear(
 ) -> None:
     """Raise InputError where the program moves the probe into a nominal member, or touches what it does not have."""
     from gearmath.machine.bodies.profiles import obstacles
+    from gearmath.machine.measuring.checked import clearances
     from gearmath.machine.measuring.collision_check import approaches
 
     head, fixture = obstacles(machine, shop)
@@ -134,7 +137,7 @@ def _check_clear(
             head.spindle_radius,
             progress,
         )
-    clearances(found, program, "it is not run")
+    clearances(found, str(program), "it is not run")
 
 
 def _member_machine(

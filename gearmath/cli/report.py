@@ -10,7 +10,7 @@ import click
 
 from gearmath.cli.common import FLANK_CSV, MACHINE, SET_OPTION, about, bar, output
 from gearmath.cli.probe import CALIBRATION
-from gearmath.cli.uncertainty import MODEL, SIGMA, check_one_source, covariance_of, uncertain_correction
+from gearmath.cli.uncertainty import MODEL, SIGMA, check_one_source, covariance_of
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from gearmath.specs.bevel_set import BevelSet
     from gearmath.specs.flank_csv import FlankFile
 
-#: Of the Monte Carlo for maxima and ranges: their intervals to about one part in a hundred.
-_DRAWS, _SEED = 20_000, 0
 #: Steps of the progress bar for them and for the correction.
 _DRAWING, _CORRECTING = 8, 2
 
@@ -121,43 +119,28 @@ def _measurement(
 ) -> ReportedMeasurement:
     """One member evaluated, with its uncertainties and its correction."""
     from gearmath.quality.evaluation.member import evaluate_member
-    from gearmath.quality.uncertainty.figures import figures_of
-    from gearmath.quality.uncertainty.propagation import uncertain_figures
-    from gearmath.report import ReportedMeasurement, head_of
+    from gearmath.report.judged import DRAWS, reported
 
     member = pair.member(file.member)
     with about(path):
         found = evaluate_member(file, member, file.member, progress=progress)
-        figures = figures_of(file, member, found)
         covariance, source = covariance_of(file, member, *sure)
-    drawn = uncertain_figures(figures, covariance, _DRAWS, _SEED, progress=_share(progress))
-    correction, settings, effects, remarks = uncertain_correction(member, file, found, covariance, sure[0])
+        share = _share(progress, DRAWS)
+        made = reported(
+            pair, path.name, file, found, covariance, source, head, sigma_um=sure[0], again=again, drawn=share
+        )
     progress(_CORRECTING)
-    caused = {flank: effect.caused for flank, effect in effects.items()}
-    return ReportedMeasurement(
-        pair.title,
-        path.name,
-        member,
-        found,
-        correction,
-        head_of(file, head),
-        drawn,
-        settings,
-        caused,
-        source,
-        again,
-        remarks,
-    )
+    return made
 
 
-def _share(progress: Progress) -> Progress:
+def _share(progress: Progress, draws: int) -> Progress:
     """Progress of the draws, as their share of the steps of a bar."""
     done = 0
 
     def drawn(count: int) -> None:
         nonlocal done
         before, done = done, done + count
-        progress(done * _DRAWING // _DRAWS - before * _DRAWING // _DRAWS)
+        progress(done * _DRAWING // draws - before * _DRAWING // draws)
 
     return drawn
 

@@ -14,10 +14,7 @@ from gearmath.cli.common import JSON, NewFile, bar, echo_json, plot, save_plot
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from gearmath.control.store import MeasurementStore
-    from gearmath.control.store_compare import Comparison
     from gearmath.control.store_evaluation import EvaluatedRun
 
 
@@ -164,7 +161,9 @@ def compare(numbers: tuple[int, ...], store_file: Path, picture: Path | None, as
         found = store_compare.compare(_evaluated(store, numbers))
         values, text = found.as_dict(), compare_text(found)
     if picture:
-        save_plot(_picture(found), picture, as_json)
+        from gearmath.control.store_picture import runs_figure
+
+        save_plot(runs_figure(found), picture, as_json)
     if as_json:
         echo_json(values)
     else:
@@ -204,21 +203,6 @@ def resume(run: int, store_file: Path, again: str | None, target: Path | None, a
         echo_json(values)
     else:
         click.echo(resume_text(values))
-
-
-def _picture(found: Comparison) -> Figure:
-    """Two runs beside each other, or the course of the figures of more."""
-    from gearmath.plot.runs import comparison_figure, course_figure
-
-    first, last, numbers = found.runs[0], found.runs[-1], [each.run.id for each in found.runs]
-    title = f"{first.name}, runs {', '.join(map(str, numbers))}"
-    if len(numbers) == 2:
-        return comparison_figure(title, first.found, last.found)
-    courses: dict[str, dict[str, list]] = {}
-    for row in found.figures:
-        values = list(zip(row.sizes, row.uncertainties, strict=True))
-        courses.setdefault(row.name.removesuffix("_um").replace("_", " "), {})[row.flank] = values
-    return course_figure(title, numbers, courses)
 
 
 def _opened(path: Path) -> MeasurementStore:

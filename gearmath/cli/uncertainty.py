@@ -30,7 +30,6 @@ from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
-    from gearmath.quality.correction.member import MemberCorrection
     from gearmath.quality.evaluation.member import MemberEvaluation
     from gearmath.quality.uncertainty.covariance import Covariance
     from gearmath.quality.uncertainty.propagation import Uncertain
@@ -91,6 +90,7 @@ def uncertainty(
 
     from gearmath.bevel.pair import load_pair
     from gearmath.quality.evaluation.member import evaluate_member
+    from gearmath.quality.uncertainty.corrected import uncertain_correction
     from gearmath.quality.uncertainty.figures import figures_of
     from gearmath.quality.uncertainty.propagation import uncertain_figures
     from gearmath.specs.flank_csv import read_flank_csv
@@ -154,49 +154,6 @@ def _number(value: float, unit: str) -> str:
     return f"{value:.4f}" if unit.startswith("um") else f"{value:.6f}"
 
 
-def uncertain_correction(
-    member: Member, file: FlankFile, found: MemberEvaluation, covariance: Covariance, sigma_um: float | None
-) -> tuple[MemberCorrection | None, list[Uncertain], dict[str, Effect], list[str]]:
-    """The correction of an evaluated member as ``compensate`` writes it, its settings with uncertainties, what errors
-    of measurement do to each flank, and remarks: where there is no correction, why.
-    """
-    from gearmath.quality.correction.member import correct
-    from gearmath.quality.uncertainty.judged import judged_by_measured
-    from gearmath.quality.uncertainty.settings import uncertain_settings
-
-    name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))
-    try:
-        found.closing.check_topography()
-        correction = correct(
-            member,
-            name,
-            found.file,
-            few=True,
-            noise=noise_of_points(file, member, found, sigma_um),
-            indexed=found.closing.withheld is None,
-        )
-        settings, effects = uncertain_settings(member, name, found.file, correction, judged)
-    except (InputError, ComputationError) as error:
-        return None, [], {}, [f"no corrected settings: {error}"]
-    return correction, settings, effects, list(correction.remarks)
-
-
-def noise_of_points(file: FlankFile, member: Member, found: MemberEvaluation, sigma_um: float | None) -> float | None:
-    """Noise [mm] of a judged deviation at which settings are chosen: by the option, or else by u_um of the file.
-
-    None where neither says it: then it is what the settings leave.
-    """
-    from gearmath.quality.uncertainty.judged import judged_by_measured
-    from gearmath.quality.uncertainty.settings import noise_of
-
-    if sigma_um == 0:
-        return 0.0
-    covariance = point_covariance(file, sigma_um)
-    if covariance is None:
-        return None
-    return noise_of(member, found.member, found.file, covariance.carried(judged_by_measured(file, member, found)))
-
-
 def effects_um(effects: dict[str, Effect]) -> dict[str, Any]:
     """What errors of measurement do to each flank, for programs."""
     return {
@@ -218,6 +175,7 @@ def covariance_of(
     file: FlankFile, member: Member, sigma_um: float | None, model: str | None, machine: str, calibration: str
 ) -> tuple[Covariance, str]:
     """The covariance of the deviations, and in words where it comes from."""
+    from gearmath.quality.uncertainty.corrected import point_covariance
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.measurement import load_measurement
     from gearmath.specs.milling_machine import load_milling_machine
@@ -241,17 +199,10 @@ def check_one_source(sigma_um: float | None, model: str | None) -> None:
         raise InputError("--sigma-um and --model: only one can say how well the points were measured")
 
 
-def point_covariance(file: FlankFile, sigma_um: float | None) -> Covariance | None:
-    """Covariance of independent points from --sigma-um, or from u_um of the file; None where neither says it."""
-    import numpy as np
-
-    from gearmath.quality.uncertainty.covariance import independent, stated
-
-    return stated(file) if sigma_um is None else independent(np.full(len(file), sigma_um / 1000))
-
-
 def quick_figures(file: FlankFile, member: Member, found: MemberEvaluation, sigma_um: float | None) -> list[Uncertain]:
     """The figures of an evaluation with their uncertainties, from few draws; none where the points have none."""
+    from gearmath.quality.uncertainty.corrected import point_covariance
+
     covariance = point_covariance(file, sigma_um)
     if covariance is None:
         return []

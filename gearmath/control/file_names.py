@@ -8,6 +8,8 @@ from gearmath.errors import InputError
 
 #: 24 characters, two letters or _ and a letter first; then one extension.
 _ON_CONTROL = re.compile(r"(?:[A-Z]{2}|_[A-Z])[A-Z0-9_]{0,22}\.(?:MPF|SPF)", re.ASCII)
+#: LinuxCNC: a file of its folder of programs, or a result file.
+_ON_LINUXCNC = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,80}\.(?:ngc|csv)", re.ASCII)
 #: Names that Windows keeps for devices; the control refuses them too.
 _DEVICES = re.compile(r"(?:CON|PRN|AUX|NUL|COM[0-9]|LPT[0-9])\.", re.ASCII)
 
@@ -21,6 +23,16 @@ def control_name(name: str) -> str:
             "and a letter, then .MPF or .SPF, and no folder"
         )
     return upper
+
+
+def linuxcnc_name(name: str) -> str:
+    """``name`` as LinuxCNC keeps it. Raises InputError for what is no program or result file, or names a path."""
+    if _ON_LINUXCNC.fullmatch(name) is None:
+        raise InputError(
+            f"file name {shown(name)}: must be like PROBE.ngc or PROBE_T.csv: letters, digits, _, . and -, and no "
+            "folder"
+        )
+    return name
 
 
 def shown(name: str) -> str:

@@ -117,6 +117,10 @@ class Control(Protocol):
         """Time [s] and position X Y Z A B, at every ``interval`` [s]."""
         ...
 
+    async def probe_deflected(self) -> bool | None:
+        """Whether the probe signals a touch now; None where the control does not tell."""
+        ...
+
     async def handshake(self) -> Handshake: ...
 
     async def touch(self, number: int) -> Touch:

@@ -60,17 +60,25 @@ class Measuring:
         patience: Patience | None = None,
         progress: Callable[[int], object] = lambda touches: None,
         say: Say = lambda sentence: None,
+        holds: Callable[[int], bool] = lambda point: False,
+        lost: Callable[[], object] = lambda: None,
     ) -> None:
+        """``holds`` is asked before each point is acknowledged: while it says yes, the program waits there. ``lost``
+        hears of each loss of the connection, before anything is done about it."""
         self._connect, self._run, self._progress, self._say = connect, run, progress, say
+        self._holds, self._lost = holds, lost
         self._patience = patience or Patience()
         self._number: int | None = None
         self._baseline: int | None = None
-        self._kept = dict(run.touches())
+        self.kept = dict(run.touches())
+        """What is kept, by point."""
         self._missing = run.missing()
         self._alarms: dict[str, Alarm] = {}
         self._odd: Handshake | None = None
         self._last = max(run.start.points)
         self.reconnected = 0
+        self.is_ready = False
+        """Whether the program may be started, or goes on already."""
 
     async def to_the_end(self, parts: tuple[int, int] = (0, 0)) -> None:
         """Prepare, wait until the operator starts the program, and keep every touch. ``parts`` are R90 and R91.
@@ -95,19 +103,19 @@ class Measuring:
         self._run.finish("complete")
 
     async def _whole(self, parts: tuple[int, int]) -> None:
-        control = await self._again(self._patience.first)
+        control, ready = await self._again(self._patience.first), False
         try:
-            ready = False
             while True:
                 try:
                     if not ready:
                         await self._prepare(control, parts)
-                        ready = True
+                        ready = self.is_ready = True
                     await self._follow(control)
                     with suppress(ComputationError):
                         await control.finished()
                     return
                 except ConnectionLost as error:
+                    self._lost()
                     self._say(f"{error}; connecting again")
                     await _leave(control)
                     if isinstance(error, NoSession):
@@ -115,6 +123,8 @@ class Measuring:
                     control = await self._again(self._patience.give_up)
                     self.reconnected += 1
         finally:
+            if ready:
+                await _release(control)
             await _leave(control)
 
     async def _again(self, seconds: float) -> Control:
@@ -142,12 +152,12 @@ class Measuring:
 
     def _resumed(self, handshake: Handshake) -> bool:
         """Whether the program that runs waits for this run to go on."""
-        if not (self._kept and handshake.waits and self._missing):
+        if not (self.kept and handshake.waits and self._missing):
             return False
-        kept = self._kept.get(handshake.offered)
+        kept = self.kept.get(handshake.offered)
         if kept is not None:
             return kept.number == handshake.number
-        return handshake.offered == self._missing[0] and any(t.number == handshake.number for t in self._kept.values())
+        return handshake.offered == self._missing[0] and any(t.number == handshake.number for t in self.kept.values())
 
     async def _follow(self, control: Control) -> None:
         """Until the last touch is acknowledged."""
@@ -187,7 +197,7 @@ class Measuring:
             return not self._missing and point == self._last
         if not handshake.waits:
             raise _Stopped(f"{control.name}: the program does not wait for a host: R104 must be 1 before it is started")
-        if point not in self._kept and (not self._missing or point != self._missing[0]):
+        if point not in self.kept and (not self._missing or point != self._missing[0]):
             # once may be a look in the middle of a change
             if self._odd != handshake:
                 self._odd = handshake
@@ -196,15 +206,19 @@ class Measuring:
             first = self._missing[0] if self._missing else "none"
             raise _Stopped(f"{control.name}: point {point} is offered, the first one that is missing is {first}")
         touch = await control.touch(handshake.number)
-        if point in self._kept:
-            kept = self._kept[point]
+        if point in self.kept:
+            kept = self.kept[point]
             if kept.number == touch.number and kept != touch:
                 raise _Stopped(f"{control.name}: point {point} is offered with other values than those that are kept")
         else:
             self._run.commit_touch(point, touch)
-            self._kept[point] = touch
+            self.kept[point] = touch
             self._missing.pop(0)
             self._progress(1)
+        if self._holds(point):
+            # what is kept already is acknowledged at a later look
+            await asyncio.sleep(self._patience.settle)
+            return False
         await control.acknowledge(point)
         return not self._missing and point == self._last
 
@@ -278,6 +292,13 @@ async def _selected(control: Control, start: RunStart) -> Status:
 
 def _started(control: Control, status: Status) -> _Stopped:
     return _Stopped(f"{control.name}: the channel is {status.channel}: measuring begins before the program is started")
+
+
+async def _release(control: Control) -> None:
+    """A program that is started later does not wait for a host that has gone. One that runs goes on waiting for it."""
+    with suppress(ComputationError, InputError, OSError):
+        if (await control.status()).channel is ChannelState.RESET:
+            await control.finished()
 
 
 async def _leave(control: Control) -> None:

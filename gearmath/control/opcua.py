@@ -155,6 +155,16 @@ class OpcUaControl:
             with _quietly():
                 await subscription.delete()
 
+    async def probe_deflected(self) -> bool | None:
+        """The signal of probe 1, as the PLC gets it; None where the control has it not, or the user may not read it."""
+        try:
+            (value,) = await self._read([sinumerik.PROBE()])
+        except ConnectionLost:
+            raise
+        except ComputationError:
+            return None
+        return bool(value) if isinstance(value, bool | int) else None
+
     # alarms and files
 
     async def alarms(self) -> list[Alarm]:

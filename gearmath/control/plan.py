@@ -6,9 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearmath.control.linuxcnc_plan import touches_of
+from gearmath.control.parts import part_of
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import run_program
-from gearmath.machine.control.state import Setup
+from gearmath.machine.control.state import Probe, Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.measuring.collision_check import enough_steps, is_touch
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
 
@@ -23,30 +26,24 @@ class RunPlan:
     columns: tuple[str, ...]
     points: dict[int, tuple[str, ...]]
 
-    def part_of(self, point: int) -> int:
-        """The number by which R90 and R91 call the place of a point, touched once or several times."""
-        part, before = 0, None
-        for number, place in self.points.items():
-            part += place != before
-            before = place
-            if number == point:
-                return part
-        raise InputError(f"point {point}: the program makes points {min(self.points)} to {max(self.points)}")
+
+def triggers(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+    """A probe that triggers at the end of every touch."""
+    return end if is_touch(start, end) else None
 
 
-def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0) -> RunPlan:
+def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0, probe: Probe = triggers) -> RunPlan:
     """The plan of the parts from R90 = ``first`` to R91 = ``last`` (0, 0: all).
 
-    Raises InputError for a text that cannot be run, that makes no touches, or that refuses these parts.
+    A calibration program works out later ways from its first touches: it needs the artefacts as ``probe``. Raises
+    InputError for a text that cannot be run, that makes no touches, or that refuses these parts.
     """
-
-    def trigger(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
-        return end if is_touch(start, end) else None
-
+    if is_for_linuxcnc(text):
+        return RunPlan(*touches_of(text, program, first, last))
     run = run_program(
         text,
         program,
-        trigger,
+        probe,
         parameters={_FIRST: float(first), _LAST: float(last)},
         step_limit=enough_steps(text),
         setup=setup,
@@ -64,18 +61,12 @@ def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0
     raise InputError(f"{program}: offers no touches to a host: is it a program of 'nc probe' or 'nc calibrate'?")
 
 
-def resuming(text: str, program: str, setup: Setup, plan: RunPlan, missing: list[int]) -> tuple[int, int]:
+def resuming(
+    text: str, program: str, setup: Setup, plan: RunPlan, missing: list[int], probe: Probe = triggers
+) -> tuple[int, int]:
     """R90 and R91 with which a program makes the points that are missing, and as few others as it can."""
     if list(plan.points) == missing:
         return 0, 0
-    low, high = plan.part_of(missing[0]), plan.part_of(missing[-1])
-    if set(missing) <= set(planned(text, program, setup, low, high).points):
-        return low, high
-    # sections of a calibration hold several places: the last one that begins early enough
-    for first in range(low, 0, -1):
-        try:
-            if set(missing) <= set(planned(text, program, setup, first, 0).points):
-                return first, 0
-        except InputError:
-            continue
-    return 0, 0
+    part = part_of(plan.points, text)
+    low, high = part[missing[0]], part[missing[-1]]
+    return (low, high) if set(missing) <= set(planned(text, program, setup, low, high, probe).points) else (0, 0)

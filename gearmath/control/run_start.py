@@ -5,15 +5,16 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from gearmath.control.file_names import control_name
+from gearmath.control.file_names import control_name, linuxcnc_name
 from gearmath.control.interface import RunStart
-from gearmath.control.plan import RunPlan, planned, resuming
+from gearmath.control.plan import RunPlan, planned, resuming, triggers
 from gearmath.control.store_run import StoredRun
 from gearmath.control.store_summary import parts
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
 from gearmath.machine.control.state import Setup
-from gearmath.machine.control.text import decoded
+from gearmath.machine.control.text import decoded, is_for_linuxcnc
+from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.probe_run import touches_artefacts
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.milling_machine import load_milling_machine
@@ -36,19 +37,22 @@ def begun(
 
     Raises InputError where the program offers no touches, or has not these points.
     """
-    content, name = read_bytes(program), control_name(program.name)
+    content = read_bytes(program)
     text = decoded(content, str(program))
+    name = linuxcnc_name(program.name) if is_for_linuxcnc(text) else control_name(program.name)
     paths = {MACHINE: find(machine), CALIBRATION: find(calibration)}
     if gear_set is not None:
         paths[SET] = find(gear_set)
     elif not touches_artefacts(text):
         raise InputError(f"--set is missing: {program} probes a member")
-    setup = Setup.of(load_milling_machine(paths[MACHINE]), load_calibration(paths[CALIBRATION]).length)
-    plan, parts = planned(text, str(program), setup), (0, 0)
+    at, known = load_milling_machine(paths[MACHINE]), load_calibration(paths[CALIBRATION])
+    setup = Setup.of(at, known.length)
+    probe = Artefacts(at, known) if touches_artefacts(text) else triggers
+    plan, parts = planned(text, str(program), setup, probe=probe), (0, 0)
     if points is not None:
         wanted = _chosen(points, plan)
-        parts = resuming(text, str(program), setup, plan, wanted)
-        plan = RunPlan(plan.columns, planned(text, str(program), setup, *parts).points)
+        parts = resuming(text, str(program), setup, plan, wanted, probe)
+        plan = RunPlan(plan.columns, planned(text, str(program), setup, *parts, probe).points)
     files = {key: read_bytes(path) for key, path in paths.items()}
     settings = {key: path.name for key, path in paths.items()}
     return RunStart(control, name, content, plan.columns, plan.points, files, settings, refers_to=refers_to), parts

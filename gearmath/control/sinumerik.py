@@ -46,6 +46,8 @@ MESSAGE = Confirmed("/Channel/ProgramInfo/msg[u{channel}]", DIGEST, "OPC UA manu
 ALARM_COUNT = Confirmed("/Nck/State/numAlarms", PUBLISHED)
 LAST_ALARM = Confirmed("/Nck/LastAlarm/alarmNo", PUBLISHED)
 TOP_ALARM = Confirmed("/Nck/TopPrioAlarm/alarmNo", PUBLISHED)
+#: The form of the name is published, the number of the bit is not: DB10.DBX107.0, probe 1 actuated. Needs PlcRead.
+PROBE = Confirmed("/Plc/DB10.DBX107.0", UNCONFIRMED)
 ACCESS_LEVEL = Confirmed("/Nck/Configuration/accessLevel", PUBLISHED)
 
 MY_RIGHTS = Confirmed("GetMyAccessRights", DIGEST, "OPC UA manual 05/2022; the form of its answer is unconfirmed")

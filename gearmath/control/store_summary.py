@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
+from gearmath.control.parts import part_of
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_run import COMPLETE, StoredRun
 from gearmath.control.store_touches import first_of
 
 #: What a run is called that has ended in no way: it is measured now, or its computer was switched off.
 OPEN = "open"
-#: Touches up to the end of each section, in the text of a calibration program.
-_SECTION_ENDS = re.compile(r"^(?:N\d+ )?UENDS\[\d+\]=(\d+)\s*$", re.MULTILINE)
 
 _SUMMARY = """
     SELECT run, begun, operator, host, control, program, gearmath, refers_to,
@@ -71,25 +69,9 @@ def _summary(row: tuple) -> RunSummary:
 
 
 def parts(run: StoredRun, points: list[int]) -> list[tuple[int, int]]:
-    """First and last part of the program (R90, R91) of each stretch of ``points``, as one NC start can make it.
-
-    A part is a point with all its touches, and a section in a calibration.
-    """
-    part_of = _part_of(run)
-    wanted = sorted({part_of[point] for point in points})
+    """First and last part of the program (R90, R91) of each stretch of ``points``, as one NC start can make it."""
+    start = first_of(run).start
+    part = part_of(start.points, start.program_text.decode("utf-8", "replace"))
+    wanted = sorted({part[point] for point in points})
     stretches = [list(each) for _, each in groupby(enumerate(wanted), lambda numbered: numbered[1] - numbered[0])]
     return [(stretch[0][1], stretch[-1][1]) for stretch in stretches]
-
-
-def _part_of(run: StoredRun) -> dict[int, int]:
-    """The part of the program in which each point of the whole plan is touched."""
-    start = first_of(run).start
-    places, text = start.points, start.program_text.decode("utf-8", "replace")
-    ends = [int(end) for end in _SECTION_ENDS.findall(text)]
-    if ends:
-        return {point: 1 + sum(end < point for end in ends) for point in places}
-    found, part, before = {}, 0, None
-    for point, place in places.items():
-        part += place != before
-        found[point], before = part, place
-    return found

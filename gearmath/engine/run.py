@@ -179,12 +179,14 @@ def runner(function: ca.Function, many: tuple[bool, ...]) -> KernelRunner:
 
 def _operations(function: ca.Function) -> int:
     """About how many operations a point takes."""
-    if not function.is_a("SXFunction") and not function.is_a("MXFunction"):
+    if function.is_a("SXFunction"):
+        return function.n_instructions()
+    if not function.is_a("MXFunction"):
         return _UNKNOWN
     total = 0
     for k in range(function.n_instructions()):
         called = None
-        if not function.is_a("SXFunction") and function.instruction_id(k) == ca.OP_CALL:
+        if function.instruction_id(k) == ca.OP_CALL:
             called = function.instruction_MX(k).which_function()
         total += 1 if called is None or called.is_null() else _operations(called)
     return total

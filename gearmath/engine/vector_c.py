@@ -263,6 +263,17 @@ def _as_one(function: ca.Function) -> list[_Step]:
     ]
 
 
+def split_c(function: ca.Function, many: Sequence[bool], name: str) -> tuple[int, str]:
+    """A function of scalars, what all points share computed apart: how many values that is, and the C of both parts.
+
+    ``<name>_shared(x.., t)`` fills a table t from the arguments that are shared, ``<name>(x.., t, y..)`` takes the
+    others and the table. V is the type of a value of a point, v_sqrt and the like what works on it.
+    Raises NoVectorForm.
+    """
+    part = _part(_expanded(function), tuple(many), name)
+    return part.shared_values, part.text
+
+
 def _require_dense(sparsity: ca.Sparsity) -> None:
     if not sparsity.is_dense():
         raise NoVectorForm("an argument with structural zeros")

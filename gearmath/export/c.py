@@ -1,34 +1,30 @@
 """Kernel to C: CasADi writes the body, this module the typed function around it and the header that explains it.
 
-A double kernel ``name`` becomes ``gm_<name>(...)`` and ``gm_<name>_batch(n, ...)``, an integer kernel only the first.
-Scalars go in by value, vectors and matrices as arrays (matrices row by row); every output is written through a pointer
-and must not overlap an input. Nothing is allocated, nothing is kept between calls.
+A double kernel ``name`` becomes ``gm_<name>(...)`` and ``gm_<name>_batch(n, ...)``, which keep the contract of
+``library/gm_status.h``; an integer kernel only the first, without a status. Scalars go in by value, vectors and
+matrices as arrays (matrices row by row); every output is written through a pointer and must not overlap an input.
+Nothing is allocated, nothing is kept between calls.
 """
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from importlib import resources
 
 import casadi as ca
 
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError
-from gearmath.export import wrapper
+from gearmath.export import contract, wrapper
 from gearmath.export.header import OPERATIONS, kernel_comment
+from gearmath.version import __version__
 
 #: What means the same in C with integers as in exact arithmetic. Everything else is double in C, or truncates.
 INTEGER_OPERATIONS = frozenset(
     ("add", "sub", "mul", "neg", "sq", "lt", "le", "eq", "ne", "not", "and", "or", "if_else_zero", "sign")
 )
 _LITERAL = re.compile(r"=(-?\d+)\.;")
-_LITERAL_CHECK = """\
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
-"""
 
 
 class ExportError(ComputationError):
@@ -59,20 +55,30 @@ class _Body:
     sizes: wrapper.Sizes
 
 
+_SHARED = ("gm_status.h", "gm_status.c", "gm_check.h", "gm_lane.h")
+
+
+def contract_files() -> dict[str, str]:
+    """What the C of every double kernel includes: the contract, the checks, and the sentences of the status."""
+    folder = resources.files("gearmath") / "export" / "library"
+    files = {name: (folder / name).read_text("utf-8") for name in _SHARED}
+    return files | {"gm_version.h": f'/* generated, do not edit. */\n#define GM_VERSION "{__version__}"\n'}
+
+
 def double_kernel(kernel: Kernel) -> CKernel:
     """C in double precision, bit-equal to the Kernel where the compiler does not contract operations.
 
     Raises ExportError if a name cannot stand in C, or naming the part that CasADi cannot write as C.
     """
     _check_names(kernel)
-    function = _dense(kernel.function)
+    function = _dense(contract.with_margins(kernel))
     body = _generate(function, f"gm_{kernel.name}", {"casadi_real": "double", "include_math": True})
-    declarations = f"{wrapper.declaration(kernel, 'double')};\n\n{wrapper.batch_declaration(kernel)};\n"
-    typed = wrapper.definition(kernel, "double", body.entry, body.sizes, may_fail=not function.is_a("SXFunction"))
+    typed = contract.definitions(kernel, function, body.entry, body.sizes)
     memory = "work memory: none"
     if body.sizes.w + body.sizes.iw:
         memory = f"work memory: {body.sizes.w} doubles and {body.sizes.iw} integers, on the stack"
-    return _assemble(kernel, memory, _LITERAL_CHECK, declarations, body, f"{typed}\n{wrapper.batch_definition(kernel)}")
+    includes = '#include "gm_status.h"\n', '#include "gm_check.h"\n'
+    return _assemble(kernel, memory, includes, contract.declarations(kernel), body, typed, function)
 
 
 def integer_kernel(kernel: Kernel, bits: int = 32, inline: bool = False) -> CKernel:
@@ -91,26 +97,37 @@ def integer_kernel(kernel: Kernel, bits: int = 32, inline: bool = False) -> CKer
     body = _generate(function, f"gm_{kernel.name}", {"casadi_real": real, "include_math": False})
     exact = _Body(_LITERAL.sub(r"=\1;", body.text), body.entry, body.sizes)
     declaration = f"{wrapper.declaration(kernel, real)};\n"
-    typed = wrapper.definition(kernel, real, body.entry, body.sizes, may_fail=False)
+    typed = wrapper.definition(kernel, real, body.entry, body.sizes)
+    memory, includes = f"work memory: none; {real} only", ("#include <stdint.h>\n", "")
     if inline:
         # names of the preprocessor last to the end of what includes the header: the next kernel has the same ones
         names = re.findall(r"^#define (\w+)", exact.text, flags=re.MULTILINE)
         forgotten = "".join(f"#undef {name}\n" for name in names)
         text = exact.text.replace("\nstatic int casadi_f", "\nstatic inline int casadi_f")
         everything = f"{text}\nstatic inline {typed}\n{forgotten}"
-        with_body = _assemble(kernel, f"work memory: none; {real} only", "#include <stdint.h>\n", everything, exact, "")
+        with_body = _assemble(kernel, memory, includes, everything, exact, "")
         return CKernel(with_body.name, with_body.header, "")
-    return _assemble(kernel, f"work memory: none; {real} only", "#include <stdint.h>\n", declaration, exact, typed)
+    return _assemble(kernel, memory, includes, declaration, exact, typed)
 
 
-def _assemble(kernel: Kernel, memory: str, preamble: str, declarations: str, body: _Body, typed: str) -> CKernel:
+def _assemble(
+    kernel: Kernel,
+    memory: str,
+    includes: tuple[str, str],
+    declarations: str,
+    body: _Body,
+    typed: str,
+    function: ca.Function | None = None,
+) -> CKernel:
+    """``includes`` of the header, and more of the source."""
     name = f"gm_{kernel.name}"
     guard = f"{name.upper()}_H"
+    taken = contract.taken if function else None  # what is in whole numbers does not look at its inputs
     header = (
-        f"{kernel_comment(kernel, memory)}#ifndef {guard}\n#define {guard}\n\n{preamble}\n"
+        f"{kernel_comment(kernel, memory, function, taken)}#ifndef {guard}\n#define {guard}\n\n{includes[0]}\n"
         f'#ifdef __cplusplus\nextern "C" {{\n#endif\n\n{declarations}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif\n'
     )
-    source = f'/* {name}: generated, do not edit. */\n#include "{name}.h"\n\n{body.text}\n{typed}'
+    source = f'/* {name}: generated, do not edit. */\n#include "{name}.h"\n{includes[1]}\n{body.text}\n{typed}'
     return CKernel(name, header, source)
 
 

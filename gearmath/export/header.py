@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 import textwrap
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import casadi as ca
 import sympy
@@ -57,55 +57,67 @@ def comment(paragraphs: Iterable[str]) -> str:
     return "/*\n" + "".join(f" * {line}".rstrip() + "\n" for line in lines) + " */\n"
 
 
-def kernel_comment(kernel: Kernel, memory: str) -> str:
-    """The head of a kernel's header file; ``memory`` is the sentence about its work memory."""
-    return comment(_paragraphs(kernel, memory))
+#: The least and the greatest number that the C takes for an input.
+Taken = Callable[[Quantity], tuple[float, float]]
 
 
-def _paragraphs(kernel: Kernel, memory: str) -> Iterator[str]:
+def kernel_comment(kernel: Kernel, memory: str, function: ca.Function | None = None, taken: Taken | None = None) -> str:
+    """The head of a kernel's header file; ``memory`` is the sentence about its work memory.
+
+    ``function`` is what its C computes, where that is more than the kernel itself; ``taken`` what it takes beyond the
+    ranges.
+    """
+    return comment(_paragraphs(kernel, memory, function or kernel.function, taken))
+
+
+def _paragraphs(kernel: Kernel, memory: str, function: ca.Function, taken: Taken | None) -> Iterator[str]:
     yield f"gm_{kernel.name}: generated, do not edit."
     yield ""
     yield kernel.description
     yield ""
     for direction, quantities in (("in", kernel.inputs), ("out", kernel.outputs)):
         for quantity in quantities:
-            yield from _argument(direction, quantity)
+            yield from _argument(direction, quantity, taken if direction == "in" else None)
     yield ""
     for requirement in kernel.requires:
         yield f"requires: {requirement}"
     if kernel.source:
         yield f"source: {kernel.source}"
-    yield operations(kernel)
+    yield operations(function)
     yield memory
     yield f"written by {versions()}"
 
 
-def _argument(direction: str, quantity: Quantity) -> Iterator[str]:
+def _argument(direction: str, quantity: Quantity, taken: Taken | None) -> Iterator[str]:
     extent = "".join(f"[{length}]" for length in quantity.shape)
     by_rows = ", row by row" if len(quantity.shape) > 1 else ""
-    yield f"{direction} {quantity.name}{extent} [{quantity.unit}]{_domain(quantity)}: {quantity.description}{by_rows}"
+    own = "" if quantity.components else _domain(quantity, taken)
+    yield f"{direction} {quantity.name}{extent} [{quantity.unit}]{own}: {quantity.description}{by_rows}"
     for k, component in enumerate(quantity.components):
-        yield f"    [{k}] {component.name} [{component.unit}]{_domain(component)}: {component.description}"
+        yield f"    [{k}] {component.name} [{component.unit}]{_domain(component, taken)}: {component.description}"
 
 
-def _domain(quantity: Quantity) -> str:
+def _domain(quantity: Quantity, taken: Taken | None) -> str:
     if quantity.values:
         return f" one of {', '.join(map(str, quantity.values))}"
     low, high = quantity.domain
     if math.isinf(low) and math.isinf(high):
         return ""
-    return f" {_number(low)} ... {_number(high)}"
+    beyond = ""
+    if taken is not None and (ends := taken(quantity)) != (low, high):
+        beyond = f" (taken: {_number(ends[0])} ... {_number(ends[1])})"
+    return f" {_number(low)} ... {_number(high)}{beyond}"
 
 
 def _number(value: float) -> str:
     return str(value) if isinstance(value, int) else f"{value:.12g}"
 
 
-def operations(kernel: Kernel) -> str:
+def operations(function: ca.Function) -> str:
     """How many operations one call executes, and of which kind: a budget that a golden copy keeps."""
     unknown = "ops: not counted, the number depends on an iteration"
     try:
-        flat = kernel.function.expand()
+        flat = function.expand()
     except RuntimeError:
         return unknown
     names = (OPERATIONS[flat.instruction_id(k)] for k in range(flat.n_instructions()))

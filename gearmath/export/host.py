@@ -12,7 +12,7 @@ import numpy as np
 from gearmath.engine.compiler import compile_library
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
-from gearmath.export.c import double_kernel, integer_kernel
+from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.kernels import kernel
 
 
@@ -28,7 +28,10 @@ class CompiledKernel:
         return self.kernel.name
 
     def __call__(self, *arguments: np.typing.ArrayLike) -> tuple[np.ndarray, ...]:
-        """Evaluate at one or many points: shapes and broadcasting as in :meth:`gearmath.lowering.Kernel.__call__`."""
+        """Evaluate at one or many points: shapes and broadcasting as in :meth:`gearmath.lowering.Kernel.__call__`.
+
+        Raises InputError naming the first point outside the domain, or without a result.
+        """
         arrays = [np.asarray(argument, dtype=float, order="C") for argument in arguments]
         if len(arrays) != len(self._inputs):
             raise TypeError(f"{self.name} takes {len(self._inputs)} arguments, {len(arrays)} were given")
@@ -43,7 +46,11 @@ class CompiledKernel:
                 raise ValueError(f"{self.name}: {name} has shape {array.shape}, expected {shape}")
             values += (array.ctypes.data, size if many else 0)
         outputs = [np.empty((n, *quantity.shape)) for quantity in self.kernel.outputs]
-        self._batch(*values, *(output.ctypes.data for output in outputs))
+        first_bad = ctypes.c_int64()
+        status = self._batch(*values, *(output.ctypes.data for output in outputs), ctypes.byref(first_bad))
+        if status:
+            where = f" at point {first_bad.value}" if is_many else ""
+            raise InputError(f"{self.name}{where}: {self.library.gm_error_text(status).decode()}")
         return tuple(output if is_many else output[0] for output in outputs)
 
     @cached_property
@@ -53,12 +60,13 @@ class CompiledKernel:
 
     @cached_property
     def _batch(self) -> Callable[..., object]:
-        """The loop in C: how many points, then every input with its stride, then the outputs."""
+        """The loop in C: how many points, every input with its stride, the outputs, where the first bad point goes."""
+        self.library.gm_error_text.restype = ctypes.c_char_p
         function = getattr(self.library, f"gm_{self.name}_batch")
         function.argtypes = [
-            ctypes.c_long,
-            *[ctypes.c_void_p, ctypes.c_long] * len(self._inputs),
-            *[ctypes.c_void_p] * len(self.kernel.outputs),
+            ctypes.c_int64,
+            *[ctypes.c_void_p, ctypes.c_int64] * len(self._inputs),
+            *[ctypes.c_void_p] * (len(self.kernel.outputs) + 1),
         ]
         return function
 
@@ -69,7 +77,9 @@ def compile_kernel(kernel: Kernel) -> CompiledKernel:
     Raises ComputationError where there is no compiler, ExportError where the Kernel cannot become C.
     """
     if id(kernel) not in _COMPILED:
-        _COMPILED[id(kernel)] = CompiledKernel(kernel, _library(tuple(double_kernel(kernel).files.items())))
+        _COMPILED[id(kernel)] = CompiledKernel(
+            kernel, _library(tuple((contract_files() | double_kernel(kernel).files).items()))
+        )
     return _COMPILED[id(kernel)]
 
 

@@ -1,4 +1,4 @@
-"""The typed C functions around a body that CasADi wrote: one call, and a loop over many points."""
+"""The typed C function around a body in whole numbers, and what any such function is written with."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ _WORDS = """\
     auto break case char const continue default do double else enum extern float for goto if inline int long
     register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while bool
     true false class delete new private protected public template this throw try catch namespace operator virtual
-    friend using and or not xor NAN INFINITY n k arg res iw w"""
+    friend using and or not xor NAN INFINITY n k arg res iw w status now shared margin table bad
+    first_bad"""
 #: Names that a quantity cannot have: words of C and C++, and the variables of the functions below.
 RESERVED = frozenset(_WORDS.split())
 
@@ -31,17 +32,10 @@ def declaration(kernel: Kernel, real: str) -> str:
     """``void gm_<name>(...)`` without the semicolon."""
     inputs = [f"const {real} {q.name}[{q.size}]" if q.shape else f"{real} {q.name}" for q in kernel.inputs]
     outputs = [f"{real} {q.name}[{q.size}]" if q.shape else f"{real} *{q.name}" for q in kernel.outputs]
-    return _wrapped(f"void gm_{kernel.name}", [*inputs, *outputs])
+    return wrapped(f"void gm_{kernel.name}", [*inputs, *outputs])
 
 
-def batch_declaration(kernel: Kernel) -> str:
-    """``void gm_<name>_batch(...)``: n points; the stride of an input is its size, or 0 if all points share it."""
-    inputs = [f"const double *{q.name}, long {q.name}_stride" for q in kernel.inputs]
-    outputs = [f"double *{q.name}" for q in kernel.outputs]
-    return _wrapped(f"void gm_{kernel.name}_batch", ["long n", *inputs, *outputs])
-
-
-def definition(kernel: Kernel, real: str, entry: str, sizes: Sizes, may_fail: bool) -> str:
+def definition(kernel: Kernel, real: str, entry: str, sizes: Sizes) -> str:
     """The typed function: hands pointers to the body, and turns matrices from rows to the columns of CasADi."""
     lines = [f"  const {real} *arg[{sizes.arg}];", f"  {real} *res[{sizes.res}];"]
     lines += [
@@ -49,28 +43,18 @@ def definition(kernel: Kernel, real: str, entry: str, sizes: Sizes, may_fail: bo
     ]
     lines += [f"  {real} {q.name}_columns[{q.size}];" for q in (*kernel.inputs, *kernel.outputs) if len(q.shape) > 1]
     for k, quantity in enumerate(kernel.inputs):
-        lines += [f"  {quantity.name}_columns[{c}] = {quantity.name}[{r}];" for c, r in _transposed(quantity)]
-        lines.append(f"  arg[{k}] = {_columns(quantity, '&')};")
-    lines += [f"  res[{k}] = {_columns(quantity, '')};" for k, quantity in enumerate(kernel.outputs)]
+        lines += [f"  {quantity.name}_columns[{c}] = {quantity.name}[{r}];" for c, r in transposed(quantity)]
+        lines.append(f"  arg[{k}] = {columns(quantity, '&')};")
+    lines += [f"  res[{k}] = {columns(quantity, '')};" for k, quantity in enumerate(kernel.outputs)]
     call = f"{entry}(arg, res, {'iw' if sizes.iw else '0'}, {'w' if sizes.w else '0'}, 0)"
-    if may_fail:
-        lines += [f"  if ({call} != 0) {{", *_nan(kernel), "    return;", "  }"]
-    else:
-        lines.append(f"  (void){call};")
+    lines.append(f"  (void){call};")
     for quantity in kernel.outputs:
-        lines += [f"  {quantity.name}[{r}] = {quantity.name}_columns[{c}];" for c, r in _transposed(quantity)]
+        lines += [f"  {quantity.name}[{r}] = {quantity.name}_columns[{c}];" for c, r in transposed(quantity)]
     return "\n".join((declaration(kernel, real), "{", *lines, "}\n"))
 
 
-def batch_definition(kernel: Kernel) -> str:
-    """The loop over n points."""
-    inputs = [f"{q.name} + k * {q.name}_stride" if q.shape else f"{q.name}[k * {q.name}_stride]" for q in kernel.inputs]
-    outputs = [f"{q.name} + k{f' * {q.size}' if q.size > 1 else ''}" for q in kernel.outputs]
-    call = _wrapped(f"    gm_{kernel.name}", [*inputs, *outputs])
-    return f"{batch_declaration(kernel)}\n{{\n  long k;\n  for (k = 0; k < n; ++k) {{\n{call};\n  }}\n}}\n"
-
-
-def _wrapped(start: str, arguments: list[str]) -> str:
+def wrapped(start: str, arguments: list[str]) -> str:
+    """Start and arguments on one line, or one argument a line."""
     line = f"{start}({', '.join(arguments)})"
     if len(line) <= 110:
         return line
@@ -78,19 +62,15 @@ def _wrapped(start: str, arguments: list[str]) -> str:
     return f"{start}(\n" + ",\n".join(f"{indent}{argument}" for argument in arguments) + ")"
 
 
-def _columns(quantity: Quantity, address: str) -> str:
+def columns(quantity: Quantity, address: str) -> str:
+    """What the body is handed for a quantity."""
     if len(quantity.shape) > 1:
         return f"{quantity.name}_columns"
     return quantity.name if quantity.shape else f"{address}{quantity.name}"
 
 
-def _transposed(quantity: Quantity) -> Iterator[tuple[int, int]]:
+def transposed(quantity: Quantity) -> Iterator[tuple[int, int]]:
     """Places of each element of a matrix: in columns, in rows. Nothing for scalars and vectors."""
     if len(quantity.shape) > 1:
         rows, columns = quantity.shape
         yield from ((column * rows + row, row * columns + column) for row in range(rows) for column in range(columns))
-
-
-def _nan(kernel: Kernel) -> Iterator[str]:
-    for quantity in kernel.outputs:
-        yield from (f"    {quantity.name}[{k}] = NAN;" for k in range(quantity.size))

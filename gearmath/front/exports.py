@@ -7,7 +7,7 @@ from pathlib import Path
 
 from derivations.expression import Expression
 from gearmath.engine.kernel import Kernel
-from gearmath.export.c import double_kernel, integer_kernel
+from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import export_cnc as _export_cnc
 from gearmath.export.folder import write_folder
 from gearmath.export.teensy import export_teensy as _export_teensy
@@ -20,12 +20,13 @@ def export_c(
 ) -> list[Path]:
     """Write the C of kernels or expressions into a folder: ``gm_<name>.h`` and ``gm_<name>.c`` of each.
 
-    In double precision, or with ``bits`` = 32 or 64 in whole numbers of that size. Raises ExportError (a
-    ComputationError) naming what cannot become such C, InputError where the folder holds other files.
+    In double precision, with the files of the contract that these share (``gm_status.h``), or with ``bits`` = 32 or
+    64 in whole numbers of that size. Raises ExportError (a ComputationError) naming what cannot become such C,
+    InputError where the folder holds other files.
     """
     each = [what] if isinstance(what, Kernel | Expression) else list(what)
     made = [lower(one) if isinstance(one, Expression) else one for one in each]
-    files: dict[str, str] = {}
+    files: dict[str, str] = {} if bits else contract_files()
     for one in made:
         files |= (integer_kernel(one, bits) if bits else double_kernel(one)).files
     write_folder(Path(folder), files)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -45,15 +46,21 @@ class Job:
         """The plan by name, exact numbers as fractions."""
         return asdict(self.plan)
 
-    def plot(self, pattern: Pattern = "forward", edges: int = 1_000_000) -> Figure:
-        """The error of the exact rule, and of a floating-point one, over time [steps, s]."""
+    def plot(
+        self,
+        pattern: Pattern = "forward",
+        edges: int = 1_000_000,
+        start: int = 0,
+        progress: Callable[[int], object] = lambda edges: None,
+    ) -> Figure:
+        """The error of the exact rule, and of a floating-point one, over time [steps, s], after ``start`` edges."""
         from matplotlib.figure import Figure
 
         from gearmath.export.host import run_axes
         from gearmath.plot import draw_gearbox_error
 
         trace = Trace(edges)
-        simulate_job(run_axes, self.plan.ratio, pattern, edges, record=trace.add)
+        simulate_job(run_axes, self.plan.ratio, pattern, edges, 0, progress, trace.add, start)
         figure = Figure(figsize=(8, 4), layout="constrained")
         done, exact, floating = trace.arrays
         draw_gearbox_error(figure.subplots(), done / self.plan.edge_rate_hz, exact, floating)

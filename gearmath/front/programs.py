@@ -58,18 +58,10 @@ class Program:
         """What the machine must not run: travel, speed, collisions, modes, metal that is left or gouged; empty where it
         may.
         """
-        from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
-        from gearmath.machine.judging.program import faults_of, metal_faults
-        from gearmath.machine.judging.stated import Stated
-        from gearmath.machine.milling.run import runs_of
+        from gearmath.machine.judging.program import written_faults
 
-        spec, name, machine = self.member.spec, self.member.name, self.machine.spec
-        space = None if spec.process == "face_hobbing" else tooth_space(spec, name, 7)
-        path = self._path()
-        runs = runs_of(path, spec, name, machine, None, space, SHARP_EDGE)
-        found = faults_of(self.text, path, runs, spec, name, machine)
-        if Stated.of(self.text).coolant:  # a dry run cuts nothing
-            found += metal_faults(self.text, path, runs, spec, name, machine, space)[0]
+        member = self.member
+        found = written_faults(self.text, self._path(), member.spec, member.name, self.machine.spec)
         return [str(fault) for fault in found]
 
     def _path(self) -> MachinePath:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +16,7 @@ from gearmath.front.tables import html_table
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet, Design, Flank
 from gearmath.specs.bevel_set import Member as MemberSpec
 from gearmath.specs.cut import ANGULAR
-from gearmath.specs.toml import find
+from gearmath.specs.toml import checked, find
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -126,10 +126,25 @@ class Member:
         >>> round(changed.spec.concave.radial_distance - pinion.spec.concave.radial_distance, 6)
         0.05
         """
-        flanks = {"concave": concave or {}, "convex": convex or {}}
-        changed = {flank: _changed(self.name, flank, self.spec.flank(flank), by) for flank, by in flanks.items() if by}
-        spec = MemberSpec.model_validate({**_shallow(self.spec), **changed})
-        return self.gear_set.with_member(replace(self, spec=spec)).member(self.name)
+        values = {}
+        for flank, by in (("concave", concave or {}), ("convex", convex or {})):
+            _check_keys(self.name, flank, by)
+            values[flank] = {key: getattr(self.spec.flank(flank), key) + change for key, change in by.items()}
+        return self.with_values(**values)
+
+    def with_values(
+        self, concave: Mapping[str, float] | None = None, convex: Mapping[str, float] | None = None
+    ) -> Member:
+        """The member with settings of these values [mm, degrees], as :meth:`with_settings` changes them."""
+        changed = {}
+        for flank, to in (("concave", concave or {}), ("convex", convex or {})):
+            _check_keys(self.name, flank, to)
+            if to:
+                changed[flank] = _changed(self.spec.flank(flank), to)
+        members = {**_shallow(self.gear_set.spec), self.name: {**_shallow(self.spec), **changed}}
+        found = checked(members, BevelSet, self.gear_set.title)
+        check_pair(found)
+        return GearSet(found).member(self.name)
 
     def as_nominal(self) -> Member:
         """The member whose nominal flanks are those that its settings cut, as of a new design: nothing is changed then.
@@ -266,17 +281,19 @@ class Tooth:
         return html_table(f"tooth of the {self.member.name}", ["figure", "mm"], list(self.figures.items()))
 
 
-def _changed(name: str, flank: str, spec: Flank, by: Mapping[str, float]) -> dict[str, Any]:
-    """The table of a flank with changed settings, the nominal ones under ``design``."""
-    for key in by:
+def _check_keys(name: str, flank: str, keys: Iterable[str]) -> None:
+    for key in keys:
         if key not in SETTINGS:
             raise InputError(f"{name}.{flank}.{key}: is no setting; there are {', '.join(SETTINGS)}")
-    table = _shallow(spec)
+
+
+def _changed(spec: Flank, to: Mapping[str, float]) -> dict[str, Any]:
+    """The table of a flank with changed settings, the nominal ones under ``design``."""
     design = spec.design or Design(**{key: getattr(spec, key) for key in SETTINGS})
-    return {**table, **{key: table[key] + value for key, value in by.items()}, "design": design}
+    return {**_shallow(spec), **to, "design": design}
 
 
-def _shallow(spec: MemberSpec | Flank) -> dict[str, Any]:
+def _shallow(spec: BevelSet | MemberSpec | Flank) -> dict[str, Any]:
     """What was given for a model, its tables as they are."""
     return {key: getattr(spec, key) for key in type(spec).model_fields if key in spec.model_fields_set}
 

@@ -89,16 +89,33 @@ def over_pins(gear: Gear, pin: float | None = None) -> OverPins | None:
     None where such pins do not touch the flanks, or vanish below the tips.
     """
     size = PIN * gear.module if pin is None else pin
+    touched = pin_contact(gear, size)
+    if touched is None:
+        return None
+    return OverPins(size, touched.over_pins)
+
+
+@dataclass(frozen=True)
+class PinContact:
+    """Where pins touch the flanks: pressure angle at the middle of the pin [rad], length of roll, and M [mm]."""
+
+    angle: float
+    roll_length: float
+    over_pins: float
+
+
+def pin_contact(gear: Gear, pin: float) -> PinContact | None:
+    """Contact of pins of diameter ``pin`` [mm]; None as for :func:`over_pins`."""
     shape = (gear.module, gear.alpha, gear.beta)
-    parameters = (size, gear.teeth, *shape, gear.shift)
+    parameters = (pin, gear.teeth, *shape, gear.shift)
     if evaluate("pin_equation", 0.0, *parameters)[0] >= 0.0:
         return None  # inv of the pin angle would not be positive: the pin does not enter
     angle = float(_pin_angle()(_ABOVE, ca.vertcat(*parameters)))
-    length, contact, touched = evaluate("over_pins", angle, gear.teeth % 2, size, gear.teeth, *shape)
+    length, contact, touched = evaluate("over_pins", angle, gear.teeth % 2, pin, gear.teeth, *shape)
     outside = blank_diameter(gear)
     if contact <= 0.0 or touched >= outside or length <= outside:
         return None
-    return OverPins(size, length)
+    return PinContact(angle, contact / 2, length)
 
 
 #: The residual (9.12) rises and curves upwards: Newton's method falls monotonically to the root from above it.

@@ -123,19 +123,32 @@ class FloatRule:
         self.factor = np.float32(abs(numerator) / denominator)
         self.sign = -1 if numerator < 0 else 1
         self.count = count
-        self.delivered = int(np.floor(float(self.factor * np.float32(count)) + 0.5))
+        self.delivered = int(self._product(np.array([count]))[0])
 
     def __call__(self, edges: np.ndarray) -> np.ndarray:
         """The int8 steps of the next edges."""
         index = np.arange(1, len(edges) + 1)
-        product = self.factor * (self.count + index).astype(np.float32)
-        wanted = _first_not_below(np.floor(product.astype(np.float64) + 0.5))
+        wanted = _first_not_below(self._product(self.count + index))
         # delivered[i] = min(delivered[i-1] + 1, wanted[i]), because wanted never falls
         delivered = index + np.minimum(self.delivered, np.minimum.accumulate(wanted - index))
         pulses = np.diff(delivered, prepend=self.delivered)
         self.count += len(edges)
         self.delivered = int(delivered[-1])
         return (self.sign * pulses * edges).astype(np.int8)
+
+    def positions(self, counts: np.ndarray) -> np.ndarray:
+        """Steps delivered (n,) after so many edges forward, (n,): as if it had run through all of them."""
+        delivered = _first_not_below(self._product(counts))
+        coarse = int(np.spacing(np.float32(counts.max(initial=1))))  # whole counts that float32 cannot tell apart
+        for before in range(1, 2 * coarse + 2):
+            earlier = np.maximum(counts - before, 0)
+            delivered = np.minimum(delivered, _first_not_below(self._product(earlier)) + (counts - earlier))
+        return self.sign * delivered
+
+    def _product(self, counts: np.ndarray) -> np.ndarray:
+        """round(float32(N/D) * count), in float32."""
+        product = self.factor * counts.astype(np.float32)
+        return np.floor(product.astype(np.float64) + 0.5)
 
 
 def _first_not_below(wanted: np.ndarray) -> np.ndarray:

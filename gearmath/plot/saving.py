@@ -35,3 +35,11 @@ def svg(figure: Figure) -> str:
 def save(figure: Figure, path: Path) -> None:
     """Write a figure as PNG in one step."""
     write_bytes(path, png(figure))
+
+
+def save_svg(figure: Figure, path: Path) -> None:
+    """Write a figure as SVG in one step; the same bytes for the same figure."""
+    stream = io.BytesIO()
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": "gearmath"}):
+        figure.savefig(stream, format="svg", metadata={"Date": None})
+    write_bytes(path, stream.getvalue())

@@ -27,13 +27,8 @@ def spacing_section(page: Page, one: ReportedMeasurement) -> None:
     """Pitch and runout with tolerance and grade beside each value, then thickness."""
     found = one.evaluation
     rows = [
-        [
-            f"{words}, {flank}",
-            *_graded(found.verdict, flank, name, value, one.uncertain(flank, figure)),
-            *_again(one, flank, name),
-        ]
-        for name, (figure, words) in _SPACING.items()
-        for flank, value in _values(found, name)
+        [f"{_SPACING[name][1]}, {flank}", *graded, *_again(one, flank, name)]
+        for name, flank, graded in spacing_rows(one)
     ]
     if rows:
         caveat = f" {found.verdict.remark}." if found.verdict is not None else ""
@@ -64,6 +59,14 @@ def spacing_section(page: Page, one: ReportedMeasurement) -> None:
                 ["chord", f"{thickness.chord:.4f}", micro(thickness.mean * thickness.chord_factor), *then[1]],
             ],
         )
+
+
+def spacing_rows(one: ReportedMeasurement) -> Iterator[tuple[str, str, list[str]]]:
+    """Name (f_pt, F_p, F_r) and flank of a figure, then value [µm], 95 % interval, grade, tolerance of the grade."""
+    found = one.evaluation
+    for name, (figure, _) in _SPACING.items():
+        for flank, value in _values(found, name):
+            yield name, flank, _graded(found.verdict, flank, name, value, one.uncertain(flank, figure))
 
 
 def _values(found: MemberEvaluation, name: str) -> Iterator[tuple[str, float]]:
@@ -139,7 +142,7 @@ def _flank_table(page: Page, found: MemberEvaluation, what: str) -> None:
     flanks = _with_topography(found)
     rows = [
         ["at the reference point", *(micro(each.mean.at_reference) for each in flanks.values() if each.mean)],
-        ["largest, with its sign", *(_largest(each) for each in flanks.values())],
+        ["largest, with its sign", *(largest_cell(each) for each in flanks.values())],
         ["RMS, tooth thickness in it", *(micro(each.mean.rms) for each in flanks.values() if each.mean)],
         [
             "RMS of the chart, zero at the reference",
@@ -157,7 +160,8 @@ def _flank_table(page: Page, found: MemberEvaluation, what: str) -> None:
     )
 
 
-def _largest(figures: FlankFigures) -> str:
+def largest_cell(figures: FlankFigures) -> str:
+    """The largest deviation [µm] with its sign, or that it is withheld."""
     withheld = figures.mean is None or figures.mean.left_out or "max_deviation" in figures.withheld
     return "withheld" if withheld or figures.mean is None else micro(figures.mean.extreme)
 
@@ -176,7 +180,7 @@ def uncertainty_section(page: Page, one: ReportedMeasurement) -> None:
         rows = [
             [
                 known.figure.name.replace("_", " ") + ("" if known.method == "GUM" else " *"),
-                *_shown(known),
+                *figure_cells(known),
                 in_words(known.figure.unit),
             ]
             for known in shown
@@ -186,7 +190,7 @@ def uncertainty_section(page: Page, one: ReportedMeasurement) -> None:
         page.table(f"Values and uncertainties, {words}", ["figure", "value", "u", "from", "to", "unit"], rows)
 
 
-def _shown(known: Uncertain) -> list[str]:
+def figure_cells(known: Uncertain) -> list[str]:
     """Value, uncertainty and interval, with as many digits as the uncertainty asks for: none of those is zero."""
     values = [value * known.figure.factor for value in (known.value, known.uncertainty, *known.interval)]
     digits = 2

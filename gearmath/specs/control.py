@@ -6,8 +6,9 @@ import math
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
+from gearmath.errors import InputError
 from gearmath.specs.toml import Spec
 
 
@@ -26,6 +27,10 @@ class ControlSettings(Spec):
     Positions are written in whole increments, since the control rounds to them whatever is written.
     """
 
+    kind: Literal["sinumerik", "linuxcnc"] | None = None
+    """Which control the machine has; left out, programs are for a SINUMERIK unless --control says otherwise."""
+    tool_numbers: dict[str, Annotated[int, Field(ge=1, le=99_999, strict=True)]] = Field(default={})
+    """LinuxCNC: numbers of tools by their names; others are counted from 1, the probe has 99."""
     increments_per_mm: _Increments = 1000
     """MD10200 $MN_INT_INCR_PER_MM."""
     increments_per_degree: _Increments = 1000
@@ -36,6 +41,8 @@ class ControlSettings(Spec):
     """CTOL: how far G642 may take X Y Z off the programmed path."""
     orientation_tolerance_arcsec: float = Field(default=0.1, ge=0.01, le=100)
     """OTOL: how far it may take A and B off."""
+    polynomial_values: int = Field(default=15, ge=1, le=1000)
+    """End points and coefficients that a block may have: a cubic of five axes has 15, a quintic 25."""
     jerk: Literal["BRISK", "SOFT"] = "SOFT"
     feed_forward: bool = True
     spindle_start_seconds: float = Field(default=3.0, ge=0.0, le=60.0)
@@ -44,6 +51,21 @@ class ControlSettings(Spec):
     result_file_kB: int | None = Field(default=None, ge=1, le=1_000_000)
     """MD11420 $MN_LEN_PROTOCOL_FILE: how long a file may be into which a program writes; left out, only the control
     knows, and programs ask it before they move."""
+
+    @model_validator(mode="after")
+    def _a_number_each(self) -> ControlSettings:
+        if len(set(self.tool_numbers.values())) < len(self.tool_numbers):
+            raise ValueError("tool_numbers must give every tool a number of its own")
+        return self
+
+    def dialect(self, asked: str | None) -> str:
+        """The control that a program is for: ``asked`` by the user, or the one of the machine.
+
+        Raises InputError where they are not the same.
+        """
+        if asked and self.kind and asked != self.kind:
+            raise InputError(f"--control {asked}: the machine has [control] kind = {self.kind!r}")
+        return asked or self.kind or "sinumerik"
 
     @property
     def decimals(self) -> tuple[int, int]:

@@ -7,7 +7,7 @@ import io
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -95,6 +95,15 @@ class FlankFile:
     def pick(self, keep: np.ndarray) -> FlankFile:
         """The points that an index array or a mask keeps."""
         return FlankFile(self.header, self.member, *(getattr(self, name)[keep] for name in _ARRAYS))
+
+    def with_noise(self, noise: np.ndarray, sigma: float) -> FlankFile:
+        """As a probe says it: off by ``noise`` (n,) [mm] along the normals, of standard uncertainty ``sigma``."""
+        return replace(
+            self,
+            point=self.point + noise[:, None] * self.normal,
+            deviation=self.deviation + noise,
+            uncertainty=np.full(len(self), sigma),
+        )
 
     @property
     def planned(self) -> int | None:

@@ -10,6 +10,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from derivations import notation
 from gearmath.specs.ratio import INCH
 from gearmath.specs.toml import Spec
 
@@ -20,6 +21,9 @@ DEPTH_RULES = {
     "2.2/P+0.002in": (2.2, 0.002 * INCH),
     "2.25m": (2.25, 0.0),
 }
+
+#: Tip radius of the hob in modules, which is the root fillet of the basic rack, ISO 53.
+TIP_RADII = {"A": 0.38, "B": 0.3, "C": 0.25, "D": 0.39}
 
 
 class Hob(Spec):
@@ -32,6 +36,12 @@ class Hob(Spec):
     """Reference diameter [mm], where the lead angle is taken; only the swivel angle needs it."""
     pressure_angle: float = Field(default=20.0, ge=10.0, le=30.0)
     """Normal pressure angle [degrees]."""
+    gashes: int = Field(default=12, ge=int(notation.hob_gashes.domain[0]), le=int(notation.hob_gashes.domain[1]))
+    """How many rows of teeth the hob has around."""
+    basic_rack: Literal["A", "B", "C", "D"] = "A"
+    """Basic rack of ISO 53, which says how the tips of its teeth are rounded."""
+    tip_radius: float | None = Field(default=None, ge=0.0, le=1.0)
+    """Radius of the tips in modules, where it is not that of the basic rack."""
 
     @model_validator(mode="after")
     def _one_size(self) -> Hob:
@@ -69,6 +79,18 @@ class Hob(Spec):
     def module_mm(self) -> float:
         """Normal module [mm]."""
         return INCH / self.diametral_pitch if self.diametral_pitch is not None else float(self.module or 0.0)
+
+    @property
+    def addendum(self) -> float:
+        """Height of its teeth above the reference cylinder [mm]: the whole depth less one module."""
+        factor, extra = self.depth_terms
+        return (factor - 1.0) * self.module_mm + extra
+
+    @property
+    def tip_rounding(self) -> float:
+        """Radius of its tips [mm]."""
+        factor = TIP_RADII[self.basic_rack] if self.tip_radius is None else self.tip_radius
+        return factor * self.module_mm
 
     @property
     def alpha(self) -> float:

@@ -24,11 +24,12 @@ from gearmath.specs.counters import (
     filter_setting,
     pins_in_words,
 )
+from gearmath.specs.cutting_errors import CuttingErrors
 from gearmath.specs.drive import Encoder, Feed, LeadScrew, Table
 from gearmath.specs.drivers import Driver
 from gearmath.specs.hob import Hob
 from gearmath.specs.ratio import EXACT_INCH
-from gearmath.specs.toml import Spec, load
+from gearmath.specs.toml import Spec, find, load
 
 __all__ = ["Hob", "HobbingMachine", "load_hobbing_machine"]
 
@@ -82,6 +83,8 @@ class HobbingMachine(Spec):
     display: Display = Display()
     limits: Limits
     hobs: tuple[Hob, ...] = Field(default=(), strict=False)
+    errors: CuttingErrors = CuttingErrors()
+    """What is wrong with the machine: for virtual cutting only, the firmware does not know it."""
 
     @model_validator(mode="before")
     @classmethod
@@ -325,3 +328,8 @@ class HobbingMachine(Spec):
 def load_hobbing_machine(path: Path) -> HobbingMachine:
     """Read a machine file. Raises InputError with file, key, value and limit in one sentence."""
     return load(path, HobbingMachine)
+
+
+def find_hobbing_machine(name: str) -> HobbingMachine:
+    """A machine file by its path, or by the name of a bundled one. Raises InputError."""
+    return load_hobbing_machine(find(name))

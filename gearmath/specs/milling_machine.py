@@ -42,6 +42,7 @@ class TravelAxis(Spec):
     travel: _Range
     max_speed_per_min: float = Field(gt=0)
     max_acceleration: float = Field(gt=0)
+    max_jerk: float | None = Field(default=None, gt=0)
 
 
 class TurningAxis(Spec):
@@ -55,6 +56,7 @@ class TurningAxis(Spec):
     travel: _Range | None = None
     max_speed_per_min: float = Field(gt=0)
     max_acceleration: float = Field(gt=0)
+    max_jerk: float | None = Field(default=None, gt=0)
     one_sided_approach: float = Field(default=0.0, ge=0, le=20)
 
     @model_validator(mode="after")
@@ -85,6 +87,7 @@ class AxisLimits:
     travel: np.ndarray
     max_speed: np.ndarray
     max_acceleration: np.ndarray
+    max_jerk: np.ndarray
 
 
 class MillingMachine(Spec):
@@ -169,11 +172,18 @@ class MillingMachine(Spec):
         """Highest acceleration of X Y Z A B, (5,) mm/s² and rad/s²."""
         return np.array([axis.max_acceleration for axis in self._all]) / UNITS_PER_INTERNAL
 
+    @property
+    def max_jerk(self) -> np.ndarray:
+        """Highest jerk of X Y Z A B, (5,) mm/s³ and rad/s³; infinite where the file states none."""
+        return np.array([axis.max_jerk or np.inf for axis in self._all]) / UNITS_PER_INTERNAL
+
     def limits(self, count: int) -> AxisLimits:
         """Limits of positions with ``count`` columns: five, or six with the cutter's axis, which must be there."""
         cutter = self.axes.C
         if count == len(AXES) or cutter is None:
-            return AxisLimits(AXES, UNITS, UNITS_PER_INTERNAL, self.travel, self.max_speed, self.max_acceleration)
+            return AxisLimits(
+                AXES, UNITS, UNITS_PER_INTERNAL, self.travel, self.max_speed, self.max_acceleration, self.max_jerk
+            )
         degree = UNITS_PER_INTERNAL[-1]
         return AxisLimits(
             AXES + CUTTER_AXIS,
@@ -182,6 +192,7 @@ class MillingMachine(Spec):
             np.vstack([self.travel, np.array(cutter.travel or (-np.inf, np.inf)) / degree]),
             np.append(self.max_speed, cutter.max_speed_per_min / degree / 60.0),
             np.append(self.max_acceleration, cutter.max_acceleration / degree),
+            np.append(self.max_jerk, (cutter.max_jerk or np.inf) / degree),
         )
 
     @property

@@ -8,6 +8,8 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, InstanceOf
 
+from gearmath.errors import InputError
+
 INCH = 25.4  # mm
 #: The same, exactly.
 EXACT_INCH = Fraction(127, 5)
@@ -70,3 +72,11 @@ Rational = Annotated[InstanceOf[Fraction], BeforeValidator(_rational)]
 #: Pulses per turn of a servo, which may be more.
 Pulses = Annotated[InstanceOf[Fraction], BeforeValidator(_pulses)]
 Pitch = Annotated[InstanceOf[Fraction], BeforeValidator(pitch)]
+
+
+def pitch_of(text: str) -> Fraction:
+    """The pitch [mm] that an option says, such as 1.25mm or 8tpi. Raises InputError."""
+    try:
+        return pitch(text)
+    except ValueError as error:
+        raise InputError(f"pitch = {text!r}: {error}") from None

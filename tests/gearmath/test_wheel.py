@@ -37,9 +37,21 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def programs(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the programs of an environment that holds the wheel and its dependencies, nothing else."""
     home = tmp_path_factory.mktemp("environment")
-    run(home, sys.executable, "-m", "venv", home / "venv")
+    run(home, sys.executable, "-m", "venv", "--without-pip", home / "venv")
     python = home / "venv" / "bin" / "python"
-    run(home, python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile", wheel)
+    run(
+        home,
+        sys.executable,
+        "-m",
+        "pip",
+        "--python",
+        python,
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+        "--no-compile",
+        wheel,
+    )
     return python.parent
 
 

@@ -87,6 +87,8 @@ class Nc:
         """By ``folder/NAME.MPF``."""
         self.selected, self.message, self.line = "", "", 0
         self.channel, self.program_state, self.mode = _RESET, 0, _JOG
+        self.probe_deflected = False
+        """Whether somebody deflects the stylus by hand."""
         self.alarms: dict[str, NcAlarm] = {}
         self.log: list[Logged] = []
         self.on_alarm: Callable[[str, NcAlarm, bool], object] = lambda key, alarm, active: None

@@ -44,6 +44,8 @@ class Item:
 
 def item(name: str) -> Item | None:
     """The variable of a name in any of the spellings that the control takes; None where it has none."""
+    if name == sinumerik.PROBE.text:
+        return Item(lambda nc: int(nc.probe_deflected))
     match = _NAME.fullmatch(name)
     if match is None or (match["unit"] is not None and match["unit"] != "1"):
         return None

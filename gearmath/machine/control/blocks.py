@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from gearmath.machine.control.expression import AXES, CUTTER_AXIS, refuse
+from gearmath.machine.control.polynomial import followed, polynomials
 from gearmath.machine.control.state import DEGREE_IS_MM, Blind, Latch, Number, State
 from gearmath.machine.control.tree import Block
 
@@ -71,6 +73,19 @@ class PathRow(NamedTuple):
     measuring: bool
     cutter: float
     coolant: bool
+    inner: bool = False
+    """Whether the row ends within a block of POLY."""
+    way: tuple[tuple[float, ...], ...] = ()
+    """Of a block of POLY: the ends of the straight parts in which it is followed, degrees, the last one left out."""
+    shares: tuple[float, ...] = ()
+    """And the part of the time that each of them takes."""
+
+    def parts(self) -> Iterator[PathRow]:
+        """The rows in which a block is followed: itself, where it is straight."""
+        whole = self._replace(way=(), shares=())
+        for position, share in zip(self.way, self.shares, strict=False):
+            yield whole._replace(position=position, seconds=share * self.seconds, inner=True)
+        yield whole._replace(seconds=self.shares[-1] * self.seconds) if self.shares else whole
 
 
 class ControlState(State):
@@ -132,7 +147,8 @@ class ControlState(State):
         for axis in _ALL:
             if axis in words:
                 self.position[axis] = self._target(axis, block, number(words[axis].value, words[axis].column), rapid)
-        seconds = 0.0 if rapid else self._cutting_seconds(block, before, column, number)
+        way, lengths = self._curve(block, before, number)
+        seconds = 0.0 if rapid else self._cutting_seconds(block, before, column, number, lengths)
         if "MEAS" in words:
             self._measure(block, before)
         if any(axis not in before for axis in AXES):
@@ -156,7 +172,33 @@ class ControlState(State):
             "MEAS" in words,
             cutter,
             self.modal.get("coolant") == "M8",
+            way=tuple(map(tuple, way[:-1].tolist())),
+            shares=tuple((lengths / lengths.sum()).tolist()),
         )
+
+    def _curve(self, block: Block, before: dict[str, float], number: Number) -> tuple[np.ndarray, np.ndarray]:
+        """Ends (n,5) of the straight parts of a block of polynomials and what of its path each of them is (n,).
+
+        Without POLY the control drives straight to the end points, and says nothing.
+        """
+        words = {axis: block.words[axis] for axis in _ALL if axis in block.words}
+        bent = {axis: word for axis, word in words.items() if word.coefficients}
+        if self.modal["motion"] != "POLY" or not bent:
+            return np.empty((0, len(AXES))), np.empty(0)
+        if unknown := [axis for axis in AXES if axis not in before]:
+            self._refuse(block, next(iter(bent)), f"POLY from an unknown position of {' '.join(unknown)}")
+        for axis, word in words.items():
+            if axis not in self.feed_axes and (word.coefficients or self.position[axis] != before.get(axis)):
+                what = f"{word.text} while FGROUP leaves {axis} out: what it follows depends on UPATH or SPATH"
+                self._refuse(block, axis, what)
+        coefficients = {
+            AXES.index(axis): [number(node, word.column) for node in word.coefficients] for axis, word in bent.items()
+        }
+        interval = number(block.words["PL"].value, block.words["PL"].column) if "PL" in block.words else 1.0
+        ends = [[where[axis] for axis in AXES] for where in (before, self.position)]
+        weights = [float(axis in self.feed_axes) for axis in "XYZ"]
+        weights += [self.feed_radius[axis] / DEGREE_IS_MM * (axis in self.feed_axes) for axis in "AB"]
+        return followed(polynomials(ends[0], ends[1], coefficients, interval), np.array(weights))
 
     def _target(self, axis: str, block: Block, value: float, rapid: bool) -> float:
         """Where an axis word takes its axis, in machine coordinates, A counted on."""
@@ -165,12 +207,16 @@ class ControlState(State):
             if now is None:
                 self._refuse(block, axis, f"{word.text} from an unknown position")
             target = now + value
-        elif word.way in ("", "AC"):
-            if axis in _TURNING:
+        elif word.way in ("", "AC", "PO"):
+            if axis in _TURNING and word.way != "PO":
                 self._count(block, axis, True)
-            target = value + self._from_zero(axis, "frame suppression" in block.words)
+            # a polynomial of a modulo axis counts on from where DC has put it [unconfirmed]
+            turned = self.turns.get(axis, 0.0) if word.way == "PO" else 0.0
+            target = value + turned + self._from_zero(axis, "frame suppression" in block.words)
         else:
-            return self._turned(axis, block, value, now, rapid) + self._from_zero(axis, False)
+            turned = self._turned(axis, block, value, now, rapid)
+            self.turns = self.turns | {axis: 360.0 * round((turned - value) / 360.0)}
+            return turned + self._from_zero(axis, False)
         if not abs(target) <= _LARGEST_COORDINATE:
             self._refuse(block, axis, f"{word.text} leads to {target:g}: no axis is that long")
         return target
@@ -181,7 +227,7 @@ class ControlState(State):
             return 0.0
         zero = self.setup.zero[AXES.index(axis)]
         length = self.length if axis == "Z" else 0.0
-        return length - zero + (0.0 if suppressed else self.frame[axis])
+        return length - zero + (0.0 if suppressed else self.frame(axis))
 
     def _turned(self, axis: str, block: Block, value: float, now: float | None, rapid: bool) -> float:
         """The position to which DC, ACP or ACN turn a modulo axis."""
@@ -207,8 +253,10 @@ class ControlState(State):
             text = block.words[axis].text
             self._refuse(block, axis, f"{text}: {axis} is counted on in one block and modulo in another")
 
-    def _cutting_seconds(self, block: Block, before: dict[str, float], column: int, number: Number) -> float:
-        """Duration of a G1 block [s]: 60/F with G93, length of the path / F with G94."""
+    def _cutting_seconds(
+        self, block: Block, before: dict[str, float], column: int, number: Number, lengths: np.ndarray
+    ) -> float:
+        """Duration of a feed block [s]: 60/F with G93, length of the path / F with G94; ``lengths`` are of a curve."""
         name, line = self.name, block.line
         if self.modal.get("spindle", "M5") == "M5":
             refuse(name, line, column, "cutting move with the spindle off")
@@ -234,7 +282,7 @@ class ControlState(State):
                 refuse(name, line, column, f"G94 with {axis} turning: write such a block with G93, or FGROUP before it")
             steps[axis] *= self.feed_radius[axis] / DEGREE_IS_MM
         length = math.hypot(*(steps[axis] for axis in AXES if axis in (self.feed_axes or AXES)))
-        return 60.0 * length / self.feed
+        return 60.0 * (float(lengths.sum()) if len(lengths) else length) / self.feed
 
     def _measure(self, block: Block, before: dict[str, float]) -> None:
         """Move the probe; where it triggers, the axes stop, and those of the block are latched."""
@@ -254,6 +302,6 @@ class ControlState(State):
         machine = {axis: self.position[axis] + zero[axis] for axis in AXES if axis in block.words}
         if "A" in machine and not self.counting.get("A"):
             machine["A"] %= 360.0
-        frame = self.frame | {"Z": self.frame["Z"] + self.length}
-        work = {axis: value - frame[axis] for axis, value in machine.items()}
+        added = {axis: self.frame(axis) + (self.length if axis == "Z" else 0.0) for axis in machine}
+        work = {axis: value - added[axis] for axis, value in machine.items()}
         self.latch = Latch(machine, work, touched is not None)

@@ -9,9 +9,11 @@ import numpy as np
 
 from gearmath.machine.control.blocks import ControlState
 from gearmath.machine.control.expression import AXES, refuse
+from gearmath.machine.control.linuxcnc_runner import LinuxCncRunner
 from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.runner import Halt, Host, StatementRunner, Stopped, Watch
 from gearmath.machine.control.state import Blind, Deflected, Follower, Probe, Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.control.tree import ParsedProgram
 
 #: Blocks and turns of loops that a program may run through.
@@ -21,7 +23,10 @@ _KEPT: dict[str, ParsedProgram] = {}
 
 @dataclass(frozen=True)
 class MachinePath:
-    """What a program commands, one row for each motion block that ends at a known position of all five axes."""
+    """What a program commands, one row for each motion block that ends at a known position of all five axes.
+
+    A block of POLY has many rows: it is followed in straight parts, so short that they are it within ``CHORD``.
+    """
 
     axes: np.ndarray
     """Positions X Y Z A B at the ends of the blocks, (n, 5) mm and rad; A counted on as the control turns it."""
@@ -54,6 +59,8 @@ class MachinePath:
     """Whether coolant is on, (n,)."""
     halts: tuple[Halt, ...] = ()
     """Where the axes wait: dwells and stops."""
+    inner: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    """Whether the row ends within a block of POLY, (n,)."""
     unset: dict[int, int] = field(default_factory=dict)
     """R parameters that are read before the program sets them, with the line: they keep what another program left."""
 
@@ -125,6 +132,10 @@ def run_program(
     Raises InputError with ``name``, line and column for what a program must not do, and for one that takes more than
     ``step_limit`` steps.
     """
+    if is_for_linuxcnc(text):
+        return _on_linuxcnc(
+            LinuxCncRunner(name, setup, probe, parameters or {}, step_limit, deflected, moved), text, files or {}
+        )
     program = parsed(text, name)
     runner = StatementRunner(
         ControlState(name, probe, setup), host, dict(parameters or {}), step_limit, deflected, moved, watch
@@ -137,10 +148,19 @@ def run_program(
     else:
         if not runner.control.ended:
             refuse(name, program.lines, 1, "the text ends without M30: the program is not complete")
-    files = {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()}
+    return _done(runner)
+
+
+def _on_linuxcnc(runner: LinuxCncRunner, text: str, files: Mapping[str, str]) -> ProgramRun:
+    runner.files = {file: content.splitlines() for file, content in files.items()}
+    runner.run(text)
+    return _done(runner)
+
+
+def _done(runner: StatementRunner | LinuxCncRunner) -> ProgramRun:
     return ProgramRun(
         _path(runner),
-        files,
+        {file: "".join(f"{line}\n" for line in lines) for file, lines in runner.files.items()},
         tuple(runner.messages),
         runner.parameters,
         runner.alarm,
@@ -149,7 +169,7 @@ def run_program(
     )
 
 
-def _path(runner: StatementRunner) -> MachinePath:
+def _path(runner: StatementRunner | LinuxCncRunner) -> MachinePath:
     """The rows as arrays, in mm and rad."""
     rows, control = runner.rows, runner.control
     positions = np.array([row.position for row in rows]).reshape(-1, len(AXES))
@@ -172,5 +192,6 @@ def _path(runner: StatementRunner) -> MachinePath:
         dynamics=dict(control.dynamics),
         coolant=np.array([row.coolant for row in rows], dtype=bool),
         halts=tuple(runner.halts),
+        inner=np.array([row.inner for row in rows], dtype=bool),
         unset=runner.unset,
     )

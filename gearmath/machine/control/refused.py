@@ -14,7 +14,7 @@ _TYPE = "only DEF INT and DEF REAL are read"
 _LOOP = "write WHILE or FOR"
 _CALL = "calls of other programs are not read: write their blocks here"
 _FRAME = "only TRANS is read of the frames"
-_SPLINE = "the path is read as G1 blocks: write these"
+_SPLINE = "the path is read as G1 and POLY blocks: write these"
 _MEASURE = "write MEAS=1 in a G1 block"
 _TOOL = 'write the tool by its name, T="NAME", of 1 to 31 letters, digits and _'
 
@@ -32,7 +32,7 @@ _HINTS: dict[str, str] = {
     "G9": "write G60",
     **dict.fromkeys(("STRING", "BOOL", "CHAR", "AXIS", "FRAME"), _TYPE),
     **dict.fromkeys(("ATRANS", "ROT", "AROT", "SCALE", "ASCALE", "MIRROR", "AMIRROR"), _FRAME),
-    **dict.fromkeys(("POLY", "PO", "PL", "ASPLINE", "BSPLINE", "CSPLINE", "SPLINEPATH"), _SPLINE),
+    **dict.fromkeys(("POLYPATH", "ASPLINE", "BSPLINE", "CSPLINE", "SPLINEPATH"), _SPLINE),
     **dict.fromkeys(("COMPON", "COMPCURV", "COMPSURF"), "the compressor is read as COMPCAD or COMPOF only"),
     **dict.fromkeys(("G643", "G644", "G645", "G602", "G601"), "the path mode is read as G60, G64, G641 or G642 only"),
     **dict.fromkeys(("MEAW", "MEASA", "MEAC", "MEAWA"), _MEASURE),
@@ -53,7 +53,7 @@ _HINTS: dict[str, str] = {
 _WORD = re.compile(r"[A-Z]+")
 _WITH_NUMBER = re.compile(r"([GM])0*([0-9]+)")
 #: Words whose name ends before their number or parameter.
-_ADDRESSES = {"O", "T", "PO", "PL", "CR", "TURN", "LIMS"}
+_ADDRESSES = {"O", "T", "CR", "TURN", "LIMS"}
 
 
 def instead(text: str) -> str | None:

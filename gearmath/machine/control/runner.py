@@ -50,6 +50,8 @@ class Halt(NamedTuple):
     stop: bool
     rows: int
     blind: int
+    seconds: float = 0.0
+    """Of a dwell."""
 
 
 class Stopped(Exception):
@@ -185,16 +187,16 @@ class StatementRunner:
         for target, value in block.assignments:
             self._assign(target, self._number(value, block.line, target.column), block.line)
         row = self.control.run(block, lambda node, column: self._number(node, block.line, column))
-        if row is not None:
-            self.rows.append(row)
+        for part in row.parts() if row is not None else ():
+            self.rows.append(part)
             self.said.append(self.messages[-1] if self.messages else "")
-            if row.measuring:
+            if part.measuring:
                 self._latched = len(self.rows) - 1
-            self.moved(internal(row.position))
-            self._watched(block.line, row)
+            self.moved(internal(part.position))
+            self._watched(block.line, part)
         for key in ("dwell", "program stop"):
             if key in block.words:
-                self.halts.append(Halt(block.line, key != "dwell", len(self.rows), len(self.control.blind)))
+                self.halts.append(self._halt(block, key))
         if "dwell" in block.words and self.host is not None:
             self._pending.update(self.host(dict(self.parameters)))
 
@@ -232,6 +234,12 @@ class StatementRunner:
             self.integer[name] = definition.integer
             for index in np.ndindex(*sizes):
                 self.variables[name, index] = _whole(value) if definition.integer else value
+
+    def _halt(self, block: Block, key: str) -> Halt:
+        seconds = 0.0
+        if key == "dwell":
+            seconds = self._number(block.words["F"].value, block.line, block.words["F"].column)
+        return Halt(block.line, key != "dwell", len(self.rows), len(self.control.blind), seconds)
 
     def _command(self, command: Command) -> None:
         control, line, column = self.control, command.line, command.column

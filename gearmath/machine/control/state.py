@@ -10,6 +10,7 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 
 from gearmath.machine.control.expression import AXES, CUTTER_AXIS, Node, refuse
+from gearmath.machine.control.polynomial import INTERVAL
 from gearmath.machine.control.tree import Block, Word
 from gearmath.machine.control.vocabulary import GROUP_OF_CODE
 from gearmath.specs.milling_machine import MillingMachine
@@ -25,7 +26,7 @@ PROBE_TOOL = "PROBE"
 Number = Callable[[Node, int], float]
 
 _GROUPS = frozenset(GROUP_OF_CODE.values())
-_VALUED = ("F", "S", "D", "SPOS", "ADIS", "ADISPOS", "MEAS", "CTOL", "OTOL")
+_VALUED = ("F", "S", "D", "SPOS", "ADIS", "ADISPOS", "MEAS", "CTOL", "OTOL", "PL")
 #: Radius [mm] at which one degree is one millimetre: what F means for a rotary axis of FGROUP.
 DEGREE_IS_MM = 180.0 / math.pi
 
@@ -115,6 +116,8 @@ class State:
     feed_axes: str = ""
     feed_radius: dict[str, float] = field(default_factory=lambda: {"A": DEGREE_IS_MM, "B": DEGREE_IS_MM})
     counting: dict[str, bool] = field(default_factory=dict)
+    turns: dict[str, float] = field(default_factory=dict)
+    """By how much the position of an axis is more than the number that DC, ACP or ACN last gave it: whole turns."""
     speed: float | None = None
     unstated: tuple[str, ...] | None = None
     """What had not been said of ``STATED`` when the axes first moved."""
@@ -150,15 +153,14 @@ class State:
         """What the tool table adds to Z now [mm]."""
         return self.setup.length(self.tool) if self.edge else 0.0
 
-    @property
-    def frame(self) -> dict[str, float]:
-        """What all frames together add to a programmed position of each axis, by machine coordinates."""
-        return {axis: by + self.shift.get(axis, 0.0) for axis, by in zip(AXES, self.setup.offset, strict=True)}
+    def frame(self, axis: str) -> float:
+        """What all frames together add to a programmed position of an axis, in machine coordinates."""
+        return self.setup.offset[AXES.index(axis)] + self.shift.get(axis, 0.0)
 
     def frame_part(self, axis: str, part: str) -> float:
         """One part of all frames together: TR shift, RT rotation, MI mirroring, SC scale."""
         if part == "TR":
-            return self.frame[axis]
+            return self.frame(axis)
         values = {"RT": self.setup.turned, "MI": self.setup.mirrored, "SC": self.setup.scaled}[part]
         return values["XYZ".index(axis)]
 
@@ -194,6 +196,8 @@ class State:
             self.position.pop(CUTTER_AXIS, None)
         elif key == "MEAS" and value != 1.0:
             self._refuse(block, key, f"{word.text}: only MEAS=1, the rising edge of probe 1, is understood")
+        elif key == "PL" and not INTERVAL[0] <= value <= INTERVAL[1]:
+            self._refuse(block, key, f"{word.text}: must lie between {INTERVAL[0]:g} and {INTERVAL[1]:.4f}")
         elif key == "dwell" and "F" not in block.words:
             self._refuse(block, key, "G4 without a time F")
         elif key in ("OVR", "OVRRAP") or key.startswith("ACC "):

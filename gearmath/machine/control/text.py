@@ -25,7 +25,13 @@ _AROUND = re.compile(r"^_N_|(?:_|\.)(?:MPF|SPF)$")
 _RESERVED = re.compile(r"CON|PRN|AUX|NUL|COM[1-9]|LPT[1-9]")
 _HEADER = re.compile(r"%_N_([A-Z0-9_]+)_(?:MPF|SPF)[ \t]*")
 _NO_TEXT = re.compile(r"\r(?!\n)|[^\t\n\r\x20-\x7e\x80-\U0010ffff]")
+_FOR_LINUXCNC = re.compile(r"^; control: LinuxCNC[ \t]*$", re.MULTILINE)
 _SKIP = re.compile(r"^[ \t]*/", re.MULTILINE)
+
+
+def is_for_linuxcnc(text: str) -> bool:
+    """Whether the head of a program says that it is for LinuxCNC."""
+    return _FOR_LINUXCNC.search(text) is not None
 
 
 def program_text(path: Path) -> str:

@@ -9,12 +9,16 @@ from gearmath.machine.control.expression import NcVariable, Node
 
 
 class Word(NamedTuple):
-    """A word of a block: ``text`` is the code or the tool name, ``value`` the number, ``way`` DC, IC, AC ..."""
+    """A word of a block: ``text`` is the code or the tool name, ``value`` the number, ``way`` DC, IC, AC, PO ...
+
+    ``coefficients`` are what stands behind the end point in PO.
+    """
 
     text: str
     value: Node
     column: int
     way: str = ""
+    coefficients: tuple[Node, ...] = ()
 
 
 class Assignment(NamedTuple):

@@ -8,7 +8,7 @@ from gearmath.machine.control.expression import AXES, CUTTER_AXIS, FUNCTIONS
 GROUP_OF_CODE = {
     code: group
     for group, codes in {
-        "motion": "G0 G1",
+        "motion": "G0 G1 POLY",
         "dwell": "G4",
         "plane": "G17",
         "radius compensation": "G40",
@@ -36,7 +36,7 @@ COMMANDS = {"STOPRE", "MSG", "SETAL", "WRITE", "DELETE", "TRANS", "FGROUP", "SPC
 TYPES = ("INT", "REAL")
 STRUCTURE = ("IF", "ELSE", "ENDIF", "WHILE", "ENDWHILE", "FOR", "ENDFOR")
 LETTERS = frozenset(f"{AXES}{CUTTER_AXIS}FSD")
-ADDRESSES = ("SPOS", "MEAS", "ADIS", "ADISPOS", "FGREF", "CTOL", "OTOL", "OVR", "OVRRAP", "ACC")
+ADDRESSES = ("SPOS", "MEAS", "ADIS", "ADISPOS", "FGREF", "CTOL", "OTOL", "OVR", "OVRRAP", "ACC", "PO", "PL")
 RESERVED = frozenset(
     (
         *GROUP_OF_CODE,

@@ -15,6 +15,7 @@ from gearmath.machine.control.expression import (
     Scanner,
     shown,
 )
+from gearmath.machine.control.polynomial import CUBIC, QUINTIC
 from gearmath.machine.control.refused import instead
 from gearmath.machine.control.tree import Assignment, Block, Word
 from gearmath.machine.control.vocabulary import ADDRESSES, GROUP_OF_CODE, LETTERS
@@ -23,8 +24,9 @@ _BLANK = r"(?=[ \t]|$)"
 _CODE = re.compile(rf"[GM]0{{0,2}}([0-9]{{1,3}})(?=[ \tA-Z]|$)|[A-Z]{{3,8}}{_BLANK}")
 _CONSTANT = re.compile(rf"([A-Z])[ \t]*([+-]?)({NUMBER})(?=[ \tA-Z]|$)")
 _TOOL = re.compile(r'T[ \t]*=[ \t]*"([A-Za-z0-9_]{1,31})"(?=[ \tA-Z]|$)')
-_ADDRESS = re.compile(rf"([{AXES}{CUTTER_AXIS}FSD]|SPOS|MEAS|ADIS|ADISPOS|CTOL|OTOL|OVR|OVRRAP)[ \t]*=(?!=)[ \t]*")
-_WAY = re.compile(r"(DC|IC|AC|ACP|ACN)\(")
+_ADDRESS = re.compile(rf"([{AXES}{CUTTER_AXIS}FSD]|SPOS|MEAS|ADIS|ADISPOS|CTOL|OTOL|OVR|OVRRAP|PL)[ \t]*=(?!=)[ \t]*")
+_WAY = re.compile(r"(DC|IC|AC|ACP|ACN|PO)\(")
+_POLYNOMIAL = re.compile(rf"PO\[([{AXES}{CUTTER_AXIS}])\][ \t]*=[ \t]*\(")
 _GROUP_RADIUS = re.compile(rf"(FGREF|ACC)\[([{AXES}])\][ \t]*=[ \t]*")
 #: A variable that is given a value.
 TARGET = re.compile(r"R[0-9]+(?=[ \t]*=[^=])|(?:R(?=\[)|[A-Z_][A-Z0-9_]+)(?=\[|[ \t]*=[^=])")
@@ -98,6 +100,8 @@ class WordScanner(Scanner):
                 return GROUP_OF_CODE[name], Word(name, Constant(0.0), column)
         elif (tool := self.match(_TOOL)) is not None:
             return "T", Word(tool[1], Constant(0.0), column)
+        elif (polynomial := self.match(_POLYNOMIAL)) is not None:
+            return polynomial[1], self._polynomial(at, CUBIC)
         elif (radius := self.match(_GROUP_RADIUS)) is not None:
             return f"{radius[1]} {radius[2]}", Word(radius[0], self._value(), column)
         elif (address := self.match(_ADDRESS)) is not None:
@@ -119,9 +123,21 @@ class WordScanner(Scanner):
         if way is None:
             value = self._value()
             return Word(self.text[at : self.at], value, at + 1)
+        if way[1] == "PO":
+            return self._polynomial(at, QUINTIC)
         self.blanks()
         value = self.expression()
         self.need(")")
         if not self._ends():
             self.refuse(f"{shown(self._rest())} is not understood: a blank may be missing before it")
         return Word(self.text[at : self.at], value, at + 1, way[1])
+
+    def _polynomial(self, at: int, most: int) -> Word:
+        """End point and coefficients of one axis, behind the opening parenthesis."""
+        values = self.arguments()
+        if not 1 <= len(values) <= most + 1:
+            what = f"{shown(self.text[at : self.at])} has {len(values)} values: it takes the end point and up to {most}"
+            self.refuse(f"{what} coefficients, a2 to a{most + 1}", at)
+        if not self._ends():
+            self.refuse(f"{shown(self._rest())} is not understood: a blank may be missing before it")
+        return Word(self.text[at : self.at], values[0], at + 1, "PO", values[1:])

@@ -29,8 +29,8 @@ from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
 
-#: Lines on each curve for a block of mean length.
-_PER_BLOCK = 2.0
+#: Lines on each curve for a block of mean length, and for a block of POLY, which leaves a smooth flank.
+_PER_BLOCK, _PER_CURVE = 2.0, 60.0
 #: Where curves lie along the tooth, as parts of the working depth, and up the tooth, as parts of the face width.
 _UP, _ACROSS = (1.0,), (0.0, 1.0)
 #: X and Y so far off the path are wrong wherever the flank is. [mm]
@@ -72,9 +72,9 @@ def watched_flanks(member: Member, runs: list[CuttingRun]) -> list[WatchedFlank]
     """Lines on all flanks that the tools of a program cut, as many as their blocks ask for."""
     found = []
     for run in runs:
-        blocks = int(np.bincount(np.cumsum(~run.cutting)[run.cutting]).max())
+        count = _line_count(run)
         for flank in run.cut.flanks:
-            theta, point, normal = _lines(member, run, flank, blocks)
+            theta, point, normal = _lines(member, run, flank, count)
             (other,) = (each for each in FLANKS if each != flank)
             opposite = flank_points(member, other, blank_grid(member, 5, 9)).point
             start = -0.5 * thickness(point, opposite, member.teeth)
@@ -82,13 +82,23 @@ def watched_flanks(member: Member, runs: list[CuttingRun]) -> list[WatchedFlank]
     return found
 
 
-def _lines(member: Member, run: CuttingRun, flank: str, blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _line_count(run: CuttingRun) -> float:
+    """How many lines a curve of the flanks has: the pass with most blocks counts."""
+    number = np.cumsum(~run.cutting)[run.cutting]
+    ends, begins = run.at_ends, np.append(False, run.at_ends[:-1])
+    curved = ~ends & begins  # the first part of a block of POLY
+    straight = ends & np.append(True, ends[:-1])
+    each = np.where(curved, _PER_CURVE, np.where(straight, _PER_BLOCK, 0.0))[run.cutting]
+    return float(np.bincount(number, each).max())
+
+
+def _lines(member: Member, run: CuttingRun, flank: str, count: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     if member.generation == "formate":
         points = flank_points(member, flank, blank_grid(member, 5, 17, 0.0))
         return points.contact[:, 2], points.point, points.normal
     shared = on_one_machine(member, run.cut)
     first, last = roll_range(shared, run.cut)
-    wanted = np.arange(first, last, (last - first) / (_PER_BLOCK * blocks))
+    wanted = np.arange(first, last, (last - first) / count)
     curves = [flank_curve(shared, flank, up=up) for up in _UP]
     curves += [flank_curve(shared, flank, across=across) for across in _ACROSS]
     chosen = []

@@ -14,6 +14,7 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import MachinePath, ProgramRun, run_program
 from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.judging.faults import Fault
 
 #: Sections that a cutting program may have, and positions that are the same. [mm, rad]
@@ -21,8 +22,8 @@ _MOST, _SAME = 5000, 1e-9
 
 
 def reads_choice(text: str) -> bool:
-    """Whether a program knows R90 at all."""
-    return "R90" in text
+    """Whether a program knows R90, or #3090 of LinuxCNC, at all."""
+    return "#3090" in text if is_for_linuxcnc(text) else "R90" in text
 
 
 def chosen_faults(text: str, name: str, path: MachinePath, setup: Setup) -> Iterator[Fault]:

@@ -47,12 +47,15 @@ def missing(stated: Stated, runs: list[CuttingRun], member: Member, name: str) -
 def beside_the_path(runs: list[CuttingRun], member: Member, machine: MillingMachine, stated: Stated) -> Iterator[Fault]:
     """Feed blocks that end where the settings have no position: X Y A B beside their path, or Z below it, or above.
 
+    What blocks of POLY do between their ends, the flanks tell.
+
     Above it only where it rolls, between the first and the last block of a pass, by its median: a stock raises all of
     it.
     """
     half = machine.control.half_increments
     rounding = math.sqrt(3) * half[0] + (2 * FROM_AXIS + FROM_CUTTER) * half[3]
-    limit = max(allowed(stated), 2.0 * rounding)
+    # rounded X and Y are off, and so is the cradle rotation found from them, by which A is compared
+    limit = max(allowed(stated), 3.0 * rounding)
     for run in runs:
         rows, off = off_the_path(run, member, machine)
         aside = np.abs(off * np.array([1.0, 1.0, 0.0, 1.0, 1.0])).sum(axis=1)
@@ -66,7 +69,7 @@ def beside_the_path(runs: list[CuttingRun], member: Member, machine: MillingMach
                 own = inner & (number == one)
                 above[own] = np.abs(off[own, 2] - np.median(off[own, 2]))
         aside = np.maximum(np.hypot(aside, below), above)
-        for k in np.flatnonzero(aside > limit):
+        for k in np.flatnonzero((aside > limit) & run.at_ends[rows]):
             yield Fault(f"ends {aside[k]:.6f} mm beside the path of these settings", int(run.line[rows[k]]), "beside")
 
 

@@ -170,18 +170,27 @@ def travel(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
 
 
 def speeds(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
-    """Speed of every feed block, and what it has to gain on its neighbors without a stop between them."""
+    """Speed of every feed block, and what it has to gain on its neighbors without a stop between them.
+
+    Blocks of POLY meet smoothly, so that the control has time to change the speed from one to the next; within each
+    the path itself asks for acceleration and jerk.
+    """
     where = positions(path, machine)
     limits = machine.limits(where.shape[1])
     feed = np.flatnonzero(~path.rapid & (path.seconds > 0.0) & (np.arange(len(path.rapid)) > 0))
-    for rows in np.split(feed, np.flatnonzero(np.diff(feed) > 1) + 1):
+    inner = np.append(path.inner, False) if len(path.inner) else np.zeros(len(path.rapid) + 1, dtype=bool)
+    ends = np.flatnonzero((np.diff(feed) > 1) | _curve_ends(inner, feed)) + 1
+    for rows in np.split(feed, ends):
         if not len(rows):
             continue
         steps = np.nan_to_num(where[rows] - where[rows - 1])
         seconds = path.seconds[rows]
+        curved = inner[rows[0]]
+        gained = np.abs(accelerations(steps, seconds))[int(curved) : -1]
         for values, limit, per, what in (
             (np.abs(steps) / seconds[:, None], limits.max_speed, 60.0, "/min"),
-            (np.abs(accelerations(steps, seconds))[:-1], limits.max_acceleration, 1.0, "/s2"),
+            (gained, limits.max_acceleration, 1.0, "/s2"),
+            (_jerks(steps, seconds) if curved else steps[:0], limits.max_jerk, 1.0, "/s3"),
         ):
             for row, axis in np.argwhere(values > limit * (1.0 + _SLACK)):
                 scale, unit = limits.scale[axis] * per, limits.units[axis]
@@ -191,6 +200,20 @@ def speeds(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
                     int(path.line[rows[row]]),
                     "speed",
                 )
+
+
+def _curve_ends(inner: np.ndarray, feed: np.ndarray) -> np.ndarray:
+    """Whether a block of POLY begins or ends between feed rows (n,) and the next of them, (n-1,)."""
+    curved = inner[:-1] | np.roll(inner[:-1], 1)  # the last row of a block follows an inner one
+    last = ~inner[feed[:-1]] & curved[feed[:-1]]
+    return last | (curved[feed[:-1]] != curved[feed[1:]])
+
+
+def _jerks(steps: np.ndarray, seconds: np.ndarray) -> np.ndarray:
+    """Change of acceleration over time (n-2,k) within a block of straight parts (n,k)."""
+    gained = accelerations(steps, seconds)[1:-1]
+    times = (seconds[1:] + seconds[:-1]) / 2
+    return np.abs(np.diff(gained, axis=0)) / ((times[1:] + times[:-1]) / 2)[:, None]
 
 
 def feeds(

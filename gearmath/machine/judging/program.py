@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from gearmath.bevel.tooth import ToothSpace, tooth_space
+from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
 from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control.executor import MachinePath, parsed
 from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.judging.block_check import Watch
 from gearmath.machine.judging.chosen import chosen_faults, reads_choice
 from gearmath.machine.judging.collision import RAPID_CLEARANCE, collisions, rapid_approaches
@@ -24,11 +25,11 @@ from gearmath.machine.judging.outside import outside_faults
 from gearmath.machine.judging.start_state import start_faults
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.mill import mill_member
-from gearmath.machine.milling.run import CuttingRun
+from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 
-__all__ = ["Fault", "faults_of", "metal_faults"]
+__all__ = ["Fault", "faults_of", "metal_faults", "written_faults"]
 
 #: What sentences about a run call the text.
 _NAME = "the program"
@@ -44,7 +45,9 @@ def faults_of(
         *missing(stated, runs, member, name),
         *beside_the_path(runs, member, machine, stated),
     ]
-    asked = [*outside_faults(parsed(text, _NAME)), *header_faults(text, member, name, machine)]
+    asked = [*header_faults(text, member, name, machine)]
+    if not is_for_linuxcnc(text):
+        asked = [*outside_faults(parsed(text, _NAME)), *asked]
     if reads_choice(text):
         asked += chosen_faults(text, _NAME, path, Setup.of(machine))
     started = start_faults(text, machine) if stated.is_ours else ()
@@ -74,6 +77,27 @@ def metal_faults(
     own = space if made == member else tooth_space(made, name, 7)
     found = metal_left(runs, made, name, machine, stated, own, progress)
     return list(found.faults), found.watch
+
+
+def written_faults(
+    text: str,
+    path: MachinePath,
+    member: Member,
+    name: str,
+    machine: MillingMachine,
+    progress: Callable[[int], object] = lambda _: None,
+) -> list[Fault]:
+    """What a cutting program must not be written for: all of both above; of a dry run, which cuts air, no metal.
+
+    ``progress`` is called for every space or flank. Raises InputError where the text cuts with a tool that is not of
+    the member.
+    """
+    space = None if member.process == "face_hobbing" else tooth_space(member, name, 7)
+    runs = runs_of(path, member, name, machine, None, space, SHARP_EDGE)
+    found = faults_of(text, path, runs, member, name, machine)
+    if Stated.of(text).coolant:
+        found += metal_faults(text, path, runs, member, name, machine, space, progress)[0]
+    return found
 
 
 def met(path: MachinePath, runs: list[CuttingRun], member: Member, machine: MillingMachine) -> list[Fault]:

@@ -14,6 +14,7 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.judging.faults import Fault
 from gearmath.specs.milling_machine import AXES, MillingMachine
 
@@ -34,8 +35,9 @@ def start_faults(
 
     ``probe_length`` [mm] is that of the probe that a program moves, ``file_kB`` what its result file takes.
     """
-    states = [*_wrong(machine, probe_length)]
-    if file_kB:
+    asks_units = not is_for_linuxcnc(text)  # LinuxCNC tells a program nothing of units, and has no frames
+    states = [*_wrong(machine, probe_length, asks_units)]
+    if file_kB and asks_units:
         right = Setup.of(machine, probe_length)
         states.append(("the control allows no result file that is long enough", replace(right, result_file_kB=file_kB)))
     unseen = [what for what, setup in states if not _stops(text, setup)]
@@ -64,7 +66,7 @@ def _stops(text: str, setup: Setup) -> bool:
         return True
 
 
-def _wrong(machine: MillingMachine, probe_length: float) -> Iterator[tuple[str, Setup]]:
+def _wrong(machine: MillingMachine, probe_length: float, asks_units: bool) -> Iterator[tuple[str, Setup]]:
     """A right control with one thing wrong."""
     right = Setup.of(machine, probe_length)
     for k, axis in enumerate(AXES):
@@ -72,13 +74,14 @@ def _wrong(machine: MillingMachine, probe_length: float) -> Iterator[tuple[str, 
         offset[k] += _OFF
         yield f"{machine.work_offset} is {_OFF:g} off in {axis}", replace(right, offset=tuple(offset))
     yield "a frame turns", replace(right, turned=(0.0, 0.0, 1.0))
-    yield "a frame mirrors", replace(right, mirrored=(1.0, 0.0, 0.0))
-    yield "a frame scales", replace(right, scaled=(1.0, 1.001, 1.0))
-    yield "the control's basic system is inch", replace(right, metric=False)
-    control = machine.control
-    per_mm, per_degree = control.increments_per_mm, control.increments_per_degree
-    yield "the control has fewer increments per mm", replace(right, increments=(per_mm / 10, 1e9))
-    yield "the control has fewer increments per degree", replace(right, increments=(1e9, per_degree / 10))
+    if asks_units:
+        yield "a frame mirrors", replace(right, mirrored=(1.0, 0.0, 0.0))
+        yield "a frame scales", replace(right, scaled=(1.0, 1.001, 1.0))
+        yield "the control's basic system is inch", replace(right, metric=False)
+        control = machine.control
+        per_mm, per_degree = control.increments_per_mm, control.increments_per_degree
+        yield "the control has fewer increments per mm", replace(right, increments=(per_mm / 10, 1e9))
+        yield "the control has fewer increments per degree", replace(right, increments=(1e9, per_degree / 10))
     yield "another tool is in the spindle", replace(right, spindle_tool=lambda wanted: f"NOT_{wanted}")
     off = 2.0 if machine.z_reference == "tip" else _OFF
     wrong = replace(right, tool_length=right.tool_length + off, probe_length=right.probe_length + off)

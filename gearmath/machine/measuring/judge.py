@@ -14,6 +14,7 @@ from gearmath.bevel.flank import blank_grid
 from gearmath.machine.bodies.probe_tip import probe_height
 from gearmath.machine.control.executor import parsed
 from gearmath.machine.control.state import Probe, Setup
+from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.judging.faults import Fault, first_of_each
 from gearmath.machine.judging.outside import outside_faults
 from gearmath.machine.judging.start_state import start_faults
@@ -92,7 +93,9 @@ def _judged(
     seen = watched(text, name, probe, setup)
     check_ended(seen.run, name)
     size = max((len(content) for content in seen.run.files.values()), default=0) / 1000
-    found = [*outside_faults(parsed(text, name)), *guard_faults(seen, machine, clear, free)]
+    linuxcnc = is_for_linuxcnc(text)
+    found = [] if linuxcnc else [*outside_faults(parsed(text, name))]
+    found += guard_faults(seen, machine, clear, free)
     found += [*record_faults(text, seen, place), *start_faults(text, machine, calibration.length, size)]
     if found:  # what follows counts on a program that is right where nothing goes wrong
         return first_of_each(found)
@@ -102,7 +105,8 @@ def _judged(
     done = set[int]()
     for part in parts:
         found += reaction_faults(text, name, part.seen, setup, part.parameters, done, progress)
-    found += [*host_faults(text, name, seen, setup), *part_faults(text, name, probe, seen, parts, setup)]
+    found += [] if linuxcnc else [*host_faults(text, name, seen, setup)]
+    found += [*part_faults(text, name, probe, seen, parts, setup)]
     return first_of_each(found)
 
 

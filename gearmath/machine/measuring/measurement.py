@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import zlib
+from dataclasses import replace
 
 import numpy as np
 
@@ -41,19 +42,9 @@ def measure_member(true: FlankFile, member: Member, name: str, shop: SimulatedMa
     (late,) = kernel("effective_radius")(normal[:, :3], 0.0, lobing(shop.probe))
     _, deviation = kernel("touched_point")(seen, 0.0, nominal, file.normal)
     noise = np.random.default_rng([shop.seed, zlib.crc32(name.encode()), run]).standard_normal(len(file))
-    deviation = deviation + late + shop.probe.sigma * noise
-    return FlankFile(
-        file.header,
-        file.member,
-        file.flank,
-        file.tooth,
-        file.row,
-        file.col,
-        nominal + deviation[:, None] * file.normal,
-        file.normal,
-        deviation,
-        np.full(len(file), shop.probe.sigma),
-    )
+    met = deviation + late
+    touched = replace(file, point=nominal + met[:, None] * file.normal, deviation=met)
+    return touched.with_noise(shop.probe.sigma * noise, shop.probe.sigma)
 
 
 def _in_order(file: FlankFile, member: Member) -> FlankFile:
@@ -64,18 +55,7 @@ def _in_order(file: FlankFile, member: Member) -> FlankFile:
     index = np.concatenate([order, order[marked[order]]])
     tooth = file.tooth[index]
     tooth[len(order) :] = member.teeth
-    return FlankFile(
-        file.header,
-        file.member,
-        file.flank[index],
-        tooth,
-        file.row[index],
-        file.col[index],
-        file.point[index],
-        file.normal[index],
-        file.deviation[index],
-        file.uncertainty[index],
-    )
+    return replace(file.pick(index), tooth=tooth)
 
 
 def _work_axis(file: FlankFile, member: Member, name: str) -> np.ndarray:

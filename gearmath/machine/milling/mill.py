@@ -165,15 +165,4 @@ def _probed(file: FlankFile, name: str, errors: SimulatedMachine | None) -> Flan
     if sigma == 0.0 or errors is None:
         return file
     noise = sigma * np.random.default_rng([errors.seed, zlib.crc32(name.encode())]).standard_normal(len(file))
-    return FlankFile(
-        file.header,
-        file.member,
-        file.flank,
-        file.tooth,
-        file.row,
-        file.col,
-        file.point + noise[:, None] * file.normal,
-        file.normal,
-        file.deviation + noise,
-        np.full(len(file), sigma),
-    )
+    return file.with_noise(noise, sigma)

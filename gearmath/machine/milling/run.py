@@ -35,7 +35,8 @@ _NOMINAL_POSITIONS = 201
 class CuttingRun:
     """The blocks of one tool: real axis positions (n,5), which of them cut (n,), and the space (n,) of each, or -1.
 
-    ``line`` (n,) is the number of the line in the program text. In face hobbing, ``blades`` cut one by one at the
+    ``line`` (n,) is the number of the line in the program text; ``inner`` (n,) says which rows end within a block of
+    POLY, whose straight parts these rows are. In face hobbing, ``blades`` cut one by one at the
     positions ``turned`` (n,) of C, and every block cuts in all spaces.
     """
 
@@ -47,6 +48,12 @@ class CuttingRun:
     line: np.ndarray
     blades: Blades | None = None
     turned: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    inner: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+
+    @property
+    def at_ends(self) -> np.ndarray:
+        """Whether the rows (n,) are ends of blocks as they are written."""
+        return ~self.inner if len(self.inner) else np.ones(len(self.axes), dtype=bool)
 
     @property
     def spaces(self) -> list[int]:
@@ -78,18 +85,19 @@ def runs_of(
     for index, tool in enumerate(path.tools):
         here = path.tool == index
         axes, cutting, cut, line = path.axes[here], ~path.rapid[here], cuts[tool], path.line[here]
+        inner = path.inner[here] if len(path.inner) else np.zeros(len(axes), dtype=bool)
         indexed = _spaces(axes, cutting, member, cut, machine)
         if errors is not None:
             settings, setting_errors = member.flank(cut.flanks[0]).nominal.vector, errors.setting_errors(name)
             axes, own = _divided(axes, np.where(cutting[1:], divisions(axes, errors), 1))
-            cutting, indexed, line = cutting[own], indexed[own], line[own]
+            cutting, indexed, line, inner = cutting[own], indexed[own], line[own], inner[own]
             motion = motion_of(member.flank(cut.flanks[0]))
             axes = with_setting_errors(axes, settings, setting_errors, machine.pivot, motion)
             turned = np.where(indexed >= 0, index_errors(errors.work_axis, member.teeth, errors.seed)[indexed], 0.0)
             axes = with_backlash(axes, errors) + turned[:, None] * np.array([0, 0, 0, 1, 0])
             axes = with_axis_errors(axes, errors)
         cutter = cutter_of(member, cut.flanks, space, edge_radius)
-        runs.append(CuttingRun(cut, cutter, axes, cutting, indexed, line))
+        runs.append(CuttingRun(cut, cutter, axes, cutting, indexed, line, inner=inner))
     return runs
 
 

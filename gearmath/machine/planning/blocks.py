@@ -13,6 +13,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from typing import Self
 
 import casadi as ca
 import numpy as np
@@ -36,7 +37,7 @@ from gearmath.specs.bevel_set import MACHINE_SETTINGS, SIDES, Flank, Member
 #: What five printed decimals of X Y Z [mm] and six of A B [deg], at 100 mm from either axis, may do to the flank.
 ROUNDING = 0.5e-5 * math.sqrt(3) + 2 * math.radians(0.5e-6) * 100.0
 #: Tolerances that can be asked for. [mm]
-TOLERANCES = (2e-5, 0.1)
+TOLERANCES = (1e-5, 0.1)
 _COLUMNS = 801
 #: The points go beyond the flank by this part of it: a machine that is off its settings cuts the flank's edges at
 #: other cradle rotations, and must not find a long block of the overrun there.
@@ -61,33 +62,48 @@ _TIP = 0.05
 
 
 @cache
-def entry_within_block() -> Kernel:
-    """Kernel: distance of entry at a fraction of a block, with its first and second derivative by the fraction."""
-    first, last = (
+def entry_within_block(degree: int = 1) -> Kernel:
+    """Kernel: distance of entry at a fraction of a block, with its first and second derivative by the fraction.
+
+    A straight block is given by its ends, one of a higher ``degree`` by the coefficients of all powers of the fraction.
+    """
+    shapes = {"axes_first": "axis positions at the start of the block", "axes_last": "at its end"}
+    if degree > 1:
+        shapes = {f"axes_{power}": f"coefficients of power {power} of the fraction" for power in range(degree + 1)}
+    ends = tuple(
         Quantity(name, text, "mixed", name, shape=(5,), components=notation.axes.components)
-        for name, text in (("axes_first", "axis positions at the start of the block"), ("axes_last", "at its end"))
+        for name, text in shapes.items()
     )
     fraction = Quantity("fraction", "0 at the start of the block, 1 at its end", "1", "s", (0.0, 1.0))
     slope = Quantity("slope", "derivative of the distance by the fraction", "mm", "t'")
     curvature = Quantity("curvature", "second derivative of the distance by the fraction", "mm", "t''")
     rest = kernel("line_entry").inputs[1:]
-    a, b, s, *others = (ca.SX.sym(q.name, max(q.size, 1)) for q in (first, last, fraction, *rest))
-    distance = kernel("line_entry").function(a + s * (b - a), *others)
+    symbols = [ca.SX.sym(q.name, max(q.size, 1)) for q in (*ends, fraction, *rest)]
+    powers, s, others = symbols[: len(ends)], symbols[len(ends)], symbols[len(ends) + 1 :]
+    where = powers[0] + s * (powers[1] - powers[0]) if degree == 1 else _horner(powers, s)
+    distance = kernel("line_entry").function(where, *others)
     second, gradient = ca.hessian(distance, s)
     function = ca.Function(
-        "entry_within_block",
-        [a, b, s, *others],
+        "entry_within_block" if degree == 1 else f"entry_within_block_of_degree_{degree}",
+        symbols,
         [distance, gradient, second],
-        ["axes_first", "axes_last", "fraction", *(q.name for q in rest)],
+        [*shapes, "fraction", *(q.name for q in rest)],
         ["line_distance", "slope", "curvature"],
     )
     return Kernel(
         function,
-        "Entry of a line into the swept blade along a straight block.",
-        (first, last, fraction, *rest),
+        f"Entry of a line into the swept blade along {'a straight block' if degree == 1 else 'a polynomial block'}.",
+        (*ends, fraction, *rest),
         (notation.line_distance, slope, curvature),
-        "line_entry (6.4) along a G1 block",
+        f"line_entry (6.4) along a {'G1' if degree == 1 else 'POLY'} block",
     )
+
+
+def _horner(powers: list[ca.SX], s: ca.SX) -> ca.SX:
+    value = powers[-1]
+    for coefficient in reversed(powers[:-1]):
+        value = coefficient + s * value
+    return value
 
 
 @dataclass(frozen=True)
@@ -106,30 +122,46 @@ class ExactPass:
     lines: np.ndarray
     rows: tuple[tuple[int, np.ndarray], ...]
 
-    @staticmethod
-    def of(member: Member, cut: Cut, pivot_height: float, pivot_offset: np.ndarray) -> ExactPass:
+    @property
+    def degree(self) -> int:
+        """Of the blocks that follow the path."""
+        return 1
+
+    @classmethod
+    def of(cls, member: Member, cut: Cut, pivot_height: float, pivot_offset: np.ndarray) -> Self:
         """Points over the whole flanks of a pass, down to the root."""
         found = [row for flank in cut.flanks for row in (*_rows(member, flank), *foot_curves(member, flank))]
         theta, lines = [at for at, _ in found], [row for _, row in found]
         begin = np.cumsum([0, *(len(at) for at in theta)]).tolist()
         rows = tuple((k, (at[1:] + at[:-1]) / 2) for k, at in zip(begin, theta, strict=False) if len(at))
         spec = member.flank(cut.flanks[0])
-        return ExactPass(spec, pivot_height, pivot_offset, np.concatenate(theta), np.concatenate(lines), rows)
+        return cls(spec, pivot_height, pivot_offset, np.concatenate(theta), np.concatenate(lines), rows)
+
+    def block(self, start: float, end: float) -> np.ndarray:
+        """The block that follows a part of the path, as ``entry_within_block`` takes it: (k,5), here its ends."""
+        return axis_positions(self.flank, np.array([start, end]), self.pivot_height, self.pivot_offset)
+
+    def along(self, block: np.ndarray, fractions: np.ndarray) -> np.ndarray:
+        """Positions (n,5) at fractions (n,) of a block."""
+        return block[0] + fractions[:, None] * (block[-1] - block[0])
 
     def deviation(self, start: float, end: float) -> float:
         """The largest deviation [mm] that a block leaves: on points within its roll, and as gouges beside it."""
         wanted = start + _FRACTIONS * (end - start)
         chosen = np.concatenate([first + np.searchsorted(halfway, wanted) for first, halfway in self.rows])
-        left = self._smallest(start, end, chosen)
+        block = self.block(start, end)
+        left = self._smallest(block, start, end, chosen)
         # what the exact path takes away at an end of the block, beyond the ends of the flank, is not the block's doing
         low = np.flatnonzero(left < -_UNTOUCHED)
-        ends = axis_positions(self.flank, np.array([start, end]), self.pivot_height, self.pivot_offset)
+        ends = self.along(block, np.array([0.0, 1.0]))
         left[low[self._at(ends, chosen[low]).min(axis=1) < -_UNTOUCHED]] = 0.0
         inside = (self.theta[chosen] >= start) & (self.theta[chosen] <= end)
-        lowest = float(left.min()) if end - start < _LONG else min(float(left.min()), self._elsewhere(start, end))
+        lowest = (
+            float(left.min()) if end - start < _LONG else min(float(left.min()), self._elsewhere(block, start, end))
+        )
         return max(-lowest, float(left[inside].max(initial=0.0)))
 
-    def _elsewhere(self, start: float, end: float) -> float:
+    def _elsewhere(self, block: np.ndarray, start: float, end: float) -> float:
         """Smallest distance [mm] that a long block has from points all over the flanks, its ends left out.
 
         The tool may come near to a point twice, and Newton's steps from its contact see one of these times. Points that
@@ -139,10 +171,9 @@ class ExactPass:
         some = np.union1d(np.arange(0, len(self.theta), _SOME), np.array(last) - 1)
         theta = np.concatenate([[start], start + _INNER * (end - start), [end]])
         exact = axis_positions(self.flank, theta, self.pivot_height, self.pivot_offset)
-        straight = exact[0] + _INNER[:, None] * (exact[-1] - exact[0])
-        block, path = (self._at(axes, some) for axes in (straight, exact[1:-1]))
+        left, path = (self._at(axes, some) for axes in (self.along(block, _INNER), exact[1:-1]))
         kept = path.min(axis=1) > -_UNTOUCHED
-        return float(block[kept].min(initial=math.inf))
+        return float(left[kept].min(initial=math.inf))
 
     def _at(self, axes: np.ndarray, chosen: np.ndarray) -> np.ndarray:
         """Distances (n, k) of entry of n points at k positions of the axes."""
@@ -160,31 +191,29 @@ class ExactPass:
         )
         return distance.reshape(len(chosen), len(axes))
 
-    def _smallest(self, start: float, end: float, chosen: np.ndarray) -> np.ndarray:
+    def _smallest(self, block: np.ndarray, start: float, end: float, chosen: np.ndarray) -> np.ndarray:
         """Smallest distance of entry (n,) within a block: Newton from the contact on the exact path.
 
         What is left of the slope after a step is taken off as if the curvature held: t - t'²/(2 t''). The second step
         is made only where the first one shows the extremes, until these are among what was looked at twice.
         """
-        ends = axis_positions(self.flank, np.array([start, end]), self.pivot_height, self.pivot_offset)
         s = np.clip((self.theta[chosen] - start) / (end - start), 0.0, 1.0)
-        at_contact, smallest, change = self._step(ends, s, chosen)
+        at_contact, smallest, change = self._step(block, s, chosen)
         once = np.ones(len(chosen), dtype=bool)
         while once[(order := np.argsort(smallest))[[0, -1]]].any():
             again = np.union1d(order[:_REFINED], order[-_REFINED:])
             again = again[once[again]]
-            there, found, _ = self._step(ends, (s + change)[again], chosen[again])
+            there, found, _ = self._step(block, (s + change)[again], chosen[again])
             # a line at the foot of the flank that has left the blade by its tip tells nothing of the flank any more
             smallest[again] = np.where(there <= at_contact[again], found, at_contact[again])
             once[again] = False
         return smallest
 
-    def _step(self, ends: np.ndarray, s: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, ...]:
+    def _step(self, block: np.ndarray, s: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, ...]:
         """Distance (n,) at fractions ``s`` (n,) of the block, the smallest as seen from there, the way there."""
         points, normals, radius, angle, side = np.split(self.lines[chosen], [3, 6, 7, 8], axis=1)
-        distance, slope, curvature = entry_within_block()(
-            ends[0],
-            ends[1],
+        distance, slope, curvature = entry_within_block(self.degree)(
+            *block,
             s,
             self.pivot_height,
             points,
@@ -276,14 +305,21 @@ def roll_nodes(
     Of that, ``rounding`` [mm] is left for the increments of the control, but never more than half.
     Raises InputError for a tolerance out of range.
     """
-    check_tolerance(tolerance)
     member = on_one_machine(member, cut)
-    start, end = roll_range(member, cut)
     exact = ExactPass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)
+    return fewest_nodes(exact, roll_range(member, cut), tolerance, rounding, _LONGEST)
+
+
+def fewest_nodes(
+    exact: ExactPass, roll: tuple[float, float], tolerance: float, rounding: float, longest: float
+) -> np.ndarray:
+    """Ends (n,) [rad] of the longest feasible blocks, one behind the other, through a roll; none rolls ``longest``."""
+    check_tolerance(tolerance)
+    start, end = roll
     budget = _BETWEEN * (tolerance - min(rounding, tolerance / 2))
-    nodes, width = [start], _LONGEST / 10
+    nodes, width = [start], longest / 10
     while nodes[-1] < end:
-        width = _longest(exact, nodes[-1], width, budget)
+        width = _longest(exact, nodes[-1], width, budget, longest)
         nodes.append(min(nodes[-1] + width, end))
     return np.array(nodes)
 
@@ -295,21 +331,25 @@ def on_one_machine(member: Member, cut: Cut) -> Member:
     return member.model_copy(update={name: member.flank(name).model_copy(update=shared) for name in cut.flanks})
 
 
-def _longest(exact: ExactPass, start: float, guess: float, budget: float) -> float:
-    """Roll [rad] of the longest block from ``start``: deviations grow with the square of the block, then bisection."""
-    feasible, infeasible, width = 0.0, math.inf, min(guess, _LONGEST)
+def _longest(exact: ExactPass, start: float, guess: float, budget: float, longest: float) -> float:
+    """Roll [rad] of the longest block from ``start``: deviations grow with a power of the block, then bisection.
+
+    The power is the square of straight blocks, and one more than the degree of polynomials that meet the path smoothly.
+    """
+    feasible, infeasible, width = 0.0, math.inf, min(guess, longest)
     for _ in range(40):
         used = exact.deviation(start, start + width) / budget
         if used <= 1.0:
             feasible = width
-            if used >= _USED or width >= _LONGEST or infeasible - width < 1e-3 * width:
+            if used >= _USED or width >= longest or infeasible - width < 1e-3 * width:
                 break
         else:
             infeasible = width
-        wanted = width * math.sqrt((1 + _USED) / 2 / max(used, 0.05))
+        grown = (1 + _USED) / 2 / max(used, 0.05 if exact.degree == 1 else 1e-4)
+        wanted = width * (math.sqrt(grown) if exact.degree == 1 else grown ** (1 / (exact.degree + 1)))
         if not feasible < wanted < infeasible:
             wanted = (feasible + infeasible) / 2
-        width = min(wanted, _LONGEST)
+        width = min(wanted, longest)
     if feasible == 0.0:
         raise InputError(
             f"at cradle angle {math.degrees(start):.3f} deg no block keeps the flank within {budget * 1000:g} um"

@@ -47,7 +47,7 @@ def chip_loads(
     ``plunge_feed`` [mm/min] is that of an approach down to the first point of a roll: there it is taken as if all of it
     went through metal. Of a Formate cut and in face hobbing the plunge is the one that is planned.
     """
-    last = {one.tool: one for one in passes}
+    last = {one.tool: one.in_straight_parts() for one in passes}
     cuts = [(cut, flank) for cut in Cut.of(member, name) for flank in cut.flanks if cut.tool in last]
     return tuple(_load(member, flank, machine, last[cut.tool], rpm, plunge_feed) for cut, flank in cuts)
 

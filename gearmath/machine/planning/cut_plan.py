@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Literal
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.bodies.profiles import widest
 from gearmath.machine.planning.blocks import TOLERANCES, check_tolerance, roll_nodes
 from gearmath.machine.planning.clear_space import Room, room_of
+from gearmath.machine.planning.curves import curve_nodes, curve_seconds, degree_for, powers_of
 from gearmath.machine.planning.feeds import block_seconds, check_feed
 from gearmath.machine.planning.hobbing import hobbing_pass, index_ratio
 from gearmath.machine.planning.passes import Pass, tooth_angles
@@ -52,6 +54,7 @@ class CuttingJob:
 
     ``roughing_stock`` above ``finishing_stock`` adds a roughing pass of all spaces before the finishing one;
     ``finishing_stock`` is what stays on the finished flanks. A dry run cuts air above the work, without coolant.
+    ``blocks`` are straight, or polynomials where the cutter rolls.
     """
 
     spaces: Sequence[int] = (0,)
@@ -61,6 +64,7 @@ class CuttingJob:
     roughing_stock: float = 0.0
     finishing_stock: float = 0.0
     dry_run: bool = False
+    blocks: Literal["g1", "poly"] = "g1"
 
     def __post_init__(self) -> None:
         for key in ("roughing_stock", "finishing_stock"):
@@ -157,7 +161,7 @@ def _passes(member: Member, name: str, machine: MillingMachine, job: CuttingJob,
         _check_motions(member, name, cut)
         for stage, stock, tolerance in job.stages:
             theta, first = _first_pass(member, cut, machine, replace(job, tolerance=tolerance), share)
-            first.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
+            first.axes[:, 2] += lift(member, cut, stock, job.dry_run)
             for space in job.spaces:
                 label = f"space {space} {' and '.join(cut.flanks)}" + (f" {stage}" if len(job.stages) > 1 else "")
                 indexed = first.axes + np.array([0, 0, 0, angles[space], 0])
@@ -175,12 +179,14 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Cut
         )
     if any(member.index_correction):
         raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
+    if job.blocks == "poly":
+        raise InputError(f"{name}: blocks = poly: face hobbing turns the cutter as well, and has straight blocks only")
     (cut,) = Cut.of(member, name)
     _check_motions(member, name, cut)
-    tooth, lift = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
+    tooth, above = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
-        one = hobbing_pass(member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, lift, PLUNGE_FEED, tooth)
-        one.axes[:, 2] += stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if job.dry_run else 0.0)
+        one = hobbing_pass(member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, above, PLUNGE_FEED, tooth)
+        one.axes[:, 2] += lift(member, cut, stock, job.dry_run)
         label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
         axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
         yield Pass(cut.tool, label, 0, axes, one.seconds, theta=one.theta)
@@ -195,13 +201,27 @@ def _first_pass(
     if member.generation == "formate":
         theta = np.zeros(2)
         axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
-        axes[0, 2] += _PLUNGE_DEPTHS * _depth(member) + _PLUNGE_MARGIN
+        axes[0, 2] += plunge_lift(member)
         dwell = _SPARK_OUT_TURNS * 60.0 / job.spindle_rpm if job.spindle_rpm > 0 else 0.0
+    elif job.blocks == "poly":
+        return _curved_pass(member, cut, machine, job, share)
     else:
         theta = roll_nodes(member, cut, job.tolerance, machine.pivot_height, machine.pivot, share.rounding)
         axes = axis_positions(flank, theta, machine.pivot_height, machine.pivot)
         dwell = 0.0
     return theta, Pass(cut.tool, "", 0, axes, block_seconds(axes, machine, job.feed, tooth), dwell, theta)
+
+
+def _curved_pass(
+    member: Member, cut: Cut, machine: MillingMachine, job: CuttingJob, share: ControlShare
+) -> tuple[np.ndarray, Pass]:
+    """The same by polynomial blocks."""
+    degree, flank = degree_for(machine), member.flank(cut.flanks[0])
+    theta = curve_nodes(member, cut, job.tolerance, machine, share.rounding, degree)
+    powers = powers_of(flank, theta, machine.pivot_height, machine.pivot, degree)
+    axes = np.vstack([powers[:, 0], powers[-1:].sum(axis=1)])
+    seconds = curve_seconds(powers, machine, job.feed, middle_of_tooth(member, cut))
+    return theta, Pass(cut.tool, "", 0, axes, seconds, 0.0, theta, powers[:, 2:].transpose(0, 2, 1))
 
 
 @lru_cache(maxsize=32)
@@ -224,6 +244,16 @@ def _depth(member: Member) -> float:
 def _short(spaces: Sequence[int]) -> str:
     listed = ", ".join(map(str, spaces[:5]))
     return f"[{listed}]" if len(spaces) <= 5 else f"[{listed}, ...]"
+
+
+def lift(member: Member, cut: Cut, stock: float, dry_run: bool) -> float:
+    """How far Z is raised [mm] to leave a stock [mm] along the tooth normal, and for a dry run."""
+    return stock / math.sin(_flattest(member, cut)) + (DRY_LIFT if dry_run else 0.0)
+
+
+def plunge_lift(member: Member) -> float:
+    """How far above the bottom a plunge of a Formate cut begins [mm]."""
+    return _PLUNGE_DEPTHS * _depth(member) + _PLUNGE_MARGIN
 
 
 def _flattest(member: Member, cut: Cut) -> float:

@@ -56,6 +56,13 @@ def _check_shape(name: str, one: Pass, machine: MillingMachine) -> None:
     if one.axes.ndim != 2 or one.axes.shape[1] not in (5, 6) or n < 2 or one.seconds.shape != (n - 1,):
         shapes = f"positions {one.axes.shape} and times {one.seconds.shape}"
         raise InputError(f"{where}: has {shapes}, needed are (n, 5) or (n, 6) and (n-1,) with n at least 2")
+    if one.bends is not None and (one.bends.shape[:2] != (n - 1, 5) or one.bends.shape[2] not in (2, 4)):
+        raise InputError(f"{where}: has coefficients {one.bends.shape}, needed are (n-1, 5, 2) or (n-1, 5, 4)")
+    if one.bends is not None and 5 * (one.bends.shape[2] + 1) > machine.control.polynomial_values:
+        raise InputError(
+            f"{where}: its blocks have {5 * (one.bends.shape[2] + 1)} end points and coefficients: {machine.name} "
+            f"takes control.polynomial_values = {machine.control.polynomial_values}"
+        )
     if one.axes.shape[1] == 6 and machine.axes.C is None:
         raise InputError(f"{where}: axis C: {machine.name} has none, [axes.C] is missing in its file")
     if not np.isfinite(one.axes).all():
@@ -91,6 +98,8 @@ def _check_travel(name: str, one: Pass, machine: MillingMachine, retract: float)
 
 
 def _check_speed(name: str, one: Pass, machine: MillingMachine) -> None:
+    if one.bends is not None:
+        return  # the times of polynomial blocks come from their derivatives, and the whole program is judged
     steps = np.diff(one.axes, axis=0)
     axes = machine.limits(steps.shape[1])
     for values, limits, per, what in (

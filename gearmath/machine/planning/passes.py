@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+
+#: Straight parts that stand for a polynomial where its ends do not tell enough.
+_PARTS = 64
 
 
 @dataclass(frozen=True)
@@ -24,6 +27,30 @@ class Pass:
     """Time that the cutter turns at the last position, s."""
     theta: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Cradle rotation at each position, (n,) rad; where it stands still the cutter plunges. Empty where not known."""
+    bends: np.ndarray | None = None
+    """Where blocks are polynomials: a_2, a_3 .. of X Y Z A B in each, by a parameter from 0 to 1, (n-1, 5, k)."""
+
+    def in_straight_parts(self) -> Pass:
+        """The same with every polynomial as many straight blocks; itself where it has none.
+
+        A polynomial is followed at a constant speed of the path, a degree counted as a mm.
+        """
+        if self.bends is None:
+            return self
+        u = np.linspace(0.0, 1.0, _PARTS + 1)
+        higher = u[:, None] ** np.arange(2, 2 + self.bends.shape[2])
+        ends = np.diff(self.axes, axis=0) - self.bends.sum(axis=2)
+        where = self.axes[:-1, None] + u[:, None] * ends[:, None] + np.einsum("uk,nak->nua", higher, self.bends)
+        steps = np.linalg.norm(np.diff(where, axis=1) * np.array([1.0, 1.0, 1.0, *[180.0 / math.pi] * 2]), axis=2)
+        seconds = steps / steps.sum(axis=1, keepdims=True) * self.seconds[:, None]
+        theta = self.theta[:-1, None] + u[1:] * np.diff(self.theta)[:, None]
+        return replace(
+            self,
+            axes=np.vstack([self.axes[:1], where[:, 1:].reshape(-1, self.axes.shape[1])]),
+            seconds=seconds.ravel(),
+            theta=np.append(self.theta[:1], theta.ravel()),
+            bends=None,
+        )
 
 
 def tooth_angles(teeth: int, correction: Sequence[float] = ()) -> np.ndarray:

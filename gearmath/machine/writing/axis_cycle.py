@@ -22,8 +22,10 @@ from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, WORK_SPHERE
 from gearmath.version import __version__
 
 
-def axis_program(machine: MillingMachine, calibration: Calibration, program_name: str) -> str:
-    """The program that touches the sphere on the work side, where the machine file expects it.
+def axis_program(
+    machine: MillingMachine, calibration: Calibration, program_name: str, dialect: type[Blocks] = Blocks
+) -> str:
+    """The program that touches the sphere on the work side, where the machine file expects it, in a dialect.
 
     Raises InputError if the calibration file has none, and for positions out of travel.
     """
@@ -37,7 +39,7 @@ def axis_program(machine: MillingMachine, calibration: Calibration, program_name
         raise InputError(
             f"home of Z = {machine.home:g} mm: the tip clears the sphere at every A and B from Z {anywhere:.1f} mm on"
         )
-    blocks = Blocks(program_name, machine, calibration.length)
+    blocks = dialect(program_name, machine, calibration.length)
     header = (
         f"gearmath {__version__} calibration program of the rotary axes",
         f"machine: {machine.name}",

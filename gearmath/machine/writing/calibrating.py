@@ -15,15 +15,21 @@ from gearmath.specs.milling_machine import AXES, UNITS, UNITS_PER_INTERNAL, Mill
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, RING_FACE, SPHERE
 from gearmath.version import __version__
 
+#: Numbers that the program keeps: the middle of the ring, and where two sides of it were met.
+_CENTER = {"X": 10, "Y": 11}
+_SIDES = 12, 13
 
-def calibration_program(machine: MillingMachine, calibration: Calibration, program_name: str) -> str:
-    """The program that touches ring and sphere, as far as the calibration file has them.
+
+def calibration_program(
+    machine: MillingMachine, calibration: Calibration, program_name: str, dialect: type[Blocks] = Blocks
+) -> str:
+    """The program that touches ring and sphere, as far as the calibration file has them, in the words of a dialect.
 
     Raises InputError if it has neither, and for positions out of travel.
     """
     if calibration.ring is None and calibration.sphere is None:
         raise InputError("the calibration file has neither ring nor sphere: there is nothing to touch")
-    blocks = Blocks(program_name, machine, calibration.length)
+    blocks = dialect(program_name, machine, calibration.length)
     header = (f"gearmath {__version__} calibration program", f"machine: {machine.name}", f"probe: {calibration.name}")
 
     level, top = sideways_level(machine, calibration), blocks.length("Z", float(machine.travel[2, 1]))
@@ -88,17 +94,18 @@ def _ring(blocks: Blocks, calibration: Calibration, ring: Ring, level: float) ->
     yield f"G0 {blocks.length('X', x)} {blocks.length('Y', y)}"
     yield from blocks.lowered(blocks.length("Z", level))
     yield from blocks.guarded(blocks.length("Z", z), APPROACH_FEED, level)
-    yield f"R10={_number(x)} R11={_number(y)}"
-    for axis, parameter, pair in (("X", 200, PAIRS[0]), ("Y", 201, PAIRS[1]), ("X", 200, PAIRS[0])):
-        center = "R10" if axis == "X" else "R11"
-        for sign, store, target in (("-", "R12", pair[0]), ("+", "R13", pair[1])):
-            to = f"{axis}={center}{sign}{_number(reach)}"
+    yield blocks.kept([(_CENTER["X"], blocks.number(x)), (_CENTER["Y"], blocks.number(y))])
+    middle = " ".join(blocks.at(axis, number) for axis, number in _CENTER.items())
+    for axis, pair in (("X", PAIRS[0]), ("Y", PAIRS[1]), ("X", PAIRS[0])):
+        center = _CENTER[axis]
+        for sign, store, target in zip("-+", _SIDES, pair, strict=True):
+            to = blocks.at(axis, center, f"{sign}{blocks.number(reach)}")
             end = f"{to} Y=IC(0) Z=IC(0)" if axis == "X" else f"X=IC(0) {to} Z=IC(0)"
-            yield from blocks.touch(end, "X=R10 Y=R11", MEASURING_FEED, APPROACH_FEED, level, up=False)
-            yield f"{store}=R{parameter}"
+            yield from blocks.touch(end, middle, MEASURING_FEED, APPROACH_FEED, level, up=False)
+            yield blocks.kept([(store, blocks.measured(axis))])
             yield from blocks.hand_over(target)
-        yield f"{center}=(R12+R13)/2"
-        yield f"G1 X=R10 Y=R11 F{APPROACH_FEED:.3f}"
+        yield blocks.kept([(center, blocks.middle(*_SIDES))])
+        yield f"G1 {middle} F{APPROACH_FEED:.3f}"
 
 
 def _face(blocks: Blocks, calibration: Calibration, ring: Ring, face: Face, level: float) -> Iterator[str]:
@@ -147,9 +154,3 @@ def touch_sphere(
         way = " ".join(blocks.axes(np.array([*end, 0.0, 0.0]))[:3])
         yield from blocks.touch(way, f"{x} {y} {z}", MEASURING_FEED, APPROACH_FEED, level)
         yield from blocks.hand_over(target)
-
-
-def _number(value: float) -> str:
-    """A number in an expression; a negative one in parentheses."""
-    text = f"{value:.5f}"
-    return f"({text})" if value < 0 else text

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from gearmath.machine.planning.blocks import ROUNDING
 from gearmath.machine.planning.cut_plan import DRY_LIFT, ONE_SPACE, PLUNGE_FEED, CuttingJob, CuttingPlan, cutting_plan
 from gearmath.machine.planning.hobbing import C_ROUNDING
-from gearmath.machine.planning.rounding import ControlShare
 from gearmath.machine.planning.setup_facts import SetupFacts, member_note, setup_notes, z_note
 from gearmath.machine.writing.program import write_program
 from gearmath.machine.writing.words import plain
@@ -42,12 +41,14 @@ def program_of(plan: CuttingPlan, program_name: str) -> str:
         f"set: {plain(plan.title)}",
         member_note(member, name),
         f"machine settings sha256: {settings_sha256(member)}",
-        *_tolerance_notes(member, job, machine, plan.share),
+        *tolerance_notes(plan),
+        _path_note(plan),
         *(f"{stage}: stock {stock:g} mm along the tooth normal" for stage, stock, _ in job.stages),
         f"feed: {job.feed:g} mm/min at the tooth",
         f"spindle: {job.spindle_rpm:g} rpm {machine.cutter_direction}, plunge: {PLUNGE_FEED:g} mm/min",
-        *_space_notes(job),
+        *space_notes(job),
         *_hobbing_notes(member),
+        *_polynomial_notes(plan),
         *((f"dry run: Z raised by {DRY_LIFT:g} mm",) if job.dry_run else ()),
         f"machine: {plain(machine.name)}",
         z_note(machine),
@@ -69,33 +70,49 @@ def program_of(plan: CuttingPlan, program_name: str) -> str:
     )
 
 
-def _tolerance_notes(member: Member, job: CuttingJob, machine: MillingMachine, share: ControlShare) -> tuple[str, ...]:
+def tolerance_notes(plan: CuttingPlan) -> tuple[str, ...]:
     """What the header says of the flanks: how far they may deviate with the increments of this control."""
-    wanted = job.tolerance * 1000
-    if member.process == "face_hobbing":
+    control, share, wanted = plan.machine.control, plan.share, plan.job.tolerance * 1000
+    if plan.member.process == "face_hobbing":
         blocks, rounding = wanted, max(share.rounding - ROUNDING - C_ROUNDING, 0.0) * 1000
     else:
         rounding = share.rounding * 1000
         blocks = wanted - min(rounding, wanted / 2)
-    control = machine.control
     total = max(wanted, blocks + rounding)
+    kind = "straight" if plan.passes[0].bends is None else "polynomial"
     return (
-        f"flank tolerance: {_upwards(total)} um along the tooth normal, by straight blocks and rounding",
+        f"flank tolerance: {upwards(total)} um along the tooth normal, by {kind} blocks and rounding",
         f"of which rounding to {control.increments_per_mm} increments per mm and {control.increments_per_degree} per "
-        f"degree: up to {_upwards(share.rounding * 1000)} um",
-        f"path mode {control.path_mode}"
-        + (f" adds up to {_upwards(share.path_mode * 1000)} um" if control.path_mode == "G642" else ": exact stop"),
+        f"degree: up to {upwards(share.rounding * 1000)} um",
     )
 
 
-def _space_notes(job: CuttingJob) -> Iterator[str]:
+def _path_note(plan: CuttingPlan) -> str:
+    mode = plan.machine.control.path_mode
+    adds = f" adds up to {upwards(plan.share.path_mode * 1000)} um" if mode == "G642" else ": exact stop"
+    return f"path mode {mode}{adds}"
+
+
+def space_notes(job: CuttingJob) -> Iterator[str]:
     """The spaces of the program, in lines of thirty: what virtual milling looks for."""
     spaces = list(job.spaces)
     for k in range(0, len(spaces), _LISTED):
         yield "spaces: " + ",".join(str(space) for space in spaces[k : k + _LISTED])
 
 
-def _upwards(um: float) -> str:
+def _polynomial_notes(plan: CuttingPlan) -> tuple[str, ...]:
+    """What the header says of polynomial blocks."""
+    if (bends := plan.passes[0].bends) is None:
+        return ()
+    degree, most = bends.shape[2] + 1, max(len(one.seconds) for one in plan.passes)
+    counting = "; PO of A counts on through 360 [unconfirmed]" if plan.machine.axes.A.modulo else ""
+    return (
+        f"blocks: POLY of degree {degree}, up to {most} in a roll; without the word POLY the control drives straight",
+        f"POLY is an option of the control; POLY with G93 [unconfirmed]{counting}",
+    )
+
+
+def upwards(um: float) -> str:
     """A limit in um, rounded up."""
     return f"{math.ceil(um * 1e4 - 1e-6) / 1e4:g}"
 

@@ -38,7 +38,7 @@ def point_loop(
     yield f"DEF REAL {_A},{_BEFORE},{_TURN}[{teeth}],{_WAY}[{places},7]"
     yield from blocks.start(plan, room=room)
     yield from _tables(blocks, pattern)
-    x, y, _, a, b = blocks.axes(_above_first(pattern))
+    x, y, _, a, b = blocks.axes(above_first(pattern))
     yield f"G0 {x} {y} {a} {b}"
     yield from blocks.lowered(blocks.length("Z", level))
     yield "POINTS:"
@@ -56,7 +56,7 @@ def point_loop(
     yield from blocks.end()
 
 
-def _above_first(pattern: TouchPattern) -> np.ndarray:
+def above_first(pattern: TouchPattern) -> np.ndarray:
     """Where the probe goes down to the height of sideways motion: over the end of the first touch of space 0.
 
     Not over its start, for the way to the first point must not be none; and with A beside that of every tooth: a run

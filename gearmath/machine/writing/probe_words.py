@@ -27,8 +27,6 @@ STILL = "A=IC(0) B=IC(0)"
 FROM, TO = "UFROM", "UTO"
 #: Touches up to the end of each section.
 _ENDS = "UENDS"
-#: FGREF with which a degree counts as a mm.
-_ONE_MM_A_DEGREE = "57.29578"
 #: Characters of the longest line of a touch, with nine decimals in every position; lines of heads, and of one part
 #: that is touched again.
 _LONGEST_LINE, _HEADS = 125, 10
@@ -89,6 +87,31 @@ class Blocks:
         """The word of one linear axis [mm]."""
         return self.positions.z(value) if axis == "Z" else self.positions.word(axis, value)
 
+    def number(self, value: float) -> str:
+        """A number in an expression; a negative one in brackets."""
+        text = f"{value:.5f}"
+        return f"({text})" if value < 0 else text
+
+    def variable(self, number: int) -> str:
+        """A number that the program keeps."""
+        return f"R{number}"
+
+    def kept(self, values: Sequence[tuple[int, str]]) -> str:
+        """The block that keeps numbers or expressions."""
+        return " ".join(f"{self.variable(number)}={value}" for number, value in values)
+
+    def measured(self, axis: str) -> str:
+        """Where the last touch met, as an expression."""
+        return self.variable(200 + AXES.index(axis))
+
+    def middle(self, one: int, other: int) -> str:
+        """The mean of two kept numbers, as an expression."""
+        return f"({self.variable(one)}+{self.variable(other)})/2"
+
+    def at(self, axis: str, number: int, off: str = "") -> str:
+        """The word of an axis at a kept number, and so much ``off`` it: an expression that begins with its sign."""
+        return f"{axis}={self.variable(number)}{off}"
+
     def start(self, plan: ProbingPlan, columns: Sequence[str] = COLUMNS, room: Room | None = None) -> Iterator[str]:
         """Head: Z home, the probe is fetched and held, the run is numbered, the result file gets its plan and columns.
 
@@ -99,7 +122,7 @@ class Blocks:
         yield f"DEF INT UERR,{FROM},{TO}" + (f",{_ENDS}[{plan.parts + 1}]" if plan.ends else "")
         yield from start.head(machine)
         yield "FGROUP(X,Y,Z,A,B)"
-        yield f"FGREF[A]={_ONE_MM_A_DEGREE} FGREF[B]={_ONE_MM_A_DEGREE}"
+        yield f"FGREF[A]={start.ONE_MM_A_DEGREE} FGREF[B]={start.ONE_MM_A_DEGREE}"
         yield from start.checks(machine)
         yield from self._file_size(plan)
         if room is not None:

@@ -8,7 +8,7 @@ space it moves at a height that clears the whole member at every position of A.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -50,19 +50,9 @@ def probing_program(
     Raises InputError for travel, room, and a name that the control refuses.
     """
     member = bevel_set.member(name)
-    targets = probe_targets(member, name, machine, calibration, topography, pitch, around=around)
-    level = clear_height(member, machine, calibration)
-    check_travel(TouchPattern.of(targets, member.teeth, machine).targets(), name, machine, level)
-    room = room_of(member, machine, machine.fixture)
-    check_home(room, machine, calibration.length + calibration.tip_radius - calibration.offset[2], program_name)
+    targets, level, room = probed(member, name, machine, calibration, program_name, topography, pitch, around)
     header = (
-        f"gearmath {__version__} probing program",
-        f"set: {plain(bevel_set.title)}",
-        f"member: {name}, {member.teeth} teeth, {member.hand} hand",
-        f"nominal settings sha256: {design_sha256(member)}",
-        f"machine: {plain(machine.name)}",
-        f"probe: {plain(calibration.name)}, tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm",
-        f"{len(targets)} points" + (f", each touched {repeat} times" if repeat > 1 else ""),
+        *probing_notes(bevel_set, name, machine, calibration, len(targets), repeat),
         "R90, R91: first and last point to touch, 0 for all; the program asks before it leaves points out",
         "a run from point 1 on deletes the touches of the last run, one that begins later adds to them",
         "R102 counts the runs, R101 the points offered, R103 those that a host has acknowledged",
@@ -70,6 +60,48 @@ def probing_program(
         *(f"unconfirmed: {text}" for text in (NOT_ON_METAL, VARIABLES, PROBING)),
     )
     return write_touches(program_name, header, targets, name, member.teeth, machine, calibration, level, room, repeat)
+
+
+def probed(
+    member: Member,
+    name: str,
+    machine: MillingMachine,
+    calibration: Calibration,
+    program_name: str,
+    topography: Sequence[int],
+    pitch: bool,
+    around: Sequence[int],
+) -> tuple[Targets, float, Room]:
+    """The touches of a member, the :func:`clear_height` of sideways motion, and the room of the work, all checked."""
+    targets = probe_targets(member, name, machine, calibration, topography, pitch, around=around)
+    level = clear_height(member, machine, calibration)
+    check_travel(TouchPattern.of(targets, member.teeth, machine).targets(), name, machine, level)
+    room = room_of(member, machine, machine.fixture)
+    check_home(room, machine, calibration.length + calibration.tip_radius - calibration.offset[2], program_name)
+    return targets, level, room
+
+
+def probing_notes(
+    bevel_set: BevelSet, name: str, machine: MillingMachine, calibration: Calibration, points: int, repeat: int
+) -> Iterator[str]:
+    """What the header says of set, machine and probe."""
+    member = bevel_set.member(name)
+    yield f"gearmath {__version__} probing program"
+    yield f"set: {plain(bevel_set.title)}"
+    yield f"member: {name}, {member.teeth} teeth, {member.hand} hand"
+    yield f"nominal settings sha256: {design_sha256(member)}"
+    yield f"machine: {plain(machine.name)}"
+    tip = f"tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm"
+    yield f"probe: {plain(calibration.name)}, {tip}"
+    yield f"{points} points" + (f", each touched {repeat} times" if repeat > 1 else "")
+
+
+def plan_of(targets: Targets, repeat: int) -> ProbingPlan:
+    """What a run of all points makes, each touched ``repeat`` times."""
+    flanks = " and ".join(flank for flank in FLANKS if (targets.flank == flank).any())
+    touches = len(targets) * repeat
+    said = f"{touches} touches, {len(set(targets.tooth.tolist()))} teeth, {flanks}"
+    return ProbingPlan(touches, said, len(targets), "point", repeat)
 
 
 def write_touches(
@@ -92,8 +124,5 @@ def write_touches(
     """
     pattern = TouchPattern.of(targets, teeth, machine)
     blocks = Blocks(program_name, machine, calibration.length)
-    flanks = " and ".join(flank for flank in FLANKS if (targets.flank == flank).any())
-    touches = len(targets) * repeat
-    said = f"{touches} touches, {len(set(targets.tooth.tolist()))} teeth, {flanks}"
-    plan = ProbingPlan(touches, said, len(targets), "point", repeat)
+    plan = plan_of(targets, repeat)
     return blocks.text(header, point_loop(blocks, pattern, name, plan, level, room))

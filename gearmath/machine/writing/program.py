@@ -4,6 +4,10 @@ A modulo axis A goes the short way (DC), a counting one is written as it counts.
 cutter's spindle stands still at SPOS=0 first, and then runs as axis C. That C may follow SPOS without M70, and that its
 sense is that of M3, depends on the machine [unconfirmed].
 
+Where a pass has coefficients its blocks are polynomials: POLY with PO[X]=(..), or X=PO(..) of the fifth degree. All
+five axes are in FGROUP, so that all of them are functions of one parameter. That G93 may stand with POLY, and that PO
+of a modulo A counts on through 360, no page of a manual at hand confirms [unconfirmed].
+
 The reader of these programs is ``gearmath.machine.control.reader``; it shares no code with this module, so that each
 checks the other.
 """
@@ -21,7 +25,15 @@ from gearmath.machine.planning.limits import check_pass, check_process
 from gearmath.machine.planning.passes import Pass
 from gearmath.machine.writing import start
 from gearmath.machine.writing.chosen import FIRST, LAST, asked, if_chosen
-from gearmath.machine.writing.words import Positions, check_name, comment, feed_number, numbered
+from gearmath.machine.writing.words import (
+    MAX_BLOCK_CHARACTERS,
+    MAX_QUINTIC_CHARACTERS,
+    Positions,
+    check_name,
+    comment,
+    feed_number,
+    numbered,
+)
 from gearmath.specs.milling_machine import MillingMachine
 
 __all__ = ["Pass", "write_program"]
@@ -56,7 +68,19 @@ def write_program(
     for one in passes:
         check_pass(name, one, machine, retract)
     job = _Job(name, machine, Positions.of(machine, machine.tool_length), spindle_rpm, retract, plunge_feed_mm_min)
-    return numbered([comment(name, text) for text in (name, *header)], _body(job, passes, room, tool_radius, coolant))
+    text = numbered([comment(name, text) for text in (name, *header)], _body(job, passes, room, tool_radius, coolant))
+    _check_lengths(name, text, passes)
+    return text
+
+
+def _check_lengths(name: str, text: str, passes: Sequence[Pass]) -> None:
+    """Raises InputError for a block of polynomials that the control would not read to its end."""
+    if (bends := passes[0].bends) is None:
+        return
+    most = MAX_BLOCK_CHARACTERS if bends.shape[2] == 2 else MAX_QUINTIC_CHARACTERS
+    for number, line in enumerate(text.splitlines(), start=1):
+        if len(line) + 1 > most:
+            raise InputError(f"{name}: line {number} has {len(line) + 1} characters, {most} are allowed")
 
 
 @dataclass(frozen=True)
@@ -79,7 +103,7 @@ class _Job:
 def _body(job: _Job, passes: Sequence[Pass], room: Room, tool_radius: float, coolant: bool) -> Iterator[str]:
     """Blocks without their numbers, and comments."""
     machine = job.machine
-    yield from start.head(machine)
+    yield from start.head(machine, polynomials=passes[0].bends is not None)
     yield from start.checks(machine)
     yield from start.enough_height(machine, room, machine.tool_length, tool_radius)
     yield from asked(len(passes), "section")
@@ -117,6 +141,7 @@ def _section(job: _Job, one: Pass, number: int, count: int) -> Iterator[str]:
     """
     machine = job.machine
     (x, y, z, *turned), *points = _words(one, job.positions)
+    mode = "G1" if one.bends is None else "POLY"
     yield comment(job.name, f"section {number}: {one.label}, tooth {one.tooth}")
     yield f"SECTION_{number}:"
     yield if_chosen(number, number)
@@ -126,7 +151,7 @@ def _section(job: _Job, one: Pass, number: int, count: int) -> Iterator[str]:
     yield f"G0 {job.up}"
     yield f"G94 G1 {z} F{job.plunge:.3f}"
     for words, seconds in zip(points, one.seconds.tolist(), strict=True):
-        yield f"G93 G1 {' '.join(words)} F{feed_number(60.0 / seconds)}"
+        yield f"G93 {mode} {' '.join(words)} F{feed_number(60.0 / seconds)}"
     if one.dwell > 0.0:
         yield f"G4 F{feed_number(one.dwell)}"
     yield f"G94 G0 {job.up} F{job.plunge:.3f}"
@@ -134,6 +159,8 @@ def _section(job: _Job, one: Pass, number: int, count: int) -> Iterator[str]:
 
 
 def _words(one: Pass, positions: Positions) -> list[tuple[str, ...]]:
+    if one.bends is not None:
+        return [*positions.words(one.axes[:1]), *positions.polynomial_words(one.axes, one.bends)]
     points = positions.words(one.axes[:, :5])
     if one.axes.shape[1] == 5:
         return points

@@ -14,6 +14,8 @@ from gearmath.machine.planning.clear_space import Room
 from gearmath.machine.writing.words import Positions
 from gearmath.specs.milling_machine import AXES, MillingMachine
 
+#: FGREF with which a degree counts as a mm.
+ONE_MM_A_DEGREE = "57.29578"
 #: Alarms of the start.
 NOT_METRIC, INCREMENTS, OFFSET, TOOL_NAME, TOOL_LENGTH, TOO_LOW = 65010, 65011, 65012, 65013, 65014, 65015
 #: What a zero offset, and a tool length in the table that should be as the machine file has it, may differ by. [mm]
@@ -41,14 +43,21 @@ def modal(machine: MillingMachine) -> str:
     return " ".join((f"G17 G40 G90 G94 G710 {machine.work_offset}", *machine.control.words))
 
 
-def head(machine: MillingMachine) -> Iterator[str]:
-    """Every modal state that acts on the path, none inherited: transformation, compressor and frames off."""
+def head(machine: MillingMachine, polynomials: bool = False) -> Iterator[str]:
+    """Every modal state that acts on the path, none inherited: transformation, compressor and frames off.
+
+    The path of polynomials is that of all five axes: what FGROUP leaves out follows it as UPATH or SPATH say.
+    """
     yield modal(machine)
     yield "TRAFOOF"
     yield "COMPOF"
     yield "DIAMOF"
     yield "TRANS"
-    yield "FGROUP(X,Y,Z)"
+    if polynomials:
+        yield f"FGROUP({','.join(AXES)})"
+        yield f"FGREF[A]={ONE_MM_A_DEGREE} FGREF[B]={ONE_MM_A_DEGREE}"
+    else:
+        yield "FGROUP(X,Y,Z)"
     yield "OVR=100 OVRRAP=100"
     yield " ".join(f"ACC[{axis}]=100" for axis in AXES)
     yield "STOPRE"

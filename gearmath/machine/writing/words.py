@@ -13,11 +13,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.specs.milling_machine import CUTTER_AXIS, UNITS_PER_INTERNAL, MillingMachine
+from gearmath.specs.milling_machine import AXES, CUTTER_AXIS, UNITS_PER_INTERNAL, MillingMachine
 
 #: A block may be no longer than this, comment and line end included.
 MAX_BLOCK_CHARACTERS = 250
+#: Where a block has 25 values and more, the control is one that reads blocks up to this length.
+MAX_QUINTIC_CHARACTERS = 512
 MAX_NAME_CHARACTERS = 24
+#: Decimals that coefficients have beyond those of positions: rounding them is nothing beside rounding the end points.
+_MORE_DIGITS = 2
 _FEED_DIGITS = 9
 _PROGRAM_NAME = re.compile(r"(?:[A-Za-z]{2}|_[A-Za-z])[A-Za-z0-9_]*")
 _RESERVED_NAME = re.compile(r"CON|PRN|AUX|NUL|(?:COM|LPT)[1-9]", re.IGNORECASE)
@@ -80,6 +84,36 @@ class Positions:
             )
             for x, y, z, a, b in self.printed(axes).tolist()
         ]
+
+    def polynomial_words(self, axes: np.ndarray, bends: np.ndarray) -> list[tuple[str, ...]]:
+        """The words PO of blocks between positions (n, 5) with coefficients ``bends`` (n-1, 5, k), in mm and rad.
+
+        A modulo A counts on from what its DC word says at the first position [unconfirmed].
+        """
+        values = axes * UNITS_PER_INTERNAL
+        values[:, 2] -= self.length
+        values[:, 3] -= 360.0 * round((values[0, 3] - self.printed(axes[:1])[0, 3]) / 360.0)
+        given = bends * UNITS_PER_INTERNAL[:, None]
+        places = [self.mm] * 3 + [self.degrees] * 2
+        return [
+            tuple(
+                self._polynomial(axis, end, own, digits)
+                for axis, end, own, digits in zip(AXES, ends, block, places, strict=True)
+            )
+            for ends, block in zip(values[1:].tolist(), given.tolist(), strict=True)
+        ]
+
+    def _polynomial(self, axis: str, end: float, coefficients: list[float], digits: int) -> str:
+        """End point and coefficients of one axis: cubic as PO[X]=(..), of a higher degree in the form X=PO(..).
+
+        Coefficients at the end that are zero are left out.
+        """
+        more = digits + _MORE_DIGITS
+        rounded = [round(a, more) + 0.0 for a in coefficients]
+        while rounded and rounded[-1] == 0.0:
+            rounded.pop()
+        texts = [f"{round(end, digits) + 0.0:.{digits}f}", *(f"{a:.{more}f}" for a in rounded)]
+        return f"PO[{axis}]=({','.join(texts)})" if len(coefficients) == 2 else f"{axis}=PO({','.join(texts)})"
 
     def cutter_words(self, angle: np.ndarray) -> list[str]:
         """The words of positions of C (n,) rad."""

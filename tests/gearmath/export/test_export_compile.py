@@ -1,19 +1,18 @@
-"""The exported folders as a compiler sees them: strict C99, sanitizers, the microcontroller."""
+"""The exported C as a compiler sees it: strict C99, C++, the microcontroller. The library as a whole: test_library."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
 import pytest
 from elftools.elf.elffile import ELFFile
 
 from derivations import gearbox
 from gearmath.export.c import double_kernel, integer_kernel
 from gearmath.export.cnc import cnc_files, cnc_kernels
+from gearmath.export.folder import write_folder
 from gearmath.export.header import comment
 from gearmath.lowering import lower
 
@@ -28,9 +27,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     files = dict(cnc_files())
     for expression in (gearbox.gearbox_step(), gearbox.gearbox_terms()):
         files |= integer_kernel(lower(expression)).files
-    for name, text in files.items():
-        (place / name).write_text(text, "utf-8")
-    return place
+    write_folder(place / "lib", files)
+    return place / "lib"
 
 
 def run(*command: str, cwd: Path) -> None:
@@ -57,13 +55,6 @@ def test_headers_serve_cpp(folder: Path, host_compiler: tuple[str, ...]) -> None
     run(*host_compiler, "-x", "c++", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "all.cpp", cwd=folder)
 
 
-def test_makefile_builds_the_library(tmp_path: Path, gcc: str) -> None:
-    for name, text in cnc_files().items():
-        (tmp_path / name).write_text(text, "utf-8")
-    run("make", "-s", f"CC={gcc}", "CFLAGS=-O0", cwd=tmp_path)
-    assert (tmp_path / "libgearmath.a").is_file()
-
-
 def test_integer_kernels_call_no_floating_runtime_on_the_cortex_m4(folder: Path) -> None:
     for name in ("gm_gearbox_step", "gm_gearbox_terms"):
         run(*ZIG, *CORTEX_M4, "-O2", "-std=c99", "-c", f"{name}.c", "-o", f"{name}.m4.o", cwd=folder)
@@ -85,50 +76,6 @@ def test_comment_of_hostile_text_compiles(tmp_path: Path, gcc: str) -> None:
     text = comment(["*/ int x = ; /* ??/", "end with a backslash \\", "*\\\n/ int y;", "*??/\n/ \u202e"])
     (tmp_path / "hostile.c").write_text(f"{text}int fine(void);\n", "utf-8")
     run(gcc, *STRICT, "-Wtrigraphs", "-Wcomment", "-fsyntax-only", "hostile.c", cwd=tmp_path)
-
-
-_STEPS = """\
-  {
-    static const int32_t D[] = {1, 2, 3, 1073741823, 1073741824};
-    int i, j, edge;
-    for (i = 0; i < 5; ++i) for (j = 0; j < 3; ++j) for (edge = -1; edge <= 1; edge += 2) {
-      const int32_t N = j == 0 ? 1 : j == 1 ? (D[i] + 1) / 2 : D[i];
-      const int32_t starts[] = {0, D[i] / 2, D[i] - 1};
-      int32_t step, next, k;
-      for (k = 0; k < 3; ++k) {
-        gm_gearbox_step(starts[k], edge, N, D[i], &step, &next);
-        if (next < 0 || next >= D[i]) return 1;
-      }
-    }
-    gm_gearbox_terms(999, 10, 40000, 10000000, &N_, &D_);
-    if (N_ != 100000000 || D_ != 39960000) return 1;
-  }
-"""
-
-
-def _main(n: int, samples: Callable) -> str:
-    """A program that calls every kernel on n samples, with arrays of exactly the documented size on the heap."""
-    lines = ['#include <stdlib.h>\n#include "gearmath.h"\n#include "gm_gearbox_step.h"\n#include "gm_gearbox_terms.h"']
-    body = ["int main(void)\n{\n  int32_t N_, D_;"]
-    for kernel in cnc_kernels():
-        name, given = kernel.name, []
-        for quantity, array in zip(kernel.inputs, samples(name, n), strict=True):
-            numbers = ", ".join(float(value).hex() for value in np.ravel(array))
-            lines.append(f"static const double {name}_{quantity.name}[{n * quantity.size}] = {{{numbers}}};")
-            given.append(f"{name}_{quantity.name}, {quantity.size}")
-        results = [f"{name}_{quantity.name}_" for quantity in kernel.outputs]
-        for quantity, result in zip(kernel.outputs, results, strict=True):
-            body.append(f"  double *{result} = malloc({n * quantity.size} * sizeof(double));")
-        body.append(f"  gm_{name}_batch({n}, {', '.join([*given, *results])});")
-        body += [f"  free({result});" for result in results]
-    return "\n".join([*lines, *body, _STEPS, "  return 0;\n}\n"])
-
-
-def test_sanitizers_find_nothing(folder: Path, gcc: str, samples: Callable) -> None:
-    (folder / "main.c").write_text(_main(20, samples))
-    sanitize = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1", "-std=c99", "-Werror")
-    run(gcc, *sanitize, "main.c", *sources(folder), "-o", "sanitized", "-lm", cwd=folder)
-    run("./sanitized", cwd=folder)
 
 
 def test_every_public_name_starts_with_gm(folder: Path, gcc: str) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from gearmath.export import teensy
-from gearmath.export.cnc import cnc_files
+from gearmath.export.cnc import by_hand, cnc_files
 from gearmath.export.folder import MANIFEST, manifest, write_folder
 from gearmath.specs.hobbing import load_hobbing_machine
 from gearmath.specs.toml import bundled
@@ -23,9 +23,12 @@ GOLDEN = Path(__file__).parents[2] / "golden"
 def _exports() -> dict[str, dict[str, str]]:
     """What is generated; C that is written by hand goes out as it stands, and needs no second copy."""
     machine = load_hobbing_machine(bundled("hobbing_plewes.toml"))
-    by_hand = {path.read_text("utf-8") for path in Path(teensy.__file__).with_name("firmware").iterdir()}
-    sketch = {name: text for name, text in teensy.teensy_files(machine, "teensy").items() if text not in by_hand}
-    return {"teensy": sketch, "cnc": cnc_files()}
+    firmware = {path.read_text("utf-8") for path in Path(teensy.__file__).with_name("firmware").iterdir()}
+    sketch = {name: text for name, text in teensy.teensy_files(machine, "teensy").items() if text not in firmware}
+    # the last bit of a vector depends on the C library: its sine is not the same everywhere
+    kept = by_hand().keys() - {"README.md"} | {"selftest_vectors.h"}
+    library = {name: text for name, text in cnc_files().items() if name not in kept}
+    return {"teensy": sketch, "cnc": library}
 
 
 @pytest.mark.parametrize("folder", ["teensy", "cnc"])

@@ -19,7 +19,7 @@ from gearmath.engine.compiler import compile_library
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError, InputError
 from gearmath.export import host
-from gearmath.export.c import integer_kernel
+from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import cnc_kernels
 from gearmath.export.host import compile_kernel, run_edges
 from gearmath.lowering import lower
@@ -62,8 +62,16 @@ def test_wrong_number_and_wrong_shape_of_arguments_are_refused() -> None:
         compiled(np.zeros((3, 5)), np.zeros(2), np.zeros(3))
 
 
+def test_point_outside_the_domain_is_refused_by_its_number() -> None:
+    compiled = compile_kernel(DOUBLE["tool_pose"])
+    axes = np.zeros((3, 5))
+    axes[2, 1] = np.nan
+    with pytest.raises(InputError, match="tool_pose at point 2: an input is not a number, or outside the range"):
+        compiled(axes, 0.0, np.zeros(3))
+
+
 def _quantity(name: str, *shape: int) -> Quantity:
-    return Quantity(name, "a test", "1", name, (-1.0, 1.0), shape=shape)
+    return Quantity(name, "a test", "1", name, (-100.0, 100.0), shape=shape)
 
 
 def test_matrices_go_in_and_out_row_by_row() -> None:
@@ -159,7 +167,7 @@ def test_c_compiled_by_zig_equals_casadi_too(
 ) -> None:
     monkeypatch.setattr(compiler, "find_compiler", lambda: (sys.executable, "-m", "ziglang", "cc"))
     kernel = DOUBLE["axis_transform"]
-    library = compile_library(host.double_kernel(kernel).files)
+    library = compile_library(contract_files() | double_kernel(kernel).files)
     arguments = samples("axis_transform", 1000)
     (ours,), (casadis,) = host.CompiledKernel(kernel, library)(*arguments), kernel(*arguments)
     assert same_bits(ours, casadis)

@@ -154,7 +154,7 @@ def test_blanks_of_the_source_text(plewes):
         (-3, {}, ("teeth = -3", "between")),
         (1000, {}, ("teeth = 1000", "999")),
         (10, {"starts": 0}, ("starts = 0", "between 1")),
-        (10, {"shift": 1.2}, ("shift = 1.2", "-0.4 and 1")),
+        (10, {"shift": 1.2}, ("shift = 1.2", "-0.5 and 1")),
         (10, {"pin": -1.0}, ("pin = -1", "positive")),
         (10, {"hob": "20dp"}, ("20dp", "32dp, 36dp", "m1")),
         (10, {"rpm": 0.0}, ("rpm = 0", "positive")),

@@ -6,6 +6,7 @@
 #ifndef GEARMATH_H
 #define GEARMATH_H
 
+#include "gm_status.h"
 #include "gm_cutter_surface.h"
 #include "gm_cradle_pose.h"
 #include "gm_flank_family.h"
@@ -16,6 +17,8 @@
 #include "gm_setting_sensitivity.h"
 #include "gm_deviation_surface.h"
 #include "gm_line_entry.h"
+#include "gm_moved_settings.h"
+#include "gm_seen_from_tool.h"
 #include "gm_flank_point.h"
 #include "gm_flank_on_line.h"
 #include "gm_compensation_step.h"

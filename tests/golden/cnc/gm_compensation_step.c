@@ -1,5 +1,6 @@
 /* gm_compensation_step: generated, do not edit. */
 #include "gm_compensation_step.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -2458,14 +2459,435 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_compensation_step(
-    const double normal_matrix[144],
-    const double gradient[12],
-    const double variables[12],
-    const double lower[12],
-    const double upper[12],
-    double damping,
-    double step[12],
+static int gm_compensation_step_normal_matrix_inside(const double *x)
+{
+  static const double low[144] = {
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001};
+  static const double high[144] = {
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001};
+  return gm_inside(x, 144, low, high);
+}
+static int gm_compensation_step_gradient_inside(const double *x)
+{
+  static const double low[12] = {
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001,
+    -100000.0001};
+  static const double high[12] = {
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001,
+    100000.0001};
+  return gm_inside(x, 12, low, high);
+}
+static int gm_compensation_step_variables_inside(const double *x)
+{
+  static const double low[12] = {
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001};
+  static const double high[12] = {
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001};
+  return gm_inside(x, 12, low, high);
+}
+static int gm_compensation_step_lower_inside(const double *x)
+{
+  static const double low[12] = {
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001};
+  static const double high[12] = {
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001};
+  return gm_inside(x, 12, low, high);
+}
+static int gm_compensation_step_upper_inside(const double *x)
+{
+  static const double low[12] = {
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001};
+  static const double high[12] = {
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001};
+  return gm_inside(x, 12, low, high);
+}
+static int gm_compensation_step_damping_inside(const double *x)
+{
+  static const double low[1] = {-10.0};
+  static const double high[1] = {10000000010.0};
+  return gm_inside(x, 1, low, high);
+}
+
+static int gm_compensation_step_point(
+    const double *normal_matrix,
+    const double *gradient,
+    const double *variables,
+    const double *lower,
+    const double *upper,
+    const double *damping,
+    double *step,
     double *promised)
 {
   const double *arg[12];
@@ -2621,48 +3043,100 @@ void gm_compensation_step(
   arg[2] = variables;
   arg[3] = lower;
   arg[4] = upper;
-  arg[5] = &damping;
+  arg[5] = damping;
   res[0] = step;
   res[1] = promised;
-  if (casadi_f0(arg, res, 0, w, 0) != 0) {
-    step[0] = NAN;
-    step[1] = NAN;
-    step[2] = NAN;
-    step[3] = NAN;
-    step[4] = NAN;
-    step[5] = NAN;
-    step[6] = NAN;
-    step[7] = NAN;
-    step[8] = NAN;
-    step[9] = NAN;
-    step[10] = NAN;
-    step[11] = NAN;
-    promised[0] = NAN;
-    return;
-  }
+  if (casadi_f0(arg, res, 0, w, 0) != 0) return GM_E_NO_RESULT;
+  return gm_finite(step, 12) && gm_finite(promised, 1) ? GM_OK : GM_E_NO_RESULT;
 }
 
-void gm_compensation_step_batch(
-    long n,
-    const double *normal_matrix, long normal_matrix_stride,
-    const double *gradient, long gradient_stride,
-    const double *variables, long variables_stride,
-    const double *lower, long lower_stride,
-    const double *upper, long upper_stride,
-    const double *damping, long damping_stride,
-    double *step,
+
+int gm_compensation_step(
+    const double normal_matrix[144],
+    const double gradient[12],
+    const double variables[12],
+    const double lower[12],
+    const double upper[12],
+    double damping,
+    double step[12],
     double *promised)
 {
-  long k;
-  for (k = 0; k < n; ++k) {
-    gm_compensation_step(
-        normal_matrix + k * normal_matrix_stride,
-        gradient + k * gradient_stride,
-        variables + k * variables_stride,
-        lower + k * lower_stride,
-        upper + k * upper_stride,
-        damping[k * damping_stride],
-        step + k * 12,
-        promised + k);
+  int status = GM_E_DOMAIN;
+  if (!normal_matrix || !gradient || !variables || !lower || !upper || !step || !promised) return GM_E_NULL;
+  if (gm_compensation_step_normal_matrix_inside(normal_matrix)
+      && gm_compensation_step_gradient_inside(gradient)
+      && gm_compensation_step_variables_inside(variables)
+      && gm_compensation_step_lower_inside(lower)
+      && gm_compensation_step_upper_inside(upper)
+      && gm_compensation_step_damping_inside(&damping)) {
+    status = gm_compensation_step_point(
+        normal_matrix,
+        gradient,
+        variables,
+        lower,
+        upper,
+        &damping,
+        step,
+        promised);
   }
+  if (status != GM_OK) {
+    gm_nan(step, 12);
+    gm_nan(promised, 1);
+  }
+  return status;
+}
+
+int gm_compensation_step_batch(
+    int64_t n,
+    const double *normal_matrix, int64_t normal_matrix_stride,
+    const double *gradient, int64_t gradient_stride,
+    const double *variables, int64_t variables_stride,
+    const double *lower, int64_t lower_stride,
+    const double *upper, int64_t upper_stride,
+    const double *damping, int64_t damping_stride,
+    double *step,
+    double *promised,
+    int64_t *first_bad)
+{
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || normal_matrix_stride < 0 || gradient_stride < 0 || variables_stride < 0 || lower_stride < 0 || upper_stride < 0 || damping_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!normal_matrix || !gradient || !variables || !lower || !upper || !damping || !step || !promised) return GM_E_NULL;
+  shared = (normal_matrix_stride != 0 || gm_compensation_step_normal_matrix_inside(normal_matrix))
+      && (gradient_stride != 0 || gm_compensation_step_gradient_inside(gradient))
+      && (variables_stride != 0 || gm_compensation_step_variables_inside(variables))
+      && (lower_stride != 0 || gm_compensation_step_lower_inside(lower))
+      && (upper_stride != 0 || gm_compensation_step_upper_inside(upper))
+      && (damping_stride != 0 || gm_compensation_step_damping_inside(damping));
+  for (k = 0; k < n; ++k) {
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (normal_matrix_stride == 0 || gm_compensation_step_normal_matrix_inside(normal_matrix + k * normal_matrix_stride))
+        && (gradient_stride == 0 || gm_compensation_step_gradient_inside(gradient + k * gradient_stride))
+        && (variables_stride == 0 || gm_compensation_step_variables_inside(variables + k * variables_stride))
+        && (lower_stride == 0 || gm_compensation_step_lower_inside(lower + k * lower_stride))
+        && (upper_stride == 0 || gm_compensation_step_upper_inside(upper + k * upper_stride))
+        && (damping_stride == 0 || gm_compensation_step_damping_inside(damping + k * damping_stride))) {
+      now = gm_compensation_step_point(
+          normal_matrix + k * normal_matrix_stride,
+          gradient + k * gradient_stride,
+          variables + k * variables_stride,
+          lower + k * lower_stride,
+          upper + k * upper_stride,
+          damping + k * damping_stride,
+          step + k * 12,
+          promised + k);
+    }
+    if (now != GM_OK) {
+      gm_nan(step + k * 12, 12);
+      gm_nan(promised + k, 1);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
+  }
+  return status;
 }

@@ -3,13 +3,15 @@
  *
  * One bounded Levenberg-Marquardt step of 12 scaled settings, and the fall of the sum of squares it promises.
  *
- * in normal_matrix[12][12] [mixed] -10000 ... 10000: transposed Jacobian times Jacobian of the residuals,
- *     scaled, row by row
- * in gradient[12] [mixed] -10000 ... 10000: transposed Jacobian times residuals, scaled
- * in variables[12] [mixed] -1 ... 1: scaled variables now
- * in lower[12] [mixed] -1 ... 1: least scaled variables; as the greatest where a variable is not free
- * in upper[12] [mixed] -1 ... 1: greatest scaled variables
- * in damping [1] 0 ... 1000000000: damping against the mean of the diagonal
+ * in normal_matrix[12][12] [mixed] -10000 ... 10000 (taken: -100000 ... 100000): transposed Jacobian times
+ *     Jacobian of the residuals, scaled, row by row
+ * in gradient[12] [mixed] -10000 ... 10000 (taken: -100000 ... 100000): transposed Jacobian times residuals,
+ *     scaled
+ * in variables[12] [mixed] -1 ... 1 (taken: -10 ... 10): scaled variables now
+ * in lower[12] [mixed] -1 ... 1 (taken: -10 ... 10): least scaled variables; as the greatest where a variable is
+ *     not free
+ * in upper[12] [mixed] -1 ... 1 (taken: -10 ... 10): greatest scaled variables
+ * in damping [1] 0 ... 1000000000 (taken: 0 ... 10000000000): damping against the mean of the diagonal
  * out step[12] [mixed] -2 ... 2: change of the scaled variables
  * out promised [mm2]: fall of the sum of squares by the linear model
  *
@@ -22,17 +24,13 @@
 #ifndef GM_COMPENSATION_STEP_H
 #define GM_COMPENSATION_STEP_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_compensation_step(
+GM_API int gm_compensation_step(
     const double normal_matrix[144],
     const double gradient[12],
     const double variables[12],
@@ -42,16 +40,17 @@ void gm_compensation_step(
     double step[12],
     double *promised);
 
-void gm_compensation_step_batch(
-    long n,
-    const double *normal_matrix, long normal_matrix_stride,
-    const double *gradient, long gradient_stride,
-    const double *variables, long variables_stride,
-    const double *lower, long lower_stride,
-    const double *upper, long upper_stride,
-    const double *damping, long damping_stride,
+GM_API int gm_compensation_step_batch(
+    int64_t n,
+    const double *normal_matrix, int64_t normal_matrix_stride,
+    const double *gradient, int64_t gradient_stride,
+    const double *variables, int64_t variables_stride,
+    const double *lower, int64_t lower_stride,
+    const double *upper, int64_t upper_stride,
+    const double *damping, int64_t damping_stride,
     double *step,
-    double *promised);
+    double *promised,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

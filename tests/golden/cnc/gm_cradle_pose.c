@@ -1,5 +1,6 @@
 /* gm_cradle_pose: generated, do not edit. */
 #include "gm_cradle_pose.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -68,7 +69,65 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_cradle_pose(
+static int gm_cradle_pose_settings_inside(const double *x)
+{
+  static const double low[12] = {
+    1.999998,
+    -15.000000015,
+    -4.000000004,
+    -31.415926567313857,
+    -400.0000004,
+    -200.0000002,
+    -200.0000002,
+    0.004999998429203673,
+    0.04999992,
+    -31.415926567313857,
+    1.9999975,
+    0.004999998429203673};
+  static const double high[12] = {
+    2000.000002,
+    15.000000015,
+    4.000000004,
+    31.415926567313857,
+    400.0000004,
+    200.0000002,
+    200.0000002,
+    1.570796328365693,
+    80.00000008,
+    31.415926567313857,
+    2500.0000025,
+    1.570796328365693};
+  return gm_inside(x, 12, low, high);
+}
+static int gm_cradle_pose_theta_inside(const double *x)
+{
+  static const double low[1] = {-10.00000001};
+  static const double high[1] = {10.00000001};
+  return gm_inside(x, 1, low, high);
+}
+
+static int gm_cradle_pose_point(
+    const double *settings,
+    const double *theta,
+    double *V_c,
+    double *V_p,
+    double *V_ls,
+    double *work_angle)
+{
+  const double *arg[2];
+  double *res[4];
+  arg[0] = settings;
+  arg[1] = theta;
+  res[0] = V_c;
+  res[1] = V_p;
+  res[2] = V_ls;
+  res[3] = work_angle;
+  (void)casadi_f0(arg, res, 0, 0, 0);
+  return gm_finite(V_c, 3) && gm_finite(V_p, 3) && gm_finite(V_ls, 3) && gm_finite(work_angle, 1) ? GM_OK : GM_E_NO_RESULT;
+}
+
+
+int gm_cradle_pose(
     const double settings[12],
     double theta,
     double V_c[3],
@@ -76,34 +135,62 @@ void gm_cradle_pose(
     double V_ls[3],
     double *work_angle)
 {
-  const double *arg[2];
-  double *res[4];
-  arg[0] = settings;
-  arg[1] = &theta;
-  res[0] = V_c;
-  res[1] = V_p;
-  res[2] = V_ls;
-  res[3] = work_angle;
-  (void)casadi_f0(arg, res, 0, 0, 0);
+  int status = GM_E_DOMAIN;
+  if (!settings || !V_c || !V_p || !V_ls || !work_angle) return GM_E_NULL;
+  if (gm_cradle_pose_settings_inside(settings)
+      && gm_cradle_pose_theta_inside(&theta)) {
+    status = gm_cradle_pose_point(settings, &theta, V_c, V_p, V_ls, work_angle);
+  }
+  if (status != GM_OK) {
+    gm_nan(V_c, 3);
+    gm_nan(V_p, 3);
+    gm_nan(V_ls, 3);
+    gm_nan(work_angle, 1);
+  }
+  return status;
 }
 
-void gm_cradle_pose_batch(
-    long n,
-    const double *settings, long settings_stride,
-    const double *theta, long theta_stride,
+int gm_cradle_pose_batch(
+    int64_t n,
+    const double *settings, int64_t settings_stride,
+    const double *theta, int64_t theta_stride,
     double *V_c,
     double *V_p,
     double *V_ls,
-    double *work_angle)
+    double *work_angle,
+    int64_t *first_bad)
 {
-  long k;
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || settings_stride < 0 || theta_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!settings || !theta || !V_c || !V_p || !V_ls || !work_angle) return GM_E_NULL;
+  shared = (settings_stride != 0 || gm_cradle_pose_settings_inside(settings))
+      && (theta_stride != 0 || gm_cradle_pose_theta_inside(theta));
   for (k = 0; k < n; ++k) {
-    gm_cradle_pose(
-        settings + k * settings_stride,
-        theta[k * theta_stride],
-        V_c + k * 3,
-        V_p + k * 3,
-        V_ls + k * 3,
-        work_angle + k);
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (settings_stride == 0 || gm_cradle_pose_settings_inside(settings + k * settings_stride))
+        && (theta_stride == 0 || gm_cradle_pose_theta_inside(theta + k * theta_stride))) {
+      now = gm_cradle_pose_point(
+          settings + k * settings_stride,
+          theta + k * theta_stride,
+          V_c + k * 3,
+          V_p + k * 3,
+          V_ls + k * 3,
+          work_angle + k);
+    }
+    if (now != GM_OK) {
+      gm_nan(V_c + k * 3, 3);
+      gm_nan(V_p + k * 3, 3);
+      gm_nan(V_ls + k * 3, 3);
+      gm_nan(work_angle + k, 1);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
   }
+  return status;
 }

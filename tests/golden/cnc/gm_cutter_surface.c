@@ -1,5 +1,6 @@
 /* gm_cutter_surface: generated, do not edit. */
 #include "gm_cutter_surface.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -52,7 +53,59 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_cutter_surface(
+static int gm_cutter_surface_u_inside(const double *x)
+{
+  static const double low[1] = {-1.5000000000000002e-07};
+  static const double high[1] = {150.00000015};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_cutter_surface_beta_inside(const double *x)
+{
+  static const double low[1] = {-31.415926567313857};
+  static const double high[1] = {31.415926567313857};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_cutter_surface_blade_point_radius_inside(const double *x)
+{
+  static const double low[1] = {1.9999975};
+  static const double high[1] = {2500.0000025};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_cutter_surface_blade_pressure_angle_inside(const double *x)
+{
+  static const double low[1] = {0.004999998429203673};
+  static const double high[1] = {1.570796328365693};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_cutter_surface_side_inside(const double *x)
+{
+  return x[0] == -1.0 || x[0] == 1.0;
+}
+
+static int gm_cutter_surface_point(
+    const double *u,
+    const double *beta,
+    const double *blade_point_radius,
+    const double *blade_pressure_angle,
+    const double *side,
+    double *point_c,
+    double *normal_c)
+{
+  const double *arg[5];
+  double *res[2];
+  arg[0] = u;
+  arg[1] = beta;
+  arg[2] = blade_point_radius;
+  arg[3] = blade_pressure_angle;
+  arg[4] = side;
+  res[0] = point_c;
+  res[1] = normal_c;
+  (void)casadi_f0(arg, res, 0, 0, 0);
+  return gm_finite(point_c, 3) && gm_finite(normal_c, 3) ? GM_OK : GM_E_NO_RESULT;
+}
+
+
+int gm_cutter_surface(
     double u,
     double beta,
     double blade_point_radius,
@@ -61,37 +114,76 @@ void gm_cutter_surface(
     double point_c[3],
     double normal_c[3])
 {
-  const double *arg[5];
-  double *res[2];
-  arg[0] = &u;
-  arg[1] = &beta;
-  arg[2] = &blade_point_radius;
-  arg[3] = &blade_pressure_angle;
-  arg[4] = &side;
-  res[0] = point_c;
-  res[1] = normal_c;
-  (void)casadi_f0(arg, res, 0, 0, 0);
+  int status = GM_E_DOMAIN;
+  if (!point_c || !normal_c) return GM_E_NULL;
+  if (gm_cutter_surface_u_inside(&u)
+      && gm_cutter_surface_beta_inside(&beta)
+      && gm_cutter_surface_blade_point_radius_inside(&blade_point_radius)
+      && gm_cutter_surface_blade_pressure_angle_inside(&blade_pressure_angle)
+      && gm_cutter_surface_side_inside(&side)) {
+    status = gm_cutter_surface_point(
+        &u,
+        &beta,
+        &blade_point_radius,
+        &blade_pressure_angle,
+        &side,
+        point_c,
+        normal_c);
+  }
+  if (status != GM_OK) {
+    gm_nan(point_c, 3);
+    gm_nan(normal_c, 3);
+  }
+  return status;
 }
 
-void gm_cutter_surface_batch(
-    long n,
-    const double *u, long u_stride,
-    const double *beta, long beta_stride,
-    const double *blade_point_radius, long blade_point_radius_stride,
-    const double *blade_pressure_angle, long blade_pressure_angle_stride,
-    const double *side, long side_stride,
+int gm_cutter_surface_batch(
+    int64_t n,
+    const double *u, int64_t u_stride,
+    const double *beta, int64_t beta_stride,
+    const double *blade_point_radius, int64_t blade_point_radius_stride,
+    const double *blade_pressure_angle, int64_t blade_pressure_angle_stride,
+    const double *side, int64_t side_stride,
     double *point_c,
-    double *normal_c)
+    double *normal_c,
+    int64_t *first_bad)
 {
-  long k;
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || u_stride < 0 || beta_stride < 0 || blade_point_radius_stride < 0 || blade_pressure_angle_stride < 0 || side_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!u || !beta || !blade_point_radius || !blade_pressure_angle || !side || !point_c || !normal_c) return GM_E_NULL;
+  shared = (u_stride != 0 || gm_cutter_surface_u_inside(u))
+      && (beta_stride != 0 || gm_cutter_surface_beta_inside(beta))
+      && (blade_point_radius_stride != 0 || gm_cutter_surface_blade_point_radius_inside(blade_point_radius))
+      && (blade_pressure_angle_stride != 0 || gm_cutter_surface_blade_pressure_angle_inside(blade_pressure_angle))
+      && (side_stride != 0 || gm_cutter_surface_side_inside(side));
   for (k = 0; k < n; ++k) {
-    gm_cutter_surface(
-        u[k * u_stride],
-        beta[k * beta_stride],
-        blade_point_radius[k * blade_point_radius_stride],
-        blade_pressure_angle[k * blade_pressure_angle_stride],
-        side[k * side_stride],
-        point_c + k * 3,
-        normal_c + k * 3);
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (u_stride == 0 || gm_cutter_surface_u_inside(u + k * u_stride))
+        && (beta_stride == 0 || gm_cutter_surface_beta_inside(beta + k * beta_stride))
+        && (blade_point_radius_stride == 0 || gm_cutter_surface_blade_point_radius_inside(blade_point_radius + k * blade_point_radius_stride))
+        && (blade_pressure_angle_stride == 0 || gm_cutter_surface_blade_pressure_angle_inside(blade_pressure_angle + k * blade_pressure_angle_stride))
+        && (side_stride == 0 || gm_cutter_surface_side_inside(side + k * side_stride))) {
+      now = gm_cutter_surface_point(
+          u + k * u_stride,
+          beta + k * beta_stride,
+          blade_point_radius + k * blade_point_radius_stride,
+          blade_pressure_angle + k * blade_pressure_angle_stride,
+          side + k * side_stride,
+          point_c + k * 3,
+          normal_c + k * 3);
+    }
+    if (now != GM_OK) {
+      gm_nan(point_c + k * 3, 3);
+      gm_nan(normal_c + k * 3, 3);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
   }
+  return status;
 }

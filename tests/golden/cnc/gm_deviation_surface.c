@@ -1,5 +1,6 @@
 /* gm_deviation_surface: generated, do not edit. */
 #include "gm_deviation_surface.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -78,38 +79,129 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_deviation_surface(
+static int gm_deviation_surface_lengthwise_inside(const double *x)
+{
+  static const double low[1] = {-500.0000005};
+  static const double high[1] = {500.0000005};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_deviation_surface_profilewise_inside(const double *x)
+{
+  static const double low[1] = {-200.0000002};
+  static const double high[1] = {200.0000002};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_deviation_surface_surface_coefficients_inside(const double *x)
+{
+  static const double low[10] = {
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001,
+    -10.00000001};
+  static const double high[10] = {
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001,
+    10.00000001};
+  return gm_inside(x, 10, low, high);
+}
+
+static int gm_deviation_surface_point(
+    const double *lengthwise,
+    const double *profilewise,
+    const double *surface_coefficients,
+    double *surface_deviation,
+    double *monomials)
+{
+  const double *arg[3];
+  double *res[2];
+  arg[0] = lengthwise;
+  arg[1] = profilewise;
+  arg[2] = surface_coefficients;
+  res[0] = surface_deviation;
+  res[1] = monomials;
+  (void)casadi_f0(arg, res, 0, 0, 0);
+  return gm_finite(surface_deviation, 1) && gm_finite(monomials, 10) ? GM_OK : GM_E_NO_RESULT;
+}
+
+
+int gm_deviation_surface(
     double lengthwise,
     double profilewise,
     const double surface_coefficients[10],
     double *surface_deviation,
     double monomials[10])
 {
-  const double *arg[3];
-  double *res[2];
-  arg[0] = &lengthwise;
-  arg[1] = &profilewise;
-  arg[2] = surface_coefficients;
-  res[0] = surface_deviation;
-  res[1] = monomials;
-  (void)casadi_f0(arg, res, 0, 0, 0);
+  int status = GM_E_DOMAIN;
+  if (!surface_coefficients || !surface_deviation || !monomials) return GM_E_NULL;
+  if (gm_deviation_surface_lengthwise_inside(&lengthwise)
+      && gm_deviation_surface_profilewise_inside(&profilewise)
+      && gm_deviation_surface_surface_coefficients_inside(surface_coefficients)) {
+    status = gm_deviation_surface_point(
+        &lengthwise,
+        &profilewise,
+        surface_coefficients,
+        surface_deviation,
+        monomials);
+  }
+  if (status != GM_OK) {
+    gm_nan(surface_deviation, 1);
+    gm_nan(monomials, 10);
+  }
+  return status;
 }
 
-void gm_deviation_surface_batch(
-    long n,
-    const double *lengthwise, long lengthwise_stride,
-    const double *profilewise, long profilewise_stride,
-    const double *surface_coefficients, long surface_coefficients_stride,
+int gm_deviation_surface_batch(
+    int64_t n,
+    const double *lengthwise, int64_t lengthwise_stride,
+    const double *profilewise, int64_t profilewise_stride,
+    const double *surface_coefficients, int64_t surface_coefficients_stride,
     double *surface_deviation,
-    double *monomials)
+    double *monomials,
+    int64_t *first_bad)
 {
-  long k;
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || lengthwise_stride < 0 || profilewise_stride < 0 || surface_coefficients_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!lengthwise || !profilewise || !surface_coefficients || !surface_deviation || !monomials) return GM_E_NULL;
+  shared = (lengthwise_stride != 0 || gm_deviation_surface_lengthwise_inside(lengthwise))
+      && (profilewise_stride != 0 || gm_deviation_surface_profilewise_inside(profilewise))
+      && (surface_coefficients_stride != 0 || gm_deviation_surface_surface_coefficients_inside(surface_coefficients));
   for (k = 0; k < n; ++k) {
-    gm_deviation_surface(
-        lengthwise[k * lengthwise_stride],
-        profilewise[k * profilewise_stride],
-        surface_coefficients + k * surface_coefficients_stride,
-        surface_deviation + k,
-        monomials + k * 10);
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (lengthwise_stride == 0 || gm_deviation_surface_lengthwise_inside(lengthwise + k * lengthwise_stride))
+        && (profilewise_stride == 0 || gm_deviation_surface_profilewise_inside(profilewise + k * profilewise_stride))
+        && (surface_coefficients_stride == 0 || gm_deviation_surface_surface_coefficients_inside(surface_coefficients + k * surface_coefficients_stride))) {
+      now = gm_deviation_surface_point(
+          lengthwise + k * lengthwise_stride,
+          profilewise + k * profilewise_stride,
+          surface_coefficients + k * surface_coefficients_stride,
+          surface_deviation + k,
+          monomials + k * 10);
+    }
+    if (now != GM_OK) {
+      gm_nan(surface_deviation + k, 1);
+      gm_nan(monomials + k * 10, 10);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
   }
+  return status;
 }

@@ -1,5 +1,6 @@
 /* gm_flank_on_line: generated, do not edit. */
 #include "gm_flank_on_line.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -1102,7 +1103,88 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_flank_on_line(
+static int gm_flank_on_line_contact_guess_inside(const double *x)
+{
+  static const double low[3] = {-1.5000000000000002e-07, -31.415926567313857, -10.00000001};
+  static const double high[3] = {150.00000015, 31.415926567313857, 10.00000001};
+  return gm_inside(x, 3, low, high);
+}
+static int gm_flank_on_line_settings_inside(const double *x)
+{
+  static const double low[12] = {
+    1.999998,
+    -15.000000015,
+    -4.000000004,
+    -31.415926567313857,
+    -400.0000004,
+    -200.0000002,
+    -200.0000002,
+    0.004999998429203673,
+    0.04999992,
+    -31.415926567313857,
+    1.9999975,
+    0.004999998429203673};
+  static const double high[12] = {
+    2000.000002,
+    15.000000015,
+    4.000000004,
+    31.415926567313857,
+    400.0000004,
+    200.0000002,
+    200.0000002,
+    1.570796328365693,
+    80.00000008,
+    31.415926567313857,
+    2500.0000025,
+    1.570796328365693};
+  return gm_inside(x, 12, low, high);
+}
+static int gm_flank_on_line_side_inside(const double *x)
+{
+  return x[0] == -1.0 || x[0] == 1.0;
+}
+static int gm_flank_on_line_line_point_inside(const double *x)
+{
+  static const double low[3] = {-2000.000002, -2000.000002, -2000.000002};
+  static const double high[3] = {2000.000002, 2000.000002, 2000.000002};
+  return gm_inside(x, 3, low, high);
+}
+static int gm_flank_on_line_line_direction_inside(const double *x)
+{
+  static const double low[3] = {-1.000000001, -1.000000001, -1.000000001};
+  static const double high[3] = {1.000000001, 1.000000001, 1.000000001};
+  return gm_inside(x, 3, low, high);
+}
+
+static int gm_flank_on_line_point(
+    const double *contact_guess,
+    const double *settings,
+    const double *side,
+    const double *line_point,
+    const double *line_direction,
+    double *contact,
+    double *deviation,
+    double *sensitivity,
+    double *residual_size)
+{
+  const double *arg[10];
+  double *res[7];
+  double w[89];
+  arg[0] = contact_guess;
+  arg[1] = settings;
+  arg[2] = side;
+  arg[3] = line_point;
+  arg[4] = line_direction;
+  res[0] = contact;
+  res[1] = deviation;
+  res[2] = sensitivity;
+  res[3] = residual_size;
+  if (casadi_f0(arg, res, 0, w, 0) != 0) return GM_E_NO_RESULT;
+  return gm_finite(contact, 3) && gm_finite(deviation, 1) && gm_finite(sensitivity, 12) && gm_finite(residual_size, 1) ? GM_OK : GM_E_NO_RESULT;
+}
+
+
+int gm_flank_on_line(
     const double contact_guess[3],
     const double settings[12],
     double side,
@@ -1113,63 +1195,86 @@ void gm_flank_on_line(
     double sensitivity[12],
     double *residual_size)
 {
-  const double *arg[10];
-  double *res[7];
-  double w[89];
-  arg[0] = contact_guess;
-  arg[1] = settings;
-  arg[2] = &side;
-  arg[3] = line_point;
-  arg[4] = line_direction;
-  res[0] = contact;
-  res[1] = deviation;
-  res[2] = sensitivity;
-  res[3] = residual_size;
-  if (casadi_f0(arg, res, 0, w, 0) != 0) {
-    contact[0] = NAN;
-    contact[1] = NAN;
-    contact[2] = NAN;
-    deviation[0] = NAN;
-    sensitivity[0] = NAN;
-    sensitivity[1] = NAN;
-    sensitivity[2] = NAN;
-    sensitivity[3] = NAN;
-    sensitivity[4] = NAN;
-    sensitivity[5] = NAN;
-    sensitivity[6] = NAN;
-    sensitivity[7] = NAN;
-    sensitivity[8] = NAN;
-    sensitivity[9] = NAN;
-    sensitivity[10] = NAN;
-    sensitivity[11] = NAN;
-    residual_size[0] = NAN;
-    return;
+  int status = GM_E_DOMAIN;
+  if (!contact_guess || !settings || !line_point || !line_direction || !contact || !deviation || !sensitivity || !residual_size) return GM_E_NULL;
+  if (gm_flank_on_line_contact_guess_inside(contact_guess)
+      && gm_flank_on_line_settings_inside(settings)
+      && gm_flank_on_line_side_inside(&side)
+      && gm_flank_on_line_line_point_inside(line_point)
+      && gm_flank_on_line_line_direction_inside(line_direction)) {
+    status = gm_flank_on_line_point(
+        contact_guess,
+        settings,
+        &side,
+        line_point,
+        line_direction,
+        contact,
+        deviation,
+        sensitivity,
+        residual_size);
   }
+  if (status != GM_OK) {
+    gm_nan(contact, 3);
+    gm_nan(deviation, 1);
+    gm_nan(sensitivity, 12);
+    gm_nan(residual_size, 1);
+  }
+  return status;
 }
 
-void gm_flank_on_line_batch(
-    long n,
-    const double *contact_guess, long contact_guess_stride,
-    const double *settings, long settings_stride,
-    const double *side, long side_stride,
-    const double *line_point, long line_point_stride,
-    const double *line_direction, long line_direction_stride,
+int gm_flank_on_line_batch(
+    int64_t n,
+    const double *contact_guess, int64_t contact_guess_stride,
+    const double *settings, int64_t settings_stride,
+    const double *side, int64_t side_stride,
+    const double *line_point, int64_t line_point_stride,
+    const double *line_direction, int64_t line_direction_stride,
     double *contact,
     double *deviation,
     double *sensitivity,
-    double *residual_size)
+    double *residual_size,
+    int64_t *first_bad)
 {
-  long k;
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || contact_guess_stride < 0 || settings_stride < 0 || side_stride < 0 || line_point_stride < 0 || line_direction_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!contact_guess || !settings || !side || !line_point || !line_direction || !contact || !deviation || !sensitivity || !residual_size) return GM_E_NULL;
+  shared = (contact_guess_stride != 0 || gm_flank_on_line_contact_guess_inside(contact_guess))
+      && (settings_stride != 0 || gm_flank_on_line_settings_inside(settings))
+      && (side_stride != 0 || gm_flank_on_line_side_inside(side))
+      && (line_point_stride != 0 || gm_flank_on_line_line_point_inside(line_point))
+      && (line_direction_stride != 0 || gm_flank_on_line_line_direction_inside(line_direction));
   for (k = 0; k < n; ++k) {
-    gm_flank_on_line(
-        contact_guess + k * contact_guess_stride,
-        settings + k * settings_stride,
-        side[k * side_stride],
-        line_point + k * line_point_stride,
-        line_direction + k * line_direction_stride,
-        contact + k * 3,
-        deviation + k,
-        sensitivity + k * 12,
-        residual_size + k);
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (contact_guess_stride == 0 || gm_flank_on_line_contact_guess_inside(contact_guess + k * contact_guess_stride))
+        && (settings_stride == 0 || gm_flank_on_line_settings_inside(settings + k * settings_stride))
+        && (side_stride == 0 || gm_flank_on_line_side_inside(side + k * side_stride))
+        && (line_point_stride == 0 || gm_flank_on_line_line_point_inside(line_point + k * line_point_stride))
+        && (line_direction_stride == 0 || gm_flank_on_line_line_direction_inside(line_direction + k * line_direction_stride))) {
+      now = gm_flank_on_line_point(
+          contact_guess + k * contact_guess_stride,
+          settings + k * settings_stride,
+          side + k * side_stride,
+          line_point + k * line_point_stride,
+          line_direction + k * line_direction_stride,
+          contact + k * 3,
+          deviation + k,
+          sensitivity + k * 12,
+          residual_size + k);
+    }
+    if (now != GM_OK) {
+      gm_nan(contact + k * 3, 3);
+      gm_nan(deviation + k, 1);
+      gm_nan(sensitivity + k * 12, 12);
+      gm_nan(residual_size + k, 1);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
   }
+  return status;
 }

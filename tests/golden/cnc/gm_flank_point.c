@@ -1,5 +1,6 @@
 /* gm_flank_point: generated, do not edit. */
 #include "gm_flank_point.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -841,7 +842,88 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_flank_point(
+static int gm_flank_point_contact_guess_inside(const double *x)
+{
+  static const double low[3] = {-1.5000000000000002e-07, -31.415926567313857, -10.00000001};
+  static const double high[3] = {150.00000015, 31.415926567313857, 10.00000001};
+  return gm_inside(x, 3, low, high);
+}
+static int gm_flank_point_settings_inside(const double *x)
+{
+  static const double low[12] = {
+    1.999998,
+    -15.000000015,
+    -4.000000004,
+    -31.415926567313857,
+    -400.0000004,
+    -200.0000002,
+    -200.0000002,
+    0.004999998429203673,
+    0.04999992,
+    -31.415926567313857,
+    1.9999975,
+    0.004999998429203673};
+  static const double high[12] = {
+    2000.000002,
+    15.000000015,
+    4.000000004,
+    31.415926567313857,
+    400.0000004,
+    200.0000002,
+    200.0000002,
+    1.570796328365693,
+    80.00000008,
+    31.415926567313857,
+    2500.0000025,
+    1.570796328365693};
+  return gm_inside(x, 12, low, high);
+}
+static int gm_flank_point_side_inside(const double *x)
+{
+  return x[0] == -1.0 || x[0] == 1.0;
+}
+static int gm_flank_point_axial_inside(const double *x)
+{
+  static const double low[1] = {0.499997};
+  static const double high[1] = {3000.000003};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_flank_point_radial_inside(const double *x)
+{
+  static const double low[1] = {0.499997};
+  static const double high[1] = {3000.000003};
+  return gm_inside(x, 1, low, high);
+}
+
+static int gm_flank_point_point(
+    const double *contact_guess,
+    const double *settings,
+    const double *side,
+    const double *axial,
+    const double *radial,
+    double *contact,
+    double *point_w,
+    double *normal_w,
+    double *residual_size)
+{
+  const double *arg[10];
+  double *res[7];
+  double w[71];
+  arg[0] = contact_guess;
+  arg[1] = settings;
+  arg[2] = side;
+  arg[3] = axial;
+  arg[4] = radial;
+  res[0] = contact;
+  res[1] = point_w;
+  res[2] = normal_w;
+  res[3] = residual_size;
+  if (casadi_f0(arg, res, 0, w, 0) != 0) return GM_E_NO_RESULT;
+  return gm_finite(contact, 3) && gm_finite(point_w, 3) && gm_finite(normal_w, 3) && gm_finite(residual_size, 1) ? GM_OK : GM_E_NO_RESULT;
+}
+
+
+int gm_flank_point(
     const double contact_guess[3],
     const double settings[12],
     double side,
@@ -852,56 +934,86 @@ void gm_flank_point(
     double normal_w[3],
     double *residual_size)
 {
-  const double *arg[10];
-  double *res[7];
-  double w[71];
-  arg[0] = contact_guess;
-  arg[1] = settings;
-  arg[2] = &side;
-  arg[3] = &axial;
-  arg[4] = &radial;
-  res[0] = contact;
-  res[1] = point_w;
-  res[2] = normal_w;
-  res[3] = residual_size;
-  if (casadi_f0(arg, res, 0, w, 0) != 0) {
-    contact[0] = NAN;
-    contact[1] = NAN;
-    contact[2] = NAN;
-    point_w[0] = NAN;
-    point_w[1] = NAN;
-    point_w[2] = NAN;
-    normal_w[0] = NAN;
-    normal_w[1] = NAN;
-    normal_w[2] = NAN;
-    residual_size[0] = NAN;
-    return;
+  int status = GM_E_DOMAIN;
+  if (!contact_guess || !settings || !contact || !point_w || !normal_w || !residual_size) return GM_E_NULL;
+  if (gm_flank_point_contact_guess_inside(contact_guess)
+      && gm_flank_point_settings_inside(settings)
+      && gm_flank_point_side_inside(&side)
+      && gm_flank_point_axial_inside(&axial)
+      && gm_flank_point_radial_inside(&radial)) {
+    status = gm_flank_point_point(
+        contact_guess,
+        settings,
+        &side,
+        &axial,
+        &radial,
+        contact,
+        point_w,
+        normal_w,
+        residual_size);
   }
+  if (status != GM_OK) {
+    gm_nan(contact, 3);
+    gm_nan(point_w, 3);
+    gm_nan(normal_w, 3);
+    gm_nan(residual_size, 1);
+  }
+  return status;
 }
 
-void gm_flank_point_batch(
-    long n,
-    const double *contact_guess, long contact_guess_stride,
-    const double *settings, long settings_stride,
-    const double *side, long side_stride,
-    const double *axial, long axial_stride,
-    const double *radial, long radial_stride,
+int gm_flank_point_batch(
+    int64_t n,
+    const double *contact_guess, int64_t contact_guess_stride,
+    const double *settings, int64_t settings_stride,
+    const double *side, int64_t side_stride,
+    const double *axial, int64_t axial_stride,
+    const double *radial, int64_t radial_stride,
     double *contact,
     double *point_w,
     double *normal_w,
-    double *residual_size)
+    double *residual_size,
+    int64_t *first_bad)
 {
-  long k;
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || contact_guess_stride < 0 || settings_stride < 0 || side_stride < 0 || axial_stride < 0 || radial_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!contact_guess || !settings || !side || !axial || !radial || !contact || !point_w || !normal_w || !residual_size) return GM_E_NULL;
+  shared = (contact_guess_stride != 0 || gm_flank_point_contact_guess_inside(contact_guess))
+      && (settings_stride != 0 || gm_flank_point_settings_inside(settings))
+      && (side_stride != 0 || gm_flank_point_side_inside(side))
+      && (axial_stride != 0 || gm_flank_point_axial_inside(axial))
+      && (radial_stride != 0 || gm_flank_point_radial_inside(radial));
   for (k = 0; k < n; ++k) {
-    gm_flank_point(
-        contact_guess + k * contact_guess_stride,
-        settings + k * settings_stride,
-        side[k * side_stride],
-        axial[k * axial_stride],
-        radial[k * radial_stride],
-        contact + k * 3,
-        point_w + k * 3,
-        normal_w + k * 3,
-        residual_size + k);
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (contact_guess_stride == 0 || gm_flank_point_contact_guess_inside(contact_guess + k * contact_guess_stride))
+        && (settings_stride == 0 || gm_flank_point_settings_inside(settings + k * settings_stride))
+        && (side_stride == 0 || gm_flank_point_side_inside(side + k * side_stride))
+        && (axial_stride == 0 || gm_flank_point_axial_inside(axial + k * axial_stride))
+        && (radial_stride == 0 || gm_flank_point_radial_inside(radial + k * radial_stride))) {
+      now = gm_flank_point_point(
+          contact_guess + k * contact_guess_stride,
+          settings + k * settings_stride,
+          side + k * side_stride,
+          axial + k * axial_stride,
+          radial + k * radial_stride,
+          contact + k * 3,
+          point_w + k * 3,
+          normal_w + k * 3,
+          residual_size + k);
+    }
+    if (now != GM_OK) {
+      gm_nan(contact + k * 3, 3);
+      gm_nan(point_w + k * 3, 3);
+      gm_nan(normal_w + k * 3, 3);
+      gm_nan(residual_size + k, 1);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
   }
+  return status;
 }

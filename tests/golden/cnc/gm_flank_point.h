@@ -4,25 +4,34 @@
  * Point and outward normal of a generated flank at a place on the blank, 5 damped Newton steps.
  *
  * in contact_guess[3] [mixed]: start values of u, beta, theta
- *     [0] u [mm] 0 ... 15: height of the blade point above the tip plane, along the cutter axis
- *     [1] beta [rad] -3.14159265359 ... 3.14159265359: cutter angle of the blade point, about the cutter axis
- *     [2] theta [rad] -1 ... 1: cradle rotation (roll position)
+ *     [0] u [mm] 0 ... 15 (taken: 0 ... 150): height of the blade point above the tip plane, along the cutter
+ *         axis
+ *     [1] beta [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359): cutter angle of
+ *         the blade point, about the cutter axis
+ *     [2] theta [rad] -1 ... 1 (taken: -10 ... 10): cradle rotation (roll position)
  * in settings[12] [mixed]: machine and cutter settings of one flank
- *     [0] radial_distance [mm] 20 ... 200: machine centre to cutter centre in the machine plane
- *     [1] cradle_angle [rad] -1.5 ... 1.5: polar angle of the cutter centre at cradle rotation zero
- *     [2] cutter_tilt [rad] -0.4 ... 0.4: tilt of the cutter axis against the cradle axis
- *     [3] cutter_swivel [rad] -3.14159265359 ... 3.14159265359: direction of the tilt, about the cradle axis
- *     [4] blank_offset [mm] -40 ... 40: work axis to machine centre, along machine axis j
- *     [5] sliding_base [mm] -20 ... 20: withdrawal of the work along the cradle axis
- *     [6] machine_center_to_crossing_point [mm] -20 ... 20: advance of the work along its own axis
- *     [7] machine_root_angle [rad] 0.05 ... 1.45: work axis against the machine plane
- *     [8] ratio_of_roll [1] 0.5 ... 8: work rotation per cradle rotation
- *     [9] work_rotation_offset [rad] -3.14159265359 ... 3.14159265359: work rotation at cradle rotation zero
- *     [10] blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis
- *     [11] blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
+ *     [0] radial_distance [mm] 20 ... 200 (taken: 2 ... 2000): machine centre to cutter centre in the machine
+ *         plane
+ *     [1] cradle_angle [rad] -1.5 ... 1.5 (taken: -15 ... 15): polar angle of the cutter centre at cradle
+ *         rotation zero
+ *     [2] cutter_tilt [rad] -0.4 ... 0.4 (taken: -4 ... 4): tilt of the cutter axis against the cradle axis
+ *     [3] cutter_swivel [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359):
+ *         direction of the tilt, about the cradle axis
+ *     [4] blank_offset [mm] -40 ... 40 (taken: -400 ... 400): work axis to machine centre, along machine axis j
+ *     [5] sliding_base [mm] -20 ... 20 (taken: -200 ... 200): withdrawal of the work along the cradle axis
+ *     [6] machine_center_to_crossing_point [mm] -20 ... 20 (taken: -200 ... 200): advance of the work along its
+ *         own axis
+ *     [7] machine_root_angle [rad] 0.05 ... 1.45 (taken: 0.005 ... 1.57079632679): work axis against the machine
+ *         plane
+ *     [8] ratio_of_roll [1] 0.5 ... 8 (taken: 0.05 ... 80): work rotation per cradle rotation
+ *     [9] work_rotation_offset [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359):
+ *         work rotation at cradle rotation zero
+ *     [10] blade_point_radius [mm] 20 ... 250 (taken: 2 ... 2500): radius of the blade tip about the cutter axis
+ *     [11] blade_pressure_angle [rad] 0.05 ... 0.6 (taken: 0.005 ... 1.57079632679): angle between blade and
+ *         cutter axis
  * in side [1] one of -1, 1: +1 outer blade (concave flank), -1 inner blade (convex flank)
- * in axial [mm] 5 ... 300: coordinate z_w of a flank point
- * in radial [mm] 5 ... 300: distance of a flank point from the member's axis
+ * in axial [mm] 5 ... 300 (taken: 0.5 ... 3000): coordinate z_w of a flank point
+ * in radial [mm] 5 ... 300 (taken: 0.5 ... 3000): distance of a flank point from the member's axis
  * out contact[3] [mixed]: surface parameters u, beta, theta of a flank point
  *     [0] u [mm] 0 ... 15: height of the blade point above the tip plane, along the cutter axis
  *     [1] beta [rad] -3.14159265359 ... 3.14159265359: cutter angle of the blade point, about the cutter axis
@@ -40,17 +49,13 @@
 #ifndef GM_FLANK_POINT_H
 #define GM_FLANK_POINT_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_flank_point(
+GM_API int gm_flank_point(
     const double contact_guess[3],
     const double settings[12],
     double side,
@@ -61,17 +66,18 @@ void gm_flank_point(
     double normal_w[3],
     double *residual_size);
 
-void gm_flank_point_batch(
-    long n,
-    const double *contact_guess, long contact_guess_stride,
-    const double *settings, long settings_stride,
-    const double *side, long side_stride,
-    const double *axial, long axial_stride,
-    const double *radial, long radial_stride,
+GM_API int gm_flank_point_batch(
+    int64_t n,
+    const double *contact_guess, int64_t contact_guess_stride,
+    const double *settings, int64_t settings_stride,
+    const double *side, int64_t side_stride,
+    const double *axial, int64_t axial_stride,
+    const double *radial, int64_t radial_stride,
     double *contact,
     double *point_w,
     double *normal_w,
-    double *residual_size);
+    double *residual_size,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

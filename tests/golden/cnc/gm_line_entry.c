@@ -1,5 +1,6 @@
 /* gm_line_entry: generated, do not edit. */
 #include "gm_line_entry.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -165,7 +166,81 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_line_entry(
+static int gm_line_entry_axes_inside(const double *x)
+{
+  static const double low[5] = {-5000.000005, -5000.000005, -5000.000009, -100.0000001, -2.000000017};
+  static const double high[5] = {5000.000005, 5000.000005, 9000.000009, 100.0000001, 17.000000017};
+  return gm_inside(x, 5, low, high);
+}
+static int gm_line_entry_pivot_height_inside(const double *x)
+{
+  static const double low[1] = {-10000.00001};
+  static const double high[1] = {10000.00001};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_line_entry_line_point_inside(const double *x)
+{
+  static const double low[3] = {-2000.000002, -2000.000002, -2000.000002};
+  static const double high[3] = {2000.000002, 2000.000002, 2000.000002};
+  return gm_inside(x, 3, low, high);
+}
+static int gm_line_entry_line_direction_inside(const double *x)
+{
+  static const double low[3] = {-1.000000001, -1.000000001, -1.000000001};
+  static const double high[3] = {1.000000001, 1.000000001, 1.000000001};
+  return gm_inside(x, 3, low, high);
+}
+static int gm_line_entry_blade_point_radius_inside(const double *x)
+{
+  static const double low[1] = {1.9999975};
+  static const double high[1] = {2500.0000025};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_line_entry_blade_pressure_angle_inside(const double *x)
+{
+  static const double low[1] = {0.004999998429203673};
+  static const double high[1] = {1.570796328365693};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_line_entry_side_inside(const double *x)
+{
+  return x[0] == -1.0 || x[0] == 1.0;
+}
+static int gm_line_entry_pivot_offset_inside(const double *x)
+{
+  static const double low[3] = {-1000.000001, -1000.000001, -1000.000001};
+  static const double high[3] = {1000.000001, 1000.000001, 1000.000001};
+  return gm_inside(x, 3, low, high);
+}
+
+static int gm_line_entry_point(
+    const double *axes,
+    const double *pivot_height,
+    const double *line_point,
+    const double *line_direction,
+    const double *blade_point_radius,
+    const double *blade_pressure_angle,
+    const double *side,
+    const double *pivot_offset,
+    double *line_distance)
+{
+  const double *arg[8];
+  double *res[1];
+  arg[0] = axes;
+  arg[1] = pivot_height;
+  arg[2] = line_point;
+  arg[3] = line_direction;
+  arg[4] = blade_point_radius;
+  arg[5] = blade_pressure_angle;
+  arg[6] = side;
+  arg[7] = pivot_offset;
+  res[0] = line_distance;
+  (void)casadi_f0(arg, res, 0, 0, 0);
+  return gm_finite(line_distance, 1) ? GM_OK : GM_E_NO_RESULT;
+}
+
+
+int gm_line_entry(
     const double axes[5],
     double pivot_height,
     const double line_point[3],
@@ -176,43 +251,89 @@ void gm_line_entry(
     const double pivot_offset[3],
     double *line_distance)
 {
-  const double *arg[8];
-  double *res[1];
-  arg[0] = axes;
-  arg[1] = &pivot_height;
-  arg[2] = line_point;
-  arg[3] = line_direction;
-  arg[4] = &blade_point_radius;
-  arg[5] = &blade_pressure_angle;
-  arg[6] = &side;
-  arg[7] = pivot_offset;
-  res[0] = line_distance;
-  (void)casadi_f0(arg, res, 0, 0, 0);
+  int status = GM_E_DOMAIN;
+  if (!axes || !line_point || !line_direction || !pivot_offset || !line_distance) return GM_E_NULL;
+  if (gm_line_entry_axes_inside(axes)
+      && gm_line_entry_pivot_height_inside(&pivot_height)
+      && gm_line_entry_line_point_inside(line_point)
+      && gm_line_entry_line_direction_inside(line_direction)
+      && gm_line_entry_blade_point_radius_inside(&blade_point_radius)
+      && gm_line_entry_blade_pressure_angle_inside(&blade_pressure_angle)
+      && gm_line_entry_side_inside(&side)
+      && gm_line_entry_pivot_offset_inside(pivot_offset)) {
+    status = gm_line_entry_point(
+        axes,
+        &pivot_height,
+        line_point,
+        line_direction,
+        &blade_point_radius,
+        &blade_pressure_angle,
+        &side,
+        pivot_offset,
+        line_distance);
+  }
+  if (status != GM_OK) {
+    gm_nan(line_distance, 1);
+  }
+  return status;
 }
 
-void gm_line_entry_batch(
-    long n,
-    const double *axes, long axes_stride,
-    const double *pivot_height, long pivot_height_stride,
-    const double *line_point, long line_point_stride,
-    const double *line_direction, long line_direction_stride,
-    const double *blade_point_radius, long blade_point_radius_stride,
-    const double *blade_pressure_angle, long blade_pressure_angle_stride,
-    const double *side, long side_stride,
-    const double *pivot_offset, long pivot_offset_stride,
-    double *line_distance)
+int gm_line_entry_batch(
+    int64_t n,
+    const double *axes, int64_t axes_stride,
+    const double *pivot_height, int64_t pivot_height_stride,
+    const double *line_point, int64_t line_point_stride,
+    const double *line_direction, int64_t line_direction_stride,
+    const double *blade_point_radius, int64_t blade_point_radius_stride,
+    const double *blade_pressure_angle, int64_t blade_pressure_angle_stride,
+    const double *side, int64_t side_stride,
+    const double *pivot_offset, int64_t pivot_offset_stride,
+    double *line_distance,
+    int64_t *first_bad)
 {
-  long k;
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || axes_stride < 0 || pivot_height_stride < 0 || line_point_stride < 0 || line_direction_stride < 0 || blade_point_radius_stride < 0 || blade_pressure_angle_stride < 0 || side_stride < 0 || pivot_offset_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!axes || !pivot_height || !line_point || !line_direction || !blade_point_radius || !blade_pressure_angle || !side || !pivot_offset || !line_distance) return GM_E_NULL;
+  shared = (axes_stride != 0 || gm_line_entry_axes_inside(axes))
+      && (pivot_height_stride != 0 || gm_line_entry_pivot_height_inside(pivot_height))
+      && (line_point_stride != 0 || gm_line_entry_line_point_inside(line_point))
+      && (line_direction_stride != 0 || gm_line_entry_line_direction_inside(line_direction))
+      && (blade_point_radius_stride != 0 || gm_line_entry_blade_point_radius_inside(blade_point_radius))
+      && (blade_pressure_angle_stride != 0 || gm_line_entry_blade_pressure_angle_inside(blade_pressure_angle))
+      && (side_stride != 0 || gm_line_entry_side_inside(side))
+      && (pivot_offset_stride != 0 || gm_line_entry_pivot_offset_inside(pivot_offset));
   for (k = 0; k < n; ++k) {
-    gm_line_entry(
-        axes + k * axes_stride,
-        pivot_height[k * pivot_height_stride],
-        line_point + k * line_point_stride,
-        line_direction + k * line_direction_stride,
-        blade_point_radius[k * blade_point_radius_stride],
-        blade_pressure_angle[k * blade_pressure_angle_stride],
-        side[k * side_stride],
-        pivot_offset + k * pivot_offset_stride,
-        line_distance + k);
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (axes_stride == 0 || gm_line_entry_axes_inside(axes + k * axes_stride))
+        && (pivot_height_stride == 0 || gm_line_entry_pivot_height_inside(pivot_height + k * pivot_height_stride))
+        && (line_point_stride == 0 || gm_line_entry_line_point_inside(line_point + k * line_point_stride))
+        && (line_direction_stride == 0 || gm_line_entry_line_direction_inside(line_direction + k * line_direction_stride))
+        && (blade_point_radius_stride == 0 || gm_line_entry_blade_point_radius_inside(blade_point_radius + k * blade_point_radius_stride))
+        && (blade_pressure_angle_stride == 0 || gm_line_entry_blade_pressure_angle_inside(blade_pressure_angle + k * blade_pressure_angle_stride))
+        && (side_stride == 0 || gm_line_entry_side_inside(side + k * side_stride))
+        && (pivot_offset_stride == 0 || gm_line_entry_pivot_offset_inside(pivot_offset + k * pivot_offset_stride))) {
+      now = gm_line_entry_point(
+          axes + k * axes_stride,
+          pivot_height + k * pivot_height_stride,
+          line_point + k * line_point_stride,
+          line_direction + k * line_direction_stride,
+          blade_point_radius + k * blade_point_radius_stride,
+          blade_pressure_angle + k * blade_pressure_angle_stride,
+          side + k * side_stride,
+          pivot_offset + k * pivot_offset_stride,
+          line_distance + k);
+    }
+    if (now != GM_OK) {
+      gm_nan(line_distance + k, 1);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
   }
+  return status;
 }

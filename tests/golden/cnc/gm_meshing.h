@@ -3,22 +3,30 @@
  *
  * Equation of meshing f = v12 · n of the generated flank (4.2); zero where the envelope touches the cutter.
  *
- * in u [mm] 0 ... 15: height of the blade point above the tip plane, along the cutter axis
- * in beta [rad] -3.14159265359 ... 3.14159265359: cutter angle of the blade point, about the cutter axis
- * in theta [rad] -1 ... 1: cradle rotation (roll position)
+ * in u [mm] 0 ... 15 (taken: 0 ... 150): height of the blade point above the tip plane, along the cutter axis
+ * in beta [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359): cutter angle of the
+ *     blade point, about the cutter axis
+ * in theta [rad] -1 ... 1 (taken: -10 ... 10): cradle rotation (roll position)
  * in settings[12] [mixed]: machine and cutter settings of one flank
- *     [0] radial_distance [mm] 20 ... 200: machine centre to cutter centre in the machine plane
- *     [1] cradle_angle [rad] -1.5 ... 1.5: polar angle of the cutter centre at cradle rotation zero
- *     [2] cutter_tilt [rad] -0.4 ... 0.4: tilt of the cutter axis against the cradle axis
- *     [3] cutter_swivel [rad] -3.14159265359 ... 3.14159265359: direction of the tilt, about the cradle axis
- *     [4] blank_offset [mm] -40 ... 40: work axis to machine centre, along machine axis j
- *     [5] sliding_base [mm] -20 ... 20: withdrawal of the work along the cradle axis
- *     [6] machine_center_to_crossing_point [mm] -20 ... 20: advance of the work along its own axis
- *     [7] machine_root_angle [rad] 0.05 ... 1.45: work axis against the machine plane
- *     [8] ratio_of_roll [1] 0.5 ... 8: work rotation per cradle rotation
- *     [9] work_rotation_offset [rad] -3.14159265359 ... 3.14159265359: work rotation at cradle rotation zero
- *     [10] blade_point_radius [mm] 20 ... 250: radius of the blade tip about the cutter axis
- *     [11] blade_pressure_angle [rad] 0.05 ... 0.6: angle between blade and cutter axis
+ *     [0] radial_distance [mm] 20 ... 200 (taken: 2 ... 2000): machine centre to cutter centre in the machine
+ *         plane
+ *     [1] cradle_angle [rad] -1.5 ... 1.5 (taken: -15 ... 15): polar angle of the cutter centre at cradle
+ *         rotation zero
+ *     [2] cutter_tilt [rad] -0.4 ... 0.4 (taken: -4 ... 4): tilt of the cutter axis against the cradle axis
+ *     [3] cutter_swivel [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359):
+ *         direction of the tilt, about the cradle axis
+ *     [4] blank_offset [mm] -40 ... 40 (taken: -400 ... 400): work axis to machine centre, along machine axis j
+ *     [5] sliding_base [mm] -20 ... 20 (taken: -200 ... 200): withdrawal of the work along the cradle axis
+ *     [6] machine_center_to_crossing_point [mm] -20 ... 20 (taken: -200 ... 200): advance of the work along its
+ *         own axis
+ *     [7] machine_root_angle [rad] 0.05 ... 1.45 (taken: 0.005 ... 1.57079632679): work axis against the machine
+ *         plane
+ *     [8] ratio_of_roll [1] 0.5 ... 8 (taken: 0.05 ... 80): work rotation per cradle rotation
+ *     [9] work_rotation_offset [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359):
+ *         work rotation at cradle rotation zero
+ *     [10] blade_point_radius [mm] 20 ... 250 (taken: 2 ... 2500): radius of the blade tip about the cutter axis
+ *     [11] blade_pressure_angle [rad] 0.05 ... 0.6 (taken: 0.005 ... 1.57079632679): angle between blade and
+ *         cutter axis
  * in side [1] one of -1, 1: +1 outer blade (concave flank), -1 inner blade (convex flank)
  * out meshing_residual [mm/rad]: normal speed of cutter against work per unit of cradle speed, zero in contact
  *
@@ -30,17 +38,13 @@
 #ifndef GM_MESHING_H
 #define GM_MESHING_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_meshing(
+GM_API int gm_meshing(
     double u,
     double beta,
     double theta,
@@ -48,14 +52,15 @@ void gm_meshing(
     double side,
     double *meshing_residual);
 
-void gm_meshing_batch(
-    long n,
-    const double *u, long u_stride,
-    const double *beta, long beta_stride,
-    const double *theta, long theta_stride,
-    const double *settings, long settings_stride,
-    const double *side, long side_stride,
-    double *meshing_residual);
+GM_API int gm_meshing_batch(
+    int64_t n,
+    const double *u, int64_t u_stride,
+    const double *beta, int64_t beta_stride,
+    const double *theta, int64_t theta_stride,
+    const double *settings, int64_t settings_stride,
+    const double *side, int64_t side_stride,
+    double *meshing_residual,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

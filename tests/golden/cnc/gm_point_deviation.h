@@ -3,9 +3,9 @@
  *
  * Deviation of a touched point from the nominal flank, along the outward normal (6.1).
  *
- * in tip_center[3] [mm] -500 ... 500: centre of the probe tip at contact, work frame w
- * in tip_radius [mm] 0 ... 5: effective radius of the probe tip; zero for a corrected contact point
- * in point_w[3] [mm] -500 ... 500: point of the tooth surface family, work frame w
+ * in tip_center[3] [mm] -500 ... 500 (taken: -5000 ... 5000): centre of the probe tip at contact, work frame w
+ * in tip_radius [mm] 0 ... 12 (taken: 0 ... 120): radius of the rounding at the tip of a hob's tooth
+ * in point_w[3] [mm] -500 ... 500 (taken: -5000 ... 5000): point of the tooth surface family, work frame w
  * in normal_w[3] [1] -1 ... 1: outward unit normal (out of the metal), work frame w
  * out deviation [mm]: along the outward normal; positive = metal left on
  *
@@ -17,30 +17,27 @@
 #ifndef GM_POINT_DEVIATION_H
 #define GM_POINT_DEVIATION_H
 
-/* Refuses -fsingle-precision-constant, under which every literal below would silently be single precision. */
-#ifndef GM_DOUBLE_LITERALS
-#define GM_DOUBLE_LITERALS
-typedef char gm_double_literals[(int)16777217.0 == 16777217 ? 1 : -1];
-#endif
+#include "gm_status.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-void gm_point_deviation(
+GM_API int gm_point_deviation(
     const double tip_center[3],
     double tip_radius,
     const double point_w[3],
     const double normal_w[3],
     double *deviation);
 
-void gm_point_deviation_batch(
-    long n,
-    const double *tip_center, long tip_center_stride,
-    const double *tip_radius, long tip_radius_stride,
-    const double *point_w, long point_w_stride,
-    const double *normal_w, long normal_w_stride,
-    double *deviation);
+GM_API int gm_point_deviation_batch(
+    int64_t n,
+    const double *tip_center, int64_t tip_center_stride,
+    const double *tip_radius, int64_t tip_radius_stride,
+    const double *point_w, int64_t point_w_stride,
+    const double *normal_w, int64_t normal_w_stride,
+    double *deviation,
+    int64_t *first_bad);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,6 @@
 /* gm_setting_sensitivity: generated, do not edit. */
 #include "gm_setting_sensitivity.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -292,7 +293,81 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_setting_sensitivity(
+static int gm_setting_sensitivity_u_inside(const double *x)
+{
+  static const double low[1] = {-1.5000000000000002e-07};
+  static const double high[1] = {150.00000015};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_setting_sensitivity_beta_inside(const double *x)
+{
+  static const double low[1] = {-31.415926567313857};
+  static const double high[1] = {31.415926567313857};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_setting_sensitivity_theta_inside(const double *x)
+{
+  static const double low[1] = {-10.00000001};
+  static const double high[1] = {10.00000001};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_setting_sensitivity_settings_inside(const double *x)
+{
+  static const double low[12] = {
+    1.999998,
+    -15.000000015,
+    -4.000000004,
+    -31.415926567313857,
+    -400.0000004,
+    -200.0000002,
+    -200.0000002,
+    0.004999998429203673,
+    0.04999992,
+    -31.415926567313857,
+    1.9999975,
+    0.004999998429203673};
+  static const double high[12] = {
+    2000.000002,
+    15.000000015,
+    4.000000004,
+    31.415926567313857,
+    400.0000004,
+    200.0000002,
+    200.0000002,
+    1.570796328365693,
+    80.00000008,
+    31.415926567313857,
+    2500.0000025,
+    1.570796328365693};
+  return gm_inside(x, 12, low, high);
+}
+static int gm_setting_sensitivity_side_inside(const double *x)
+{
+  return x[0] == -1.0 || x[0] == 1.0;
+}
+
+static int gm_setting_sensitivity_point(
+    const double *u,
+    const double *beta,
+    const double *theta,
+    const double *settings,
+    const double *side,
+    double *sensitivity)
+{
+  const double *arg[5];
+  double *res[1];
+  arg[0] = u;
+  arg[1] = beta;
+  arg[2] = theta;
+  arg[3] = settings;
+  arg[4] = side;
+  res[0] = sensitivity;
+  (void)casadi_f0(arg, res, 0, 0, 0);
+  return gm_finite(sensitivity, 12) ? GM_OK : GM_E_NO_RESULT;
+}
+
+
+int gm_setting_sensitivity(
     double u,
     double beta,
     double theta,
@@ -300,34 +375,65 @@ void gm_setting_sensitivity(
     double side,
     double sensitivity[12])
 {
-  const double *arg[5];
-  double *res[1];
-  arg[0] = &u;
-  arg[1] = &beta;
-  arg[2] = &theta;
-  arg[3] = settings;
-  arg[4] = &side;
-  res[0] = sensitivity;
-  (void)casadi_f0(arg, res, 0, 0, 0);
+  int status = GM_E_DOMAIN;
+  if (!settings || !sensitivity) return GM_E_NULL;
+  if (gm_setting_sensitivity_u_inside(&u)
+      && gm_setting_sensitivity_beta_inside(&beta)
+      && gm_setting_sensitivity_theta_inside(&theta)
+      && gm_setting_sensitivity_settings_inside(settings)
+      && gm_setting_sensitivity_side_inside(&side)) {
+    status = gm_setting_sensitivity_point(&u, &beta, &theta, settings, &side, sensitivity);
+  }
+  if (status != GM_OK) {
+    gm_nan(sensitivity, 12);
+  }
+  return status;
 }
 
-void gm_setting_sensitivity_batch(
-    long n,
-    const double *u, long u_stride,
-    const double *beta, long beta_stride,
-    const double *theta, long theta_stride,
-    const double *settings, long settings_stride,
-    const double *side, long side_stride,
-    double *sensitivity)
+int gm_setting_sensitivity_batch(
+    int64_t n,
+    const double *u, int64_t u_stride,
+    const double *beta, int64_t beta_stride,
+    const double *theta, int64_t theta_stride,
+    const double *settings, int64_t settings_stride,
+    const double *side, int64_t side_stride,
+    double *sensitivity,
+    int64_t *first_bad)
 {
-  long k;
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || u_stride < 0 || beta_stride < 0 || theta_stride < 0 || settings_stride < 0 || side_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!u || !beta || !theta || !settings || !side || !sensitivity) return GM_E_NULL;
+  shared = (u_stride != 0 || gm_setting_sensitivity_u_inside(u))
+      && (beta_stride != 0 || gm_setting_sensitivity_beta_inside(beta))
+      && (theta_stride != 0 || gm_setting_sensitivity_theta_inside(theta))
+      && (settings_stride != 0 || gm_setting_sensitivity_settings_inside(settings))
+      && (side_stride != 0 || gm_setting_sensitivity_side_inside(side));
   for (k = 0; k < n; ++k) {
-    gm_setting_sensitivity(
-        u[k * u_stride],
-        beta[k * beta_stride],
-        theta[k * theta_stride],
-        settings + k * settings_stride,
-        side[k * side_stride],
-        sensitivity + k * 12);
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (u_stride == 0 || gm_setting_sensitivity_u_inside(u + k * u_stride))
+        && (beta_stride == 0 || gm_setting_sensitivity_beta_inside(beta + k * beta_stride))
+        && (theta_stride == 0 || gm_setting_sensitivity_theta_inside(theta + k * theta_stride))
+        && (settings_stride == 0 || gm_setting_sensitivity_settings_inside(settings + k * settings_stride))
+        && (side_stride == 0 || gm_setting_sensitivity_side_inside(side + k * side_stride))) {
+      now = gm_setting_sensitivity_point(
+          u + k * u_stride,
+          beta + k * beta_stride,
+          theta + k * theta_stride,
+          settings + k * settings_stride,
+          side + k * side_stride,
+          sensitivity + k * 12);
+    }
+    if (now != GM_OK) {
+      gm_nan(sensitivity + k * 12, 12);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
   }
+  return status;
 }

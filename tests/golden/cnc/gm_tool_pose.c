@@ -1,5 +1,6 @@
 /* gm_tool_pose: generated, do not edit. */
 #include "gm_tool_pose.h"
+#include "gm_check.h"
 
 #include <math.h>
 
@@ -64,38 +65,104 @@ static int casadi_f0(const casadi_real** arg, casadi_real** res, casadi_int* iw,
 #pragma GCC diagnostic pop
 #endif
 
-void gm_tool_pose(
+static int gm_tool_pose_axes_inside(const double *x)
+{
+  static const double low[5] = {-5000.000005, -5000.000005, -5000.000009, -100.0000001, -2.000000017};
+  static const double high[5] = {5000.000005, 5000.000005, 9000.000009, 100.0000001, 17.000000017};
+  return gm_inside(x, 5, low, high);
+}
+static int gm_tool_pose_pivot_height_inside(const double *x)
+{
+  static const double low[1] = {-10000.00001};
+  static const double high[1] = {10000.00001};
+  return gm_inside(x, 1, low, high);
+}
+static int gm_tool_pose_pivot_offset_inside(const double *x)
+{
+  static const double low[3] = {-1000.000001, -1000.000001, -1000.000001};
+  static const double high[3] = {1000.000001, 1000.000001, 1000.000001};
+  return gm_inside(x, 3, low, high);
+}
+
+static int gm_tool_pose_point(
+    const double *axes,
+    const double *pivot_height,
+    const double *pivot_offset,
+    double *cutter_center_w,
+    double *cutter_axis_w)
+{
+  const double *arg[3];
+  double *res[2];
+  arg[0] = axes;
+  arg[1] = pivot_height;
+  arg[2] = pivot_offset;
+  res[0] = cutter_center_w;
+  res[1] = cutter_axis_w;
+  (void)casadi_f0(arg, res, 0, 0, 0);
+  return gm_finite(cutter_center_w, 3) && gm_finite(cutter_axis_w, 3) ? GM_OK : GM_E_NO_RESULT;
+}
+
+
+int gm_tool_pose(
     const double axes[5],
     double pivot_height,
     const double pivot_offset[3],
     double cutter_center_w[3],
     double cutter_axis_w[3])
 {
-  const double *arg[3];
-  double *res[2];
-  arg[0] = axes;
-  arg[1] = &pivot_height;
-  arg[2] = pivot_offset;
-  res[0] = cutter_center_w;
-  res[1] = cutter_axis_w;
-  (void)casadi_f0(arg, res, 0, 0, 0);
+  int status = GM_E_DOMAIN;
+  if (!axes || !pivot_offset || !cutter_center_w || !cutter_axis_w) return GM_E_NULL;
+  if (gm_tool_pose_axes_inside(axes)
+      && gm_tool_pose_pivot_height_inside(&pivot_height)
+      && gm_tool_pose_pivot_offset_inside(pivot_offset)) {
+    status = gm_tool_pose_point(axes, &pivot_height, pivot_offset, cutter_center_w, cutter_axis_w);
+  }
+  if (status != GM_OK) {
+    gm_nan(cutter_center_w, 3);
+    gm_nan(cutter_axis_w, 3);
+  }
+  return status;
 }
 
-void gm_tool_pose_batch(
-    long n,
-    const double *axes, long axes_stride,
-    const double *pivot_height, long pivot_height_stride,
-    const double *pivot_offset, long pivot_offset_stride,
+int gm_tool_pose_batch(
+    int64_t n,
+    const double *axes, int64_t axes_stride,
+    const double *pivot_height, int64_t pivot_height_stride,
+    const double *pivot_offset, int64_t pivot_offset_stride,
     double *cutter_center_w,
-    double *cutter_axis_w)
+    double *cutter_axis_w,
+    int64_t *first_bad)
 {
-  long k;
+  int status = GM_OK, shared;
+  int64_t k;
+  if (first_bad) *first_bad = -1;
+  if (n < 0 || axes_stride < 0 || pivot_height_stride < 0 || pivot_offset_stride < 0) return GM_E_SIZE;
+  if (n == 0) return GM_OK;
+  if (!axes || !pivot_height || !pivot_offset || !cutter_center_w || !cutter_axis_w) return GM_E_NULL;
+  shared = (axes_stride != 0 || gm_tool_pose_axes_inside(axes))
+      && (pivot_height_stride != 0 || gm_tool_pose_pivot_height_inside(pivot_height))
+      && (pivot_offset_stride != 0 || gm_tool_pose_pivot_offset_inside(pivot_offset));
   for (k = 0; k < n; ++k) {
-    gm_tool_pose(
-        axes + k * axes_stride,
-        pivot_height[k * pivot_height_stride],
-        pivot_offset + k * pivot_offset_stride,
-        cutter_center_w + k * 3,
-        cutter_axis_w + k * 3);
+    int now = GM_E_DOMAIN;
+    if (shared
+        && (axes_stride == 0 || gm_tool_pose_axes_inside(axes + k * axes_stride))
+        && (pivot_height_stride == 0 || gm_tool_pose_pivot_height_inside(pivot_height + k * pivot_height_stride))
+        && (pivot_offset_stride == 0 || gm_tool_pose_pivot_offset_inside(pivot_offset + k * pivot_offset_stride))) {
+      now = gm_tool_pose_point(
+          axes + k * axes_stride,
+          pivot_height + k * pivot_height_stride,
+          pivot_offset + k * pivot_offset_stride,
+          cutter_center_w + k * 3,
+          cutter_axis_w + k * 3);
+    }
+    if (now != GM_OK) {
+      gm_nan(cutter_center_w + k * 3, 3);
+      gm_nan(cutter_axis_w + k * 3, 3);
+      if (status == GM_OK) {
+        status = now;
+        if (first_bad) *first_bad = k;
+      }
+    }
   }
+  return status;
 }

@@ -194,6 +194,7 @@ def test_what_ends_the_program_is_one_sentence_and_the_run_goes_on_later(
         asyncio.run(_measure(live, run, trouble))
     assert "\n" not in str(error.value)
     assert f"go on with --resume {run.id}" in str(error.value)
+    assert live.nc.parameters[104] == 0.0  # started without a host, the program would wait for it forever
     live.control.answer_slowly(0.0)
     if what != "reset":
         assert run.alarms()
@@ -235,6 +236,7 @@ def test_a_host_that_died_finds_the_program_waiting_and_goes_on(
     live.control.answer_slowly(0.0)
     again = store.resume_run(run.id)
     assert live.nc.channel == 1
+    assert live.nc.parameters[104] == 1.0
     asyncio.run(_measure(live, again, start=False))
     _check(live, begin, again)
 

@@ -241,10 +241,10 @@ def test_blocks_within_the_flank_grow_with_the_root_of_the_tolerance(gear_set, m
     assert coarse == pytest.approx(10 * fine, rel=0.05)
 
 
-@pytest.mark.parametrize("tolerance", [0.0, -1e-4, 1.9e-5, 0.2, float("nan"), float("inf")])
+@pytest.mark.parametrize("tolerance", [0.0, -1e-4, 0.9e-5, 0.2, float("nan"), float("inf")])
 def test_tolerance_out_of_range_is_refused_with_the_limits(gear_set, tolerance):
     cut = Cut.of(gear_set.gear, "gear")[0]
-    with pytest.raises(InputError, match=r"^tolerance = .* um: must lie between 0.02 and 100 um; the printed decimals"):
+    with pytest.raises(InputError, match=r"^tolerance = .* um: must lie between 0.01 and 100 um; the printed decimals"):
         roll_nodes(gear_set.gear, cut, tolerance, HEIGHT)
 
 

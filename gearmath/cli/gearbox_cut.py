@@ -1,0 +1,202 @@
+"""``gearmath gearbox cut`` and ``choose``: the gear that the gearbox would cut, and the parts that reach a class."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gearmath.cli.common import JSON, NewFile, Number, bar, echo_json
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from gearmath.gearbox.helix import Helix
+    from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear
+    from gearmath.specs.hobbing import HobbingMachine
+
+#: Suffixes of a chart.
+CHARTS = (".png", ".svg", ".html")
+
+
+@click.command()
+@click.argument("machine")
+@click.option("--teeth", type=click.IntRange(min=1), help="Teeth of the gear (hobbing machine).")
+@click.option("--pitch", help="Pitch of the thread or worm, such as 1.25mm or 8tpi (lathe).")
+@click.option("--hob", help="A hob of the machine file, such as m1; the first if left out.")
+@click.option("--starts", type=int, help="Starts of the hob, instead of the machine file's; of the thread.")
+@click.option("--helix", type=float, help="Helix angle in degrees.")
+@click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of helix or thread; right if left out.")
+@click.option("--cut", "way", type=click.Choice(["climb", "conventional"]), default="climb", show_default=True)
+@click.option("--shift", type=float, default=0.0, show_default=True, help="Profile shift in modules.")
+@click.option("--feed", type=Number(0.01, 10.0, "mm per turn of the table"), default=0.5, show_default=True)
+@click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@click.option("--length", type=Number(1.0, 3000.0, "mm"), default=100.0, show_default=True, help="Of a thread, in mm.")
+@click.option("--rpm", type=float, help="Speed of hob or spindle; the highest within the limits if left out.")
+@click.option(
+    "--seconds", type=Number(0.0, 86_400.0, "s"), default=0.0, help="How long the hob has run before the cut."
+)
+@click.option("--rule", type=click.Choice(["exact", "ideal", "float"]), default="exact", show_default=True)
+@click.option("--compare", type=click.Choice(["ideal", "exact", "float"]), help="Another rule beside it.")
+@click.option("--plot", "chart", type=NewFile(), metavar="CHART", help="Inspection chart to write: PNG, SVG or HTML.")
+@click.option("--csv", "points", type=NewFile(), metavar="POINTS.csv", help="Measured points to write.")
+@JSON
+def cut(machine: str, as_json: bool, chart: Path | None, points: Path | None, compare: str | None, **job: Any) -> None:
+    """Cut a gear virtually, inspect it, give it classes, and tell which part of the machine is to blame.
+
+    The machine's errors are the section [errors] of MACHINE; without it, only gashes, feed and steps are seen. On a
+    lathe: the pitch error of a thread over its length.
+    """
+    from gearmath.specs.hobbing import find_hobbing_machine
+
+    if chart is not None and chart.suffix.lower() not in CHARTS:
+        raise click.UsageError(f"--plot {chart}: must end in .png, .svg or .html")
+    loaded = find_hobbing_machine(machine)
+    if loaded.profile == "lathe":
+        _cut_thread(loaded, as_json, chart, points, compare, job)
+    else:
+        _cut_gear(loaded, as_json, chart, points, compare, job)
+
+
+def _cut_gear(
+    machine: HobbingMachine,
+    as_json: bool,
+    chart: Path | None,
+    points: Path | None,
+    compare: str | None,
+    job: dict[str, Any],
+) -> None:
+    from gearmath.cli.gearbox_cut_text import cut_text, cut_values
+    from gearmath.gearbox.hobbed.contributions import sources
+    from gearmath.gearbox.hobbed.setup import blame, cut_and_inspect, setup
+
+    if job["teeth"] is None or job["pitch"] is not None:
+        raise click.UsageError(f"{machine.name} is a hobbing machine: give --teeth, and no --pitch")
+    climb = job["way"] == "climb"
+    prepared = setup(
+        machine,
+        job["teeth"],
+        hob=job["hob"],
+        starts=job["starts"],
+        helix=_helix(machine, job),
+        shift=job["shift"],
+        feed=job["feed"],
+        face_width=job["width"],
+        rpm=job["rpm"],
+        seconds=job["seconds"],
+        climb=climb,
+        rule=job["rule"],
+    )
+    rules = [prepared.train.rule] + ([compare] if compare not in (None, prepared.train.rule) else [])
+    runs = len(rules) + len(sources(prepared.train))
+    with bar(runs * prepared.where.points, "point", quiet=as_json) as progress:
+        gears = [cut_and_inspect(prepared, rule, progress) for rule in rules]  # type: ignore[arg-type]
+        shares = blame(prepared, gears[0], progress)
+    if chart is not None:
+        _chart(chart, prepared, gears, cut_text(prepared, gears, shares), as_json)
+    if points is not None:
+        from gearmath.exchange.hobbed_csv import write_traces
+
+        write_traces(points, prepared.job, gears[0].found)
+        click.echo(f"points: {points}", err=as_json)
+    if as_json:
+        echo_json(cut_values(prepared, gears, shares))
+    else:
+        click.echo(cut_text(prepared, gears, shares))
+
+
+def _helix(machine: HobbingMachine, job: dict[str, Any]) -> Helix | None:
+    from gearmath.gearbox.helix import Helix
+
+    if job["helix"] is None:
+        if job["hand"] is not None:
+            raise click.UsageError("--hand has no meaning without --helix")
+        return None
+    feed = None if machine.feed is not None else Fraction(str(job["feed"]))
+    return Helix(job["helix"], job["hand"] or "right", job["way"], feed)
+
+
+def _chart(path: Path, prepared: CutSetup, gears: list[VirtualGear], text: str, as_json: bool) -> None:
+    from gearmath.plot.hobbed import inspection_figure
+
+    job = prepared.job
+    title = f"{prepared.train.machine.name}: {job.gear.teeth} teeth, module {job.gear.module:.4g} mm, virtual"
+    figure = inspection_figure(title, [(gear.rule, gear.found) for gear in gears])
+    _save(path, figure, title, text, as_json)
+
+
+def _save(path: Path, figure: Figure, title: str, text: str, as_json: bool) -> None:
+    """A chart by the suffix of its name; HTML has the text above it."""
+    from gearmath.files import write_text
+    from gearmath.page import Page
+    from gearmath.plot.saving import save, save_svg, svg
+
+    if path.suffix.lower() == ".html":
+        page = Page(title)
+        for line in text.splitlines():
+            page.paragraph(line)
+        page.drawings([(svg(figure), "Inspection chart")])
+        write_text(path, page.html)
+    elif path.suffix.lower() == ".svg":
+        save_svg(figure, path)
+    else:
+        save(figure, path)
+    click.echo(f"chart: {path}", err=as_json)
+
+
+def _cut_thread(
+    machine: HobbingMachine,
+    as_json: bool,
+    chart: Path | None,
+    points: Path | None,
+    compare: str | None,
+    job: dict[str, Any],
+) -> None:
+    from gearmath.cli.gearbox_cut_text import thread_text, thread_values
+    from gearmath.gearbox.hobbed.thread import cut_thread
+    from gearmath.gearbox.job import plan_thread
+    from gearmath.specs.ratio import pitch_of
+
+    if job["pitch"] is None or any(job[key] is not None for key in ("teeth", "hob", "helix")):
+        raise click.UsageError(f"{machine.name} is a lathe: give --pitch, and no --teeth, --hob or --helix")
+    if points is not None:
+        raise click.UsageError("--csv has no meaning for a thread")
+    given = {"starts": job["starts"] or 1, "hand": job["hand"] or "right", "rpm": job["rpm"]}
+    planned = plan_thread(machine, pitch_of(job["pitch"]), **given)
+    rules = [job["rule"]] + ([compare] if compare not in (None, job["rule"]) else [])
+    traces = [cut_thread(machine, planned, job["length"], rule, job["seconds"]) for rule in rules]
+    if chart is not None:
+        from gearmath.plot.hobbed import thread_figure
+
+        _save(chart, thread_figure(machine.name, traces), machine.name, thread_text(planned, traces), as_json)
+    if as_json:
+        echo_json(thread_values(planned, traces))
+    else:
+        click.echo(thread_text(planned, traces))
+
+
+@click.command()
+@click.argument("machine", default="hobbing_default.toml")
+@click.option("--class", "wanted", type=int, required=True, help="Class of ISO 1328-1 to reach, 1 to 11.")
+@click.option("--module", type=Number(0.1, 25.0, "mm"), required=True, help="Normal module in mm.")
+@click.option("--teeth", type=click.IntRange(min=1), required=True, help="Teeth of the gear.")
+@click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@JSON
+def choose(machine: str, wanted: int, module: float, teeth: int, width: float | None, as_json: bool) -> None:
+    """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach a class.
+
+    The rest is that of MACHINE, hobbing_default.toml if left out, with its section [errors].
+    """
+    from gearmath.cli.gearbox_cut_text import choice_text, choice_values
+    from gearmath.gearbox.hobbed.choice import MOST_CUTS
+    from gearmath.gearbox.hobbed.choice import choose as search
+    from gearmath.specs.hobbing import find_hobbing_machine
+
+    with bar(MOST_CUTS, "cut", quiet=as_json) as progress:
+        found = search(find_hobbing_machine(machine), wanted, module, teeth, width, progress)
+    if as_json:
+        echo_json(choice_values(found))
+    else:
+        click.echo(choice_text(found))

@@ -1,0 +1,72 @@
+"""``gearmath hmi``: the operator's page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from gearmath.cli.control_connect import INSECURE, connection_of, connector, quiet
+from gearmath.cli.runs import store_option
+from gearmath.errors import InputError
+
+if TYPE_CHECKING:
+    from gearmath.hmi.state import Shared
+
+_SIMULATED = "simulated"
+
+
+@click.command()
+@click.option(
+    "--control",
+    metavar="CONTROL.toml|simulated",
+    help="The machine control: its connection file, or a simulated one inside the server.  [default: none]",
+)
+@INSECURE
+@store_option("The measurement store; sets and programs are written to its folder.")
+@click.option("--host", default="127.0.0.1", show_default=True, help="Address to serve on; by default this computer.")
+@click.option("--port", type=click.IntRange(0, 65535), default=8080, show_default=True, help="0: any that is free.")
+def hmi(control: str | None, insecure: bool, store_file: Path, host: str, port: int) -> None:
+    """The operator's page, in a browser: open the address that it shows. Ctrl-C ends it.
+
+    It never selects and never starts a program. A measuring run goes on when pages are closed.
+    """
+    try:
+        from gearmath.hmi.app import serve
+    except ImportError as error:
+        raise InputError(f"{error.name} is missing: install it with pip install '.[hmi]'") from error
+    from gearmath.files import check_place
+    from gearmath.hmi.alarm_book import AlarmBook
+    from gearmath.hmi.state import Shared
+
+    check_place(store_file)
+    alarms = store_file.with_name(f"{store_file.stem}_alarms.json")
+    shared = Shared(store_file, book=AlarmBook(alarms))
+    if control is not None:
+        _connect(shared, control, insecure)
+    try:
+        serve(shared, host, port, lambda address: click.echo(f"open {address}"))
+    finally:
+        shared.close()
+
+
+def _connect(shared: Shared, control: str, insecure: bool) -> None:
+    """Begin to watch the control."""
+    from gearmath.control import sinumerik
+    from gearmath.hmi.link import ControlLink
+    from gearmath.hmi.measuring_task import MeasuringTask
+
+    quiet()
+    if control == _SIMULATED:
+        from gearmath.hmi.simulated import NAME, SimulatedMachine
+
+        shared.simulated = SimulatedMachine(shared.folder / "gearmath-control", shared.choice)
+        shared.link = ControlLink(NAME, shared.simulated.connect, shared.book)
+    else:
+        path = Path(control)
+        needed = (sinumerik.READ_STATE, sinumerik.READ_ALARMS)
+        connect = connector(path, insecure, *needed)
+        shared.link = ControlLink(connection_of(path, insecure).name, connect, shared.book)
+    shared.link.open()
+    shared.measuring = MeasuringTask(shared.link, shared.store)

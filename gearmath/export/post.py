@@ -1,0 +1,194 @@
+"""The settings file of ``gm-post``: a planned cut as flat text, from which that C program writes the NC program.
+
+The text of the program is that of the Python writer: what it wrote, with a slot wherever a number stands that the C
+program computes. So no text of a program is kept twice, and a change of the writer needs no change here. Lines:
+
+    gm-post 1                          the format
+    sum HEX                            FNV-1a, 64 bits, of all that follows, without carriage returns
+    KEY NUMBERS                        machine and job: mm, rad, s, as the planner has them
+    roll NAME                          then its settings, motion, tooth, plunge and nodes: one path of the cutter
+    pass ROLL LIFT ANGLE DWELL         one tooth space: where the path is raised and turned to
+    c TEXT, n TEXT                     a line; a line with a number
+    r TEXT, b TEXT                     the same for every node but the first
+    s TEXT, e TEXT                     a line where the sum is right, and one where the file was edited
+
+Slots are {NAME}, {TIME}, {UP}, {X} {Y} {Z} {A} {B} of a node, and {F} of the block that ends there; {{ is a brace.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearmath.bevel.method import motion_of
+from gearmath.errors import ComputationError, InputError
+from gearmath.machine.planning.cut_plan import CuttingPlan, lift, middle_of_tooth, plunge_lift
+from gearmath.machine.planning.passes import Pass, tooth_angles
+from gearmath.machine.planning.path import Cut
+from gearmath.machine.writing.cutting import CLEARANCE, program_of
+from gearmath.machine.writing.linuxcnc.cutting import program_of as linuxcnc_program
+from gearmath.machine.writing.words import Positions, feed_number
+from gearmath.specs.milling_machine import AXES
+from gearmath.version import __version__
+
+_LINUXCNC = "linuxcnc"
+#: The name of a program while its text is turned into a form.
+_NAME = "GM_POST_NAME"
+_NUMBER = re.compile(r"-?\d+\.\d+")
+_SHA = "; machine settings sha256: "
+_EDITED = (
+    "; machine settings: edited in the settings file of gm-post; what this head says of settings, tolerances and chips "
+    "is as of the export"
+)
+
+
+@dataclass(frozen=True)
+class _Form:
+    """A plan, the paths of its cutters, and how positions stand in the text of the control's dialect."""
+
+    plan: CuttingPlan
+    positions: Positions
+    rolls: list[tuple[Cut, str, float, Pass]]
+
+
+def post_file(plan: CuttingPlan, dialect: str = "sinumerik") -> str:
+    """The settings file of one planned member, for programs in a dialect.
+
+    Raises InputError for a face hobbed member and for polynomial blocks, ComputationError where a number of the program
+    has no slot.
+    """
+    if plan.member.process == "face_hobbing":
+        raise InputError(f"{plan.name}: face hobbed: gm-post writes the cuts of face milling")
+    if any(one.bends is not None for one in plan.passes):
+        raise InputError(f"{plan.name}: blocks = poly: gm-post writes straight blocks")
+    positions = Positions.of(plan.machine, plan.machine.tool_length)
+    if dialect == _LINUXCNC:
+        positions = replace(positions, modulo=False)  # A counts on
+    form = _Form(plan, positions, _rolls(plan))
+    text = (linuxcnc_program if dialect == _LINUXCNC else program_of)(plan, _NAME).splitlines()
+    body = "".join(f"{line}\n" for line in (*_values(form), *_roll_lines(form), *_lines(form, text)))
+    return f"gm-post 1\nsum {_fnv(body.encode('ascii')):016x}\n{body}"
+
+
+def _fnv(data: bytes) -> int:
+    value = 0xCBF29CE484222325
+    for byte in data:
+        value = (value ^ byte) * 0x100000001B3 % 2**64
+    return value
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+def _values(form: _Form) -> Iterator[str]:
+    plan, machine, positions = form.plan, form.plan.machine, form.positions
+    yield f"# gearmath {__version__}: {plan.name} on {machine.name}; mm, rad, s".encode("ascii", "replace").decode()
+    yield f"decimals {positions.mm} {positions.degrees}"
+    yield f"modulo {int(positions.modulo)}"
+    yield f"length {_numbers([positions.length])}"
+    yield f"pivot {_numbers([machine.pivot_height, *machine.pivot])}"
+    for axis, (low, high) in zip(AXES, machine.travel, strict=True):
+        if np.isfinite(low):
+            yield f"travel {axis} {_numbers([low, high])}"
+    yield f"speed {_numbers(machine.max_speed)}"
+    yield f"acceleration {_numbers(machine.max_acceleration)}"
+    yield f"feed {_numbers([plan.job.feed])}"
+    yield f"clearance {_numbers([CLEARANCE])}"
+
+
+def _rolls(plan: CuttingPlan) -> list[tuple[Cut, str, float, Pass]]:
+    """Every path of a cutter: its cut, name of the stage, stock, and a pass along it."""
+    found = []
+    for cut in Cut.of(plan.member, plan.name):
+        for k, (stage, stock, _) in enumerate(plan.job.stages):
+            passes = [one for one in plan.passes if one.tool == cut.tool]
+            found.append((cut, stage, stock, passes[k * len(plan.job.spaces)]))
+    return found
+
+
+def _roll_lines(form: _Form) -> Iterator[str]:
+    plan = form.plan
+    for cut, stage, _, one in form.rolls:
+        flank = plan.member.flank(cut.flanks[0])
+        motion = motion_of(flank)
+        yield f"roll {cut.tool}_{stage}"
+        yield f"settings {_numbers(flank.vector)}"
+        if motion.any():
+            yield from (f"motion {_numbers(row)}" for row in motion)
+        yield f"tooth {_numbers(middle_of_tooth(plan.member, cut))}"
+        yield f"plunge {_numbers([plunge_lift(plan.member) if plan.member.generation == 'formate' else 0.0])}"
+        yield from (f"node {_numbers([theta])}" for theta in one.theta)
+
+
+def _lines(form: _Form, text: Sequence[str]) -> Iterator[str]:
+    """The text of the program with its slots."""
+    plan, rolls = form.plan, form.rolls
+    starts = [k for k, line in enumerate(text) if re.match(r"; section \d+:", line)]
+    if len(starts) != len(plan.passes):
+        raise ComputationError(f"{plan.name}: the program has {len(starts)} sections for {len(plan.passes)} passes")
+    up = form.positions.z(max(float(one.axes[:, 2].max()) for one in plan.passes) + CLEARANCE)
+    time = f"{plan.seconds:.1f} s"
+    for line in text[: starts[0]]:
+        if line.startswith(_SHA):
+            yield f"s {_literal(line)}"
+            yield f"e {_EDITED}"
+        elif line.startswith("; time in the cut") and line.endswith(time):
+            yield f"c {_literal(line.removesuffix(time))}{{TIME}} s"
+        else:
+            yield _kept(line)
+    ends = [*starts[1:], len(text)]
+    each = {(cut.tool, stage): k for k, (cut, stage, _, _) in enumerate(rolls)}
+    angles = tooth_angles(plan.member.teeth, plan.member.index_correction)
+    lifts = [lift(plan.member, cut, stock, plan.job.dry_run) for cut, _, stock, _ in rolls]
+    for number, (one, (start, end)) in enumerate(zip(plan.passes, zip(starts, ends, strict=True), strict=True)):
+        stage = plan.job.stages[number // len(plan.job.spaces) % len(plan.job.stages)][0]
+        roll = each[one.tool, stage]
+        yield f"pass {roll} {_numbers([lifts[roll], angles[one.tooth], one.dwell])}"
+        yield from _section(form, one, up, text[start:end])
+
+
+def _section(form: _Form, one: Pass, up: str, lines: Sequence[str]) -> Iterator[str]:
+    """One section: positions before the first block, the blocks as one line, the rest."""
+    words = form.positions.words(one.axes)
+    slots = tuple(_NUMBER.sub(f"{{{axis}}}", word) for axis, word in zip(AXES, words[0], strict=True))
+    feeds = [f"F{feed_number(60.0 / seconds)}" for seconds in one.seconds.tolist()]
+    node = 0
+    for line in lines:
+        numbered, block = _split(line)
+        parts = block.split(" ")
+        following = [*words[node + 1], feeds[node]] if node < len(feeds) else []
+        if following and parts[-len(following) :] == following:
+            if node == 0:
+                begin = " ".join(map(_literal, parts[: -len(following)]))
+                yield f"{'b' if numbered else 'r'} {begin} {' '.join(slots)} F{{F}}"
+            node += 1
+            continue
+        if line.startswith(";"):
+            yield _kept(line)
+            continue
+        if node == 0:
+            parts = [slots[words[0].index(part)] if part in words[0] else _literal(part) for part in parts]
+        parts = [_NUMBER.sub("{UP}", part) if part == up else part for part in parts]
+        yield f"{'n' if numbered else 'c'} {' '.join(parts)}"
+    if node != len(feeds):
+        raise ComputationError(f"{form.plan.name}: {len(feeds) - node} blocks of section {one.label!r} have no slots")
+
+
+def _split(line: str) -> tuple[bool, str]:
+    """Whether a line has a number, and what follows it."""
+    found = re.match(r"N\d+ ", line)
+    return (True, line[found.end() :]) if found else (False, line)
+
+
+def _kept(line: str) -> str:
+    """A line without slots, but for the name of the program."""
+    numbered, block = _split(line)
+    return f"{'n' if numbered else 'c'} {_literal(block).replace(_NAME, '{NAME}')}"
+
+
+def _literal(text: str) -> str:
+    return text.replace("{", "{{")

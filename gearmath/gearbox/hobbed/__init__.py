@@ -1,0 +1,1 @@
+"""The gear that the electronic gearbox cuts, gash by gash, and its inspection."""

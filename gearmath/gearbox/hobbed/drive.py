@@ -1,0 +1,278 @@
+"""The drive train as it is: how far the table stands off ideal meshing, and how hob and gear are displaced.
+
+The steps are those of the compiled rule at the encoder's edges: :func:`step_error` is its closed form (7.4), which a
+test compares with the compiled kernel edge by edge.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from gearmath.errors import InputError
+from gearmath.gearbox.helix import JobRatio
+from gearmath.gearbox.hobbed.job import TURN, HobbingJob
+from gearmath.gearbox.kernels import kernel
+from gearmath.gearbox.simulation import FloatRule
+from gearmath.specs.cutting_errors import CuttingErrors, LengthHarmonic, RatioHarmonic, TableHarmonic
+from gearmath.specs.hobbing import HobbingMachine
+
+Rule = Literal["ideal", "exact", "float"]
+
+ARCSEC = math.pi / 648_000
+UM = 1e-3
+#: Times of a first-order lag that stand for all of them, each as likely as the others.
+_LAGS = -np.log(1.0 - (np.arange(32) + 0.5) / 32)
+
+
+@dataclass(frozen=True)
+class DriveTrain:
+    """A machine at work on a job: its ratio, its rule, hob speed [1/min], and seconds it has run before the cut."""
+
+    machine: HobbingMachine
+    job: HobbingJob
+    ratio: JobRatio
+    rule: Rule = "exact"
+    rpm: float = 100.0
+    seconds: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.rule == "float" and self.ratio.numerators[1]:
+            raise InputError("rule float: the floating rule of the source text knows no encoder on the feed")
+
+    @property
+    def errors(self) -> CuttingErrors:
+        """What is wrong with the machine."""
+        return self.machine.errors
+
+    @property
+    def step(self) -> float:
+        """Turn of the table by a motor step [rad]."""
+        return TURN / float(self.machine.motor_steps)
+
+    @property
+    def jump(self) -> float:
+        """What a motor step, or those of one edge, change at once along the normal [mm]."""
+        if self.rule == "ideal":
+            return 0.0
+        return self.step * self.ratio.steps_per_edge * self.job.base_radius * math.cos(self.job.base_helix)
+
+    # --- the table ------------------------------------------------------------------------------------------------
+    def table(self, psi: np.ndarray, side: int) -> np.ndarray:
+        """Δφ (n,) [rad] at hob turns (n,)."""
+        errors, table = self.errors, self.machine.table
+        assert table is not None
+        turned = self.job.table_angle(psi)
+        total = harmonics(errors.wheel, turned, ARCSEC) + harmonics(errors.worm, turned * float(table.worm), ARCSEC)
+        if self.rule != "ideal":
+            total -= self.step * self.motor_error(psi)
+        if errors.backlash_taken_by_cut:
+            total += side * math.radians(table.backlash) / 2
+        return total
+
+    def motor_error(self, psi: np.ndarray) -> np.ndarray:
+        """How far the motor stands beyond ideal meshing (n,), in steps, positive with a right-hand hob."""
+        errors = self.errors
+        lag = errors.motor_time_constant_ms / 1000
+        if not lag:
+            return self.step_error(psi) + self._within_step(psi)
+        speed = self.rpm / 60 * TURN
+        ripple = 1.0 + harmonics(errors.speed_ripple, psi, 0.01)
+        earlier = speed * ripple * lag
+        per_turn = self._steps_per_rad
+        mean = sum(self._delayed(psi - earlier * k) for k in _LAGS) / len(_LAGS)
+        return mean - per_turn * (earlier - speed * lag) * _LAGS.mean()
+
+    def _delayed(self, psi: np.ndarray) -> np.ndarray:
+        return self.step_error(psi) + self._within_step(psi)
+
+    @property
+    def _steps_per_rad(self) -> float:
+        """Motor steps per radian of the hob."""
+        turn = self.job.table_angle(np.array([0.0, 1.0]))
+        return float(turn[0] - turn[1]) / self.step
+
+    def step_error(self, psi: np.ndarray) -> np.ndarray:
+        """Steps that the rule has given less the ideal position (n,), in steps."""
+        hob, hob_counts = self._hob_counts(psi)
+        feed, feed_counts = self._feed_counts(psi)
+        numerators, denominator = self.ratio.numerators, self.ratio.denominator
+        between = (numerators[0] * (hob - hob_counts) + numerators[1] * (feed - feed_counts)) / denominator
+        if self.rule == "float":
+            rule = FloatRule(numerators[0], denominator)
+            counts = hob.astype(np.int64)
+            return rule.positions(counts) - counts * (numerators[0] / denominator) + between
+        return rounding(self.ratio, hob, feed) + between
+
+    def _hob_counts(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Whole counts of the hob (n,), and where it really is in counts; both with the counts before the cut."""
+        belt, per_turn = float(self.machine.encoder.belt), float(self.machine.encoder_counts)
+        before = math.floor(self.rpm / 60 * self.seconds) * per_turn
+        real = psi / TURN * per_turn + before
+        seen = harmonics(self.errors.encoder, psi * belt, ARCSEC) / belt / TURN * per_turn
+        return np.floor(real + seen), real
+
+    def _feed_counts(self, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The same of the feed, whose encoder sees the travel as it is."""
+        machine, job = self.machine, self.job
+        if machine.feed is None:
+            return np.zeros_like(psi), np.zeros_like(psi)
+        up = -1.0 if machine.feed_climbs else 1.0  # climbing, the hob goes down
+        per_mm = up * float(machine.feed_counts)
+        ideal = job.travel_per_rad * psi
+        return np.floor(per_mm * (ideal + self.feed_error(psi))), per_mm * ideal
+
+    def _within_step(self, psi: np.ndarray) -> np.ndarray:
+        """Error of the microsteps (n,), in steps: a sine of the place within a full step."""
+        microsteps = self.machine.drive.microsteps or 1
+        percent = self.errors.microstep_percent
+        if not percent:
+            return np.zeros_like(psi)
+        steps = -self.job.table_angle(psi) / self.step + self.step_error(psi)
+        turned = TURN * (steps / microsteps)
+        return kernel("harmonic")(turned, percent / 100 * microsteps, 1, 0.0)[0]
+
+    # --- hob, feed and blank --------------------------------------------------------------------------------------
+    def feed_error(self, psi: np.ndarray) -> np.ndarray:
+        """How much the hob stands too high (n,) [mm]."""
+        travel = self.job.travel_per_rad * psi
+        return harmonics(self.errors.feed, TURN * travel / self.errors.feed_screw_pitch, UM)
+
+    def displacement(self, psi: np.ndarray, thread: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """D (n, 3) [mm] at hob turns, thread angles (n,) and places (n, 3)."""
+        if not self._is_displaced:
+            return np.zeros((len(psi), 3))
+        errors, job = self.errors, self.job
+        phase = psi + math.radians(errors.hob_eccentricity_phase)
+        size = errors.hob_eccentricity_um * UM
+        wobble = kernel("harmonic")(
+            psi, errors.hob_axial_runout_um * UM, 1, math.radians(errors.hob_axial_runout_phase)
+        )[0]
+        longer = job.hob.sign * errors.hob_lead_um_per_turn * UM * thread / TURN
+        along = wobble + longer + self._start_error(psi, thread)
+        hob_shift = np.column_stack([size * np.cos(phase), size * np.sin(phase), along])
+        table = job.table_angle(psi)
+        eccentric = table + math.radians(errors.blank_eccentricity_phase)
+        tilted = table + math.radians(errors.blank_tilt_phase)
+        tilt = errors.blank_tilt_um_per_100mm * UM / 100
+        off = errors.blank_eccentricity_um * UM
+        return kernel("hob_displacement")(
+            hob_shift,
+            self.feed_error(psi),
+            np.column_stack([off * np.cos(eccentric), off * np.sin(eccentric)]),
+            np.column_stack([-tilt * np.sin(tilted), tilt * np.cos(tilted)]),
+            place,
+            job.hob.sign,
+            job.helix_sign,
+            job.hob.starts,
+            job.gear.module,
+            job.gear.beta,
+            job.hob.diameter,
+        )[0]
+
+    def _start_error(self, psi: np.ndarray, thread: np.ndarray) -> np.ndarray:
+        """How far the thread that cuts stands off along the hob (n,) [mm]: thread R of chapter 30 is start R mod k."""
+        given, starts = self.errors.hob_starts_um, self.job.hob.starts
+        if not given:
+            return np.zeros_like(psi)
+        off = np.resize(np.array(given) * UM, starts)
+        return off[np.rint(starts * (thread + psi) / TURN).astype(np.int64) % starts]
+
+    @cached_property
+    def _is_displaced(self) -> bool:
+        errors = self.errors
+        return bool(
+            errors.feed
+            or errors.hob_eccentricity_um
+            or errors.hob_axial_runout_um
+            or errors.hob_lead_um_per_turn
+            or errors.hob_starts_um
+            or errors.blank_eccentricity_um
+            or errors.blank_tilt_um_per_100mm
+        )
+
+    # --- how much all that changes --------------------------------------------------------------------------------
+    def variation(self, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Bounds (n,) of how much the errors differ along the normal [mm], ``away`` gashes, and turns of the table."""
+        job = self.job
+        turn = TURN * job.gear.teeth / job.hob.starts
+        found = []
+        for hob_turn in (TURN / job.hob.gashes, turn):
+            ends = job.table_angle(np.array([0.0, hob_turn]))
+            table, travel = float(ends[1] - ends[0]), job.travel_per_rad * hob_turn
+            total = np.full_like(away, self._step_variation)
+            for size, turned in self._swings(hob_turn, table, travel):
+                back = abs((turned + math.pi) % TURN - math.pi)  # whole turns bring a sine back
+                total += size * np.minimum(2.0, back * away)
+            total += abs(self.errors.hob_lead_um_per_turn) * UM * abs(hob_turn) / TURN * away * (hob_turn < turn)
+            found.append(total)
+        return found[0], found[1]
+
+    @property
+    def _step_variation(self) -> float:
+        """Of the rounding to steps and counts, of microsteps and lag, and of starts [mm]."""
+        errors, job = self.errors, self.job
+        starts = float(np.ptp(errors.hob_starts_um)) * UM if errors.hob_starts_um else 0.0
+        if self.rule == "ideal":
+            return starts
+        per_turn = abs(self._steps_per_rad) * TURN
+        steps = (1.0 if self.rule == "exact" else 12.0) + per_turn / float(self.machine.encoder_counts)
+        steps += 2 * errors.microstep_percent / 100 * (self.machine.drive.microsteps or 1)
+        ripple = sum(each.amplitude_percent / 100 for each in errors.speed_ripple)
+        steps += 2 * errors.motor_time_constant_ms / 1000 * self.rpm / 60 * per_turn * ripple
+        return starts + steps * self.step * job.base_radius
+
+    def _swings(self, hob: float, table: float, travel: float) -> Iterable[tuple[float, float]]:
+        """Amplitude along the normal [mm] of every sine, and by how much its argument turns."""
+        errors, job, wheel = self.errors, self.job, self.machine.table
+        assert wheel is not None
+        radius = job.base_radius
+        for series, turned in ((errors.worm, table * float(wheel.worm)), (errors.wheel, table)):
+            for each in series:
+                yield each.amplitude_arcsec * ARCSEC * radius, each.order * turned
+        if self.rule != "ideal":
+            belt = float(self.machine.encoder.belt)
+            for each in errors.encoder:
+                yield (
+                    each.amplitude_arcsec * ARCSEC / belt * job.hob.starts / job.gear.teeth * radius,
+                    each.order * hob * belt,
+                )
+        # what it does along the tooth does not matter; a tenth more, as a shift across the axis is not quite that
+        yield 1.1 * math.sin(job.gear.alpha) * errors.hob_eccentricity_um * UM, hob
+        yield errors.hob_axial_runout_um * UM, hob
+        for wave in errors.feed:
+            yield (
+                wave.amplitude_um * UM * math.sin(job.base_helix),
+                wave.order * TURN * travel / errors.feed_screw_pitch,
+            )
+        yield errors.blank_eccentricity_um * UM, table
+        yield errors.blank_tilt_um_per_100mm * UM * (job.face_width + radius) / 100, table
+
+
+def harmonics(
+    series: Iterable[TableHarmonic | LengthHarmonic | RatioHarmonic], turn: np.ndarray, unit: float
+) -> np.ndarray:
+    """The sum of sines (30.17) at turns (n,) [rad], amplitudes in ``unit``."""
+    total = np.zeros_like(turn)
+    for each in series:
+        (amplitude,) = (value for key, value in each if key.startswith("amplitude"))
+        total += kernel("harmonic")(turn, amplitude * unit, each.order, math.radians(each.phase))[0]
+    return total
+
+
+def rounding(ratio: JobRatio, hob: np.ndarray, feed: np.ndarray) -> np.ndarray:
+    """p - Σ N_j e_j/D of (7.4) after whole counts (n,) of hob and feed, in steps: never more than half a step."""
+    numerators: Sequence[int] = ratio.numerators
+    largest = max((int(np.abs(counts).max(initial=0)) for counts in (hob, feed)), default=0) + 1
+    kind: type = np.int64 if 2 * largest * max(map(abs, numerators)) + ratio.denominator < 2**62 else object
+    sums: np.ndarray = np.full(len(hob), ratio.first_remainder, dtype=kind)
+    for numerator, counts in zip(numerators, (hob, feed), strict=True):
+        if numerator:
+            sums = sums + numerator * counts.astype(np.int64).astype(kind)
+    left = (sums % ratio.denominator).astype(float)
+    return (ratio.first_remainder - left) / ratio.denominator

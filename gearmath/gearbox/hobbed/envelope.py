@@ -1,0 +1,234 @@
+"""The flank that is left: at each of its points the least of what single gashes leave, (30.5).
+
+Which gash, which turn of the table: the line of action says when an ideal hob touches there; the gashes and turns next
+to that are tried, so many that a further one could only cut if the errors were larger than they are. Where the edge of
+such a pass crosses the foot of the point is a root of (30.6) in h and τ, found by Newton's method for all points and
+passes in one call.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Protocol
+
+import casadi as ca
+import numpy as np
+
+from gearmath.engine.points import Points
+from gearmath.gearbox.hobbed.job import TURN, HobbingJob
+from gearmath.gearbox.kernels import evaluate, kernel
+
+#: Newton steps, and the distance [mm] from the foot at which a root counts as found.
+STEPS, FOUND = 10, 1e-9
+#: Steps at which the errors of the machine are asked for: where a pass is, is known well enough by then.
+ASKED = (1, 3)
+#: How much of the distance from the foot can be missing from δ at most, and a distance that counts as none [mm].
+STEEPEST, CERTAIN = 0.5, 1e-6
+#: Distance from the foot [mm] from which that bound is trusted.
+NEAR = 0.1
+#: Passes of one block.
+BLOCK = 200_000
+#: Most passes to either side that are tried.
+MOST = 60
+
+
+class CuttingErrorModel(Protocol):
+    """What the machine does other than ideally, at hob turns ψ."""
+
+    def variation(self, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Bounds (n,) of how much the errors differ along the normal [mm], ``away`` gashes, and turns of the table."""
+        ...
+
+    @property
+    def jump(self) -> float:
+        """How much that changes at once, along the normal [mm]: a motor step."""
+        ...
+
+    def table(self, psi: np.ndarray, side: int) -> np.ndarray:
+        """Δφ (n,) [rad] while the flank ``side`` is cut."""
+        ...
+
+    def displacement(self, psi: np.ndarray, thread: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """D (n, 3) [mm] at thread angles (n,) and places of the cut (n, 3)."""
+        ...
+
+
+@dataclass(frozen=True)
+class NoErrors:
+    """An ideal machine."""
+
+    jump: float = 0.0
+
+    def variation(self, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Nothing."""
+        return np.zeros_like(away), np.zeros_like(away)
+
+    def table(self, psi: np.ndarray, side: int) -> np.ndarray:
+        """Nothing."""
+        return np.zeros(len(psi))
+
+    def displacement(self, psi: np.ndarray, thread: np.ndarray, place: np.ndarray) -> np.ndarray:
+        """Nothing."""
+        return np.zeros((len(psi), 3))
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A gear as a job with these errors leaves it."""
+
+    job: HobbingJob
+    errors: CuttingErrorModel = NoErrors()
+
+    def deviation(
+        self,
+        side: int,
+        space: np.ndarray,
+        length: np.ndarray,
+        height: np.ndarray,
+        progress: Callable[[int], object] = lambda done: None,
+    ) -> np.ndarray:
+        """δ (n,) [mm] of the flank ``side`` of ``space`` (n,), at lengths of roll and heights (n,) on the gear.
+
+        nan where no straight edge cuts: below the form circle. ``progress`` is told how many points are done.
+        """
+        spaces, lengths, heights = np.broadcast_arrays(space, np.asarray(length, float), np.asarray(height, float))
+        gashes, turns = self._window(float(lengths.max(initial=0.0)))
+        size = max(1, BLOCK // ((2 * gashes + 1) * (2 * turns + 1)))
+        parts = []
+        for start in range(0, len(spaces), size):
+            part = slice(start, start + size)
+            parts.append(self._least(side, spaces[part], lengths[part], heights[part], gashes, turns))
+            progress(len(parts[-1]))
+        return np.concatenate(parts) if parts else np.empty(0)
+
+    def _window(self, longest: float) -> tuple[int, int]:
+        """How many gashes and turns of the table to either side can leave less than their neighbors.
+
+        A pass that is so many gashes or turns off leaves the ridge more, which grows with the square of that; it can be
+        the least only if the errors change by as much until there.
+        """
+        job, gear = self.job, self.job.gear
+        (flat,) = evaluate("generating_flat", 0.5 * longest, job.hob.starts, gear.teeth, job.hob.gashes)
+        shape = (0.0, job.hob.diameter, gear.teeth, gear.module, gear.alpha, gear.beta)
+        (mark,) = evaluate("feed_mark", job.feed, *shape)
+        away = np.arange(MOST + 1.0)
+        gains = [
+            change - 4 * ridge * np.maximum(away - 0.5, 0.0) ** 2
+            for change, ridge in zip(self.errors.variation(away), (flat, mark), strict=True)
+        ]
+        by_gash, by_turn = (
+            1 + int(np.flatnonzero(own + other.max() >= 0).max(initial=0)) for own, other in (gains, gains[::-1])
+        )
+        return min(by_gash, MOST), min(by_turn, MOST)
+
+    def _least(
+        self, side: int, space: np.ndarray, length: np.ndarray, height: np.ndarray, gashes: int, turns: int
+    ) -> np.ndarray:
+        job = self.job
+        on_gear, edge, tau, thread = job.contact(side, length)
+        hob, teeth = job.hob, job.gear.teeth
+        # the turn of the hob, and of the table, at which an ideal hob touches there
+        psi = (height - on_gear - job.start_height) / job.travel_per_rad
+        first = hob.sign * space
+        turned = np.rint(((psi - tau + thread) / TURN * hob.starts - first) / teeth)
+        nearby = turned[:, None] + np.arange(-turns, turns + 1)
+        ridge = (first[:, None] + teeth * nearby).astype(np.int64)  # R of (30.2)
+        gash = np.rint(hob.gashes * (ridge / hob.starts - (thread / TURN)[:, None]))
+        gash = (gash[:, :, None] + np.arange(-gashes, gashes + 1)).astype(np.int64)
+        at = (ridge[:, :, None] * hob.gashes - gash * hob.starts) * (TURN / (hob.gashes * hob.starts))
+        shape = at.shape
+        passes = _Passes(
+            side,
+            (gash * (TURN / hob.gashes)).ravel(),
+            at.ravel(),
+            *(np.broadcast_to(value[:, None, None], shape).ravel() for value in (length, height, edge, tau)),
+        )
+        return passes.solve(job, self.errors, shape[1] * shape[2]).reshape(len(space), -1).min(axis=1)
+
+
+@dataclass(frozen=True)
+class _Passes:
+    """Gashes that may cut points of flanks: hob turn ψ_c and thread of each, foot of its point, start of the search."""
+
+    side: int
+    psi: np.ndarray
+    thread: np.ndarray
+    length: np.ndarray
+    height: np.ndarray
+    edge: np.ndarray
+    tau: np.ndarray
+
+    def solve(self, job: HobbingJob, errors: CuttingErrorModel, together: int) -> np.ndarray:
+        """δ (n,) [mm], infinite for passes that do not reach the foot with their straight edge.
+
+        ``together`` passes in a row belong to one point: those that cannot be its least are left where they are seen to
+        be too high, with a bound of what a root not found yet may still change.
+        """
+        pair, shared = np.array(job.pair(self.side)), np.array([job.travel_per_rad])
+        target = np.column_stack([self.length, self.height - job.hob_height(self.psi)])
+        given = np.column_stack([self.thread, np.zeros((len(self.psi), 4))])
+        limits = 0.9 * np.array([job.hob.diameter / 2, math.pi])
+        unknown = np.column_stack([self.edge, self.tau])
+        last = unknown.copy()
+        left, off = (np.full(len(self.psi), np.inf) for _ in range(2))
+        open_ = np.arange(len(self.psi))
+        for k in range(STEPS):
+            if k in ASKED:
+                given[open_, 1:] = self._errors(job, errors, open_, self.psi[open_] + unknown[open_, 1])
+            step, delta, miss = newton_step()(unknown[open_], target[open_], given[open_], shared, pair)
+            left[open_], off[open_] = delta[:, 0, 0], np.abs(miss[:, :, 0]).max(axis=1)
+            if k > max(ASKED) and not (off[open_] > FOUND).any():
+                break
+            # nan where the edge is inside the base cylinder: half of the last step is taken back
+            fine = np.isfinite(step[:, :, 0]).all(axis=1)[:, None]
+            ahead = np.where(fine, unknown[open_] + np.nan_to_num(step[:, :, 0]), 0.5 * (unknown[open_] + last[open_]))
+            last[open_] = np.where(fine, unknown[open_], last[open_])
+            unknown[open_] = np.clip(ahead, -limits, limits)
+            if k in ASKED:
+                jump = errors.jump if k < max(ASKED) else 0.0
+                straight = unknown[:, 0] <= job.form_height
+                open_ = self._in_question(left, off, straight, together, jump)
+        off[np.isnan(left)] = np.inf
+        reached = (off < FOUND) & (unknown[:, 0] <= job.form_height + FOUND)
+        return np.where(reached, left, np.inf)
+
+    @staticmethod
+    def _in_question(left: np.ndarray, off: np.ndarray, straight: np.ndarray, together: int, jump: float) -> np.ndarray:
+        """Which passes may still be the least of their point; those that are not ``straight`` there decide nothing."""
+        doubt = STEEPEST * np.nan_to_num(off, nan=0.0) + jump + CERTAIN
+        low = np.nan_to_num(left, nan=np.inf) - doubt
+        highest = np.where(straight & (off < NEAR), low + 2 * doubt, np.inf)
+        sure = highest.reshape(-1, together).min(axis=1)
+        return np.flatnonzero(low <= np.repeat(sure, together))
+
+    def _errors(self, job: HobbingJob, errors: CuttingErrorModel, which: np.ndarray, psi: np.ndarray) -> np.ndarray:
+        """Δφ and D (n, 4) of some passes."""
+        moved = errors.displacement(psi, self.thread[which], self._place(job, which))
+        return np.column_stack([errors.table(psi, self.side), moved])
+
+    def _place(self, job: HobbingJob, which: np.ndarray) -> np.ndarray:
+        """About where the flank is cut, in space from the middle of the gear's lower face."""
+        radius = np.hypot(job.base_radius, self.length[which])
+        return np.column_stack([radius, np.zeros_like(radius), self.height[which]])
+
+
+@cache
+def newton_step() -> Points:
+    """One step of Newton's method for h and τ of a pass: arguments unknown, foot wanted, thread with Δφ and D, v, PAIR.
+
+    Results: the step, δ, and how far the foot is off.
+    """
+    rule = kernel("hobbed_deviation")
+    unknown, target, given = ca.SX.sym("unknown", 2), ca.SX.sym("target", 2), ca.SX.sym("given", 5)
+    travel, pair = ca.SX.sym("travel"), ca.SX.sym("pair", 10)
+    place = (unknown[0], 0, unknown[1], given[0], travel, given[1], given[2:])
+    foot, height, delta = rule.function(*place, *ca.vertsplit(pair))
+    miss = ca.vertcat(foot, height) - target
+    slope = ca.jacobian(miss, unknown)
+    step = -ca.solve(slope, miss)
+    return Points(
+        ca.Function("hobbing_newton", [unknown, target, given, travel, pair], [step, delta, miss]), shared=(3, 4)
+    )

@@ -1,0 +1,134 @@
+"""From a machine file and a job's options to what is cut: hob, gear, drive train, and their inspection."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from gearmath.errors import InputError
+from gearmath.gearbox.dimensions import Gear
+from gearmath.gearbox.helix import SIGNS, Helix
+from gearmath.gearbox.hobbed.classes import FigureClass, classes, overall
+from gearmath.gearbox.hobbed.contributions import Contribution, contributions
+from gearmath.gearbox.hobbed.drive import DriveTrain, Rule
+from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.inspection import Inspection, Layout, inspect, layout
+from gearmath.gearbox.hobbed.job import HobbingJob, HobTool
+from gearmath.gearbox.kernels import evaluate
+from gearmath.gearbox.train import plan
+from gearmath.specs.hobbing import Hob, HobbingMachine
+
+#: Reference diameter of a hob whose file does not say it: the usual small one, or so many modules [mm].
+ASSUMED_DIAMETER, ASSUMED_MODULES = 25.4, 16.0
+#: Face width where none is given, in modules.
+FACE_WIDTH = 10.0
+LEAST_FEED, MOST_FEED = 0.01, 10.0
+LONGEST_SECONDS = 86_400.0
+
+
+@dataclass(frozen=True)
+class VirtualGear:
+    """A gear cut by one rule, inspected."""
+
+    rule: Rule
+    found: Inspection
+    classes: tuple[FigureClass, ...]
+
+    @property
+    def accuracy_class(self) -> int | None:
+        """The coarsest class of all figures."""
+        return overall(self.classes)
+
+
+@dataclass(frozen=True)
+class CutSetup:
+    """What is cut and measured. ``assumed_diameter``: the file does not say that of the hob."""
+
+    train: DriveTrain
+    where: Layout
+    hob_name: str
+    assumed_diameter: bool
+
+    @property
+    def job(self) -> HobbingJob:
+        """Gear, hob and feed."""
+        return self.train.job
+
+
+def setup(
+    machine: HobbingMachine,
+    teeth: int,
+    hob: str | None = None,
+    starts: int | None = None,
+    helix: Helix | None = None,
+    shift: float = 0.0,
+    feed: float = 0.5,
+    face_width: float | None = None,
+    rpm: float | None = None,
+    seconds: float = 0.0,
+    climb: bool = True,
+    rule: Rule = "exact",
+) -> CutSetup:
+    """Everything that a job of this machine needs to be cut.
+
+    If not given, ``hob`` is the first of the file, ``face_width`` ten modules, and ``rpm`` the highest within the
+    limits; ``feed`` [mm per turn of the table]; ``seconds`` that the hob has run before.
+    Raises InputError where the machine cannot carry the job, or the hob cannot cut it.
+    """
+    if not LEAST_FEED <= feed <= MOST_FEED:
+        raise InputError(f"feed = {feed:g}: must lie between {LEAST_FEED:g} and {MOST_FEED:g} mm per turn of the table")
+    if not 0.0 <= seconds <= LONGEST_SECONDS:
+        raise InputError(f"seconds = {seconds:g}: must lie between 0 and {LONGEST_SECONDS:g}")
+    name = hob if hob is not None else (machine.hobs[0].name if machine.hobs else None)
+    planned = plan(machine, teeth, starts=starts, hob=name, rpm=rpm, helix=helix, shift=shift)
+    chosen = next(each for each in machine.hobs if each.name == planned.blanks[0].hob)
+    width = FACE_WIDTH * chosen.module_mm if face_width is None else face_width
+    if not 1.0 <= width <= 1000.0:
+        raise InputError(f"width = {width:g}: must lie between 1 and 1000 mm")
+    gear = Gear(teeth, chosen.module_mm, chosen.alpha, 0.0 if helix is None else helix.beta, shift)
+    tool = hob_tool(chosen, planned.hob_starts, SIGNS[machine.hob_hand])
+    job = HobbingJob(gear, 1 if helix is None else helix.sign, tool, width, feed, climb)
+    if len(machine.errors.hob_starts_um) not in (0, tool.starts):
+        raise InputError(
+            f"{machine.name}: errors.hob_starts_um has {len(machine.errors.hob_starts_um)} values, the hob has "
+            f"{tool.starts} starts"
+        )
+    train = DriveTrain(machine, job, planned.ratio, rule, planned.rpm, seconds)
+    return CutSetup(train, layout(job), chosen.name, chosen.diameter is None)
+
+
+def hob_tool(hob: Hob, starts: int, sign: int) -> HobTool:
+    """The hob of a machine file, with a tip radius that fits on its teeth."""
+    module, alpha = hob.module_mm, hob.alpha
+    diameter = hob.diameter or max(ASSUMED_DIAMETER, ASSUMED_MODULES * module)
+    if diameter <= 5.0 * module * starts:
+        raise InputError(f"starts = {starts}: hob {hob.name} of {diameter:g} mm is too small for them")
+    land = math.pi * module / 4 - hob.addendum * math.tan(alpha)
+    roundest = land * math.cos(alpha) / (1.0 - math.sin(alpha))  # w_a of (30.12) is 0
+    if roundest <= 0.0:
+        raise InputError(f"hob {hob.name}: teeth of {hob.addendum:g} mm at {hob.pressure_angle:g} degrees have no tip")
+    return HobTool(starts, sign, hob.gashes, diameter, hob.addendum, min(hob.tip_rounding, 0.999 * roundest))
+
+
+def cut_and_inspect(cut: CutSetup, rule: Rule, progress: Callable[[int], object] = lambda done: None) -> VirtualGear:
+    """The gear as one rule cuts it."""
+    train = DriveTrain(cut.train.machine, cut.job, cut.train.ratio, rule, cut.train.rpm, cut.train.seconds)
+    found = inspect(Cut(cut.job, train), cut.where, progress)
+    return VirtualGear(rule, found, classes(cut.job, found))
+
+
+def ridges(job: HobbingJob) -> tuple[float, float]:
+    """Height of the ridges between flats and between feed marks at the reference cylinder [mm] (30.9, 30.10)."""
+    gear, hob = job.gear, job.hob
+    length = job.reference_diameter / 2 * math.sin(job.transverse[1])
+    (flat,) = evaluate("generating_flat", length, hob.starts, gear.teeth, hob.gashes)
+    (mark,) = evaluate("feed_mark", job.feed, 0.0, hob.diameter, gear.teeth, gear.module, gear.alpha, gear.beta)
+    return flat, mark
+
+
+def blame(
+    cut: CutSetup, gear: VirtualGear, progress: Callable[[int], object] = lambda done: None
+) -> tuple[Contribution, ...]:
+    """Every source of error of a gear that was cut with the rule of its setup, with its share."""
+    return contributions(cut.train, cut.where, gear.found, progress)

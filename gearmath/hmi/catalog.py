@@ -1,0 +1,48 @@
+"""Files that an operator may choose from: those in the folder of the store, and those that come with the package."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from gearmath.errors import InputError
+from gearmath.files import read_text
+
+#: A key, with dots between tables, that a file of each kind has, and no other; one of these.
+_KEYS = {
+    "gear_set": ("pinion.blank", "gear.blank"),
+    "hobber": ("encoder.lines",),
+    "machine": ("axes.X",),
+    "calibration": ("tip_radius",),
+}
+#: Larger files are none of these.
+_LARGEST = 1_000_000
+
+
+def files_of(kind: str, folder: Path) -> dict[str, str]:
+    """What may be chosen of a ``kind``, gear_set or hobber: path or bundled name, and the name that is shown.
+
+    A file of the folder comes first; one that is no TOML is none.
+    """
+    here = {str(path): path.name for path in _toml(folder) if _is(kind, path)}
+    packaged = Path(str(resources.files("gearmath") / "data"))
+    return here | {path.name: f"{path.name} *" for path in _toml(packaged) if _is(kind, path)}
+
+
+def _toml(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.glob("*.toml") if path.is_file() and not path.name.startswith("."))
+
+
+def _is(kind: str, path: Path) -> bool:
+    try:
+        values: Mapping[str, Any] = tomllib.loads(read_text(path, _LARGEST))
+    except (InputError, ValueError, RecursionError):
+        return False
+    return any(_has(values, key.split(".")) for key in _KEYS[kind])
+
+
+def _has(values: Any, key: list[str]) -> bool:
+    return not key or (isinstance(values, Mapping) and key[0] in values and _has(values[key[0]], key[1:]))

@@ -1,0 +1,161 @@
+"""A job of the electronic gearbox as an operator asks for it: the plan as lines with units, the firmware as a zip."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from derivations import notation
+from gearmath.errors import InputError
+from gearmath.export.folder import MANIFEST, manifest
+from gearmath.export.teensy import teensy_files
+from gearmath.front.gearbox import Job, plan
+from gearmath.gearbox.helix import STEEPEST, Cut, Helix
+from gearmath.gearbox.job import GearboxJob, ThreadPlan
+from gearmath.gearbox.train import GearboxPlan, HobbedBlank
+from gearmath.specs.hobbing import Hand, HobbingMachine
+
+#: Least and largest number of each field, by its key; those of the machine come with it.
+FIELDS: dict[str, tuple[float, float]] = {
+    "teeth": notation.teeth.domain,
+    "starts": notation.hob_starts.domain,
+    "helix": (0.0, STEEPEST),
+}
+#: A name within the zip: a plain file of the sketch's folder.
+_PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,62}", re.ASCII)
+#: The time of every file in the zip: the same firmware is the same file.
+_TIME = (1980, 1, 1, 0, 0, 0)
+
+
+@dataclass(frozen=True)
+class HobbingWish:
+    """What is to be cut: a gear of ``teeth``, or on a lathe a thread of ``pitch`` ("1.25mm", "8tpi").
+
+    None takes what the machine file says: all hobs, its starts, the highest speed within the limits. Helix [degrees],
+    feed [mm per turn of the table], rpm [1/min], shift [modules].
+    """
+
+    teeth: int | None = None
+    pitch: str | None = None
+    starts: int | None = None
+    hob: str | None = None
+    helix: float = 0.0
+    hand: Hand = "right"
+    cut: Cut = "climb"
+    feed: str = ""
+    rpm: float | None = None
+    shift: float = 0.0
+
+
+@dataclass(frozen=True)
+class PlanLine:
+    """One line of a plan: ``key`` names it, ``value`` has its digits; ``percent`` of a limit where it has one."""
+
+    key: str
+    value: str
+    unit: str
+    percent: float | None = None
+
+
+def planned(machine: HobbingMachine, wish: HobbingWish) -> Job:
+    """The job. Raises InputError naming the limit that it would break."""
+    given: dict[str, Any] = {key: getattr(wish, key) for key in ("starts", "rpm") if getattr(wish, key) is not None}
+    if machine.profile == "lathe":
+        return plan(machine, pitch=wish.pitch or "", hand=wish.hand, **given)
+    if wish.hob is not None:
+        given["hob"] = wish.hob
+    if wish.helix:
+        given["helix"] = Helix(wish.helix, wish.hand, wish.cut, _feed(wish.feed))
+    return plan(machine, teeth=wish.teeth, shift=wish.shift, **given)
+
+
+def plan_lines(job: GearboxJob) -> list[PlanLine]:
+    """Ratio, rates against their limits and the motion of the motor."""
+    found = [
+        PlanLine("ratio", str(job.exact_pulse_ratio), "counts/step"),
+        PlanLine("ratio_decimal", f"{job.pulse_ratio:.9g}", "counts/step"),
+    ]
+    if isinstance(job, ThreadPlan):
+        found += [
+            PlanLine("pitch", f"{float(job.pitch):.6g}", "mm"),
+            PlanLine("lead", f"{float(job.lead):.6g}", "mm"),
+            PlanLine("count_way", f"{job.count_um:.2f}", "µm"),
+            PlanLine("step_way", f"{job.step_um:.2f}", "µm"),
+        ]
+    if isinstance(job, GearboxPlan) and job.helix is not None:
+        found += [
+            PlanLine("helix_lead", f"{job.helix.lead:.4f}", "mm"),
+            PlanLine("helix_error", f"{job.helix.error_steps:.1e}", f"steps / {job.helix.travel:g} mm"),
+        ]
+        if job.helix.feed_mm is None:
+            found.append(PlanLine("feed_ratio", f"{job.feed_numerator}/{job.steps_denominator}", "steps/count"))
+    return [*found, *_rates(job)]
+
+
+def blank_lines(blank: HobbedBlank) -> list[PlanLine]:
+    """What to turn, set and measure for one hob."""
+    found = [
+        PlanLine("blank_diameter", f"{blank.blank_diameter:.4f}", "mm"),
+        PlanLine("cut_depth", f"{blank.cut_depth:.4f}", "mm"),
+    ]
+    if blank.swivel is not None:
+        found.append(PlanLine("swivel", f"{blank.swivel.swivel:+.3f}", "°"))
+    if blank.span is not None:
+        found.append(PlanLine("span", f"{blank.span.length:.4f}", "mm"))
+        found.append(PlanLine("span_teeth", f"{blank.span.teeth}", "1"))
+    found.append(PlanLine("chord", f"{blank.chord.thickness:.4f}", "mm"))
+    found.append(PlanLine("chord_height", f"{blank.chord.height:.4f}", "mm"))
+    if blank.over_pins is not None:
+        found.append(PlanLine("over_pins", f"{blank.over_pins.length:.4f}", "mm"))
+        found.append(PlanLine("pin", f"{blank.over_pins.pin:.4g}", "mm"))
+    found.append(PlanLine("count_way", f"{blank.count_um:.2f}", "µm"))
+    found.append(PlanLine("step_way", f"{blank.step_um:.2f}", "µm"))
+    return found
+
+
+def firmware_zip(machine: HobbingMachine, sketch: str = "gearbox") -> bytes:
+    """The sketch folder of a machine as a zip, with the manifest that a folder written by the command has.
+
+    Raises InputError where the name cannot be a sketch's, or a file would not lie in that folder.
+    """
+    files = teensy_files(machine, sketch)
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as folder:
+        for name, text in {**files, MANIFEST: manifest(files)}.items():
+            if _PLAIN.fullmatch(name) is None or ".." in name:
+                raise InputError(f"{sketch}/{name}: is no plain name of a file of the sketch")
+            folder.writestr(zipfile.ZipInfo(f"{sketch}/{name}", _TIME), text.encode("utf-8"), zipfile.ZIP_DEFLATED)
+    return stream.getvalue()
+
+
+def sketch_name(machine: HobbingMachine) -> str:
+    """The name of a machine as that of a sketch."""
+    plain = re.sub(r"[^a-z0-9]+", "_", machine.name.lower()).strip("_")[:40]
+    return plain or "gearbox"
+
+
+def _rates(job: GearboxJob) -> Iterator[PlanLine]:
+    motion = job.motion
+    yield PlanLine("rpm", f"{job.rpm:.1f}", "1/min", job.hob_rpm_percent)
+    yield PlanLine("edge_rate", f"{job.edge_rate_hz:.0f}", "Hz", job.edge_rate_percent)
+    yield PlanLine("step_rate", f"{job.step_rate_hz:.0f}", "Hz", job.step_rate_percent)
+    yield PlanLine("highest_rpm", f"{job.highest_rpm:.1f}", "1/min")
+    yield PlanLine("run_up", f"{motion.run_up_s:.2f}", "s")
+    yield PlanLine("shortest_run_up", f"{motion.shortest_run_up_s:.2f}", "s")
+    if motion.catch_up_s is not None:
+        yield PlanLine("catch_up", f"{motion.catch_up_s:.2f}", "s")
+    yield PlanLine("engage_rpm", f"{motion.engage_rpm:.0f}", "1/min")
+
+
+def _feed(typed: str) -> Fraction | None:
+    if not typed.strip():
+        return None
+    try:
+        return Fraction(typed.strip().replace(",", "."))
+    except (ValueError, ZeroDivisionError):
+        raise InputError(f"feed = {typed.strip()[:30]!r}: must be a number of mm per turn of the table") from None

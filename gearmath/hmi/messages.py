@@ -1,0 +1,33 @@
+"""What the page says, in English and German, from one file: ``messages.toml``, a table a page."""
+
+from __future__ import annotations
+
+import functools
+import tomllib
+from importlib import resources
+
+LANGUAGES = {"en": "English", "de": "Deutsch"}
+
+
+class Text:
+    """The messages of one language: ``text("machine.channel")``, ``text("measure.point", point=3)``."""
+
+    def __init__(self, language: str) -> None:
+        self.language = language if language in LANGUAGES else "en"
+
+    def __call__(self, key: str, **values: object) -> str:
+        """A message with its values. Raises KeyError for a key that the file does not have."""
+        page, _, name = key.partition(".")
+        message = messages()[page][name][self.language]
+        return message.format(**values) if values else message
+
+    def has(self, key: str) -> bool:
+        """Whether there is a message of this key: words of a control or a file may have none."""
+        page, _, name = key.partition(".")
+        return name in messages().get(page, {})
+
+
+@functools.cache
+def messages() -> dict[str, dict[str, dict[str, str]]]:
+    """By page, name and language."""
+    return tomllib.loads(resources.files("gearmath.hmi").joinpath("messages.toml").read_text("utf-8"))

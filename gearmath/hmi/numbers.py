@@ -1,0 +1,24 @@
+"""Numbers that an operator types: read as they stand, refused with the reason, never changed."""
+
+from __future__ import annotations
+
+import math
+import re
+
+from gearmath.hmi.messages import Text
+
+_NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+
+
+def parsed(text: Text, typed: str, low: float, high: float, unit: str) -> tuple[float | None, str | None]:
+    """The number of what was typed, or the reason why it is refused. A decimal comma is a decimal point."""
+    plain = typed.strip().replace("−", "-")
+    if not plain:
+        return None, text("shell.required")
+    if _NUMBER.fullmatch(plain) is None:
+        return None, text("shell.no_number", value=plain[:30])
+    value = float(plain.replace(",", "."))
+    if not (math.isfinite(value) and low <= value <= high):
+        limits = {"low": f"{low:g}", "high": f"{high:g}"}
+        return None, text("shell.out_of_range", value=plain[:30], unit=unit, **limits)
+    return value, None

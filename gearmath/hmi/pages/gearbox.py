@@ -1,0 +1,224 @@
+"""Page gearbox: a job of the electronic gearbox planned, its error over time, and the firmware to take."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from nicegui import ui
+
+from gearmath.front.gearbox import Job
+from gearmath.front.machines import load_hobber
+from gearmath.gearbox.job import ThreadPlan
+from gearmath.hmi import blocks, widgets
+from gearmath.hmi.catalog import files_of
+from gearmath.hmi.drawing import drawn
+from gearmath.hmi.hobbing_job import (
+    FIELDS,
+    HobbingWish,
+    PlanLine,
+    blank_lines,
+    firmware_zip,
+    plan_lines,
+    planned,
+    sketch_name,
+)
+from gearmath.hmi.messages import Text
+from gearmath.hmi.state import Shared
+from gearmath.hmi.work import Progress
+from gearmath.specs.hobbing import HobbingMachine
+from gearmath.specs.toml import find
+
+#: Edges of a simulation, and the count of the hob before it: the floating rule loses itself only after hours.
+_EDGES, _MOST_EDGES, _LATEST = 1_000_000, 20_000_000, 2_000_000_000
+_EVERY = "-"
+
+
+def build(shared: Shared, text: Text) -> None:
+    """The content of the page."""
+    page = _GearboxPage(shared, text)
+    with widgets.panel(text("gearbox.machine")):
+        page.machine()
+    with widgets.panel(text("gearbox.plan")):
+        page.plan()
+    with widgets.panel(text("gearbox.blanks"), wide=True):
+        page.blanks()
+    with widgets.panel(text("gearbox.error"), wide=True):
+        page.error()
+
+
+class _GearboxPage:
+    """The page of one browser; machine and wish are of the server."""
+
+    def __init__(self, shared: Shared, text: Text) -> None:
+        self.shared, self.text, self.desk = shared, text, shared.desk
+
+    def key(self) -> Any:
+        """What is planned."""
+        return self.desk.hobber, self.desk.wish
+
+    def compute(self) -> Callable[[Progress], tuple[HobbingMachine, Job]]:
+        """The plan of now."""
+        name, wish = self.desk.hobber, self.desk.wish
+        return lambda progress: _planned(name, wish)
+
+    def kept(self, draw: Callable[[tuple[HobbingMachine, Job]], object]) -> None:
+        """A part that shows the plan, or why there is none."""
+        blocks.kept(self.text, self.desk.of("gearbox"), self.key, self.text("gearbox.planning"), self.compute, draw)
+
+    def wish(self, **changes: Any) -> None:
+        """Ask for something else."""
+        self.desk.wish = replace(self.desk.wish, **changes)
+
+    def machine(self) -> None:
+        """The machine file, what is to be cut, and the firmware."""
+        text, desk = self.text, self.desk
+
+        def choose(name: str) -> None:
+            if name != desk.hobber:
+                self.desk.wish = HobbingWish(teeth=desk.wish.teeth or 17, pitch=desk.wish.pitch or "1.25mm")
+                desk.hobber = name
+
+        options = files_of("hobber", self.shared.folder)
+        options = options if desk.hobber in options else {desk.hobber: desk.hobber, **options}
+        widgets.choice(text("gearbox.file"), options, desk.hobber, choose)
+        blocks.follow(lambda: desk.hobber, self._wish)
+
+    def _wish(self) -> None:
+        """The fields that this machine has."""
+        text, wish = self.text, self.desk.wish
+        machine = load_hobber(find(self.desk.hobber))
+        hands = {hand: text(f"gear.{hand}") for hand in ("right", "left")}
+        starts = wish.starts or (1 if machine.profile == "lathe" else machine.hob_starts)
+        if machine.profile == "lathe":
+            pitch = ui.input(text("gearbox.pitch"), value=wish.pitch or "").classes("gm-number")
+            pitch.props('outlined dense autocomplete="off"').props["hint"] = text("gearbox.pitch_like")
+            pitch.on("change", lambda: self.wish(pitch=pitch.value))
+            self._number("starts", starts, "", 0)
+            widgets.choice(text("gearbox.hand"), hands, wish.hand, lambda hand: self.wish(hand=hand))
+        else:
+            self._number("teeth", wish.teeth, "", 0)
+            every = {_EVERY: text("gearbox.every"), **{hob.name: hob.name for hob in machine.hobs}}
+            chosen = wish.hob or _EVERY
+            widgets.choice(
+                text("gearbox.hob"), every, chosen, lambda hob: self.wish(hob=None if hob == _EVERY else hob)
+            )
+            self._number("starts", starts, "", 0)
+            self._number("helix", wish.helix, "°", 4)
+            widgets.choice(text("gearbox.helix_hand"), hands, wish.hand, lambda hand: self.wish(hand=hand))
+            cuts = {cut: text(f"gearbox.{cut}") for cut in ("climb", "conventional")}
+            widgets.choice(text("gearbox.cut"), cuts, wish.cut, lambda cut: self.wish(cut=cut))
+            if machine.feed is None:
+                feed = ui.input(text("gearbox.feed"), value=wish.feed).classes("gm-number")
+                feed.props('outlined dense suffix="mm" autocomplete="off"')
+                feed.on("change", lambda: self.wish(feed=feed.value))
+        widgets.NumberField(
+            text,
+            text("gearbox.rpm"),
+            wish.rpm or machine.limits.hob_rpm,
+            "1/min",
+            0.0,
+            machine.limits.hob_rpm,
+            lambda rpm: self.wish(rpm=rpm),
+            2,
+        )
+
+    def _number(self, key: str, value: float | None, unit: str, digits: int) -> None:
+        low, high = FIELDS[key]
+
+        def changed(number: float) -> None:
+            if digits == 0 and not number.is_integer():
+                field.refuse(self.text("gearbox.whole"))
+                return
+            self.wish(**{key: int(number) if digits == 0 else number})
+
+        field = widgets.NumberField(self.text, self.text(f"gearbox.{key}"), value, unit, low, high, changed, digits)
+
+    def plan(self) -> None:
+        """Ratio and rates against their limits, and the firmware."""
+
+        def draw(found: tuple[HobbingMachine, Job]) -> None:
+            machine, job = found
+            self._lines(plan_lines(job.plan))
+            if not job.plan.carried_at_every_speed and not isinstance(job.plan, ThreadPlan):
+                highest = int(job.plan.highest_rpm)
+                widgets.Message(self.text("gearbox.refused_by_firmware", rpm=highest), "warning")
+            name = sketch_name(machine)
+            widgets.button(
+                self.text("gearbox.firmware"),
+                lambda: ui.download.content(firmware_zip(machine, name), f"{name}.zip", "application/zip"),
+                "download",
+            )
+
+        self.kept(draw)
+
+    def blanks(self) -> None:
+        """What to turn, set and measure, a column a hob."""
+
+        def draw(found: tuple[HobbingMachine, Job]) -> None:
+            _, job = found
+            if isinstance(job.plan, ThreadPlan):
+                widgets.note(self.text("gearbox.thread"))
+                return
+            lines = [blank_lines(blank) for blank in job.plan.blanks]
+            head = [blank.hob for blank in job.plan.blanks]
+            by_hob = [{line.key: line for line in each} for each in lines]
+            rows = []
+            for key in dict.fromkeys(line.key for each in lines for line in each):
+                unit = next(each[key].unit for each in by_hob if key in each)
+                cells = [each[key].value if key in each else "–" for each in by_hob]
+                rows.append([f"{self.text(f'gearbox.{key}')} / {unit}", *cells])
+            blocks.plain_table("", [self.text("gearbox.hob"), *head], rows)
+            rules = dict.fromkeys(blank.depth_rule for blank in job.plan.blanks)
+            widgets.note(f"{self.text('gearbox.depth_rule')}: {', '.join(rules)}")
+
+        self.kept(draw)
+
+    def _lines(self, lines: list[PlanLine]) -> None:
+        for line in lines:
+            share = "" if line.percent is None else self.text("gearbox.of_limit", percent=f"{line.percent:.1f}")
+            widgets.fact(self.text(f"gearbox.{line.key}"), f"{line.value} {share}".rstrip(), line.unit)
+
+    def error(self) -> None:
+        """The error of the exact rule and of the floating one, when somebody asks."""
+        text, desk = self.text, self.desk
+        widgets.note(text("gearbox.rules"))
+        with widgets.row():
+            edges = widgets.NumberField(text, text("gearbox.edges"), _EDGES, "", 1000, _MOST_EDGES, digits=0)
+            start = widgets.NumberField(text, text("gearbox.start"), 0, "", 0, _LATEST, digits=0)
+
+        def begin() -> None:
+            if edges.value is not None and start.value is not None:
+                desk.wanted["gearbox"] = (self.key(), int(edges.value), int(start.value))
+
+        def key() -> Any:
+            wanted: Any = desk.wanted.get("gearbox")
+            return wanted if wanted is not None and wanted[0] == self.key() else None
+
+        def compute() -> Callable[[Progress], str]:
+            wanted: Any = desk.wanted["gearbox"]
+            (name, wish), count, first = wanted
+            return lambda progress: _error(name, wish, count, first, progress)
+
+        widgets.button(text("gearbox.simulate"), begin, "play_arrow", primary=True)
+        blocks.kept(
+            text,
+            desk.of("gearbox.error"),
+            key,
+            text("gearbox.simulating"),
+            compute,
+            lambda svg: blocks.chart(text, svg, text("gearbox.error")),
+        )
+
+
+def _planned(name: str, wish: HobbingWish) -> tuple[HobbingMachine, Job]:
+    machine = load_hobber(find(name))
+    return machine, planned(machine, wish)
+
+
+def _error(name: str, wish: HobbingWish, edges: int, start: int, progress: Progress) -> str:
+    _, job = _planned(name, wish)
+    progress.total = edges
+    figure = job.plot(edges=edges, start=start, progress=progress)
+    return drawn(lambda: figure)

@@ -1,0 +1,203 @@
+"""Measure: the run of the server, its points as they arrive, hold and go on; new, unfinished and repeated runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from nicegui import ui
+
+from gearmath.errors import InputError
+from gearmath.hmi import programs_work, widgets
+from gearmath.hmi.link import ControlLink
+from gearmath.hmi.measuring_task import MeasuringTask, RunState
+from gearmath.hmi.messages import Text
+from gearmath.hmi.probe_check import ProbeCheck
+from gearmath.hmi.runs_work import UnfinishedRun, complete_runs, unfinished_runs
+from gearmath.hmi.state import Shared
+from gearmath.hmi.words import duration, run_state
+
+#: Touches that are shown, the newest first.
+_SHOWN = 12
+
+
+def build(shared: Shared, text: Text) -> None:
+    """The content of the page."""
+    if shared.link is None or shared.measuring is None:
+        with widgets.panel(text("measure.run")):
+            widgets.Message(text("measure.no_control"), "warning")
+        return
+    _going_on(shared, text, shared.measuring)
+    check = _new(shared, text, shared.link, shared.measuring)
+    _unfinished(shared, text, shared.measuring)
+    _again(shared, text, shared.measuring, check)
+    _touches(text, shared.measuring)
+
+
+def _going_on(shared: Shared, text: Text, task: MeasuringTask) -> None:
+    with widgets.panel(text("measure.run"), wide=True):
+        title = widgets.note("")
+        said = widgets.Message()
+        bar = ui.linear_progress(0.0, show_value=False)
+        bar.props["aria-label"] = text("measure.run")
+        count = ui.label("").classes("gm-value gm-left")
+        with widgets.row():
+            hold = widgets.button(text("measure.hold"), task.hold, "pause", primary=True)
+            go_on = widgets.button(
+                text("measure.go_on"),
+                lambda: widgets.ask(shared, text, text("measure.go_on_question"), task.go_on),
+                "play_arrow",
+            )
+            end = widgets.button(
+                text("measure.end"),
+                lambda: widgets.ask(shared, text, text("measure.end_question"), task.stop),
+                "stop",
+            )
+        details = widgets.note("")
+
+    def look() -> None:
+        words, kind = run_state(text, task)
+        said.show(words, kind)
+        run, state = task.run, task.state
+        title.text = text("measure.run_number", run=run.id, program=run.start.program) if run is not None else ""
+        kept, total = len(task.touches), task.total
+        bar.visible = bool(total)
+        bar.value = round(kept / total, 4) if total else 0.0
+        words = text("measure.points", kept=kept, total=total) if total else ""
+        if task.remaining is not None:
+            words += f", {text('measure.remaining', time=duration(text, task.remaining))}"
+        count.text = words
+        waits = state in (RunState.HOLDING, RunState.HELD, RunState.LOST)
+        hold.enabled, go_on.enabled = task.is_going_on and not waits, waits
+        end.enabled = task.is_going_on
+        last = list(task.sentences)[-3:]
+        details.text = f"{text('measure.details')}: {' · '.join(last)}" if last else ""
+
+    look()
+    ui.timer(widgets.LOOK, look)
+
+
+def _touches(text: Text, task: MeasuringTask) -> None:
+    axes = [(axis, f"{axis} / {'°' if axis in 'AB' else 'mm'}") for axis in "XYZAB"]
+    columns = [("id", text("measure.point")), ("place", text("measure.place")), *axes]
+    with widgets.panel(text("measure.touches"), wide=True):
+        rows = widgets.table([*columns, ("triggered", text("measure.triggered"))], [])
+
+    def look() -> None:
+        found: list[dict[str, Any]] = []
+        run = task.run
+        for point, touch in list(task.touches.items())[-_SHOWN:]:
+            place = run.start.points.get(point, ()) if run is not None else ()
+            hit = text("machine.yes") if touch.triggered else text("measure.missed")
+            position = {axis: f"{getattr(touch, axis):.4f}" for axis in "XYZAB"}
+            found.append({"id": point, "place": " ".join(place), **position, "triggered": hit})
+        found.reverse()
+        if rows.rows != found:
+            rows.rows = found
+
+    look()
+    ui.timer(widgets.LOOK, look)
+
+
+def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> Callable[[], None]:
+    """Returns what raises InputError while the probe is not checked."""
+    chosen = {"name": ""}
+    check = ProbeCheck()
+    with widgets.panel(text("measure.new")):
+        names = widgets.choice(text("measure.program"), [], None, lambda name: chosen.update(name=name or ""))
+        widgets.heading(text("measure.check"))
+        said = widgets.Message()
+        by_hand = ui.checkbox(text("measure.check_by_hand"))
+        widgets.button(text("measure.start"), lambda: ask_to_start(), "fiber_manual_record", primary=True)
+
+    def checked() -> None:
+        if not (check.is_done or by_hand.value):
+            raise InputError(text("measure.check_needed"))
+
+    def ask_to_start() -> None:
+        if not (name := chosen["name"]):
+            raise InputError(text("measure.program_needed"))
+        checked()
+        choice = shared.choice
+        values = {"program": name, "control": link.name, "gear_set": choice.gear_set}
+        widgets.ask(
+            shared,
+            text,
+            text("measure.start_question", **values),
+            lambda: task.start(shared.folder / name, choice),
+        )
+
+    def look() -> None:
+        found = [one.name for one in programs_work.programs(shared.folder)]
+        if names.options != found:
+            names.set_options(found, value=chosen["name"] if chosen["name"] in found else None)
+        check.look(None if link.view.is_stale else link.view.probe)
+        by_hand.visible = check.state == "unknown"
+        said.show(text(f"measure.check_{check.state}"), "good" if check.is_done else "info")
+
+    look()
+    ui.timer(widgets.LOOK, look)
+    return checked
+
+
+def _unfinished(shared: Shared, text: Text, task: MeasuringTask) -> None:
+    with widgets.panel(text("measure.unfinished")):
+        none = widgets.note(text("measure.none_unfinished"))
+        place = ui.element("div").classes("gm-list")
+    shown: list[list[UnfinishedRun] | None] = [None]
+
+    def ask_to_resume(one: UnfinishedRun) -> None:
+        values = {"run": one.run, "program": one.program, "kept": one.kept, "total": one.total}
+        widgets.ask(shared, text, text("measure.resume_question", **values), lambda: task.resume(one.run))
+
+    def look() -> None:
+        own = task.run.id if task.is_going_on and task.run is not None else None
+        found = [one for one in unfinished_runs(shared.store) if one.run != own][:10]
+        none.visible = not found
+        if shown[0] == found:
+            return
+        shown[0] = found
+        place.clear()
+        with place:
+            for one in found:
+                widgets.note(
+                    f"{text('measure.run_number', run=one.run, program=one.program)}, "
+                    f"{text('measure.points', kept=one.kept, total=one.total)}, "
+                    f"{text('measure.begun')} {one.begun[:16].replace('T', ' ')} UTC. "
+                    f"{text('measure.why')}: {one.why or text('measure.open')}"
+                )
+                widgets.button(text("measure.resume", run=one.run), partial(ask_to_resume, one), "replay")
+
+    look()
+    ui.timer(4 * widgets.LOOK, look)
+
+
+def _again(shared: Shared, text: Text, task: MeasuringTask, checked: Callable[[], None]) -> None:
+    chosen: dict[str, int | None] = {"run": None}
+    with widgets.panel(text("measure.again")):
+        runs = widgets.choice(text("measure.again_run"), {}, None, lambda run: chosen.update(run=run))
+        points = widgets.word(text("measure.again_points"), "", "")
+        widgets.button(text("measure.again_start"), lambda: ask_again(), "replay")
+
+    def ask_again() -> None:
+        run, wanted = chosen["run"], (points.value or "").strip()
+        if run is None:
+            raise InputError(text("measure.program_needed"))
+        checked()
+        program = complete_runs(shared.store)[run]
+        choice = shared.choice
+        widgets.ask(
+            shared,
+            text,
+            text("measure.again_question", points=wanted, run=run),
+            lambda: task.start(shared.folder / program, choice, wanted, run),
+        )
+
+    def look() -> None:
+        found = {run: f"{run}: {program}" for run, program in complete_runs(shared.store).items()}
+        if runs.options != found:
+            runs.set_options(found, value=chosen["run"])
+
+    look()
+    ui.timer(4 * widgets.LOOK, look)

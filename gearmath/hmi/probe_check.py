@@ -1,0 +1,30 @@
+"""Whether the probe works: its signal must come and go again under the operator's hand before a run begins."""
+
+from __future__ import annotations
+
+
+class ProbeCheck:
+    """``state`` is ask, deflected, done, or unknown where the control does not tell the signal."""
+
+    def __init__(self) -> None:
+        self.state = "unknown"
+        self._was_free = False
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the signal came and went."""
+        return self.state == "done"
+
+    def look(self, signal: bool | None) -> None:
+        """What the control tells now; None where it does not."""
+        if self.state == "done":
+            return
+        if signal is None:
+            self.state, self._was_free = "unknown", False
+        elif signal:
+            # a probe that signals from the beginning may be one that always does
+            self.state = "deflected" if self._was_free else "ask"
+        elif self.state == "deflected":
+            self.state = "done"
+        else:
+            self.state, self._was_free = "ask", True

@@ -1,0 +1,133 @@
+"""Programs of the chosen member: written, milled virtually, listed and read, without anything of a page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from itertools import islice
+from pathlib import Path
+
+from gearmath.bevel.pair import load_pair
+from gearmath.control.file_names import control_name
+from gearmath.errors import InputError
+from gearmath.files import read_bytes, write_text
+from gearmath.front.machines import load_machine, load_shop
+from gearmath.front.programs import Program
+from gearmath.front.sets import load_set
+from gearmath.hmi.state import Choice
+from gearmath.hmi.work import Progress
+from gearmath.machine.control.text import decoded
+from gearmath.machine.judging.checked import checked_cut
+from gearmath.machine.judging.timing import timing
+from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
+from gearmath.machine.planning.cut_plan import CuttingJob
+from gearmath.machine.planning.limits import check_spindle_speed
+from gearmath.machine.writing.words import block_count, check_name
+from gearmath.specs.calibration import load_calibration
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import find
+
+#: Lines of a program that the page shows from its beginning.
+SHOWN = 2000
+
+
+@dataclass(frozen=True)
+class WrittenProgram:
+    """A program that was written: its file, blocks, time [s] without tool changes, and the verdict in words."""
+
+    file: Path
+    blocks: int
+    seconds: float | None
+    touches: int | None
+    verdict: str
+
+
+@dataclass(frozen=True)
+class MilledProgram:
+    """What a cutting program leaves of the metal: largest deviation [mm] on a right machine and on that of a shop."""
+
+    name: str
+    largest: float
+    largest_of_shop: float | None
+    faults: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class ListedProgram:
+    """A program of the folder."""
+
+    name: str
+    size: int
+    written: str
+
+
+def write_cutting(folder: Path, choice: Choice, name: str, job: CuttingJob, progress: Progress) -> WrittenProgram:
+    """Write the cutting program ``name``.MPF of all spaces; ``job`` says the rest. Raises InputError, ComputationError.
+
+    It is run before it is written: it keeps the limits of the machine, and collides with nothing.
+    """
+    file = _file(folder, name)
+    machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
+    check_spindle_speed(file.stem, machine, job.spindle_rpm)
+    whole = replace(job, spaces=range(pair.member(choice.member).teeth))
+    made = checked_cut(pair, choice.member, machine, whole, file.stem, file.name, progress.begin)
+    times = timing(made.path, machine)
+    write_text(file, made.text)
+    return WrittenProgram(file, block_count(made.text), times.feed_seconds + times.rapid_seconds, None, "")
+
+
+def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice, progress: Progress) -> WrittenProgram:
+    """Write the probing program ``name``.MPF. It is run before it is written: the probe stays clear of everything."""
+    file = _file(folder, name)
+    machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
+    calibration = load_calibration(find(choice.calibration))
+    made = checked_probing(
+        pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, progress.begin
+    )
+    write_text(file, made.text)
+    return WrittenProgram(file, block_count(made.text), None, made.touches, made.clearance)
+
+
+def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Progress) -> MilledProgram:
+    """Mill a cutting program of the folder: on a machine without errors, and on that of the file ``shop``."""
+    content = read(folder, name)
+    member = load_set(choice.gear_set).member(choice.member)
+    program = Program(member, load_machine(choice.machine), name, decoded(content, name))
+    progress.total = 2 * member.teeth * (1 if shop is None else 2)
+    largest = float(abs(program.mill(None, progress).deviation).max())
+    of_shop = None if shop is None else float(abs(program.mill(load_shop(shop), progress).deviation).max())
+    return MilledProgram(name, largest, of_shop, program.faults())
+
+
+def programs(folder: Path) -> list[ListedProgram]:
+    """The programs of a folder whose names a control takes, the newest first."""
+    found = []
+    for path in folder.glob("*.[MS]PF"):
+        try:
+            control_name(path.name)
+            status = path.stat()
+        except (InputError, OSError):
+            continue
+        found.append((status.st_mtime, path.name, status.st_size))
+    return [
+        ListedProgram(name, size, datetime.fromtimestamp(at).isoformat(" ", "seconds"))
+        for at, name, size in sorted(found, reverse=True)
+    ]
+
+
+def read(folder: Path, name: str) -> bytes:
+    """A program of the folder. Raises InputError for a name that a control does not take, or leads elsewhere."""
+    return read_bytes(folder / control_name(name))
+
+
+def preview(folder: Path, name: str) -> tuple[str, int]:
+    """The first lines of a program as text, and how many it has."""
+    lines = decoded(read(folder, name), name).splitlines()
+    return "\n".join(islice(lines, SHOWN)), len(lines)
+
+
+def _file(folder: Path, name: str) -> Path:
+    """The file of a program. Raises InputError for a name that the control or the writer refuses."""
+    stem = name.strip().upper().removesuffix(".MPF")
+    check_name(stem)
+    return folder / control_name(f"{stem}.MPF")

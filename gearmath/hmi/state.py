@@ -1,0 +1,70 @@
+"""What the server holds. Pages read it and ask for changes; none of them owns anything."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gearmath.hmi.alarm_book import AlarmBook
+from gearmath.hmi.desk import Desk
+from gearmath.hmi.judged_runs import JudgedRuns
+from gearmath.hmi.tickets import Tickets
+from gearmath.hmi.work import Work
+
+if TYPE_CHECKING:
+    from gearmath.hmi.link import ControlLink
+    from gearmath.hmi.measuring_task import MeasuringTask
+    from gearmath.hmi.simulated import SimulatedMachine
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Set, member, machine and probe that the operator works with; files, or names of bundled ones."""
+
+    gear_set: str = "nasa_tp3096_12x36.toml"
+    member: str = "pinion"
+    machine: str = "vertical_5axis.toml"
+    calibration: str = "probe.toml"
+
+
+@dataclass
+class Shared:
+    """The state of the server. ``store`` is the measurement store; sets and programs lie in its folder."""
+
+    store: Path
+    choice: Choice = field(default_factory=Choice)
+    works: dict[str, Work] = field(default_factory=lambda: defaultdict(Work))
+    """Long computations by name, such as ``programs.cut``."""
+    tickets: Tickets = field(default_factory=Tickets)
+    book: AlarmBook = field(default_factory=AlarmBook)
+    link: ControlLink | None = None
+    """The control; None where the page works without one."""
+    measuring: MeasuringTask | None = None
+    """The measuring run, where there is a control."""
+    simulated: SimulatedMachine | None = None
+    """The operator's side of the simulated control, where it is that."""
+    desk: Desk = field(init=False)
+    """What the pages of the gear side look at together."""
+
+    def __post_init__(self) -> None:
+        self.desk = Desk(JudgedRuns(self.store))
+
+    @property
+    def folder(self) -> Path:
+        """Where sets and programs are written."""
+        return self.store.absolute().parent
+
+    def choose(self, **changes: str) -> None:
+        """Change the choice: ``gear_set``, ``member``, ``machine``, ``calibration``."""
+        self.choice = replace(self.choice, **changes)
+
+    def close(self) -> None:
+        """End the run, which may be resumed, and give the sessions back."""
+        if self.measuring is not None:
+            self.measuring.stop()
+        if self.link is not None:
+            if self.simulated is not None:
+                self.link.submit(self.simulated.close())
+            self.link.close()

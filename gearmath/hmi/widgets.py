@@ -1,0 +1,253 @@
+"""What every page is made of. Nothing here computes; texts from elsewhere are shown as text, never as HTML."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from nicegui import ui
+
+from gearmath.errors import ComputationError, InputError
+from gearmath.hmi.messages import Text
+from gearmath.hmi.numbers import parsed
+from gearmath.hmi.state import Shared
+from gearmath.hmi.work import Work
+
+#: How often a page looks at the state of the server. [s]
+LOOK = 0.25
+#: Kinds of a message, each with its icon.
+_ICONS = {"info": "info", "good": "check_circle", "warning": "warning", "error": "error"}
+
+
+@contextmanager
+def panel(title: str, wide: bool = False) -> Iterator[ui.element]:
+    """A part of a page under its title; ``wide`` takes the whole width."""
+    with ui.element("section").classes("gm-panel gm-wide" if wide else "gm-panel") as section:
+        section.props["aria-label"] = title
+        heading(title)
+        yield section
+
+
+def heading(title: str) -> None:
+    """The title of a part."""
+    with ui.element("h2").classes("gm-heading"):
+        ui.label(title).classes("gm-inline")
+
+
+@contextmanager
+def fields() -> Iterator[ui.element]:
+    """Fields beside each other, as far as there is room."""
+    with ui.element("div").classes("gm-fields") as element:
+        yield element
+
+
+@contextmanager
+def row() -> Iterator[ui.element]:
+    """Things side by side, as far as there is room."""
+    with ui.element("div").classes("gm-row") as element:
+        yield element
+
+
+def note(words: str) -> ui.label:
+    """A sentence beside the matter."""
+    return ui.label(words).classes("gm-note")
+
+
+class Message:
+    """A sentence with a kind (info, good, warning, error); hidden while it is empty. Readers of the screen hear it."""
+
+    def __init__(self, words: str = "", kind: str = "info") -> None:
+        with ui.element("div").classes("gm-message").props('role="status" aria-live="polite"') as self._box:
+            self._icon = ui.icon(_ICONS[kind]).props('aria-hidden="true"')
+            self._label = ui.label(words)
+        self.show(words, kind)
+
+    def show(self, words: str, kind: str = "info") -> None:
+        """Say something else; an empty text hides the message."""
+        self._label.text = words
+        self._icon.name = _ICONS[kind]
+        self._box.classes(add=f"gm-{kind}", remove=" ".join(f"gm-{one}" for one in _ICONS if one != kind))
+        self._box.visible = bool(words)
+
+
+def fact(label: str, value: str = "", unit: str = "") -> ui.label:
+    """A name, its value and unit in a line of facts; returns the label of the value."""
+    with ui.element("div").classes("gm-fact"):
+        ui.label(label).classes("gm-name")
+        found = ui.label(value).classes("gm-value")
+        if unit:
+            ui.label(unit).classes("gm-unit")
+    return found
+
+
+class NumberField:
+    """A number with unit and limits. What is out of range stays as it was typed and is refused with the reason.
+
+    ``value`` is the accepted number, None while what stands in the field is refused. ``changed`` hears of each
+    accepted one, when the field is left or Enter is pressed.
+    """
+
+    def __init__(
+        self,
+        text: Text,
+        label: str,
+        value: float | None,
+        unit: str,
+        low: float,
+        high: float,
+        changed: Callable[[float], object] = lambda value: None,
+        digits: int = 6,
+    ) -> None:
+        self._text, self._unit, self._low, self._high = text, unit, low, high
+        self._changed, self._digits = changed, digits
+        typed = "" if value is None else f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
+        self.field = ui.input(label, value=typed, validation=self._refusal).classes("gm-number")
+        self.field.props('outlined dense hide-bottom-space inputmode="decimal" autocomplete="off"')
+        self.field.props["suffix"] = unit
+        self.field.props["hint"] = text("shell.range", low=f"{low:g}", high=f"{high:g}", unit=unit)
+        self.value, _ = self._parsed(typed)
+        self.field.on("change", lambda: self._leave())
+
+    def refuse(self, why: str) -> None:
+        """Show a reason that is known only when the whole is judged."""
+        self.value, self.field.error = None, why
+
+    def _parsed(self, typed: str | None) -> tuple[float | None, str | None]:
+        return parsed(self._text, typed or "", self._low, self._high, self._unit)
+
+    def _refusal(self, typed: str | None) -> str | None:
+        self.value, why = self._parsed(typed)
+        return why
+
+    def _leave(self) -> None:
+        if self.value is not None:
+            self._changed(self.value)
+
+
+def numbers(fields: Mapping[str, NumberField]) -> dict[str, float]:
+    """The values of fields by name. Raises InputError naming the first that is refused."""
+    found = {}
+    for name, one in fields.items():
+        if one.value is None:
+            one.field.validate()
+            raise InputError(f"{one.field.props['label']}: {one.field.error}")
+        found[name] = one.value
+    return found
+
+
+def word(label: str, value: str, hint: str) -> ui.input:
+    """A name or other short text."""
+    found = ui.input(label, value=value).classes("gm-number")
+    found.props('outlined dense hide-bottom-space autocomplete="off" maxlength="40"')
+    if hint:
+        found.props["hint"] = hint
+    return found
+
+
+def choice(label: str, options: Sequence[str] | dict[Any, str], value: Any, changed: Callable[[Any], object]) -> Any:
+    """One of several, by keyboard or touch."""
+    given = list(options) if not isinstance(options, dict) else options
+    found = ui.select(given, label=label, value=value, on_change=lambda event: changed(event.value))
+    return found.classes("gm-choice").props("outlined dense options-dense")
+
+
+def button(label: str, pressed: Callable[[], Any], icon: str = "", primary: bool = False) -> ui.button:
+    """A button whose refusals are shown as a sentence."""
+
+    def guarded() -> None:
+        try:
+            pressed()
+        except (InputError, ComputationError) as error:
+            say(str(error), "error")
+
+    found = ui.button(label, on_click=guarded, icon=icon or None, color=None)
+    return found.props("no-caps unelevated" if primary else "no-caps outline").classes(
+        "gm-button gm-primary" if primary else "gm-button"
+    )
+
+
+def say(words: str, kind: str = "info") -> None:
+    """A sentence that stays until it is closed where something failed, and goes by itself otherwise."""
+    types: dict[str, Any] = {"info": "info", "good": "positive", "warning": "warning", "error": "negative"}
+    stays = kind in ("warning", "error")
+    ui.notify(
+        words, type=types[kind], position="bottom", timeout=0 if stays else 4000, close_button="OK" if stays else False
+    )
+
+
+def ask(shared: Shared, text: Text, question: str, answered: Callable[[], Any]) -> None:
+    """Ask before something is written to the control. The answer counts once, and not after a minute."""
+    ticket = shared.tickets.draw()
+
+    def yes() -> None:
+        dialog.close()
+        if not shared.tickets.take(ticket):
+            say(text("shell.expired"), "warning")
+            return
+        answered()
+
+    with ui.dialog() as dialog, ui.card().classes("gm-dialog"):
+        ui.label(question).classes("gm-question")
+        with row():
+            button(text("shell.confirm"), yes, primary=True)
+            button(text("shell.cancel"), dialog.close)
+    dialog.on("hide", dialog.delete)
+    dialog.open()
+
+
+def table(columns: Sequence[tuple[str, str]], rows: Sequence[dict[str, Any]], key: str = "id") -> ui.table:
+    """Rows under columns (name and title, with the unit); numbers to the right. Set ``.rows`` to change it."""
+    number = {name for name, _ in columns if rows and isinstance(rows[0].get(name), int | float)}
+    heads = [
+        {"name": name, "label": title, "field": name, "align": "right" if name in number else "left"}
+        for name, title in columns
+    ]
+    found = ui.table(columns=heads, rows=list(rows), row_key=key, pagination={"rowsPerPage": 0})
+    return found.props('dense flat hide-pagination separator="horizontal"').classes("gm-table")
+
+
+def progress(text: Text, work: Work, ended: Callable[[], object] = lambda: None) -> None:
+    """The bar of a long computation, while it runs; ``ended`` is called when one has, and when the page is opened."""
+    with ui.element("div").classes("gm-progress") as box:
+        words = ui.label()
+        bar = ui.linear_progress(0.0, show_value=False).props("instant-feedback")
+        bar.props["aria-label"] = text("shell.running", what="", seconds="").strip(": s") or "progress"
+        stop = button(text("shell.cancel"), work.cancel)
+    failed = Message()
+    seen = [-1]
+
+    def look() -> None:
+        box.visible = work.running
+        if work.running:
+            failed.show("")
+            said = text("shell.running", what=work.name, seconds=f"{work.seconds:.0f}")
+            if work.remaining is not None:
+                said += f", {text('shell.remaining', seconds=f'{work.remaining:.0f}')}"
+            words.text = said
+            bar.props.update({"indeterminate": work.share is None})
+            bar.value = round(work.share or 0.0, 3)
+            stop.enabled = not work.progress.cancelled
+        elif seen[0] != work.count:
+            seen[0] = work.count
+            failed.show(work.error or "", "error")
+            ended()
+
+    look()
+    ui.timer(LOOK, look)
+
+
+def figure(content: dict[str, Any], label: str) -> ui.plotly:
+    """A plotly figure as a dict: needs WebGL where it is in space. ``label`` is for readers of the screen."""
+    found = ui.plotly(content).classes("gm-figure")
+    found.props["role"] = "figure"
+    found.props["aria-label"] = label
+    return found
+
+
+def picture(svg: str, label: str) -> ui.html:
+    """An SVG of our own making."""
+    found = ui.html(svg, sanitize=False).classes("gm-picture")
+    found.props["role"] = "img"
+    found.props["aria-label"] = label
+    return found

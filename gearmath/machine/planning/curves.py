@@ -1,0 +1,200 @@
+"""Polynomial blocks for a pass: as few as the flank allows, and as fast as the axes can follow.
+
+Each block has positions and slopes of the exact path at its ends, a quintic one bends too: derivatives by the cradle
+angle of the composition of moved settings and axis transform, as CasADi makes them. What a block leaves on the flank is
+judged as in :mod:`gearmath.machine.planning.blocks`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cache
+
+import casadi as ca
+import numpy as np
+
+from derivations import Quantity, notation
+from gearmath.bevel.method import motion_of
+from gearmath.engine.kernel import Kernel
+from gearmath.errors import InputError
+from gearmath.kernels import kernel
+from gearmath.machine.planning.blocks import ExactPass, fewest_nodes, on_one_machine
+from gearmath.machine.planning.feeds import SHORTEST, check_feed
+from gearmath.machine.planning.path import Cut, axis_positions, roll_range
+from gearmath.specs.bevel_set import Flank, Member
+from gearmath.specs.milling_machine import MillingMachine
+
+CUBIC, QUINTIC = 3, 5
+#: Radius at which F counts A and B, so that a degree is a mm: FGREF of a new control. [mm]
+FEED_RADIUS = 180.0 / math.pi
+_AXES = 5
+#: No block rolls further. [rad]
+_LONGEST = math.radians(40.0)
+#: Positions between the ends of a block, so that A is counted on over less than half a turn.
+_STEPS = 8
+#: Where a block is asked for speed, acceleration and jerk.
+_SAMPLES = np.linspace(0.0, 1.0, 65)
+#: What lies between may be more by this part.
+_BETWEEN_SAMPLES = 1.002
+
+
+def degree_for(machine: MillingMachine) -> int:
+    """Of the blocks that the control takes. Raises InputError naming key, value and limit where it takes none."""
+    values = machine.control.polynomial_values
+    if values < CUBIC * _AXES:
+        raise InputError(
+            f"control.polynomial_values = {values} of {machine.name}: cubic blocks of five axes have {CUBIC * _AXES} "
+            "values, write straight ones"
+        )
+    return QUINTIC if values >= QUINTIC * _AXES else CUBIC
+
+
+@cache
+def axes_by_roll() -> Kernel:
+    """Kernel: first and second derivatives of the axis positions by the cradle rotation, moving settings included."""
+    moved, transform = kernel("moved_settings"), kernel("axis_transform")
+    settings, motion, theta = (ca.SX.sym(q.name, *q.shape) for q in moved.inputs)
+    pivot = [ca.SX.sym(q.name, *q.shape) for q in transform.inputs[2:]]
+    axes = transform.function(moved.function(settings, motion, theta), theta, *pivot)
+    slopes = ca.jacobian(axes, theta)
+    names = [q.name for q in (*moved.inputs, *transform.inputs[2:])]
+    function = ca.Function(
+        "axes_by_roll",
+        [settings, motion, theta, *pivot],
+        [slopes, ca.jacobian(slopes, theta)],
+        names,
+        ["axis_slopes", "axis_bends"],
+    )
+    bends = Quantity(
+        "axis_bends", "second derivatives of the axis positions", "mixed", r"\ddot{\mathbf{a}}", shape=(5,)
+    )
+    return Kernel(
+        function,
+        "How the axes move with the cradle.",
+        (*moved.inputs, *transform.inputs[2:]),
+        (notation.axis_slopes, bends),
+        "derivatives of axis_transform (5.1-5.3) with moved_settings (10.1)",
+    )
+
+
+@dataclass(frozen=True)
+class CurvedPass(ExactPass):
+    """The exact path of a pass, followed by cubic blocks."""
+
+    def block(self, start: float, end: float) -> np.ndarray:
+        """Coefficients (degree + 1, 5) of the powers of the fraction."""
+        pose = (self.pivot_height, self.pivot_offset)
+        (powers,) = powers_of(self.flank, np.array([start, end]), *pose, self.degree)
+        return powers
+
+    @property
+    def degree(self) -> int:
+        return CUBIC
+
+    def along(self, block: np.ndarray, fractions: np.ndarray) -> np.ndarray:
+        return fractions[:, None] ** np.arange(len(block)) @ block
+
+
+@dataclass(frozen=True)
+class QuinticPass(CurvedPass):
+    """The same by quintic blocks."""
+
+    @property
+    def degree(self) -> int:
+        return QUINTIC
+
+
+def powers_of(flank: Flank, nodes: np.ndarray, pivot_height: float, pivot: np.ndarray, degree: int) -> np.ndarray:
+    """Coefficients (n-1, degree + 1, 5) of the powers 0 .. of the fraction of each block between nodes (n,) [rad]."""
+    dense = np.interp(np.arange(_STEPS * (len(nodes) - 1) + 1) / _STEPS, np.arange(len(nodes)), nodes)
+    axes = axis_positions(flank, dense, pivot_height, pivot)[::_STEPS]
+    slopes, bends = axes_by_roll()(flank.vector, motion_of(flank), nodes, pivot_height, pivot)
+    width = np.diff(nodes)[:, None]
+    given = [axes[:-1], axes[1:], slopes[:-1] * width, slopes[1:] * width]
+    if degree == QUINTIC:
+        given += [bends[:-1] * width**2, bends[1:] * width**2]
+    name = "quintic_block" if degree == QUINTIC else "cubic_block"
+    (found,) = kernel(name)(*(values.ravel() for values in given), 1.0)
+    higher = found.reshape(len(width), _AXES, degree - 1).transpose(0, 2, 1)
+    first = axes[1:] - axes[:-1] - higher.sum(axis=1)
+    return np.concatenate([axes[:-1, None], first[:, None], higher], axis=1)
+
+
+def curve_nodes(
+    member: Member, cut: Cut, tolerance: float, machine: MillingMachine, rounding: float, degree: int
+) -> np.ndarray:
+    """Cradle rotations (n,) [rad] of the ends of the fewest polynomial blocks, as ``roll_nodes`` has straight ones."""
+    member = on_one_machine(member, cut)
+    kind = QuinticPass if degree == QUINTIC else CurvedPass
+    exact = kind.of(member, cut, machine.pivot_height, machine.pivot)
+    return fewest_nodes(exact, roll_range(member, cut), tolerance, rounding, _LONGEST)
+
+
+@cache
+def rates_along_block(degree: int) -> Kernel:
+    """Kernel: what the axes and the tooth do at one fraction of a block, at unit speed of the path (28.4)."""
+    names = [f"axes_{power}" for power in range(degree + 1)]
+    powers = tuple(
+        Quantity(name, "coefficients of a power of the fraction", "mixed", name, shape=(5,)) for name in names
+    )
+    fraction = Quantity("fraction", "0 at the start of the block, 1 at its end", "1", "s", (0.0, 1.0))
+    tooth, *pivot = kernel("seen_from_tool").inputs[1:]
+    inputs = (*powers, fraction, tooth, *pivot)
+    symbols = [ca.SX.sym(q.name, max(q.size, 1)) for q in inputs]
+    coefficients, s, given = symbols[: degree + 1], symbols[degree + 1], symbols[degree + 2 :]
+    axes = coefficients[-1]
+    for coefficient in reversed(coefficients[:-1]):
+        axes = coefficient + s * axes
+    rate = kernel("path_rate").function(ca.jacobian(axes, s), FEED_RADIUS, FEED_RADIUS)
+    speed = ca.jacobian(axes, s) / rate
+    acceleration = ca.jacobian(speed, s) / rate
+    jerk = ca.jacobian(acceleration, s) / rate
+    seen = kernel("seen_from_tool").function(axes, *given)
+    passing = ca.norm_2(ca.jacobian(seen, s)) / rate
+    outputs = tuple(
+        Quantity(name, text, "mixed", name, shape=(5,))
+        for name, text in (
+            ("axis_speed", "speeds of the axes at unit speed of the path"),
+            ("axis_acceleration", "their accelerations, at the square of it"),
+            ("axis_jerk", "their jerks, at the cube of it"),
+        )
+    )
+    passed = Quantity("passing", "speed past the tooth at unit speed of the path", "1", r"v_t")
+    function = ca.Function(
+        f"rates_along_block_of_degree_{degree}",
+        symbols,
+        [ca.cse(value) for value in (speed, acceleration, jerk, passing, rate)],
+        [q.name for q in inputs],
+        [*(q.name for q in outputs), passed.name, notation.path_rate.name],
+    )
+    return Kernel(
+        function,
+        "Speed, acceleration and jerk of the axes along a polynomial block.",
+        inputs,
+        (*outputs, passed, notation.path_rate),
+        "derivatives along the path (28.4) of a block, and of seen_from_tool (5.6)",
+    )
+
+
+def curve_seconds(powers: np.ndarray, machine: MillingMachine, feed_mm_min: float, tooth: np.ndarray) -> np.ndarray:
+    """Duration (n,) [s] of blocks (n, degree + 1, 5): each at the constant speed of the path that everything allows.
+
+    That is ``feed_mm_min`` past the ``tooth`` (3,), or less where an axis reaches its highest speed, acceleration or
+    jerk. How fast the control gets up to it is its own affair. Raises InputError for a feed that is not positive.
+    """
+    check_feed(feed_mm_min)
+    count, many = len(powers), len(_SAMPLES)
+    coefficients = [np.repeat(powers[:, k], many, axis=0) for k in range(powers.shape[1])]
+    pose = (tooth, machine.pivot_height, machine.pivot)
+    *rates, passing, rate = rates_along_block(powers.shape[1] - 1)(*coefficients, np.tile(_SAMPLES, count), *pose)
+    fastest = feed_mm_min / 60.0 / np.maximum(passing, 1e-12)
+    for values, limit, power in zip(
+        rates, (machine.max_speed, machine.max_acceleration, machine.max_jerk), (1, 2, 3), strict=True
+    ):
+        with np.errstate(divide="ignore"):
+            bound = (limit / np.abs(values)).min(axis=1)
+        fastest = np.minimum(fastest, bound ** (1.0 / power))
+    speed = fastest.reshape(count, many).min(axis=1) / _BETWEEN_SAMPLES
+    length = np.trapezoid(rate.reshape(count, many), _SAMPLES, axis=1)
+    return np.maximum(length / speed, SHORTEST)

@@ -1,0 +1,149 @@
+"""``gearmath gearbox cut``: figures, classes and what is to blame, as text, JSON, chart and points; refusals."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gearmath.cli import main
+from gearmath.specs.toml import bundled
+
+ERRORS = """
+[errors]
+worm = [{ amplitude_arcsec = 90.0 }]
+blank_eccentricity_um = 8.0
+"""
+
+
+def gearmath(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
+    status = 0
+    try:
+        main(arguments)
+    except SystemExit as stop:
+        status = int(stop.code or 0)
+    said = capsys.readouterr()
+    return status, said.out, said.err
+
+
+def with_errors(folder: Path, text: str = ERRORS) -> Path:
+    path = folder / "machine.toml"
+    path.write_text(bundled("hobbing_metric.toml").read_text("utf-8") + text, "utf-8")
+    return path
+
+
+def test_cut_prints_figures_with_classes_and_names_the_largest_source(capsys, tmp_path):
+    path = with_errors(tmp_path)
+    status, out, err = gearmath(capsys, "gearbox", "cut", str(path), "--teeth", "24", "--hob", "m1", "--width", "8")
+    assert (status, err) == (0, "")
+    assert "module 1 mm" in out
+    assert "assumed: the file has no diameter" in out
+    assert "[unconfirmed]" in out
+    lines = out[out.index("to blame") :].splitlines()
+    assert lines[2].startswith("worm, once a turn of it")
+    assert "change first: the worm" in out
+
+
+def test_cut_in_json_has_every_figure_in_um_with_its_class_and_both_rules(capsys):
+    arguments = (
+        "--teeth",
+        "12",
+        "--hob",
+        "m1",
+        "--shift",
+        "0.4",
+        "--width",
+        "5",
+        "--seconds",
+        "3600",
+        "--compare",
+        "float",
+    )
+    status, out, _ = gearmath(capsys, "gearbox", "cut", "hobbing_helical.toml", *arguments, "--json")
+    found = json.loads(out)
+    assert status == 0
+    assert [gear["rule"] for gear in found["gears"]] == ["exact", "float"]
+    exact, floating = ({row["figure"]: row for row in gear["figures"]} for gear in found["gears"])
+    assert list(exact) == ["f_pt", "F_p", "F_r", "f_H_alpha", "f_f_alpha", "F_alpha", "f_H_beta", "f_f_beta", "F_beta"]
+    assert floating["F_p"]["value_um"] > 2 * exact["F_p"]["value_um"]
+    for row in exact.values():
+        assert abs(row["value_um"]) <= row["tolerance_um"]
+    assert found["gears"][0]["accuracy_class"] == max(row["accuracy_class"] for row in exact.values())
+    shares = np.array(
+        [[one[f"{kind}_percent"] for kind in ("profile", "helix", "pitch")] for one in found["contributions"]]
+    )
+    assert shares.sum(axis=0) == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "html"])
+def test_cut_draws_the_chart_of_an_inspection(capsys, tmp_path, suffix):
+    chart = tmp_path / f"chart.{suffix}"
+    arguments = ("--teeth", "20", "--hob", "m1", "--width", "5", "--feed", "1", "--plot", str(chart))
+    status, out, _ = gearmath(capsys, "gearbox", "cut", "hobbing_default.toml", *arguments)
+    assert status == 0
+    assert f"chart: {chart}" in out
+    content = chart.read_bytes()
+    if suffix == "png":
+        assert content.startswith(b"\x89PNG")
+    else:
+        for words in (b"profile, left flank", b"helix, right flank", b"pitch, left flank", b"runout"):
+            assert words in content
+
+
+def test_cut_writes_points_that_lie_on_the_involute(capsys, tmp_path):
+    """Of a spur gear of 24 teeth, m 1: the distance of each normal from the axis is the base radius 12 cos 20°."""
+    path = tmp_path / "points.csv"
+    arguments = ("--teeth", "24", "--hob", "m1", "--width", "5", "--feed", "1", "--csv", str(path))
+    assert gearmath(capsys, "gearbox", "cut", "hobbing_default.toml", *arguments)[0] == 0
+    rows = list(csv.DictReader(line for line in path.read_text("utf-8").splitlines() if not line.startswith("#")))
+    assert {(row["trace"], row["flank"], row["tooth"]) for row in rows} >= {
+        ("profile", "left", "6"),
+        ("helix", "right", "18"),
+    }
+    for row in rows[::50]:
+        x, y, nx, ny = (float(row[key]) for key in ("x", "y", "nx", "ny"))
+        assert abs(x * ny - y * nx) == pytest.approx(12 * np.cos(np.radians(20)), abs=1e-5)
+        assert x * nx + y * ny == pytest.approx(float(row["roll_length"]), abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("hobbing_default.toml",), "give --teeth"),
+        (("hobbing_default.toml", "--teeth", "24", "--feed", "nan"), "--feed = nan"),
+        (("hobbing_default.toml", "--teeth", "24", "--hob", "m7"), "hob = 'm7'"),
+        (("hobbing_default.toml", "--teeth", "24", "--hand", "left"), "--hand has no meaning without --helix"),
+        (("hobbing_default.toml", "--teeth", "24", "--plot", "chart.pdf"), "must end in .png, .svg or .html"),
+        (("hobbing_default.toml", "--teeth", "24", "--rpm", "9000"), "rpm = 9000"),
+        (
+            ("hobbing_helical.toml", "--teeth", "24", "--helix", "20", "--rule", "float", "--hob", "m1"),
+            "the floating rule of the source text knows no encoder on the feed",
+        ),
+    ],
+)
+def test_what_cannot_be_cut_is_refused_in_one_sentence(capsys, arguments, words):
+    status, out, err = gearmath(capsys, "gearbox", "cut", *arguments)
+    assert (status, out) == (2, "")
+    assert words in err
+    assert len(err.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("section", "words"),
+    [
+        ("[errors]\nworm = [{ amplitude_arcsec = -1.0 }]\n", ("machine.toml", "amplitude_arcsec", "-1")),
+        ("[errors]\nwrom = []\n", ("machine.toml", "wrom")),
+        ("[errors]\nhob_starts_um = [0.0, 5.0]\n", ("hob_starts_um has 2 values", "1 start")),
+        ("[errors]\nblank_eccentricity_um = nan\n", ("machine.toml", "blank_eccentricity_um")),
+    ],
+)
+def test_errors_that_cannot_be_are_refused_by_file_and_key(capsys, tmp_path, section, words):
+    path = with_errors(tmp_path, "\n" + section)
+    status, _, err = gearmath(capsys, "gearbox", "cut", str(path), "--teeth", "24", "--hob", "m1")
+    assert status == 2
+    assert len(err.strip().splitlines()) == 1
+    for word in words:
+        assert word in err

@@ -1,0 +1,56 @@
+"""The time that the model says a roll takes, and the time that LinuxCNC's own controller takes for it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from gearmath.machine.judging.look_ahead import RoundedCorners
+from gearmath.machine.judging.parabolic import follow_parabolic
+from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
+from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.milling_machine import UNITS_PER_INTERNAL, load_milling_machine
+from gearmath.specs.toml import bundled
+
+if TYPE_CHECKING:
+    from conftest import Start
+
+#: Feed at the tooth [mm/min] and the tolerance of G64 [mm], 0 for G61, as rolls one behind the other.
+ROLLS = ((3000.0, 1e-4), (3000.0, 1e-3), (3000.0, 0.0), (1000.0, 5e-3))
+
+
+@pytest.mark.slow
+def test_the_model_takes_as_long_for_a_roll_as_linuxcnc_does(live: Start) -> None:
+    machine, bevel_set = (
+        load_milling_machine(bundled("vertical_5axis.toml")),
+        load_bevel_set(bundled("nasa_tp3096_12x36.toml")),
+    )
+    lines = ["G21 G90 G17 G40 G94 F100", "G61"]
+    expected, first = [], []
+    for feed, tolerance in ROLLS:
+        roll = cutting_plan(bevel_set, "pinion", machine, CuttingJob((0,), 1e-4, feed)).passes[0]
+        at = roll.axes * UNITS_PER_INTERNAL
+        words = [" ".join(f"{axis}{value:.6f}" for axis, value in zip("XYZAB", row, strict=True)) for row in at]
+        lines += ["G61", f"G0 {words[0]}", f"G64 P{tolerance:.6f}" if tolerance else "G61", "G93"]
+        first.append(len(lines) + 1)
+        lines += [f"G1 {word} F{60.0 / seconds:.6f}" for word, seconds in zip(words[1:], roll.seconds, strict=True)]
+        lines += ["G94 F100"]
+        run = follow_parabolic(roll.axes, roll.seconds, machine.limits(5), RoundedCorners(tolerance, tolerance))
+        expected.append((float(run.seconds.sum()), float(run.rounded.max())))
+    control = live("ROLLS", "\n".join([*lines, "M2"]) + "\n", machine, {})
+    control.start()
+    ended = control.wait("ended", 120)
+    control.leave()
+    assert ended["heard"] == []
+    rows = np.loadtxt(control.folder / "samples.txt")
+    taken = []
+    for begin, end in pairwise([*first, len(lines) + 1]):
+        here = np.isin(rows[:, 6].astype(int), range(begin, end - 4 if end <= len(lines) else end))
+        moving = np.append(False, np.abs(np.diff(rows[:, 1:6], axis=0)).any(axis=1)) & here
+        taken.append(1e-3 * np.ptp(np.flatnonzero(moving)))
+    print(list(zip(ROLLS, taken, expected, strict=True)))
+    for (seconds, _), measured in zip(expected, taken, strict=True):
+        assert seconds == pytest.approx(measured, rel=0.05)

@@ -1,0 +1,51 @@
+"""What a run of a calibration program begins with, and what becomes of its touches in the store."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from gearmath.control.interface import Touch
+from gearmath.control.run_start import begun
+from gearmath.control.store import MeasurementStore
+from gearmath.control.store_touches import touch_csv
+
+
+@pytest.mark.parametrize(("cycle", "touches"), [("tip", 35), ("axes", 81)])
+def test_calibration_run_is_planned_kept_and_calibrates_as_the_file_of_the_control(
+    command, tmp_path: Path, cycle: str, touches: int
+) -> None:
+    """A calibration program refuses a run in which it touches nothing: it is planned with the artefacts on the machine.
+
+    The touches are those of a machine and a probe with errors, and the numbers are those that 'nc calibrate' says.
+    """
+    program, raw, kept = tmp_path / "CAL.MPF", tmp_path / "raw.csv", tmp_path / "kept.csv"
+    status, out, _ = command("nc", "calibrate", "--cycle", cycle, "-o", program)
+    assert status == 0
+    assert f"{touches} touches" in out
+    assert command("probe", program, "--errors", "simulated_shop.toml", "-o", raw)[0] == 0
+    rows = [line.split(",") for line in raw.read_text("utf-8").splitlines() if line[:1].isdigit()]
+    start, parts = begun("control", program, None, "vertical_5axis.toml", "probe.toml")
+    assert parts == (0, 0)
+    assert start.points == {int(row[1]): (row[2],) for row in rows}
+    with MeasurementStore.open(tmp_path / "runs.db") as store:
+        run = store.begin_run(start)
+        for row in rows:
+            run.commit_touch(int(row[1]), Touch(1, *map(float, row[3:9])))
+        kept.write_text(touch_csv(run), "utf-8")
+    said = []
+    for one in (raw, kept):
+        status, out, err = command("calibrate", one, "-o", tmp_path / "found.toml")
+        assert status == 0, err
+        said.append((out, (tmp_path / "found.toml").read_text("utf-8")))
+    assert said[0] == said[1]
+
+
+def test_points_of_a_calibration_are_made_by_the_sections_that_hold_them(command, tmp_path: Path) -> None:
+    """Nine touches of the sphere on the work side at each position of the axes: points 12 to 17 are of the second."""
+    program = tmp_path / "AXES.MPF"
+    assert command("nc", "calibrate", "--cycle", "axes", "-o", program)[0] == 0
+    start, parts = begun("control", program, None, "vertical_5axis.toml", "probe.toml", points="12-17")
+    assert parts == (2, 2)
+    assert list(start.points) == list(range(10, 19))

@@ -1,0 +1,240 @@
+"""The drive train in the cut: steps as the compiled rule gives them, and injected errors in their traces."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from gearmath.export.host import run_axes
+from gearmath.gearbox.helix import Helix
+from gearmath.gearbox.hobbed.drive import DriveTrain, rounding
+from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.inspection import inspect
+from gearmath.gearbox.hobbed.job import TURN
+from gearmath.gearbox.hobbed.setup import CutSetup, setup
+from gearmath.gearbox.simulation import FloatRule
+from gearmath.specs.cutting_errors import CuttingErrors
+from gearmath.specs.hobbing import HobbingMachine, find_hobbing_machine
+
+UM = 1e-3
+
+
+def machine(name: str = "hobbing_helical.toml", gashes: int = 12, **errors: object) -> HobbingMachine:
+    found = find_hobbing_machine(name)
+    hobs = tuple(hob.model_copy(update={"gashes": gashes}) for hob in found.hobs)
+    return found.model_copy(update={"hobs": hobs, "errors": CuttingErrors.model_validate(errors)})
+
+
+def fine(**errors: object) -> CutSetup:
+    """Of 24 teeth: so many gashes and so little feed that ridges do not matter."""
+    return setup(machine(gashes=40, **errors), 24, hob="m1", feed=0.2, rule="ideal")
+
+
+def normal_step(train: DriveTrain) -> float:
+    """A motor step along the normal of the flank [mm]."""
+    return train.step * train.job.base_radius * math.cos(train.job.base_helix)
+
+
+@pytest.mark.parametrize(
+    ("teeth", "starts", "helix"),
+    [(24, 1, None), (7, 1, None), (31, 2, None), (30, 1, 20.0), (97, 3, 12.0), (6, 1, None)],
+)
+def test_steps_are_those_of_the_compiled_rule_at_every_edge(teeth, starts, helix):
+    """20 000 edges of hob and feed, as the interrupt counts them."""
+    prepared = setup(machine(), teeth, hob="m1", starts=starts, helix=None if helix is None else Helix(helix))
+    ratio = prepared.train.ratio
+    axes = np.zeros(20_000, np.int8)
+    edges = np.ones(20_000, np.int8)
+    if helix is not None:
+        axes[6::7] = 1
+        edges[6::7] = -1
+    steps, _ = run_axes(axes, edges, ratio.base, ratio.increment, ratio.denominator, ratio.first_remainder)
+    hob, feed = (np.cumsum(np.where(axes == axis, edges, 0)) for axis in (0, 1))
+    exact = [
+        (int(p) * ratio.denominator - ratio.numerators[0] * int(e) - ratio.numerators[1] * int(f)) / ratio.denominator
+        for p, e, f in zip(np.cumsum(steps, dtype=np.int64)[::13], hob[::13], feed[::13], strict=True)
+    ]
+    np.testing.assert_allclose(rounding(ratio, hob[::13], feed[::13]), exact, rtol=0, atol=1e-12)
+    assert np.abs(rounding(ratio, hob, feed)).max() <= 0.5
+
+
+@pytest.mark.parametrize("teeth", [6, 17, 24, 60, 127])
+def test_steps_change_a_flank_by_half_of_one_and_a_count_at_most(teeth):
+    prepared = setup(machine(gashes=12), teeth, hob="m1", feed=0.3, shift=0.5 if teeth < 18 else 0.0)
+    train, where = prepared.train, prepared.where
+    spaces, lengths = np.arange(60) % teeth, np.linspace(where.profile[0], where.profile[-1], 60)
+    heights = np.linspace(2.0, 8.0, 60)
+    for side in (1, -1):
+        with_steps = Cut(train.job, train).deviation(side, spaces, lengths, heights)
+        without = Cut(train.job).deviation(side, spaces, lengths, heights)
+        count = float(train.ratio.numerators[0]) / train.ratio.denominator
+        assert np.abs(with_steps - without).max() <= (0.5 + count) * normal_step(train) + 1e-9
+
+
+def test_every_tooth_is_off_by_the_remainder_of_the_compiled_rule():
+    """In the middle of a flat, tooth by tooth: what the steps add is the remainder that the kernel has kept there."""
+    prepared = setup(machine(gashes=4), 24, hob="m1", feed=2.0)
+    train, job = prepared.train, prepared.job
+    ratio, per_turn = train.ratio, int(train.machine.encoder_counts)
+    # four gashes leave flats so high that no step lets another one win in the middle
+    lengths = np.linspace(prepared.where.profile[0], prepared.where.profile[-1], 20_001)
+    height, _, tau, thread = job.contact(1, lengths)
+    for space in range(24):
+        ridge = space + 24 * 14
+        gashes = np.rint(4 * (ridge - thread / TURN))
+        near = np.abs(4 * (ridge - thread / TURN) - gashes)
+        at = int(near[4000:16000].argmin()) + 4000
+        psi = TURN * gashes[at] / 4 + tau[at]
+        on_gear = float(job.hob_height(np.array([psi]))[0] + height[at])
+        point = (np.array([space]), lengths[at : at + 1], np.array([on_gear]))
+        added = Cut(job, train).deviation(1, *point) - Cut(job).deviation(1, *point)
+        real = psi / TURN * per_turn
+        edges = math.floor(real)
+        _, left = run_axes(
+            np.zeros(edges, np.int8),
+            np.ones(edges, np.int8),
+            ratio.base,
+            ratio.increment,
+            ratio.denominator,
+            ratio.first_remainder,
+        )
+        off = (ratio.first_remainder - left) / ratio.denominator + ratio.numerators[0] / ratio.denominator * (
+            edges - real
+        )
+        assert added[0] == pytest.approx(-off * normal_step(train), abs=0.01 * UM)
+
+
+def test_floating_rule_delivers_after_any_count_what_it_does_edge_by_edge():
+    for start in (0, 2**24 - 700, 147_000_000):
+        rule = FloatRule(16000, 6 * 4096, start)
+        delivered = rule.delivered + np.cumsum(rule(np.ones(3000, np.int8)), dtype=np.int64)
+        closed = FloatRule(16000, 6 * 4096).positions(start + np.arange(1, 3001))
+        np.testing.assert_array_equal(closed[200:], delivered[200:])
+
+
+def test_floating_rule_after_an_hour_moves_the_flank_by_the_known_steps():
+    """6 teeth at 600 rpm: 1.03 steps off after ten minutes, 10.4 after an hour; on the flank so many times a step."""
+    base = setup(machine(), 6, hob="m1", shift=0.5, rpm=600.0, feed=0.2, rule="float")
+    spaces, lengths, heights = np.arange(120) % 6, np.full(120, base.where.middle), np.linspace(2.0, 9.0, 120)
+    before = Cut(base.job).deviation(-1, spaces, lengths, heights)
+    for seconds, known in ((600, 1.03), (3600, 10.4)):
+        train = replace(base.train, seconds=seconds)
+        counts = np.concatenate([10 * seconds * 4096 - 1_500_000 * k - np.arange(50_000) for k in range(16)])
+        off = FloatRule(16000, 6 * 4096).positions(counts) - counts * (16000 / (6 * 4096))
+        assert np.abs(off).max() == pytest.approx(known, abs=0.06)
+        anywhere = np.random.default_rng(600).uniform(0.0, base.job.hob_turns * TURN, 400_000)
+        worst = np.abs(train.step_error(anywhere)).max()
+        moved = (Cut(base.job, train).deviation(-1, spaces, lengths, heights) - before) / normal_step(train)
+        assert -worst <= moved.min() < -0.75 * worst
+
+
+def sine(places: np.ndarray, values: np.ndarray, period: float) -> float:
+    """Amplitude of the sine of this period in values, beside a straight line."""
+    turn = TURN * places / period
+    terms = np.column_stack([np.sin(turn), np.cos(turn), places, np.ones_like(places)])
+    fit = np.linalg.lstsq(terms, values, rcond=None)[0]
+    return float(np.hypot(fit[0], fit[1]))
+
+
+ARCSEC = math.pi / 648_000
+
+
+def test_worm_and_wheel_come_back_in_the_pitch_with_their_orders_alone_and_together():
+    """Worm 10:1: ten times a turn of the table; the wheel once. Amplitudes within 2 %, superposed within 2 %."""
+    worm, wheel = {"amplitude_arcsec": 40.0, "phase": 20.0}, {"amplitude_arcsec": 60.0}
+    per_arcsec = ARCSEC * 12.0
+    for errors, tens, ones in (
+        ({"worm": [worm]}, 40.0, 0.0),
+        ({"wheel": [wheel]}, 0.0, 60.0),
+        ({"worm": [worm], "wheel": [wheel]}, 40.0, 60.0),
+    ):
+        prepared = fine(**errors)
+        for row in inspect(Cut(prepared.job, prepared.train), prepared.where).pitches:
+            spectrum = np.abs(np.fft.rfft(row.position)) / 12
+            assert spectrum[10] / per_arcsec == pytest.approx(tens, rel=0.02, abs=0.02 * ones)
+            assert spectrum[1] / per_arcsec == pytest.approx(ones, rel=0.02, abs=0.02 * tens)
+
+
+def test_eccentric_hob_comes_back_in_the_profile_once_a_turn_of_the_hob():
+    """e sin α along the normal, over a base pitch of length of roll; so small that no other gash cuts it off."""
+    prepared = fine(hob_eccentricity_um=2.0)
+    for trace in inspect(Cut(prepared.job, prepared.train), prepared.where).profiles:
+        period = math.pi * math.cos(math.radians(20))
+        assert sine(trace.place, trace.deviation, period) == pytest.approx(0.002 * math.sin(math.radians(20)), rel=0.02)
+
+
+def test_eccentric_blank_comes_back_in_the_runout_once_a_turn_of_the_table():
+    prepared = fine(blank_eccentricity_um=25.0)
+    found = inspect(Cut(prepared.job, prepared.train), prepared.where)
+    assert np.abs(np.fft.rfft(found.ball))[1] / 12 == pytest.approx(0.025, rel=0.02)
+    assert found.runout == pytest.approx(0.05, rel=0.02)
+
+
+def test_tilted_blank_comes_back_as_a_slope_of_the_helix_once_a_turn_of_the_table():
+    """t along the radius: across the flank t cos(angle) cos α."""
+    prepared = fine(blank_tilt_um_per_100mm=100.0)
+    job = prepared.job
+    spaces = np.arange(24)
+    low, high = (
+        Cut(job, prepared.train).deviation(1, spaces, np.full(24, prepared.where.middle), np.full(24, z))
+        for z in (2, 8)
+    )
+    assert np.abs(np.fft.rfft(high - low))[1] / 12 == pytest.approx(6e-3, rel=0.02)
+
+
+def test_screw_of_the_feed_comes_back_in_the_helix_once_a_turn_of_the_screw():
+    """A helical gear whose feed has no encoder: Δz sin β_b along the normal, where the hob is not too large for it."""
+    bare = machine("hobbing_default.toml", 40, feed=[{"amplitude_um": 2.0}], feed_screw_pitch=3.0)
+    prepared = setup(bare, 24, hob="m1", feed=0.2, rule="ideal", helix=Helix(20.0, feed=Fraction("0.2")))
+    for trace in inspect(Cut(prepared.job, prepared.train), prepared.where).helices:
+        amplitude = 0.002 * math.sin(prepared.job.base_helix)
+        assert sine(trace.place, trace.deviation, 3.0) == pytest.approx(amplitude, rel=0.02)
+
+
+def test_encoder_on_the_feed_sees_its_screw_and_corrects_it():
+    """The same screw: with the scale of the helical machine nothing is left but steps and counts."""
+    good = machine(gashes=40, feed=[{"amplitude_um": 30.0}], feed_screw_pitch=3.0)
+    prepared = setup(good, 24, hob="m1", feed=0.2, helix=Helix(20.0))
+    heights, middle = np.linspace(1.0, 9.0, 120), np.full(120, prepared.where.middle)
+    found = Cut(prepared.job, prepared.train).deviation(1, np.zeros(120, int), middle, heights)
+    assert sine(heights, found, 3.0) < 0.05 * 0.03 * math.sin(prepared.job.base_helix)
+
+
+def test_wrong_spacing_of_two_starts_alternates_on_even_gears_and_hunts_on_odd_ones():
+    """10 um along the hob: on 24 teeth every other tooth is off by that; on 25 both threads cut every space alike."""
+    two = machine(gashes=40, hob_starts_um=[0.0, 10.0])
+    for teeth in (24, 25):
+        job = (prepared := setup(two, teeth, hob="m1", starts=2, feed=0.2, rule="ideal")).job
+        point = (np.arange(teeth), np.array([prepared.where.middle]), np.array([5.0]))
+        right, left = (Cut(job, prepared.train).deviation(side, *point) for side in (1, -1))
+        if teeth == 24:
+            alternating = np.array([1.0, -1.0] * 12)
+            for found in (right, left):
+                off = 0.010 * math.cos(prepared.job.lead_angle) * math.cos(math.radians(20))
+                assert abs(found @ alternating) / 12 == pytest.approx(off, rel=0.02)
+        else:  # both flanks lose what the farther thread takes: one of them 10 um, but for feed marks of double feed
+            assert max(np.ptp(right), np.ptp(left)) < 0.5 * UM
+            assert (right + left).mean() == pytest.approx(-0.010 * math.cos(math.radians(20)), abs=0.5 * UM)
+
+
+def test_play_that_the_cut_takes_up_leaves_teeth_thicker_by_it():
+    bare = machine(gashes=40, backlash_taken_by_cut=True)
+    table = bare.table.model_copy(update={"backlash": 0.02})
+    prepared = setup(bare.model_copy(update={"table": table}), 24, hob="m1", feed=0.2, rule="ideal")
+    found = inspect(Cut(prepared.job, prepared.train), prepared.where)
+    play = math.radians(0.02) * prepared.job.base_radius
+    assert found.thicknesses[0].mean - found.thicknesses[0].nominal == pytest.approx(play, rel=0.02)
+    assert all(row.worst < 0.05 * UM for row in found.pitches)
+
+
+def test_motor_that_lags_follows_the_ripple_of_the_hob():
+    """T r w steps: the lag of a first order behind a speed that swings by r, less the constant lag."""
+    slow = machine(motor_time_constant_ms=2.0, speed_ripple=[{"amplitude_percent": 10.0}])
+    train = setup(slow, 24, hob="m1", rpm=120.0).train
+    psi = np.linspace(0, 4 * TURN, 40_000)
+    rate = 120 / 60 * 16000 / 24
+    assert sine(psi, train.motor_error(psi), TURN) == pytest.approx(0.002 * 0.1 * rate, rel=0.05)

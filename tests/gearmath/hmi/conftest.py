@@ -1,0 +1,283 @@
+"""What the tests of the operator's page share: the page served as it is shipped, a real browser, and the machine.
+
+The server is the command in a process of its own; the control is the simulated one of the control's tests, whose log
+says what was written to it. The operator works by visible labels and by keyboard.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import shutil
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Locator, Page, sync_playwright
+
+from tests.gearmath.control.live.conftest import PASSWORD, TEN, Live, _live, live  # noqa: F401
+from tests.gearmath.hmi.stored import own_runs, stored_runs  # noqa: F401
+
+#: Screenshots are left here, to be looked at.
+PICTURES = Path(__file__).parents[3] / "build" / "screenshots"
+_SHOWN = re.compile(r"open (http://\S+)")
+#: What Chromium itself asks for, page or no page.
+OF_THE_BROWSER = {
+    "update.googleapis.com",
+    "content-autofill.googleapis.com",
+    "accounts.google.com",
+    "www.google.com",
+    "clients2.google.com",
+}
+#: What a test waits for at most [ms], on a computer that does other things too.
+PATIENCE = 60_000
+
+
+@dataclass
+class Served:
+    """The page in a process: the address with its token, and the folder of its store."""
+
+    folder: Path
+    arguments: tuple[str, ...]
+    port: int = 0
+    address: str = ""
+    process: subprocess.Popen[str] | None = None
+    said: str = ""
+
+    def start(self) -> Served:
+        """Start it, the second time on the same port."""
+        command = [sys.executable, "-c", "from gearmath.cli import main; main()", "hmi"]
+        command += ["--store", str(self.folder / "runs.db"), "--port", str(self.port), *self.arguments]
+        environment = os.environ | {"GEARMATH_CONTROL_PASSWORD": PASSWORD, "PYTHONUNBUFFERED": "1"}
+        environment.pop("PYTEST_CURRENT_TEST", None)  # NiceGUI serves otherwise in a test
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, cwd=self.folder
+        )
+        assert self.process.stdout is not None
+        until = time.monotonic() + 60
+        while (match := _SHOWN.search(self.said)) is None:
+            ready, _, _ = select.select([self.process.stdout], [], [], max(0.0, until - time.monotonic()))
+            line = self.process.stdout.readline() if ready else ""
+            assert line, f"the server did not start: {self.said}"
+            self.said += line
+        self.address = match[1]
+        self.port = urlsplit(self.address).port or 0
+        return self
+
+    @property
+    def base(self) -> str:
+        """The address without the token."""
+        return f"http://127.0.0.1:{self.port}"
+
+    @property
+    def token(self) -> str:
+        return self.address.rsplit("=", 1)[-1]
+
+    def stop(self, kill: bool = False) -> str:
+        """End it, and give what it has printed."""
+        assert self.process is not None
+        assert self.process.stdout is not None
+        (self.process.kill if kill else self.process.terminate)()
+        with suppress(ValueError):
+            self.said += self.process.communicate(timeout=30)[0]
+        said, self.said = self.said, ""
+        return said
+
+    def memory(self) -> float:
+        """What it has in memory [MB]."""
+        assert self.process is not None
+        status = Path(f"/proc/{self.process.pid}/status").read_text("utf-8")
+        return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1000  # type: ignore[index]
+
+
+@pytest.fixture(scope="module")
+def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Served]]:
+    """``serve(*arguments)``: the page with these arguments, in a folder of its own."""
+    made: list[Served] = []
+
+    def start(*arguments: str) -> Served:
+        made.append(Served(tmp_path_factory.mktemp("page"), arguments).start())
+        return made[-1]
+
+    yield start
+    for one in made:
+        if one.process is not None and one.process.poll() is None:
+            one.stop()
+
+
+class Elsewhere:
+    """A proxy that lets nothing through, and knows what was asked of it: all that is not for this computer."""
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+        self._listening = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listening.getsockname()[1]
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def _run(self) -> None:
+        with suppress(OSError):
+            while True:
+                connection, _ = self._listening.accept()
+                with connection, suppress(OSError):
+                    connection.settimeout(5.0)
+                    self.asked.append(connection.recv(500).decode("latin-1").split("\r\n")[0])
+                    connection.sendall(b"HTTP/1.1 502 Bad Gateway\r\n\r\n")
+
+    def close(self) -> None:
+        self._listening.close()
+
+
+@pytest.fixture(scope="module")
+def elsewhere() -> Iterator[Elsewhere]:
+    found = Elsewhere()
+    yield found
+    found.close()
+
+
+@pytest.fixture(scope="module")
+def chromium(elsewhere: Elsewhere) -> Iterator[Browser]:
+    """One browser for a module; at the end it has asked nobody else than this computer."""
+    path = shutil.which("chromium") or shutil.which("chromium-browser")
+    if path is None:
+        pytest.skip("needs chromium")
+    arguments = [
+        "--no-sandbox",
+        "--use-angle=swiftshader",
+        "--enable-unsafe-swiftshader",
+        f"--proxy-server=http://127.0.0.1:{elsewhere.port}",
+        "--disable-component-update",
+        "--disable-background-networking",
+    ]
+    with sync_playwright() as playwright:
+        found = playwright.chromium.launch(executable_path=path, args=arguments)
+        yield found
+        found.close()
+    hosts = {re.sub(r"^\w+ (?:http://)?([^:/ ]+).*", r"\1", line) for line in elsewhere.asked if line}
+    foreign = hosts - OF_THE_BROWSER
+    assert foreign == set()
+
+
+@dataclass
+class Operator:
+    """Somebody before a browser: ``page`` is what is seen, ``complaints`` what the browser reported as errors."""
+
+    served: Served
+    context: BrowserContext
+    page: Page
+    complaints: list[str] = field(default_factory=list)
+    forgiven: tuple[str, ...] = ()
+    """Parts of reports that a test causes itself, such as a server that is away."""
+
+    def go(self, name: str) -> Operator:
+        """Open a page by its name in the address."""
+        self.page.goto(f"{self.served.base}/{name}")
+        self.page.locator(".gm-main").wait_for()
+        return self
+
+    def press(self, label: str) -> None:
+        """Press a button."""
+        self.page.get_by_role("button", name=label, exact=True).click()
+
+    def fill(self, label: str, value: str) -> None:
+        """Type into a field, and leave it."""
+        one = self.page.get_by_label(label, exact=True)
+        one.fill(value)
+        one.press("Tab")
+
+    def choose(self, label: str, value: str) -> None:
+        """Choose from a list."""
+        self.page.get_by_role("combobox", name=label, exact=True).click()
+        self.page.get_by_role("option", name=value, exact=True).click()
+
+    def panel(self, title: str) -> Locator:
+        """A part of the page by its title."""
+        return self.page.get_by_role("region", name=title, exact=True)
+
+    def sees(self, words: str | re.Pattern[str], where: Locator | None = None) -> Locator:
+        """Wait until words are on the page."""
+        found = (where or self.page).get_by_text(words).first
+        found.wait_for(timeout=PATIENCE)
+        return found
+
+    def picture(self, name: str) -> Path:
+        """Leave a screenshot."""
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        self.page.screenshot(path=PICTURES / f"{name}.png", timeout=60_000)
+        return PICTURES / f"{name}.png"
+
+    def axe(self) -> list[str]:
+        """Serious and critical violations that axe-core finds, with the first place of each."""
+        from axe_core_python.sync_playwright import Axe
+
+        found: dict[str, Any] = Axe().run(self.page)
+        return [
+            f"{one['id']}: {one['nodes'][0]['html'][:200]}"
+            for one in found["violations"]
+            if one["impact"] in ("serious", "critical")
+        ]
+
+
+@pytest.fixture
+def operator(chromium: Browser) -> Iterator[Callable[..., Operator]]:
+    """``operator(served, page="machine", language="en", dark=False, size=(1280, 800))``, as many as wanted.
+
+    At the end none of them has seen an error on the console.
+    """
+    made: list[Operator] = []
+
+    def begin(
+        served: Served,
+        page: str = "machine",
+        language: str = "en",
+        dark: bool = False,
+        size: tuple[int, int] = (1280, 800),
+    ) -> Operator:
+        context = chromium.new_context(
+            viewport={"width": size[0], "height": size[1]}, locale=language, reduced_motion="reduce"
+        )
+        context.set_default_timeout(PATIENCE)
+        look = {"name": "gearmath_look", "value": "dark" if dark else "light", "url": served.base}
+        token = {"name": f"gearmath_{served.port}", "value": served.token, "url": served.base, "httpOnly": True}
+        context.add_cookies([look, token])  # type: ignore[list-item]
+        one = Operator(served, context, context.new_page())
+        one.page.on("console", lambda said: _hear(one, said.type, said.text))
+        one.context.on("request", lambda request: _follow(one, request.url))
+        one.page.on("pageerror", lambda error: one.complaints.append(str(error)))
+        made.append(one)
+        return one.go(page)
+
+    yield begin
+    for one in made:
+        one.context.close()
+    assert [said for one in made for said in one.complaints if not any(part in said for part in one.forgiven)] == []
+
+
+def _hear(one: Operator, kind: str, text: str) -> None:
+    if kind == "error":
+        one.complaints.append(text)
+
+
+def _follow(one: Operator, url: str) -> None:
+    if not url.startswith((one.served.base, "data:", "blob:")):
+        one.complaints.append(f"asks for {url}")
+
+
+@pytest.fixture(scope="module")
+def page(serve: Callable[..., Served], _live: Live) -> Served:  # noqa: F811
+    """The page on the simulated control of these tests, with the program of ten touches in its folder."""
+    text = (_live.folder / "control.toml").read_text("utf-8")
+    file = _live.folder / "page.toml"
+    file.write_text(re.sub(r'url = ".*"', f'url = "{_live.control.url}"', text), "utf-8")
+    served = serve("--control", str(file))
+    (served.folder / Live.NAME).write_text(TEN, "utf-8")
+    return served

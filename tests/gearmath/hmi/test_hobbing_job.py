@@ -1,0 +1,85 @@
+"""The hobbing planner: ratios by hand, refusals, and the firmware as a zip."""
+
+from __future__ import annotations
+
+import io
+import tomllib
+import zipfile
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+from gearmath.errors import InputError
+from gearmath.hmi import hobbing_job
+from gearmath.hmi.hobbing_job import HobbingWish, blank_lines, firmware_zip, plan_lines, planned, sketch_name
+from gearmath.specs.hobbing import load_hobbing_machine
+from gearmath.specs.toml import bundled
+
+Command = Callable[..., tuple[int, str, str]]
+
+
+def test_the_ratio_is_counts_of_the_encoder_by_steps_of_the_motor_while_the_table_turns_one_tooth() -> None:
+    path = bundled("hobbing_metric.toml")
+    values = tomllib.loads(path.read_text("utf-8"))
+    machine = load_hobbing_machine(path)
+    job = planned(machine, HobbingWish(teeth=29, starts=2))
+    counts = Fraction(machine.encoder_counts)  # of a turn of the hob, two teeth
+    table = values["table"]
+    steps = Fraction(table["full_steps"]) * table["microsteps"] * Fraction(table["belt"]) * Fraction(table["worm"])
+    lines = {line.key: line for line in plan_lines(job.plan)}
+    assert Fraction(lines["ratio"].value) == counts * 29 / (2 * steps)
+    assert lines["ratio"].unit == "counts/step"
+    assert all(line.unit for line in (*lines.values(), *blank_lines(job.plan.blanks[0])))
+
+
+def test_rates_stand_beside_their_limits() -> None:
+    machine = load_hobbing_machine(bundled("hobbing_metric.toml"))
+    lines = {line.key: line for line in plan_lines(planned(machine, HobbingWish(teeth=40, rpm=100.0)).plan)}
+    assert lines["rpm"].percent == pytest.approx(100.0 * 100.0 / machine.limits.hob_rpm)
+    assert lines["edge_rate"].value == f"{100 / 60 * float(machine.encoder_counts):.0f}"
+
+
+def test_what_the_machine_cannot_do_is_refused_with_the_limit() -> None:
+    machine = load_hobbing_machine(bundled("hobbing_metric.toml"))
+    with pytest.raises(InputError, match=r"limits\.hob_rpm"):
+        planned(machine, HobbingWish(teeth=40, rpm=1e5))
+    with pytest.raises(InputError, match="feed = 'x': must be a number"):
+        planned(machine, HobbingWish(teeth=40, hob=machine.hobs[0].name, helix=10.0, feed="x"))
+    with pytest.raises(InputError, match="pitch"):
+        planned(load_hobbing_machine(bundled("lathe_example.toml")), HobbingWish(pitch="fine"))
+
+
+def test_a_thread_is_planned_on_a_lathe() -> None:
+    job = planned(load_hobbing_machine(bundled("lathe_example.toml")), HobbingWish(pitch="8tpi", starts=2))
+    lines = {line.key: line.value for line in plan_lines(job.plan)}
+    assert (lines["pitch"], lines["lead"]) == ("3.175", "6.35")
+
+
+def test_the_zip_holds_what_the_command_writes_and_is_the_same_every_time(tmp_path: Path, command: Command) -> None:
+    machine = load_hobbing_machine(bundled("hobbing_plewes.toml"))
+    content = firmware_zip(machine, "gearbox")
+    assert content == firmware_zip(machine, "gearbox")
+    assert command("export", "teensy", "hobbing_plewes.toml", "-o", tmp_path / "gearbox")[0] == 0
+    written = {f"gearbox/{path.name}": path.read_bytes() for path in (tmp_path / "gearbox").iterdir()}
+    with zipfile.ZipFile(io.BytesIO(content)) as packed:
+        assert packed.testzip() is None
+        assert {name: packed.read(name) for name in packed.namelist()} == written
+
+
+def test_no_name_in_the_zip_leads_out_of_its_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+    machine = load_hobbing_machine(bundled("hobbing_plewes.toml"))
+    for sketch in ("../gearbox", "a/b", "", "-x"):
+        with pytest.raises(InputError):
+            firmware_zip(machine, sketch)
+    for name in ("../x.c", "a/../b.c", "/etc/x", "..", "a\\b.c"):
+        monkeypatch.setattr(hobbing_job, "teensy_files", lambda *_, name=name: {name: "text"})
+        with pytest.raises(InputError, match="no plain name"):
+            firmware_zip(machine, "gearbox")
+
+
+def test_every_bundled_machine_has_a_name_for_its_sketch() -> None:
+    for name in ("hobbing_default.toml", "hobbing_helical.toml", "hobbing_plewes.toml", "lathe_example.toml"):
+        machine = load_hobbing_machine(bundled(name))
+        assert len(firmware_zip(machine, sketch_name(machine))) > 10_000

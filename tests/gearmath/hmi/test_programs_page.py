@@ -1,0 +1,107 @@
+"""Programs from the page: written, milled, sent; and numbers that are refused and never changed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+
+from gearmath.hmi.messages import Text
+from gearmath.hmi.numbers import parsed
+from tests.gearmath.control.live.conftest import Live
+from tests.gearmath.hmi.conftest import Operator, Served
+
+
+def test_a_probing_program_is_written_shown_and_sent_as_it_is(
+    live: Live, page: Served, operator: Callable[..., Operator]
+) -> None:
+    one = operator(page, "programs")
+    panel = one.panel("Probing program")
+    panel.get_by_label("Program name", exact=True).fill("probe_one")
+    panel.get_by_role("checkbox", name="Pitch: the reference point of every tooth").click()
+    panel.get_by_role("checkbox", name="Clamping: the corners on eight teeth around").click()
+    panel.get_by_role("button", name="Write probing program").click()
+    # 5 x 9 points of both flanks of tooth 0, and its reference points
+    said = one.sees(re.compile(r"PROBE_ONE.MPF: \d+ touches, \d+ blocks"), panel)
+    assert "least clearance: tip" in said.inner_text()
+    text = (page.folder / "PROBE_ONE.MPF").read_bytes()
+    assert text.count(b"MEAS=") > 0
+    one.choose("Program", "PROBE_ONE.MPF")
+    one.sees("Text of PROBE_ONE.MPF")
+    assert text.decode().splitlines()[0] in one.page.locator("pre").inner_text()
+    begin = len(live.nc.log)
+    one.press("Send to the control")
+    one.sees("It is neither selected nor started.")
+    one.press("Yes, do it")
+    one.sees(f"PROBE_ONE.MPF is there, {len(text)} bytes, read back alike.")
+    one.picture("programs_sent")
+    assert live.nc.files["Part Program/PROBE_ONE.MPF"] == text
+    assert live.nc.selected == ""
+    assert live.nc.log[begin:] == []
+    # a second time it is there already, which the control says
+    one.press("Send to the control")
+    one.press("Yes, do it")
+    one.sees(re.compile("PROBE_ONE.MPF: .*(exists|there already)|there is a file", re.IGNORECASE))
+    one.page.get_by_role("checkbox", name="Replace a program of this name on the control").click()
+    one.press("Send to the control")
+    one.press("Yes, do it")
+    one.sees(f"PROBE_ONE.MPF is there, {len(text)} bytes, read back alike.")
+
+
+def test_a_number_out_of_range_stays_as_it_was_typed_and_is_refused_with_its_limits(
+    page: Served, operator: Callable[..., Operator]
+) -> None:
+    one = operator(page, "programs")
+    panel = one.panel("Cutting program")
+    field = panel.get_by_label("Feed past the tooth", exact=True)
+    for typed, why in (
+        ("99999", "99999 mm/min: must lie between 1 and 5000 mm/min"),
+        ("-1", "-1 mm/min: must lie between 1 and 5000 mm/min"),
+        ("3oo", "3oo is no number"),
+        ("", "a number is missing"),
+    ):
+        field.fill(typed)
+        field.press("Tab")
+        one.sees(why, panel)
+        assert field.input_value() == typed
+        panel.get_by_role("button", name="Write cutting program").click()
+        assert not (page.folder / "CUT_PINION.MPF").exists()
+    field.fill("250,5")
+    field.press("Tab")
+    panel.get_by_text("a number is missing").wait_for(state="detached")
+    assert field.input_value() == "250,5"
+
+
+@pytest.mark.slow
+def test_a_cutting_program_is_written_and_milled_with_progress(page: Served, operator: Callable[..., Operator]) -> None:
+    one = operator(page, "programs", language="de", dark=True, size=(800, 1280))
+    panel = one.panel("Fräsprogramm")
+    panel.get_by_role("button", name="Fräsprogramm schreiben").click()
+    panel.get_by_role("progressbar").wait_for()
+    one.sees(re.compile("CUT_PINION.MPF: \\d+ Sätze, .* keine Kollision, Grenzen und Toleranz eingehalten"), panel)
+    one.choose("Programm", "CUT_PINION.MPF")
+    one.press("Virtuell fräsen")
+    said = one.sees(re.compile("größte Abweichung"))
+    # the program's own tolerance, 0.1 um, on a machine without errors
+    assert float(re.search(r"Abweichung ([\d.]+) µm", said.inner_text())[1]) <= 0.1  # type: ignore[index]
+    one.picture("programs_milled_de_dark_800x1280")
+    assert one.axe() == []
+
+
+@pytest.mark.parametrize(
+    ("typed", "value"),
+    [("3", 3.0), (" 3.5 ", 3.5), ("3,5", 3.5), ("-0", 0.0), ("1e1", 10.0), ("10", 10.0), ("0", 0.0)],
+)
+def test_a_number_is_read_as_it_stands(typed: str, value: float) -> None:
+    assert parsed(Text("en"), typed, 0.0, 10.0, "mm") == (value, None)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    ["", " ", "10.0001", "-0.0001", "nan", "inf", "1e999", "1_0", "0x1", "1.2.3", "1,2,3", "1 0", "٣", "1e", "."],
+)
+def test_what_is_no_number_or_out_of_range_is_refused(typed: str) -> None:
+    value, why = parsed(Text("en"), typed, 0.0, 10.0, "mm")
+    assert value is None
+    assert why

@@ -1,0 +1,90 @@
+"""The shell: every page in both languages, both looks and both sizes, by keyboard, and readable for everybody."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import pytest
+
+from gearmath.hmi.messages import Text, messages
+from gearmath.hmi.shell import PAGES
+from tests.gearmath.hmi.conftest import Operator, Served
+
+
+@pytest.fixture(scope="module")
+def served(serve: Callable[..., Served]) -> Served:
+    return serve()
+
+
+LOOKS = [("en", False, (1280, 800)), ("de", True, (800, 1280))]
+
+
+@pytest.mark.parametrize(("language", "dark", "size"), LOOKS, ids=["english", "german"])
+def test_every_page_shows_itself_without_serious_violation_of_accessibility(
+    served: Served, operator: Callable[..., Operator], language: str, dark: bool, size: tuple[int, int]
+) -> None:
+    one = operator(served, language=language, dark=dark, size=size)
+    text = Text(language)
+    for name in PAGES:
+        one.page.get_by_role("link", name=text(f"{name}.title"), exact=True).click()
+        one.page.wait_for_url(f"**/{name}")
+        one.page.get_by_role("heading", level=1, name=text(f"{name}.title")).wait_for()
+        one.page.wait_for_timeout(300)
+        one.picture(f"{name}_{language}_{'dark' if dark else 'light'}_{size[0]}x{size[1]}")
+        assert one.page.evaluate("document.documentElement.lang")[:2] == language
+        assert one.axe() == [], name
+        wide = one.page.evaluate("document.documentElement.scrollWidth")
+        assert wide <= size[0], f"{name}: {wide} px wide on {size[0]} px"
+        small = one.page.evaluate(
+            """() => [...document.querySelectorAll('button, a, input, .q-checkbox, .q-field__control')]
+              .filter(e => e.getClientRects().length && !e.closest('.q-field__control, .q-checkbox') ||
+                      e.matches('.q-field__control'))
+              .filter(e => e.getClientRects().length)
+              .map(e => [e.getBoundingClientRect(), e.outerHTML.slice(0, 80)])
+              .filter(([box]) => box.height < 43.5 || box.width < 43.5).map(([box, html]) => html)"""
+        )
+        assert small == [], name
+
+
+def test_the_address_that_is_shown_lets_the_browser_in(served: Served, operator: Callable[..., Operator]) -> None:
+    one = operator(served)
+    one.context.clear_cookies()
+    one.forgiven = ("403",)
+    one.page.goto(f"{served.base}/machine")
+    one.sees("refused: no token")
+    one.page.goto(served.address)
+    one.page.wait_for_url("**/machine")
+    one.page.get_by_role("heading", level=1, name="Machine").wait_for()
+
+
+def test_language_and_look_are_chosen_by_keyboard_and_stay(served: Served, operator: Callable[..., Operator]) -> None:
+    one = operator(served)
+    one.page.get_by_role("button", name="Deutsch").focus()
+    one.page.keyboard.press("Enter")
+    one.page.get_by_role("heading", level=1, name="Maschine").wait_for()
+    one.page.get_by_role("button", name="Dunkel").focus()
+    one.page.keyboard.press("Space")
+    one.page.locator("body.body--dark").wait_for()
+    one.go("gear")
+    one.page.get_by_role("heading", level=1, name="Rad").wait_for()
+    one.page.locator("body.body--dark").wait_for()
+
+
+def test_pages_are_reached_by_keyboard_alone(served: Served, operator: Callable[..., Operator]) -> None:
+    one = operator(served)
+    for _ in range(40):
+        one.page.keyboard.press("Tab")
+        if one.page.evaluate("document.activeElement.getAttribute('href')") == "/programs":
+            break
+    one.page.keyboard.press("Enter")
+    one.page.wait_for_url("**/programs")
+
+
+def test_every_message_is_there_in_both_languages_with_the_same_values() -> None:
+    for page, found in messages().items():
+        for name, words in found.items():
+            assert set(words) == {"en", "de"}, (page, name)
+            values = [set(re.findall(r"\{(\w*)\}", words[language])) for language in ("en", "de")]
+            assert values[0] == values[1], (page, name)
+            assert all(word.strip() for word in words.values()), (page, name)

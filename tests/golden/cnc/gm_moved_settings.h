@@ -1,0 +1,63 @@
+/*
+ * gm_moved_settings: generated, do not edit.
+ *
+ * Settings as they stand at a cradle rotation when they move with it (5.7).
+ *
+ * in settings[12] [mixed]: machine and cutter settings of one flank
+ *     [0] radial_distance [mm] 20 ... 200 (taken: 2 ... 2000): machine centre to cutter centre in the machine
+ *         plane
+ *     [1] cradle_angle [rad] -1.5 ... 1.5 (taken: -15 ... 15): polar angle of the cutter centre at cradle
+ *         rotation zero
+ *     [2] cutter_tilt [rad] -0.4 ... 0.4 (taken: -4 ... 4): tilt of the cutter axis against the cradle axis
+ *     [3] cutter_swivel [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359):
+ *         direction of the tilt, about the cradle axis
+ *     [4] blank_offset [mm] -40 ... 40 (taken: -400 ... 400): work axis to machine centre, along machine axis j
+ *     [5] sliding_base [mm] -20 ... 20 (taken: -200 ... 200): withdrawal of the work along the cradle axis
+ *     [6] machine_center_to_crossing_point [mm] -20 ... 20 (taken: -200 ... 200): advance of the work along its
+ *         own axis
+ *     [7] machine_root_angle [rad] 0.05 ... 1.45 (taken: 0.005 ... 1.57079632679): work axis against the machine
+ *         plane
+ *     [8] ratio_of_roll [1] 0.5 ... 8 (taken: 0.05 ... 80): work rotation per cradle rotation
+ *     [9] work_rotation_offset [rad] -3.14159265359 ... 3.14159265359 (taken: -31.4159265359 ... 31.4159265359):
+ *         work rotation at cradle rotation zero
+ *     [10] blade_point_radius [mm] 20 ... 250 (taken: 2 ... 2500): radius of the blade tip about the cutter axis
+ *     [11] blade_pressure_angle [rad] 0.05 ... 0.6 (taken: 0.005 ... 1.57079632679): angle between blade and
+ *         cutter axis
+ * in motion[10][7] [mixed] -0.3 ... 0.3 (taken: -3 ... 3): coefficients of theta^1 ... theta^7 (columns) of the
+ *     machine settings (rows, in their order), row by row
+ * in theta [rad] -1 ... 1 (taken: -10 ... 10): cradle rotation (roll position)
+ * out settings_at[12] [mixed]: machine and cutter settings of one flank at a cradle rotation
+ *
+ * source: (10.1)
+ * ops: 140 (add 70, mul 70)
+ * work memory: none
+ * written by gearmath 0.1.0, casadi 3.8.2, sympy 1.14.0
+ */
+#ifndef GM_MOVED_SETTINGS_H
+#define GM_MOVED_SETTINGS_H
+
+#include "gm_status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+GM_API int gm_moved_settings(
+    const double settings[12],
+    const double motion[70],
+    double theta,
+    double settings_at[12]);
+
+GM_API int gm_moved_settings_batch(
+    int64_t n,
+    const double *settings, int64_t settings_stride,
+    const double *motion, int64_t motion_stride,
+    const double *theta, int64_t theta_stride,
+    double *settings_at,
+    int64_t *first_bad);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
