@@ -160,7 +160,7 @@ def free_file(folder: Path, stem: str, suffix: str) -> Path:
 
 
 def _write_set(proposal: Proposal, source: Path, target: Path) -> None:
-    found = proposal.correction
+    found, run = proposal.correction, proposal.evaluated.run
     save_corrected(
         source,
         target,
@@ -170,6 +170,7 @@ def _write_set(proposal: Proposal, source: Path, target: Path) -> None:
         found.motions,
         found.curvatures,
         check=check_pair,
+        origin=f"run {run.id} of {run.store.path.name}, and {_stem(run.start.settings.get(SET, SET))}.toml",
     )
 
 

@@ -87,4 +87,4 @@ def save_edited(source: Path, target: Path, member: Member, edited: Member) -> N
         for flank in FLANKS
         if edited.spec.flank(flank) != member.spec.flank(flank)
     }
-    save_corrected(source, target, member.name, settings, check=check_pair)
+    save_corrected(source, target, member.name, settings, check=check_pair, origin=f"{source.name}, as typed")

@@ -177,15 +177,17 @@ class _CorrectPage:
         def accepted() -> None:
             found = proposal()
             if found is None:
-                widgets.say(text("correct.none"), "warning")
+                done.show(text("correct.none"), "warning")
                 return
+            done.show("")
             work.start(text("correct.writing"), lambda progress: accept(desk.runs, found, self.shared.folder))
 
         def rejected() -> None:
             found = proposal()
             if found is None:
-                widgets.say(text("correct.none"), "warning")
+                done.show(text("correct.none"), "warning")
                 return
+            done.show("")
             reject(desk.runs, found, note.value or "")
             desk.wanted.pop("correct", None)
             desk.decisions += 1

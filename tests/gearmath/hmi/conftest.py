@@ -26,6 +26,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Locator, Page, sync_playwright
 
 from tests.gearmath.control.live.conftest import PASSWORD, TEN, Live, _live, live  # noqa: F401
+from tests.gearmath.hmi.stored import own_runs, stored_runs  # noqa: F401
 
 #: Screenshots are left here, to be looked at.
 PICTURES = Path(__file__).parents[3] / "build" / "screenshots"
@@ -39,7 +40,7 @@ OF_THE_BROWSER = {
     "clients2.google.com",
 }
 #: What a test waits for at most [ms], on a computer that does other things too.
-PATIENCE = 20_000
+PATIENCE = 60_000
 
 
 @dataclass
@@ -211,7 +212,7 @@ class Operator:
     def picture(self, name: str) -> Path:
         """Leave a screenshot."""
         PICTURES.mkdir(parents=True, exist_ok=True)
-        self.page.screenshot(path=PICTURES / f"{name}.png", full_page=True, timeout=60_000)
+        self.page.screenshot(path=PICTURES / f"{name}.png", timeout=60_000)
         return PICTURES / f"{name}.png"
 
     def axe(self) -> list[str]:

@@ -16,15 +16,15 @@ from gearmath.hmi import correcting
 from gearmath.hmi.correcting import NOTE, accept, charts_before, propose, reject, scale_before
 from gearmath.hmi.judged_runs import JudgedRuns
 from gearmath.hmi.run_history import past_runs
-from tests.gearmath.hmi.stored import FILES, own_runs, stored_runs  # noqa: F401
+from tests.gearmath.hmi.stored import FILES
 
 
 @pytest.fixture
-def runs(own_runs: Path) -> JudgedRuns:  # noqa: F811
+def runs(own_runs: Path) -> JudgedRuns:
     return JudgedRuns(own_runs)
 
 
-def test_what_is_accepted_cuts_what_was_expected_and_the_old_set_stays(runs: JudgedRuns, own_runs: Path) -> None:  # noqa: F811
+def test_what_is_accepted_cuts_what_was_expected_and_the_old_set_stays(runs: JudgedRuns, own_runs: Path) -> None:
     old = own_runs.with_name("nasa_tp3096_12x36.toml")
     old.write_bytes(b"# an older one\n")
     proposal = propose(runs.evaluated(1))
@@ -53,7 +53,7 @@ def test_what_is_accepted_cuts_what_was_expected_and_the_old_set_stays(runs: Jud
 
 def test_accepting_twice_writes_over_nothing(
     runs: JudgedRuns,
-    own_runs: Path,  # noqa: F811
+    own_runs: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def written(member: gm.Member, machine: gm.Machine, name: str) -> gm.Program:
@@ -70,7 +70,7 @@ def test_accepting_twice_writes_over_nothing(
 
 def test_where_no_program_can_be_written_nothing_is(
     runs: JudgedRuns,
-    own_runs: Path,  # noqa: F811
+    own_runs: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def refuse(*_: object, **__: object) -> None:
@@ -91,7 +91,7 @@ def test_the_name_of_a_set_from_the_store_leads_nowhere_else(name: str) -> None:
     assert not set(stem) - set("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-")
 
 
-def test_every_note_stays_with_the_run(runs: JudgedRuns, own_runs: Path) -> None:  # noqa: F811
+def test_every_note_stays_with_the_run(runs: JudgedRuns, own_runs: Path) -> None:
     proposal = propose(runs.evaluated(2), "standard")
     reject(runs, proposal, "work was loose <b>")
     reject(runs, proposal, "once more")

@@ -14,7 +14,6 @@ import pytest
 import gearmath as gm
 from gearmath.hmi.messages import Text
 from tests.gearmath.hmi.conftest import Operator, Served
-from tests.gearmath.hmi.stored import stored_runs  # noqa: F401
 
 #: A computation of some seconds, on a computer that does other things too. [ms]
 LONG = 90_000
@@ -28,7 +27,7 @@ HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
 
 
 @pytest.fixture(scope="module")
-def served(serve: Callable[..., Served], stored_runs: Path) -> Served:  # noqa: F811
+def served(serve: Callable[..., Served], stored_runs: Path) -> Served:
     one = serve()
     shutil.copy(stored_runs, one.folder / "runs.db")
     return one

@@ -15,13 +15,13 @@ from gearmath.hmi.drawing import drawn, translated
 from gearmath.hmi.judged_runs import JudgedRuns
 from gearmath.hmi.result_view import result_of, sure_of
 from gearmath.hmi.run_history import comparison, past_runs, trend
-from tests.gearmath.hmi.stored import SHARES, own_runs, stock, stored_runs  # noqa: F401
+from tests.gearmath.hmi.stored import SHARES, stock
 
 Command = Callable[..., tuple[int, str, str]]
 
 
 @pytest.fixture(scope="module")
-def runs(stored_runs: Path) -> JudgedRuns:  # noqa: F811
+def runs(stored_runs: Path) -> JudgedRuns:
     return JudgedRuns(stored_runs)
 
 
@@ -58,7 +58,7 @@ def test_the_topography_shown_is_the_stock_that_was_left(runs: JudgedRuns) -> No
             assert np.std(difference) < 0.0015
 
 
-def test_the_page_shows_the_figures_of_the_command(own_runs: Path, command: Command, tmp_path: Path) -> None:  # noqa: F811
+def test_the_page_shows_the_figures_of_the_command(own_runs: Path, command: Command, tmp_path: Path) -> None:
     status, out, _ = command("runs", "export", 1, "--store", own_runs, "--format", "files", "-o", tmp_path / "run")
     assert status == 0, out
     raw, measured = tmp_path / "run" / "touches.csv", tmp_path / "measured.csv"

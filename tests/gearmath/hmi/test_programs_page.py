@@ -79,7 +79,7 @@ def test_a_cutting_program_is_written_and_milled_with_progress(page: Served, ope
     panel = one.panel("Fräsprogramm")
     panel.get_by_role("button", name="Fräsprogramm schreiben").click()
     panel.get_by_role("progressbar").wait_for()
-    one.sees(re.compile("CUT_PINION.MPF: \\d+ Sätze, .* keine Kollision, Grenzen eingehalten"), panel)
+    one.sees(re.compile("CUT_PINION.MPF: \\d+ Sätze, .* keine Kollision, Grenzen und Toleranz eingehalten"), panel)
     one.choose("Programm", "CUT_PINION.MPF")
     one.press("Virtuell fräsen")
     said = one.sees(re.compile("größte Abweichung"))
