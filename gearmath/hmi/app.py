@@ -20,7 +20,7 @@ from gearmath.hmi.shell import PAGES
 from gearmath.hmi.state import Shared
 
 #: How long the server keeps a page whose browser is gone. [s]
-_RECONNECT = 10.0
+_RECONNECT = 30.0
 
 
 def application(shared: Shared) -> FastAPI:

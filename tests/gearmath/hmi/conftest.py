@@ -213,7 +213,7 @@ class Operator:
     def picture(self, name: str) -> Path:
         """Leave a screenshot."""
         PICTURES.mkdir(parents=True, exist_ok=True)
-        self.page.screenshot(path=PICTURES / f"{name}.png", full_page=True, timeout=60_000)
+        self.page.screenshot(path=PICTURES / f"{name}.png", timeout=60_000)
         return PICTURES / f"{name}.png"
 
     def axe(self) -> list[str]:
