@@ -120,7 +120,7 @@ class _GearboxPage:
         widgets.NumberField(
             text,
             text("gearbox.rpm"),
-            wish.rpm or machine.limits.hob_rpm,
+            wish.rpm,  # left out, it is what the plan proposes
             "1/min",
             0.0,
             machine.limits.hob_rpm,
