@@ -33,7 +33,7 @@ def verdict(member: Member, correction: MemberCorrection) -> tuple[str, str]:
     for group, found in correction.identified.items():
         flanks, best = " and ".join(group), correction.reachable[group] * 1000
         if not found.converged:
-            limits.append(f"{flanks}: not converged, try fewer settings")
+            limits.append(f"{flanks}: not converged, name fewer settings with --settings")
         elif found.active:
             limits.append(f"{flanks}: held back by the limit of {', '.join(found.active)}, {best:.2f} um at best")
         else:

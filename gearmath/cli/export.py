@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from gearmath.cli.common import JSON, MACHINE, MEMBER, SET, about, bar, echo_json, member_of, nominal_words, output
+from gearmath.cli.dialect import CONTROL, LINUXCNC, dialect_of
 from gearmath.errors import InputError
 
 _FOLDER = click.option(
@@ -38,8 +39,9 @@ def teensy(machine: str, folder: Path) -> None:
 @export.command()
 @click.argument("gear_set", metavar="[SET]", required=False)
 @MACHINE
+@CONTROL
 @_FOLDER
-def cnc(gear_set: str | None, machine: str, folder: Path) -> None:
+def cnc(gear_set: str | None, machine: str, control: str | None, folder: Path) -> None:
     """C library of the bevel gear kernels for a CNC post-processor; with SET also settings files for its gm-post.
 
     Of every face milled member of SET (a TOML file, or a bundled one) the folder gets MEMBER.settings, from which
@@ -47,34 +49,40 @@ def cnc(gear_set: str | None, machine: str, folder: Path) -> None:
     """
     from gearmath.export.cnc import export_cnc
 
-    settings = _settings(gear_set, machine) if gear_set is not None else {}
+    settings = _settings(gear_set, machine, control) if gear_set is not None else {}
     names = export_cnc(folder, settings)
     click.echo(f"{folder}: {len(names)} files")
     for name in settings:
         click.echo(f"{folder / name}: {name.removesuffix('.settings')}, for gm-post")
 
 
-def _settings(gear_set: str, machine: str) -> dict[str, str]:
-    """Settings files of the members of a set, by name."""
+def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str]:
+    """Settings files of the members of a set, by name; their programs are run first."""
     from gearmath.bevel.pair import load_pair
     from gearmath.export.post import post_file
-    from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan, pass_count
+    from gearmath.machine.judging.checked import checked_cut
+    from gearmath.machine.planning.cut_plan import CuttingJob, pass_count
+    from gearmath.machine.writing.cutting import program_of
+    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     milling_machine, source = load_milling_machine(find(machine)), find(gear_set)
+    dialect = dialect_of(milling_machine, control, False, None)
+    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
     pair = load_pair(source)
-    members = {name: pair.member(name) for name in pair.members}
-    milled = {name: spec for name, spec in members.items() if spec.process == "face_milling"}
+    milled = {name: spec for name, spec in pair.members.items() if spec.process == "face_milling"}
     if not milled:
         raise InputError(f"{source}: process = face_hobbing: gm-post writes the cuts of face milled members")
-    for name in members.keys() - milled.keys():
+    for name in pair.members.keys() - milled.keys():
         click.echo(f"{source}: {name}: face hobbed, no settings file: gm-post writes the cuts of face milling")
     jobs = {name: CuttingJob(tuple(range(spec.teeth))) for name, spec in milled.items()}
     files = {}
     with bar(sum(pass_count(milled[name], name, job) for name, job in jobs.items()), "pass") as done, about(source):
         for name, job in jobs.items():
-            files[f"{name}.settings"] = post_file(cutting_plan(pair, name, milling_machine, job, done))
+            file = f"{name}.settings"
+            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, done, write)
+            files[file] = post_file(made.plan, dialect)
     return files
 
 

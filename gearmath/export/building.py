@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
+from gearmath.export.beside import beside, supply_amperes
 from gearmath.export.markdown import bullets, paragraph, table
 from gearmath.export.netlist import GROUND, LOGIC, PLUS, Netlist, netlist
 from gearmath.specs.hobbing import HobbingMachine
@@ -44,6 +44,8 @@ def parts_chapter(machine: HobbingMachine) -> Iterator[str]:
     yield ""
     found = netlist(machine)
     yield from table(("part", "what to buy", "what for"), [(p.name, p.what, p.purpose) for p in found.parts.values()])
+    yield from paragraph("And beside the circuit:")
+    yield from table(("part", "what to buy", "what for"), list(beside(machine, found)))
     yield from _power(found)
 
 
@@ -59,7 +61,7 @@ def _power(found: Netlist) -> Iterator[str]:
     ]
     heat = f"It needs a heat sink of {', '.join(sinks)}, its pad counted in." if sinks else "It needs no heat sink."
     yield from paragraph(
-        f"Supply: 9 V DC, {math.ceil(current * 15) / 10:.1f} A, of its own, not that of the motor. The parts take "
+        f"Supply: 9 V DC, {supply_amperes(found.current):.1f} A, of its own, not that of the motor. The parts take "
         f"{found.current} mA from +5 V at the most, so that U2 has to get rid of {words}; without a heat sink it "
         "stands "
         f"{bare:.1f} W in a cabinet at {_ROOM:g} degrees C. {heat} The metal of U2 is 0 V."

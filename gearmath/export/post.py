@@ -8,7 +8,8 @@ program computes. So no text of a program is kept twice, and a change of the wri
     KEY NUMBERS                        machine and job: mm, rad, s, as the planner has them
     roll NAME                          then its settings, motion, tooth, plunge and nodes: one path of the cutter
     pass ROLL LIFT ANGLE DWELL         one tooth space: where the path is raised and turned to
-    c TEXT, n TEXT, b TEXT             a line; a numbered line; a numbered line for every node but the first
+    c TEXT, n TEXT                     a line; a line with a number
+    r TEXT, b TEXT                     the same for every node but the first
     s TEXT, e TEXT                     a line where the sum is right, and one where the file was edited
 
 Slots are {NAME}, {TIME}, {UP}, {X} {Y} {Z} {A} {B} of a node, and {F} of the block that ends there; {{ is a brace.
@@ -18,6 +19,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,10 +29,12 @@ from gearmath.machine.planning.cut_plan import CuttingPlan, lift, middle_of_toot
 from gearmath.machine.planning.passes import Pass, tooth_angles
 from gearmath.machine.planning.path import Cut
 from gearmath.machine.writing.cutting import CLEARANCE, program_of
+from gearmath.machine.writing.linuxcnc.cutting import program_of as linuxcnc_program
 from gearmath.machine.writing.words import Positions, feed_number
 from gearmath.specs.milling_machine import AXES
 from gearmath.version import __version__
 
+_LINUXCNC = "linuxcnc"
 #: The name of a program while its text is turned into a form.
 _NAME = "GM_POST_NAME"
 _NUMBER = re.compile(r"-?\d+\.\d+")
@@ -41,16 +45,31 @@ _EDITED = (
 )
 
 
-def post_file(plan: CuttingPlan) -> str:
-    """The settings file of one planned member.
+@dataclass(frozen=True)
+class _Form:
+    """A plan, the paths of its cutters, and how positions stand in the text of the control's dialect."""
 
-    Raises InputError for a face hobbed member, ComputationError where a number of the program has no slot.
+    plan: CuttingPlan
+    positions: Positions
+    rolls: list[tuple[Cut, str, float, Pass]]
+
+
+def post_file(plan: CuttingPlan, dialect: str = "sinumerik") -> str:
+    """The settings file of one planned member, for programs in a dialect.
+
+    Raises InputError for a face hobbed member and for polynomial blocks, ComputationError where a number of the program
+    has no slot.
     """
     if plan.member.process == "face_hobbing":
         raise InputError(f"{plan.name}: face hobbed: gm-post writes the cuts of face milling")
-    rolls = _rolls(plan)
-    text = program_of(plan, _NAME).splitlines()
-    body = "".join(f"{line}\n" for line in (*_values(plan), *_roll_lines(plan, rolls), *_form(plan, rolls, text)))
+    if any(one.bends is not None for one in plan.passes):
+        raise InputError(f"{plan.name}: blocks = poly: gm-post writes straight blocks")
+    positions = Positions.of(plan.machine, plan.machine.tool_length)
+    if dialect == _LINUXCNC:
+        positions = replace(positions, modulo=False)  # A counts on
+    form = _Form(plan, positions, _rolls(plan))
+    text = (linuxcnc_program if dialect == _LINUXCNC else program_of)(plan, _NAME).splitlines()
+    body = "".join(f"{line}\n" for line in (*_values(form), *_roll_lines(form), *_lines(form, text)))
     return f"gm-post 1\nsum {_fnv(body.encode('ascii')):016x}\n{body}"
 
 
@@ -65,9 +84,8 @@ def _numbers(values: Iterable[float]) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 
-def _values(plan: CuttingPlan) -> Iterator[str]:
-    machine = plan.machine
-    positions = Positions.of(machine, machine.tool_length)
+def _values(form: _Form) -> Iterator[str]:
+    plan, machine, positions = form.plan, form.plan.machine, form.positions
     yield f"# gearmath {__version__}: {plan.name} on {machine.name}; mm, rad, s".encode("ascii", "replace").decode()
     yield f"decimals {positions.mm} {positions.degrees}"
     yield f"modulo {int(positions.modulo)}"
@@ -92,8 +110,9 @@ def _rolls(plan: CuttingPlan) -> list[tuple[Cut, str, float, Pass]]:
     return found
 
 
-def _roll_lines(plan: CuttingPlan, rolls: Sequence[tuple[Cut, str, float, Pass]]) -> Iterator[str]:
-    for cut, stage, _, one in rolls:
+def _roll_lines(form: _Form) -> Iterator[str]:
+    plan = form.plan
+    for cut, stage, _, one in form.rolls:
         flank = plan.member.flank(cut.flanks[0])
         motion = motion_of(flank)
         yield f"roll {cut.tool}_{stage}"
@@ -105,14 +124,13 @@ def _roll_lines(plan: CuttingPlan, rolls: Sequence[tuple[Cut, str, float, Pass]]
         yield from (f"node {_numbers([theta])}" for theta in one.theta)
 
 
-def _form(plan: CuttingPlan, rolls: Sequence[tuple[Cut, str, float, Pass]], text: Sequence[str]) -> Iterator[str]:
+def _lines(form: _Form, text: Sequence[str]) -> Iterator[str]:
     """The text of the program with its slots."""
+    plan, rolls = form.plan, form.rolls
     starts = [k for k, line in enumerate(text) if re.match(r"; section \d+:", line)]
     if len(starts) != len(plan.passes):
         raise ComputationError(f"{plan.name}: the program has {len(starts)} sections for {len(plan.passes)} passes")
-    up = Positions.of(plan.machine, plan.machine.tool_length).z(
-        max(float(one.axes[:, 2].max()) for one in plan.passes) + CLEARANCE
-    )
+    up = form.positions.z(max(float(one.axes[:, 2].max()) for one in plan.passes) + CLEARANCE)
     time = f"{plan.seconds:.1f} s"
     for line in text[: starts[0]]:
         if line.startswith(_SHA):
@@ -130,38 +148,46 @@ def _form(plan: CuttingPlan, rolls: Sequence[tuple[Cut, str, float, Pass]], text
         stage = plan.job.stages[number // len(plan.job.spaces) % len(plan.job.stages)][0]
         roll = each[one.tool, stage]
         yield f"pass {roll} {_numbers([lifts[roll], angles[one.tooth], one.dwell])}"
-        yield from _section(plan, one, up, text[start:end])
+        yield from _section(form, one, up, text[start:end])
 
 
-def _section(plan: CuttingPlan, one: Pass, up: str, lines: Sequence[str]) -> Iterator[str]:
+def _section(form: _Form, one: Pass, up: str, lines: Sequence[str]) -> Iterator[str]:
     """One section: positions before the first block, the blocks as one line, the rest."""
-    words = Positions.of(plan.machine, plan.machine.tool_length).words(one.axes)
+    words = form.positions.words(one.axes)
     slots = tuple(_NUMBER.sub(f"{{{axis}}}", word) for axis, word in zip(AXES, words[0], strict=True))
     feeds = [f"F{feed_number(60.0 / seconds)}" for seconds in one.seconds.tolist()]
     node = 0
     for line in lines:
-        number, _, block = line.partition(" ")
+        numbered, block = _split(line)
         parts = block.split(" ")
         following = [*words[node + 1], feeds[node]] if node < len(feeds) else []
-        if number.startswith("N") and following and parts[-len(following) :] == following:
+        if following and parts[-len(following) :] == following:
             if node == 0:
                 begin = " ".join(map(_literal, parts[: -len(following)]))
-                yield f"b {begin} {' '.join(slots)} F{{F}}"
+                yield f"{'b' if numbered else 'r'} {begin} {' '.join(slots)} F{{F}}"
             node += 1
+            continue
+        if line.startswith(";"):
+            yield _kept(line)
             continue
         if node == 0:
             parts = [slots[words[0].index(part)] if part in words[0] else _literal(part) for part in parts]
         parts = [_NUMBER.sub("{UP}", part) if part == up else part for part in parts]
-        yield _kept(line) if not number.startswith("N") else f"n {' '.join(parts)}"
+        yield f"{'n' if numbered else 'c'} {' '.join(parts)}"
     if node != len(feeds):
-        raise ComputationError(f"{plan.name}: {len(feeds) - node} blocks of section {one.label!r} have no slots")
+        raise ComputationError(f"{form.plan.name}: {len(feeds) - node} blocks of section {one.label!r} have no slots")
+
+
+def _split(line: str) -> tuple[bool, str]:
+    """Whether a line has a number, and what follows it."""
+    found = re.match(r"N\d+ ", line)
+    return (True, line[found.end() :]) if found else (False, line)
 
 
 def _kept(line: str) -> str:
     """A line without slots, but for the name of the program."""
-    if line.startswith("N"):
-        return f"n {_literal(line.partition(' ')[2])}"
-    return f"c {_literal(line).replace(_NAME, '{NAME}')}"
+    numbered, block = _split(line)
+    return f"{'n' if numbered else 'c'} {_literal(block).replace(_NAME, '{NAME}')}"
 
 
 def _literal(text: str) -> str:

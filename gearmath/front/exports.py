@@ -26,9 +26,10 @@ def export_c(
     """
     each = [what] if isinstance(what, Kernel | Expression) else list(what)
     made = [lower(one) if isinstance(one, Expression) else one for one in each]
-    files: dict[str, str] = {} if bits else contract_files()
+    files: dict[str, str] = {}
     for one in made:
         files |= (integer_kernel(one, bits) if bits else double_kernel(one)).files
+    files |= {} if bits else contract_files()
     write_folder(Path(folder), files)
     return [Path(folder) / name for name in files]
 

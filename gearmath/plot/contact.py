@@ -62,6 +62,9 @@ def _draw_v_h(axes: Axes, run: Mesh, limits: dict[str, Any] | None) -> None:
         axes.plot(line[:, 0], line[:, 1], "o-", color=AFTER, markersize=4, linewidth=1.2)
         for name, place in found.items():
             axes.annotate(name, (place[0], place[1]), textcoords="offset points", xytext=(5, 4), fontsize=7)
+    else:
+        words = "no V and H bring the contact\nto toe, mean or heel"
+        axes.text(0.5, 0.9, words, transform=axes.transAxes, ha="center", va="top", fontsize=8)
     V, H = run.assembly[:2]
     axes.plot([V], [H], "+", color=INK, markersize=9)
     for name, along in (("v", (1.0, 0.0)), ("h", (0.0, 1.0))):
@@ -69,7 +72,8 @@ def _draw_v_h(axes: Axes, run: Mesh, limits: dict[str, Any] | None) -> None:
             value, edge = at["value"], at["edge"]
             end = V + value * along[0], H + value * along[1]
             axes.plot([V, end[0]], [H, end[1]], color=BEFORE, linewidth=1.2, marker="|" if along[0] else "_")
-            axes.annotate(edge or "none", end, fontsize=6, color=BEFORE, ha="center")
+            words = edge or f"no edge to {value:+.2g}"
+            axes.annotate(words, end, fontsize=6, color=BEFORE, ha="center")
     axes.axhline(0, color=NOMINAL, linewidth=0.5)
     axes.axvline(0, color=NOMINAL, linewidth=0.5)
     axes.margins(0.25)

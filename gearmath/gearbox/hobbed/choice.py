@@ -19,6 +19,8 @@ GASHES = (8, 9, 10, 12, 14, 16, 18, 20, 24)
 FEEDS = (2.0, 1.5, 1.0, 0.75, 0.5, 0.4, 0.3, 0.2, 0.15, 0.1, 0.05)
 LADDERS: tuple[tuple[float, ...], ...] = (MICROSTEPS, LINES, GASHES, FEEDS)
 
+#: Feed whose marks are far below what the finest class allows.
+FINE_FEED = 0.2
 #: Cuts of a search at most: every step down all ladders, and back.
 MOST_CUTS = 2 * sum(map(len, LADDERS))
 
@@ -77,7 +79,7 @@ def choose(
     if why is not None:
         raise InputError(f"no class: {why}")
     if machine.errors != CuttingErrors():  # they stay, however fine the parts are
-        finest = [len(ladder) - 1 for ladder in LADDERS]
+        finest = [*(len(ladder) - 1 for ladder in LADDERS[:3]), FEEDS.index(FINE_FEED)]
         if not _is(reached(finest)[1], wanted):
             raise ComputationError(
                 f"class {wanted} is not reached with the finest parts: the errors of {machine.name} forbid it"

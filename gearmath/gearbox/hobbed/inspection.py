@@ -18,6 +18,7 @@ from gearmath.errors import InputError
 from gearmath.gearbox.dimensions import PIN, PinContact, Span, blank_diameter, pin_contact, span
 from gearmath.gearbox.hobbed.envelope import Cut
 from gearmath.gearbox.hobbed.job import HobbingJob
+from gearmath.gearbox.hobbed.root import undercut_radius
 from gearmath.gearbox.kernels import evaluate, kernel
 
 Side = Literal["right", "left"]
@@ -190,7 +191,12 @@ def form_length(job: HobbingJob, tip: float) -> float:
     # the edges of two gashes meet there: the upper one must have a straight edge still
     ((flat,),) = (evaluate("generating_flat", tip, job.hob.starts, job.gear.teeth, job.hob.gashes),)
     per_gash = 2 * math.sqrt(2 * flat / tip) * job.base_radius  # length of roll from gash to gash
-    return float(lengths[cut[0]] + per_gash)
+    lowest = float(lengths[cut[0]] + per_gash)
+    if cut[0]:
+        return lowest
+    # the straight edges reach down to the base cylinder: the tips of the hob may cut the involute away again
+    undercut = undercut_radius(job, math.hypot(tip, job.base_radius))
+    return lowest if undercut is None else max(lowest, math.sqrt(undercut**2 - job.base_radius**2) + per_gash)
 
 
 def _middle(job: HobbingJob, form: float, end: float) -> float:

@@ -227,7 +227,7 @@ class ControlState(State):
             return 0.0
         zero = self.setup.zero[AXES.index(axis)]
         length = self.length if axis == "Z" else 0.0
-        return length - zero + (0.0 if suppressed else self.frame[axis])
+        return length - zero + (0.0 if suppressed else self.frame(axis))
 
     def _turned(self, axis: str, block: Block, value: float, now: float | None, rapid: bool) -> float:
         """The position to which DC, ACP or ACN turn a modulo axis."""
@@ -302,6 +302,6 @@ class ControlState(State):
         machine = {axis: self.position[axis] + zero[axis] for axis in AXES if axis in block.words}
         if "A" in machine and not self.counting.get("A"):
             machine["A"] %= 360.0
-        frame = self.frame | {"Z": self.frame["Z"] + self.length}
-        work = {axis: value - frame[axis] for axis, value in machine.items()}
+        added = {axis: self.frame(axis) + (self.length if axis == "Z" else 0.0) for axis in machine}
+        work = {axis: value - added[axis] for axis, value in machine.items()}
         self.latch = Latch(machine, work, touched is not None)

@@ -153,15 +153,14 @@ class State:
         """What the tool table adds to Z now [mm]."""
         return self.setup.length(self.tool) if self.edge else 0.0
 
-    @property
-    def frame(self) -> dict[str, float]:
-        """What all frames together add to a programmed position of each axis, by machine coordinates."""
-        return {axis: by + self.shift.get(axis, 0.0) for axis, by in zip(AXES, self.setup.offset, strict=True)}
+    def frame(self, axis: str) -> float:
+        """What all frames together add to a programmed position of an axis, in machine coordinates."""
+        return self.setup.offset[AXES.index(axis)] + self.shift.get(axis, 0.0)
 
     def frame_part(self, axis: str, part: str) -> float:
         """One part of all frames together: TR shift, RT rotation, MI mirroring, SC scale."""
         if part == "TR":
-            return self.frame[axis]
+            return self.frame(axis)
         values = {"RT": self.setup.turned, "MI": self.setup.mirrored, "SC": self.setup.scaled}[part]
         return values["XYZ".index(axis)]
 

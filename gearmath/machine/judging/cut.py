@@ -54,7 +54,8 @@ def beside_the_path(runs: list[CuttingRun], member: Member, machine: MillingMach
     """
     half = machine.control.half_increments
     rounding = math.sqrt(3) * half[0] + (2 * FROM_AXIS + FROM_CUTTER) * half[3]
-    limit = max(allowed(stated), 2.0 * rounding)
+    # rounded X and Y are off, and so is the cradle rotation found from them, by which A is compared
+    limit = max(allowed(stated), 3.0 * rounding)
     for run in runs:
         rows, off = off_the_path(run, member, machine)
         aside = np.abs(off * np.array([1.0, 1.0, 0.0, 1.0, 1.0])).sum(axis=1)

@@ -29,7 +29,7 @@ def check_determined(name: str, group: Sequence[str], targets: Sequence[FlankTar
         raise InputError(
             f"{name} {' and '.join(group)}: {len(known)} points are left of "
             f"{sum(target.grid_points for target in targets)}: too few to tell what {len(names)} settings do at the "
-            "others; measure them, or free fewer settings"
+            "others; measure them, or name fewer settings with --settings"
         )
 
 
@@ -60,5 +60,5 @@ def refuse_worse(
         names = ", ".join(variable.label for variable in result.variables) or "no setting"
         raise ComputationError(
             f"{name}: the correction by {names} makes the {' and '.join(worse)} flank worse (RMS {figures}); nothing "
-            "is written; free other settings"
+            "is written; name other settings with --settings"
         )

@@ -243,7 +243,7 @@ def evaluate_member(
     suspected: tuple[str, ...] = ()
     if not closing.topography_withheld:
         in_full = {flank: figures.topographies for flank, figures in flanks.items()}
-        suspected = suspicions(judged, member, name, in_full, seat)
+        suspected = suspicions(file, judged, member, name, in_full, seat)
     progress(1)
     return MemberEvaluation(
         name,

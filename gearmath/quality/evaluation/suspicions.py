@@ -2,8 +2,8 @@
 
 A wrong radius of the tip, or a wrong zero, moves all points of both flanks out alike; work that stands off its seat
 along its axis moves them as one setting does; an uncertainty far below the scatter of the points is not that of this
-measurement. None of them can be told from an error of the gear by points alone, so they are said, and nothing is taken
-out.
+measurement; teeth or flanks that agree to the last digit, where points scatter, were copied. Most of this cannot be
+told from an error of the gear by points alone, so it is said, and nothing is taken out.
 """
 
 from __future__ import annotations
@@ -30,14 +30,27 @@ _LEAST_AXIAL, _SIGNIFICANT, _EXPLAINS = 0.02, 3.0, 0.8
 _LEAST_POINTS = 30
 #: So many times the stated uncertainty is no chance, and less than so much [mm] is rounding of the file.
 _FAR, _ROUNDED = 3.0, 2e-5
+#: Teeth that scatter by less [mm] are alike; less scatter on a grid [mm] is none of a probe.
+_LEAST_UNLIKE, _SCATTERS = 3e-3, 5e-5
+#: So much of the values of a tooth are different ones, or they are rounded too coarsely to tell copies.
+_FINE = 0.3
+#: Points that agree to the last digit by no chance, and pairs of teeth that are named.
+_LEAST_SAME, _MOST_NAMED = 2, 4
 
 
 def suspicions(
-    file: FlankFile, member: Member, name: str, flanks: dict[str, tuple[Topography, ...]], seat: Registration | None
+    raw: FlankFile,
+    file: FlankFile,
+    member: Member,
+    name: str,
+    flanks: dict[str, tuple[Topography, ...]],
+    seat: Registration | None,
 ) -> tuple[str, ...]:
-    """Sentences on a measurement; ``file`` is without clamping and rotation, ``flanks`` its teeth in full."""
+    """Sentences on a measurement: ``raw`` as read, ``file`` without clamping and rotation, ``flanks`` in full."""
     offset = tuple(_offset(flanks))
-    return (*offset, *([] if offset else _axial(_in_full(file, flanks), member, name)), *_scatter(file, flanks, seat))
+    axial = [] if offset else _axial(_in_full(file, flanks), member, name)
+    scatter = min((_noise(each[0]) for each in flanks.values() if each), default=math.nan)
+    return (*offset, *axial, *_scatter(file, scatter, seat), *_copies(raw, scatter))
 
 
 def _offset(flanks: dict[str, tuple[Topography, ...]]) -> Iterator[str]:
@@ -83,18 +96,46 @@ def _axial(file: FlankFile, member: Member, name: str) -> Iterator[str]:
         )
 
 
-def _scatter(file: FlankFile, flanks: dict[str, tuple[Topography, ...]], seat: Registration | None) -> Iterator[str]:
-    """Whether the points scatter far more than their uncertainty says."""
-    stated = stated_noise(file)
-    found = [_noise(each[0]) for each in flanks.values() if each]
-    if seat is not None:
-        found.append(seat.noise)
-    scatter = min((one for one in found if math.isfinite(one)), default=math.nan)
-    if scatter > _FAR * max(stated, _ROUNDED):
+def _scatter(file: FlankFile, on_grid: float, seat: Registration | None) -> Iterator[str]:
+    """Whether the points scatter far more than their uncertainty says, or those of many teeth than those of one."""
+    stated, of_teeth = stated_noise(file), math.nan if seat is None else seat.noise
+    scatter = np.nanmin([on_grid, of_teeth, math.inf])
+    if math.isfinite(scatter) and scatter > _FAR * max(stated, _ROUNDED):
         yield (
             f"u_um of the file, {stated * 1000:.3g} um, is far below the scatter of its points, {scatter * 1000:.2f} "
             "um: all uncertainties that follow from it are too small"
         )
+    if of_teeth > max(_FAR * on_grid, _LEAST_UNLIKE):
+        yield (
+            f"points scatter by {of_teeth * 1000:.1f} um from tooth to tooth, and by {on_grid * 1000:.2f} um on the "
+            "grid of a tooth: form that differs between the teeth, dirt, or a part of the run that was disturbed"
+        )
+
+
+def _copies(file: FlankFile, scatter: float) -> Iterator[str]:
+    """Teeth, flanks or points touched again that agree to the last digit, where the points scatter."""
+    exact = np.round(file.deviation, 6)
+    numbers, counts = np.unique(file.tooth[np.isfinite(exact)], return_counts=True)
+    fullest = exact[np.isfinite(exact) & (file.tooth == numbers[np.argmax(counts)])]
+    if not scatter > _SCATTERS or len(np.unique(fullest)) < _FINE * len(fullest):
+        return
+    places = zip(file.flank.tolist(), file.tooth.tolist(), file.row.tolist(), file.col.tolist(), strict=True)
+    at = {place: value for place, value in zip(places, exact.tolist(), strict=True) if math.isfinite(value)}
+    teeth = sorted({tooth for _, tooth, _, _ in at})
+    of = {tooth: {(f, r, c): value for (f, t, r, c), value in at.items() if t == tooth} for tooth in teeth}
+    copied = [(one, two) for k, one in enumerate(teeth) for two in teeth[k + 1 :] if _is_copy(of[one], of[two])]
+    if copied:
+        words = ", ".join(f"{one} and {two}" for one, two in copied[:_MOST_NAMED])
+        yield f"teeth {words} have the same deviations to the last digit, which no measurement gives: were they copied?"
+    concave, convex = ({(t, r, c): value for (f, t, r, c), value in at.items() if f == flank} for flank in FLANKS)
+    if _is_copy(concave, convex):
+        yield "both flanks have the same deviations to the last digit, which no measurement gives: was one copied?"
+
+
+def _is_copy(one: dict[tuple, float], two: dict[tuple, float]) -> bool:
+    """Whether the deviations at all common places, two or more, are the same."""
+    common = one.keys() & two.keys()
+    return len(common) >= _LEAST_SAME and all(one[place] == two[place] for place in common)
 
 
 def _noise(topography: Topography) -> float:

@@ -140,7 +140,8 @@ def run(
     ComputationError if the workers break down.
     """
     workers = workers or os.cpu_count() or 1
-    with Results(file, study.sha256, study.blocks, BLOCK, study.function.size1_out(0)) as results:
+    # the name of a study takes as long as a small one
+    with Results(file, study.sha256 if file else "", study.blocks, BLOCK, study.function.size1_out(0)) as results:
         missing = results.missing()
         progress(study.columns.count - sum(len(_rows(study, k)) for k in missing))
         computed = _computed(study, missing, executor, workers)

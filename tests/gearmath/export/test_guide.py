@@ -109,3 +109,16 @@ def test_tables_have_the_cells_of_their_heads(name: str) -> None:
     for block in re.findall(r"(?:^\|.*\n)+", guide(machine(name), "gearbox"), flags=re.MULTILINE):
         cells = {len(re.findall(r"(?<!\\)\|", line)) for line in block.splitlines()}
         assert len(cells) == 1, block
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_list_of_parts_has_motor_supplies_fuses_and_sockets(name: str) -> None:
+    """A fuse carries what the supply must give at most, and each is listed once; every DIP has a socket."""
+    text = guide(machine(name), "gearbox")
+    parts = text[text.index("## Parts") : text.index("## Wiring")]
+    rows = {cells[0].strip(): cells[1] for line in parts.splitlines() if len(cells := line.split("|")[1:]) == 4}
+    assert {"M1", "G1", "G2", "F1", "F2", "F3", "KM1", "XU1"} <= set(rows)
+    milliamps = int(re.search(r"The parts take (\d+) mA", " ".join(parts.split()))[1])
+    assert milliamps < int(re.search(r"fuse (\d+) mA", rows["F2"])[1]) <= 2 * milliamps
+    dips = {part for part, what in rows.items() if "DIP-" in what and not what.startswith(" socket")}
+    assert {f"X{part}" for part in dips} <= set(rows)

@@ -18,6 +18,7 @@ from gearmath.machine.control.executor import execute
 from gearmath.machine.planning.cut_plan import CuttingJob, CuttingPlan, cutting_plan
 from gearmath.machine.planning.path import axis_positions
 from gearmath.machine.writing.cutting import program_of
+from gearmath.machine.writing.linuxcnc.cutting import program_of as linuxcnc_program
 from gearmath.specs.bevel_set import BevelSet
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.toml import bundled
@@ -101,6 +102,17 @@ def test_every_kind_of_machine_and_job_is_written_alike(
         assert post(gm_post, post_file(plan), tmp_path) == (program_of(plan, "CUT"), "")
 
 
+@pytest.mark.parametrize(("name", "member"), [("nasa_tp3096_12x36", "pinion"), ("crown_gear_formate_14x39", "gear")])
+def test_program_for_linuxcnc_is_that_of_its_python_writer(
+    name: str, member: str, vertical: MillingMachine, gm_post: Path, tmp_path: Path
+) -> None:
+    """No numbers of blocks, A counts on, and Z of the tip: the words come from the settings file."""
+    machine = vertical.model_copy(update={"z_reference": "tip"})
+    plan = planned(load_pair(bundled(f"{name}.toml")), member, machine, spaces=(0, 3), roughing_stock=0.2)
+    text = post_file(plan, "linuxcnc")
+    assert post(gm_post, text, tmp_path, name="CUT.ngc") == (linuxcnc_program(plan, "CUT"), "")
+
+
 def test_command_writes_a_settings_file_for_each_member(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     main(["export", "cnc", "crown_gear_formate_14x39.toml", "-o", str(tmp_path / "lib")])
     for member in ("pinion", "gear"):
@@ -168,7 +180,7 @@ def small(gear_set: BevelSet, vertical: MillingMachine) -> str:
         (r"^node .*\n", "", "roll 0: has 0 nodes, must have at least 2"),
         (r"\{X\}", "{W}", r"\{W\}: no such slot here"),
         (r"\{X\}", "{X", r"\{X Y\{Y\}: no such slot here"),
-        (r"^n G17", "q G17", "q: must be one of c n b s e pass"),
+        (r"^n G17", "q G17", "q: must be one of c n r b s e pass"),
         (r"^pass .*\n", "", r"b: stands before the first pass|there is no pass to write"),
         (r"^c ; PART.*", "c \x01", "no settings file of gm-post"),
         (r"^# .*", "# \x80", "is not printable ASCII"),

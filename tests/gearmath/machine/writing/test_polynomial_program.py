@@ -175,6 +175,11 @@ def test_without_its_word_poly_the_control_drives_straight_and_mill_sees_it(degr
     assert any("leaves" in sentence for sentence in judged(straight, name, member, MACHINES[degree]))
 
 
+def test_a_tenth_of_the_tolerance_is_kept_and_passes():
+    name, member = ROLLING[0]
+    assert judged(text_of(name, member, 1e-5), name, member) == []
+
+
 def test_one_block_without_its_word_is_seen_too():
     name, member = ROLLING[0]
     text = text_of(name, member)

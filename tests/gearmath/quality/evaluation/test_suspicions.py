@@ -84,3 +84,19 @@ def test_compensate_says_first_that_the_work_may_stand_off_its_seat(flanks, comm
     status, out, _ = command("compensate", NASA, "--measured", source, "-o", tmp_path / "corrected.toml")
     assert status == 0
     assert out.startswith("the work may stand +")
+
+
+def test_teeth_and_flanks_that_agree_to_the_last_digit_are_said_to_be_copied(flanks, gear_set) -> None:
+    file = flanks["pinion"]
+    concave, convex = (file.flank == flank for flank in FLANKS)
+    change = np.zeros(len(file))
+    change[convex] = file.deviation[concave] - file.deviation[convex]
+    (line,) = evaluate_member(moved(file, change), gear_set.pinion, "pinion").first
+    assert line.startswith("both flanks have the same deviations to the last digit")
+    turn = 2 * np.pi / 12
+    about = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+    copy = replace(file, tooth=file.tooth + 1, point=file.point @ about.T, normal=file.normal @ about.T)
+    (line,) = evaluate_member(join([file, copy]), gear_set.pinion, "pinion").first
+    assert line.startswith("teeth 0 and 1 have the same deviations to the last digit")
+    other = moved(copy, 0.5 * UM * np.random.default_rng(9).standard_normal(len(copy)))
+    assert evaluate_member(join([file, other]), gear_set.pinion, "pinion").first == ()

@@ -91,6 +91,7 @@ def test_lines_act_in_the_order_of_the_language(body: str, place: float) -> None
 def test_times_are_those_of_feed_and_inverse_time() -> None:
     path = path_of("G1 X3 Y4 F60\nG93 G1 X4 F120\nG94 F90\nG1 A30")
     assert path.seconds[-3:].tolist() == pytest.approx([5.0, 0.5, 20.0])
+    assert [halt.seconds for halt in path_of("G4 P2.5").halts] == [2.5]
 
 
 @pytest.mark.parametrize(
