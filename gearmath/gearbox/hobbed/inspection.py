@@ -29,6 +29,8 @@ TRACED = 4
 PROFILE_POINTS, PER_FEED, HELIX_POINTS = 161, 10, (161, 801)
 #: Of the length between form circle and tip that is left out at the tip [unconfirmed: ISO 1328-1].
 TIP_LEFT_OUT = 0.08
+#: Least part of the flank, as deep as the straight edges of the basic rack at most [modules], that can be measured.
+LEAST_PART, STRAIGHT_DEPTH = 0.1, 2.0
 #: Lengths of roll among which the form circle is found.
 _FORM_STEPS = 400
 
@@ -160,7 +162,7 @@ def layout(job: HobbingJob) -> Layout:
     gear, base = job.gear, job.base_radius
     tip = math.sqrt(max(0.0, (blank_diameter(gear) / 2) ** 2 - base**2))
     form = form_length(job, tip)
-    if not form < 0.9 * tip:
+    if not tip - form > LEAST_PART * min(tip, STRAIGHT_DEPTH * gear.module / math.sin(job.transverse[1])):
         raise InputError(f"teeth = {gear.teeth}: the hob leaves no involute between form circle and tip")
     end = tip - TIP_LEFT_OUT * (tip - form)
     middle = _middle(job, form, end)

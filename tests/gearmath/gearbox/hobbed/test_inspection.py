@@ -68,7 +68,7 @@ def test_gear_that_the_standard_does_not_cover_has_figures_without_classes(of, w
     assert overall(rows) is None
 
 
-@pytest.mark.parametrize("teeth", [5, 6, 7, 9, 12, 17, 23, 100, 250])
+@pytest.mark.parametrize("teeth", [5, 6, 7, 9, 12, 17, 23, 100, 250, 300, 600])
 def test_gears_of_every_number_of_teeth_are_measured_without_a_gap(teeth):
     """Undercut ones too: all figures are finite."""
     of = job(teeth, 1.0, 5.0)
