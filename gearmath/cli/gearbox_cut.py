@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
 from gearmath.cli.common import JSON, NewFile, Number, bar, echo_json
 
@@ -19,6 +20,21 @@ if TYPE_CHECKING:
 
 #: Suffixes of a chart.
 CHARTS = (".png", ".svg", ".html")
+#: Options that have no meaning on the machines of a profile, by parameter.
+_MEANINGLESS = {
+    "hobbing": {"pitch": "--pitch", "length": "--length"},
+    "lathe": {
+        "teeth": "--teeth",
+        "hob": "--hob",
+        "helix": "--helix",
+        "way": "--cut",
+        "shift": "--shift",
+        "feed": "--feed",
+        "width": "--width",
+        "points": "--csv",
+        "flanks": "--stl",
+    },
+}
 
 
 @click.command()
@@ -29,14 +45,31 @@ CHARTS = (".png", ".svg", ".html")
 @click.option("--starts", type=int, help="Starts of the hob, instead of the machine file's; of the thread.")
 @click.option("--helix", type=float, help="Helix angle in degrees.")
 @click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of helix or thread; right if left out.")
-@click.option("--cut", "way", type=click.Choice(["climb", "conventional"]), default="climb", show_default=True)
+@click.option(
+    "--cut",
+    "way",
+    type=click.Choice(["climb", "conventional"]),
+    default="climb",
+    show_default=True,
+    help="Sense of the feed: climb hobbing or conventional.",
+)
 @click.option("--shift", type=float, default=0.0, show_default=True, help="Profile shift in modules.")
-@click.option("--feed", type=Number(0.01, 10.0, "mm per turn of the table"), default=0.5, show_default=True)
+@click.option(
+    "--feed",
+    type=Number(0.01, 10.0, "mm per turn of the table"),
+    default=0.5,
+    show_default=True,
+    help="Axial feed, in mm per turn of the table.",
+)
 @click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
 @click.option("--length", type=Number(1.0, 3000.0, "mm"), default=100.0, show_default=True, help="Of a thread, in mm.")
-@click.option("--rpm", type=float, help="Speed of hob or spindle; the highest within the limits if left out.")
+@click.option("--rpm", type=float, help="Speed of hob or spindle in rpm; the highest within the limits if left out.")
 @click.option(
-    "--seconds", type=Number(0.0, 86_400.0, "s"), default=0.0, help="How long the hob has run before the cut."
+    "--seconds",
+    type=Number(0.0, 86_400.0, "s"),
+    default=0.0,
+    show_default=True,
+    help="How long the hob has run before the cut, in s.",
 )
 @click.option("--rule", type=click.Choice(["exact", "ideal", "float"]), default="exact", show_default=True)
 @click.option("--compare", type=click.Choice(["ideal", "exact", "float"]), help="Another rule beside it.")
@@ -55,10 +88,20 @@ def cut(machine: str, as_json: bool, chart: Path | None, points: Path | None, co
     if chart is not None and chart.suffix.lower() not in CHARTS:
         raise click.UsageError(f"--plot {chart}: must end in .png, .svg or .html")
     loaded = find_hobbing_machine(machine)
+    _refuse_meaningless(loaded)
     if loaded.profile == "lathe":
-        _cut_thread(loaded, as_json, chart, points, compare, job)
+        _cut_thread(loaded, as_json, chart, compare, job)
     else:
         _cut_gear(loaded, as_json, chart, points, compare, job)
+
+
+def _refuse_meaningless(machine: HobbingMachine) -> None:
+    """Raise UsageError for an option that would be given in vain."""
+    context = click.get_current_context()
+    for parameter, option in _MEANINGLESS[machine.profile].items():
+        if context.get_parameter_source(parameter) is ParameterSource.COMMANDLINE:
+            made = "thread, which a lathe cuts" if machine.profile == "lathe" else "gear, which a hobbing machine cuts"
+            raise click.UsageError(f"{machine.name}: {option} has no meaning for a {made}")
 
 
 def _cut_gear(
@@ -73,8 +116,8 @@ def _cut_gear(
     from gearmath.gearbox.hobbed.contributions import sources
     from gearmath.gearbox.hobbed.setup import blame, cut_and_inspect, setup
 
-    if job["teeth"] is None or job["pitch"] is not None:
-        raise click.UsageError(f"{machine.name} is a hobbing machine: give --teeth, and no --pitch")
+    if job["teeth"] is None:
+        raise click.UsageError(f"{machine.name} is a hobbing machine: give --teeth")
     climb = job["way"] == "climb"
     prepared = setup(
         machine,
@@ -158,7 +201,6 @@ def _cut_thread(
     machine: HobbingMachine,
     as_json: bool,
     chart: Path | None,
-    points: Path | None,
     compare: str | None,
     job: dict[str, Any],
 ) -> None:
@@ -167,11 +209,9 @@ def _cut_thread(
     from gearmath.gearbox.job import plan_thread
     from gearmath.specs.ratio import pitch_of
 
-    if job["pitch"] is None or any(job[key] is not None for key in ("teeth", "hob", "helix")):
-        raise click.UsageError(f"{machine.name} is a lathe: give --pitch, and no --teeth, --hob or --helix")
-    if points is not None or job["flanks"] is not None:
-        raise click.UsageError("--csv and --stl have no meaning for a thread")
-    given = {"starts": job["starts"] or 1, "hand": job["hand"] or "right", "rpm": job["rpm"]}
+    if job["pitch"] is None:
+        raise click.UsageError(f"{machine.name} is a lathe: give --pitch")
+    given = {"starts": 1 if job["starts"] is None else job["starts"], "hand": job["hand"] or "right", "rpm": job["rpm"]}
     planned = plan_thread(machine, pitch_of(job["pitch"]), **given)
     rules = [job["rule"]] + ([compare] if compare not in (None, job["rule"]) else [])
     traces = [cut_thread(machine, planned, job["length"], rule, job["seconds"]) for rule in rules]

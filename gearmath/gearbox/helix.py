@@ -128,7 +128,9 @@ def helical_ratio(
     Raises InputError where the angle is none, or where a feed must be given or must not.
     """
     if not 0.0 < helix.angle <= STEEPEST:
-        raise InputError(f"helix = {helix.angle:g}: must be more than 0 and at most {STEEPEST:g} degrees")
+        raise InputError(
+            f"helix = {helix.angle:g}: must be more than 0 and at most {STEEPEST:g} degrees; --hand says which way"
+        )
     if machine.feed is None:
         return _fed(machine, teeth, starts, module, helix)
     if helix.feed is not None:

@@ -92,7 +92,7 @@ def setup(
     if len(machine.errors.hob_starts_um) not in (0, tool.starts):
         raise InputError(
             f"{machine.name}: errors.hob_starts_um has {len(machine.errors.hob_starts_um)} values, the hob has "
-            f"{tool.starts} starts"
+            f"{tool.starts} start{'s' * (tool.starts > 1)}"
         )
     train = DriveTrain(machine, job, planned.ratio, rule, planned.rpm, seconds)
     return CutSetup(train, layout(job), chosen.name, chosen.diameter is None)
