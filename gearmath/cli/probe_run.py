@@ -78,13 +78,15 @@ def probe(
     from gearmath.machine.measuring.artefacts import Artefacts
     from gearmath.machine.measuring.checked import refuse_faults
     from gearmath.machine.measuring.judge import judge_calibration, judge_probing
-    from gearmath.machine.measuring.probe_run import run_touches, touch_count, touches_artefacts
+    from gearmath.machine.measuring.probe_run import run_touches, touch_count, touches_artefacts, writes_touches
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
 
     text = program_text(program)
+    if not writes_touches(text):
+        raise InputError(f"{program}: writes no touches: it is no probing or calibration program of gearmath")
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     shop = load_simulated_machine(find(errors)) if errors else None
     setup = Setup.of(milling_machine, known.length)
@@ -104,6 +106,8 @@ def probe(
         name, spec = member_of(pair, member, stated_member(text))
         there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
         count = touch_count(text, str(program), setup)
+        if not count:
+            raise InputError(f"{program}: touches nothing of the member: no touch is measured before its end")
         _check_clear(text, program, at_member, milling_machine, shop, 3 * count + text.count("\n"))
         with bar(text.count("MEAS=1"), "block") as progress:
             faults = judge_probing(text, str(program), spec, name, milling_machine, known, progress)

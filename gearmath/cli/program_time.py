@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gearmath.cli.common import JSON, MACHINE, about, bar, echo_json, plot, save_plot, table
+from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.machine.judging.trajectory import Trajectory
@@ -24,16 +25,19 @@ def program_time(program: Path, machine: str, as_json: bool, picture: Path | Non
 
     Speed, acceleration and jerk of every axis bound the motion, the tolerance of the path mode the speed at corners.
     Programs for LinuxCNC, and others where [control] kind is linuxcnc, are blended as LinuxCNC does it. Dwells take
-    their time, tool changes none.
+    their time, tool changes none. Programs that probe are refused: their time depends on where they touch.
     """
     from gearmath.machine.control.executor import execute
     from gearmath.machine.control.state import Setup
     from gearmath.machine.control.text import is_for_linuxcnc, program_text
     from gearmath.machine.judging.trajectory import trajectory
+    from gearmath.machine.measuring.probe_run import writes_touches
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     milling_machine, text = load_milling_machine(find(machine)), program_text(program)
+    if writes_touches(text):
+        raise InputError(f"{program}: probes: its time depends on where it touches, and is not computed")
     if is_for_linuxcnc(text):
         control = milling_machine.control.model_copy(update={"kind": "linuxcnc"})
         milling_machine = milling_machine.model_copy(update={"control": control})

@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from gearmath.bevel.flank import blank_grid
+from gearmath.errors import InputError
 from gearmath.machine.bodies.probe_tip import probe_height
 from gearmath.machine.control.executor import parsed
 from gearmath.machine.control.state import Probe, Setup
@@ -92,6 +93,8 @@ def _judged(
     setup = Setup.of(machine, calibration.length)
     seen = watched(text, name, probe, setup)
     check_ended(seen.run, name)
+    if not seen.ways:
+        raise InputError(f"{name}: touches nothing: no touch is measured before its end")
     size = max((len(content) for content in seen.run.files.values()), default=0) / 1000
     linuxcnc = is_for_linuxcnc(text)
     found = [] if linuxcnc else [*outside_faults(parsed(text, name))]

@@ -20,6 +20,11 @@ _BACK = 1e-3
 _RUN_PARAMETER = 102
 
 
+def writes_touches(text: str) -> bool:
+    """Whether a program is one that probes: it writes touches."""
+    return ",".join(COLUMNS) in text or touches_artefacts(text)
+
+
 def touches_artefacts(text: str) -> bool:
     """Whether a program writes touches on ring and spheres, and not on a member."""
     return ",".join(CALIBRATION_COLUMNS) in text

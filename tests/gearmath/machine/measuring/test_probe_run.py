@@ -182,3 +182,17 @@ def test_command_refuses_a_program_that_collides_and_one_of_the_mate(gear_set, r
         tmp_path / "raw.csv",
     )
     assert [path.name for path in tmp_path.iterdir()] == ["PP.MPF"]
+
+
+def test_a_program_that_touches_nothing_is_refused_and_one_that_touches_has_no_time(gear_set, refused, tmp_path):
+    """A cutting program by its words; a probing one that ends before its first touch when it is run."""
+    program, out = tmp_path / "PP.MPF", ("--set", NASA, "-o", tmp_path / "raw.csv")
+    program.write_text("; PP\nN10 G90 G94 G54\nN20 M30\n")
+    refused("PP.MPF: writes no touches", "probe", program, *out)
+    text = probing_program(gear_set, "gear", MACHINE, PROBE, "PP", topography=())
+    program.write_text(text)
+    refused("PP.MPF: probes: its time depends", "nc", "time", program)
+    start = text.index("MEAS=1")
+    begin = text.rindex("\n", 0, start) + 1
+    program.write_text(text[:begin] + "N9990 M30\n")
+    refused("PP.MPF: touches nothing", "probe", program, *out)
