@@ -18,6 +18,8 @@ def _power_of_ten(value: int) -> int:
     return value
 
 
+#: Name of the probe as a tool, and its number where a file does not give it one.
+PROBE, PROBE_NUMBER = "PROBE", 99
 _Increments = Annotated[int, Field(ge=100, le=1_000_000), AfterValidator(_power_of_ten)]
 
 
@@ -54,7 +56,10 @@ class ControlSettings(Spec):
 
     @model_validator(mode="after")
     def _a_number_each(self) -> ControlSettings:
-        if len(set(self.tool_numbers.values())) < len(self.tool_numbers):
+        numbers = {PROBE: PROBE_NUMBER} | self.tool_numbers
+        if len(set(numbers.values())) < len(numbers):
+            if PROBE not in self.tool_numbers and PROBE_NUMBER in self.tool_numbers.values():
+                raise ValueError(f"tool_numbers: {PROBE_NUMBER} is that of the probe, unless {PROBE} is given another")
             raise ValueError("tool_numbers must give every tool a number of its own")
         return self
 

@@ -17,8 +17,6 @@ from gearmath.specs.milling_machine import AXES, MillingMachine
 
 #: Parameters that choose the parts of a program, from 1; 0 for all. They are the R90 and R91 of the other dialect.
 FIRST, LAST = "#3090", "#3091"
-#: Number of the probe where the machine file has none.
-PROBE, PROBE_NUMBER = "PROBE", 99
 #: What a zero offset, and a tool length in the table that should be as the machine file has it, may differ by. [mm]
 _SAME, _SAME_LENGTH = 0.0005, 1.0
 _OFFSETS = {"G54": 5221, "G55": 5241, "G56": 5261, "G57": 5281}

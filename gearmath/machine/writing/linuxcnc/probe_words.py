@@ -14,8 +14,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from gearmath.machine.planning.clear_space import Room
 from gearmath.machine.planning.targets import POSITIONING_FEED
-from gearmath.machine.writing.linuxcnc.dialect import FIRST, LAST, PROBE, PROBE_NUMBER, Dialect, message
+from gearmath.machine.writing.linuxcnc.dialect import FIRST, LAST, Dialect, message
 from gearmath.machine.writing.probe_words import Blocks, ProbingPlan
+from gearmath.specs.control import PROBE, PROBE_NUMBER
 from gearmath.specs.milling_machine import AXES, MillingMachine
 from gearmath.specs.touch_csv import COLUMNS, HELD, PLANNED
 
