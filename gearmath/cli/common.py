@@ -69,7 +69,7 @@ class Number(click.FloatRange):
 
 
 class NewFile(click.Path):
-    """A file to write: that it can be written there is checked before any work is done."""
+    """A file to write: that it can be written there, by no other option too, is checked before any work is done."""
 
     def __init__(self) -> None:
         super().__init__(path_type=Path, dir_okay=False)
@@ -79,6 +79,11 @@ class NewFile(click.Path):
 
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
         check_place(path)
+        if ctx is not None and param is not None:
+            taken = ctx.meta.setdefault(f"{__name__}.written", {})
+            first = taken.setdefault(path.resolve(), param.opts[0])
+            if first != param.opts[0]:
+                raise InputError(f"{param.opts[0]} {path}: {first} is written there already, they must differ")
         return path
 
 
@@ -164,7 +169,7 @@ def about(file: Path) -> Iterator[None]:
         yield
     except InputError as error:
         words = str(error)
-        raise InputError(words if words.startswith(f"{file}: ") else f"{file}: {words}") from error
+        raise InputError(words if words.startswith((f"{file}: ", f"{file}, ")) else f"{file}: {words}") from error
 
 
 def echo_json(values: Any) -> None:

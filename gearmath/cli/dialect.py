@@ -25,26 +25,43 @@ CONFIGURATION = click.option(
 )
 
 
-def dialect_of(machine: MillingMachine, control: str | None, configuration: bool, sheet: Path | None) -> str:
+def dialect_of(machine: MillingMachine, control: str | None, beside: Path | None, sheet: Path | None) -> str:
     """The control that a program is for.
 
-    Raises InputError where options do not go with it, or the machine has another.
+    Raises InputError where options do not go with it, the machine has another, or its configuration cannot be written
+    ``beside`` a program.
     """
+    from gearmath.files import check_place
+    from gearmath.machine.writing.linuxcnc.configuration import SUFFIXES
+
     dialect = machine.control.dialect(control)
     if dialect == LINUXCNC and sheet is not None:
         raise InputError("--sheet: set-up sheets describe programs for a SINUMERIK, not for LinuxCNC")
-    if dialect != LINUXCNC and configuration:
+    if dialect != LINUXCNC and beside is not None:
         raise InputError("--configuration goes with --control linuxcnc")
+    if beside is not None:
+        if beside.suffix.lower() in SUFFIXES:
+            raise InputError(f"--output {beside}: --configuration writes that file, name the program .ngc")
+        for place in map(beside.with_suffix, SUFFIXES):
+            check_place(place)
+            if place.is_dir():
+                raise InputError(f"{place}: cannot be written: Is a directory")
     return dialect
 
 
 def write_configuration(program: Path, machine: MillingMachine, tools: dict[str, tuple[int, float]]) -> None:
-    """The example files beside a program, for ``tools``: number and length in the tool table by name."""
+    """The example files beside a program, for ``tools``: number and length in the tool table by name.
+
+    What is there already stays: drives may have been connected in it, and LinuxCNC keeps the number of the run there.
+    """
     from gearmath.files import write_text
     from gearmath.machine.writing.linuxcnc.configuration import configuration
 
     for suffix, text in configuration(program.stem, machine, tools).items():
         target = program.with_suffix(suffix)
+        if target.exists():
+            click.echo(f"{target}: is there already, left as it is")
+            continue
         write_text(target, text)
         click.echo(f"{target}: example, written")
 

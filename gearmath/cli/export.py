@@ -80,7 +80,7 @@ def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str
     from gearmath.specs.toml import find
 
     milling_machine, source = load_milling_machine(find(machine)), find(gear_set)
-    dialect = dialect_of(milling_machine, control, False, None)
+    dialect = dialect_of(milling_machine, control, None, None)
     write = linuxcnc.program_of if dialect == LINUXCNC else program_of
     pair = load_pair(source)
     milled = {name: spec for name, spec in pair.members.items() if spec.process == "face_milling"}

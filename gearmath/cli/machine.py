@@ -118,7 +118,7 @@ def cut(
     check_name(target.stem)
     job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
     milling_machine = load_milling_machine(find(machine))
-    dialect = dialect_of(milling_machine, control, configuration, sheet)
+    dialect = dialect_of(milling_machine, control, target if configuration else None, sheet)
     check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))
     member, spec = member_of(bevel_set, member)

@@ -100,7 +100,7 @@ def probe(
     member, spec = member_of(bevel_set, member)
     choice = ProbingChoice(_teeth(topography, spec.teeth), pitch, registration, repeat)
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
-    dialect = dialect_of(milling_machine, control, configuration, sheet)
+    dialect = dialect_of(milling_machine, control, target if configuration else None, sheet)
     simulated = load_simulated_machine(find(errors)) if errors else None
     write = linuxcnc.probing_program if dialect == LINUXCNC else probing_program
     with bars() as begin:
@@ -145,7 +145,7 @@ def probe(
 
 def probe_in_table(machine: MillingMachine, calibration: Calibration) -> dict[str, tuple[int, float]]:
     """Number and length of the probe in the tool table of LinuxCNC, by its name."""
-    from gearmath.machine.writing.linuxcnc.dialect import PROBE, PROBE_NUMBER
+    from gearmath.specs.control import PROBE, PROBE_NUMBER
 
     length = calibration.length if machine.z_reference == "tip" else 0.0
     return {PROBE: (machine.control.tool_numbers.get(PROBE, PROBE_NUMBER), length)}
@@ -185,7 +185,7 @@ def nc_calibrate(
     from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
     from gearmath.machine.writing.linuxcnc.probe_words import LinuxCncBlocks
     from gearmath.machine.writing.probe_words import Blocks
-    from gearmath.machine.writing.words import block_count
+    from gearmath.machine.writing.words import block_count, check_name
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -194,7 +194,8 @@ def nc_calibrate(
     source = find(calibration)
     make = axis_program if cycle == "axes" else calibration_program
     at, known = load_milling_machine(find(machine)), load_calibration(source)
-    dialect = dialect_of(at, control, configuration, sheet)
+    dialect = dialect_of(at, control, target if configuration else None, sheet)
+    check_name(target.stem)
     with about(source):
         text = make(at, known, target.stem, LinuxCncBlocks if dialect == LINUXCNC else Blocks)
     with bar(planned_touches(text), "touch") as progress:

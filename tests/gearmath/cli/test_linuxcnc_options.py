@@ -89,3 +89,37 @@ def test_a_control_that_is_not_there_is_named(command: Command, refused: Refused
     refused("NO.ini: cannot be read", "control", "--linuxcnc", "status", tmp_path / "NO.ini")
     refused("a LinuxCNC has no connection file", "control", "--linuxcnc", "trust", tmp_path / "NO.ini")
     refused("must be like PROBE.ngc", "control", "--linuxcnc", "get", tmp_path / "NO.ini", "../PROBE.ngc")
+
+
+def test_a_cutter_has_not_the_number_of_the_probe(
+    command: Command, refused: Refused, machine: Callable, tmp_path: Path
+) -> None:
+    """The probe has 99 where the file says nothing: a program would fetch a cutter to touch with."""
+    out = ("--control", "linuxcnc", "-o", tmp_path / "CAL.ngc")
+    at = machine("tool_numbers = { GEAR = 99 }")
+    refused("control: tool_numbers: 99 is that of the probe", "nc", "calibrate", "--machine", at, *out)
+    at = machine("tool_numbers = { GEAR = 99, PROBE = 5 }")
+    assert command("nc", "calibrate", "--machine", at, *out)[0] == 0
+    assert "T5 M6" in (tmp_path / "CAL.ngc").read_text()
+
+
+CALIBRATE = ("nc", "calibrate", "--control", "linuxcnc", "--configuration", "-o")
+
+
+def test_a_changed_configuration_is_not_written_over(command: Command, tmp_path: Path) -> None:
+    """Drives are connected in the HAL file, and LinuxCNC counts the runs in the parameter file."""
+    assert command(*CALIBRATE, tmp_path / "CAL.ngc")[0] == 0
+    (tmp_path / "CAL.hal").write_text("loadrt my_drive\n")
+    (tmp_path / "CAL.ini").unlink()
+    status, out, err = command(*CALIBRATE, tmp_path / "CAL.ngc")
+    assert (status, err) == (0, "")
+    assert (tmp_path / "CAL.hal").read_text() == "loadrt my_drive\n"
+    assert f"{tmp_path / 'CAL.hal'}: is there already, left as it is" in out
+    assert (tmp_path / "CAL.ini").read_text().startswith("[EMC]")
+
+
+def test_a_configuration_that_cannot_be_written_stops_before_the_program(refused: Refused, tmp_path: Path) -> None:
+    (tmp_path / "CAL.hal").mkdir()
+    refused("CAL.hal: cannot be written: Is a directory", *CALIBRATE, tmp_path / "CAL.ngc")
+    refused("CAL.ini: --configuration writes that file", *CALIBRATE, tmp_path / "CAL.ini")
+    assert [one.name for one in tmp_path.iterdir()] == ["CAL.hal"]

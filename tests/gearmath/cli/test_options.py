@@ -105,3 +105,10 @@ def test_member_is_asked_for_only_where_nothing_tells_it(command, refused, tmp_p
     status, _, err = command("compensate", SET, "--measured", metal, "-o", tmp_path / "new.toml")
     assert status == 0, err
     refused("member = 'gear'", "compensate", SET, "--member", "pinion", "--measured", metal, "-o", tmp_path / "n.toml")
+
+
+def test_two_files_of_one_command_must_differ(refused, tmp_path):
+    """The set-up sheet would replace the program."""
+    target = tmp_path / "CUT.MPF"
+    refused("-o .*CUT.MPF: --sheet is written there already", "nc", "cut", SET, "--sheet", target, "-o", target)
+    assert not target.exists()

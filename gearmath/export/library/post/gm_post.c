@@ -112,6 +112,7 @@ int main(int count, char **arguments)
   memset(&job, 0, sizeof job);
   job.file = arguments[1];
   program_name(arguments[3], name);
+  if (strcmp(arguments[1], arguments[3]) == 0) failed(job.file, "is the settings file, name another for the program", 2);
   text = contents(arguments[1], &length);
   read_settings(&job, text, length);
   plan_passes(&job);

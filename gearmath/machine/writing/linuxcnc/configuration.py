@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from gearmath.specs.milling_machine import AXES, CUTTER_AXIS, MillingMachine, TravelAxis, TurningAxis
 
+#: Of the files that are written.
+SUFFIXES = (".ini", ".hal", ".tbl", ".var")
 #: Signals of the handshake, by what they are for: pins of motion that a host reads and sets.
 HOST = {
     "gearmath-acknowledged": "motion.analog-in-00",
