@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from gearmath.cli.common import JSON, about, bar, echo_json, output, plot, save_plot, table
+from gearmath.cli.design_reverse import reverse_design
 
 
 @click.command()
@@ -17,14 +18,25 @@ from gearmath.cli.common import JSON, about, bar, echo_json, output, plot, save_
 @click.option(
     "--from", "given", metavar="SET.toml", help="Design the pinion to the gear of this set: file, or bundled."
 )
+@click.option(
+    "--reverse",
+    "points",
+    metavar="POINTS.csv",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Find the settings of the member with these flanks (flank CSV), from its blank and method alone.",
+)
 @JSON
 @plot("transmission error, path and pattern of both sides")
-def design(data: str, target: Path, given: str | None, as_json: bool, picture: Path | None) -> None:
+def design(
+    data: str, target: Path, given: str | None, points: Path | None, as_json: bool, picture: Path | None
+) -> None:
     """A spiral bevel pair from tooth counts, module, face width, spiral angle and cutter: blank and settings.
 
     DESIGN.toml is a file of design data, or a bundled one such as design_7x43.toml; every key is in docs/design.md.
     What is asked of the contact is met at the mean point and checked by the exact contact of the rounded settings;
     what cannot be is refused, with the limit that binds.
+
+    With --reverse it is a file of design data, of a blank, or a gear set, of which blank and method are taken.
     """
     from gearmath.bevel.design.route import design as designed
     from gearmath.bevel.design.verdict import verdict
@@ -36,6 +48,12 @@ def design(data: str, target: Path, given: str | None, as_json: bool, picture: P
     from gearmath.specs.toml import find
 
     path = find(data)
+    if points is not None:
+        for option, other in (("--from", given), ("--plot", picture)):
+            if other is not None:
+                raise InputError(f"{option} and --reverse: only one of them may be given")
+        reverse_design(points, path, target, as_json)
+        return
     asked = load_design(path)
     gear = None if given is None else load_pair(find(given))
     if gear is not None and len(gear.members) < 2:
