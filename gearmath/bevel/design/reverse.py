@@ -51,6 +51,8 @@ _ROOT = 0.2
 _UNKNOWN = 1e-3
 #: So often the noise is tried again, where less is left than was expected.
 _TRIALS = 3
+#: So often a stage is fitted, each time with its bounds about what was found, where one of them was met.
+_ROUNDS = 3
 #: Cutters to start from, in parts of the radius that is known or that the curvature tells.
 _RADII = (1.0, 0.85, 1.2)
 #: Part of the points that settings to start from must cut.
@@ -133,13 +135,12 @@ class _Found:
     active: tuple[str, ...] = ()
     possible: bool = True
 
-    @property
-    def criterion(self) -> float:
-        """Schwarz's criterion; infinite where a point is not cut."""
+    def rank(self) -> tuple[bool, float]:
+        """The less the better: what a gear set may have, then Schwarz's criterion; where a point is not cut, last."""
         n = len(self.left)
         if not np.isfinite(self.left).all():
-            return math.inf
-        return n * math.log(max(_rms(self.left), _NOTHING) ** 2) + len(self.free) * math.log(n)
+            return True, math.inf
+        return not self.possible, n * math.log(max(_rms(self.left), _NOTHING) ** 2) + len(self.free) * math.log(n)
 
 
 def reverse(known: KnownMember, given: dict[str, GivenFlank], name: str) -> ReversedMember:
@@ -251,26 +252,31 @@ def _fitted(start: Member, first: _Found, given: dict[str, GivenFlank], scatter:
 
     Raises ComputationError where none gives settings.
     """
-    best, near, chosen = None, first, stages(start.generation)
+    best: _Found | None = None
+    near, chosen = first, stages(start.generation)
     for free in chosen:
-        found = _stage(start, near, given, free, scatter, _ROOT / len(chosen))
-        if found is None:
-            continue
-        near = found = replace(found, possible=_is_flank(start, found, name))
-        if best is None or (not found.possible, found.criterion) < (not best.possible, best.criterion):
-            best = found
-        if _rms(found.left) <= _NOTHING:
+        found = None
+        for _ in range(_ROUNDS):
+            found = _stage(start, near, given, free, scatter, _ROOT / len(chosen) / _ROUNDS, name)
+            if found is None:
+                break
+            near = found
+            if best is None or found.rank() < best.rank():
+                best = found
+            if not found.active:
+                break
+        if found is not None and _rms(found.left) <= _NOTHING:
             break
     if best is None:
         raise ComputationError(f"{' and '.join(first.hows)} flank: no settings near the crown gear's cut its points")
     return best
 
 
-def _is_flank(start: Member, found: _Found, name: str) -> bool:
+def _is_flank(start: Member, hows: dict[str, Generation], name: str) -> bool:
     """Whether the settings cut flanks that a gear set may have: root, roll, tips and motions within their limits."""
     try:
-        member = _member(start, found.hows)
-        for flank, how in found.hows.items():
+        member = _member(start, hows)
+        for flank, how in hows.items():
             cut_flank(member, name, flank, how)
             check_grid(member, name, flank)
     except (Misfit, InputError, ComputationError):
@@ -279,7 +285,13 @@ def _is_flank(start: Member, found: _Found, name: str) -> bool:
 
 
 def _stage(
-    start: Member, near: _Found, given: dict[str, GivenFlank], free: Sequence[str], scatter: float, root: float
+    start: Member,
+    near: _Found,
+    given: dict[str, GivenFlank],
+    free: Sequence[str],
+    scatter: float,
+    root: float,
+    name: str,
 ) -> _Found | None:
     """The settings after the fit of the ``free`` ones from those ``near``; None where there are none."""
     targets = [_target(start, flank, how, given[flank]) for flank, how in near.hows.items()]
@@ -306,7 +318,7 @@ def _stage(
         settings, motion = parts(targets[k].vector + found.change(k))
         hows[flank] = replace(how, settings=settings, motion=motion)
     off = np.concatenate([_left(how, given[flank]) for flank, how in hows.items()])
-    return _Found(hows, off, tuple(free), found.active)
+    return _Found(hows, off, tuple(free), found.active, _is_flank(start, hows, name))
 
 
 def _target(start: Member, flank: str, how: Generation, given: GivenFlank) -> FlankTarget:
