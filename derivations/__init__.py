@@ -44,11 +44,11 @@ CHAPTERS = (
     "tip_calibration",
     "contact",
     "local_synthesis",
-    "chip",
     "design",
+    "polynomial_blocks",
+    "chip",
     "virtual_hobbing",
     "cylindrical_tolerance",
-    "polynomial_blocks",
 )
 
 #: An expression of a chapter, as its source says it.

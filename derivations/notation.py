@@ -570,7 +570,7 @@ profile_tolerance = Quantity("profile_tolerance", "allowed profile deviation", "
 helix_slope_tolerance = Quantity("helix_slope_tolerance", "allowed slope", "um", r"f_{H\beta T}", scale=100.0)
 helix_form_tolerance = Quantity("helix_form_tolerance", "allowed form", "um", r"f_{f\beta T}", scale=100.0)
 helix_tolerance = Quantity("helix_tolerance", "allowed helix deviation", "um", r"F_{\beta T}", scale=100.0)
-flank_height = _length("flank_height", "z_f", -1000.0, 1000.0, "height of a point of a flank on the gear")
+flank_height = _length("flank_height", "z_f", -250.0, 250.0, "height of a point of a flank on the gear")
 space_index = _count("space_index", "i", -999, 999, "which space of the gear a flank bounds")
 gear_flank_point = _vector("gear_flank_point", r"\mathbf{p}", "mm", 1e4, 1e5, "point of a cylindrical gear's flank")
 gear_flank_normal = _vector("gear_flank_normal", r"\mathbf{n}_f", "1", 1.0, 1.0, "normal there, out of the metal")

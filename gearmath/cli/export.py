@@ -6,7 +6,19 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import JSON, MACHINE, MEMBER, SET, about, bar, echo_json, member_of, nominal_words, output
+from gearmath.cli.common import (
+    JSON,
+    MACHINE,
+    MEMBER,
+    SET,
+    about,
+    bar,
+    bars,
+    echo_json,
+    member_of,
+    nominal_words,
+    output,
+)
 from gearmath.cli.dialect import CONTROL, LINUXCNC, dialect_of
 from gearmath.errors import InputError
 
@@ -61,7 +73,7 @@ def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str
     from gearmath.bevel.pair import load_pair
     from gearmath.export.post import post_file
     from gearmath.machine.judging.checked import checked_cut
-    from gearmath.machine.planning.cut_plan import CuttingJob, pass_count
+    from gearmath.machine.planning.cut_plan import CuttingJob
     from gearmath.machine.writing.cutting import program_of
     from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
     from gearmath.specs.milling_machine import load_milling_machine
@@ -78,10 +90,10 @@ def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str
         click.echo(f"{source}: {name}: face hobbed, no settings file: gm-post writes the cuts of face milling")
     jobs = {name: CuttingJob(tuple(range(spec.teeth))) for name, spec in milled.items()}
     files = {}
-    with bar(sum(pass_count(milled[name], name, job) for name, job in jobs.items()), "pass") as done, about(source):
-        for name, job in jobs.items():
-            file = f"{name}.settings"
-            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, done, write)
+    for name, job in jobs.items():
+        file = f"{name}.settings"
+        with bars() as begin, about(source):
+            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, begin, write)
             files[file] = post_file(made.plan, dialect)
     return files
 

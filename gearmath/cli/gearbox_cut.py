@@ -42,6 +42,7 @@ CHARTS = (".png", ".svg", ".html")
 @click.option("--compare", type=click.Choice(["ideal", "exact", "float"]), help="Another rule beside it.")
 @click.option("--plot", "chart", type=NewFile(), metavar="CHART", help="Inspection chart to write: PNG, SVG or HTML.")
 @click.option("--csv", "points", type=NewFile(), metavar="POINTS.csv", help="Measured points to write.")
+@click.option("--stl", "flanks", type=NewFile(), metavar="FLANKS.stl", help="Flanks of all teeth to write, as cut.")
 @JSON
 def cut(machine: str, as_json: bool, chart: Path | None, points: Path | None, compare: str | None, **job: Any) -> None:
     """Cut a gear virtually, inspect it, give it classes, and tell which part of the machine is to blame.
@@ -101,6 +102,13 @@ def _cut_gear(
 
         write_traces(points, prepared.job, gears[0].found)
         click.echo(f"points: {points}", err=as_json)
+    if job["flanks"] is not None:
+        from gearmath.exchange.hobbed_stl import ALL, write_flanks
+        from gearmath.gearbox.hobbed.envelope import Cut
+
+        with bar(ALL * job["teeth"], "point", quiet=as_json) as progress:
+            write_flanks(job["flanks"], Cut(prepared.job, prepared.train), prepared.where, progress)
+        click.echo(f"flanks: {job['flanks']}", err=as_json)
     if as_json:
         echo_json(cut_values(prepared, gears, shares))
     else:
@@ -161,8 +169,8 @@ def _cut_thread(
 
     if job["pitch"] is None or any(job[key] is not None for key in ("teeth", "hob", "helix")):
         raise click.UsageError(f"{machine.name} is a lathe: give --pitch, and no --teeth, --hob or --helix")
-    if points is not None:
-        raise click.UsageError("--csv has no meaning for a thread")
+    if points is not None or job["flanks"] is not None:
+        raise click.UsageError("--csv and --stl have no meaning for a thread")
     given = {"starts": job["starts"] or 1, "hand": job["hand"] or "right", "rpm": job["rpm"]}
     planned = plan_thread(machine, pitch_of(job["pitch"]), **given)
     rules = [job["rule"]] + ([compare] if compare not in (None, job["rule"]) else [])

@@ -20,16 +20,16 @@ def export_c(
 ) -> list[Path]:
     """Write the C of kernels or expressions into a folder: ``gm_<name>.h`` and ``gm_<name>.c`` of each.
 
-    In double precision, with the files of the contract that these share (``gm_status.h``), or with ``bits`` = 32 or
+    In double precision, beside them what they share (``gm_status.h``), or with ``bits`` = 32 or
     64 in whole numbers of that size. Raises ExportError (a ComputationError) naming what cannot become such C,
     InputError where the folder holds other files.
     """
     each = [what] if isinstance(what, Kernel | Expression) else list(what)
     made = [lower(one) if isinstance(one, Expression) else one for one in each]
-    files: dict[str, str] = {} if bits else contract_files()
+    files: dict[str, str] = {}
     for one in made:
         files |= (integer_kernel(one, bits) if bits else double_kernel(one)).files
-    write_folder(Path(folder), files)
+    write_folder(Path(folder), files if bits else contract_files() | files)
     return [Path(folder) / name for name in files]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import re
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -16,6 +16,8 @@ from gearmath.export.folder import MANIFEST, manifest
 from gearmath.export.teensy import teensy_files
 from gearmath.front.gearbox import Job, plan
 from gearmath.gearbox.helix import STEEPEST, Cut, Helix
+from gearmath.gearbox.hobbed.classes import FigureClass
+from gearmath.gearbox.hobbed.setup import cut_and_inspect, setup
 from gearmath.gearbox.job import GearboxJob, ThreadPlan
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
 from gearmath.specs.hobbing import Hand, HobbingMachine
@@ -72,6 +74,24 @@ def planned(machine: HobbingMachine, wish: HobbingWish) -> Job:
     if wish.helix:
         given["helix"] = Helix(wish.helix, wish.hand, wish.cut, _feed(wish.feed))
     return plan(machine, teeth=wish.teeth, shift=wish.shift, **given)
+
+
+def predicted(
+    machine: HobbingMachine, wish: HobbingWish, progress: Callable[[int], object] = lambda _: None
+) -> tuple[tuple[FigureClass, ...], int | None]:
+    """The figures of the gear that would be cut, with their classes, and the class of all; the wish's hob or the first.
+
+    Raises InputError as :func:`planned`, and on a lathe, which cuts no gear.
+    """
+    if machine.profile == "lathe" or wish.teeth is None:
+        raise InputError(f"{machine.name}: teeth: only a gear has a class")
+    feed = _feed(wish.feed)
+    helix = Helix(wish.helix, wish.hand, wish.cut, feed) if wish.helix else None
+    given: dict[str, Any] = {} if feed is None else {"feed": float(feed)}
+    given |= {key: value for key in ("hob", "starts", "rpm") if (value := getattr(wish, key)) is not None}
+    made = setup(machine, wish.teeth, helix=helix, shift=wish.shift, climb=wish.cut == "climb", **given)
+    found = cut_and_inspect(made, made.train.rule, progress)
+    return tuple(found.classes), found.accuracy_class
 
 
 def plan_lines(job: GearboxJob) -> list[PlanLine]:

@@ -80,6 +80,16 @@ def test_every_expression_of_every_chapter_is_listed() -> None:
     assert sorted(names) == sorted(set(names))
 
 
+def test_every_chapter_has_a_number_of_its_own() -> None:
+    heads = {
+        chapter: re.match(r'"""Chapter (\d+(?:, continued)?)', derivations.source(chapter))
+        for chapter in derivations.CHAPTERS
+    }
+    numbers = {chapter: head[1] for chapter, head in heads.items() if head}
+    assert numbers.keys() >= set(derivations.CHAPTERS) - {"frames"}
+    assert len(set(numbers.values())) == len(numbers)
+
+
 def test_a_symbol_that_is_no_input_is_named_beside_the_inputs() -> None:
     x, y, z = (Quantity(name, "a test quantity", "1", name) for name in "xyz")
     with pytest.raises(ValueError, match=r"stray uses \['y'\], .* inputs \['x'\]"):

@@ -10,6 +10,7 @@ from nicegui import ui
 
 from gearmath.front.gearbox import Job
 from gearmath.front.machines import load_hobber
+from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.job import ThreadPlan
 from gearmath.hmi import blocks, widgets
 from gearmath.hmi.catalog import files_of
@@ -22,6 +23,7 @@ from gearmath.hmi.hobbing_job import (
     firmware_zip,
     plan_lines,
     planned,
+    predicted,
     sketch_name,
 )
 from gearmath.hmi.messages import Text
@@ -44,6 +46,8 @@ def build(shared: Shared, text: Text) -> None:
         page.plan()
     with widgets.panel(text("gearbox.blanks"), wide=True):
         page.blanks()
+    with widgets.panel(text("gearbox.quality"), wide=True):
+        page.quality()
     with widgets.panel(text("gearbox.error"), wide=True):
         page.error()
 
@@ -116,7 +120,7 @@ class _GearboxPage:
         widgets.NumberField(
             text,
             text("gearbox.rpm"),
-            wish.rpm or machine.limits.hob_rpm,
+            wish.rpm,  # left out, it is what the plan proposes
             "1/min",
             0.0,
             machine.limits.hob_rpm,
@@ -179,6 +183,43 @@ class _GearboxPage:
         for line in lines:
             share = "" if line.percent is None else self.text("gearbox.of_limit", percent=f"{line.percent:.1f}")
             widgets.fact(self.text(f"gearbox.{line.key}"), f"{line.value} {share}".rstrip(), line.unit)
+
+    def quality(self) -> None:
+        """Figures and classes of the gear that would be cut, when somebody asks."""
+        text, desk = self.text, self.desk
+
+        def begin() -> None:
+            desk.wanted["quality"] = self.key()
+
+        def compute() -> Callable[[Progress], Any]:
+            name, wish = self.key()
+            return lambda progress: predicted(load_hobber(find(name)), wish, progress)
+
+        def show(found: tuple[tuple[FigureClass, ...], int | None]) -> None:
+            rows, whole = found
+            cells = [
+                [
+                    row.figure.replace("_", " "),
+                    f"{row.value_um:.2f}",
+                    "–" if row.accuracy_class is None else str(row.accuracy_class),
+                    "–" if row.tolerance_um is None else f"{row.tolerance_um:.2f}",
+                ]
+                for row in rows
+            ]
+            head = [text("result.figure"), f"{text('result.value')} / µm", f"{text('gearbox.class')} / 1"]
+            blocks.plain_table("", [*head, f"{text('gearbox.tolerance')} / µm"], cells)
+            widgets.note(f"{text('gearbox.whole_class')}: {'–' if whole is None else whole}")
+            widgets.Message(text("gearbox.unconfirmed"), "warning")
+
+        widgets.button(text("gearbox.predict"), begin, "play_arrow", primary=True)
+        blocks.kept(
+            text,
+            desk.of("gearbox.quality"),
+            lambda: self.key() if desk.wanted.get("quality") == self.key() else None,
+            text("gearbox.cutting"),
+            compute,
+            show,
+        )
 
     def error(self) -> None:
         """The error of the exact rule and of the floating one, when somebody asks."""

@@ -42,7 +42,7 @@ class ChipLoad:
 def chip_loads(
     member: Member, name: str, machine: MillingMachine, passes: Sequence[Pass], rpm: float, plunge_feed: float
 ) -> tuple[ChipLoad, ...]:
-    """The chips (27.2) of every flank in the last pass of its cutter, at their thickest.
+    """The chips (29.2) of every flank in the last pass of its cutter, at their thickest.
 
     ``plunge_feed`` [mm/min] is that of an approach down to the first point of a roll: there it is taken as if all of it
     went through metal. Of a Formate cut and in face hobbing the plunge is the one that is planned.

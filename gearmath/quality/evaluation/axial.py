@@ -35,7 +35,8 @@ _OTHERS = (
 class Axial:
     """Axial shift [mm] that would explain the mean form best, each flank free to turn, and its standard uncertainty.
 
-    ``explains`` is the part of the sum of squares, each flank turned until it is least, that it takes.
+    ``explains`` is the part of the sum of squares, each flank turned until it is least, that it takes. ``together`` is
+    the shift [mm] with both flanks turned alike, which the thickness of the teeth tells.
     ``share`` says how much of its effect, as part of the sum of squares, others can imitate: the setting that is its
     twin (always all), the other settings together (None where their sensitivities are not known), the clamping.
     """
@@ -44,6 +45,7 @@ class Axial:
     uncertainty: float
     share: dict[str, float | None]
     explains: float
+    together: float
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -63,7 +65,7 @@ def axial_shift(file: FlankFile, member: Member, name: str, rows: NominalRows, c
     left = axial - _projected(turning, axial)
     size = float(left @ left)
     if size <= 1e-12 * float(axial @ axial):
-        return Axial(math.nan, math.nan, {TWIN: 1.0, "other settings": None, "clamping": None}, 0.0)
+        return Axial(math.nan, math.nan, {TWIN: 1.0, "other settings": None, "clamping": None}, 0.0, math.nan)
     values = file.deviation[used]
     shift = float(left @ values) / size
     rest = values - _projected(np.hstack([turning, axial[:, None]]), values)
@@ -76,7 +78,9 @@ def axial_shift(file: FlankFile, member: Member, name: str, rows: NominalRows, c
     }
     before, after = values - _projected(turning, values), float(rest @ rest)
     explains = 1 - after / max(float(before @ before), 1e-18)
-    return Axial(shift, uncertainty, share, explains)
+    alike = axial - _projected(lever[:, None], axial)
+    together = float(alike @ values) / float(alike @ alike)
+    return Axial(shift, uncertainty, share, explains, together)
 
 
 def _by_settings(

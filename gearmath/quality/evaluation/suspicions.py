@@ -26,6 +26,9 @@ _LEAST_OFFSET, _EVEN = 0.05, 0.2
 #: An axial shift is worth a word from here on [mm], from so many standard uncertainties, and where it explains so much
 #: of the squares of the form.
 _LEAST_AXIAL, _SIGNIFICANT, _EXPLAINS = 0.02, 3.0, 0.8
+#: ... or where form and thickness, which other settings change in other proportions, agree on it to this part, the form
+#: by so many standard uncertainties.
+_AGREE, _SURE = 0.3, 4.0
 #: Points of a grid that tell fifteen terms of a surface of fourth degree and the noise beside them.
 _LEAST_POINTS = 30
 #: So many times the stated uncertainty is no chance, and less than so much [mm] is rounding of the file.
@@ -86,14 +89,22 @@ def _axial(file: FlankFile, member: Member, name: str) -> Iterator[str]:
         return
     columns = kernel("motion_sensitivity")(rows.point, rows.normal)[0]
     found = axial_shift(file, member, name, rows, columns)
-    if not abs(found.shift) >= max(_LEAST_AXIAL, _SIGNIFICANT * np.nan_to_num(found.uncertainty)):
+    sure = abs(found.shift) / found.uncertainty if found.uncertainty > 0 else math.inf
+    if not (abs(found.shift) >= _LEAST_AXIAL and sure >= _SIGNIFICANT):
         return
+    apart = abs(found.together - found.shift)
     if found.explains >= _EXPLAINS:
-        yield (
-            f"the work may stand {found.shift * 1000:+.0f} um off its seat along the axis, which explains "
-            f"{100 * found.explains:.0f} % of the form (sum of squares); an error of {TWIN} looks the same: check the "
-            "seat before a setting is corrected for it"
+        why = f"which explains {100 * found.explains:.0f} % of the form (sum of squares)"
+    elif sure >= _SURE and apart <= min(_SIGNIFICANT * found.uncertainty, _AGREE * abs(found.together)):
+        why = (
+            f"as both form and tooth thickness ask for ({found.shift * 1000:+.0f} and {found.together * 1000:+.0f} um)"
         )
+    else:
+        return
+    yield (
+        f"the work may stand {found.shift * 1000:+.0f} um off its seat along the axis, {why}; an error of {TWIN} looks "
+        "the same: check the seat before a setting is corrected for it"
+    )
 
 
 def _scatter(file: FlankFile, on_grid: float, seat: Registration | None) -> Iterator[str]:

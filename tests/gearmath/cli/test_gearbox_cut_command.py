@@ -109,6 +109,20 @@ def test_cut_writes_points_that_lie_on_the_involute(capsys, tmp_path):
         assert x * nx + y * ny == pytest.approx(float(row["roll_length"]), abs=1e-5)
 
 
+def test_cut_writes_the_flanks_of_all_teeth_as_stl_facing_out_of_the_metal(capsys, tmp_path):
+    """12 teeth, 25 x 41 points a flank; at radius r and width b a flank faces along the circle, the space between."""
+    path = tmp_path / "flanks.stl"
+    arguments = ("--teeth", "12", "--hob", "m1", "--shift", "0.4", "--width", "5", "--feed", "1", "--stl", str(path))
+    assert gearmath(capsys, "gearbox", "cut", "hobbing_default.toml", *arguments)[0] == 0
+    record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets = np.frombuffer(path.read_bytes()[84:], record)
+    assert len(facets) == 12 * 2 * 2 * 24 * 40
+    middle = facets["corners"].mean(axis=1)
+    assert np.abs(middle[:, 2] - 2.5).max() < 2.5
+    assert np.hypot(middle[:, 0], middle[:, 1]).max() < 7.4
+    assert (np.einsum("ij,ij->i", middle[:, :2], facets["normal"][:, :2]) > 0).all()  # flanks look outwards, not in
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -86,9 +86,10 @@ def test_fifteen_lines_from_an_expression_to_a_called_c_function(tmp_path: Path,
     h, r = depth.symbol, radius.symbol
     cut = gm.Expression("cut_width", "Width of a cut.", (depth, radius), ((width, 2 * (h * (2 * r - h)) ** 0.5),))
     files = gm.export_c(cut, tmp_path / "c")
-    assert [path.name for path in files] == ["gm_cut_width.h", "gm_cut_width.c"]
+    assert [path.name for path in files[:2]] == ["gm_cut_width.h", "gm_cut_width.c"]
+    sources = [str(path) for path in files if path.suffix == ".c"]
     library = tmp_path / "cut.so"
-    subprocess.run([*host_compiler, "-shared", "-fPIC", str(files[1]), "-o", str(library), "-lm"], check=True)
+    subprocess.run([*host_compiler, "-shared", "-fPIC", *sources, "-o", str(library), "-lm"], check=True)
     result = ctypes.c_double()
     ctypes.CDLL(str(library)).gm_cut_width(ctypes.c_double(0.5), ctypes.c_double(10.0), ctypes.byref(result))
     assert result.value == pytest.approx(2 * (10.0**2 - 9.5**2) ** 0.5)  # the chord at the distance r - h

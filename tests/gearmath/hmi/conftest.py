@@ -34,6 +34,7 @@ _SHOWN = re.compile(r"open (http://\S+)")
 #: What Chromium itself asks for, page or no page.
 OF_THE_BROWSER = {
     "update.googleapis.com",
+    "redirector.gvt1.com",
     "content-autofill.googleapis.com",
     "accounts.google.com",
     "www.google.com",
@@ -252,6 +253,7 @@ def operator(chromium: Browser) -> Iterator[Callable[..., Operator]]:
         one = Operator(served, context, context.new_page())
         one.page.on("console", lambda said: _hear(one, said.type, said.text))
         one.context.on("request", lambda request: _follow(one, request.url))
+        one.page.on("request", lambda asked: _stays(one, asked.url))
         one.page.on("pageerror", lambda error: one.complaints.append(str(error)))
         made.append(one)
         return one.go(page)
@@ -260,6 +262,12 @@ def operator(chromium: Browser) -> Iterator[Callable[..., Operator]]:
     for one in made:
         one.context.close()
     assert [said for one in made for said in one.complaints if not any(part in said for part in one.forgiven)] == []
+
+
+def _stays(one: Operator, url: str) -> None:
+    """What the page itself asks for is of this computer."""
+    if urlsplit(url).hostname not in (None, "127.0.0.1"):
+        one.complaints.append(f"asks for {url}")
 
 
 def _hear(one: Operator, kind: str, text: str) -> None:

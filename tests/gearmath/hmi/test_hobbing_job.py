@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import tomllib
 import zipfile
 from collections.abc import Callable
@@ -13,7 +14,7 @@ import pytest
 
 from gearmath.errors import InputError
 from gearmath.hmi import hobbing_job
-from gearmath.hmi.hobbing_job import HobbingWish, blank_lines, firmware_zip, plan_lines, planned, sketch_name
+from gearmath.hmi.hobbing_job import HobbingWish, blank_lines, firmware_zip, plan_lines, planned, predicted, sketch_name
 from gearmath.specs.hobbing import load_hobbing_machine
 from gearmath.specs.toml import bundled
 
@@ -83,3 +84,16 @@ def test_every_bundled_machine_has_a_name_for_its_sketch() -> None:
     for name in ("hobbing_default.toml", "hobbing_helical.toml", "hobbing_plewes.toml", "lathe_example.toml"):
         machine = load_hobbing_machine(bundled(name))
         assert len(firmware_zip(machine, sketch_name(machine))) > 10_000
+
+
+def test_the_quality_that_is_predicted_is_that_of_the_command(command: Command) -> None:
+    machine = load_hobbing_machine(bundled("hobbing_metric.toml"))
+    name = machine.hobs[0].name
+    rows, whole = predicted(machine, HobbingWish(teeth=24, hob=name))
+    _, out, _ = command("gearbox", "cut", "hobbing_metric.toml", "--teeth", 24, "--hob", name, "--json")
+    gear = json.loads(out)["gears"][0]
+    assert whole == gear["accuracy_class"]
+    assert [row.figure for row in rows] == [each["figure"] for each in gear["figures"]]
+    assert [row.value_um for row in rows] == pytest.approx([each["value_um"] for each in gear["figures"]])
+    with pytest.raises(InputError, match="only a gear has a class"):
+        predicted(load_hobbing_machine(bundled("lathe_example.toml")), HobbingWish(pitch="8tpi"))

@@ -1,6 +1,6 @@
 """Answers as the process beside LinuxCNC does, for a program of three points that begins when a host is there.
 
-python stand_in.py BRIDGE MACHINE.ini: what it was told goes to the file ``told`` beside the INI file; ``mood`` spoils it.
+python stand_in.py BRIDGE MACHINE.ini: keeps what it is told in ``told`` beside the INI file; ``mood`` spoils it.
 """
 
 from __future__ import annotations

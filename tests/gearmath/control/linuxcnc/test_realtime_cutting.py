@@ -40,6 +40,7 @@ def sampled(rows: np.ndarray, lines: range, commanded: MachinePath) -> MachinePa
         seconds=np.append(0.0, np.full(n - 1, 1e-3)),
         rpm=np.full(n, 120.0),
         measuring=np.zeros(n, dtype=bool),
+        inner=np.zeros(n, dtype=bool),
         cutter=np.full(n, np.nan),
         coolant=np.ones(n, dtype=bool),
     )

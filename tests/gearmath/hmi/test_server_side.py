@@ -1,0 +1,124 @@
+"""What the server holds, without a browser: alarms, questions, long computations, the check of the probe."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+
+import pytest
+
+from gearmath.control.interface import Alarm
+from gearmath.errors import InputError
+from gearmath.hmi.alarm_book import MOST, AlarmBook
+from gearmath.hmi.probe_check import ProbeCheck
+from gearmath.hmi.programs_work import programs, read
+from gearmath.hmi.tickets import Tickets
+from gearmath.hmi.work import Progress, Work
+
+
+def _alarm(number: int, text: str = "text") -> Alarm:
+    return Alarm(f"{number}-1", str(number), text, 1000, True)
+
+
+def test_an_alarm_stays_until_it_was_seen_and_is_gone() -> None:
+    book = AlarmBook()
+    book.hear([_alarm(3000)])
+    book.hear([_alarm(3000)])
+    assert [one.alarm for one in book.entries()] == ["3000"]
+    book.hear([])
+    (gone,) = book.entries()
+    assert gone.gone
+    assert not gone.seen
+    book.see([gone.number])
+    assert book.entries() == []
+    book.hear([_alarm(3000)])
+    (again,) = book.entries()
+    book.see([again.number])
+    assert [one.seen for one in book.entries()] == [True], "what is active is shown, seen or not"
+    assert book.unseen() == 0
+
+
+def test_alarms_outlive_the_server_and_a_damaged_file_keeps_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "alarms.json"
+    AlarmBook(file).hear([_alarm(1), _alarm(2)])
+    book = AlarmBook(file)
+    book.hear([_alarm(2)])
+    assert [(one.alarm, bool(one.gone)) for one in book.entries()] == [("2", False), ("1", True)]
+    file.write_text('[{"number": 1}]', "utf-8")
+    assert AlarmBook(file).entries() == []
+
+
+def test_a_flood_of_alarms_is_bounded_and_comes_once() -> None:
+    book = AlarmBook()
+    flood = [_alarm(number) for number in range(3 * MOST)]
+    book.hear(flood)
+    newest = book.entries()[0].number
+    book.hear(flood)
+    assert len(book.entries()) == MOST
+    assert book.entries()[0].number == newest
+
+
+def test_a_question_is_answered_once_and_in_time() -> None:
+    tickets = Tickets()
+    ticket = tickets.draw()
+    assert tickets.take(ticket)
+    assert not tickets.take(ticket)
+    assert not tickets.take("guessed")
+    late = Tickets(seconds=-1.0)
+    assert not late.take(late.draw())
+
+
+def test_a_probe_passes_only_when_its_signal_comes_and_goes() -> None:
+    check = ProbeCheck()
+    for signal, state in ((None, "unknown"), (True, "ask"), (True, "ask"), (False, "ask"), (True, "deflected")):
+        check.look(signal)
+        assert check.state == state
+        assert not check.is_done
+    check.look(None)
+    assert check.state == "unknown"
+    for signal in (False, True, False, True):
+        check.look(signal)
+    assert check.is_done
+
+
+def test_a_computation_tells_how_far_it_is_and_ends_when_it_is_cancelled() -> None:
+    work, go_on = Work(), threading.Event()
+
+    def compute(progress: Progress) -> str:
+        progress.begin(4, "step")
+        progress(1)
+        go_on.wait(10)
+        progress(1)
+        return "done"
+
+    work.start("first", compute)
+    with pytest.raises(InputError, match="first: runs already"):
+        work.start("second", compute)
+    work.cancel()
+    go_on.set()
+    work.wait(10)
+    assert (work.result, work.error, work.running, work.count) == (None, None, False, 1)
+    assert work.share == 0.5
+    work.start("third", compute)
+    work.wait(10)
+    assert work.result == "done"
+
+
+def test_what_fails_is_told_in_its_sentence() -> None:
+    def compute(progress: Progress) -> None:
+        raise InputError("set.toml: teeth = 0: must be at least 5")
+
+    work = Work()
+    work.start("work", compute)
+    work.wait(10)
+    assert work.error == "set.toml: teeth = 0: must be at least 5"
+
+
+def test_only_programs_whose_names_a_control_takes_are_listed_and_read(tmp_path: Path) -> None:
+    for name in ("CUT.MPF", "SUB.SPF", "a b.MPF", "<b>.MPF", "CON.MPF", "runs.db"):
+        (tmp_path / name).write_text("M30\n", "utf-8")
+    assert sorted(one.name for one in programs(tmp_path)) == ["CUT.MPF", "SUB.SPF"]
+    assert read(tmp_path, "CUT.MPF") == b"M30\n"
+    for name in ("../CUT.MPF", "..\\CUT.MPF", "/etc/passwd", "CUT.MPF\0", "runs.db"):
+        with pytest.raises(InputError):
+            read(tmp_path, name)
