@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from gearmath.cli.common import JSON, about, bar, echo_json, output, plot, save_plot, table
+from gearmath.cli.common import JSON, NewFile, about, bar, echo_json, output, plot, save_plot, table
 from gearmath.cli.design_reverse import reverse_design
 
 
@@ -25,10 +25,19 @@ from gearmath.cli.design_reverse import reverse_design
     type=click.Path(path_type=Path, dir_okay=False),
     help="Find the settings of the member with these flanks (flank CSV), from its blank and method alone.",
 )
+@click.option(
+    "--sheet", type=NewFile(), metavar="SUMMARY.html", help="Also write the summary sheet of the set: prints on A4."
+)
 @JSON
 @plot("transmission error, path and pattern of both sides")
 def design(
-    data: str, target: Path, given: str | None, points: Path | None, as_json: bool, picture: Path | None
+    data: str,
+    target: Path,
+    given: str | None,
+    points: Path | None,
+    sheet: Path | None,
+    as_json: bool,
+    picture: Path | None,
 ) -> None:
     """A spiral bevel pair from tooth counts, module, face width, spiral angle and cutter: blank and settings.
 
@@ -43,6 +52,7 @@ def design(
     from gearmath.bevel.pair import load_pair
     from gearmath.errors import InputError
     from gearmath.files import write_text
+    from gearmath.setup_sheet.summary import summary_sheet
     from gearmath.specs.design import load_design
     from gearmath.specs.set_text import set_text
     from gearmath.specs.toml import find
@@ -52,7 +62,7 @@ def design(
         for option, other in (("--from", given), ("--plot", picture)):
             if other is not None:
                 raise InputError(f"{option} and --reverse: only one of them may be given")
-        reverse_design(points, path, target, as_json)
+        reverse_design(points, path, target, sheet, as_json)
         return
     asked = load_design(path)
     gear = None if given is None else load_pair(find(given))
@@ -64,6 +74,8 @@ def design(
         figures, runs = verdict(made)
         done(1)
     write_text(target, set_text(made.pair))
+    if sheet is not None:
+        write_text(sheet, summary_sheet(made.pair))
     if picture is not None:
         from gearmath.plot.contact import contact_figure
 
@@ -73,6 +85,8 @@ def design(
         return
     click.echo(_text(asked.title, figures))
     click.echo(f"{target}: written")
+    if sheet is not None:
+        click.echo(f"{sheet}: summary sheet, prints on A4")
 
 
 def _text(title: str, figures: dict[str, Any]) -> str:

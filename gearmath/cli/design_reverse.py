@@ -13,10 +13,11 @@ if TYPE_CHECKING:
     from gearmath.bevel.design.reverse import ReversedFlank
 
 
-def reverse_design(points: Path, data: Path, target: Path, as_json: bool) -> None:
+def reverse_design(points: Path, data: Path, target: Path, sheet: Path | None, as_json: bool) -> None:
     """Find the settings of the member of a flank file, write them as a set, and print how well they do."""
     from gearmath.bevel.design.reverse_route import load_known, reversed_set
     from gearmath.files import write_text
+    from gearmath.setup_sheet.summary import summary_sheet
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.set_text import set_text
 
@@ -26,6 +27,8 @@ def reverse_design(points: Path, data: Path, target: Path, as_json: bool) -> Non
         found, how_well = reversed_set(known, file, f"settings found from the points of {points.name}")
         done(1)
     write_text(target, set_text(found))
+    if sheet is not None:
+        write_text(sheet, summary_sheet(found))
     member = how_well.member
     figures: dict[str, Any] = {
         "set": str(target),
@@ -42,6 +45,8 @@ def reverse_design(points: Path, data: Path, target: Path, as_json: bool) -> Non
     for name, flank in how_well.flanks.items():
         click.echo("\n" + _text(name, figures[name], flank))
     click.echo(f"\n{target}: written")
+    if sheet is not None:
+        click.echo(f"{sheet}: summary sheet, prints on A4")
 
 
 def _figures(flank: ReversedFlank) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -93,3 +94,15 @@ def test_wrong_data_are_refused_in_one_sentence(command, points, tmp_path, argum
     assert status == 2
     assert words in err
     assert err.count("\n") == 1
+
+
+def test_summary_sheet_of_the_settings_found_is_written_beside_the_set(command, points, tmp_path):
+    sheet, again = tmp_path / "sheet.html", tmp_path / "again.html"
+    arguments = ("design", "--reverse", points, "spiral_7x43.toml", "-o", tmp_path / "set.toml", "--sheet", sheet)
+    status, out, _ = command(*arguments)
+    assert status == 0
+    assert f"{sheet}: summary sheet, prints on A4" in out
+    assert command("export", "summary", tmp_path / "set.toml", "-o", again)[0] == 0
+    # to the decimals of the sheet the set file says the same; its digest is of all of them
+    one, other = (re.sub(r"sha256 \w+", "", path.read_text("utf-8")) for path in (sheet, again))
+    assert one == other
