@@ -203,6 +203,14 @@ def test_name_that_a_control_does_not_take_is_refused(name: str, small: str, gm_
     assert "the name of the program" in post(gm_post, small, tmp_path, 2, name)[1]
 
 
+def test_settings_are_not_written_over_by_their_program(small: str, gm_post: Path, tmp_path: Path) -> None:
+    settings = tmp_path / "PINION.settings"
+    settings.write_text(small, "ascii")
+    done = subprocess.run([gm_post, settings, "-o", settings], capture_output=True, text=True)
+    assert (done.returncode, settings.read_text("ascii")) == (2, small)
+    assert "is the settings file" in done.stderr
+
+
 def test_fuzzed_settings_files_never_crash_and_say_one_sentence(
     small: str, gm_post: Path, gcc: str, tmp_path: Path
 ) -> None:
