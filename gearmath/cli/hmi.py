@@ -36,11 +36,14 @@ def hmi(control: str | None, insecure: bool, store_file: Path, host: str, port: 
         from gearmath.hmi.app import serve
     except ImportError as error:
         raise InputError(f"{error.name} is missing: install it with pip install '.[hmi]'") from error
+    from gearmath.control.store import MeasurementStore
     from gearmath.files import check_place
     from gearmath.hmi.alarm_book import AlarmBook
     from gearmath.hmi.state import Shared
 
     check_place(store_file)
+    if store_file.exists():
+        MeasurementStore.open(store_file, create=False).close()
     alarms = store_file.with_name(f"{store_file.stem}_alarms.json")
     shared = Shared(store_file, book=AlarmBook(alarms))
     if control is not None:
