@@ -19,6 +19,6 @@ def parsed(text: Text, typed: str, low: float, high: float, unit: str) -> tuple[
         return None, text("shell.no_number", value=plain[:30])
     value = float(plain.replace(",", "."))
     if not (math.isfinite(value) and low <= value <= high):
-        limits = {"low": f"{low:g}", "high": f"{high:g}"}
+        limits = {"low": f"{low:.10g}", "high": f"{high:.10g}"}
         return None, text("shell.out_of_range", value=plain[:30], unit=unit, **limits)
     return value, None

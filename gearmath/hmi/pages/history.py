@@ -108,7 +108,7 @@ def _compare(text: Text, found: Comparison, svg: str, _: list[str]) -> None:
     rows = []
     for row in found.figures:
         cells = [
-            "–" if value is None else f"{value:.2f}" for value in (*row.values, row.change, row.change_uncertainty)
+            "–" if value is None else f"{value:z.2f}" for value in (*row.values, row.change, row.change_uncertainty)
         ]
         verdict = {None: "history.not_known", True: "history.changed", False: "history.noise"}[row.beyond_noise]
         rows.append([f"{_figure(text, row.name)}, {names[row.flank]}", *cells, text(verdict)])
@@ -152,7 +152,7 @@ def _show_trend(text: Text, found: Comparison, svg: str, left_out: list[str]) ->
         blocks.chart(text, svg, text("history.trend"))
     names, runs = blocks.flank_names(text), [one.run.id for one in found.runs]
     rows = [
-        [f"{_figure(text, row.name)}, {names[row.flank]}", *("–" if v is None else f"{v:.2f}" for v in row.values)]
+        [f"{_figure(text, row.name)}, {names[row.flank]}", *("–" if v is None else f"{v:z.2f}" for v in row.values)]
         for row in found.figures
     ]
     head = [f"{text('history.figure')} / µm", *(text("history.of_run", run=run) for run in runs)]

@@ -38,7 +38,7 @@ def build(shared: Shared, text: Text) -> None:
         for name, found in facts(text, view).items():
             values[name].text = found
         for label, position in zip(axes, view.status.position if view.status else (), strict=False):
-            label.text = f"{position:.3f}"
+            label.text = f"{position:z.3f}"
         old = view.age is not None and view.is_stale
         stale.show(text("machine.stale", age=duration(text, view.age or 0.0)) if old else "", "error")
         panel.classes(add="gm-stale" if old else "", remove="" if old else "gm-stale")
