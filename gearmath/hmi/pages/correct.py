@@ -179,6 +179,9 @@ class _CorrectPage:
             if found is None:
                 done.show(text("correct.none"), "warning")
                 return
+            if found.changes_nothing:
+                done.show(text("correct.nothing_written"), "warning")
+                return
             done.show("")
             work.start(text("correct.writing"), lambda progress: accept(desk.runs, found, self.shared.folder))
 
