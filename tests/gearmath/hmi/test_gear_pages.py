@@ -98,7 +98,14 @@ def test_a_result_stands_with_tolerance_caveat_and_uncertainty(
     one.panel(text("result.topography")).locator("svg").nth(1).wait_for(timeout=LONG)
     one.sees(text("result.caveat"))
     one.page.get_by_text(text("result.how_sure")).wait_for(timeout=LONG)
-    assert one.panel(text("result.uncertainty")).get_by_role("row").count() > 15
+    sure = one.panel(text("result.uncertainty"))
+    assert sure.get_by_role("row").count() > 15
+    figures = sure.locator("tbody tr td:first-child").all_inner_texts()
+    assert text("result.spiral_angle_deviation") + ", " + text("blocks.concave") in figures
+    if language == "de":  # no figure is named in English
+        assert [name for name in figures if re.search("deviation|mean|crowning|eccentricity|tilt|rotation", name)] == []
+        pitch = one.page.locator("figure svg").get_by_text("Gesamtteilung / µm")
+        pitch.first.wait_for(state="attached")
     assert one.axe() == []
     assert one.page.evaluate("document.documentElement.scrollWidth") <= size[0]
     one.picture(f"result_{language}")
