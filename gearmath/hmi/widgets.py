@@ -87,7 +87,8 @@ def fact(label: str, value: str = "", unit: str = "") -> ui.label:
 
 
 class NumberField:
-    """A number with unit and limits. What is out of range stays as it was typed and is refused with the reason.
+    """A number with unit and limits, a whole one where ``digits`` is 0. What is out of range stays as it was typed and
+    is refused with the reason.
 
     ``value`` is the accepted number, None while what stands in the field is refused. ``changed`` hears of each
     accepted one, when the field is left or Enter is pressed.
@@ -110,7 +111,7 @@ class NumberField:
         self.field = ui.input(label, value=typed, validation=self._refusal).classes("gm-number")
         self.field.props('outlined dense hide-bottom-space inputmode="decimal" autocomplete="off"')
         self.field.props["suffix"] = unit
-        self.field.props["hint"] = text("shell.range", low=f"{low:.10g}", high=f"{high:.10g}", unit=unit)
+        self.field.props["hint"] = text("shell.range", low=f"{low:.10g}", high=f"{high:.10g} {unit}".rstrip())
         self.value, _ = self._parsed(typed)
         self.field.on("change", lambda: self._leave())
 
@@ -119,7 +120,7 @@ class NumberField:
         self.value, self.field.error = None, why
 
     def _parsed(self, typed: str | None) -> tuple[float | None, str | None]:
-        return parsed(self._text, typed or "", self._low, self._high, self._unit)
+        return parsed(self._text, typed or "", self._low, self._high, self._unit, not self._digits)
 
     def _refusal(self, typed: str | None) -> str | None:
         self.value, why = self._parsed(typed)

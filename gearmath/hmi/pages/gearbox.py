@@ -132,12 +132,9 @@ class _GearboxPage:
         low, high = FIELDS[key]
 
         def changed(number: float) -> None:
-            if digits == 0 and not number.is_integer():
-                field.refuse(self.text("gearbox.whole"))
-                return
             self.wish(**{key: int(number) if digits == 0 else number})
 
-        field = widgets.NumberField(self.text, self.text(f"gearbox.{key}"), value, unit, low, high, changed, digits)
+        widgets.NumberField(self.text, self.text(f"gearbox.{key}"), value, unit, low, high, changed, digits)
 
     def plan(self) -> None:
         """Ratio and rates against their limits, and the firmware."""
