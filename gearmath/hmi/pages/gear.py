@@ -335,7 +335,8 @@ class _GearPage:
             shown = ("–" if value is None else f"{value:z.2f}" for value in numbers)
             rows.append([text(f"gear.{side}"), *shown, words.get(one["outcome"], one["outcome"])])
         head = [text("gear.side"), f"{text('gear.ratio')} / 1", f"{text('gear.error')} / arcsec"]
-        blocks.plain_table("", [*head, f"{text('gear.share')} / %", text("gear.outcome")], rows)
+        at = "V {:z.10g}, H {:z.10g}, J {:z.10g} mm".format(*self.desk.assembly)  # a field may hold what is refused
+        blocks.plain_table(at, [*head, f"{text('gear.share')} / %", text("gear.outcome")], rows)
         blocks.chart(text, svg, text("gear.contact"))
 
 
