@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from gearmath.bevel.contact.system import Assembly, System
 
 _FINEST, _COARSEST = 0.01, 15.0
-#: Displacements [mm] and change of the shaft angle [degree] beyond which no assembly is meant.
-_MOST_MM, _MOST_DEG = 50.0, 10.0
+#: Change of the shaft angle [degree] beyond which no assembly is meant.
+_MOST_DEG = 10.0
 _LIMIT_TRIALS = 10
 #: Figures of a measured pair with an uncertainty: key, words and unit.
 _SURE = (
@@ -111,10 +111,12 @@ def contact(
 
 
 def _check(v: float, h: float, j: float, shaft: float, step: float) -> None:
+    from gearmath.bevel.contact.system import MOST_MM
+
     for name, value, most, unit in (
-        ("--v", v, _MOST_MM, "mm"),
-        ("--h", h, _MOST_MM, "mm"),
-        ("--j", j, _MOST_MM, "mm"),
+        ("--v", v, MOST_MM, "mm"),
+        ("--h", h, MOST_MM, "mm"),
+        ("--j", j, MOST_MM, "mm"),
         ("--shaft", shaft, _MOST_DEG, "degrees"),
     ):
         if not abs(value) <= most:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.control_connect import INSECURE, connection_of, connector, quiet
+from gearmath.cli.control_connect import INSECURE, choose_linuxcnc, connector, name_of, quiet
 from gearmath.cli.runs import store_option
 from gearmath.errors import InputError
 
@@ -20,8 +20,9 @@ _SIMULATED = "simulated"
 @click.command()
 @click.option(
     "--control",
-    metavar="CONTROL.toml|simulated",
-    help="The machine control: its connection file, or a simulated one inside the server.  [default: none]",
+    metavar="CONTROL.toml|LINUXCNC.ini|simulated",
+    help="The machine control: its connection file, the INI file of a LinuxCNC on this computer, or a simulated one "
+    "inside the server.  [default: none]",
 )
 @INSECURE
 @store_option("The measurement store; sets and programs are written to its folder.")
@@ -36,11 +37,14 @@ def hmi(control: str | None, insecure: bool, store_file: Path, host: str, port: 
         from gearmath.hmi.app import serve
     except ImportError as error:
         raise InputError(f"{error.name} is missing: install it with pip install '.[hmi]'") from error
+    from gearmath.control.store import MeasurementStore
     from gearmath.files import check_place
     from gearmath.hmi.alarm_book import AlarmBook
     from gearmath.hmi.state import Shared
 
     check_place(store_file)
+    if store_file.exists():
+        MeasurementStore.open(store_file, create=False).close()
     alarms = store_file.with_name(f"{store_file.stem}_alarms.json")
     shared = Shared(store_file, book=AlarmBook(alarms))
     if control is not None:
@@ -54,6 +58,7 @@ def hmi(control: str | None, insecure: bool, store_file: Path, host: str, port: 
 def _connect(shared: Shared, control: str, insecure: bool) -> None:
     """Begin to watch the control."""
     from gearmath.control import sinumerik
+    from gearmath.files import read_text
     from gearmath.hmi.link import ControlLink
     from gearmath.hmi.measuring_task import MeasuringTask
 
@@ -65,8 +70,10 @@ def _connect(shared: Shared, control: str, insecure: bool) -> None:
         shared.link = ControlLink(NAME, shared.simulated.connect, shared.book)
     else:
         path = Path(control)
+        choose_linuxcnc(path.suffix.lower() == ".ini")
+        read_text(path)  # refuses a file that is not there at once
         needed = (sinumerik.READ_STATE, sinumerik.READ_ALARMS)
         connect = connector(path, insecure, *needed)
-        shared.link = ControlLink(connection_of(path, insecure).name, connect, shared.book)
+        shared.link = ControlLink(name_of(path, insecure), connect, shared.book)
     shared.link.open()
     shared.measuring = MeasuringTask(shared.link, shared.store)

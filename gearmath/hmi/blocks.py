@@ -146,6 +146,12 @@ def flank_names(text: Text) -> dict[str, str]:
     return {name: text(f"blocks.{name}") for name in ("concave", "convex", "both")}
 
 
+def figure_name(text: Text, name: str) -> str:
+    """A figure of a measurement in the language of the page."""
+    plain = name.removesuffix("_um")
+    return text(f"result.{plain}") if text.has(f"result.{plain}") else plain.replace("_", " ")
+
+
 def setting_name(text: Text, name: str) -> str:
     """A setting, a coefficient of its motion or the root line, as the page calls it."""
     plain, dot, power = name.replace(" ", "_").partition(".")

@@ -56,6 +56,11 @@ class Proposal:
         """As ``gearmath compensate --json`` prints it."""
         return correction_values(self.evaluated.member, self.correction)
 
+    @property
+    def changes_nothing(self) -> bool:
+        """Whether neither a setting nor the index of a tooth would be another."""
+        return not self.values["changes"] and not any(self.values["index_correction_deg"])
+
     @cached_property
     def after(self) -> dict[str, Topography]:
         """What is expected to remain of it [mm]."""

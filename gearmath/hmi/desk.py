@@ -53,6 +53,8 @@ class Desk:
     run: int | None = None
     compared: int | None = None
     which: str = "few"
+    assembly: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """V, H, J [mm] at which the pair is brought into contact."""
     hobber: str = "hobbing_plewes.toml"
     wish: HobbingWish = field(default_factory=lambda: HobbingWish(teeth=17))
     decisions: int = 0

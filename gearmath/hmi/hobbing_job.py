@@ -104,12 +104,12 @@ def plan_lines(job: GearboxJob) -> list[PlanLine]:
         found += [
             PlanLine("pitch", f"{float(job.pitch):.6g}", "mm"),
             PlanLine("lead", f"{float(job.lead):.6g}", "mm"),
-            PlanLine("count_way", f"{job.count_um:.2f}", "µm"),
-            PlanLine("step_way", f"{job.step_um:.2f}", "µm"),
+            PlanLine("count_way", f"{job.count_um:z.2f}", "µm"),
+            PlanLine("step_way", f"{job.step_um:z.2f}", "µm"),
         ]
     if isinstance(job, GearboxPlan) and job.helix is not None:
         found += [
-            PlanLine("helix_lead", f"{job.helix.lead:.4f}", "mm"),
+            PlanLine("helix_lead", f"{job.helix.lead:z.4f}", "mm"),
             PlanLine("helix_error", f"{job.helix.error_steps:.1e}", f"steps / {job.helix.travel:g} mm"),
         ]
         if job.helix.feed_mm is None:
@@ -120,21 +120,21 @@ def plan_lines(job: GearboxJob) -> list[PlanLine]:
 def blank_lines(blank: HobbedBlank) -> list[PlanLine]:
     """What to turn, set and measure for one hob."""
     found = [
-        PlanLine("blank_diameter", f"{blank.blank_diameter:.4f}", "mm"),
-        PlanLine("cut_depth", f"{blank.cut_depth:.4f}", "mm"),
+        PlanLine("blank_diameter", f"{blank.blank_diameter:z.4f}", "mm"),
+        PlanLine("cut_depth", f"{blank.cut_depth:z.4f}", "mm"),
     ]
     if blank.swivel is not None:
-        found.append(PlanLine("swivel", f"{blank.swivel.swivel:+.3f}", "°"))
+        found.append(PlanLine("swivel", f"{blank.swivel.swivel:+z.3f}", "°"))
     if blank.span is not None:
-        found.append(PlanLine("span", f"{blank.span.length:.4f}", "mm"))
+        found.append(PlanLine("span", f"{blank.span.length:z.4f}", "mm"))
         found.append(PlanLine("span_teeth", f"{blank.span.teeth}", "1"))
-    found.append(PlanLine("chord", f"{blank.chord.thickness:.4f}", "mm"))
-    found.append(PlanLine("chord_height", f"{blank.chord.height:.4f}", "mm"))
+    found.append(PlanLine("chord", f"{blank.chord.thickness:z.4f}", "mm"))
+    found.append(PlanLine("chord_height", f"{blank.chord.height:z.4f}", "mm"))
     if blank.over_pins is not None:
-        found.append(PlanLine("over_pins", f"{blank.over_pins.length:.4f}", "mm"))
+        found.append(PlanLine("over_pins", f"{blank.over_pins.length:z.4f}", "mm"))
         found.append(PlanLine("pin", f"{blank.over_pins.pin:.4g}", "mm"))
-    found.append(PlanLine("count_way", f"{blank.count_um:.2f}", "µm"))
-    found.append(PlanLine("step_way", f"{blank.step_um:.2f}", "µm"))
+    found.append(PlanLine("count_way", f"{blank.count_um:z.2f}", "µm"))
+    found.append(PlanLine("step_way", f"{blank.step_um:z.2f}", "µm"))
     return found
 
 
@@ -161,15 +161,15 @@ def sketch_name(machine: HobbingMachine) -> str:
 
 def _rates(job: GearboxJob) -> Iterator[PlanLine]:
     motion = job.motion
-    yield PlanLine("rpm", f"{job.rpm:.1f}", "1/min", job.hob_rpm_percent)
-    yield PlanLine("edge_rate", f"{job.edge_rate_hz:.0f}", "Hz", job.edge_rate_percent)
-    yield PlanLine("step_rate", f"{job.step_rate_hz:.0f}", "Hz", job.step_rate_percent)
-    yield PlanLine("highest_rpm", f"{job.highest_rpm:.1f}", "1/min")
-    yield PlanLine("run_up", f"{motion.run_up_s:.2f}", "s")
-    yield PlanLine("shortest_run_up", f"{motion.shortest_run_up_s:.2f}", "s")
+    yield PlanLine("rpm", f"{job.rpm:z.1f}", "1/min", job.hob_rpm_percent)
+    yield PlanLine("edge_rate", f"{job.edge_rate_hz:z.0f}", "Hz", job.edge_rate_percent)
+    yield PlanLine("step_rate", f"{job.step_rate_hz:z.0f}", "Hz", job.step_rate_percent)
+    yield PlanLine("highest_rpm", f"{job.highest_rpm:z.1f}", "1/min")
+    yield PlanLine("run_up", f"{motion.run_up_s:z.2f}", "s")
+    yield PlanLine("shortest_run_up", f"{motion.shortest_run_up_s:z.2f}", "s")
     if motion.catch_up_s is not None:
-        yield PlanLine("catch_up", f"{motion.catch_up_s:.2f}", "s")
-    yield PlanLine("engage_rpm", f"{motion.engage_rpm:.0f}", "1/min")
+        yield PlanLine("catch_up", f"{motion.catch_up_s:z.2f}", "s")
+    yield PlanLine("engage_rpm", f"{motion.engage_rpm:z.0f}", "1/min")
 
 
 def _feed(typed: str) -> Fraction | None:

@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 
 from gearmath.bevel.pair import load_pair
-from gearmath.control.file_names import control_name
+from gearmath.control.file_names import control_name, linuxcnc_name
 from gearmath.errors import InputError
 from gearmath.files import read_bytes, write_text
 from gearmath.front.machines import load_machine, load_shop
@@ -102,9 +102,9 @@ def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Pr
 def programs(folder: Path) -> list[ListedProgram]:
     """The programs of a folder whose names a control takes, the newest first."""
     found = []
-    for path in folder.glob("*.[MS]PF"):
+    for path in (*folder.glob("*.[MS]PF"), *folder.glob("*.ngc")):
         try:
-            control_name(path.name)
+            _kept_name(path.name)
             status = path.stat()
         except (InputError, OSError):
             continue
@@ -117,13 +117,18 @@ def programs(folder: Path) -> list[ListedProgram]:
 
 def read(folder: Path, name: str) -> bytes:
     """A program of the folder. Raises InputError for a name that a control does not take, or leads elsewhere."""
-    return read_bytes(folder / control_name(name))
+    return read_bytes(folder / _kept_name(name))
 
 
 def preview(folder: Path, name: str) -> tuple[str, int]:
     """The first lines of a program as text, and how many it has."""
     lines = decoded(read(folder, name), name).splitlines()
     return "\n".join(islice(lines, SHOWN)), len(lines)
+
+
+def _kept_name(name: str) -> str:
+    """The name as its control keeps it, LinuxCNC one that ends in .ngc. Raises InputError."""
+    return linuxcnc_name(name) if name.endswith(".ngc") else control_name(name)
 
 
 def _file(folder: Path, name: str) -> Path:

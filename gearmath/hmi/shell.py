@@ -75,6 +75,8 @@ def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], reque
     ui.timer(_BEAT, lambda: beat.set_text(str(int(beat.text) + 1)))
     with ui.element("div").classes("gm-main"):
         build(shared, text)
+        with ui.element("footer").classes("gm-wide"):
+            widgets.note(text("shell.foreign"))
 
 
 def _strip(shared: Shared, text: Text) -> None:

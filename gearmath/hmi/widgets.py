@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
+from weakref import WeakKeyDictionary
 
-from nicegui import ui
+from nicegui import Client, ui
 
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.messages import Text
@@ -18,6 +19,10 @@ from gearmath.hmi.work import Work
 LOOK = 0.25
 #: Kinds of a message, each with its icon.
 _ICONS = {"info": "info", "good": "check_circle", "warning": "warning", "error": "error"}
+
+
+#: The sentence that stays over each page.
+_SAID: WeakKeyDictionary[Client, ui.notification] = WeakKeyDictionary()
 
 
 @contextmanager
@@ -82,7 +87,8 @@ def fact(label: str, value: str = "", unit: str = "") -> ui.label:
 
 
 class NumberField:
-    """A number with unit and limits. What is out of range stays as it was typed and is refused with the reason.
+    """A number with unit and limits, a whole one where ``digits`` is 0. What is out of range stays as it was typed and
+    is refused with the reason.
 
     ``value`` is the accepted number, None while what stands in the field is refused. ``changed`` hears of each
     accepted one, when the field is left or Enter is pressed.
@@ -101,11 +107,11 @@ class NumberField:
     ) -> None:
         self._text, self._unit, self._low, self._high = text, unit, low, high
         self._changed, self._digits = changed, digits
-        typed = "" if value is None else f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
+        typed = "" if value is None else f"{value:z.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:z.0f}"
         self.field = ui.input(label, value=typed, validation=self._refusal).classes("gm-number")
         self.field.props('outlined dense hide-bottom-space inputmode="decimal" autocomplete="off"')
         self.field.props["suffix"] = unit
-        self.field.props["hint"] = text("shell.range", low=f"{low:g}", high=f"{high:g}", unit=unit)
+        self.field.props["hint"] = text("shell.range", low=f"{low:.10g}", high=f"{high:.10g} {unit}".rstrip())
         self.value, _ = self._parsed(typed)
         self.field.on("change", lambda: self._leave())
 
@@ -114,7 +120,7 @@ class NumberField:
         self.value, self.field.error = None, why
 
     def _parsed(self, typed: str | None) -> tuple[float | None, str | None]:
-        return parsed(self._text, typed or "", self._low, self._high, self._unit)
+        return parsed(self._text, typed or "", self._low, self._high, self._unit, not self._digits)
 
     def _refusal(self, typed: str | None) -> str | None:
         self.value, why = self._parsed(typed)
@@ -156,6 +162,7 @@ def button(label: str, pressed: Callable[[], Any], icon: str = "", primary: bool
     """A button whose refusals are shown as a sentence."""
 
     def guarded() -> None:
+        _hush()
         try:
             pressed()
         except (InputError, ComputationError) as error:
@@ -168,12 +175,27 @@ def button(label: str, pressed: Callable[[], Any], icon: str = "", primary: bool
 
 
 def say(words: str, kind: str = "info") -> None:
-    """A sentence that stays until it is closed where something failed, and goes by itself otherwise."""
+    """A sentence over the page: it goes by itself, but where something failed only when it is closed, or when a button
+    is pressed again."""
     types: dict[str, Any] = {"info": "info", "good": "positive", "warning": "warning", "error": "negative"}
     stays = kind in ("warning", "error")
-    ui.notify(
-        words, type=types[kind], position="bottom", timeout=0 if stays else 4000, close_button="OK" if stays else False
+    _hush()
+    found = ui.notification(
+        words,
+        type=types[kind],
+        position="bottom",
+        timeout=None if stays else 4.0,
+        close_button="OK" if stays else False,
     )
+    if stays:
+        _SAID[ui.context.client] = found
+
+
+def _hush() -> None:
+    """Take away what was said on this page and stays: it is about something that was pressed before."""
+    before = _SAID.pop(ui.context.client, None)
+    if before is not None:
+        before.dismiss()
 
 
 def ask(shared: Shared, text: Text, question: str, answered: Callable[[], Any]) -> None:

@@ -135,13 +135,13 @@ class _CorrectPage:
                 text(f"gear.{name}") if text.has(f"gear.{name}") else name for name in fit["held_back_by"]
             )
             state = binds or text("correct.nothing_binds")
-            rows.append([flanks, *(f"{number:.2f}" for number in numbers), state])
+            rows.append([flanks, *(f"{number:z.2f}" for number in numbers), state])
             if not fit["converged"]:
                 widgets.Message(f"{flanks}: {text('correct.not_converged')}", "warning")
         head = [f"{text(f'correct.{key}')} / µm" for key in ("rms", "expected", "reachable")]
         blocks.plain_table(text("correct.limits"), [text("correct.flank"), *head, text("correct.binds")], rows)
         for flank, (toe, heel) in proposal.values["root_line_um"].items():
-            widgets.note(text("correct.root", flank=self.names[flank], toe=f"{toe:+.1f}", heel=f"{heel:+.1f}"))
+            widgets.note(text("correct.root", flank=self.names[flank], toe=f"{toe:+z.1f}", heel=f"{heel:+z.1f}"))
 
     def _changes(self, proposal: Proposal) -> None:
         text, changes = self.text, proposal.values["changes"]
@@ -152,13 +152,13 @@ class _CorrectPage:
         for one in changes:
             name = blocks.setting_name(text, one["setting"])
             unit = one["unit"].replace("deg", "°")
-            numbers = (f"{one['old']:.6f}", f"{one['new']:.6f}", f"{one['new'] - one['old']:+.6f}")
+            numbers = (f"{one['old']:z.6f}", f"{one['new']:z.6f}", f"{one['new'] - one['old']:+z.6f}")
             rows.append([f"{name}, {self.names[one['flank']]}", *numbers, unit])
         head = [text(key) for key in ("gear.setting", "correct.old", "correct.new", "gear.change", "gear.unit")]
         blocks.plain_table(text("correct.changes"), head, rows)
         index = proposal.values["index_correction_deg"]
         if index:
-            spread = f"{3600 * (max(index) - min(index)):.1f}"
+            spread = f"{3600 * (max(index) - min(index)):z.1f}"
             widgets.note(text("correct.index", spread=spread))
 
     def _flanks(self, flanks: list[str]) -> str:
@@ -178,6 +178,9 @@ class _CorrectPage:
             found = proposal()
             if found is None:
                 done.show(text("correct.none"), "warning")
+                return
+            if found.changes_nothing:
+                done.show(text("correct.nothing_written"), "warning")
                 return
             done.show("")
             work.start(text("correct.writing"), lambda progress: accept(desk.runs, found, self.shared.folder))
@@ -199,6 +202,8 @@ class _CorrectPage:
             widgets.button(text("correct.accept"), accepted, "check", primary=True)
             widgets.button(text("correct.reject"), rejected, "close")
         done = widgets.Message()
+        # what was said of a run, or of there being no correction, goes when another is shown
+        blocks.follow(lambda: (self.key(), proposal() is not None), lambda: done.show(""))
 
         def ended() -> None:
             if isinstance(work.result, Accepted):

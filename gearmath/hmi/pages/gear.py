@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Hashable
 from pathlib import Path
 from typing import Any
 
 from nicegui import ui
 
+from gearmath.bevel.contact.system import MOST_MM
 from gearmath.errors import InputError
 from gearmath.front.contact import Contact, contact
 from gearmath.front.measured import Measurement
@@ -15,7 +17,7 @@ from gearmath.front.sets import GearSet
 from gearmath.hmi import blocks, widgets
 from gearmath.hmi.catalog import files_of
 from gearmath.hmi.correcting import free_file
-from gearmath.hmi.desk import SOURCES, Draft, draft
+from gearmath.hmi.desk import SOURCES, Desk, Draft, draft
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.flank_view import flat_figures, space_figure
 from gearmath.hmi.gear_settings import DECIMALS, Place, SettingField, save_edited, setting_fields
@@ -98,7 +100,7 @@ class _GearPage:
         blocks.facts([(text("gear.method"), method, "")])
         for key in Blank.model_fields:
             value = getattr(spec.blank, key)
-            blocks.facts([(text(f"gear.{key}"), f"{value:.4f}", "°" if unit_of(Blank, key) == "degree" else "mm")])
+            blocks.facts([(text(f"gear.{key}"), f"{value:z.4f}", "°" if unit_of(Blank, key) == "degree" else "mm")])
 
     def settings(self) -> None:
         """A field for each setting, then what is changed against the file."""
@@ -153,9 +155,9 @@ class _GearPage:
             rows = [
                 [
                     self._name(place),
-                    f"{in_file[place].value:.{DECIMALS}f}",
-                    f"{value:.{DECIMALS}f}",
-                    f"{value - in_file[place].value:+.{DECIMALS}f}",
+                    f"{in_file[place].value:z.{DECIMALS}f}",
+                    f"{value:z.{DECIMALS}f}",
+                    f"{value - in_file[place].value:+z.{DECIMALS}f}",
                     in_file[place].unit,
                 ]
                 for place, value in found.accepted.items()
@@ -259,7 +261,7 @@ class _GearPage:
         """What is shown, its largest deviation, and how many times it is enlarged."""
         if found.view is None:
             return ""
-        member, largest = self.text(f"blocks.{found.member.name}"), f"{found.view.largest_um:.1f}"
+        member, largest = self.text(f"blocks.{found.member.name}"), f"{found.view.largest_um:z.1f}"
         if float(largest) == 0.0:
             return self.text("gear.no_deviation", member=member)
         return self.text("gear.view", member=member, largest=largest, times=f"{found.view.times:g}")
@@ -268,19 +270,28 @@ class _GearPage:
         """Pattern and transmission error of the pair: of the settings as they are typed, or of the run."""
         text, desk = self.text, self.desk
 
+        fields: dict[str, widgets.NumberField] = {}
+
+        def of_now() -> Hashable:
+            return self.key(), desk.assembly
+
         def begin() -> None:
-            desk.wanted["contact"] = self.key()
+            widgets.numbers(fields)  # raises where one of them is refused
+            desk.wanted["contact"] = of_now()
 
         def key() -> Hashable:
-            now = self.key()
-            return now if desk.wanted.get("contact") == now and desk.of("gear.draft").has(now) else None
+            now = of_now()
+            return now if desk.wanted.get("contact") == now and desk.of("gear.draft").has(self.key()) else None
 
         def compute() -> Callable[[Progress], Any]:
             found: Draft = desk.of("gear.draft").work.result
             run = desk.shown_run() if desk.source == "run" else None
-            return lambda progress: _run(found, desk, run)
+            assembly = desk.assembly
+            return lambda progress: _run(found, desk, run, assembly)
 
         widgets.note(text("gear.contact_of"))
+        self._assembly(fields)
+        widgets.note(text("gear.nominal"))
         widgets.button(text("gear.compute"), begin, "play_arrow", primary=True)
         blocks.kept(
             text,
@@ -292,26 +303,52 @@ class _GearPage:
             text("gear.no_contact"),
         )
 
+    def _assembly(self, fields: dict[str, widgets.NumberField]) -> None:
+        """V, H and J; drawn anew only when another page has typed, for a field that is drawn anew loses the cursor."""
+        text, desk = self.text, self.desk
+        mine, others = [desk.assembly], [0]
+
+        def typed(k: int, value: float) -> None:
+            v, h, j = (value if i == k else old for i, old in enumerate(desk.assembly))
+            mine[0] = desk.assembly = (v, h, j)
+
+        def by_others() -> int:
+            if mine[0] != desk.assembly:
+                mine[0], others[0] = desk.assembly, others[0] + 1
+            return others[0]
+
+        def draw() -> None:
+            with widgets.fields():
+                for k, name in enumerate(("v", "h", "j")):
+                    changed = functools.partial(typed, k)
+                    fields[name] = widgets.NumberField(
+                        text, text(f"gear.{name}"), desk.assembly[k], "mm", -MOST_MM, MOST_MM, changed
+                    )
+
+        blocks.follow(by_others, draw)
+
     def _contact(self, found: tuple[Contact, str]) -> None:
         text, (runs, svg) = self.text, found
-        rows = []
+        rows, words = [], blocks.words_of_charts(text)
         for side, one in runs.to_dict(step=15.0).items():
             numbers = (one["contact_ratio"], one["peak_to_peak_arcsec"], 100 * one["pattern"]["share"])
-            shown = ("–" if value is None else f"{value:.2f}" for value in numbers)
-            rows.append([text(f"gear.{side}"), *shown, one["outcome"]])
+            shown = ("–" if value is None else f"{value:z.2f}" for value in numbers)
+            rows.append([text(f"gear.{side}"), *shown, words.get(one["outcome"], one["outcome"])])
         head = [text("gear.side"), f"{text('gear.ratio')} / 1", f"{text('gear.error')} / arcsec"]
-        blocks.plain_table("", [*head, f"{text('gear.share')} / %", text("gear.outcome")], rows)
+        at = "V {:z.10g}, H {:z.10g}, J {:z.10g} mm".format(*self.desk.assembly)  # a field may hold what is refused
+        blocks.plain_table(at, [*head, f"{text('gear.share')} / %", text("gear.outcome")], rows)
         blocks.chart(text, svg, text("gear.contact"))
 
 
-def _run(found: Draft, desk: Any, run: int | None) -> tuple[Contact, str]:
-    """The contact of the edited pair, or on the flanks that a run measured, and its picture."""
+def _run(found: Draft, desk: Desk, run: int | None, assembly: tuple[float, float, float]) -> tuple[Contact, str]:
+    """The contact of the edited pair, or on the flanks that a run measured, at V, H, J [mm], and its picture."""
+    v, h, j = assembly
     if run is None:
-        made = contact(_whole(found.edited.gear_set))
+        made = contact(_whole(found.edited.gear_set), v=v, h=h, j=j)
     else:
         evaluated = desk.runs.evaluated(run)
         pair = GearSet(evaluated.gear_set)
-        made = contact(_whole(pair), Measurement(pair.member(evaluated.name), evaluated.file))
+        made = contact(_whole(pair), Measurement(pair.member(evaluated.name), evaluated.file), v=v, h=h, j=j)
     return made, drawn(made.plot)
 
 

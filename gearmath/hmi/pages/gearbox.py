@@ -132,12 +132,9 @@ class _GearboxPage:
         low, high = FIELDS[key]
 
         def changed(number: float) -> None:
-            if digits == 0 and not number.is_integer():
-                field.refuse(self.text("gearbox.whole"))
-                return
             self.wish(**{key: int(number) if digits == 0 else number})
 
-        field = widgets.NumberField(self.text, self.text(f"gearbox.{key}"), value, unit, low, high, changed, digits)
+        widgets.NumberField(self.text, self.text(f"gearbox.{key}"), value, unit, low, high, changed, digits)
 
     def plan(self) -> None:
         """Ratio and rates against their limits, and the firmware."""
@@ -181,7 +178,7 @@ class _GearboxPage:
 
     def _lines(self, lines: list[PlanLine]) -> None:
         for line in lines:
-            share = "" if line.percent is None else self.text("gearbox.of_limit", percent=f"{line.percent:.1f}")
+            share = "" if line.percent is None else self.text("gearbox.of_limit", percent=f"{line.percent:z.1f}")
             widgets.fact(self.text(f"gearbox.{line.key}"), f"{line.value} {share}".rstrip(), line.unit)
 
     def quality(self) -> None:
@@ -200,9 +197,9 @@ class _GearboxPage:
             cells = [
                 [
                     row.figure.replace("_", " "),
-                    f"{row.value_um:.2f}",
+                    f"{row.value_um:z.2f}",
                     "–" if row.accuracy_class is None else str(row.accuracy_class),
-                    "–" if row.tolerance_um is None else f"{row.tolerance_um:.2f}",
+                    "–" if row.tolerance_um is None else f"{row.tolerance_um:z.2f}",
                 ]
                 for row in rows
             ]

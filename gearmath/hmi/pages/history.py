@@ -108,10 +108,10 @@ def _compare(text: Text, found: Comparison, svg: str, _: list[str]) -> None:
     rows = []
     for row in found.figures:
         cells = [
-            "–" if value is None else f"{value:.2f}" for value in (*row.values, row.change, row.change_uncertainty)
+            "–" if value is None else f"{value:z.2f}" for value in (*row.values, row.change, row.change_uncertainty)
         ]
         verdict = {None: "history.not_known", True: "history.changed", False: "history.noise"}[row.beyond_noise]
-        rows.append([f"{_figure(text, row.name)}, {names[row.flank]}", *cells, text(verdict)])
+        rows.append([f"{blocks.figure_name(text, row.name)}, {names[row.flank]}", *cells, text(verdict)])
     first, last = (text("history.of_run", run=one.run.id) for one in found.runs)
     head = [text("history.figure"), *(f"{word} / µm" for word in (first, last, text("history.change"), "u"))]
     blocks.plain_table(text("history.figures"), [*head, text("history.verdict")], rows)
@@ -152,7 +152,10 @@ def _show_trend(text: Text, found: Comparison, svg: str, left_out: list[str]) ->
         blocks.chart(text, svg, text("history.trend"))
     names, runs = blocks.flank_names(text), [one.run.id for one in found.runs]
     rows = [
-        [f"{_figure(text, row.name)}, {names[row.flank]}", *("–" if v is None else f"{v:.2f}" for v in row.values)]
+        [
+            f"{blocks.figure_name(text, row.name)}, {names[row.flank]}",
+            *("–" if v is None else f"{v:z.2f}" for v in row.values),
+        ]
         for row in found.figures
     ]
     head = [f"{text('history.figure')} / µm", *(text("history.of_run", run=run) for run in runs)]
@@ -176,8 +179,3 @@ def _compared(runs: JudgedRuns, pair: tuple[int, int], progress: Progress) -> _D
 def _drawn_trend(runs: JudgedRuns, run: int, progress: Progress) -> _Drawn:
     found, left_out = trend(runs, run, progress)
     return found, drawn(lambda: trend_figure(found)), left_out
-
-
-def _figure(text: Text, name: str) -> str:
-    plain = name.removesuffix("_um")
-    return text(f"result.{plain}") if text.has(f"result.{plain}") else plain.replace("_", " ")

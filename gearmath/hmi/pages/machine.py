@@ -5,6 +5,7 @@ from __future__ import annotations
 from nicegui import ui
 
 from gearmath.control.interface import AXES
+from gearmath.errors import InputError
 from gearmath.hmi import widgets
 from gearmath.hmi.messages import Text
 from gearmath.hmi.simulated import SimulatedMachine
@@ -38,7 +39,7 @@ def build(shared: Shared, text: Text) -> None:
         for name, found in facts(text, view).items():
             values[name].text = found
         for label, position in zip(axes, view.status.position if view.status else (), strict=False):
-            label.text = f"{position:.3f}"
+            label.text = f"{position:z.3f}"
         old = view.age is not None and view.is_stale
         stale.show(text("machine.stale", age=duration(text, view.age or 0.0)) if old else "", "error")
         panel.classes(add="gm-stale" if old else "", remove="" if old else "gm-stale")
@@ -85,6 +86,12 @@ def _operator(shared: Shared, text: Text, machine: SimulatedMachine) -> None:
     link = shared.link
     assert link is not None
     chosen = {"name": ""}
+
+    def select() -> None:
+        if not chosen["name"]:
+            raise InputError(text("measure.program_needed"))
+        machine.select(chosen["name"], shared.choice.gear_set)
+
     with widgets.panel(text("machine.operator"), wide=True):
         widgets.note(text("machine.operator_note"))
         with widgets.row():
@@ -94,7 +101,7 @@ def _operator(shared: Shared, text: Text, machine: SimulatedMachine) -> None:
                 None,
                 lambda name: chosen.update(name=name or ""),
             )
-            widgets.button(text("machine.select"), lambda: machine.select(chosen["name"], shared.choice.gear_set))
+            widgets.button(text("machine.select"), select)
             widgets.button(text("machine.start"), machine.start, "play_arrow")
             widgets.button(text("machine.reset"), lambda: link.submit(machine.reset()), "restart_alt")
             widgets.button(text("machine.stop"), machine.emergency_stop, "dangerous")

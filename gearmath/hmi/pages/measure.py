@@ -90,7 +90,7 @@ def _touches(text: Text, task: MeasuringTask) -> None:
         for point, touch in list(task.touches.items())[-_SHOWN:]:
             place = run.start.points.get(point, ()) if run is not None else ()
             hit = text("machine.yes") if touch.triggered else text("measure.missed")
-            position = {axis: f"{getattr(touch, axis):.4f}" for axis in "XYZAB"}
+            position = {axis: f"{getattr(touch, axis):z.4f}" for axis in "XYZAB"}
             found.append({"id": point, "place": " ".join(place), **position, "triggered": hit})
         found.reverse()
         if rows.rows != found:

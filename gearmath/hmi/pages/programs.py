@@ -169,7 +169,7 @@ def _written(shared: Shared, text: Text) -> None:
     def ask_to_send() -> None:
         name = needed()
         assert shared.link is not None
-        size = f"{len(programs_work.read(shared.folder, name)) / 1000:.0f}"
+        size = f"{len(programs_work.read(shared.folder, name)) / 1000:z.0f}"
         question = text("programs.send_question", name=name, size=size, control=shared.link.name)
         over = bool(replace.value)
         widgets.ask(shared, text, question, lambda: _send(shared, text, name, over))
@@ -232,7 +232,7 @@ def _milled(text: Text, shared: Shared) -> None:
         if not isinstance(found, MilledProgram):
             said.show("")
             return
-        words = text("programs.milled", name=found.name, um=f"{1000 * found.largest:.3f}")
+        words = text("programs.milled", name=found.name, um=f"{1000 * found.largest:z.3f}")
         if found.faults:
             words += " " + text("programs.faults", faults="; ".join(found.faults))
         said.show(words, "error" if found.faults else "good")

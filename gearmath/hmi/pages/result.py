@@ -126,7 +126,7 @@ def _spacing(text: Text, found: tuple[ResultRow, ...], names: dict[str, str]) ->
     rows = []
     for row in found:
         value, interval, grade, tolerance = row.cells
-        spread = interval.replace(" to ", " … ")
+        spread, grade = (cell.replace(" to ", " … ") for cell in (interval, grade))
         rows.append([f"{row.name}, {names[row.flank]}", _word(text, value), spread, _word(text, grade), tolerance])
     if rows:
         keys = {"value": "µm", "interval": "µm", "grade": "1", "tolerance": "µm"}
@@ -147,7 +147,7 @@ def _uncertainty(text: Text, found: SureView, names: dict[str, str]) -> None:
         return
     widgets.note(f"{text('result.how_sure')}: {found.source}")
     head = [text(f"result.{key}") for key in ("figure", "value", "u", "from", "to", "unit", "method")]
-    rows = [[f"{row.name.replace('_', ' ')}, {names[row.flank]}", *row.cells] for row in found.figures]
+    rows = [[f"{blocks.figure_name(text, row.name)}, {names[row.flank]}", *row.cells] for row in found.figures]
     blocks.plain_table(text("result.uncertainty"), head, rows)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,16 @@ def test_what_is_accepted_cuts_what_was_expected_and_the_old_set_stays(runs: Jud
     assert kept["decision"] == "accepted"
     assert kept["files"]["set"]["sha256"] == hashlib.sha256(made.gear_set.read_bytes()).hexdigest()
     assert past_runs(runs)[-1].files == (made.gear_set.name, made.program.name)
+
+
+def test_a_correction_that_leaves_every_setting_and_index_changes_nothing(runs: JudgedRuns) -> None:
+    proposal = propose(runs.evaluated(1))
+    assert not proposal.changes_nothing  # a stock that grows along the tooth
+    for change, index, nothing in (([], [], True), ([], [0.0, 0.0], True), ([], [0.0, 0.001], False)):
+        values = proposal.values | {"changes": change, "index_correction_deg": index}
+        other = replace(proposal)
+        other.__dict__["values"] = values
+        assert other.changes_nothing is nothing
 
 
 def test_accepting_twice_writes_over_nothing(

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 from websockets.exceptions import InvalidStatus
@@ -191,6 +192,21 @@ def test_a_script_in_a_program_is_shown_as_text(served: Served, operator: Callab
     one.page.reload()
     one.sees("SCRIPT.MPF")
     assert one.page.title() == "Programs · gearmath"
+
+
+def test_a_file_that_is_no_store_is_refused_at_the_start_and_stays_as_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "notes.db").write_text("not a store")
+    (tmp_path / "folder.db").mkdir()
+    for name in ("notes.db", "folder.db"):
+        with pytest.raises(SystemExit) as ended:
+            main(["hmi", "--port", "0", "--store", str(tmp_path / name)])
+        said = capsys.readouterr().err.strip()
+        assert ended.value.code == 2
+        assert re.search(rf"{name}: .*measurement store", said)
+        assert len(said.splitlines()) == 1
+    assert (tmp_path / "notes.db").read_text() == "not a store"
 
 
 @pytest.mark.parametrize(

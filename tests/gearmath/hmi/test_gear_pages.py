@@ -61,7 +61,8 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
     assert other.page.get_by_label("Sliding base, concave", exact=True).input_value() == "0.36"
     one.picture("gear_refused")
     one.press("Discard changes")
-    other.sees("All settings are those of the file.")
+    for both in (one, other):
+        both.sees("All settings are those of the file.")
     one.fill("Sliding base, concave", "0.36")
     one.page.get_by_role("button", name="Save as new set").click(timeout=LONG)
     one.sees("nasa_tp3096_12x36_pinion.toml: written")
@@ -97,7 +98,14 @@ def test_a_result_stands_with_tolerance_caveat_and_uncertainty(
     one.panel(text("result.topography")).locator("svg").nth(1).wait_for(timeout=LONG)
     one.sees(text("result.caveat"))
     one.page.get_by_text(text("result.how_sure")).wait_for(timeout=LONG)
-    assert one.panel(text("result.uncertainty")).get_by_role("row").count() > 15
+    sure = one.panel(text("result.uncertainty"))
+    assert sure.get_by_role("row").count() > 15
+    figures = sure.locator("tbody tr td:first-child").all_inner_texts()
+    assert text("result.spiral_angle_deviation") + ", " + text("blocks.concave") in figures
+    if language == "de":  # no figure is named in English
+        assert [name for name in figures if re.search("deviation|mean|crowning|eccentricity|tilt|rotation", name)] == []
+        pitch = one.page.locator("figure svg").get_by_text("Gesamtteilung / µm")
+        pitch.first.wait_for(state="attached")
     assert one.axe() == []
     assert one.page.evaluate("document.documentElement.scrollWidth") <= size[0]
     one.picture(f"result_{language}")
@@ -111,6 +119,33 @@ def test_the_inspection_sheet_is_saved(served: Served, operator: Callable[..., O
     assert Path(waiting.value.path()).read_text("utf-8").startswith("<!doctype html>")
 
 
+def test_the_pair_is_brought_into_contact_at_the_assembly_that_is_typed(
+    served: Served, operator: Callable[..., Operator]
+) -> None:
+    """Drawn out of mesh by 10 mm each, the teeth of 2.2 mm dedendum do not meet; the figures are those of the front."""
+    one = operator(served, language="de")
+    one.context.add_init_script(_NO_WEBGL)
+    one.go("gear")
+    panel = one.panel("Tragbild des Paars")
+    panel.get_by_label("V: Achse des Rads versetzt", exact=True).wait_for(timeout=LONG)
+    one.fill("V: Achse des Rads versetzt", "50,1")
+    one.press("Tragbild berechnen")
+    one.sees("V: Achse des Rads versetzt: 50,1 mm: muss zwischen -50 und 50 mm liegen")
+    assert panel.get_by_text("50.1").count() == 0
+    one.fill("V: Achse des Rads versetzt", "0")
+    one.fill("H: Ritzel zurückgezogen", "10")
+    one.fill("J: Tellerrad zurückgezogen", "10")
+    other = operator(served, "gear", "de")  # a second page shows the same
+    assert other.page.get_by_label("J: Tellerrad zurückgezogen", exact=True).input_value() == "10"
+    one.press("Tragbild berechnen")
+    one.page.get_by_text("Berührung verloren").first.wait_for(timeout=LONG)
+    assert panel.get_by_role("table").get_by_text("V 0, H 10, J 10 mm").count() == 1
+    assert one.page.get_by_text("muss zwischen -50 und 50 mm liegen").count() == 0
+    other.fill("H: Ritzel zurückgezogen", "0")
+    other.fill("J: Tellerrad zurückgezogen", "0")
+    panel.get_by_text("Für das Gezeigte nicht berechnet").wait_for()
+
+
 def test_a_correction_is_seen_before_and_after_then_rejected_with_a_note_and_accepted(
     served: Served, operator: Callable[..., Operator]
 ) -> None:
@@ -118,10 +153,11 @@ def test_a_correction_is_seen_before_and_after_then_rejected_with_a_note_and_acc
     one.page.get_by_role("combobox", name="Run", exact=True).click()
     one.page.get_by_role("option").filter(has_text=re.compile("^1: ")).click()
     one.press("Accept: write new set and program")
-    one.sees("There is no correction of this run yet: compute it first.")
+    none = one.sees("There is no correction of this run yet: compute it first.")
     one.sees("As measured")
     one.press("Compute correction")
     one.page.get_by_text("concave, expected after the correction").wait_for(timeout=LONG)
+    none.wait_for(state="hidden")
     shown = one.panel("Correction")
     assert shown.locator("svg").count() == 4
     assert shown.get_by_role("row").filter(has_text="RMS measured / µm").count() == 1

@@ -97,6 +97,17 @@ def test_a_number_is_read_as_it_stands(typed: str, value: float) -> None:
     assert parsed(Text("en"), typed, 0.0, 10.0, "mm") == (value, None)
 
 
+@pytest.mark.parametrize(("typed", "value"), [("3", 3.0), ("3.0", 3.0), ("0.5", None), ("2,999", None)])
+def test_a_count_is_a_whole_number_and_is_never_cut_off(typed: str, value: float | None) -> None:
+    found, why = parsed(Text("en"), typed, 0.0, 10.0, "", whole=True)
+    assert found == value
+    assert why == (None if value is not None else f"{typed}: must be a whole number")
+
+
+def test_a_limit_without_a_unit_leaves_no_gap_before_the_colon() -> None:
+    assert parsed(Text("en"), "-1", 0.0, 2e7, "")[1] == "-1: must lie between 0 and 20000000"
+
+
 @pytest.mark.parametrize(
     "typed",
     ["", " ", "10.0001", "-0.0001", "nan", "inf", "1e999", "1_0", "0x1", "1.2.3", "1,2,3", "1 0", "٣", "1e", "."],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -79,6 +80,19 @@ def test_pages_are_reached_by_keyboard_alone(served: Served, operator: Callable[
             break
     one.page.keyboard.press("Enter")
     one.page.wait_for_url("**/programs")
+
+
+def test_the_ini_file_of_a_linuxcnc_is_taken_as_a_control(
+    serve: Callable[..., Served], operator: Callable[..., Operator], tmp_path: Path
+) -> None:
+    """None runs here, so the page says that; a program for it is listed."""
+    ini = tmp_path / "mill.ini"
+    ini.write_text("[DISPLAY]\nDISPLAY = axis\n")
+    served = serve("--control", str(ini))
+    (served.folder / "PROBE.ngc").write_text("M2\n")
+    one = operator(served, "machine")
+    one.sees(re.compile("mill.ini: no LinuxCNC runs here|is LinuxCNC installed"), one.panel("Control"))
+    one.go("programs").sees("PROBE.ngc")
 
 
 def test_every_message_is_there_in_both_languages_with_the_same_values() -> None:

@@ -20,6 +20,17 @@ def served(serve: Callable[..., Served]) -> Served:
     return serve("--control", "simulated")
 
 
+def test_select_without_a_program_says_so_and_the_sentence_goes_at_the_next_press(
+    served: Served, operator: Callable[..., Operator]
+) -> None:
+    one = operator(served, "machine")
+    one.press("Select")
+    said = one.sees("A program must be chosen first.")
+    one.press("Deflect or release the probe")
+    said.wait_for(state="hidden")
+    one.press("Deflect or release the probe")
+
+
 @pytest.mark.slow
 def test_a_member_is_probed_from_the_page_alone(served: Served, operator: Callable[..., Operator]) -> None:
     one = operator(served, "programs")
