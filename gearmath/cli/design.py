@@ -8,7 +8,8 @@ from typing import Any
 
 import click
 
-from gearmath.cli.common import JSON, about, bar, echo_json, output, plot, save_plot, table
+from gearmath.cli.common import JSON, NewFile, about, bar, echo_json, output, plot, save_plot, table
+from gearmath.cli.design_reverse import reverse_design
 
 
 @click.command()
@@ -17,25 +18,52 @@ from gearmath.cli.common import JSON, about, bar, echo_json, output, plot, save_
 @click.option(
     "--from", "given", metavar="SET.toml", help="Design the pinion to the gear of this set: file, or bundled."
 )
+@click.option(
+    "--reverse",
+    "points",
+    metavar="POINTS.csv",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="Find the settings of the member with these flanks (flank CSV), from its blank and method alone.",
+)
+@click.option(
+    "--sheet", type=NewFile(), metavar="SUMMARY.html", help="Also write the summary sheet of the set: prints on A4."
+)
 @JSON
 @plot("transmission error, path and pattern of both sides")
-def design(data: str, target: Path, given: str | None, as_json: bool, picture: Path | None) -> None:
+def design(
+    data: str,
+    target: Path,
+    given: str | None,
+    points: Path | None,
+    sheet: Path | None,
+    as_json: bool,
+    picture: Path | None,
+) -> None:
     """A spiral bevel pair from tooth counts, module, face width, spiral angle and cutter: blank and settings.
 
     DESIGN.toml is a file of design data, or a bundled one such as design_7x43.toml; every key is in docs/design.md.
     What is asked of the contact is met at the mean point and checked by the exact contact of the rounded settings;
     what cannot be is refused, with the limit that binds.
+
+    With --reverse it is a file of design data, of a blank, or a gear set, of which blank and method are taken.
     """
     from gearmath.bevel.design.route import design as designed
     from gearmath.bevel.design.verdict import verdict
     from gearmath.bevel.pair import load_pair
     from gearmath.errors import InputError
     from gearmath.files import write_text
+    from gearmath.setup_sheet.summary import summary_sheet
     from gearmath.specs.design import load_design
     from gearmath.specs.set_text import set_text
     from gearmath.specs.toml import find
 
     path = find(data)
+    if points is not None:
+        for option, other in (("--from", given), ("--plot", picture)):
+            if other is not None:
+                raise InputError(f"{option} and --reverse: only one of them may be given")
+        reverse_design(points, path, target, sheet, as_json)
+        return
     asked = load_design(path)
     gear = None if given is None else load_pair(find(given))
     if gear is not None and len(gear.members) < 2:
@@ -46,6 +74,8 @@ def design(data: str, target: Path, given: str | None, as_json: bool, picture: P
         figures, runs = verdict(made)
         done(1)
     write_text(target, set_text(made.pair))
+    if sheet is not None:
+        write_text(sheet, summary_sheet(made.pair))
     if picture is not None:
         from gearmath.plot.contact import contact_figure
 
@@ -55,6 +85,8 @@ def design(data: str, target: Path, given: str | None, as_json: bool, picture: P
         return
     click.echo(_text(asked.title, figures))
     click.echo(f"{target}: written")
+    if sheet is not None:
+        click.echo(f"{sheet}: summary sheet, prints on A4")
 
 
 def _text(title: str, figures: dict[str, Any]) -> str:

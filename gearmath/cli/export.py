@@ -203,6 +203,20 @@ def rexs(gear_set: str, target: Path) -> None:
     click.echo(f"{target}: {count} components")
 
 
+@export.command()
+@SET
+@output("HTML that prints on A4")
+def summary(gear_set: str, target: Path) -> None:
+    """The summary sheet of a set: blank, machine settings and cutter build of its members, in mm and in inches."""
+    from gearmath.bevel.pair import load_pair
+    from gearmath.files import write_text
+    from gearmath.setup_sheet.summary import summary_sheet
+    from gearmath.specs.toml import find
+
+    write_text(target, summary_sheet(load_pair(find(gear_set))))
+    click.echo(f"{target}: summary sheet, prints on A4")
+
+
 def _grid(text: str) -> tuple[int, int]:
     rows, _, columns = text.partition("x")
     if not (rows.isdecimal() and columns.isdecimal() and 2 <= int(rows) <= 200 and 2 <= int(columns) <= 200):

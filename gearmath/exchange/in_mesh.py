@@ -30,10 +30,11 @@ class Pose:
         return points @ self.matrix.T + self.shift
 
 
-def poses(pair: BevelSet, side: str = "drive") -> dict[str, Pose]:
-    """Both members in the frame of the pair (pinion axis Z, gear axis X), at rotation 0, touching on one side.
+def poses(pair: BevelSet, side: str = "drive", rotation: float = 0.0) -> dict[str, Pose]:
+    """Both members in the frame of the pair (pinion axis Z, gear axis X), touching on one side at rotation 0.
 
-    Raises ComputationError where the flanks of that side do not touch there.
+    The pinion is turned from there by ``rotation`` [rad], the gear by the ratio of the teeth: as a pair turns, but for
+    its transmission error. Raises ComputationError where the flanks of that side do not touch there.
     """
     system = side_system(pair, side)
     turn = mesh(system, Assembly()).reference
@@ -41,9 +42,10 @@ def poses(pair: BevelSet, side: str = "drive") -> dict[str, Pose]:
         raise ComputationError(
             f"the flanks of the {side} side do not touch where both mean points are on the pitch line"
         )
+    gear_turn = turn - system.ratio * rotation
     nowhere, still = np.zeros(3), np.zeros(4)
     found = {}
-    for name, surface, angle in zip(MEMBERS, (system.pinion, system.gear), (0.0, turn), strict=True):
+    for name, surface, angle in zip(MEMBERS, (system.pinion, system.gear), (rotation, gear_turn), strict=True):
         place = (system.shaft_angle, system.offset) if name == "gear" else ()
         azimuth = angle + system.phase[MEMBERS.index(name)]
         shift, _ = kernel(f"{name}_in_pair")(nowhere, nowhere, azimuth, surface.apex_beyond, *place, still)

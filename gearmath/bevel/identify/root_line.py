@@ -18,15 +18,20 @@ from derivations import Quantity, notation
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.identify.on_line import INPUTS, family, symbols
 from gearmath.bevel.identify.variables import parts
-from gearmath.bevel.newton import contact_guess, newton_step, residual_size
+from gearmath.bevel.newton import FlankPoints, contact_guess, newton_step, residual_size
+from gearmath.bevel.root import FLAT_BLADE
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError
 from gearmath.kernels import kernel
+from gearmath.specs.bevel_set import SETTINGS, Member
 
 #: Newton steps at once, and how often they are made until the root is found: at most 24.
 _NEWTON_STEPS, _ROUNDS = 3, 8
 _STEP_LIMITS = (2.0, 0.1, 0.1)
 _TOLERANCE = 1e-9
+#: The root line is watched at this part of the face width from either end.
+_ROOT_MARGIN = 0.1
+_ANGLE = SETTINGS.index("blade_pressure_angle")
 
 _depth_gradient = Quantity(
     "depth_gradient",
@@ -78,13 +83,18 @@ def root_depth() -> Kernel:
 
 @dataclass(frozen=True)
 class RootLine:
-    """Where the root of a flank is watched: cone distances (2,) [mm] of toe and heel, and starts (2,3) for u, β, θ."""
+    """Where the root of a flank is watched: cone distances (2,) [mm] of toe and heel, and starts (2,3) for u, β, θ.
+
+    ``deepest`` is the line that the tip plane of the cutter leaves, in the middle of the space, in place of the end of
+    the flank: the two part where the blade's pressure angle or radius is free within the bounds of a design.
+    """
 
     how: Generation
     reference_height: float
     pitch_angle: float
     distances: np.ndarray
     start: np.ndarray
+    deepest: bool = False
 
     def depth(self, vector: np.ndarray, start: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Contact (2,3), depth (2,) [mm] and its gradient (2,83) for settings, motion and curvature (83,).
@@ -92,6 +102,8 @@ class RootLine:
         ``start`` (2,3) is the contact of settings nearby. Raises ComputationError if the tip of the blade does not
         reach the flank there.
         """
+        if self.deepest:
+            vector = np.concatenate([vector[:_ANGLE], [FLAT_BLADE], vector[_ANGLE + 1 : -1], [0.0]])
         blade = (self.how.blade_offset_angle, float(vector[-1]), self.reference_height)
         contact, depths = self.start if start is None else start, root_depth()
         for _ in range(_ROUNDS):
@@ -106,6 +118,8 @@ class RootLine:
                 self.distances,
             )
             if (residual <= _TOLERANCE).all():
+                if self.deepest:
+                    gradient[:, [_ANGLE, -1]] = 0.0  # the tip plane has neither
                 return contact, depth, gradient
         raise ComputationError("the tip of the blade does not reach the root of the flank")
 
@@ -113,3 +127,20 @@ class RootLine:
         """How much deeper (2,) [mm] the root lies after a change, at toe and heel, and its gradient (2,83)."""
         _, depth, gradient = self.depth(after)
         return depth - self.depth(before)[1], gradient
+
+
+def root_line(member: Member, flank: str, how: Generation, nominal: FlankPoints) -> RootLine:
+    """The root line of a flank, watched near toe and heel; the starts are the nominal points nearest to them.
+
+    The blade parameter of ``nominal`` is the height of the foot (10.9), for an arc blade too.
+    """
+    blank = member.blank
+    half = (0.5 - _ROOT_MARGIN) * blank.face_width
+    distances = blank.mean_cone_distance + half * np.array([-1.0, 1.0])
+    cone = np.linalg.norm(nominal.point, axis=1)
+    # of the lowest points, as the blade counts, that nearest in cone distance
+    height = np.argsort(nominal.contact[:, 0])
+    lowest = height[: max(2, len(height) // 5)]
+    start = np.array([nominal.contact[lowest[np.argmin(np.abs(cone[lowest] - one))]] for one in distances])
+    start[:, 0] = 0.0
+    return RootLine(how, member.flank(flank).blade_reference_height, np.radians(blank.pitch_angle), distances, start)

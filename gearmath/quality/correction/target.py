@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from gearmath.bevel.flank import solve_flank
-from gearmath.bevel.generation import Generation
 from gearmath.bevel.grid import file_grid
 from gearmath.bevel.identify.flank_target import FlankTarget
-from gearmath.bevel.identify.root_line import RootLine
+from gearmath.bevel.identify.root_line import root_line
 from gearmath.bevel.method import cut_generation_of
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import turned
@@ -24,8 +23,6 @@ from gearmath.specs.flank_csv import FlankFile
 
 #: Points of the file and of the set must agree this well, or the file belongs to another set. [mm]
 _SAME_POINT = 0.01
-#: The root line is watched at this part of the face width from either end.
-_ROOT_MARGIN = 0.1
 
 
 def flank_target(
@@ -110,23 +107,6 @@ def by_foot(spec: Flank, nominal: FlankPoints) -> FlankPoints:
         nominal.contact[:, 0], spec.nominal.vector[-1], spec.nominal_spheric_radius, spec.blade_reference_height
     )
     return replace(nominal, contact=np.column_stack([foot, nominal.contact[:, 1:]]))
-
-
-def root_line(member: Member, flank: str, how: Generation, nominal: FlankPoints) -> RootLine:
-    """The root line of a flank, watched near toe and heel; the starts are the nominal points nearest to them.
-
-    ``nominal`` is as ``by_foot`` has it.
-    """
-    blank = member.blank
-    half = (0.5 - _ROOT_MARGIN) * blank.face_width
-    distances = blank.mean_cone_distance + half * np.array([-1.0, 1.0])
-    cone = np.linalg.norm(nominal.point, axis=1)
-    # of the lowest points, as the blade counts, that nearest in cone distance
-    height = np.argsort(nominal.contact[:, 0])
-    lowest = height[: max(2, len(height) // 5)]
-    start = np.array([nominal.contact[lowest[np.argmin(np.abs(cone[lowest] - one))]] for one in distances])
-    start[:, 0] = 0.0
-    return RootLine(how, member.flank(flank).blade_reference_height, np.radians(blank.pitch_angle), distances, start)
 
 
 def _check_grid(flank: str, points: FlankFile, rows: int, columns: int) -> None:

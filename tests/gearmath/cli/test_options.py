@@ -53,6 +53,7 @@ READ_A_SET = [
     "export rexs",
     "export step",
     "export stl",
+    "export summary",
 ]
 
 

@@ -31,7 +31,7 @@ CUT = ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/PART.MPF")
 CSV = ("--set", NASA, "-o", "{}/out.html")
 for number in ("nan", "-1", "1e9"):
     for options, sentence in {
-        (*CUT, "--tolerance-um"): "tolerance = .* um: must lie between 0.02 and 100 um",
+        (*CUT, "--tolerance-um"): "tolerance = .* um: must lie between 0.01 and 100 um",
         (*CUT, "--roughing-stock"): "roughing_stock = .* mm: must lie between 0 and 5 mm",
         (*CUT, "--rpm"): "spindle speed = .* rpm: .* has 20 to 3000 rpm",
         (
