@@ -105,7 +105,7 @@ def test_milling_with_errors_shows_them(command, tmp_path, pinion_program):
         (("--spaces", "0;1"), "--spaces 0;1: must"),
         (("--spaces", ""), "--spaces : must"),
         (("--spaces", "-1"), "--spaces -1: must"),
-        (("--tolerance-um", "0"), "tolerance = 0 um: must lie between 0.02 and 100 um"),
+        (("--tolerance-um", "0"), "tolerance = 0 um: must lie between 0.01 and 100 um"),
         (("--tolerance-um", "nan"), "tolerance = nan um: must lie"),
         (("--feed", "-3"), r"feed = -3.0 mm/min: must be greater than 0"),
         (("--feed", "nan"), r"feed = nan mm/min: must"),

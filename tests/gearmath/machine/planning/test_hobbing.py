@@ -333,7 +333,7 @@ def test_writer_reader_writer_gives_the_same_text(hobbed, vertical, written):
     ("job", "sentence"),
     [
         ({"spaces": (0,)}, r"^gear: spaces = \[0\]: face hobbing cuts all spaces in one roll: it must be all 39$"),
-        ({"tolerance": 0.0}, r"^tolerance = 0 um: must lie between 0\.02 and 100 um"),
+        ({"tolerance": 0.0}, r"^tolerance = 0 um: must lie between 0\.01 and 100 um"),
         ({"spindle_rpm": 1.0}, r"^HOB: spindle speed = 1\.0 rpm"),
         ({"spindle_rpm": 0.0}, r"^gear: spindle speed = 0\.0 rpm: must be greater than 0$"),
         ({"spindle_rpm": math.nan}, r"^gear: spindle speed = nan rpm: must be greater than 0$"),
