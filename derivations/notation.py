@@ -536,9 +536,11 @@ contact_edge = Quantity("contact_edge", "height of the hob's edge there", "mm", 
 contact_turn = Quantity("contact_turn", "turn of the hob there, from the common perpendicular", "rad", r"\tau_c")
 contact_thread = Quantity("contact_thread", "where the thread stands then", "rad", r"\vartheta_c", scale=1e2)
 hob_addendum = _length("hob_addendum", "h_{a0}", 0.1, 60.0, "height of a hob's tooth above its reference cylinder")
-tip_radius = _length("tip_radius", r"\rho_{a0}", 0.0, 12.0, "radius of the rounding at the tip of a hob's tooth")
+hob_tip_radius = _length(
+    "hob_tip_radius", r"\rho_{a0}", 0.0, 12.0, "radius of the rounding at the tip of a hob's tooth"
+)
 tip_turn = _angle("tip_turn", r"\gamma", 0.15, pi / 2, "direction of the normal of the rounding, from the hob's axis")
-tip_height = Quantity("tip_height", "height of a point of the rounding", "mm", "h_r", scale=1e2)
+rounding_height = Quantity("rounding_height", "height of a point of the rounding", "mm", "h_r", scale=1e2)
 tip_relief = Quantity("tip_relief", "how far it is inside the thread, along the hob's axis", "mm", "w_r", scale=1e2)
 form_height = Quantity("form_height", "height up to which the edge is straight", "mm", "h_F", scale=1e2)
 land_half_width = Quantity("land_half_width", "half the land between both roundings", "mm", "w_a", scale=1e2)

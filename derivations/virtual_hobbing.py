@@ -298,14 +298,14 @@ def feed_mark() -> Expression:
 @cache
 def hob_tip() -> Expression:
     """(30.11) as an Expression."""
-    alpha, gamma, rho = q.pressure_angle.symbol, q.tip_turn.symbol, q.tip_radius.symbol
+    alpha, gamma, rho = q.pressure_angle.symbol, q.tip_turn.symbol, q.hob_tip_radius.symbol
     short = (1 - sp.sin(alpha) * sp.sin(gamma)) / sp.cos(alpha) - sp.cos(gamma)
     return Expression(
         "hob_tip",
         "A point of the rounding at the tip of a hob's tooth (30.11).",
-        (q.tip_turn, q.hob_addendum, q.tip_radius, q.pressure_angle, q.hob_lead_angle),
+        (q.tip_turn, q.hob_addendum, q.hob_tip_radius, q.pressure_angle, q.hob_lead_angle),
         (
-            (q.tip_height, q.hob_addendum.symbol - rho * (1 - sp.sin(gamma))),
+            (q.rounding_height, q.hob_addendum.symbol - rho * (1 - sp.sin(gamma))),
             (q.tip_relief, rho * short / sp.cos(q.hob_lead_angle.symbol)),
         ),
         requires=(gamma - alpha, sp.Rational(6, 5) - q.hob_lead_angle.symbol),
@@ -316,12 +316,12 @@ def hob_tip() -> Expression:
 @cache
 def hob_form() -> Expression:
     """(30.12) as an Expression."""
-    alpha, rho, top = q.pressure_angle.symbol, q.tip_radius.symbol, q.hob_addendum.symbol
+    alpha, rho, top = q.pressure_angle.symbol, q.hob_tip_radius.symbol, q.hob_addendum.symbol
     land = sp.pi * q.module.symbol / 4 - (top - rho) * sp.tan(alpha) - rho / sp.cos(alpha)
     return Expression(
         "hob_form",
         "How far up a hob's edge is straight, and half of the land on its tip (30.12).",
-        (q.module, q.hob_addendum, q.tip_radius, q.pressure_angle),
+        (q.module, q.hob_addendum, q.hob_tip_radius, q.pressure_angle),
         ((q.form_height, top - rho * (1 - sp.sin(alpha))), (q.land_half_width, land)),
         source="basic rack of ISO 53; proved",
     )
@@ -543,8 +543,8 @@ def prove_rounding_leaves_the_flank_tangentially_and_ends_on_the_tip() -> None:
     relief = rule["tip_relief"]
     assert sp.simplify(relief.subs(gamma, alpha)) == 0
     assert sp.simplify(sp.diff(relief, gamma).subs(gamma, alpha)) == 0
-    assert sp.simplify(rule["tip_height"].subs(gamma, alpha) - hob_form()["form_height"]) == 0
-    assert rule["tip_height"].subs(gamma, sp.pi / 2) == q.hob_addendum.symbol
+    assert sp.simplify(rule["rounding_height"].subs(gamma, alpha) - hob_form()["form_height"]) == 0
+    assert rule["rounding_height"].subs(gamma, sp.pi / 2) == q.hob_addendum.symbol
     straight = sp.pi * q.module.symbol / 4 - q.hob_addendum.symbol * sp.tan(alpha)
     across = relief.subs(gamma, sp.pi / 2) * sp.cos(q.hob_lead_angle.symbol)
     assert sp.simplify(straight - across - hob_form()["land_half_width"]) == 0

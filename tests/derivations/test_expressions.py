@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import re
 import subprocess
@@ -67,6 +68,12 @@ def test_names_are_unique_across_the_notation() -> None:
     vectors = [quantity.name for quantity in NOTATION.values() if quantity.shape]
     names = [*scalars, *vectors]
     assert sorted(names) == sorted(set(names))
+
+
+def test_no_name_of_the_notation_is_given_twice() -> None:
+    lines = ast.parse(Path(notation.__file__).read_text("utf-8")).body
+    given = [target.id for line in lines if isinstance(line, ast.Assign) for target in line.targets]  # type: ignore[attr-defined]
+    assert [name for name in set(given) if given.count(name) > 1] == []
 
 
 def test_every_expression_of_every_chapter_is_listed() -> None:

@@ -53,8 +53,8 @@ static int gm_point_deviation_tip_center_inside(const double *x)
 }
 static int gm_point_deviation_tip_radius_inside(const double *x)
 {
-  static const double low[1] = {-1.2000000000000002e-07};
-  static const double high[1] = {120.00000012};
+  static const double low[1] = {-5.0000000000000004e-08};
+  static const double high[1] = {50.00000005};
   return gm_inside(x, 1, low, high);
 }
 static int gm_point_deviation_point_w_inside(const double *x)

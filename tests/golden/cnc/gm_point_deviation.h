@@ -4,7 +4,8 @@
  * Deviation of a touched point from the nominal flank, along the outward normal (6.1).
  *
  * in tip_center[3] [mm] -500 ... 500 (taken: -5000 ... 5000): centre of the probe tip at contact, work frame w
- * in tip_radius [mm] 0 ... 12 (taken: 0 ... 120): radius of the rounding at the tip of a hob's tooth
+ * in tip_radius [mm] 0 ... 5 (taken: 0 ... 50): effective radius of the probe tip; zero for a corrected contact
+ *     point
  * in point_w[3] [mm] -500 ... 500 (taken: -5000 ... 5000): point of the tooth surface family, work frame w
  * in normal_w[3] [1] -1 ... 1: outward unit normal (out of the metal), work frame w
  * out deviation [mm]: along the outward normal; positive = metal left on

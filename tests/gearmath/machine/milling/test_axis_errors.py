@@ -294,7 +294,7 @@ def test_ball_screw_ripple_does_not_hide_between_the_ends_of_blocks(gear_set, pr
     axes = coarse.axes[own - 1] * (1 - share) + coarse.axes[own] * share
     axes[0] = coarse.axes[0]
     others = {name: getattr(coarse, name)[own] for name in ("rapid", "tool", "line", "seconds", "rpm")}
-    fine = replace(coarse, axes=axes, **others)
+    fine = replace(coarse, axes=axes, inner=np.zeros(len(own), dtype=bool), **others)
     member = gear_set.gear
     none, one, other = (
         mill_member(path, member, "gear", vertical, errors).deviation

@@ -207,7 +207,6 @@ def test_bad_input_of_the_commands_is_one_sentence(tmp_path, refused):
     refused("program name '1P'", *probe, "-o", tmp_path / "1P.MPF")
     bare = tmp_path / "bare.toml"
     bare.write_text("\n".join(bundled("probe.toml").read_text().split("\n[ring]")[:1]))
-    refused(
-        "bare.toml: the calibration file has neither ring nor sphere", "nc", "calibrate", "--calibration", bare, *out
-    )
+    calibrate = ["nc", "calibrate", "--calibration", bare, "-o", tmp_path / "BARE.MPF"]
+    refused("bare.toml: the calibration file has neither ring nor sphere", *calibrate)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bare.toml", "empty.csv"]
