@@ -64,7 +64,7 @@ class CuttingErrors(Spec):
     hob_lead_um_per_turn: float = Field(default=0.0, ge=-200.0, le=200.0)
     """How much the thread of the hob is too long, along its axis, per turn of the hob."""
     hob_starts_um: tuple[Annotated[float, Field(ge=-500.0, le=500.0)], ...] = Field(default=(), strict=False)
-    """How far the thread of every start stands off along the hob's axis, in the order in which they cut."""
+    """By how much the thread of every start is displaced along the hob's axis, in the order in which they cut."""
     feed: tuple[LengthHarmonic, ...] = Field(default=(), strict=False)
     """Of the travel along the gear, or of the carriage of a lathe, per turn of its screw."""
     feed_screw_pitch: float = Field(default=2.0, gt=0.0, le=50.0)

@@ -1,4 +1,4 @@
-"""The drive train as it is: how far the table stands off ideal meshing, and how hob and gear are displaced.
+"""The drive train as it is: how far the table deviates from ideal meshing, and how hob and gear are displaced.
 
 The steps are those of the compiled rule at the encoder's edges: :func:`step_error` is its closed form (7.4), which a
 test compares with the compiled kernel edge by edge.
@@ -176,7 +176,7 @@ class DriveTrain:
         )[0]
 
     def _start_error(self, psi: np.ndarray, thread: np.ndarray) -> np.ndarray:
-        """How far the thread that cuts stands off along the hob (n,) [mm]: thread R of chapter 30 is start R mod k."""
+        """Displacement along the hob (n,) [mm] of the thread that cuts: thread R of chapter 30 is start R mod k."""
         given, starts = self.errors.hob_starts_um, self.job.hob.starts
         if not given:
             return np.zeros_like(psi)

@@ -1,9 +1,9 @@
 """What a whole measurement looks like that is no error of the gear: said before any figure and any correction.
 
-A wrong radius of the tip, or a wrong zero, moves all points of both flanks out alike; work that stands off its seat
-along its axis moves them as one setting does; an uncertainty far below the scatter of the points is not that of this
-measurement; teeth or flanks that agree to the last digit, where points scatter, were copied. Most of this cannot be
-told from an error of the gear by points alone, so it is said, and nothing is taken out.
+A wrong radius of the tip, or a wrong zero, moves all points of both flanks out alike; work that is clamped away from
+its seat along its axis moves them as one setting does; an uncertainty far below the scatter of the points is not that
+of this measurement; teeth or flanks that agree to the last digit, where points scatter, were copied. Most of this
+cannot be told from an error of the gear by points alone, so it is said, and nothing is taken out.
 """
 
 from __future__ import annotations
