@@ -221,7 +221,8 @@ def mill(
     worst = float(abs(file.deviation).max())
     click.echo(f"{target}: {len(file)} points, largest deviation {worst * 1000:.3f} um")
     with about(program):
-        faults = _judge_metal(text, path, runs, spec, member, milling_machine, space)
+        right = file if simulated is None else None
+        faults = _judge_metal(text, path, runs, spec, member, milling_machine, space, right)
         faults += map(str, faults_of(text, path, runs, spec, member, milling_machine))
     if report is not None:
         found = _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000, space)
@@ -295,6 +296,7 @@ def _judge_metal(
     member: str,
     machine: MillingMachine,
     space: ToothSpace | None,
+    milled: FlankFile | None,
 ) -> list[str]:
     """Print what the blocks leave on a machine without errors; a sentence for each way in which that is wrong."""
     import math
@@ -306,7 +308,7 @@ def _judge_metal(
     if space is not None and (left_between := ridge(as_cut(spec, space), space)) > RIDGE:
         click.echo(f"the root: {ridge_words(left_between)}")
     with bar(spec.teeth, "space") as progress:
-        faults, found = metal_faults(text, path, runs, spec, member, machine, space, progress)
+        faults, found = metal_faults(text, path, runs, spec, member, machine, space, progress, milled)
     if found is not None and math.isfinite(found.lowest):
         _, (number, flank, line) = found.worst
         click.echo(

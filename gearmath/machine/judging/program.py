@@ -27,6 +27,7 @@ from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.specs.bevel_set import Member
+from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.milling_machine import MillingMachine
 
 __all__ = ["Fault", "faults_of", "metal_faults", "written_faults"]
@@ -63,16 +64,19 @@ def metal_faults(
     machine: MillingMachine,
     space: ToothSpace | None,
     progress: Callable[[int], object] = lambda _: None,
+    milled: FlankFile | None = None,
 ) -> tuple[list[Fault], Watch | None]:
     """What a program leaves of the metal that the settings of ``member`` would not, on a machine without errors.
 
     Stock and gouges, of the flank that is cut and of its opposite, which the same cutter passes. ``runs`` have sharp
     blades; ``space`` is that of the member, None in face hobbing, of which only the flanks are compared and nothing
-    else is watched. ``progress`` is called for every space or flank.
+    else is watched: they are not milled again where ``milled`` holds what such a machine leaves of them. ``progress``
+    is called for every space or flank.
     """
     stated, made = Stated.of(text), as_cut(member, space)
     if space is None:
-        left = mill_member(path, made, name, machine, None, progress, runs)
+        known = milled if made == member else None
+        left = mill_member(path, made, name, machine, None, progress, runs) if known is None else known
         return list(hobbed(float(abs(left.deviation).max()), stated)), None
     own = space if made == member else tooth_space(made, name, 7)
     found = metal_left(runs, made, name, machine, stated, own, progress)
