@@ -15,8 +15,12 @@ import pytest
 
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.nominal_file import nominal_flank
+from gearmath.machine.writing.probing import probing_program
 from gearmath.specs.bevel_set import FLANKS
+from gearmath.specs.calibration import load_calibration
 from gearmath.specs.flank_csv import join, read_flank_csv, write_flank_csv
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import bundled
 
 SET = "nasa_tp3096_12x36.toml"
 
@@ -42,11 +46,18 @@ def text(honest, tmp_path_factory):
     return path.read_text("utf-8")
 
 
-def verbs(file, folder):
+@pytest.fixture(scope="module")
+def program(gear_set, tmp_path_factory):
+    """A probing program of the pinion, as ``probe`` runs it."""
+    machine, probe = load_milling_machine(bundled("vertical_5axis.toml")), load_calibration(bundled("probe.toml"))
+    path = tmp_path_factory.mktemp("program") / "PROBE.MPF"
+    path.write_text(probing_program(gear_set, "pinion", machine, probe, "PROBE", topography=()))
+    return path
+
+
+def verbs(file, program, folder):
     """Every way in which a flank file comes into a command."""
     out, member = ("-o", folder / "written"), ("--member", "pinion")
-    program = folder / "P.MPF"
-    program.write_text("M30\n")
     return {
         "evaluate": ("evaluate", file, "--set", SET),
         "compensate": ("compensate", SET, *member, "--measured", file, *out),
@@ -190,26 +201,26 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_lie_is_refused_by_every_verb_in_one_sentence(command, text, tmp_path, name):
+def test_lie_is_refused_by_every_verb_in_one_sentence(command, text, program, tmp_path, name):
     """Status 2, the file by its name, and nothing written."""
     change, sentence = REFUSED[name]
     content = change(text)
     assert content != text
     path = tmp_path / "m.csv"
     path.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
-    for verb, arguments in verbs(path, tmp_path).items():
+    for verb, arguments in verbs(path, program, tmp_path).items():
         status, out, err = command(*arguments)
         assert (status, out, err.count("\n")) == (2, "", 1), (verb, out, err)
         assert re.search(r"m\.csv.*" + sentence, err), (verb, err)
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["P.MPF", "m.csv"]
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["m.csv"]
 
 
-def test_directory_and_absent_file_are_refused_by_every_verb(command, tmp_path):
+def test_directory_and_absent_file_are_refused_by_every_verb(command, program, tmp_path):
     for path, sentence in (
         (tmp_path, "cannot be read: Is a directory"),
         (tmp_path / "no.csv", "cannot be read: No such"),
     ):
-        for verb, arguments in verbs(path, tmp_path).items():
+        for verb, arguments in verbs(path, program, tmp_path).items():
             status, out, err = command(*arguments)
             assert (status, out) == (2, ""), verb
             assert sentence in err
@@ -287,7 +298,7 @@ NOT_WHOLE = {
 
 
 @pytest.mark.parametrize("name", NOT_WHOLE)
-def test_file_that_is_not_whole_is_said_not_to_be_and_gets_no_grade(command, text, tmp_path, name):
+def test_file_that_is_not_whole_is_said_not_to_be_and_gets_no_grade(command, text, program, tmp_path, name):
     keep, sentence = NOT_WHOLE[name]
     path = tmp_path / "m.csv"
     path.write_text(rows_of(text, keep), "utf-8")
@@ -298,7 +309,7 @@ def test_file_that_is_not_whole_is_said_not_to_be_and_gets_no_grade(command, tex
     tolerance = values["tolerance"]
     assert tolerance is None or (tolerance["grade"] is None and set(tolerance["withheld"]) == {"f_pt", "F_p", "F_r"})
     assert any("not whole" in remark and sentence in remark for remark in values["remarks"]), values["remarks"]
-    for verb, arguments in verbs(path, tmp_path).items():
+    for verb, arguments in verbs(path, program, tmp_path).items():
         if verb in ("compensate", "stock"):
             status, out, err = command(*arguments)
             assert (status == 2 and "m.csv" in err) or sentence in out, (verb, status, out, err)

@@ -6,6 +6,7 @@ import asyncio
 import hashlib
 import itertools
 import random
+import statistics
 from datetime import timedelta
 from typing import Any
 
@@ -370,29 +371,32 @@ def test_the_limits_of_the_control_hold_for_everybody(live: Any) -> None:
 
 
 def test_positions_come_ten_times_a_second_while_the_axes_move(live: Any) -> None:
-    """Five positions at 10 Hz; the machine takes the real time of a slow feed block."""
+    """Five positions at 10 Hz, in order, a new place almost every time; the machine takes the real time of a block.
+
+    The median of the gaps, since a computer that does other things too may keep one of them waiting.
+    """
     head = live.TEN.split("FOR UP")[0]
-    text = f"{head}MEAS=1 G1 X50 Y=IC(0) Z=IC(0) A=IC(0) B=IC(0) F1000\nM30\n"
+    text = f"{head}MEAS=1 G1 X50 Y=IC(0) Z=IC(0) A=IC(0) B=IC(0) F500\nM30\n"
     live.load(text)
     live.nc.speed = 1.0
 
     async def work() -> list[tuple[float, tuple[float, ...]]]:
         control = await live.connect(sinumerik.READ_STATE)
-        found = []
+        found: list[tuple[float, tuple[float, ...]]] = []
         live.nc.start()
         async for one in control.watch(0.1):
             found.append(one)
-            if len(found) == 26:
+            if len({position[0] for _, position in found}) == 20:
                 break
         await control.close()
         return found
 
     found = run(work())
     gaps = [b[0] - a[0] for a, b in itertools.pairwise(found)]
-    assert max(gaps) <= 0.25
+    assert 0.08 <= statistics.median(gaps) <= 0.15
+    assert len(found) <= 40  # of the 54 that 45 mm take
     along = [position[0] for _, position in found]
     assert along == sorted(along)
-    assert len(set(along)) >= 20  # 45 mm in 2.7 s: a new place almost every time
 
 
 def test_a_connection_that_breaks_is_a_lost_connection_and_no_traceback(live: Any) -> None:
