@@ -148,14 +148,15 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
             back = _about(axis, np.asarray(-size), touched - e)
             return np.concatenate([there - back, np.sum(n * th, axis=-1, keepdims=True) / x[0]], axis=-1)
 
-        v = np.hstack([nominal.contact[keep], np.zeros((len(point), 1))])
-        moved = off(v + np.array([[sign * step] for step in np.diag(_STEPS) for sign in (1, -1)]))
-        slopes = np.stack([(moved[2 * k] - moved[2 * k + 1]) / (2 * _STEPS[k]) for k in range(4)], axis=-1)
-        for _ in range(12):
+        v, before, slopes = np.hstack([nominal.contact[keep], np.zeros((len(point), 1))]), np.inf, None
+        for _ in range(20):
             rest = off(v)
-            if np.abs(rest).max() < 1e-10:
+            if (far := np.abs(rest).max()) < 1e-10:
                 break
-            v = v - np.linalg.solve(slopes, rest[..., None])[..., 0]
+            if far > 0.05 * before or slopes is None:  # the slopes of an earlier step do as long as they lead on
+                moved = off(v + np.array([[sign * step] for step in np.diag(_STEPS) for sign in (1, -1)]))
+                slopes = np.stack([(moved[2 * k] - moved[2 * k + 1]) / (2 * _STEPS[k]) for k in range(4)], axis=-1)
+            v, before = v - np.linalg.solve(slopes, rest[..., None])[..., 0], far
         assert np.abs(off(v)).max() < 1e-8
         return point, normal, v[:, 3]
 
