@@ -10,12 +10,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
+from gearmath.bevel.check_blank import transverse_module
+from gearmath.bevel.check_mates import BACKLASH
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.quality.evaluation.axial import TWIN, axial_shift, explained_by
+from gearmath.quality.evaluation.digits import no_measurement, said_of_digits
+from gearmath.quality.evaluation.exchanged import exchanged_lines
 from gearmath.quality.evaluation.nominal import nominal_rows
 from gearmath.quality.evaluation.registration import Registration, stated_noise
 from gearmath.quality.evaluation.rivals import rival_columns
@@ -46,6 +51,14 @@ _FINE = 0.3
 _LEAST_SAME, _MOST_NAMED = 2, 4
 
 
+@dataclass(frozen=True)
+class Suspicions:
+    """Sentences on a measurement, and why it has no grade; None where nothing of it stands against one."""
+
+    said: tuple[str, ...]
+    no_grade: str | None
+
+
 def suspicions(
     raw: FlankFile,
     file: FlankFile,
@@ -53,29 +66,55 @@ def suspicions(
     name: str,
     flanks: dict[str, tuple[Topography, ...]],
     seat: Registration | None,
-) -> tuple[str, ...]:
-    """Sentences on a measurement: ``raw`` as read, ``file`` without clamping and rotation, ``flanks`` in full."""
+) -> Suspicions:
+    """What a measurement looks like: ``raw`` as read, ``file`` without clamping and rotation, ``flanks`` in full."""
     axial = tuple(_axial(_in_full(file, flanks), member, name))
     offset = () if axial else tuple(_offset(flanks))
+    too_far = _beyond_backlash(file, member, flanks) if offset else None
     scatter = min((_noise(each[0]) for each in flanks.values() if each), default=math.nan)
-    return (*axial, *offset, *_scatter(file, scatter, seat), *_copies(raw, scatter))
+    lines = [line for each in flanks.values() if each for line in exchanged_lines(raw, each[0])]
+    of_points = (*said_of_digits(raw), *lines, *_scatter(file, scatter, seat), *_copies(raw, scatter))
+    said = (*axial, *offset, *([too_far] if too_far else []), *of_points)
+    return Suspicions(said, no_measurement(raw) or too_far)
 
 
 def _offset(flanks: dict[str, tuple[Topography, ...]]) -> Iterator[str]:
     """Whether all points of both flanks are out alike."""
+    found = _even_offset(flanks)
+    if found is not None:
+        yield (
+            f"all points of both flanks stand {found[0] * 1000:+.0f} um out, evenly within {found[1] * 1000:.0f} um: a "
+            "wrong tip radius or zero of the probe does that, a depth of cut, or even stock; check it before a setting "
+            "is corrected for it"
+        )
+
+
+def _even_offset(flanks: dict[str, tuple[Topography, ...]]) -> tuple[float, float] | None:
+    """Offset of all points of both flanks, and how even it is [mm]; None where there is none."""
     firsts = [each[0].deviation for each in flanks.values() if each]
     if len(firsts) != len(FLANKS):
-        return
+        return None
     means = [float(np.nanmean(one)) for one in firsts]
     spread = max(float(np.nanstd(one)) for one in firsts)
     spread = max(spread, abs(means[0] - means[1]) / 2)
     mean = sum(means) / len(means)
-    if abs(mean) >= _LEAST_OFFSET and spread <= _EVEN * abs(mean):
-        yield (
-            f"all points of both flanks stand {mean * 1000:+.0f} um out, evenly within {spread * 1000:.0f} um: a wrong "
-            "tip radius or zero of the probe does that, a depth of cut, or even stock; check it before a setting is "
-            "corrected for it"
-        )
+    return (mean, spread) if abs(mean) >= _LEAST_OFFSET and spread <= _EVEN * abs(mean) else None
+
+
+def _beyond_backlash(file: FlankFile, member: Member, flanks: dict[str, tuple[Topography, ...]]) -> str | None:
+    """Why an even offset is more than a finished pair can have; None where it is not."""
+    found = _even_offset(flanks)
+    if found is None:
+        return None
+    (_, lever) = kernel("flank_turning")(1.0, file.point, file.normal)
+    arcs = [float(np.median(np.abs(lever[file.flank == flank]))) for flank in FLANKS]
+    change, limit = sum(arcs) * abs(found[0]), BACKLASH[1] * transverse_module(member)
+    if change <= limit:
+        return None
+    return (
+        f"that changes the tooth thickness by {change:.3g} mm, more than the backlash of any finished pair, "
+        f"{limit:.3g} mm, {BACKLASH[1]:g} of the module"
+    )
 
 
 def _in_full(file: FlankFile, flanks: dict[str, tuple[Topography, ...]]) -> FlankFile:
