@@ -1,8 +1,8 @@
 """A pinion whose flanks are cut at once: path, parabola and place of both sides from one machine (27.6).
 
-One machine gives both flanks exactly the points of contact with their normals, the parabolas, and the root. All that is
-left of its settings brings the gaps of both whole flanks nearest to the wanted ones: path and ellipse are met as nearly
-as the machine can, and stated.
+One machine gives both flanks exactly the points of contact with their normals, and the parabolas. All that is left of
+its settings brings the gaps of both whole flanks nearest to the wanted ones, the root near that of the blank: path and
+ellipse are met as nearly as the machine can, and stated.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ _PARTS = 6
 #: A coordinate of the settings counts so much in the RMS for each of its sizes [mm], that among flanks alike the one is
 #: found which changes least; and beyond its bound so much more.
 _RIDGE, _BEYOND = 1e-4, 0.02
-#: Where the depths are among the conditions of the root; what a root that is not held counts, of how far it is off.
-_DEPTHS, _NEAR_ROOT = [2, 5], 0.1
+#: What the root counts of how far it is off, and beyond the room that it has.
+_NEAR_ROOT, _OFF_ROOT = 0.005, 0.1
 #: Coordinates go no farther, in sizes.
 _FARTHEST = 60.0
 
@@ -57,9 +57,8 @@ class Side:
 @dataclass(frozen=True)
 class BothFlanks:
     """The problem: both sides, the ``cone`` (3,) and the depths (2,) of the root, which of ``NAMES`` are free, and the
-    bounds (27,2) of all. ``reach`` [mm] is the length over which angles count, ``weigh`` how much a second derivative
-    [rad/rad²] counts as a length [mm]. A root that is not ``root_held`` is only kept near, as blades that are given fix
-    the depth."""
+    bounds (35,2) of all. ``reach`` [mm] is the length over which angles count, ``weigh`` how much a second derivative
+    [rad/rad²] counts as a length [mm]. The root may lie off by ``room`` [mm]."""
 
     sides: tuple[Side, Side]
     cone: np.ndarray
@@ -68,13 +67,14 @@ class BothFlanks:
     bounds: np.ndarray
     reach: float
     weigh: float
-    root_held: bool = True
+    room: float
+    parabolas_held: bool = True
 
     @property
     def index(self) -> list[int]:
         return [NAMES.index(name) for name in self.free]
 
-    def conditions(self, x: np.ndarray, parabolas: bool) -> tuple[np.ndarray, np.ndarray]:
+    def conditions(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """How far points, root and, where asked, parabolas are off [mm], and the derivatives by ``NAMES``."""
         off, rates = [], []
         for side in self.sides:
@@ -82,28 +82,31 @@ class BothFlanks:
             scale = np.array([1, 1, 1, self.reach, self.reach, 1])
             off.append(found.off * scale)
             rates.append(found.rates[:6] * scale[:, None])
-            if parabolas:
+            if self.parabolas_held:
                 off.append(np.array([self.weigh * (found.parabola - side.wanted.parabola)]))
                 rates.append(self.weigh * found.rates[6:7])
-        root, by_root = system.at_root(self.sides[0].how, x, self.cone)
-        root[_DEPTHS] -= self.depth
-        if not self.root_held:
-            root, by_root = np.delete(root, _DEPTHS), np.delete(by_root, _DEPTHS, axis=0)
-        return np.concatenate([*off, root]), np.vstack([*rates, by_root])
+            root, by_root = system.at_root(side.how, side.flank, x, self.cone)
+            off.append(root[:4])
+            rates.append(by_root[:4])
+        return np.concatenate(off), np.vstack(rates)
 
-    def near_root(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What a root that is not held counts for its depths (2,) [mm], and the derivatives."""
-        if self.root_held:
-            return np.zeros(0), np.zeros((0, len(NAMES)))
-        root, by_root = system.at_root(self.sides[0].how, x, self.cone)
-        return _NEAR_ROOT * (root[_DEPTHS] - self.depth), _NEAR_ROOT * by_root[_DEPTHS]
+    def root(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What the depths of the root count in the fit (8,) [mm], and the derivatives."""
+        off, rates = [], []
+        for side in self.sides:
+            found, by_x = system.at_root(side.how, side.flank, x, self.cone)
+            deep = found[4:] - self.depth
+            beyond = np.sign(deep) * np.maximum(np.abs(deep) - self.room, 0)
+            off += [_NEAR_ROOT * deep, _OFF_ROOT * beyond]
+            rates += [_NEAR_ROOT * by_x[4:], _OFF_ROOT * (beyond != 0)[:, None] * by_x[4:]]
+        return np.concatenate(off), np.vstack(rates)
 
-    def met(self, x: np.ndarray, held: np.ndarray, values: np.ndarray, parabolas: bool) -> Met | None:
+    def met(self, x: np.ndarray, held: np.ndarray, values: np.ndarray) -> Met | None:
         """The vector near ``x`` that meets the conditions, at ``values`` (p,) of the coordinates ``held`` (p,f)."""
         x, where, sizes = x.copy(), self.index, SIZES[self.index]
         origin = x[where].copy()
         for _ in range(_STEPS):
-            off, rates = self.conditions(x, parabolas)
+            off, rates = self.conditions(x)
             if not (np.isfinite(off).all() and np.isfinite(rates).all()):
                 return None
             along = held @ ((x[where] - origin) / sizes) - values
@@ -118,7 +121,7 @@ class BothFlanks:
 
 @dataclass(frozen=True)
 class Met:
-    """A vector (27,) that meets the conditions, and how its free settings (f,p) move with the coordinates."""
+    """A vector (35,) that meets the conditions, and how its free settings (f,p) move with the coordinates."""
 
     x: np.ndarray
     rates: np.ndarray
@@ -134,24 +137,22 @@ class FittedBoth:
 
 
 def local(problem: BothFlanks, x: np.ndarray) -> np.ndarray | None:
-    """From the crown gear's settings to those of the wanted points, then of the parabolas; None where the way ends."""
+    """From the crown gear's settings to those of the wanted points and, where they are held, parabolas; None where the
+    way ends."""
     begin = [system.at_point(side.how, side.flank, x, side.wanted).off for side in problem.sides]
     none = np.zeros((0, len(problem.free)))
-    start_root, _ = system.at_root(problem.sides[0].how, x, problem.cone)
     for part in np.linspace(0, 1, _PARTS + 1)[1:]:
         sides = []
         for side, off in zip(problem.sides, begin, strict=True):
             rest = (1 - part) * off
             normal = side.wanted.normal + side.wanted.basis @ rest[3:5]
             sides.append(replace(side, wanted=_leaning(side.wanted, rest[:3], normal)))
-        rest = (1 - part) * (start_root[_DEPTHS] - problem.depth)
-        there = replace(problem, sides=(sides[0], sides[1]), depth=problem.depth + rest)
-        found = there.met(x, none, np.zeros(0), parabolas=False)
+        there = replace(problem, sides=(sides[0], sides[1]))
+        found = there.met(x, none, np.zeros(0))
         if found is None:
             return None
         x = found.x
-    found = problem.met(x, none, np.zeros(0), parabolas=True)
-    return None if found is None else found.x
+    return x
 
 
 def moved(problem: BothFlanks, x: np.ndarray, held: Sequence[str], values: Sequence[float]) -> np.ndarray | None:
@@ -161,7 +162,7 @@ def moved(problem: BothFlanks, x: np.ndarray, held: Sequence[str], values: Seque
     for part in np.linspace(0, 1, _PARTS + 1)[1:]:
         x = x.copy()
         x[places] = begin + part * (np.asarray(values) - begin)
-        found = problem.met(x, none, np.zeros(0), parabolas=True)
+        found = problem.met(x, none, np.zeros(0))
         if found is None:
             return None
         x = found.x
@@ -201,7 +202,7 @@ def whole(problem: BothFlanks, x: np.ndarray, contacts: Sequence[np.ndarray]) ->
             weight = 1 / math.sqrt(len(side.gap))
             off.append(weight * (-crossing.deviation - side.gap))
             rates.append(weight * by_x)
-        root, by_root = problem.near_root(x)
+        root, by_root = problem.root(x)
         return Gaps(np.concatenate([*off, root]), np.vstack([*rates, by_root]), tuple(found))
 
     best = _least(problem, x, gaps, contacts)
@@ -218,7 +219,7 @@ def whole(problem: BothFlanks, x: np.ndarray, contacts: Sequence[np.ndarray]) ->
 
 @dataclass(frozen=True)
 class Gaps:
-    """What is off (m,) [mm], its derivatives (m,27), and where by side the flank is cut (n,3)."""
+    """What is off (m,) [mm], its derivatives (m,35), and where by side the flank is cut (n,3)."""
 
     off: np.ndarray
     rates: np.ndarray
@@ -237,11 +238,11 @@ def _least(
     rest follows by Newton's method.
     """
     where, sizes = problem.index, SIZES[problem.index]
-    start = problem.met(x, np.zeros((0, len(where))), np.zeros(0), parabolas=True)
+    start = problem.met(x, np.zeros((0, len(where))), np.zeros(0))
     first = None if start is None else gaps(start.x, contacts)
     if start is None or first is None:
         return None
-    _, rates = problem.conditions(start.x, parabolas=True)
+    _, rates = problem.conditions(start.x)
     held = np.linalg.svd(rates[:, where] * sizes)[2][len(rates) :]
     low, high = problem.bounds[where].T
     known = [(np.zeros(len(held)), start.x, first)]
@@ -252,7 +253,7 @@ def _least(
     def at(v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
         values = v * _FARTHEST
         from_, near, there = nearest(values)
-        found = problem.met(near, held, values - from_, parabolas=True)
+        found = problem.met(near, held, values - from_)
         left = None if found is None else gaps(found.x, there.contacts)
         if found is None or left is None or not np.isfinite(left.off).all():
             return None

@@ -19,10 +19,9 @@ from gearmath.bevel.root import FLAT_BLADE
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SETTINGS
 
-_OWN = ("u", "beta", "theta", "blade_point_radius", "blade_pressure_angle")
-#: Settings of the machine and of their motion, of each flank contact and blade, contact of the tip plane at the root.
-NAMES = (*MACHINE_SETTINGS, *MOVING, *(f"{flank}.{name}" for flank in FLANKS for name in _OWN), *ROOT)
-_COMMON = len(MACHINE_SETTINGS) + len(MOVING)
+_OWN = ("u", "beta", "theta", "blade_point_radius", "blade_pressure_angle", *ROOT)
+#: Settings of the machine and of their motion; of each flank contact, blade, and contact of its tip at the root.
+NAMES = (*MACHINE_SETTINGS, *MOVING, *(f"{flank}.{name}" for flank in FLANKS for name in _OWN))
 #: Sizes that count alike: mm, rad and coefficients.
 _SIZES = {
     "cradle_angle": 0.05,
@@ -63,7 +62,7 @@ class FlankPoint:
 @dataclass(frozen=True)
 class AtPoint:
     """What settings give at the point of a flank: how far off (6,) [mm, with f], φ_2'', K less the wanted (3,) [1/mm],
-    and the derivatives (10,27) of all by ``NAMES``."""
+    and the derivatives (10,35) of all by ``NAMES``."""
 
     off: np.ndarray
     parabola: float
@@ -72,7 +71,7 @@ class AtPoint:
 
 
 def index(name: str, flank: str = "") -> int:
-    """The place of a name in the vector (27,) of ``NAMES``."""
+    """The place of a name in the vector (35,) of ``NAMES``."""
     return NAMES.index(f"{flank}.{name}" if flank else name)
 
 
@@ -122,28 +121,24 @@ def _at_point(flank: str) -> ca.Function:
 
 
 @cache
-def _at_root() -> ca.Function:
-    """x, index ratio, blade offset, side, cone (3,) -> meshing, cone distance and depth at two places (6,), by x.
-
-    Of the middle between both blades: a cutter that is tilted across the tooth cuts deeper with one than the other.
-    """
+def _at_root(flank: str) -> ca.Function:
+    """x, index ratio, blade offset, side, cone (3,) -> meshing and cone distance at two places, depths (6,), by x."""
     x, cone = ca.SX.sym("x", len(NAMES)), ca.SX.sym("cone", 3)
     cut = [ca.SX.sym(name) for name in ("index", "offset", "side")]
-    _, settings, motion = _of_flank(x, FLANKS[0])
-    middle = sum(x[index("blade_point_radius", flank)] for flank in FLANKS) / len(FLANKS)
-    tip_plane = ca.vertcat(settings[:-2], middle, FLAT_BLADE)
-    values = []
+    _, settings, motion = _of_flank(x, flank)
+    tip_plane, values, depths = ca.vertcat(settings[:-1], FLAT_BLADE), [], []
     for k in range(2):
-        beta, theta = (x[index(name)] for name in ROOT[2 * k : 2 * k + 2])
+        beta, theta = (x[index(name, flank)] for name in ROOT[2 * k : 2 * k + 2])
         root, _, meshing = kernel("straight_generation").function(0, beta, theta, tip_plane, motion, *cut)
         along, deep = kernel("root_place").function(root, cone[0])
-        values += [meshing / settings[0], along - cone[1 + k], deep]
-    off = ca.vertcat(*values)
+        values += [meshing / settings[0], along - cone[1 + k]]
+        depths.append(deep)
+    off = ca.vertcat(*values, *depths)
     return ca.Function("at_root", [x, *cut, cone], ca.cse([off, ca.densify(ca.jacobian(off, x))]))
 
 
 def at_point(how: Generation, flank: str, x: np.ndarray, wanted: FlankPoint) -> AtPoint:
-    """What the settings of the vector ``x`` (27,) are at the point of a flank."""
+    """What the settings of the vector ``x`` (35,) are at the point of a flank."""
     values, rates = _at_point(flank)(
         x,
         how.index_ratio,
@@ -161,9 +156,10 @@ def at_point(how: Generation, flank: str, x: np.ndarray, wanted: FlankPoint) -> 
     return AtPoint(values[:6], float(values[6]), values[7:], rates)
 
 
-def at_root(how: Generation, x: np.ndarray, cone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Meshing, cone distance less that of the ``cone``, depth [mm], at toe and heel (6,); derivatives (6,27)."""
-    values, rates = _at_root()(x, how.index_ratio, how.blade_offset_angle, how.side, cone)
+def at_root(how: Generation, flank: str, x: np.ndarray, cone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of the root that the blade of a flank leaves: meshing and cone distance less that of the ``cone`` at two places,
+    and the depths [mm] there (6,); derivatives."""
+    values, rates = _at_root(flank)(x, how.index_ratio, how.blade_offset_angle, how.side, cone)
     return np.asarray(values).ravel(), np.asarray(rates)
 
 

@@ -12,7 +12,7 @@ from gearmath.bevel.design import both_system as system
 from gearmath.bevel.design.both_flanks import BothFlanks, FittedBoth, Side, local, moved, of_flank, whole
 from gearmath.bevel.design.both_system import NAMES, FlankPoint, index
 from gearmath.bevel.design.designed_flank import DesignedFlank, FlankFit
-from gearmath.bevel.design.local_settings import ROOT
+from gearmath.bevel.design.local_settings import FIRST, ROOT
 from gearmath.bevel.design.pinion import roll_rows, root_of
 from gearmath.bevel.design.request import Request
 from gearmath.bevel.design.rolling import Meeting
@@ -22,17 +22,19 @@ from gearmath.bevel.root import FLAT_BLADE
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.bevel.turning import half_turn, turned
 from gearmath.errors import ComputationError
-from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member
 
 #: Bounds of settings that the fit may move: pressure angles [rad], tilt [rad], 2C and 6D, motion of the
 #: sliding base in mean transverse modules per rad.
 _ANGLES, _TILT, _ROLL, _HELICAL = (math.radians(10), math.radians(30)), math.radians(12), (0.1, 0.7), 0.3
 #: Least machine root angle [rad]: that of a tilted cutter is flatter than the root.
 _FLATTEST = math.radians(1)
-#: By this part of the clearance one blade may cut deeper than the other.
-_ASKEW = 0.2
+#: By this part of the clearance the root may lie off that of the blank; more counts.
+_ROOM = 0.15
 #: Where the root is held, in parts of the face width: the root that a tilted cutter leaves is hollow.
 _ROOT = (0.25, 0.75)
+_SWIVEL = 0.0
+_OFFSET = SETTINGS.index("work_rotation_offset")
 #: Least part of the places of each side that must be cut.
 _LEAST_SHARE = 0.7
 #: What is held where it is not left free.
@@ -47,7 +49,8 @@ _OPTIONAL = {
 class CompletingPinion:
     """Both flanks of a pinion as they were found: the vector of ``both_system.NAMES`` and how well it fits.
 
-    ``shares`` are the parts of the places of each flank that are cut, ``contacts`` where, as the fit began.
+    ``shares`` are the parts of the places of each flank that are cut, ``contacts`` where, as the fit began; ``offsets``
+    the work rotation offsets [rad], which differ where the blades of one flank follow those of the other.
     """
 
     problem: BothFlanks
@@ -55,11 +58,14 @@ class CompletingPinion:
     fitted: FittedBoth
     contacts: tuple[np.ndarray, ...]
     shares: dict[str, float]
+    offsets: dict[str, float]
 
     def flank(self, name: str) -> DesignedFlank:
         """One of the flanks."""
         fitted = FlankFit(self.fitted.off[name], self.fitted.active)
-        return DesignedFlank(name, self.requests[name], of_flank(self.fitted.x, name), fitted, self.shares[name])
+        x = of_flank(self.fitted.x, name)
+        x[FIRST + _OFFSET] += self.offsets[name]
+        return DesignedFlank(name, self.requests[name], x, fitted, self.shares[name])
 
     def refitted(self, names: Sequence[str], values: Sequence[float]) -> CompletingPinion:
         """The pinion with settings of ``NAMES`` held at values, all others found anew.
@@ -67,8 +73,7 @@ class CompletingPinion:
         Raises ComputationError where there are none.
         """
         left = tuple(one for one in self.problem.free if one not in names)
-        held = any(one.endswith("blade_point_radius") for one in left)
-        problem = replace(self.problem, free=left, root_held=held)
+        problem = replace(self.problem, free=left)
         x = moved(problem, self.fitted.x, names, values)
         fitted = None if x is None else whole(problem, x, self.contacts)
         if fitted is None:
@@ -92,7 +97,9 @@ def completing_pinion(
     """
     hows = {flank: generation_of(start, flank) for flank in FLANKS}
     turns = _turns(start, requests, backlash)
-    sides = [_side(flank, hows[flank], requests[flank], turns[flank]) for flank in FLANKS]
+    # the blades of one flank may follow those of the other: its work rotation offset is taken out, and put back
+    own = {flank: float(hows[flank].settings[_OFFSET]) for flank in FLANKS}
+    sides = [_side(flank, _at_zero(hows[flank]), requests[flank], turns[flank] + own[flank]) for flank in FLANKS]
     cone, depth = root_of(start, _ROOT)
     x = _crown_gear(start, sides, cone)
     held = [name for option, names in _OPTIONAL.items() if option not in free for name in names]
@@ -107,20 +114,24 @@ def completing_pinion(
         _bounds(x, start),
         start.blank.face_width / 4,
         half**2 / 2 * abs(asked.roll.lever),
+        _ROOM * start.blank.clearance,
     )
-    found = local(problem, x)
+    # the parabolas come last: met before the rest of the flank they lead far away from the crown gear
+    open_ = replace(problem, parabolas_held=False)
+    found = local(open_, x)
     if found is None:
         raise ComputationError(
             "pinion: no settings of one machine were found that give both flanks their points and parabolas; ask for "
             "paths nearer to 90 degrees, a smaller transmission error, or cutting = 'fixed_setting'"
         )
     inner = {flank: requests[flank].inner for flank in FLANKS}
+    everywhere = {flank: np.ones_like(inner[flank]) for flank in FLANKS}
     near, fitted = found, None
-    for among in (inner, {flank: np.ones_like(inner[flank]) for flank in FLANKS}):
+    for stage, among in ((open_, inner), (open_, everywhere), (problem, everywhere)):
         kept, contacts = _reached(start, sides, near, among)
         if not all(one.any() for one in kept):
             continue
-        cut = replace(problem, sides=(sides[0].among(kept[0]), sides[1].among(kept[1])))
+        cut = replace(stage, sides=(sides[0].among(kept[0]), sides[1].among(kept[1])))
         fitted = whole(cut, near, contacts)
         near = near if fitted is None else fitted.x
     shares = {flank: float(one.mean()) for flank, one in zip(FLANKS, kept, strict=True)}
@@ -131,7 +142,14 @@ def completing_pinion(
             f"the places that its mate needs, which must be at least {_LEAST_SHARE:.0%}: the others lie below the tip "
             "of the blade or are undercut"
         )
-    return CompletingPinion(cut, dict(requests), fitted, tuple(contacts), shares)
+    return CompletingPinion(cut, dict(requests), fitted, tuple(contacts), shares, own)
+
+
+def _at_zero(how: Generation) -> Generation:
+    """The same with no work rotation offset."""
+    settings = how.settings.copy()
+    settings[_OFFSET] = 0.0
+    return replace(how, settings=settings)
 
 
 def _turns(start: Member, requests: Mapping[str, Request], backlash: float) -> dict[str, float]:
@@ -189,23 +207,23 @@ def _crown_gear(start: Member, sides: list[Side], cone: np.ndarray) -> np.ndarra
         x[system.settings_index(side.flank)] = side.how.settings
         for name, value in zip(("u", "beta", "theta"), at.contact[0], strict=True):
             x[index(name, side.flank)] = value
-    how = sides[0].how
-    middle = sum(float(side.how.settings[-2]) for side in sides) / len(sides)
-    flat = Section(0.0, 1.0, middle, FLAT_BLADE)
-    around = np.array([[0.0, *(x[index(name, FLANKS[0])] for name in ("beta", "theta"))]] * 2)
-    root = solve_curve(how, flat, np.zeros(2), (math.cos(cone[0]), math.sin(cone[0])), cone[1:], around)
-    x[[index(name) for name in ROOT]] = root.contact[:, 1:].ravel()
+        flat = Section(0.0, 1.0, float(side.how.settings[-2]), FLAT_BLADE)
+        around = np.array([[0.0, *at.contact[0, 1:]]] * 2)
+        root = solve_curve(side.how, flat, np.zeros(2), (math.cos(cone[0]), math.sin(cone[0])), cone[1:], around)
+        x[[index(name, side.flank) for name in ROOT]] = root.contact[:, 1:].ravel()
+    # the direction in which the cutter will tilt: untilted, only its own angle counts from there
+    x[index("cutter_swivel")] = _SWIVEL
+    x[[index(name, flank) for flank in FLANKS for name in ("beta", *ROOT[::2])]] -= _SWIVEL
+    x[index("work_rotation_offset")] += sides[0].how.index_ratio * _SWIVEL
     return x
 
 
 def _bounds(x: np.ndarray, start: Member) -> np.ndarray:
-    """Least and greatest values (27,2)."""
-    width = abs(x[index("blade_point_radius", FLANKS[0])] - x[index("blade_point_radius", FLANKS[1])])
-    tilt = min(_TILT, math.atan(_ASKEW * start.blank.clearance / width))
+    """Least and greatest values (35,2)."""
     bounds = np.tile([-np.inf, np.inf], (len(NAMES), 1))
     for flank in FLANKS:
         bounds[index("blade_pressure_angle", flank)] = _ANGLES
-    bounds[index("cutter_tilt")] = -tilt, tilt
+    bounds[index("cutter_tilt")] = -_TILT, _TILT
     bounds[index("machine_root_angle"), 0] = _FLATTEST
     base = _HELICAL * 2 * mean_pitch_radius(start) / start.teeth
     bounds[index("helical_motion")] = -base, base

@@ -68,9 +68,11 @@ def rounded_completing(pinion: CompletingPinion, shop: Shop) -> CompletingPinion
     places = [both_system.NAMES.index(name) for name in own]
     stepped = [_stepped(x[k], name, steps[name.rpartition(".")[2]]) for k, name in zip(places, own, strict=True)]
     found = pinion.refitted(own, stepped) if own else pinion
-    x = found.fitted.x
-    values = {name: (float(x[both_system.NAMES.index(name)]), step_of(name, shop)) for name in MACHINE_SETTINGS}
-    return found.with_settings({name: _stepped(value, name, step) for name, (value, step) in values.items() if step})
+    values = {}
+    for name in MACHINE_SETTINGS:
+        if name != "work_rotation_offset" and (step := step_of(name, shop)):
+            values[name] = _stepped(found.fitted.x[both_system.NAMES.index(name)], name, step)
+    return found.with_settings(values)
 
 
 def _stepped(value: float, name: str, step: float) -> float:

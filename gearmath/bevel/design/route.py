@@ -53,8 +53,8 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
     blank_data, blank = blank_for(data, name)
     start = crown_gear_set(
         blank_data,
-        Method("completing") if completing else _single(data, blank),
-        Method("completing", data.gear.generation),
+        Method("completing", alternating=True) if completing else _single(data, blank),
+        Method("completing", data.gear.generation, alternating=True),
         data.hand,
     )
     backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
