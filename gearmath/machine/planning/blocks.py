@@ -273,7 +273,7 @@ def flank_row(member: Member, flank: str, grid: Grid) -> tuple[np.ndarray, np.nd
     u = points.contact[:, 0]
     if section.arc is None:
         on_blade = (u > section.lower + _TIP) & (u < section.upper)
-        blade = np.broadcast_to([spec.blade_point_radius, math.radians(spec.blade_pressure_angle)], (len(u), 2))
+        blade = np.broadcast_to([spec.blade_point_radius, spec.alpha], (len(u), 2))
     else:
         on_blade = (u > section.lower) & (u < section.upper)
         blade = np.column_stack(kernel("touching_blade")(u, np.array(section.arc), side))
