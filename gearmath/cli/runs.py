@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -186,13 +185,14 @@ def resume(run: int, store_file: Path, again: str | None, target: Path | None, a
     'gearmath control measure --resume RUN' does it with the control.
     """
     from gearmath.cli.runs_text import resume_text, resume_values
+    from gearmath.control.parts import chosen_points
     from gearmath.files import write_bytes
 
     with _opened(store_file) as store:
         kept = store.run(run)
         if again is not None:
             old = kept.start
-            points = {point: old.points[point] for point in _points(again, run, old.points)}
+            points = {point: old.points[point] for point in chosen_points("--again", again, old.points)}
             kept = store.begin_run(replace(old, points=points, refers_to=run, operator=""))
         elif kept.is_complete:
             raise InputError(f"{store_file}: run {run} is complete: --again probes points of it once more")
@@ -218,17 +218,3 @@ def _evaluated(store: MeasurementStore, numbers: tuple[int, ...]) -> list[Evalua
     kept = [store.run(number) for number in numbers]
     with bar(STAGES * len(kept), "stage") as progress:
         return [evaluate_run(run, progress) for run in kept]
-
-
-def _points(text: str, run: int, there: Mapping[int, tuple[str, ...]]) -> list[int]:
-    """The numbers in a text such as 3,17-20, each a point that is ``there``."""
-    found: set[int] = set()
-    for part in text.split(","):
-        stretch = re.fullmatch(r"\s*(\d{1,9})\s*(?:-\s*(\d{1,9})\s*)?", part, re.ASCII)
-        if stretch is None:
-            raise InputError(f"--again {text}: must be numbers and stretches with commas between them, such as 3,17-20")
-        first, last = int(stretch[1]), int(stretch[2] or stretch[1])
-        if first not in there or last not in there or first > last:
-            raise InputError(f"--again {text}: {part.strip()}: run {run} has points {min(there)} to {max(there)}")
-        found.update(point for point in there if first <= point <= last)
-    return sorted(found)
