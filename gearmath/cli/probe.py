@@ -319,7 +319,7 @@ def _check_whole(raw: Path, wanted: int | None, found: Touches | CalibrationTouc
 
 
 def _calibrate_tip(raw: Path, found: CalibrationTouches, calibration: str, lobing: bool, target: Path) -> Iterator[str]:
-    from gearmath.quality.calibration.tip import calibrate_on_ring, calibrate_on_sphere
+    from gearmath.quality.calibration.tip import calibrate_tip
     from gearmath.specs.calibration import load_calibration, save_calibration
     from gearmath.specs.toml import find
     from gearmath.specs.touch_csv import SPHERE
@@ -327,16 +327,11 @@ def _calibrate_tip(raw: Path, found: CalibrationTouches, calibration: str, lobin
     source = find(calibration)
     before = load_calibration(source)
     with about(raw):
-        if before.sphere is not None and (found.target == SPHERE).any():
-            tip = calibrate_on_sphere(found, before.sphere, before, lobing)
-        elif lobing:
+        if lobing and not (before.sphere is not None and (found.target == SPHERE).any()):
             raise InputError("--lobing needs touches on the sphere; there are none")
-        elif before.ring is not None:
-            tip = calibrate_on_ring(found, before.ring, before)
-        else:
-            raise InputError(f"{source} has neither the ring nor the sphere that was touched")
+        tip = calibrate_tip(found, before, source.name, lobing)
     save_calibration(source, target, tip.radius, tip.offset, tip.lobes)
-    return _tip_lines(tip)
+    return tip_lines(tip)
 
 
 def _calibrate_axes(
@@ -351,10 +346,10 @@ def _calibrate_axes(
     with about(raw):
         axes = calibrate_axes(found, load_milling_machine(source), probe)
     save_axes(source, target, axes.pivot_offset, axes.gauge_line_height)
-    return _axis_lines(axes, probe)
+    return axis_lines(axes, probe)
 
 
-def _axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
+def axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
     """What the machine file gets, what the zero offsets of the control should get, and what the touches do not fit."""
     u = axes.fit.uncertainty
     for name, value, unsure in zip("xyz", axes.pivot_offset, u[:3], strict=True):
@@ -373,7 +368,7 @@ def _residual_words(fit: Fit) -> str:
     return f"noise {_um(fit.noise)}, largest residual {float(abs(fit.residuals).max()) * 1000:.3f} um"
 
 
-def _tip_lines(tip: Tip) -> Iterator[str]:
+def tip_lines(tip: Tip) -> Iterator[str]:
     """Every value with its standard uncertainty, then what the touches do not fit."""
     yield f"tip radius {tip.radius:.5f} mm, u {_um(tip.radius_uncertainty)}"
     for axis, value, u in zip("XYZ", tip.offset, tip.offset_uncertainty, strict=True):

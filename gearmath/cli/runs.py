@@ -15,6 +15,7 @@ from gearmath.errors import InputError
 if TYPE_CHECKING:
     from gearmath.control.store import MeasurementStore
     from gearmath.control.store_evaluation import EvaluatedRun
+    from gearmath.control.store_run import StoredRun
 
 
 def store_option(words: str = "The measurement store.") -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -65,7 +66,8 @@ def list_(store_file: Path, as_json: bool) -> None:
 @click.option(
     "--evaluate",
     is_flag=True,
-    help="Evaluate the run by set, machine and probe as stored, and keep the result.",
+    help="Evaluate the run by set, machine and probe as stored, and keep the result; of a run on ring and spheres the "
+    "new calibration or machine file.",
 )
 @plot("the evaluation of the run")
 @JSON
@@ -75,9 +77,11 @@ def show(run: int, store_file: Path, evaluate: bool, picture: Path | None, as_js
 
     with _opened(store_file) as store:
         kept, figures = store.run(run), ""
-        if picture or evaluate:
+        if evaluate and not picture and kept.start.columns[2] != "member":
+            figures = _calibrated(kept)
+        elif picture or evaluate:
             (evaluated,) = _evaluated(store, (run,))
-        if evaluate:
+        if evaluate and not figures:
             from gearmath.cli.quality_text import evaluation_text
             from gearmath.control.store_evaluation import keep_results
 
@@ -203,6 +207,18 @@ def resume(run: int, store_file: Path, again: str | None, target: Path | None, a
         echo_json(values)
     else:
         click.echo(resume_text(values))
+
+
+def _calibrated(run: StoredRun) -> str:
+    """A calibration run evaluated, its file kept with it."""
+    from gearmath.cli.probe import axis_lines, tip_lines
+    from gearmath.control.store_calibration import calibrate_run
+    from gearmath.quality.calibration.tip import Tip
+
+    made = calibrate_run(run)
+    run.add_result(made.role, made.file)
+    found = made.found
+    return "\n".join(tip_lines(found) if isinstance(found, Tip) else axis_lines(found, made.known))
 
 
 def _opened(path: Path) -> MeasurementStore:

@@ -85,6 +85,16 @@ class Tip:
         return float(np.abs(self.fit.residuals).max())
 
 
+def calibrate_tip(touches: CalibrationTouches, known: Calibration, name: str, lobes: bool = False) -> Tip:
+    """The tip by its touches on the sphere or, where there are none, in the ring. Raises InputError, which calls the
+    calibration ``name``, where it has neither of them."""
+    if known.sphere is not None and (touches.target == SPHERE).any():
+        return calibrate_on_sphere(touches, known.sphere, known, lobes)
+    if known.ring is not None:
+        return calibrate_on_ring(touches, known.ring, known)
+    raise InputError(f"{name} has neither the ring nor the sphere that was touched")
+
+
 def calibrate_on_sphere(touches: CalibrationTouches, sphere: Sphere, start: Calibration, lobes: bool = False) -> Tip:
     """Radius and offset of the tip that leave the touches on a sphere the least residual (23.2), with lobes if asked.
 
