@@ -75,16 +75,17 @@ def test_steps_change_a_flank_by_half_of_one_and_a_count_at_most(teeth):
         assert np.abs(with_steps - without).max() <= (0.5 + count) * normal_step(train) + 1e-9
 
 
-def test_every_tooth_is_off_by_the_remainder_of_the_compiled_rule():
+@pytest.mark.parametrize("teeth", [24, 17])
+def test_every_tooth_is_off_by_the_remainder_of_the_compiled_rule(teeth):
     """In the middle of a flat, tooth by tooth: what the steps add is the remainder that the kernel has kept there."""
-    prepared = setup(machine(gashes=4), 24, hob="m1", feed=2.0)
+    prepared = setup(machine(gashes=4), teeth, hob="m1", feed=2.0)
     train, job = prepared.train, prepared.job
     ratio, per_turn = train.ratio, int(train.machine.encoder_counts)
     # four gashes leave flats so high that no step lets another one win in the middle
     lengths = np.linspace(prepared.where.profile[0], prepared.where.profile[-1], 20_001)
     height, _, tau, thread = job.contact(1, lengths)
-    for space in range(24):
-        ridge = space + 24 * 14
+    for space in range(teeth):
+        ridge = space + teeth * 14
         gashes = np.rint(4 * (ridge - thread / TURN))
         near = np.abs(4 * (ridge - thread / TURN) - gashes)
         at = int(near[4000:16000].argmin()) + 4000
