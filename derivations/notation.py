@@ -535,6 +535,7 @@ contact_height = Quantity("contact_height", "where hob and flank touch, from the
 contact_edge = Quantity("contact_edge", "height of the hob's edge there", "mm", "h_c", scale=1e3)
 contact_turn = Quantity("contact_turn", "turn of the hob there, from the common perpendicular", "rad", r"\tau_c")
 contact_thread = Quantity("contact_thread", "where the thread stands then", "rad", r"\vartheta_c", scale=1e2)
+hob_axial_pitch = _length("hob_axial_pitch", "p_{x0}", 0.0, 1e3, "pitch of a hob's teeth along its axis")
 hob_addendum = _length("hob_addendum", "h_{a0}", 0.1, 60.0, "height of a hob's tooth above its reference cylinder")
 hob_tip_radius = _length(
     "hob_tip_radius", r"\rho_{a0}", 0.0, 12.0, "radius of the rounding at the tip of a hob's tooth"
