@@ -190,7 +190,8 @@ def mill(
     limit, where flanks, fillets or root are gouged or keep stock by more than the program states (1 um where it states
     nothing), where spaces are left out, blocks end off the path of the settings, anything collides, rapid motion comes
     near the work, or the machine must not run it: travel, speed, acceleration, feed, spindle, modes. With --report,
-    without --errors, it is so too where a surface is off by more than --report-tolerance-um.
+    without --errors, it is so too where a surface is off by more than --report-tolerance-um from what the settings of
+    the set cut, corrected or not; what corrected settings are off their design is said beside it.
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.tooth import tooth_space
@@ -336,9 +337,11 @@ def _write_report(
     import json
 
     from gearmath.files import write_text
-    from gearmath.machine.judging.report import milling_report
+    from gearmath.machine.judging.report import largest, milling_report
+    from gearmath.specs.bevel_set import FLANKS
 
-    with bar(5 * spec.teeth, "surface") as progress:
+    corrected = errors is None and any(spec.flank(flank).design for flank in FLANKS)
+    with bar(5 * spec.teeth * (1 + corrected), "surface") as progress:
         found = milling_report(path, spec, member, machine, errors, tolerance, progress=progress, space=space)
     write_text(target, json.dumps(found.as_dict(), indent=2) + "\n")
     seconds = found.timing.feed_seconds + found.timing.rapid_seconds
@@ -346,6 +349,11 @@ def _write_report(
         f"{target}: {seconds:.0f} s, {len(found.gouges)} surfaces gouged, {len(found.uncut)} with stock, "
         f"{len(found.collisions)} collisions"
     )
+    if own := found.surfaces_of_settings:
+        click.echo(
+            f"  corrected settings: the flanks deviate by up to {largest(own, 'flank') * 1000:.3f} um from those of "
+            f"these settings, and by {largest(found.surfaces, 'flank') * 1000:.3f} um from the design"
+        )
     for state in found.gouges[:5]:
         click.echo(f"  space {state.space}, {state.surface}: {state.lowest * 1000:.3f} um, line {state.line}")
     for state in found.uncut[:5]:
