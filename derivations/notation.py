@@ -545,7 +545,6 @@ tip_relief = Quantity("tip_relief", "how far it is inside the thread, along the 
 form_height = Quantity("form_height", "height up to which the edge is straight", "mm", "h_F", scale=1e2)
 land_half_width = Quantity("land_half_width", "half the land between both roundings", "mm", "w_a", scale=1e2)
 hob_gashes = _count("hob_gashes", "n_i", 4, 40, "gashes of a hob")
-axial_feed = _length("axial_feed", "f_a", 0.01, 20.0, "travel of the hob along the gear per turn of the table")
 flat_height = Quantity("flat_height", "height of the ridges between flats", "mm", r"\delta_y", scale=1e1)
 feed_mark_height = Quantity("feed_mark_height", "height of the ridges between feed marks", "mm", r"\delta_x", scale=1e1)
 least_teeth = Quantity("least_teeth", "teeth below which a flank is undercut", "1", r"z_{min}", scale=1e3)

@@ -149,6 +149,8 @@ def _check_point_width(member: Member, name: str) -> None:
     outer, inner = member.concave, member.convex
     for key, which in (("", (outer, inner)), ("design.", (outer.nominal, inner.nominal))):
         width = which[0].blade_point_radius - which[1].blade_point_radius
+        if which[0].work_rotation_offset != which[1].work_rotation_offset:
+            continue  # of a hobbing cutter whose inner blades follow the outer ones: each has a tip of its own
         if not width > 0:
             raise InputError(
                 f"{name}.concave.{key}blade_point_radius = {which[0].blade_point_radius:g}: one cutter cuts both "

@@ -73,7 +73,14 @@ def roll(system: System) -> Points:
 
 def local(system: System, touch: TouchPoint, assembly: np.ndarray, separation: float = MARKING) -> LocalContact:
     """Curvature and motion at a contact within both flanks, its ellipse at a ``separation`` [mm]."""
-    *found, seen = roll(system).at(touch.x, touch.rotation, assembly)
+    return local_at(system, touch.x, touch.rotation, assembly, separation)
+
+
+def local_at(
+    system: System, x: np.ndarray, rotation: float, assembly: np.ndarray, separation: float = MARKING
+) -> LocalContact:
+    """The same of a contact ``x`` (7,) at a rotation of the pinion [rad]."""
+    *found, seen = roll(system).at(x, rotation, assembly)
     w, beta, D, lever, sliding = (one.ravel() for one in found)
     velocity, second = kernel("contact_motion")(w, beta[0], D, lever[0])
     (axes,) = kernel("contact_ellipse")(D, separation)

@@ -140,3 +140,8 @@ class HobbingJob:
     def contact(self, side: int, length: np.ndarray) -> tuple[np.ndarray, ...]:
         """Where hob and flank touch at lengths of roll (n,): height, edge, turn, thread (30.8)."""
         return kernel("line_of_action")(length, *self.pair(side))
+
+    def feed_mark(self, length: float) -> float:
+        """Height of the ridges between feed marks [mm] at a length of roll, by a hob of many gashes (30.10)."""
+        _, edge, _, _ = (float(value[0]) for value in self.contact(1, np.array([length])))
+        return evaluate("feed_mark", length, edge, self.travel_per_rad, *self.pair(1))[0]

@@ -120,11 +120,9 @@ def cut_and_inspect(cut: CutSetup, rule: Rule, progress: Callable[[int], object]
 
 def ridges(job: HobbingJob) -> tuple[float, float]:
     """Height of the ridges between flats and between feed marks at the reference cylinder [mm] (30.9, 30.10)."""
-    gear, hob = job.gear, job.hob
     length = job.reference_diameter / 2 * math.sin(job.transverse[1])
-    (flat,) = evaluate("generating_flat", length, hob.starts, gear.teeth, hob.gashes)
-    (mark,) = evaluate("feed_mark", job.feed, 0.0, hob.diameter, gear.teeth, gear.module, gear.alpha, gear.beta)
-    return flat, mark
+    (flat,) = evaluate("generating_flat", length, job.hob.starts, job.gear.teeth, job.hob.gashes)
+    return flat, job.feed_mark(length)
 
 
 def blame(

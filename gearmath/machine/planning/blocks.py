@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Self
 
 import casadi as ca
@@ -308,8 +308,17 @@ def roll_nodes(
     Of that, ``rounding`` [mm] is left for the increments of the control, but never more than half.
     Raises InputError for a tolerance out of range.
     """
+    offset = (0.0, 0.0, 0.0) if pivot_offset is None else tuple(map(float, pivot_offset))
+    return _roll_nodes(member, cut, tolerance, pivot_height, offset, rounding).copy()
+
+
+@lru_cache(maxsize=64)
+def _roll_nodes(
+    member: Member, cut: Cut, tolerance: float, pivot_height: float, pivot_offset: tuple[float, ...], rounding: float
+) -> np.ndarray:
+    """They are asked for again by whatever plans the same pass again: another space, a sheet, a settings file."""
     member = on_one_machine(member, cut)
-    exact = ExactPass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)
+    exact = ExactPass.of(member, cut, pivot_height, np.array(pivot_offset))
     return fewest_nodes(exact, roll_range(member, cut), tolerance, rounding, _LONGEST)
 
 

@@ -23,7 +23,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Locator, Page, TimeoutError, expect, sync_playwright
 
 from tests.gearmath.control.live.conftest import PASSWORD, TEN, Live, _live, live  # noqa: F401
 from tests.gearmath.hmi.stored import own_runs, stored_runs  # noqa: F401
@@ -84,6 +84,11 @@ class Served:
     def token(self) -> str:
         return self.address.rsplit("=", 1)[-1]
 
+    @property
+    def pid(self) -> int:
+        assert self.process is not None
+        return self.process.pid
+
     def stop(self, kill: bool = False) -> str:
         """End it, and give what it has printed."""
         assert self.process is not None
@@ -96,8 +101,7 @@ class Served:
 
     def memory(self) -> float:
         """What it has in memory [MB]."""
-        assert self.process is not None
-        status = Path(f"/proc/{self.process.pid}/status").read_text("utf-8")
+        status = Path(f"/proc/{self.pid}/status").read_text("utf-8")
         return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1000  # type: ignore[index]
 
 
@@ -182,8 +186,20 @@ class Operator:
     def go(self, name: str) -> Operator:
         """Open a page by its name in the address."""
         self.page.goto(f"{self.served.base}/{name}")
-        self.page.locator(".gm-main").wait_for()
+        return self.is_heard()
+
+    def is_heard(self) -> Operator:
+        """Wait until the server hears what is pressed, as a look at the page tells an operator."""
+        self.page.locator("body.gm-is-live .gm-main").wait_for()
         return self
+
+    def key(self, label: str, key: str) -> None:
+        """Press a key on a button that is reached by keyboard."""
+        self.is_heard()
+        one = self.page.get_by_role("button", name=label, exact=True)
+        one.focus()
+        expect(one).to_be_focused(timeout=PATIENCE)
+        self.page.keyboard.press(key)
 
     def press(self, label: str) -> None:
         """Press a button."""
@@ -207,7 +223,11 @@ class Operator:
     def sees(self, words: str | re.Pattern[str], where: Locator | None = None) -> Locator:
         """Wait until words are on the page."""
         found = (where or self.page).get_by_text(words).first
-        found.wait_for(timeout=PATIENCE)
+        try:
+            found.wait_for(timeout=PATIENCE)
+        except TimeoutError as error:
+            shown = " | ".join(self.page.locator("body").inner_text().split("\n"))
+            raise AssertionError(f"{words!r} is not on the page: {shown[:3000]}; console: {self.complaints}") from error
         return found
 
     def picture(self, name: str) -> Path:
@@ -271,7 +291,8 @@ def _stays(one: Operator, url: str) -> None:
 
 
 def _hear(one: Operator, kind: str, text: str) -> None:
-    if kind == "error":
+    """Errors, and the reason of a page that loads itself again: what was pressed then may be lost."""
+    if kind == "error" or text.startswith("reloading because"):
         one.complaints.append(text)
 
 

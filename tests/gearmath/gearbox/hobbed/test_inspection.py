@@ -42,14 +42,14 @@ def test_pitch_figures_of_a_row_are_those_of_the_definition():
 
 
 def test_class_is_the_finest_that_allows_every_figure():
-    """m = 4, d = 100, b = 25, by hand for class 5: f_pt 5.9 um, F_p 19.1; one class coarser allows √2 more."""
+    """m = 4, d = 100, b = 25, by hand for class 5: f_pt 6.7 um, F_p 20.5; one class coarser allows √2 more."""
     of = job(25, 4.0, 25.0)
     limits = tolerances(of, 5)
-    assert limits["f_pt"] == pytest.approx(5.9)
-    assert limits["F_p"] == pytest.approx(19.1)
-    assert limits["F_r"] == pytest.approx(0.9 * 19.1)
+    assert limits["f_pt"] == pytest.approx(6.7)
+    assert limits["F_p"] == pytest.approx(20.5)
+    assert limits["F_r"] == pytest.approx(0.9 * 20.5)
     flat = Trace("right", 0, np.array([0.0, 1.0, 2.0]), np.zeros(3), 1.0)
-    for size, expected in ((5.89, 5), (5.91, 6), (8.3, 6), (8.4, 7)):
+    for size, expected in ((6.69, 5), (6.71, 6), (9.4, 6), (9.5, 7)):
         row = PitchRow("right", np.array([0.0] * 24 + [size * UM]))
         rows = classes(of, Inspection((flat,), (flat,), (row,), np.zeros(25), ()))
         assert {each.figure: each.accuracy_class for each in rows}["f_pt"] == expected
