@@ -25,6 +25,16 @@ with the lever ρ of each place over that of the mean point. The settings follow
     R = P,   T·n = 0,   f = 0,   K(R_w, n_w, ∇f, T) = K_2 + D,   u = u_0      at θ = 0            (27.5)
 
 ten equations, f by (10.6) and K by (26.1), for u, β and eight settings.
+
+One machine that cuts both flanks at once gives each of them at a θ of its own
+
+    R = P,   T·n = 0,   f = 0,   φ_2''(K - K_2) = m'                                               (27.6)
+
+by (26.4): fourteen equations, six of them for (u, β, θ) of both, and leaves what K is otherwise to the least squares of
+the gap. Or crownings are asked for instead of parabola, path and ellipse: at the ends of the face width b, at the ends
+of the working depth h, and as bias, what the corner of heel and tip has beyond both:
+
+    A_11 = 8 c_b/b²,   A_22 = 8 c_h/h²,   A_12 = 4 c_w/(b h),   D = A + w wᵀ/β_c                   (27.7)
 """
 
 from __future__ import annotations
@@ -36,7 +46,7 @@ import sympy as sp
 
 from derivations import notation as q
 from derivations.expression import Expression
-from derivations.local_synthesis import contact_motion, synthesis
+from derivations.local_synthesis import conjugate_curvature, contact_motion, synthesis
 from derivations.proof import DIGITS, is_close, is_zero, numbers
 
 
@@ -131,6 +141,51 @@ def wanted_gap() -> Expression:
         requires=(beta**2 - 1, w[1] ** 2 - sp.Rational(1, 10)),
         source="ease-off to second order, by roll angle and place along the tooth",
     )
+
+
+@cache
+def crowned() -> Expression:
+    """(27.7) as an Expression."""
+    w, beta = sp.Matrix(q.roll_vector.symbol), q.roll_acceleration.symbol
+    b, h = q.face_width.symbol, q.mean_working_depth.symbol
+    A = [
+        8 * q.wanted_length_crowning.symbol / b**2,
+        4 * q.wanted_bias.symbol / (b * h),
+        8 * q.wanted_profile_crowning.symbol / h**2,
+    ]
+    line = [w[0] ** 2, w[0] * w[1], w[1] ** 2]
+    return Expression(
+        "crowned",
+        "Relative curvature that leaves these gaps to the conjugate pinion (27.7).",
+        (
+            q.roll_vector,
+            q.roll_acceleration,
+            q.face_width,
+            q.mean_working_depth,
+            q.wanted_length_crowning,
+            q.wanted_profile_crowning,
+            q.wanted_bias,
+        ),
+        ((q.relative_curvature, sp.Matrix([a + one / beta for a, one in zip(A, line, strict=True)])),),
+        requires=(beta**2 - 1,),
+        source="ease-off to second order at the ends of the flank",
+    )
+
+
+def prove_crowned_flank_has_its_gaps_at_the_ends() -> None:
+    """(27.7) xᵀAx/2 with (26.3) taken off, at the ends of the flank and at its corner of heel and tip."""
+    b, h = q.face_width.symbol, q.mean_working_depth.symbol
+    D = crowned()["relative_curvature"] - conjugate_curvature()["conjugate_curvature"]
+
+    def gap(along: sp.Expr, up: sp.Expr) -> sp.Expr:
+        return (D[0] * along**2 + 2 * D[1] * along * up + D[2] * up**2) / 2
+
+    length, profile, bias = (one.symbol for one in (q.wanted_length_crowning, q.wanted_profile_crowning, q.wanted_bias))
+    assert is_zero(gap(b / 2, sp.S.Zero) - length)
+    assert is_zero(gap(-b / 2, sp.S.Zero) - length)
+    assert is_zero(gap(sp.S.Zero, h / 2) - profile)
+    assert is_zero(gap(b / 2, h / 2) - length - profile - bias)
+    assert is_zero(gap(b / 2, -h / 2) - length - profile + bias)
 
 
 def prove_factors_are_those_of_sample_1() -> None:

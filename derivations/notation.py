@@ -1083,6 +1083,13 @@ sliding = Quantity(
     shape=(2,),
     scale=1e3,
 )
+wanted_length_crowning = _length(
+    "wanted_length_crowning", "c_b", 0.002, 0.1, "gap to the conjugate flank that is wanted at toe and heel"
+)
+wanted_profile_crowning = _length(
+    "wanted_profile_crowning", "c_h", 0.002, 0.1, "gap to the conjugate flank that is wanted at root and tip"
+)
+wanted_bias = _length("wanted_bias", "c_w", -0.002, 0.002, "gap wanted at heel and tip beyond both crownings")
 relative_curvature = Quantity(
     "relative_curvature",
     "D = K_1 - K_2: D_11, D_12, D_22",

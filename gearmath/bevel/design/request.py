@@ -13,7 +13,7 @@ from gearmath.bevel.contact.surface import ContactSurface
 from gearmath.bevel.design.rolling import GearFlank, Meeting, Roll
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import Member
+from gearmath.specs.bevel_set import Blank, Member
 from gearmath.specs.design import ContactRequest
 
 #: Rows and columns of the gear's flank on which the gap is wanted, and heights at which its mate's tip is sought.
@@ -65,12 +65,15 @@ def request(side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: 
     axial, radial = (float(value) for value in kernel("flank_place")(blank, across, up))
     roll = gear.roll(axial, radial)
     w = roll.vector
-    parabola = _parabola(side, asked.transmission_error / ARCSEC, teeth, roll)
-    semi_axis = asked.pattern_length * surface.blank.face_width / 2
-    given = (w, roll.acceleration, roll.lever)
-    (own,) = kernel("path_on_pinion")(*given, roll.sliding, parabola, path)
-    (D,) = kernel("synthesis")(*given, own, parabola, semi_axis, MARKING)
-    _check_ellipse(side, asked, matrix(D), float(own), surface.blank.face_width)
+    if asked.lengthwise_crowning is None:
+        parabola = _parabola(side, asked.transmission_error / ARCSEC, teeth, roll)
+        semi_axis = asked.pattern_length * surface.blank.face_width / 2
+        given = (w, roll.acceleration, roll.lever)
+        own = float(kernel("path_on_pinion")(*given, roll.sliding, parabola, path)[0])
+        (D,) = kernel("synthesis")(*given, own, parabola, semi_axis, MARKING)
+        _check_ellipse(side, asked, matrix(D), own, surface.blank.face_width)
+    else:
+        D, own, path, parabola, semi_axis = _crowned(asked, roll, surface.blank)
     meeting, along, inner = _flank(gear, roll, lowest)
     lever = np.full(len(along), abs(roll.lever))
     (gap,) = kernel("wanted_gap")(meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever)
@@ -81,7 +84,7 @@ def request(side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: 
         (axial, radial),
         parabola,
         path,
-        float(own),
+        own,
         semi_axis,
         D,
         roll.gear_curvature + matrix(D),
@@ -89,6 +92,18 @@ def request(side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: 
         gap,
         inner,
     )
+
+
+def _crowned(asked: ContactRequest, roll: Roll, blank: Blank) -> tuple[np.ndarray, float, float, float, float]:
+    """D (3,) of the crownings, and what they make of path on pinion and gear [rad], parabola and half axis [mm]."""
+    depth = blank.mean_addendum + blank.mean_dedendum - blank.clearance
+    wanted = [(one or 0.0) / 1000 for one in (asked.lengthwise_crowning, asked.profile_crowning, asked.bias)]
+    (D,) = kernel("crowned")(roll.vector, roll.acceleration, blank.face_width, depth, *wanted)
+    velocity, second = kernel("contact_motion")(roll.vector, roll.acceleration, D, roll.lever)
+    on_gear = velocity + roll.sliding
+    (axes,) = kernel("contact_ellipse")(D, MARKING)
+    own, path = (math.atan2(one[1], one[0]) for one in (velocity, on_gear))
+    return D, own % math.pi, path % math.pi, float(second), float(np.max(axes))
 
 
 def matrix(components: np.ndarray) -> np.ndarray:
