@@ -126,7 +126,7 @@ def completing_pinion(
         )
     inner = {flank: requests[flank].inner for flank in FLANKS}
     everywhere = {flank: np.ones_like(inner[flank]) for flank in FLANKS}
-    near, fitted = found, None
+    near, fitted, shares = found, None, dict.fromkeys(FLANKS, 0.0)
     for stage, among in ((open_, inner), (open_, everywhere), (problem, everywhere)):
         kept, contacts = _reached(start, sides, near, among)
         if not all(one.any() for one in kept):
@@ -136,11 +136,16 @@ def completing_pinion(
         near = near if fitted is None else fitted.x
     shares = {flank: float(one.mean()) for flank, one in zip(FLANKS, kept, strict=True)}
     lost = min(shares, key=lambda flank: shares[flank])
-    if fitted is None or not shares[lost] >= _LEAST_SHARE:
+    if not shares[lost] >= _LEAST_SHARE:
         raise ComputationError(
             f"pinion {lost} flank: settings for the mean point were found, but they cut only {shares[lost]:.0%} of "
             f"the places that its mate needs, which must be at least {_LEAST_SHARE:.0%}: the others lie below the tip "
             "of the blade or are undercut"
+        )
+    if fitted is None:
+        raise ComputationError(
+            "pinion: settings were found that give both flanks their points, but none with the parabolas that both "
+            "sides ask for; ask for other paths, a longer pattern, or cutting = 'fixed_setting' in face milling"
         )
     return CompletingPinion(cut, dict(requests), fitted, tuple(contacts), shares, own)
 

@@ -142,13 +142,14 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
     request = "crownings" if crowned else f"transmission_error = {asked.transmission_error:g} arcsec"
     if run.outcome == "interior contact" and found is None:
         raise InputError(
-            f"{side}: {request}: the parabola has no vertex within both flanks; position must be given, or the path come nearer to 90 degrees"
+            f"{side}: {request}: the parabola has no vertex within both flanks; "
+            "position must be given, or the path come nearer to 90 degrees"
         )
     if (run.outcome != "interior contact" or found is None) and crowned:
         raise InputError(
             f"{side}: {run.outcome}, with a contact ratio of {run.contact_ratio:.3g} within the flanks, which must let "
-            f"one pair of teeth take over from the next: a smaller profile_crowning (now {asked.profile_crowning:g}) or "
-            f"another bias (now {asked.bias:g}) is needed"
+            "one pair of teeth take over from the next: a smaller profile_crowning (now "
+            f"{asked.profile_crowning:g}) or another bias (now {asked.bias:g}) is needed"
         )
     if run.outcome != "interior contact" or found is None:
         raise InputError(
