@@ -14,9 +14,11 @@ from gearmath.bevel.contact.system import Assembly, System, TouchPoint
 from gearmath.bevel.crown_gear import Method, crown_gear_set
 from gearmath.bevel.design.route import Designed, design
 from gearmath.bevel.design.verdict import verdict, vertex
-from gearmath.bevel.flank import blank_grid, nominal_points
+from gearmath.bevel.ease_off import ease_off, parts
+from gearmath.bevel.flank import Margins, blank_grid, nominal_points
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.tooth import mean_backlash, mean_pitch_radius, mean_tooth_thickness
+from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.blades import blade_phase, blades_of
 from gearmath.machine.planning.hobbing import six_axes
@@ -129,3 +131,44 @@ def test_inner_blades_pass_the_convex_flank_where_they_follow_the_outer_ones() -
         np.hypot(points.point[:, 0], points.point[:, 1]), abs=1e-9
     )
     assert edges[:, 2] == pytest.approx(points.point[:, 2], abs=1e-9)
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_crownings_that_are_asked_for_are_those_of_the_ease_off_about_the_vertex(side: str) -> None:
+    """The ease-off of chapter 24, which knows nothing of the design, on a fifth of the flank in both directions."""
+    asked = {"lengthwise_crowning": 30.0, "profile_crowning": 4.0, "bias": 3.0}
+    made = design(checked({**MILLED, "pinion": {}, "drive": asked, "coast": asked}, DesignData, "crowned"))
+    pinion, gear = (made.pair.member(name) for name in ("pinion", "gear"))
+    _, radial = made.flanks[side].request.place
+    low, high = (float(kernel("flank_place")(gear.blank.vector, 0.5, up)[1]) for up in (0.0, 1.0))
+    up, part = (radial - low) / (high - low), 0.2
+    grid = blank_grid(gear, 9, 15, Margins(toe=0.4, heel=0.4, root=up - part / 2, tip=1 - up - part / 2))
+    found = parts(1000 * ease_off(pinion, gear, made.pair.shaft_angle, SIDES[side], grid))
+    # of 30 um a fiftieth is fourth order; rows of the grid lean by the taper, which shows as bias
+    assert found.crowning / part**2 == pytest.approx(30.0, abs=0.6)
+    assert found.profile_crowning / part**2 == pytest.approx(4.0, abs=0.3)
+    assert found.twist / part**2 == pytest.approx(3.0, abs=0.8)
+
+
+@pytest.mark.parametrize(
+    ("asked", "sentence"),
+    [
+        ({"lengthwise_crowning": 30.0}, "lengthwise_crowning and profile_crowning belong together"),
+        ({"lengthwise_crowning": 30.0, "profile_crowning": 8.0, "path_angle": 60.0}, "takes the place of path_angle"),
+        (
+            {"lengthwise_crowning": 32.0, "profile_crowning": 8.0, "bias": 40.0},
+            r"bias = 40 um: must be below 32 in size",
+        ),
+    ],
+)
+def test_crownings_that_cannot_be_are_refused(asked: dict, sentence: str) -> None:
+    with pytest.raises(InputError, match=sentence):
+        checked({**MILLED, "drive": asked}, DesignData, "crowned")
+
+
+def test_modified_roll_comes_in_the_steps_of_the_shop() -> None:
+    designed = design(checked({**MILLED, "shop": {**STEPS, "modified_roll_step": 1e-4}}, DesignData, "steps"))
+    for flank in ("concave", "convex"):
+        for value in designed.pair.member("pinion").flank(flank).motion.modified_roll:
+            assert value / 1e-4 == pytest.approx(round(value / 1e-4), abs=1e-6)
+            assert abs(value) > 1e-4
