@@ -33,8 +33,8 @@ One machine that cuts both flanks at once gives each of them at a θ of its own
 by (26.4): fourteen equations, six of them for (u, β, θ) of both, and leaves what K is otherwise to the least squares of
 the gap. Or crownings are asked for instead of parabola, path and ellipse, of the gap over the gear's flank: c_b at the
 ends of the face width b, c_h at the ends of the working depth h, and c_w, what the corner of heel and tip has beyond
-both. With the distances ξ and η from the vertex in cone distance and height, which change by M along the tangents of the
-gear, and what meets at φ = w·x/β_c having slid by v φ,
+both. With the distances ξ and η from the vertex in cone distance and height, which change by M along the tangents of
+the gear, and what meets at φ = w·x/β_c having slid by v φ,
 
     E = c_b (2 ξ/b)² + c_w (2 ξ/b)(2 η/h) + c_h (2 η/h)²,     (ξ, η) = N x,   N = M (1 + v wᵀ/β_c),
     D = Nᵀ E_ξη N + w wᵀ/β_c                                                                       (27.7)
