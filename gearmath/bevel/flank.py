@@ -177,9 +177,7 @@ def _turned_back(points: SurfacePoints, grid: Grid) -> np.ndarray:
     return np.sign(points.sense) != np.sign(reference)
 
 
-def _folds_above(
-    how: Generation, section: Section, points: SurfacePoints, grid: Grid, k: int, delta: float
-) -> bool:
+def _folds_above(how: Generation, section: Section, points: SurfacePoints, grid: Grid, k: int, delta: float) -> bool:
     """Whether the flank turns back on itself between point k and the nearest one found: it is undercut there.
 
     The blade is followed from that point to its tip, at its cone distance: at the singular line the sense vanishes.
