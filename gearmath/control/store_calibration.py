@@ -44,6 +44,6 @@ def calibrate_run(run: StoredRun) -> CalibratedRun:
             role, found = MACHINE, calibrate_axes(touches, machine, known)
             save_axes(folder / MACHINE, target, found.pivot_offset, found.gauge_line_height)
         else:
-            role, found = CALIBRATION, calibrate_tip(touches, known, CALIBRATION)
+            role, found = CALIBRATION, calibrate_tip(touches, known, source=CALIBRATION)
             save_calibration(folder / CALIBRATION, target, found.radius, found.offset, found.lobes)
         return CalibratedRun(run, known, found, role, Path(target).read_bytes())

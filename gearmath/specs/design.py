@@ -64,10 +64,19 @@ class PinionMethod(Sheet):
     """How the pinion is cut, and what the fit of its whole flank may change beyond what the mean point needs."""
 
     cutting: Literal["fixed_setting", "completing"] = "fixed_setting"
-    free: tuple[Free, ...] = Field(default=("blade_pressure_angle", "modified_roll"), strict=False)
+    #: Left out: blade angle and modified roll where each flank is cut by itself, else all.
+    free: tuple[Free, ...] | None = Field(default=None, strict=False)
     #: Tilt of the cutter; without it none for a generated gear, and square to the root line of a Formate one.
     cutter_tilt: Angle | None = Field(default=None, ge=-30, le=30)
     blade_edge_radius: Length | None = Field(default=None, ge=0, le=10)
+
+    @property
+    def may_change(self) -> tuple[Free, ...]:
+        """What the fit of the whole flank may change."""
+        if self.free is not None:
+            return self.free
+        some: tuple[Free, ...] = ("blade_pressure_angle", "modified_roll")
+        return some if self.cutting == "fixed_setting" else (*some, "cutter_tilt", "helical_motion")
 
 
 class GearMethod(Sheet):

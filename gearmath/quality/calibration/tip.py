@@ -85,16 +85,6 @@ class Tip:
         return float(np.abs(self.fit.residuals).max())
 
 
-def calibrate_tip(touches: CalibrationTouches, known: Calibration, name: str, lobes: bool = False) -> Tip:
-    """The tip by its touches on the sphere or, where there are none, in the ring. Raises InputError, which calls the
-    calibration ``name``, where it has neither of them."""
-    if known.sphere is not None and (touches.target == SPHERE).any():
-        return calibrate_on_sphere(touches, known.sphere, known, lobes)
-    if known.ring is not None:
-        return calibrate_on_ring(touches, known.ring, known)
-    raise InputError(f"{name} has neither the ring nor the sphere that was touched")
-
-
 def calibrate_on_sphere(touches: CalibrationTouches, sphere: Sphere, start: Calibration, lobes: bool = False) -> Tip:
     """Radius and offset of the tip that leave the touches on a sphere the least residual (23.2), with lobes if asked.
 
@@ -167,6 +157,20 @@ def _tip(found: Fit, lobes: tuple[float, ...], z: float = math.nan) -> Tip:
 def _rows(name: str) -> Kernel:
     """Kernel: a residual of a touch, and its derivatives by radius, offset and lobes (6,)."""
     return with_gradient(kernel(name), ("tip_radius", "tip_offset", "lobing"))
+
+
+def calibrate_tip(touches: CalibrationTouches, before: Calibration, lobing: bool = False, source: str = "") -> Tip:
+    """The tip from its touches on the sphere or, where there are none, in the ring; ``source`` is the file of before.
+
+    Raises InputError where neither was touched, or lobes are wanted of touches in the ring.
+    """
+    if before.sphere is not None and (touches.target == SPHERE).any():
+        return calibrate_on_sphere(touches, before.sphere, before, lobing)
+    if lobing:
+        raise InputError("--lobing needs touches on the sphere; there are none")
+    if before.ring is not None:
+        return calibrate_on_ring(touches, before.ring, before)
+    raise InputError(f"{source} has neither the ring nor the sphere that was touched")
 
 
 def with_gradient(of: Kernel, unknowns: tuple[str, ...]) -> Kernel:
