@@ -236,9 +236,12 @@ def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]
 def flank_curve(
     member: Member, flank: str, up: float | None = None, across: float | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``."""
-    share = np.linspace(0.0, 1.0, _COLUMNS)
-    place = (share if across is None else np.full(_COLUMNS, across), share if up is None else np.full(_COLUMNS, up))
+    """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``.
+
+    Up the tooth they begin as deep as the blade reaches, where the foot of the flank ends.
+    """
+    along, depth = np.linspace(0.0, 1.0, _COLUMNS), np.linspace(-_DEEP, 1.0, _COLUMNS)
+    place = (along if across is None else np.full(_COLUMNS, across), depth if up is None else np.full(_COLUMNS, up))
     axial, radial = kernel("flank_place")(member.blank.vector, *place)
     return flank_row(member, flank, Grid(axial[None], radial[None]))
 
