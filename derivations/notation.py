@@ -1083,6 +1083,23 @@ sliding = Quantity(
     shape=(2,),
     scale=1e3,
 )
+axial_rates = Quantity(
+    "axial_rates",
+    "how cone distance and height on the gear change along the two tangents",
+    "1",
+    "M",
+    (-1.0, 1.0),
+    shape=(2, 2),
+)
+cone_distance_off = _length("cone_distance_off", r"\xi", -10.0, 10.0, "cone distance on the gear from the vertex")
+height_off = _length("height_off", r"\eta_h", -5.0, 5.0, "height on the gear from the vertex")
+wanted_length_crowning = _length(
+    "wanted_length_crowning", "c_b", 0.002, 0.1, "gap to the conjugate flank that is wanted at toe and heel"
+)
+wanted_profile_crowning = _length(
+    "wanted_profile_crowning", "c_h", 0.002, 0.1, "gap to the conjugate flank that is wanted at root and tip"
+)
+wanted_bias = _length("wanted_bias", "c_w", -0.002, 0.002, "gap wanted at heel and tip beyond both crownings")
 relative_curvature = Quantity(
     "relative_curvature",
     "D = K_1 - K_2: D_11, D_12, D_22",
