@@ -1,4 +1,4 @@
-"""Two kinds of errors: input that a person can correct, and work that failed."""
+"""Exceptions: input that a person can correct, and work that failed."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

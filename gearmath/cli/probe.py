@@ -300,7 +300,7 @@ def _calibrate_tip(raw: Path, found: CalibrationTouches, calibration: str, lobin
     with about(raw):
         tip = calibrate_tip(found, load_calibration(source), lobing, str(source))
     save_calibration(source, target, tip.radius, tip.offset, tip.lobes)
-    return _tip_lines(tip)
+    return tip_lines(tip)
 
 
 def _calibrate_axes(
@@ -315,10 +315,10 @@ def _calibrate_axes(
     with about(raw):
         axes = calibrate_axes(found, load_milling_machine(source), probe)
     save_axes(source, target, axes.pivot_offset, axes.gauge_line_height)
-    return _axis_lines(axes, probe)
+    return axis_lines(axes, probe)
 
 
-def _axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
+def axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
     """What the machine file gets, what the zero offsets of the control should get, and what the touches do not fit."""
     u = axes.fit.uncertainty
     for name, value, unsure in zip("xyz", axes.pivot_offset, u[:3], strict=True):
@@ -337,7 +337,7 @@ def _residual_words(fit: Fit) -> str:
     return f"noise {_um(fit.noise)}, largest residual {float(abs(fit.residuals).max()) * 1000:.3f} um"
 
 
-def _tip_lines(tip: Tip) -> Iterator[str]:
+def tip_lines(tip: Tip) -> Iterator[str]:
     """Every value with its standard uncertainty, then what the touches do not fit."""
     yield f"tip radius {tip.radius:.5f} mm, u {_um(tip.radius_uncertainty)}"
     for axis, value, u in zip("XYZ", tip.offset, tip.offset_uncertainty, strict=True):

@@ -46,7 +46,7 @@ def roll(system: System) -> Points:
     x, rotation, assembly = ca.SX.sym("x", 7), ca.SX.sym("rotation"), ca.SX.sym("assembly", 4)
     curvatures = []
     point, normal, *_ = system.gear.function(x[3:6])
-    basis = kernel("root_basis").function(point, normal, math.radians(system.gear.blank.root_angle))
+    basis = kernel("root_basis").function(point, normal, system.gear.blank.delta_f)
     tangents = [system.placed(1, point, basis[:, k], x[6], assembly)[1] for k in range(2)]
     T = ca.horzcat(*tangents)
     for side, surface in enumerate((system.pinion, system.gear)):

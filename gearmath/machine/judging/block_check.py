@@ -184,7 +184,7 @@ def _height(lines: WatchedFlank, member: Member, runs: list[CuttingRun], machine
     axes = axis_positions(spec, lines.theta, machine.pivot_height, machine.pivot)
     center, axis = kernel("tool_pose")(axes, machine.pivot_height, machine.pivot)
     own = member.flank(lines.flank)
-    edge = (own.blade_edge_radius or 0.0) * (1 - math.sin(math.radians(own.blade_pressure_angle)))
+    edge = (own.blade_edge_radius or 0.0) * (1 - math.sin(own.alpha))
     return np.abs(((lines.point - center) * axis).sum(axis=1)) - edge
 
 
