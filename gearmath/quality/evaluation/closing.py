@@ -82,8 +82,8 @@ class Closing:
 
     @property
     def curved(self) -> float:
-        """What a steady drift may have left in F_p [mm] if it slowed down or sped up; zero where there was none."""
-        return _CURVED * self.arc if self.kind == "steady" else 0.0
+        """What a drift taken out as even may have left in F_p [mm] if it slowed down or sped up; zero without one."""
+        return _CURVED * self.arc if self.kind in ("steady", "small") else 0.0
 
     @property
     def withheld(self) -> str | None:
