@@ -149,8 +149,8 @@ def _of_settings(values: Values, refusal: str) -> Iterator[Slip]:
             if one[key] == two[key] != 0:
                 for factor in (-1.0, *_factors(key)):
                     changes = [((member, flank, key), factor * one[key]) for flank in FLANKS]
-                    words = f"{member}.concave.{key} and {member}.convex.{key} = {factor * one[key]:.6g}"
-                    yield words, _changed(values, *changes)
+                    other = f"{factor * one[key]:.6g}, not {one[key]:.6g}"
+                    yield f"{member}.concave.{key} and {member}.convex.{key} = {other}", _changed(values, *changes)
     for (member, flank), table in tables.items():
         for one_key, other_key in itertools.combinations([key for key in SETTINGS if _is_number(table.get(key))], 2):
             if flank in named and 0 != table[one_key] != table[other_key] != 0:
