@@ -25,12 +25,17 @@ _EPICYCLOID = -1
 
 @dataclass(frozen=True)
 class Method:
-    """How a member is cut. ``tilt`` and ``tilt_direction`` [rad] belong to a cut of one flank alone."""
+    """How a member is cut. ``tilt`` and ``tilt_direction`` [rad] belong to a cut of one flank alone.
+
+    With ``alternating`` blades of a hobbing cutter the inner ones follow the outer ones by half of the way to the next
+    group, so that half a pitch of the space comes from the turn of the work, and both stand at nearly one radius.
+    """
 
     cutting: Literal["fixed_setting", "completing"] = "completing"
     generation: Literal["generated", "formate"] = "generated"
     tilt: float = 0.0
     tilt_direction: float = 0.0
+    alternating: bool = False
 
 
 @dataclass(frozen=True)
@@ -56,8 +61,8 @@ class CrownTooth:
             "mean_spiral_angle": self.spiral_angle,
             "cutter_radius": self.cutter_radius,
             "mean_cone_distance": blank.mean_cone_distance,
-            "pitch_angle": math.radians(blank.pitch_angle),
-            "machine_root_angle": math.radians(blank.root_angle),
+            "pitch_angle": blank.delta,
+            "machine_root_angle": blank.delta_f,
             "mean_dedendum": blank.mean_dedendum,
             "index_ratio": _EPICYCLOID * ratio,
         }
@@ -71,7 +76,7 @@ def crown_gear_member(tooth: CrownTooth, method: Method = Method()) -> Member:
     if method.cutting == "completing":
         if method.tilt:
             raise InputError(f"tilt = {math.degrees(method.tilt):.3g}: a cut of both flanks must be untilted")
-        flanks = _both_flanks(tooth)
+        flanks = _both_flanks(tooth, method.alternating and tooth.blade_groups is not None)
     else:
         if tooth.blade_groups:
             raise InputError("blade_groups: face hobbing cuts both flanks at once, so cutting must be completing")
@@ -125,7 +130,7 @@ def _tooth(data: BlankData, pair: BevelBlank, member: MemberBlank, hand: Literal
     )
 
 
-def _both_flanks(tooth: CrownTooth) -> dict[str, dict[str, float]]:
+def _both_flanks(tooth: CrownTooth, alternating: bool) -> dict[str, dict[str, float]]:
     """Both flanks in one cut, the mean radius of the cutter in the middle of the space.
 
     The root line of a milled space is inclined, which takes from the pressure angle of one flank what it gives to the
@@ -147,7 +152,16 @@ def _both_flanks(tooth: CrownTooth) -> dict[str, dict[str, float]]:
             flank: _untilted(tooth, flank, tooth.pressure_angles[flank])["blade_pressure_angle"] for flank in FLANKS
         }
     space["space_width"] = tooth.space_width
-    return {flank: _flank(tooth, space, blades[flank], SIDES[flank]) for flank in FLANKS}
+    turn = 0.0
+    if alternating:
+        radius = tooth.blank.mean_cone_distance * math.sin(tooth.blank.delta)
+        turn = math.pi / tooth.teeth
+        space["space_width"] -= turn * radius * math.cos(tooth.spiral_angle)
+    turns = {flank: side * tooth.values["hand_sign"] * turn / 2 for flank, side in SIDES.items()}
+    return {
+        flank: _flank(tooth, space | {"work_rotation_offset": turns[flank]}, blades[flank], SIDES[flank])
+        for flank in FLANKS
+    }
 
 
 def _untilted(tooth: CrownTooth, flank: str, pressure_angle: float) -> dict[str, float]:
@@ -168,7 +182,7 @@ def _one_flank(tooth: CrownTooth, method: Method, flank: str) -> dict[str, float
     settings = evaluate("crown_gear_flank", {**tooth.values, **given})
     if not math.isfinite(settings["radial_distance"]):
         raise InputError(f"tilt = {math.degrees(method.tilt):g}: the flank would be square to the cutter's axis")
-    radius = tooth.blank.mean_cone_distance * math.sin(math.radians(tooth.blank.pitch_angle))
+    radius = tooth.blank.mean_cone_distance * math.sin(tooth.blank.delta)
     turn = side * tooth.values["hand_sign"] * tooth.space_width / math.cos(tooth.spiral_angle) / (2 * radius)
     settings |= {
         "cutter_tilt": method.tilt,

@@ -99,6 +99,21 @@ class Blank(Sheet):
         return self
 
     @property
+    def delta(self) -> float:
+        """Pitch angle δ [rad]."""
+        return math.radians(self.pitch_angle)
+
+    @property
+    def delta_a(self) -> float:
+        """Face angle δ_a [rad]."""
+        return math.radians(self.face_angle)
+
+    @property
+    def delta_f(self) -> float:
+        """Root angle δ_f [rad]."""
+        return math.radians(self.root_angle)
+
+    @property
     def vector(self) -> np.ndarray:
         """The blank as the vector of ``notation.blank`` (8,), mm and rad."""
         return vector_of(self, notation.blank.components)
@@ -171,13 +186,16 @@ class Member(Sheet):
                 )
             self._check_cutter(flank)
         if self.cutting == "completing":
-            differing = [name for name in MACHINE_SETTINGS if getattr(self.concave, name) != getattr(self.convex, name)]
+            # in face hobbing the inner blades may follow the outer ones: that turns the work in between
+            own = ("work_rotation_offset",) if self.process == "face_hobbing" else ()
+            shared = [name for name in MACHINE_SETTINGS if name not in own]
+            differing = [name for name in shared if getattr(self.concave, name) != getattr(self.convex, name)]
             if self.concave.motion != self.convex.motion:
                 differing.append("motion")
             if differing:
                 raise ValueError(f"a completing cut has one {differing[0]} for both flanks, not two")
             concave, convex = self.concave.nominal, self.convex.nominal
-            differing = [name for name in MACHINE_SETTINGS if getattr(concave, name) != getattr(convex, name)]
+            differing = [name for name in shared if getattr(concave, name) != getattr(convex, name)]
             if differing:
                 raise ValueError(f"design: a completing cut has one {differing[0]} for both flanks, not two")
         return self

@@ -11,7 +11,11 @@ from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.tooth import mean_backlash, mean_pitch_radius
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.specs.design import Shop
 from gearmath.specs.toml import checked
+
+#: A completing pinion: trials, what may be missing at the end, and the change that shows the rate [mm].
+_TRIALS, _ENOUGH, _PROBE = 4, 2e-4, 0.01
 
 
 def with_backlash(pinion: Member, gear: Member, backlash: float, like: Member, step: float = 0.0) -> Member:
@@ -29,6 +33,38 @@ def with_backlash(pinion: Member, gear: Member, backlash: float, like: Member, s
     return _turned(placed, {flank: hand * SIDES[flank] * half for flank in FLANKS}, step)
 
 
+def completing_backlash(pinion: Member, gear: Member, backlash: float, shop: Shop) -> Member:
+    """The pinion, cut completing, with a transverse backlash [mm] by the point radii of its two blades.
+
+    Where these come in steps, by the sliding base: a cut that is deeper is wider.
+    """
+    widen = _deeper if shop.blade_radius_step else _wider
+    step = shop.length_step if shop.blade_radius_step else 0.0
+    total, found = 0.0, pinion
+    for _ in range(_TRIALS):
+        missing = backlash - mean_backlash(found, gear)
+        if abs(missing) < _ENOUGH:
+            break
+        per = (mean_backlash(widen(found, _PROBE), gear) - mean_backlash(found, gear)) / _PROBE
+        total = to_step(total + missing / per, step)
+        found = widen(pinion, total)
+    return found
+
+
+def _wider(member: Member, by: float) -> Member:
+    values = member.model_dump()
+    for flank in FLANKS:
+        values[flank]["blade_point_radius"] += SIDES[flank] * by
+    return checked(values, Member, "pinion")
+
+
+def _deeper(member: Member, by: float) -> Member:
+    values = member.model_dump()
+    for flank in FLANKS:
+        values[flank]["sliding_base"] -= by
+    return checked(values, Member, "pinion")
+
+
 def _turned(member: Member, turns: dict[str, float], step: float = 0.0) -> Member:
     """The member with work rotation offsets, in steps, that turn its flanks by angles [degree] about z_w."""
     values = member.model_dump()
@@ -40,7 +76,7 @@ def _turned(member: Member, turns: dict[str, float], step: float = 0.0) -> Membe
 
 def _azimuth(member: Member, flank: str) -> float:
     """Angle about z_w [rad] of a flank at the mean point of the pitch cone."""
-    delta, mean = math.radians(member.blank.pitch_angle), member.blank.mean_cone_distance
+    delta, mean = member.blank.delta, member.blank.mean_cone_distance
     section = blade_sections(member.flank(flank), SIDES[flank])["main"]
     place = np.array([mean * math.cos(delta)]), np.array([mean * math.sin(delta)])
     (point,) = solve_section(generation_of(member, flank), section, *place).point

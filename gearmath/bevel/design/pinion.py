@@ -70,7 +70,7 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
         asked.roll.normal,
         asked.roll.basis,
         asked.curvature,
-        _root(start)[1],
+        root_of(start)[1],
         begin.cone,
         asked.own_path,
     )
@@ -148,7 +148,7 @@ def _crown_gear(member: Member, how: Generation, section: Section, asked: Reques
     x[:2], x[FIRST : FIRST + len(SETTINGS)] = (u, beta), how.settings
     x[NAMES.index("cradle_angle")] += theta
     x[NAMES.index("work_rotation_offset")] += x[NAMES.index("ratio_of_roll")] * theta - turn
-    cone, depth = _root(member)
+    cone, depth = root_of(member)
     flat = Section(0.0, 1.0, float(how.settings[-2]), FLAT_BLADE)
     direction, around = (math.cos(cone[0]), math.sin(cone[0])), np.array([[0.0, beta, theta]] * 2)
     root = solve_curve(how, flat, np.zeros(2), direction, cone[1:], around)
@@ -158,11 +158,11 @@ def _crown_gear(member: Member, how: Generation, section: Section, asked: Reques
     return x, replace(begin, curvature=local.curvature(how, x, begin), depth=local.depth(how, x, begin))
 
 
-def _root(member: Member) -> tuple[np.ndarray, np.ndarray]:
-    """Pitch angle and cone distances of toe and heel (3,), and the depths (2,) of the blank's root there."""
+def root_of(member: Member, across: tuple[float, float] = (0.0, 1.0)) -> tuple[np.ndarray, np.ndarray]:
+    """Pitch angle and two cone distances (3,), and the depths (2,) of the blank's root there: toe 0, heel 1."""
     blank = member.blank
-    delta = math.radians(blank.pitch_angle)
-    axial, radial = kernel("flank_place")(blank.vector, np.array([0.0, 1.0]), np.zeros(2))
+    delta = blank.delta
+    axial, radial = kernel("flank_place")(blank.vector, np.array(across), np.zeros(2))
     along, depth = kernel("root_place")(np.stack([radial, 0 * radial, axial], axis=1), delta)
     return np.array([delta, *along]), depth + blank.clearance
 

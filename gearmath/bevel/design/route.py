@@ -9,10 +9,12 @@ from gearmath.bevel.blank import BevelBlank
 from gearmath.bevel.contact.report import SIDES as OWN
 from gearmath.bevel.contact.surface import nominal_surface
 from gearmath.bevel.crown_gear import Method, crown_gear_set
-from gearmath.bevel.design.backlash import with_backlash
-from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, with_flank
-from gearmath.bevel.design.request import gear_flank, request
-from gearmath.bevel.design.rounding import rounded_gear, rounded_pinion
+from gearmath.bevel.design.backlash import completing_backlash, with_backlash
+from gearmath.bevel.design.completing import completing_pinion
+from gearmath.bevel.design.designed_flank import DesignedFlank
+from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, settings_table, with_flank
+from gearmath.bevel.design.request import Request, gear_flank, request
+from gearmath.bevel.design.rounding import rounded_completing, rounded_gear, rounded_pinion
 from gearmath.bevel.design.start import blank_for, edge_radius
 from gearmath.bevel.slots import slots_of
 from gearmath.bevel.tooth import mean_backlash
@@ -20,6 +22,9 @@ from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
 from gearmath.specs.blank_data import BlankData
 from gearmath.specs.design import DesignData
+from gearmath.specs.toml import checked
+
+Flanks = dict[str, PinionFlank | DesignedFlank]
 
 
 @dataclass(frozen=True)
@@ -28,7 +33,7 @@ class Designed:
 
     data: DesignData
     pair: BevelSet
-    flanks: dict[str, PinionFlank]
+    flanks: Flanks
     backlash: float
     blank_data: BlankData
 
@@ -39,17 +44,17 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
     ``name`` is the data's file in messages. Raises InputError naming key, value and limit of what cannot be,
     ComputationError where no settings are found.
     """
-    if data.pinion.cutting != "fixed_setting":
+    completing = data.pinion.cutting == "completing"
+    if data.cutter.process == "face_hobbing" and not completing:
         raise InputError(
-            f"{name}: pinion.cutting = 'completing': a pinion is so far designed with 'fixed_setting' only"
+            f"{name}: pinion.cutting = 'fixed_setting': with face_hobbing it must be 'completing', as both flanks are "
+            "cut at once"
         )
-    if data.cutter.process != "face_milling":
-        raise InputError(f"{name}: cutter.process = 'face_hobbing': pairs are so far designed face milled only")
     blank_data, blank = blank_for(data, name)
     start = crown_gear_set(
         blank_data,
-        Method("fixed_setting", tilt=_tilt(data, blank), tilt_direction=math.pi / 2),
-        Method("completing", data.gear.generation),
+        Method("completing", alternating=True) if completing else _single(data, blank),
+        Method("completing", data.gear.generation, alternating=True),
         data.hand,
     )
     backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
@@ -62,18 +67,49 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
         pinion, gear = _on_blank_of(given.member("pinion"), pinion, name), given.member("gear")
         if data.backlash is None:
             backlash = mean_backlash(given.member("pinion"), gear)
-    flanks: dict[str, PinionFlank] = {}
-    found: Member = pinion
-    for side, own in OWN.items():
-        mating = nominal_surface(gear, FLANKS[1 - FLANKS.index(own)])
-        tip = nominal_surface(pinion, own).borders[0]
-        facing = gear_flank(mating, pinion, start.shaft_angle)
-        asked = request(side, data.contact(side), facing, pinion.teeth, tip)
-        flanks[side] = rounded_pinion(pinion_flank(pinion, own, asked, data.pinion.free), data.shop)
-        found = with_flank(found, own, flanks[side].x)
-    found = with_backlash(found, gear, backlash, pinion, data.shop.angle_step)
+    requests = {side: _asked(data, side, pinion, gear, start.shaft_angle) for side in OWN}
+    if completing:
+        found, flanks = _at_once(data, requests, pinion, gear, backlash)
+    else:
+        found, flanks = _one_by_one(data, requests, pinion, gear, backlash)
     pair = start.model_copy(update={"pinion": found, "gear": gear})
     return Designed(data, pair, flanks, backlash, blank_data)
+
+
+def _asked(data: DesignData, side: str, pinion: Member, gear: Member, shaft_angle: float) -> Request:
+    """What a side asks of its flank of the pinion."""
+    own = OWN[side]
+    facing = gear_flank(nominal_surface(gear, FLANKS[1 - FLANKS.index(own)]), pinion, shaft_angle)
+    return request(side, data.contact(side), facing, pinion.teeth, nominal_surface(pinion, own).borders[0])
+
+
+def _one_by_one(
+    data: DesignData, requests: dict[str, Request], start: Member, gear: Member, backlash: float
+) -> tuple[Member, Flanks]:
+    """The pinion, each flank with settings of its own."""
+    found, flanks = start, {}
+    for side, own in OWN.items():
+        flanks[side] = rounded_pinion(pinion_flank(start, own, requests[side], data.pinion.may_change), data.shop)
+        found = with_flank(found, own, flanks[side].x)
+    return with_backlash(found, gear, backlash, start, data.shop.angle_step), dict(flanks)
+
+
+def _at_once(
+    data: DesignData, requests: dict[str, Request], start: Member, gear: Member, backlash: float
+) -> tuple[Member, Flanks]:
+    """The pinion, both flanks with the settings of one machine."""
+    own = {OWN[side]: asked for side, asked in requests.items()}
+    both = rounded_completing(completing_pinion(start, own, data.pinion.may_change, backlash), data.shop)
+    flanks = {side: both.flank(name) for side, name in OWN.items()}
+    values = start.model_dump()
+    for flank in flanks.values():
+        values[flank.name] = {**values[flank.name], **settings_table(flank.x)}
+    return completing_backlash(checked(values, Member, "pinion"), gear, backlash, data.shop), dict(flanks)
+
+
+def _single(data: DesignData, blank: BevelBlank) -> Method:
+    """Each flank of the pinion by itself."""
+    return Method("fixed_setting", tilt=_tilt(data, blank), tilt_direction=math.pi / 2)
 
 
 def _tilt(data: DesignData, blank: BevelBlank) -> float:

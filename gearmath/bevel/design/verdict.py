@@ -77,7 +77,7 @@ def top_land(member: Member, name: str) -> dict[str, float]:
     """Normal top land [mm] at toe, mean and heel."""
     space = tooth_space(member, name)
     flank = space.concave
-    delta = math.radians(member.blank.pitch_angle)
+    delta = member.blank.delta
     _, spiral, _, _ = kernel("flank_angles")(delta, flank.point[0], flank.normal[0])
     land = space.top_land * np.cos(spiral)
     return dict(zip(_PLACES, (float(land[k]) for k in (0, len(land) // 2, -1)), strict=True))
@@ -131,18 +131,25 @@ def mean_module(made: Designed) -> float:
     """Mean normal module [mm] of the pair."""
     gear = made.pair.member("gear")
     blank, teeth = gear.blank, gear.teeth
-    transverse = 2 * blank.mean_cone_distance * math.sin(math.radians(blank.pitch_angle)) / teeth
+    transverse = 2 * blank.mean_cone_distance * math.sin(blank.delta) / teeth
     return transverse * math.cos(math.radians(made.data.mean_spiral_angle))
 
 
 def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]:
     """The figures of one side. Raises InputError where it does not run as asked."""
     flank, asked = made.flanks[side], made.data.contact(side)
-    found = vertex(run)
+    found, crowned = vertex(run), asked.lengthwise_crowning is not None
+    request = "crownings" if crowned else f"transmission_error = {asked.transmission_error:g} arcsec"
     if run.outcome == "interior contact" and found is None:
         raise InputError(
-            f"{side}: transmission_error = {asked.transmission_error:g} arcsec: the parabola has no vertex within both "
-            "flanks; position must be given, or the path come nearer to 90 degrees"
+            f"{side}: {request}: the parabola has no vertex within both flanks; "
+            "position must be given, or the path come nearer to 90 degrees"
+        )
+    if (run.outcome != "interior contact" or found is None) and crowned:
+        raise InputError(
+            f"{side}: {run.outcome}, with a contact ratio of {run.contact_ratio:.3g} within the flanks, which must let "
+            "one pair of teeth take over from the next: a smaller profile_crowning (now "
+            f"{asked.profile_crowning:g}) or another bias (now {asked.bias:g}) is needed"
         )
     if run.outcome != "interior contact" or found is None:
         raise InputError(
@@ -154,7 +161,7 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
     second, wanted = found.local.second_derivative, flank.request.parabola
     if not stepped and not abs(second - wanted) <= PARABOLA * abs(wanted):
         raise InputError(
-            f"{side}: transmission_error = {asked.transmission_error:g} arcsec: the second derivative at the vertex is "
+            f"{side}: {request}: the second derivative at the vertex is "
             f"{second / wanted:.1%} of the one that belongs to it, which must be within {PARABOLA:.0%}"
         )
     spread = run.leads.peak_to_peak
@@ -184,6 +191,6 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
 def _asked_place(made: Designed, side: str) -> tuple[float, float]:
     """Cone distance and height on the gear [mm] at which the vertex was asked for."""
     axial, radial = made.flanks[side].request.place
-    delta = math.radians(made.pair.member("gear").blank.pitch_angle)
+    delta = made.pair.member("gear").blank.delta
     along, deep = kernel("root_place")(np.array([radial, 0.0, axial]), delta)
     return float(along), -float(deep)

@@ -193,7 +193,7 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
     full = representative_tooth(measured, found[0].flank)
     # the settings put right where the others stand, not the tooth that was measured in full
     others = np.delete(turn, full % member.teeth)
-    radius = member.blank.mean_cone_distance * np.sin(np.radians(member.blank.pitch_angle))
+    radius = member.blank.mean_cone_distance * np.sin(member.blank.delta)
     return before + turn - others[near_the_median(others, LEAST_OFF / radius)].mean()
 
 

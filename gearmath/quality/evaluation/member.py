@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -224,7 +223,7 @@ def evaluate_member(
             remarks += (f"rotation of the work not taken out: {error}",)
     progress(1)
     flanks = as_measured if judged is measured else _flanks(judged, member)
-    angle = math.radians(member.blank.pitch_angle)
+    angle = member.blank.delta
     before = evaluate_runout(measured, member.teeth, angle, noise)
     runout = before if judged is measured else evaluate_runout(judged, member.teeth, angle, noise, taken)
     each_zeroed = file.header["phase_zeroed"].lower() == "true"

@@ -1,7 +1,7 @@
 """What a whole measurement looks like that is no error of the gear: said before any figure and any correction.
 
-A wrong radius of the tip, or a wrong zero, moves all points of both flanks out alike; work that is clamped away from
-its seat along its axis moves them as one setting does; an uncertainty far below the scatter of the points is not that
+A wrong radius of the tip, or a wrong zero, moves all points of both flanks out alike; work that is clamped off
+along its axis moves them as one setting does; an uncertainty far below the scatter of the points is not that
 of this measurement; teeth or flanks that agree to the last digit, where points scatter, were copied. Most of this
 cannot be told from an error of the gear by points alone, so it is said, and nothing is taken out.
 """
@@ -151,8 +151,8 @@ def _axial(file: FlankFile, member: Member, name: str) -> Iterator[str]:
         return
     also = f", and one of {' or '.join(rivals)} nearly so" if rivals else ""
     yield (
-        f"the work may stand {found.shift * 1000:+.0f} um off its seat along the axis, {why}; an error of {TWIN} looks "
-        f"the same{also}: check the seat before a setting is corrected for it"
+        f"the work may be clamped {found.shift * 1000:+.0f} um off along its axis, {why}; an error of {TWIN} looks "
+        f"the same{also}: check the clamping before a setting is corrected for it"
     )
 
 

@@ -43,9 +43,9 @@ def test_work_off_its_seat_along_the_axis_is_said_first_with_its_size(flanks, ge
     file = moved(file, form_um * UM * (slope * along + 0.6 * along * up))
     off = moved(file, shift * file.normal[:, 2])  # a shift along z_w, to first order
     (line,) = evaluate_member(off, gear_set.member(member), member).first
-    assert line.startswith("the work may stand ")
-    assert float(line.split()[4]) == pytest.approx(shift * 1000, abs=10 if form_um == 0 else 40)
-    assert "check the seat before a setting is corrected" in line
+    assert line.startswith("the work may be clamped ")
+    assert float(line.split()[5]) == pytest.approx(shift * 1000, abs=10 if form_um == 0 else 40)
+    assert "check the clamping before a setting is corrected" in line
 
 
 @pytest.mark.parametrize("member", ["pinion", "gear"])
@@ -105,7 +105,7 @@ def test_error_of_one_setting_is_not_taken_for_the_seat_whatever_the_method(name
     """Each of them makes a form that a shift of the work along its axis explains by 80 percent and more."""
     spec = gm.load_set(f"{name}.toml").member(member).spec
     found = evaluate_member(with_error(name, member, key, change), spec, member).suspicions
-    assert not [line for line in found if "off its seat" in line]
+    assert not [line for line in found if "off along its axis" in line]
 
 
 @pytest.mark.parametrize("shift", [0.05, -0.05])
@@ -126,7 +126,7 @@ def test_work_far_off_its_seat_is_not_taken_for_an_offset_of_all_points(gear_set
     file = gm.load_set(NASA).gear.with_settings(concave=change, convex=change).deviations().file
     file = moved(file, 0.5 * UM * np.random.default_rng(3).standard_normal(len(file)))
     (line,) = evaluate_member(file, gear_set.gear, "gear").first
-    assert line.startswith("the work may stand -18")
+    assert line.startswith("the work may be clamped -18")
 
 
 def test_compensate_says_first_that_the_work_may_stand_off_its_seat(flanks, command, tmp_path) -> None:
@@ -134,7 +134,7 @@ def test_compensate_says_first_that_the_work_may_stand_off_its_seat(flanks, comm
     write_flank_csv(source, moved(file, 0.1 * file.normal[:, 2]))
     status, out, _ = command("compensate", NASA, "--measured", source, "-o", tmp_path / "corrected.toml")
     assert status == 0
-    assert out.startswith("the work may stand +")
+    assert out.startswith("the work may be clamped +")
 
 
 def test_teeth_and_flanks_that_agree_to_the_last_digit_are_said_to_be_copied(flanks, gear_set) -> None:
