@@ -8,10 +8,10 @@ point; the pinion is withdrawn by H, the gear by J, and the gear's axis is shift
     r_2 = M [Rz(φ_2) (R - t_z k) + J k] + (a + V) j,        n_2 = M Rz(φ_2) n                     (25.2)
     M = [cos Σ', 0, -sin Σ' | 0, 1, 0 | sin Σ', 0, cos Σ'] by columns
 
-         Y (out of the page: Z × X)
-    X ◄──┼─ gear axis, J ►         V > 0 lifts the gear's axis towards the reader
-         │
-         ▼ Z  pinion axis, H
+    Y (out of the page: Z × X)
+    ┼─── gear axis, J ──► X        V > 0 lifts the gear's axis towards the reader
+    │
+    ▼ Z  pinion axis, H
 
 Flanks touch within both where point and normal agree, besides the equation of meshing f = 0 of either:
 

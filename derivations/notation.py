@@ -535,6 +535,7 @@ contact_height = Quantity("contact_height", "where hob and flank touch, from the
 contact_edge = Quantity("contact_edge", "height of the hob's edge there", "mm", "h_c", scale=1e3)
 contact_turn = Quantity("contact_turn", "turn of the hob there, from the common perpendicular", "rad", r"\tau_c")
 contact_thread = Quantity("contact_thread", "where the thread stands then", "rad", r"\vartheta_c", scale=1e2)
+hob_axial_pitch = _length("hob_axial_pitch", "p_{x0}", 0.0, 1e3, "pitch of a hob's teeth along its axis")
 hob_addendum = _length("hob_addendum", "h_{a0}", 0.1, 60.0, "height of a hob's tooth above its reference cylinder")
 hob_tip_radius = _length(
     "hob_tip_radius", r"\rho_{a0}", 0.0, 12.0, "radius of the rounding at the tip of a hob's tooth"
@@ -545,7 +546,6 @@ tip_relief = Quantity("tip_relief", "how far it is inside the thread, along the 
 form_height = Quantity("form_height", "height up to which the edge is straight", "mm", "h_F", scale=1e2)
 land_half_width = Quantity("land_half_width", "half the land between both roundings", "mm", "w_a", scale=1e2)
 hob_gashes = _count("hob_gashes", "n_i", 4, 40, "gashes of a hob")
-axial_feed = _length("axial_feed", "f_a", 0.01, 20.0, "travel of the hob along the gear per turn of the table")
 flat_height = Quantity("flat_height", "height of the ridges between flats", "mm", r"\delta_y", scale=1e1)
 feed_mark_height = Quantity("feed_mark_height", "height of the ridges between feed marks", "mm", r"\delta_x", scale=1e1)
 least_teeth = Quantity("least_teeth", "teeth below which a flank is undercut", "1", r"z_{min}", scale=1e3)

@@ -35,15 +35,24 @@ With ideal motion δ is nowhere less than 0, and 0 on the line of action. It goe
 through the pitch line of gear and rack, x = r, y = 0, and through that of rack and hob, the line along a through
 x = r + x m_n. Its point of roll length L gives the height z_c, and h, τ and ϑ of the edge that touches there (30.8).
 
-Between neighboring gashes stay ridges of the height δ_y, between neighboring feeds those of δ_x: at the roll length
-L of a spur gear, and where the hob's edge has the height h,
+Between neighboring gashes stay ridges of the height δ_y: at the roll length L of a spur gear
 
     δ_y = L (π k/(z n_i))²/2,    at the reference cylinder π² k² m_n sin α_n/(4 z n_i²)        (30.9)
-    δ_x = (f_a/cos β)² sin α_n (1/(r_0 + h) + 2 sin² β/d)/8                                    (30.10)
 
-Textbooks have only the first term of (30.10), with the tip diameter of the hob. Where a point of the flank is cut it is
-2 (r_0 + h); and a helical tooth curves away from the hob along its trace, by 2 sin² β/d, which may be the larger term.
-(30.10) is exact for a spur gear; a helical one has some per cent more or less, by the hands.
+Between neighboring feeds stay ridges of δ_x. In the plane that both flanks touch, e_1 lies across the straight lines
+of the gear's flank and e_h across those of the hob's, L_h = √((r_0 + h)² - r_b0²) is the way to the base cylinder
+of the hob, and where L and z of the gear grow p_L and p_z point. Per turn of the hob the point where they touch moves
+along w, and at the next cut of the space it is displaced by 2π (z/k) v p_z:
+
+    Q = (cos β_b/L) e_1 e_1ᵀ + (|a_n|/L_h) e_h e_hᵀ,   a_n = a - (a·n) n,   e_h = n × a_n/|a_n|
+    p_L = (L/r_b) e_1,   p_z = (L/r_b) σ s_β tan β_b e_1 + e_2/cos β_b,   r_b = d_b/2
+    w = σ s_h (k/z) r_b cos² β_b (p_L + σ s_β tan β_b p_z) + v p_z
+    δ_x = (2π (z/k) v)² (det Q/(wᵀ Q w)) det(p_z, w)²/8                                        (30.10)
+
+For a spur gear that is f_a² sin α_n/(8 (r_0 + h)); textbooks write (f_a/cos β)² for f_a² and the tip diameter of the
+hob for 2 (r_0 + h). With a helix angle δ_x is less than that, at 30° about half: what one turn of the table leaves is
+cut by another gash of the next, at another height of the profile. Few gashes do so in part only.
+
 Rounding of the tip of the edge, centre at h_a0 - ρ_a0, normal direction γ:
 
     h_r = h_a0 - ρ_a0 (1 - sin γ),   w_r cos λ = ρ_a0 ((1 - sin α_n sin γ)/cos α_n - cos γ)    (30.11)
@@ -66,6 +75,10 @@ Measured along a circle of transverse pressure angle α_yt, positive towards gro
 The point of the flank σ of space i at L and z, ξ = σ (π/(2z) - 2x tan α_n/z - inv α_t + L/r_b) + s_β 2π z/L + 2π i/z,
 
     p = r_b (cos ξ, sin ξ) + σ L (sin ξ, -cos ξ),   n = (cos β_b sin ξ, -cos β_b cos ξ, ...) for σ = 1 (30.18)
+
+Of the length of the hob, flanks need what lies between the outermost ϑ of (30.8), and a tooth; its axial pitch is
+
+    p_x0 = 2π p_0/k                                                                            (30.19)
 
 What a part does wrong in every turn, worm, wheel, encoder, hob or screw, is a sum of sines of its turn u, each
 
@@ -259,6 +272,19 @@ def line_of_action() -> Expression:
 
 
 @cache
+def hob_pitch() -> Expression:
+    """(30.19) as an Expression."""
+    return Expression(
+        "hob_pitch",
+        "Pitch of a hob's teeth along its axis (30.19).",
+        (q.hob_starts, q.module, q.hob_diameter),
+        ((q.hob_axial_pitch, 2 * sp.pi / q.hob_starts.symbol * _worm()[0]),),
+        requires=(_HOB_FITS,),
+        source="worm, ISO 21771; proved",
+    )
+
+
+@cache
 def generating_flat() -> Expression:
     """(30.9) as an Expression."""
     per_gash = sp.pi * q.hob_starts.symbol / (q.teeth.symbol * q.hob_gashes.symbol)
@@ -271,27 +297,46 @@ def generating_flat() -> Expression:
     )
 
 
+def _flank_directions() -> tuple[sp.Matrix, sp.Matrix]:
+    """p_L and p_z of (30.10), each along e_1 and e_2."""
+    tilt = q.flank_side.symbol * q.helix_sign.symbol * sp.tan(gear.base_helix())
+    by_length = q.roll_length.symbol / _base_radius()
+    return sp.Matrix([by_length, 0]), sp.Matrix([by_length * tilt, 1 / sp.cos(gear.base_helix())])
+
+
+def _across_hob_lines() -> tuple[sp.Matrix, sp.Expr]:
+    """e_h of (30.10) along e_1 and e_2, and |a_n|."""
+    n, along = _normal(), _axes()[0]
+    first = sp.Matrix([sp.cos(gear.transverse_angle()), q.flank_side.symbol * sp.sin(gear.transverse_angle()), 0])
+    second = n.cross(first) * q.flank_side.symbol  # along the straight lines, upwards
+    projected = along - along.dot(n) * n
+    size = sp.sqrt(1 - along.dot(n) ** 2)
+    across = n.cross(projected) / size
+    return sp.Matrix([across.dot(first), across.dot(second)]), size
+
+
 @cache
 def feed_mark() -> Expression:
     """(30.10) as an Expression."""
-    along = q.axial_feed.symbol / sp.cos(q.helix_angle.symbol)
+    by_length, by_height = _flank_directions()
+    across, size = _across_hob_lines()
     radius = q.hob_diameter.symbol / 2 + q.edge_height.symbol
-    curvature = 1 / radius + 2 * sp.sin(q.helix_angle.symbol) ** 2 / gear.diameter()
+    squared = radius**2 - _worm()[2] ** 2
+    of_gear, of_hob = sp.cos(gear.base_helix()) / q.roll_length.symbol, size / sp.sqrt(squared)
+    side, per_turn = q.flank_side.symbol, q.hob_starts.symbol / q.teeth.symbol
+    tilt = side * q.helix_sign.symbol * sp.tan(gear.base_helix())
+    rolled = q.hob_sign.symbol * per_turn * _base_radius() * sp.cos(gear.base_helix()) ** 2
+    moved = side * rolled * (by_length + tilt * by_height) + q.hob_feed.symbol * by_height
+    along = of_gear * moved[0] ** 2 + of_hob * across.dot(moved) ** 2  # wᵀ Q w
+    area = by_height[0] * moved[1] - by_height[1] * moved[0]
+    apart = 2 * sp.pi / per_turn * q.hob_feed.symbol
     return Expression(
         "feed_mark",
-        "Height of the ridges that the feed leaves, where a flank is cut by the edge at a height (30.10).",
-        (
-            q.axial_feed,
-            q.edge_height,
-            q.hob_diameter,
-            q.teeth,
-            q.module,
-            q.pressure_angle,
-            q.helix_angle,
-        ),
-        ((q.feed_mark_height, along**2 * sp.sin(q.pressure_angle.symbol) * curvature / 8),),
-        requires=(radius - 1,),
-        source="feed marks of hobbing, textbooks; with the diameter that cuts, and the curvature of the tooth",
+        "Height of the ridges between feeds of a hob of many gashes, where the edge at a height cuts (30.10).",
+        (q.roll_length, q.edge_height, q.hob_feed, *PAIR),
+        ((q.feed_mark_height, apart**2 * of_gear * of_hob * across[1] ** 2 * area**2 / along / 8),),
+        requires=(_HOB_FITS, _thread_exists(), q.roll_length.symbol - sp.Rational(1, 100)),
+        source="curvatures of two involute helicoids that touch; proved, and for a spur gear that of the textbooks",
     )
 
 
@@ -493,8 +538,13 @@ def prove_hob_touches_the_involute_helicoid_along_the_line_of_action() -> None:
                 assert behind > -(step**3)
 
 
-def _curvatures(pair: list[mpmath.mpf], contact: list[mpmath.mpf]) -> tuple[mpmath.mpf, mpmath.mpf]:
-    """Second derivatives of δ at one foot: by the thread angle, and by the height of the hob, the other at its best."""
+def _curvatures(
+    pair: list[mpmath.mpf], contact: list[mpmath.mpf], feed: mpmath.mpf
+) -> tuple[mpmath.mpf, mpmath.mpf, mpmath.mpf]:
+    """Second derivatives of δ at one foot: by the thread angle ϑ twice, by ϑ and the height of the hob, by that twice.
+
+    From differences of (30.5) where the edge crosses the foot, so that no curvature of (30.10) is used.
+    """
     _, edge, turn, thread = contact
     rule, step = hobbed_deviation().function, mpmath.mpf(10) ** -6
 
@@ -502,31 +552,61 @@ def _curvatures(pair: list[mpmath.mpf], contact: list[mpmath.mpf]) -> tuple[mpma
         """δ at the foot of the contact, of an edge that is turned by so much, and of a hob that is so much higher."""
 
         def miss(h: mpmath.mpf, t: mpmath.mpf) -> list[mpmath.mpf]:
-            foot, height, _ = rule(h, 0, t, thread + thread_by, 0, 0, 0, 0, 0, *pair)
+            foot, height, _ = rule(h, 0, t, thread + thread_by, feed, 0, 0, 0, 0, *pair)
             return [foot - contact_foot[0], height + height_by - contact_foot[1]]
 
         h, t = mpmath.findroot(miss, (edge, turn))
-        return rule(h, 0, t, thread + thread_by, 0, 0, 0, 0, 0, *pair)[2]
+        return rule(h, 0, t, thread + thread_by, feed, 0, 0, 0, 0, *pair)[2]
 
-    contact_foot = rule(edge, 0, turn, thread, 0, 0, 0, 0, 0, *pair)[:2]
-    return tuple(
+    contact_foot = rule(edge, 0, turn, thread, feed, 0, 0, 0, 0, *pair)[:2]
+    by_thread, by_height, by_both = (
         (left(*(step * part for part in move)) + left(*(-step * part for part in move))) / step**2
-        for move in ((1, 0), (0, 1))
-    )  # type: ignore[return-value]
+        for move in ((1, 0), (0, 1), (1, 1))
+    )
+    return by_thread, (by_both - by_thread - by_height) / 2, by_height
 
 
-def prove_ridges_between_flats_and_feed_marks_are_the_textbooks() -> None:
+def prove_ridges_between_flats_and_feed_marks_of_a_spur_gear_are_the_textbooks() -> None:
     """(30.9, 30.10) Half way to the next gash, or feed: δ is half the curvature times the square of that way."""
     with mpmath.workdps(DIGITS):
         pair = [mpmath.mpf(value) for value in (1, 1, 1, 1, 5000, 24, 1, "0.349", 0, 0)]
+        travel = 1 / (48 * mpmath.pi)  # feed of 1 mm
         for length in (mpmath.mpf(3), 12 * mpmath.sin(pair[7]), mpmath.mpf(6)):
             contact = list(line_of_action().function(length, *pair))
-            by_thread, by_height = _curvatures(pair, contact)
+            by_thread, _, by_height = _curvatures(pair, contact, travel)
             half_way = mpmath.pi / 12  # of 12 gashes, in turns of the hob
             (flat,) = generating_flat().function(length, 1, 24, 12)
             assert abs(by_thread * half_way**2 / 2 / flat - 1) < mpmath.mpf("1e-3")  # a large hob is nearly a rack
-            (mark,) = feed_mark().function(1, contact[1], pair[4], 24, 1, pair[7], 0)
+            textbook = mpmath.sin(pair[7]) / (8 * (pair[4] / 2 + contact[1]))
+            (mark,) = feed_mark().function(length, contact[1], travel, *pair)
+            assert abs(mark / textbook - 1) < mpmath.mpf("1e-3")
             assert abs(by_height / 8 / mark - 1) < mpmath.mpf("1e-3")
+
+
+def prove_feed_marks_are_what_all_gashes_leave_half_way_between_two_feeds() -> None:
+    """(30.10) Of δ = xᵀ H x/2, x = (ϑ, Z), the cuts of one turn of the table leave the least along the way of the hob,
+
+    (-1, v) per radian. Half a feed away that is (2π (z/k) v)² det H/(8 uᵀ H u), u = (-1, v): H from differences of
+    (30.5), for both hands and flanks, spur and helical, 1 to 3 starts, against the curvatures of the two flanks.
+    """
+    with mpmath.workdps(DIGITS):
+        for pair, contact, length in _contacts():
+            for travel in (mpmath.mpf("0.003"), mpmath.mpf("-0.02")):
+                thread, both, height = _curvatures(pair, contact[:4], travel)
+                along = thread - 2 * travel * both + travel**2 * height
+                apart = 2 * mpmath.pi * pair[5] / pair[3] * travel
+                left = apart**2 * (thread * height - both**2) / (8 * along)
+                (mark,) = feed_mark().function(length, contact[1], travel, *pair)
+                assert abs(left / mark - 1) < mpmath.mpf(10) ** -9
+
+
+def prove_threads_of_the_hob_rise_by_their_pitches_along_the_lead_angle() -> None:
+    """(30.19) Unrolled, k pitches rise over the circumference at λ; across the thread a pitch is π m_n."""
+    pitch, lead = hob_pitch()["hob_axial_pitch"], hobbing.swivel()["hob_lead_angle"]
+    at = {q.module.symbol: 2, q.hob_starts.symbol: 3, q.hob_diameter.symbol: 50}
+    rise = 3 * pitch.subs(at) / (sp.pi * 50)
+    assert abs(sp.N(rise - sp.tan(lead.subs(at)), 30)) < 1e-25
+    assert abs(sp.N((pitch * sp.cos(lead)).subs(at) - 2 * sp.pi, 30)) < 1e-25
 
 
 def prove_flat_at_the_reference_cylinder_is_the_formula_of_textbooks() -> None:
@@ -620,19 +700,3 @@ def prove_involute_has_the_thickness_of_the_standard_and_its_normal_is_across_bo
     place = point.subs(spur)
     width = 2 * 17 * sp.atan2(place[1], place[0])
     assert abs(sp.N(width - 2 * (sp.pi / 2 - sp.Rational(2, 5) * sp.tan(sp.pi / 9)), 30)) < 1e-20
-
-
-def prove_helix_curves_away_from_its_tangent_by_the_second_term_of_the_feed_mark() -> None:
-    """(30.10) A helix on the reference cylinder, s along it: normal part of its second derivative is 2 sin² β sin α/d.
-
-    The normal of the flank makes the angle 90° - α_n with the radius, and the curvature of a helix points along it.
-    """
-    s, r, beta = sp.symbols("s r beta", positive=True)
-    turn = s * sp.sin(beta) / r
-    helix = sp.Matrix([r * sp.cos(turn), r * sp.sin(turn), s * sp.cos(beta)])
-    assert sp.simplify(helix.diff(s).norm() - 1) == 0
-    assert sp.simplify(helix.diff(s, 2).norm() - sp.sin(beta) ** 2 / r) == 0
-    no_hob = feed_mark()["feed_mark_height"].subs(q.edge_height.symbol, sp.oo)
-    way = q.axial_feed.symbol / sp.cos(q.helix_angle.symbol)
-    curved = (sp.sin(beta) ** 2 / r).subs({beta: q.helix_angle.symbol, r: gear.diameter() / 2})
-    assert sp.simplify(no_hob - way**2 / 8 * curved * sp.sin(q.pressure_angle.symbol)) == 0

@@ -1,4 +1,8 @@
-"""Two kinds of errors: input that a person can correct, and work that failed."""
+"""Exceptions: input that a person can correct, and work that failed."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 
 class InputError(ValueError):
@@ -7,3 +11,13 @@ class InputError(ValueError):
 
 class ComputationError(RuntimeError):
     """Work that failed on good input: an iteration did not converge, a compiler is missing (exit status 1)."""
+
+
+@contextmanager
+def about(file: Path) -> Iterator[None]:
+    """Names the file that is to blame for bad input, where what computes with its content cannot know it."""
+    try:
+        yield
+    except InputError as error:
+        words = str(error)
+        raise InputError(words if words.startswith((f"{file}: ", f"{file}, ")) else f"{file}: {words}") from error

@@ -233,8 +233,8 @@ def _crown_gear(
     swivel = spec.cutter_swivel if hand == 1 else 180 - spec.cutter_swivel
     angles = {
         "mean_spiral_angle": spiral,
-        "pitch_angle": math.radians(blank.pitch_angle),
-        "machine_root_angle": math.radians(blank.root_angle),
+        "pitch_angle": blank.delta,
+        "machine_root_angle": blank.delta_f,
         "flank_pressure_angle": math.radians(alpha),
         "cutter_tilt": math.radians(spec.cutter_tilt),
         "tilt_direction": math.radians(swivel + hand * spec.cradle_angle),

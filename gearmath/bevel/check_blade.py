@@ -57,8 +57,8 @@ def check_offset(member: Member, name: str, spiral: float) -> None:
             "mean_spiral_angle": hand * spiral,
             "mean_cone_distance": blank.mean_cone_distance,
             "cutter_radius": sum(spec.nominal.blade_point_radius for spec in flanks) / len(flanks),
-            "pitch_angle": math.radians(blank.pitch_angle),
-            "machine_root_angle": math.radians(blank.root_angle),
+            "pitch_angle": blank.delta,
+            "machine_root_angle": blank.delta_f,
             "mean_dedendum": blank.mean_dedendum,
             "index_ratio": member.indexing_sign * member.blade_groups / member.teeth,
         },
@@ -121,7 +121,7 @@ def _check_tip(table: str, spec: Flank, side: int) -> None:
 
 def _check_foot(table: str, spec: Flank, clearance: float) -> None:
     """Rounded edge and Toprem belong to the root: above the clearance the mate needs the flank itself."""
-    share = 1 - math.sin(math.radians(spec.nominal.blade_pressure_angle))
+    share = 1 - math.sin(spec.nominal.alpha)
     if spec.blade_edge_radius * share > _ROUND * clearance:
         raise InputError(
             f"{table}.blade_edge_radius = {spec.blade_edge_radius:g}: it rounds the blade up to "

@@ -36,7 +36,7 @@ _MATES = (("pinion", "gear"), ("gear", "pinion"))
 def transverse_module(member: Member) -> float:
     """Transverse module [mm] at the mean point."""
     blank = member.blank
-    return 2 * blank.mean_cone_distance * math.sin(math.radians(blank.pitch_angle)) / member.teeth
+    return 2 * blank.mean_cone_distance * math.sin(blank.delta) / member.teeth
 
 
 def working_depth(blank: Blank) -> float:
@@ -112,10 +112,7 @@ def check_blanks(pinion: Member, gear: Member, shaft_angle: float) -> None:
 def _check_apexes(pinion: Member, gear: Member, allowed: float) -> None:
     """Pitch cones touch: what an apex beyond the crossing point puts one of them into the other by, the other gives."""
     given = {name: member.blank for name, member in (("pinion", pinion), ("gear", gear))}
-    into = {
-        name: blank.pitch_apex_beyond_crossing_point * math.sin(math.radians(blank.pitch_angle))
-        for name, blank in given.items()
-    }
+    into = {name: blank.pitch_apex_beyond_crossing_point * math.sin(blank.delta) for name, blank in given.items()}
     if not abs(sum(into.values())) <= allowed:
         name = max(into, key=lambda one: abs(into[one]))
         other = "gear" if name == "pinion" else "pinion"

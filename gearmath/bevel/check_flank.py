@@ -59,7 +59,7 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation, corrected:
     mean = solve_section(how, section, *mean_place(member))
     if not mean.converged.all():
         raise Misfit.of(name, flank, "the equation of meshing has no solution at the mean point")
-    delta = math.radians(member.blank.pitch_angle)
+    delta = member.blank.delta
     found = (float(value[0]) for value in kernel("flank_angles")(delta, mean.point, mean.normal))
     pressure, spiral, across, azimuth = found
     _check_angles(name, flank, pressure, spiral)
@@ -96,7 +96,7 @@ def _check_motion(member: Member, name: str, flank: str, grid: Grid, points: Fla
     how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
     resting = replace(how, motion=np.zeros_like(how.motion))
     rest = solve_section(resting, section, grid.axial.ravel(), grid.radial.ravel(), points.contact)
-    delta = math.radians(member.blank.pitch_angle)
+    delta = member.blank.delta
     _, _, across, azimuth = kernel("flank_angles")(delta, points.point, points.normal)
     _, _, _, before = kernel("flank_angles")(delta, rest.point, rest.normal)
     turn = half_turn(azimuth - before)

@@ -47,7 +47,7 @@ def _check_still_roll(member: Member, spec: Flank, table: str) -> None:
     rolling = evaluate(
         "crown_gear_roll",
         {
-            "pitch_angle": math.radians(member.blank.pitch_angle),
+            "pitch_angle": member.blank.delta,
             "machine_root_angle": math.radians(spec.nominal.machine_root_angle),
         },
     )["ratio_of_roll"]

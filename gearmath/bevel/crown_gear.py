@@ -61,8 +61,8 @@ class CrownTooth:
             "mean_spiral_angle": self.spiral_angle,
             "cutter_radius": self.cutter_radius,
             "mean_cone_distance": blank.mean_cone_distance,
-            "pitch_angle": math.radians(blank.pitch_angle),
-            "machine_root_angle": math.radians(blank.root_angle),
+            "pitch_angle": blank.delta,
+            "machine_root_angle": blank.delta_f,
             "mean_dedendum": blank.mean_dedendum,
             "index_ratio": _EPICYCLOID * ratio,
         }
@@ -154,7 +154,7 @@ def _both_flanks(tooth: CrownTooth, alternating: bool) -> dict[str, dict[str, fl
     space["space_width"] = tooth.space_width
     turn = 0.0
     if alternating:
-        radius = tooth.blank.mean_cone_distance * math.sin(math.radians(tooth.blank.pitch_angle))
+        radius = tooth.blank.mean_cone_distance * math.sin(tooth.blank.delta)
         turn = math.pi / tooth.teeth
         space["space_width"] -= turn * radius * math.cos(tooth.spiral_angle)
     turns = {flank: side * tooth.values["hand_sign"] * turn / 2 for flank, side in SIDES.items()}
@@ -182,7 +182,7 @@ def _one_flank(tooth: CrownTooth, method: Method, flank: str) -> dict[str, float
     settings = evaluate("crown_gear_flank", {**tooth.values, **given})
     if not math.isfinite(settings["radial_distance"]):
         raise InputError(f"tilt = {math.degrees(method.tilt):g}: the flank would be square to the cutter's axis")
-    radius = tooth.blank.mean_cone_distance * math.sin(math.radians(tooth.blank.pitch_angle))
+    radius = tooth.blank.mean_cone_distance * math.sin(tooth.blank.delta)
     turn = side * tooth.values["hand_sign"] * tooth.space_width / math.cos(tooth.spiral_angle) / (2 * radius)
     settings |= {
         "cutter_tilt": method.tilt,

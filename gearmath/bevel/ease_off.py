@@ -43,7 +43,7 @@ def conjugate_places(
     given = (point, normal, math.radians(shaft_angle), mate.teeth / member.teeth)
     found = np.stack([np.stack(kernel("conjugate_place")(*given, side)) for side in (1, -1)])
     found[:, 1] += mate_beyond
-    delta, mean = math.radians(mate.blank.pitch_angle), mate.blank.mean_cone_distance
+    delta, mean = mate.blank.delta, mate.blank.mean_cone_distance
     center = mean * np.array([math.cos(delta), math.sin(delta)])
     away = np.hypot(found[:, 1] - center[0], found[:, 2] - center[1])
     branch = np.where(np.isfinite(away), away, np.inf).argmin(axis=0)

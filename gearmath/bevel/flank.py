@@ -161,7 +161,7 @@ def solve_flank(member: Member, name: str, flank: str, grid: Grid) -> FlankPoint
         if failed.any():
             k = int(np.argmax(failed))
             row, column = divmod(k, grid.shape[1])
-            if not points.converged[k] and _folds_above(how, section, points, grid, k, member.blank.pitch_angle):
+            if not points.converged[k] and _folds_above(how, section, points, grid, k, member.blank.delta):
                 what = _UNDERCUT
             raise InputError(
                 f"{name} {flank} flank, row {row}, column {column}: {what} "
@@ -177,9 +177,7 @@ def _turned_back(points: SurfacePoints, grid: Grid) -> np.ndarray:
     return np.sign(points.sense) != np.sign(reference)
 
 
-def _folds_above(
-    how: Generation, section: Section, points: SurfacePoints, grid: Grid, k: int, pitch_angle: float
-) -> bool:
+def _folds_above(how: Generation, section: Section, points: SurfacePoints, grid: Grid, k: int, delta: float) -> bool:
     """Whether the flank turns back on itself between point k and the nearest one found: it is undercut there.
 
     The blade is followed from that point to its tip, at its cone distance: at the singular line the sense vanishes.
@@ -189,7 +187,6 @@ def _folds_above(
         return False
     place = np.stack([grid.axial.ravel(), grid.radial.ravel()], axis=1)
     nearest = found[np.argmin(np.linalg.norm(place[found] - place[k], axis=1))]
-    delta = math.radians(pitch_angle)
     direction = (math.cos(delta), math.sin(delta))
     start, distance = points.contact[nearest], place[nearest] @ direction
     tip = section.upper if section.tip_is_upper else section.lower

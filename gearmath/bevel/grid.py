@@ -7,8 +7,6 @@ point - deviation · normal.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid
@@ -113,5 +111,5 @@ def blank_fractions(member: Member, axial: np.ndarray, radial: np.ndarray) -> tu
 
 def _on_cone(member: Member, axial: np.ndarray, radial: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     points = np.stack([radial, 0 * radial, axial], axis=1)
-    along, down = kernel("root_place")(points, math.radians(member.blank.pitch_angle))
+    along, down = kernel("root_place")(points, member.blank.delta)
     return along, down

@@ -68,7 +68,7 @@ def blade_sections(spec: Flank, side: int) -> dict[str, Section]:
 
     Raises ValueError where they do not join: an edge radius that reaches above the Toprem, or above the blade.
     """
-    radius, alpha = spec.nominal.blade_point_radius, math.radians(spec.nominal.blade_pressure_angle)
+    radius, alpha = spec.nominal.blade_point_radius, spec.nominal.alpha
     sections: dict[str, Section] = {}
     bottom = 0.0
     if spec.toprem_angle is not None:
@@ -85,7 +85,7 @@ def blade_sections(spec: Flank, side: int) -> dict[str, Section]:
 
 def _main(spec: Flank, side: int, bottom: float) -> Section:
     """The main section: straight, by height; or the arc, by the angle of its normal."""
-    radius, alpha = spec.nominal.blade_point_radius, math.radians(spec.nominal.blade_pressure_angle)
+    radius, alpha = spec.nominal.blade_point_radius, spec.nominal.alpha
     if spec.nominal_spheric_radius is None:
         return Section(bottom, spec.blade_profile_height, radius, alpha)
     (arc,) = kernel("spheric_blade")(radius, alpha, spec.nominal_spheric_radius, spec.blade_reference_height, side)

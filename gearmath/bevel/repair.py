@@ -53,7 +53,7 @@ def misfit(member: Member, flank: str, settings: np.ndarray, index: np.ndarray, 
     if not how.rolling:
         start[:, 2] = 0.0
     contact, point, normal, solved = _solve(how, settings, index, np.nan_to_num(start), conditions)
-    pressure, spiral, _, _ = kernel("flank_angles")(math.radians(blank.pitch_angle), point, normal)
+    pressure, spiral, _, _ = kernel("flank_angles")(blank.delta, point, normal)
     parts = [
         contact[:, 2] / math.radians(OFF_CENTER),
         (spiral - wanted.spiral) / _SPIRAL,
@@ -80,7 +80,7 @@ def _root_off(
     member: Member, how: Generation, settings: np.ndarray, index: np.ndarray, mean: np.ndarray
 ) -> list[np.ndarray]:
     """How far the tip of the blade leaves the root beside that of the blank, toe to heel, over what it may (3 of n)."""
-    blank, delta = member.blank, math.radians(member.blank.pitch_angle)
+    blank, delta = member.blank, member.blank.delta
     flat, off = settings.copy(), []
     flat[:, -1] = FLAT_BLADE
     for across, share in zip((0.0, 0.5, 1.0), ROOT, strict=True):

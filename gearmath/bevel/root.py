@@ -138,7 +138,7 @@ def _across(blank: Blank, one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 def _along(blank: Blank) -> tuple[float, float]:
     """Direction of the pitch cone in the axial plane."""
-    delta = math.radians(blank.pitch_angle)
+    delta = blank.delta
     return math.cos(delta), math.sin(delta)
 
 

@@ -85,7 +85,7 @@ def between(first: np.ndarray, last: np.ndarray, fractions: np.ndarray) -> np.nd
 
 def rim(member: Member, ring: np.ndarray) -> np.ndarray:
     """Points like those of ``ring`` (..., 3), at their angles, on the cone inside the root that bounds the solid."""
-    blank, delta = member.blank, math.radians(member.blank.pitch_angle)
+    blank, delta = member.blank, member.blank.delta
     lowest = -blank.mean_dedendum - _RIM * (blank.mean_addendum + blank.mean_dedendum)
     angle, radius, z = np.moveaxis(_cylindrical(ring), -1, 0)
     height = radius * math.cos(delta) - z * math.sin(delta)

@@ -127,7 +127,7 @@ def flank_surface(
     sections = blade_sections(sharp, SIDES[flank])
     how = generation_of(member, flank)
     across = np.linspace(0.0, 1.0, columns)
-    delta = math.radians(member.blank.pitch_angle)
+    delta = member.blank.delta
     direction = (math.cos(delta), math.sin(delta))
     axial, radial = kernel("flank_place")(member.blank.vector, across, np.ones(columns))
     distance = axial * direction[0] + radial * direction[1]
@@ -179,12 +179,12 @@ def space_figures(member: Member, space: ToothSpace) -> dict[str, float]:
 
 def mean_pitch_radius(member: Member) -> float:
     """Radius [mm] of the mean point of the pitch cone."""
-    return member.blank.mean_cone_distance * math.sin(math.radians(member.blank.pitch_angle))
+    return member.blank.mean_cone_distance * math.sin(member.blank.delta)
 
 
 def mean_tooth_thickness(member: Member) -> float:
     """Transverse arc [mm] of the tooth at the mean point of the pitch cone."""
-    axial = member.blank.mean_cone_distance * math.cos(math.radians(member.blank.pitch_angle))
+    axial = member.blank.mean_cone_distance * math.cos(member.blank.delta)
     return tooth_thickness(member, axial, mean_pitch_radius(member))
 
 

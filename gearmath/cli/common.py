@@ -14,6 +14,7 @@ import click
 
 from gearmath.cli.waiting import hidden
 from gearmath.errors import InputError
+from gearmath.errors import about as about
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -160,16 +161,6 @@ def output(suffix: str) -> Any:
         required=True,
         help=f"File to write ({suffix}).",
     )
-
-
-@contextmanager
-def about(file: Path) -> Iterator[None]:
-    """Names the file that is to blame for bad input, where what computes with its content cannot know it."""
-    try:
-        yield
-    except InputError as error:
-        words = str(error)
-        raise InputError(words if words.startswith((f"{file}: ", f"{file}, ")) else f"{file}: {words}") from error
 
 
 def echo_json(values: Any) -> None:

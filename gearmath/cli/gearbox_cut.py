@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 from click.core import ParameterSource
@@ -75,7 +75,13 @@ _MEANINGLESS = {
 @click.option("--compare", type=click.Choice(["ideal", "exact", "float"]), help="Another rule beside it.")
 @click.option("--plot", "chart", type=NewFile(), metavar="CHART", help="Inspection chart to write: PNG, SVG or HTML.")
 @click.option("--csv", "points", type=NewFile(), metavar="POINTS.csv", help="Measured points to write.")
-@click.option("--stl", "flanks", type=NewFile(), metavar="FLANKS.stl", help="Flanks of all teeth to write, as cut.")
+@click.option(
+    "--stl",
+    "flanks",
+    type=NewFile(),
+    metavar="GEAR.stl",
+    help="The gear to write, a closed solid with its flanks as cut.",
+)
 @JSON
 def cut(machine: str, as_json: bool, chart: Path | None, points: Path | None, compare: str | None, **job: Any) -> None:
     """Cut a gear virtually, inspect it, give it classes, and tell which part of the machine is to blame.
@@ -146,12 +152,12 @@ def _cut_gear(
         write_traces(points, prepared.job, gears[0].found)
         click.echo(f"points: {points}", err=as_json)
     if job["flanks"] is not None:
-        from gearmath.exchange.hobbed_stl import ALL, write_flanks
+        from gearmath.exchange.hobbed_stl import ALL, write_gear
         from gearmath.gearbox.hobbed.envelope import Cut
 
         with bar(ALL * job["teeth"], "point", quiet=as_json) as progress:
-            write_flanks(job["flanks"], Cut(prepared.job, prepared.train), prepared.where, progress)
-        click.echo(f"flanks: {job['flanks']}", err=as_json)
+            write_gear(job["flanks"], Cut(prepared.job, prepared.train), prepared.where, progress)
+        click.echo(f"gear: {job['flanks']}", err=as_json)
     if as_json:
         echo_json(cut_values(prepared, gears, shares))
     else:
@@ -231,19 +237,34 @@ def _cut_thread(
 @click.option("--module", type=Number(0.1, 25.0, "mm"), required=True, help="Normal module in mm.")
 @click.option("--teeth", type=click.IntRange(min=1), required=True, help="Teeth of the gear.")
 @click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@click.option("--helix", type=float, help="Helix angle in degrees; a spur gear if left out.")
+@click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of the helix; right if left out.")
 @JSON
-def choose(machine: str, wanted: int, module: float, teeth: int, width: float | None, as_json: bool) -> None:
+def choose(
+    machine: str,
+    wanted: int,
+    module: float,
+    teeth: int,
+    width: float | None,
+    helix: float | None,
+    hand: Literal["right", "left"] | None,
+    as_json: bool,
+) -> None:
     """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach a class.
 
     The rest is that of MACHINE, hobbing_default.toml if left out, with its section [errors].
     """
     from gearmath.cli.gearbox_cut_text import choice_text, choice_values
+    from gearmath.gearbox.helix import Helix
     from gearmath.gearbox.hobbed.choice import MOST_CUTS
     from gearmath.gearbox.hobbed.choice import choose as search
     from gearmath.specs.hobbing import find_hobbing_machine
 
+    if helix is None and hand is not None:
+        raise click.UsageError("--hand has no meaning without --helix")
+    inclined = None if helix is None else Helix(helix, hand or "right")
     with bar(MOST_CUTS, "cut", quiet=as_json) as progress:
-        found = search(find_hobbing_machine(machine), wanted, module, teeth, width, progress)
+        found = search(find_hobbing_machine(machine), wanted, module, teeth, width, inclined, progress)
     if as_json:
         echo_json(choice_values(found))
     else:

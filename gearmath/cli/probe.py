@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from gearmath.quality.calibration.tip import Fit, Tip
     from gearmath.specs.calibration import Calibration
     from gearmath.specs.milling_machine import MillingMachine
-    from gearmath.specs.touch_csv import CalibrationTouches, Touches
+    from gearmath.specs.touch_csv import CalibrationTouches
 
 _PROGRAM = ".MPF, or .ngc for LinuxCNC; its name becomes the program name"
 CALIBRATION = click.option(
@@ -227,30 +227,20 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
     """Raw touches of a probe to measured points: corrected contact points and their deviations."""
     import numpy as np
 
-    from gearmath.bevel.flank import blank_grid
     from gearmath.bevel.pair import load_pair
-    from gearmath.quality.evaluation.completeness import missed_points, missing_touches, taken_for
-    from gearmath.quality.evaluation.search_lines import check_search_lines
-    from gearmath.quality.evaluation.touches import check_on_grid, measured_member
+    from gearmath.quality.evaluation.completeness import taken_for
+    from gearmath.quality.evaluation.measured_run import measured_run
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.flank_csv import write_flank_csv
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import read_touch_csv
 
-    found = read_touch_csv(raw, run)
-    member = load_pair(find(gear_set)).member(found.member)
-    grid = blank_grid(member)
-    missing, missed = missing_touches(found, member.teeth, grid.shape), missed_points(found)
-    _check_whole(raw, run, found, missing)
-    at = load_milling_machine(find(machine)), load_calibration(find(calibration))
-    with about(raw):
-        check_on_grid(found, member, found.member, grid)
-        doubt = check_search_lines(found, member, found.member, grid, *at)
-        measured = measured_member(found, member, found.member, *at)
+    pair = load_pair(find(gear_set))
+    made = measured_run(raw, pair, load_milling_machine(find(machine)), load_calibration(find(calibration)), run)
+    found, measured, missing, missed = made.touches, made.file, made.missing, made.missed
     write_flank_csv(target, measured)
-    if doubt:
-        click.echo(f"{raw}: {doubt}", err=True)
+    if made.doubt:
+        click.echo(f"{raw}: {made.doubt}", err=True)
     for one in missed:
         click.echo(one)
     known = measured.deviation[np.isfinite(measured.deviation)]
@@ -261,7 +251,7 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
     for one in missing:
         click.echo(f"run {found.run} is not whole: {one}")
     if found.planned is None and not missing:
-        click.echo(f"run {found.run}: {taken_for(found, grid.shape)}", err=True)
+        click.echo(f"run {found.run}: {taken_for(found, made.grid.shape)}", err=True)
 
 
 @click.command(epilog=CALIBRATION_CSV)
@@ -280,12 +270,12 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import WORK_SPHERE, read_calibration_csv
+    from gearmath.specs.touch_csv import WORK_SPHERE, check_whole, read_calibration_csv
 
     found = read_calibration_csv(raw, run)
     known, spindle = load_calibration(find(calibration)), load_milling_machine(find(machine))
     parts, untouched = missing_calibration(found, known, spindle)
-    _check_whole(raw, run, found, parts)
+    check_whole(raw, run, found, parts)
     if (found.target == WORK_SPHERE).any():
         if lobing:
             raise InputError("--lobing needs touches on the sphere of the table; these are on that of the work")
@@ -301,42 +291,16 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
     click.echo(f"{target}: written")
 
 
-def _check_whole(raw: Path, wanted: int | None, found: Touches | CalibrationTouches, missing: tuple[str, ...]) -> None:
-    """Raise InputError where the last run, with those that it continues, is not whole and was not asked for."""
-    from gearmath.specs.touch_csv import run_lengths
-
-    if wanted is not None:
-        return
-    run, lengths = found.run, run_lengths(raw)
-    longest = max(lengths, key=lambda number: lengths[number])
-    if not missing and not found.joined and lengths[run] < lengths[longest]:  # runs of one file are runs of one program
-        missing = (f"it has {lengths[run]} touches, run {longest} has {lengths[longest]}",)
-    if missing:
-        choice = f"--run {run} takes it as it is" + (f", --run {longest} another one" if longest != run else "")
-        more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
-        more += f" ({found.joined})" if found.joined else ""
-        raise InputError(f"{raw}: run {run}, the last one, is not whole: {missing[0]}{more}; {choice}")
-
-
 def _calibrate_tip(raw: Path, found: CalibrationTouches, calibration: str, lobing: bool, target: Path) -> Iterator[str]:
-    from gearmath.quality.calibration.tip import calibrate_on_ring, calibrate_on_sphere
+    from gearmath.quality.calibration.tip import calibrate_tip
     from gearmath.specs.calibration import load_calibration, save_calibration
     from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import SPHERE
 
     source = find(calibration)
-    before = load_calibration(source)
     with about(raw):
-        if before.sphere is not None and (found.target == SPHERE).any():
-            tip = calibrate_on_sphere(found, before.sphere, before, lobing)
-        elif lobing:
-            raise InputError("--lobing needs touches on the sphere; there are none")
-        elif before.ring is not None:
-            tip = calibrate_on_ring(found, before.ring, before)
-        else:
-            raise InputError(f"{source} has neither the ring nor the sphere that was touched")
+        tip = calibrate_tip(found, load_calibration(source), lobing, str(source))
     save_calibration(source, target, tip.radius, tip.offset, tip.lobes)
-    return _tip_lines(tip)
+    return tip_lines(tip)
 
 
 def _calibrate_axes(
@@ -351,10 +315,10 @@ def _calibrate_axes(
     with about(raw):
         axes = calibrate_axes(found, load_milling_machine(source), probe)
     save_axes(source, target, axes.pivot_offset, axes.gauge_line_height)
-    return _axis_lines(axes, probe)
+    return axis_lines(axes, probe)
 
 
-def _axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
+def axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
     """What the machine file gets, what the zero offsets of the control should get, and what the touches do not fit."""
     u = axes.fit.uncertainty
     for name, value, unsure in zip("xyz", axes.pivot_offset, u[:3], strict=True):
@@ -373,7 +337,7 @@ def _residual_words(fit: Fit) -> str:
     return f"noise {_um(fit.noise)}, largest residual {float(abs(fit.residuals).max()) * 1000:.3f} um"
 
 
-def _tip_lines(tip: Tip) -> Iterator[str]:
+def tip_lines(tip: Tip) -> Iterator[str]:
     """Every value with its standard uncertainty, then what the touches do not fit."""
     yield f"tip radius {tip.radius:.5f} mm, u {_um(tip.radius_uncertainty)}"
     for axis, value, u in zip("XYZ", tip.offset, tip.offset_uncertainty, strict=True):

@@ -168,7 +168,7 @@ def _seat(seat: dict[str, Any] | None) -> Iterator[str]:
     size, twin = _with(seat["axial"], "axial_um"), seat["axial"]["confounded_with"]
     yield (
         f"axial position not corrected: {size} um along the axis would explain the mean form best, but an error of "
-        f"{twin} looks the same: check the seat of the work before that setting"
+        f"{twin} looks the same: check how the work is clamped before that setting"
     )
 
 

@@ -10,7 +10,7 @@ import click
 
 from gearmath.cli.common import FLANK_CSV, MACHINE, SET_OPTION, about, bar, output
 from gearmath.cli.probe import CALIBRATION
-from gearmath.cli.uncertainty import MODEL, SIGMA, check_one_source, covariance_of
+from gearmath.cli.uncertainty import MODEL, SIGMA, check_one_source
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -119,6 +119,7 @@ def _measurement(
 ) -> ReportedMeasurement:
     """One member evaluated, with its uncertainties and its correction."""
     from gearmath.quality.evaluation.member import evaluate_member
+    from gearmath.quality.uncertainty.source import covariance_of
     from gearmath.report.judged import DRAWS, reported
 
     member = pair.member(file.member)

@@ -31,7 +31,6 @@ from gearmath.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from gearmath.quality.evaluation.member import MemberEvaluation
-    from gearmath.quality.uncertainty.covariance import Covariance
     from gearmath.quality.uncertainty.propagation import Uncertain
     from gearmath.quality.uncertainty.settings import Effect
     from gearmath.specs.bevel_set import Member
@@ -93,6 +92,7 @@ def uncertainty(
     from gearmath.quality.uncertainty.corrected import uncertain_correction
     from gearmath.quality.uncertainty.figures import figures_of
     from gearmath.quality.uncertainty.propagation import uncertain_figures
+    from gearmath.quality.uncertainty.source import covariance_of
     from gearmath.specs.flank_csv import read_flank_csv
     from gearmath.specs.toml import find
 
@@ -169,28 +169,6 @@ def effects_text(values: dict[str, Any]) -> Iterator[str]:
             f"{flank} flank: errors of measurement will leave {caused:.3f} um (RMS) after the correction; "
             f"what is expected to remain of this one is known to {values['expected_u_um'][flank]:.3f} um"
         )
-
-
-def covariance_of(
-    file: FlankFile, member: Member, sigma_um: float | None, model: str | None, machine: str, calibration: str
-) -> tuple[Covariance, str]:
-    """The covariance of the deviations, and in words where it comes from."""
-    from gearmath.quality.uncertainty.corrected import point_covariance
-    from gearmath.specs.calibration import load_calibration
-    from gearmath.specs.measurement import load_measurement
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.toml import find
-
-    known = point_covariance(file, sigma_um)
-    if known is not None and model is None:
-        return known, "u_um of the file" if sigma_um is None else f"{sigma_um:g} um at every point"
-    from gearmath.quality.uncertainty.touch_model import touch_covariance
-
-    how = load_measurement(find(model or _BUNDLED))
-    spindle, probe = load_milling_machine(find(machine)), load_calibration(find(calibration))
-    assumed = "" if model else " (assumed: the file has no u_um; give --sigma-um or --model)"
-    source = f"{model or _BUNDLED}: {how.title}{assumed}"
-    return touch_covariance(file, member, file.member, how, spindle, probe), source
 
 
 def check_one_source(sigma_um: float | None, model: str | None) -> None:

@@ -43,6 +43,7 @@ _BLOCK = 20_000
 _SMALL, _FEW = 512, 16
 #: Operations of a batch from which it is spread over threads.
 _SPREAD = 2e6
+_ONE = ctypes.c_longlong(1)
 
 
 class KernelRunner:
@@ -61,6 +62,7 @@ class KernelRunner:
             )
         )
         self._blocks: dict[int, list[_Block]] = {1: [], _FEW: []}  # those that no thread runs just now
+        self._points: list[_Point] = []  # for compiled code, as well
         self._spent = 0.0  # operations in the virtual machine; infinite where it is all there is
         self._compiled: ctypes.CDLL | None = None
         self._name: str | None = None  # of the library in the cache
@@ -73,6 +75,8 @@ class KernelRunner:
             self._consider(work)
         if self._compiled is None:
             return self.interpreted(arguments, n)
+        if n == 1:
+            return self._at_one(arguments)
         outputs = [np.empty((n, size)) for size in self._sizes_out]
         parts = min(_threads(), int(work / _SPREAD) + 1)
         edges = [LANES * (n * k // parts // LANES) for k in range(parts)] + [n]
@@ -83,11 +87,20 @@ class KernelRunner:
             list(_pool().map(lambda piece: self._run(arguments, outputs, *piece), pieces))
         return outputs
 
+    def _at_one(self, arguments: Sequence[np.ndarray]) -> list[np.ndarray]:
+        """One point, over memory that stays: to tell compiled code where new arrays are takes longer than it runs."""
+        try:
+            point = self._points.pop()
+        except IndexError:
+            point = _Point(self._sizes_in, self._sizes_out)
+        outputs = point.run(self._compiled, arguments)
+        self._points.append(point)
+        return outputs
+
     def _run(self, arguments: Sequence[np.ndarray], outputs: list[np.ndarray], low: int, high: int) -> None:
         given = [array[low:high] if is_many else array for array, is_many in zip(arguments, self._many, strict=True)]
         results = [array[low:high] for array in outputs]
-        pointers = [(ctypes.c_void_p * len(arrays))(*(a.ctypes.data for a in arrays)) for arrays in (given, results)]
-        self._compiled.run(ctypes.c_longlong(high - low), *pointers)  # type: ignore[union-attr]
+        self._compiled.run(ctypes.c_longlong(high - low), _pointers(given), _pointers(results))  # type: ignore[union-attr]
 
     def interpreted(self, arguments: Sequence[np.ndarray], n: int) -> list[np.ndarray]:
         """The same by CasADi's virtual machine, whatever is compiled."""
@@ -149,6 +162,20 @@ class KernelRunner:
                 self._compiled, self._spent = _compiled(self._name, self._function, self._many), np.inf
 
 
+class _Point:
+    """Memory of one point for compiled code, and where it is."""
+
+    def __init__(self, sizes_in: Sequence[int], sizes_out: Sequence[int]) -> None:
+        self._inputs, self._outputs = ([np.zeros((1, size)) for size in sizes] for sizes in (sizes_in, sizes_out))
+        self._pointers = _pointers(self._inputs), _pointers(self._outputs)
+
+    def run(self, library: Any, arguments: Sequence[np.ndarray]) -> list[np.ndarray]:
+        for array, argument in zip(self._inputs, arguments, strict=True):
+            array[:] = argument
+        library.run(_ONE, *self._pointers)
+        return [array.copy() for array in self._outputs]
+
+
 class _Block:
     """A function mapped to a few points, which reads and writes memory that stays where it is."""
 
@@ -169,6 +196,10 @@ class _Block:
         self._evaluate()
         for array, output in zip(self._outputs, outputs, strict=True):
             output[low : low + size] = array
+
+
+def _pointers(arrays: Sequence[np.ndarray]) -> Any:
+    return (ctypes.c_void_p * len(arrays))(*(array.ctypes.data for array in arrays))
 
 
 @lru_cache(maxsize=1024)

@@ -11,6 +11,10 @@ from typing import TYPE_CHECKING, Any
 from gearmath.errors import InputError
 from gearmath.front.machines import load_hobber
 from gearmath.front.tables import html_table
+from gearmath.gearbox.hobbed.choice import Choice
+from gearmath.gearbox.hobbed.choice import choose as search
+from gearmath.gearbox.hobbed.contributions import Contribution
+from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear, blame, cut_and_inspect, setup
 from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
@@ -95,3 +99,41 @@ def plan(
     if teeth is None or pitch is not None:
         raise InputError(f"{known.name} is a hobbing machine: teeth are needed, and no pitch")
     return Job(plan_gear(known, teeth, **options))
+
+
+@dataclass(frozen=True)
+class HobbedGear:
+    """The gear that the gearbox would cut: ``gear`` has its inspection and classes, ``shares`` who is to blame."""
+
+    setup: CutSetup
+    gear: VirtualGear
+    shares: tuple[Contribution, ...]
+
+    def plot(self) -> Figure:
+        """The inspection chart."""
+        from gearmath.plot.hobbed import inspection_figure
+
+        return inspection_figure(self.setup.train.machine.name, [(self.gear.rule, self.gear.found)])
+
+
+def hob(machine: HobbingMachine | str | Path, teeth: int, **options: Any) -> HobbedGear:
+    """Cut a gear virtually, inspect it, and tell which part of the machine is to blame; docs/virtual_hobbing.md.
+
+    ``options``: hob, starts, helix, shift, feed, face_width, rpm, seconds, climb, rule, as of ``gearmath gearbox cut``.
+    Raises InputError naming the limit that the job would break.
+    """
+    known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
+    prepared = setup(known, teeth, **options)
+    gear = cut_and_inspect(prepared, prepared.train.rule)
+    return HobbedGear(prepared, gear, blame(prepared, gear))
+
+
+def choose(machine: HobbingMachine | str | Path, wanted: int, module: float, teeth: int, **options: Any) -> Choice:
+    """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach the class ``wanted``.
+
+    ``module`` [mm] of a spur gear; ``options``: face_width [mm]. Raises InputError where no class can be given,
+    ComputationError where the finest parts do not reach it.
+    """
+    return search(
+        machine if isinstance(machine, HobbingMachine) else load_hobber(machine), wanted, module, teeth, **options
+    )

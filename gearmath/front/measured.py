@@ -24,6 +24,9 @@ from gearmath.specs.set_text import save_corrected
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearmath.front.judged import Uncertainty
+    from gearmath.quality.correction.stock import Stock
+
 
 @dataclass(frozen=True)
 class Measurement:
@@ -56,6 +59,34 @@ class Measurement:
         free = None if settings in ("few", "standard") else tuple(settings)
         corrected = correct(self.member.spec, self.member.name, found.file, free, few=settings == "few", **options)
         return Correction(self, corrected)
+
+    def uncertainty(self, sigma_um: float | None = None, model: str | None = None, draws: int = 20_000) -> Uncertainty:
+        """How sure every figure of the evaluation and every corrected setting is.
+
+        ``sigma_um`` is the standard uncertainty of every point, ``model`` a file of how the machine measures; where
+        neither is given it is u_um of the file, or else the bundled model. Raises InputError where both are given.
+        """
+        from gearmath.front.judged import uncertainty
+
+        return uncertainty(self, sigma_um, model, draws)
+
+    def share_stock(self, advance: bool = False, least: float = 0.0) -> Stock:
+        """How the precut blank that was measured must stand so that both flanks share its stock [rad, mm].
+
+        With ``advance`` it may also be moved along its axis; ``least`` [mm] must remain everywhere. Raises InputError.
+        """
+        from gearmath.quality.correction.stock import share_stock
+
+        return share_stock(self.member.spec, self.member.name, self.file, advance, least)
+
+    def report(self, path: str | Path, *mate: Measurement, **head: str) -> Path:
+        """Write the inspection sheet, HTML that prints on A4, of this member or with its ``mate``'s on the same sheet.
+
+        ``head``: part_number, date, operator, machine, probe. Raises InputError where the mate is of the same member.
+        """
+        from gearmath.front.judged import report
+
+        return report((self, *mate), Path(path), head)
 
     def to_csv(self, path: str | Path) -> Path:
         """Write the flank CSV of docs/files.md."""

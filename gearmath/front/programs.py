@@ -7,20 +7,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearmath.errors import InputError
 from gearmath.files import write_text
 from gearmath.front.machines import Machine, load_machine
 from gearmath.front.measured import Measurement
 from gearmath.front.sets import Member
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
+from gearmath.machine.judging.checked import checked_cut
 from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.planning.cut_plan import CuttingJob
-from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 if TYPE_CHECKING:
     from gearmath.machine.control.executor import MachinePath
+    from gearmath.machine.judging.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,12 @@ class Program:
         found = written_faults(self.text, self._path(), member.spec, member.name, self.machine.spec)
         return [str(fault) for fault in found]
 
+    def time(self) -> Trajectory:
+        """How long the control takes [s], where it is slow, and how far it leaves the path; as ``gearmath nc time``."""
+        from gearmath.machine.judging.trajectory import trajectory
+
+        return trajectory(self._path(), self.machine.spec)
+
     def _path(self) -> MachinePath:
         return execute(self.text, self.name, Setup.of(self.machine.spec))
 
@@ -74,8 +80,5 @@ def cutting(
     """The cutting program of a member, run before it is returned. Raises InputError naming what is wrong."""
     machine = load_machine() if machine is None else machine
     wanted = list(range(member.teeth) if spaces is None else spaces)
-    text = cutting_program(member.gear_set.spec, member.name, machine.spec, name, CuttingJob(wanted, **job))
-    program = Program(member, machine, name, text)
-    if found := program.faults():
-        raise InputError(f"{name}: {'; '.join(found)}")
-    return program
+    made = checked_cut(member.gear_set.spec, member.name, machine.spec, CuttingJob(wanted, **job), name, name)
+    return Program(member, machine, name, made.text)

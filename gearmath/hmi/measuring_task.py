@@ -99,7 +99,7 @@ class MeasuringTask:
             return RunState.LOST
         if self._hold:
             return RunState.HOLDING
-        return RunState.RUNNING if self._times else RunState.READY
+        return RunState.RUNNING if self._measuring.is_started else RunState.READY
 
     @property
     def touches(self) -> Mapping[int, Touch]:
@@ -145,19 +145,19 @@ class MeasuringTask:
             self.count += 1
 
     async def _new(self, program: Path, choice: Choice, points: str | None, again_of: int | None) -> None:
-        start, parts = await asyncio.to_thread(
+        start, stretches = await asyncio.to_thread(
             begun, self._link.name, program, choice.gear_set, choice.machine, choice.calibration, points, again_of
         )
         await check_ready(self._link.connect, start)
         with MeasurementStore.open(self._store) as store:
-            await self._measure(store.begin_run(start), parts)
+            await self._measure(store.begin_run(start), stretches)
 
     async def _old(self, number: int) -> None:
         with MeasurementStore.open(self._store) as store:
             run = store.resume_run(number)
             await self._measure(run, await asyncio.to_thread(resumed, run))
 
-    async def _measure(self, run: StoredRun, parts: tuple[int, int]) -> None:
+    async def _measure(self, run: StoredRun, stretches: list[tuple[int, int]]) -> None:
         self.run = run
         self._measuring = Measuring(
             self._link.connect,
@@ -167,7 +167,7 @@ class MeasuringTask:
             holds=self._holds,
             lost=self._lost,
         )
-        await self._measuring.to_the_end(parts)
+        await self._measuring.to_the_end(*stretches)
 
     def _heard(self, touches: int) -> None:
         before = self._times[-1][1] if self._times else 0

@@ -51,7 +51,8 @@ def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], reque
     ui.page_title(f"{text(f'{name}.title')} · {text('shell.product')}")
     ui.query("body").classes("gm-body")
     ui.colors(primary="#0b6478")
-    with ui.element("header").classes("gm-head"):
+    # inert until page.js finds that the server hears: what is pressed before would be lost
+    with ui.element("header").classes("gm-head").props("inert"):
         ui.label(text("shell.product")).classes("gm-product")
         with ui.element("h1").classes("gm-title"):
             ui.label(text(f"{name}.title")).classes("gm-inline")
@@ -59,7 +60,7 @@ def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], reque
         _switch(text, text("shell.language"), LANGUAGE, LANGUAGES, text.language)
         looks = {"light": text("shell.light"), "dark": text("shell.dark")}
         _switch(text, text("shell.look"), LOOK, looks, "dark" if is_dark(request) else "light")
-    with ui.element("nav").classes("gm-nav") as nav:
+    with ui.element("nav").classes("gm-nav").props("inert") as nav:
         nav.props["aria-label"] = text("shell.pages")
         for page, icon in PAGES.items():
             with ui.element("a").classes("gm-link") as link:
@@ -73,7 +74,7 @@ def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], reque
         ui.label(text("shell.server_lost"))
     beat = ui.label("0").classes("gm-beat").props('aria-hidden="true"')
     ui.timer(_BEAT, lambda: beat.set_text(str(int(beat.text) + 1)))
-    with ui.element("div").classes("gm-main"):
+    with ui.element("div").classes("gm-main").props("inert"):
         build(shared, text)
         with ui.element("footer").classes("gm-wide"):
             widgets.note(text("shell.foreign"))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from gearmath.machine.bodies.profiles import work_profiles
@@ -61,7 +60,7 @@ def probing_sheet(job: ProbingJob, program: str) -> str:
     )
     page.heading("Machine and references")
     page.paragraph(f"{R_D}. Z counts up.")
-    profiles, b = work_profiles(member, job.fixture), math.radians(member.blank.root_angle)
+    profiles, b = work_profiles(member, job.fixture), member.blank.delta_f
     stylus = [
         DrawnRing("tool", probe.stylus_length, probe.length, 0.5 * job.spindle_radius, 0.5 * job.spindle_radius),
         DrawnRing("blade", 0.0, probe.stylus_length, probe.tip_radius, probe.tip_radius),

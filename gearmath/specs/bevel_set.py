@@ -99,6 +99,21 @@ class Blank(Sheet):
         return self
 
     @property
+    def delta(self) -> float:
+        """Pitch angle δ [rad]."""
+        return math.radians(self.pitch_angle)
+
+    @property
+    def delta_a(self) -> float:
+        """Face angle δ_a [rad]."""
+        return math.radians(self.face_angle)
+
+    @property
+    def delta_f(self) -> float:
+        """Root angle δ_f [rad]."""
+        return math.radians(self.root_angle)
+
+    @property
     def vector(self) -> np.ndarray:
         """The blank as the vector of ``notation.blank`` (8,), mm and rad."""
         return vector_of(self, notation.blank.components)

@@ -105,6 +105,11 @@ class Settings(Sheet):
         return plain
 
     @property
+    def alpha(self) -> float:
+        """Pressure angle α of the blade [rad]."""
+        return math.radians(self.blade_pressure_angle)
+
+    @property
     def vector(self) -> np.ndarray:
         """The settings as the vector of ``notation.settings`` (12,), mm and rad."""
         return vector_of(self, notation.settings.components)

@@ -114,6 +114,21 @@ def run_lengths(path: Path) -> dict[int, int]:
     return dict(sorted(Counter(record["run"] for record in _all(path, columns)).items()))
 
 
+def check_whole(path: Path, wanted: int | None, found: Touches | CalibrationTouches, missing: tuple[str, ...]) -> None:
+    """Raise InputError where the last run, with those that it continues, is not whole and no run was ``wanted``."""
+    if wanted is not None:
+        return
+    run, lengths = found.run, run_lengths(path)
+    longest = max(lengths, key=lambda number: lengths[number])
+    if not missing and not found.joined and lengths[run] < lengths[longest]:  # runs of one file are runs of one program
+        missing = (f"it has {lengths[run]} touches, run {longest} has {lengths[longest]}",)
+    if missing:
+        choice = f"--run {run} takes it as it is" + (f", --run {longest} another one" if longest != run else "")
+        more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
+        more += f" ({found.joined})" if found.joined else ""
+        raise InputError(f"{path}: run {run}, the last one, is not whole: {missing[0]}{more}; {choice}")
+
+
 def _records(path: Path, columns: tuple[str, ...], run: int | None) -> tuple[int, list[dict]]:
     """Number and records of a run; the last one must not be followed by one that was begun and has no touch."""
     records = _all(path, columns)

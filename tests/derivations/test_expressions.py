@@ -16,10 +16,15 @@ import derivations
 from derivations import notation
 from derivations.expression import Expression, Quantity
 
-EXPRESSIONS = list(derivations.expressions())
 NOTATION = {name: value for name, value in vars(notation).items() if isinstance(value, Quantity)}
 
-each_expression = pytest.mark.parametrize("expression", EXPRESSIONS, ids=lambda expression: expression.name)
+each_expression = pytest.mark.parametrize("expression", derivations.index(), indirect=True)
+
+
+@pytest.fixture
+def expression(request: pytest.FixtureRequest) -> Expression:
+    """Derived when its test runs: a process that runs other tests derives none."""
+    return derivations.derive(request.param)
 
 
 def quantities(expression: Expression) -> list[Quantity]:
@@ -47,6 +52,15 @@ def test_latex_writes_every_output_in_the_signs_of_the_notation(expression: Expr
         assert latex.count(r"\left") == latex.count(r"\right")
         raw = [element.name for given in expression.inputs for element in given.elements if "_" in element.name]
         assert [name for name in raw if name in latex and name not in quantity.latex] == []
+
+
+@pytest.mark.parametrize("name", ["cutter_surface", "flank_family", "nearest_position"])
+def test_latex_is_that_of_sympy(name: str) -> None:
+    """Terms that stand in many places are printed once; the text is the same."""
+    expression = derivations.derive(name)
+    signs = {s: e.latex for q in expression.inputs for s, e in zip(q.symbols, q.elements, strict=True)}
+    for quantity, value in expression.outputs:
+        assert expression.latex(quantity.name) == f"{quantity.latex} = {sp.latex(value, symbol_names=signs)}"
 
 
 @pytest.mark.parametrize("name", NOTATION)
@@ -82,8 +96,8 @@ def test_every_expression_of_every_chapter_is_listed() -> None:
         module = importlib.import_module(f"derivations.{chapter}")
         cached = [value for value in vars(module).values() if hasattr(value, "cache_info")]
         made |= {make().name for make in cached if make.__module__ == module.__name__}
-    assert made <= {expression.name for expression in EXPRESSIONS}
-    names = [expression.name for expression in EXPRESSIONS]
+    assert made <= {expression.name for expression in derivations.expressions()}
+    names = [expression.name for expression in derivations.expressions()]
     assert sorted(names) == sorted(set(names))
 
 

@@ -150,13 +150,20 @@ def refused(command: Callable[..., tuple[int, str, str]]) -> Callable[..., None]
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.sum(a * b, axis=-1)
+    return a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2]
 
 
 def _turn(vector: np.ndarray, axis: np.ndarray, angle: np.ndarray | float) -> np.ndarray:
-    """Rodrigues' rotation of vectors (...,3) about a unit axis (...,3)."""
-    c, s = np.cos(angle)[..., None], np.sin(angle)[..., None]
-    return vector * c + np.cross(axis, vector) * s + axis * _dot(axis, vector)[..., None] * (1 - c)
+    """Rodrigues' rotation of vectors (...,3) about a unit axis (...,3), component by component."""
+    c, s = np.cos(angle), np.sin(angle)
+    (x, y, z), (i, j, k) = np.moveaxis(vector, -1, 0), np.moveaxis(axis, -1, 0)
+    along = (i * x + j * y + k * z) * (1 - c)
+    turned = (
+        x * c + (j * z - k * y) * s + i * along,
+        y * c + (k * x - i * z) * s + j * along,
+        z * c + (i * y - j * x) * s + k * along,
+    )
+    return np.stack(np.broadcast_arrays(*turned), axis=-1)
 
 
 def _machine_frame(x: np.ndarray, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -179,7 +186,7 @@ def _into_work(vector: np.ndarray, V_p: np.ndarray, turned: np.ndarray) -> np.nd
 def _cutter_vector(x: np.ndarray, theta: np.ndarray, vector: np.ndarray) -> np.ndarray:
     """A vector of the cutter frame in machine axes: tilt about i, then swivel, cradle angle and roll about k."""
     i, about_k = x[..., 2] + 0 * theta, x[..., 1] + x[..., 3] + theta
-    return _turn(_turn(vector, np.broadcast_to(I, vector.shape), i), np.broadcast_to(K, vector.shape), about_k)
+    return _turn(_turn(vector, I, i), K, about_k)
 
 
 def _pose(x: np.ndarray, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -227,37 +234,38 @@ def _vertical_pose(axes: np.ndarray, pivot: float) -> tuple[np.ndarray, np.ndarr
     ]
     centre, down = np.stack([X, Y, Z - pivot], axis=-1), np.stack([zero, zero, zero - 1], axis=-1)
     return tuple(  # type: ignore[return-value]
-        _turn(np.stack([_dot(v, column) for column in columns], axis=-1), np.broadcast_to(K, v.shape), A)
-        for v in (centre, down)
+        _turn(np.stack([_dot(v, column) for column in columns], axis=-1), K, A) for v in (centre, down)
     )
 
 
 def _entry(
     centre: np.ndarray, axis: np.ndarray, radius: float, alpha: float, side: int, p: np.ndarray, d: np.ndarray
 ) -> np.ndarray:
-    """Where lines p + t d pass from the metal into the cutter: the cone by its apex, each root tried on both sides."""
-    apex = centre + side * axis * radius / np.tan(alpha)
-    w, c2 = p - apex, np.cos(alpha) ** 2
-    a = _dot(d, axis) ** 2 - c2 * _dot(d, d)
-    b = _dot(w, axis) * _dot(d, axis) - c2 * _dot(w, d)
-    c = _dot(w, axis) ** 2 - c2 * _dot(w, w)
+    """Where lines p + t d pass from the metal into the cutter: the cone by its apex, each root tried on both sides.
+
+    ``axis`` is a unit vector; all that is asked of a line are its products with the axis and with itself.
+    """
+    w = p - centre
+    along_w, along_d, w_d, w_w, d_d = _dot(w, axis), _dot(d, axis), _dot(w, d), _dot(w, w), _dot(d, d)
+    apex, c2 = side * radius / np.tan(alpha), np.cos(alpha) ** 2  # of the cone, along the axis from the centre
+    a = along_d**2 - c2 * d_d
+    b = (along_w - apex) * along_d - c2 * (w_d - apex * along_d)
+    c = (along_w - apex) ** 2 - c2 * (w_w - 2 * apex * along_w + apex**2)
     root = np.sqrt(np.where(b * b >= a * c, b * b - a * c, np.nan))
 
     def inside(t: np.ndarray) -> np.ndarray:
-        r = p + t[..., None] * d - centre
-        height = -_dot(r, axis)
-        rho = np.linalg.norm(r + height[..., None] * axis, axis=-1)
+        height = -(along_w + t * along_d)
+        rho = np.sqrt(np.maximum(w_w + t * (2 * w_d + t * d_d) - height**2, 0.0))
         return side * (radius + side * height * np.tan(alpha) - rho) >= 0
 
     best = np.full(root.shape, np.inf)
     for t in ((-b + root) / a, (-b - root) / a):
-        t = np.where(np.isfinite(t), t, np.inf)
-        enters = np.isfinite(t)
-        enters[enters] = (inside(np.where(enters, t, 0) + _TRIAL) & ~inside(np.where(enters, t, 0) - _TRIAL))[enters]
-        best = np.where(enters & (np.abs(t) < np.abs(best)), t, best)
+        there = np.where(np.isfinite(t), t, 0.0)
+        enters = np.isfinite(t) & inside(there + _TRIAL) & ~inside(there - _TRIAL)
+        best = np.where(enters & (np.abs(there) < np.abs(best)), there, best)
     at = np.where(np.isfinite(best), best, 0)
-    height = -_dot(p + at[..., None] * d - centre, axis)
-    climb = -_dot(d, axis)
+    height = -(along_w + at * along_d)
+    climb = -along_d
     tip = np.where(climb > 0, at - height / np.where(climb == 0, 1, climb), NOWHERE)
     return np.where(np.isfinite(best), np.where(height >= 0, best, tip), NOWHERE)
 

@@ -177,3 +177,17 @@ def test_ci_calls_make_test() -> None:
     script = ROOT / ".ci" / "run"
     assert script.stat().st_mode & 0o111
     assert "make test" in script.read_text("utf-8")
+
+
+def test_angles_of_a_set_become_radians_in_specs_alone() -> None:
+    """Whoever wants them in rad asks the blank for δ, δ_a, δ_f and the flank for α."""
+    angles = {"pitch_angle", "face_angle", "root_angle", "blade_pressure_angle"}
+    found = []
+    for path in sorted((ROOT / "gearmath").rglob("*.py")):
+        if path.is_relative_to(ROOT / "gearmath" / "specs"):
+            continue
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            is_call = isinstance(node, ast.Call) and getattr(node.func, "attr", "") in ("radians", "deg2rad")
+            if is_call and getattr(node.args[0], "attr", getattr(node.args[0], "id", "")) in angles:
+                found.append(f"{path.relative_to(ROOT)}:{node.lineno}: {ast.unparse(node)}")
+    assert found == []

@@ -46,7 +46,7 @@ def roll(system: System) -> Points:
     x, rotation, assembly = ca.SX.sym("x", 7), ca.SX.sym("rotation"), ca.SX.sym("assembly", 4)
     curvatures = []
     point, normal, *_ = system.gear.function(x[3:6])
-    basis = kernel("root_basis").function(point, normal, math.radians(system.gear.blank.root_angle))
+    basis = kernel("root_basis").function(point, normal, system.gear.blank.delta_f)
     tangents = [system.placed(1, point, basis[:, k], x[6], assembly)[1] for k in range(2)]
     T = ca.horzcat(*tangents)
     for side, surface in enumerate((system.pinion, system.gear)):
@@ -73,7 +73,14 @@ def roll(system: System) -> Points:
 
 def local(system: System, touch: TouchPoint, assembly: np.ndarray, separation: float = MARKING) -> LocalContact:
     """Curvature and motion at a contact within both flanks, its ellipse at a ``separation`` [mm]."""
-    *found, seen = roll(system).at(touch.x, touch.rotation, assembly)
+    return local_at(system, touch.x, touch.rotation, assembly, separation)
+
+
+def local_at(
+    system: System, x: np.ndarray, rotation: float, assembly: np.ndarray, separation: float = MARKING
+) -> LocalContact:
+    """The same of a contact ``x`` (7,) at a rotation of the pinion [rad]."""
+    *found, seen = roll(system).at(x, rotation, assembly)
     w, beta, D, lever, sliding = (one.ravel() for one in found)
     velocity, second = kernel("contact_motion")(w, beta[0], D, lever[0])
     (axes,) = kernel("contact_ellipse")(D, separation)

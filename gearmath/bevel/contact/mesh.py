@@ -42,13 +42,17 @@ _NEAR = np.array([0.5, 0.02, 0.02] * 2)
 
 @dataclass(frozen=True)
 class MeshRow:
-    """A position of a pair of teeth: rotation [rad], kind, error φ_2 + i φ_1 [rad], place on the gear [mm]."""
+    """A position of a pair of teeth: rotation [rad], kind, error φ_2 + i φ_1 [rad], place on the gear [mm].
+
+    ``x`` (7,) of the contact; None where the flanks touch along a line.
+    """
 
     rotation: float
     kind: str
     error: float
     cone_distance: float
     height: float
+    x: np.ndarray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,8 +110,19 @@ class Mesh:
                 rotation = float(rotations[k])
                 error = float(x[k, 6] + self.system.ratio * rotation)
                 if k not in best or self.system.sense * (error - best[k].error) > 0:
-                    best[k] = MeshRow(rotation, kinds[k], error, float(at[k, 0]), float(at[k, 1]))
+                    best[k] = MeshRow(rotation, kinds[k], error, float(at[k, 0]), float(at[k, 1]), x[k])
         return [best[k] for k in sorted(best)]
+
+    def followed(self, rotations: np.ndarray) -> np.ndarray:
+        """φ_2 + i φ_1 (n,) [rad] that the gear has at rotations (n,): of all pairs of teeth the one that is ahead."""
+        pairs, lead = math.ceil(self.reach + REACH), np.full(len(rotations), -np.inf)
+        for k in range(-pairs, pairs + 1):
+            own = rotations - k * self.system.pitch
+            which = {float(rotation): j for j, rotation in enumerate(own)}
+            for row in self.rows(own):
+                j = which[row.rotation]
+                lead[j] = max(lead[j], self.system.sense * row.error)
+        return self.system.sense * np.where(np.isfinite(lead), lead, np.nan)
 
     def path(self, step: float) -> list[MeshRow]:
         """Positions of pair 0 at whole multiples of ``step`` [rad], and at every change of kind."""

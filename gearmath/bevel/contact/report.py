@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from gearmath.bevel.contact.mesh import Mesh, mesh
+import numpy as np
+
+from gearmath.bevel.contact.local import LocalContact, local_at
+from gearmath.bevel.contact.mesh import Mesh, MeshRow, mesh
 from gearmath.bevel.contact.misalignment import contact_at, sensitivities
 from gearmath.bevel.contact.pattern import pattern
 from gearmath.bevel.contact.surface import nominal_surface
@@ -36,21 +39,24 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
     """The JSON object of one side, positions at multiples of ``step`` [rad]."""
     zero = run.reference or 0.0
     rows = run.path(step)
+    followed = run.followed(np.array([row.rotation for row in rows]))
     spread = run.leads.peak_to_peak
     return {
         "outcome": run.outcome,
         "leading_kinds": list(run.leads.kinds),
         "contact_ratio": run.contact_ratio,
-        "at_mean": _at_mean(run),
+        "at_mean": _at_mean(run, zero),
         "path": [
             {
-                "pinion_rotation_deg": math.degrees(row.rotation),
+                "pinion_rotation_deg": _degrees(row.rotation),
                 "kind": row.kind,
                 "transmission_error_arcsec": (row.error - zero) * ARCSEC,
                 "gear_cone_distance_mm": row.cone_distance,
                 "gear_height_mm": row.height,
+                "gear_follows_arcsec": float(ahead - zero) * ARCSEC,
+                **_local(run, row),
             }
-            for row in rows
+            for row, ahead in zip(rows, followed, strict=True)
         ],
         "pattern": pattern(run).figures,
         "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
@@ -58,16 +64,38 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
     }
 
 
-def _at_mean(run: Mesh) -> dict[str, Any] | None:
+def _degrees(rotation: float) -> float:
+    """Whole multiples of a step read as such."""
+    return round(math.degrees(rotation), 9) + 0.0
+
+
+def _local(run: Mesh, row: MeshRow) -> dict[str, Any]:
+    """What is known of a contact within both flanks: curvature and motion."""
+    if row.kind != "interior" or row.x is None:
+        return dict.fromkeys(("second_derivative", "semi_axes_mm", "path_angle_deg"))
+    return _shape(local_at(run.system, row.x, row.rotation, run.assembly))
+
+
+def _shape(here: LocalContact) -> dict[str, Any]:
+    return {
+        "second_derivative": here.second_derivative,
+        "semi_axes_mm": list(here.semi_axes) if here.definite else None,
+        "path_angle_deg": math.degrees(here.path_angle),
+    }
+
+
+def _at_mean(run: Mesh, zero: float) -> dict[str, Any] | None:
     if run.at_mean is None:
         return None
     touch, here = run.at_mean
     moved = sensitivities(run.system, touch, run.assembly)
+    distance, height = run.system.gear_place(touch.x)
     return {
-        "pinion_rotation_deg": math.degrees(touch.rotation),
-        "second_derivative": here.second_derivative,
-        "semi_axes_mm": list(here.semi_axes),
-        "path_angle_deg": math.degrees(here.path_angle),
+        "pinion_rotation_deg": _degrees(touch.rotation),
+        "transmission_error_arcsec": (run.system.transmission_error(touch) - zero) * ARCSEC,
+        "gear_cone_distance_mm": distance,
+        "gear_height_mm": height,
+        **_shape(here),
         "sensitivity": {
             name: {
                 "gear_cone_distance_mm": float(column[0] * unit),

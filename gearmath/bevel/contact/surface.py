@@ -49,7 +49,7 @@ class ContactSurface:
     @property
     def pitch_angle(self) -> float:
         """Pitch angle δ [rad]."""
-        return math.radians(self.blank.pitch_angle)
+        return self.blank.delta
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -84,7 +84,7 @@ def nominal_surface(member: Member, flank: str) -> ContactSurface:
     """The nominal flank of a member: what the main section of its blade cuts, whatever the method."""
     how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
 
-    delta, distance = math.radians(member.blank.pitch_angle), member.blank.mean_cone_distance
+    delta, distance = member.blank.delta, member.blank.mean_cone_distance
     mean = _slowly(how, section, *(np.array([distance * f(delta)]) for f in (math.cos, math.sin))).contact[0]
     function = _function(how.with_blade(section), section, mean)
     solve = _solver(function, mean, lambda axial, radial: _slowly(how, section, axial, radial))
@@ -164,7 +164,7 @@ def _newton(function: ca.Function) -> Points:
 def _borders(member: Member, section: Section) -> np.ndarray:
     """Tip: the face cone; toe and heel: cones square to the pitch cone; root: the lower end of the blade's section."""
     blank = member.blank
-    delta, face = math.radians(blank.pitch_angle), math.radians(blank.face_angle)
+    delta, face = blank.delta, blank.delta_a
     axial, radial = (float(value) for value in kernel("flank_place")(blank.vector, 0.5, 1.0))
     mean, half = blank.mean_cone_distance, blank.face_width / 2
     sense, end = (-1.0, section.upper) if section.tip_is_upper else (1.0, section.lower)

@@ -138,12 +138,13 @@ class System:
             if not np.isfinite(J).all():
                 return None
             try:
-                step = np.linalg.solve(J[:, :7], np.column_stack([-r, -J[:, 7]]))
+                inverse = np.linalg.inv(J[:, :7])
             except np.linalg.LinAlgError:
                 return None
             if np.abs(r).max() < TOLERANCE:
-                return self._touch(x, rotation, active, J, step[:, 1], every[_BORDERS, 0], by_all[_BORDERS, :7])
-            x = x + step[:, 0] / max(1.0, float((np.abs(step[:, 0]) / _LIMITS).max()))
+                return self._touch(x, rotation, active, J, inverse, every[_BORDERS, 0])
+            step = -(inverse @ r)
+            x = x + step / max(1.0, float((np.abs(step) / _LIMITS).max()))
         return None
 
     def event(
@@ -171,17 +172,13 @@ class System:
         rotation: float,
         active: tuple[int, ...],
         J: np.ndarray,
-        tangent: np.ndarray,
+        inverse: np.ndarray,
         distance: np.ndarray,
-        by_x: np.ndarray,
     ) -> TouchPoint:
-        pressure = np.empty(0)
-        if active:
-            # touching configurations at this rotation have two directions of x; along them the gear is pressed on
-            free = np.linalg.svd(J[:5, :7])[2][5:]
-            gradients = by_x[list(active)] @ free.T
-            pressure = -self.sense * np.linalg.lstsq(gradients.T, free[:, 6], rcond=None)[0]
-        return TouchPoint(rotation, x, active, tangent, distance, pressure, float(np.linalg.slogdet(J[:, :7])[0]))
+        # within the borders φ_2 is largest: its derivatives by the last conditions, the distances of the active ones
+        pressure = -self.sense * inverse[6, 7 - len(active) :]
+        tangent = -(inverse @ J[:, 7])
+        return TouchPoint(rotation, x, active, tangent, distance, pressure, float(np.linalg.slogdet(inverse)[0]))
 
     def solve_many(
         self, x: np.ndarray, rotation: np.ndarray, active: tuple[int, ...], assembly: np.ndarray

@@ -8,9 +8,11 @@ A thread ends where no neighbor goes on: both members have left each other, or t
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -48,6 +50,10 @@ class Segment:
         """x (n,7) at rotations (n,) by Hermite's cubics between the contacts."""
         return _cubic(self.nodes, rotations)
 
+    @cached_property
+    def rotations(self) -> list[float]:
+        return [touch.rotation for touch in self.touches]
+
     @property
     def active(self) -> tuple[int, ...]:
         return self.touches[0].active
@@ -66,7 +72,11 @@ class Segment:
         for touch in (self.touches[0], self.touches[-1]):
             if rotation == touch.rotation:
                 return touch
-        return system.solve(self.between(np.array([rotation]))[0], rotation, self.active, assembly)
+        if len(self.touches) == 1:
+            return None
+        k = min(max(bisect_left(self.rotations, rotation), 1), len(self.touches) - 1)
+        guess = _cubic_of_two(self.touches[k - 1], self.touches[k], rotation)
+        return system.solve(guess, rotation, self.active, assembly)
 
 
 def kind_of(active: tuple[int, ...]) -> str:
@@ -168,10 +178,12 @@ def _corrected(
     system: System, before: Sequence[TouchPoint], rotation: float, assembly: np.ndarray
 ) -> TouchPoint | None:
     """The contact at a rotation, from the cubic through the last two positions, or from the tangent of one."""
-    last = before[-2:] if len(before) > 1 else before
-    ordered = last if last[0].rotation <= last[-1].rotation else last[::-1]
-    guess = _cubic(_nodes(ordered), np.array([rotation]))[0]
-    return system.solve(guess, rotation, last[-1].active, assembly, _CORRECTIONS)
+    last = before[-1]
+    if len(before) > 1:
+        guess = _cubic_of_two(before[-2], last, rotation)
+    else:
+        guess = last.x + (rotation - last.rotation) * last.tangent
+    return system.solve(guess, rotation, last.active, assembly, _CORRECTIONS)
 
 
 def _border(system: System, inside: TouchPoint, outside: TouchPoint, assembly: np.ndarray) -> TouchPoint:
@@ -199,9 +211,7 @@ def _border_slowly(
         if abs(high.rotation - low.rotation) < 1e-13 or 0 <= one < _CLOSE:
             break
         rotation = low.rotation + (high.rotation - low.rotation) * one / (one - other)
-        ends = (low, high) if low.rotation < high.rotation else (high, low)
-        guess = _cubic(_nodes(ends), np.array([rotation]))[0]
-        middle = system.solve(guess, rotation, inside.active, assembly)
+        middle = system.solve(_cubic_of_two(low, high, rotation), rotation, inside.active, assembly)
         if middle is None:
             break
         value = float(middle.margins[which])
@@ -259,12 +269,22 @@ def _cubic(nodes: tuple[np.ndarray, np.ndarray, np.ndarray], rotations: np.ndarr
         return x + (rotations - at)[:, None] * slope
     k = np.clip(np.searchsorted(at, rotations), 1, len(at) - 1)
     h = (at[k] - at[k - 1])[:, None]
-    t = (rotations - at[k - 1])[:, None] / h
-    return (
-        (1 + 2 * t) * (1 - t) ** 2 * x[k - 1]
-        + t**2 * (3 - 2 * t) * x[k]
-        + h * (t * (1 - t) ** 2 * slope[k - 1] - t**2 * (1 - t) * slope[k])
+    return _hermite((rotations - at[k - 1])[:, None] / h, h, (x[k - 1], slope[k - 1]), (x[k], slope[k]))
+
+
+def _cubic_of_two(one: TouchPoint, other: TouchPoint, rotation: float) -> np.ndarray:
+    """x (7,) at a rotation by Hermite's cubic through two contacts, in either order."""
+    h = other.rotation - one.rotation
+    return _hermite((rotation - one.rotation) / h, h, (one.x, one.tangent), (other.x, other.tangent))
+
+
+def _hermite(t: Any, h: Any, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    """The cubic at the part ``t`` of the way ``h`` from one value and slope to another."""
+    rest = 1 - t
+    found: np.ndarray = (
+        (1 + 2 * t) * rest**2 * one[0] + t**2 * (3 - 2 * t) * other[0] + h * t * rest * (rest * one[1] - t * other[1])
     )
+    return found
 
 
 def zero(

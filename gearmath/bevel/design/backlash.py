@@ -76,7 +76,7 @@ def _turned(member: Member, turns: dict[str, float], step: float = 0.0) -> Membe
 
 def _azimuth(member: Member, flank: str) -> float:
     """Angle about z_w [rad] of a flank at the mean point of the pitch cone."""
-    delta, mean = math.radians(member.blank.pitch_angle), member.blank.mean_cone_distance
+    delta, mean = member.blank.delta, member.blank.mean_cone_distance
     section = blade_sections(member.flank(flank), SIDES[flank])["main"]
     place = np.array([mean * math.cos(delta)]), np.array([mean * math.sin(delta)])
     (point,) = solve_section(generation_of(member, flank), section, *place).point

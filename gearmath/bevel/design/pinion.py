@@ -161,7 +161,7 @@ def _crown_gear(member: Member, how: Generation, section: Section, asked: Reques
 def root_of(member: Member, across: tuple[float, float] = (0.0, 1.0)) -> tuple[np.ndarray, np.ndarray]:
     """Pitch angle and two cone distances (3,), and the depths (2,) of the blank's root there: toe 0, heel 1."""
     blank = member.blank
-    delta = math.radians(blank.pitch_angle)
+    delta = blank.delta
     axial, radial = kernel("flank_place")(blank.vector, np.array(across), np.zeros(2))
     along, depth = kernel("root_place")(np.stack([radial, 0 * radial, axial], axis=1), delta)
     return np.array([delta, *along]), depth + blank.clearance

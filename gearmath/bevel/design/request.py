@@ -219,7 +219,7 @@ def gear_flank(surface: ContactSurface, pinion: Member, shaft_angle: float) -> G
         surface,
         math.radians(shaft_angle),
         pinion.teeth / surface.teeth,
-        math.radians(blank.pitch_angle),
+        blank.delta,
         blank.mean_cone_distance,
         blank.pitch_apex_beyond_crossing_point,
     )

@@ -101,7 +101,7 @@ def mean_point(given: GivenFlank, blank: Blank) -> MeanPoint:
     """
     if len(given.point) < _LEAST_POINTS:
         raise InputError(f"{len(given.point)} points do not tell the flank, there must be at least {_LEAST_POINTS}")
-    delta, axial = math.radians(blank.pitch_angle), given.point[:, 2]
+    delta, axial = blank.delta, given.point[:, 2]
     radial = np.hypot(given.point[:, 0], given.point[:, 1])
     wanted = blank.mean_cone_distance * np.array([math.cos(delta), math.sin(delta)])
     nearest = int(np.argmin(np.hypot(axial - wanted[0], radial - wanted[1])))
@@ -180,7 +180,7 @@ def crown_gear_start(known: KnownMember, means: dict[str, MeanPoint], radius: fl
     """
     blank = known.blank
     spiral = float(np.mean([abs(mean.angles[1]) for mean in means.values()]))
-    across = space_turn(means, known.teeth) * blank.mean_cone_distance * math.sin(math.radians(blank.pitch_angle))
+    across = space_turn(means, known.teeth) * blank.mean_cone_distance * math.sin(blank.delta)
     depth = (blank.mean_addendum + blank.mean_dedendum) * (1 + blank.face_width / blank.mean_cone_distance / 2)
     tooth = CrownTooth(
         known.teeth,

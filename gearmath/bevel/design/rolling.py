@@ -118,7 +118,7 @@ class GearFlank:
         cone distance and height on the gear change along the basis."""
         w, turn = ca.SX.sym("w", 3), ca.SX.sym("turn")
         own, own_normal, condition, _ = self.surface.function(w)
-        root = math.radians(self.surface.blank.root_angle)
+        root = self.surface.blank.delta_f
         basis = kernel("root_basis").function(own, own_normal, root)
         beyond = self.surface.apex_beyond
         place = kernel("gear_in_pair").function

@@ -77,7 +77,7 @@ def top_land(member: Member, name: str) -> dict[str, float]:
     """Normal top land [mm] at toe, mean and heel."""
     space = tooth_space(member, name)
     flank = space.concave
-    delta = math.radians(member.blank.pitch_angle)
+    delta = member.blank.delta
     _, spiral, _, _ = kernel("flank_angles")(delta, flank.point[0], flank.normal[0])
     land = space.top_land * np.cos(spiral)
     return dict(zip(_PLACES, (float(land[k]) for k in (0, len(land) // 2, -1)), strict=True))
@@ -131,7 +131,7 @@ def mean_module(made: Designed) -> float:
     """Mean normal module [mm] of the pair."""
     gear = made.pair.member("gear")
     blank, teeth = gear.blank, gear.teeth
-    transverse = 2 * blank.mean_cone_distance * math.sin(math.radians(blank.pitch_angle)) / teeth
+    transverse = 2 * blank.mean_cone_distance * math.sin(blank.delta) / teeth
     return transverse * math.cos(math.radians(made.data.mean_spiral_angle))
 
 
@@ -191,6 +191,6 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
 def _asked_place(made: Designed, side: str) -> tuple[float, float]:
     """Cone distance and height on the gear [mm] at which the vertex was asked for."""
     axial, radial = made.flanks[side].request.place
-    delta = math.radians(made.pair.member("gear").blank.pitch_angle)
+    delta = made.pair.member("gear").blank.delta
     along, deep = kernel("root_place")(np.array([radial, 0.0, axial]), delta)
     return float(along), -float(deep)

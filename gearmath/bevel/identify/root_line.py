@@ -143,4 +143,4 @@ def root_line(member: Member, flank: str, how: Generation, nominal: FlankPoints)
     lowest = height[: max(2, len(height) // 5)]
     start = np.array([nominal.contact[lowest[np.argmin(np.abs(cone[lowest] - one))]] for one in distances])
     start[:, 0] = 0.0
-    return RootLine(how, member.flank(flank).blade_reference_height, np.radians(blank.pitch_angle), distances, start)
+    return RootLine(how, member.flank(flank).blade_reference_height, blank.delta, distances, start)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
 
 from gearmath.errors import ComputationError, InputError
+from gearmath.gearbox.helix import Helix
 from gearmath.gearbox.hobbed.classes import COARSEST, FINEST, outside
 from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear, blame, cut_and_inspect, ridges, setup
 from gearmath.specs.cutting_errors import CuttingErrors
@@ -46,15 +48,45 @@ class Choice:
     tried: int
 
 
+@dataclass(frozen=True)
+class _Wish:
+    """The gear that is wanted, and the machine it is cut on."""
+
+    machine: HobbingMachine
+    module: float
+    teeth: int
+    face_width: float | None
+    helix: Helix | None
+
+    def with_parts(self, parts: Parts) -> CutSetup:
+        """What is cut with these parts; without an encoder on the feed, the ratio of a helical gear is that feed's."""
+        machine = self.machine
+        assert machine.table is not None
+        known = next((hob for hob in machine.hobs if abs(hob.module_mm - self.module) < 1e-9), None)
+        hob = known or Hob(module=self.module, depth_rule="2.25m")
+        changed = machine.model_copy(
+            update={
+                "table": machine.table.model_copy(update={"microsteps": parts.microsteps}),
+                "encoder": machine.encoder.model_copy(update={"lines": parts.lines}),
+                "hobs": (hob.model_copy(update={"gashes": parts.gashes}),),
+            }
+        )
+        helix = self.helix
+        if helix is not None and machine.feed is None:
+            helix = replace(helix, feed=Fraction(str(parts.feed)))
+        return setup(changed, self.teeth, helix=helix, feed=parts.feed, face_width=self.face_width)
+
+
 def choose(
     machine: HobbingMachine,
     wanted: int,
     module: float,
     teeth: int,
     face_width: float | None = None,
+    helix: Helix | None = None,
     progress: Callable[[int], object] = lambda done: None,
 ) -> Choice:
-    """The coarsest microsteps, lines, gashes and feed with which a spur gear reaches the class ``wanted``.
+    """The coarsest microsteps, lines, gashes and feed with which a gear reaches the class ``wanted``.
 
     From the coarsest on, the part that is most to blame is refined until the cut gear reaches the class; then each is
     made coarser again as long as it still does. The rest of the machine, its errors too, is that of the file.
@@ -65,11 +97,12 @@ def choose(
     if machine.table is None or machine.table.microsteps is None:
         raise InputError(f"{machine.name}: only a hobbing machine with a step motor has microsteps to choose")
     places, tried = [0, 0, 0, 0], 0
+    wish = _Wish(machine, module, teeth, face_width, helix)
 
     def reached(at: list[int]) -> tuple[CutSetup, VirtualGear]:
         nonlocal tried
         tried += 1
-        prepared = _prepared(machine, _parts(at), module, teeth, face_width)
+        prepared = wish.with_parts(_parts(at))
         gear = cut_and_inspect(prepared, "exact")
         progress(1)
         return prepared, gear
@@ -107,20 +140,6 @@ def _is(gear: VirtualGear, wanted: int) -> bool:
 def _parts(places: list[int]) -> Parts:
     microsteps, lines, gashes, feed = (ladder[place] for ladder, place in zip(LADDERS, places, strict=True))
     return Parts(int(microsteps), int(lines), int(gashes), feed)
-
-
-def _prepared(machine: HobbingMachine, parts: Parts, module: float, teeth: int, face_width: float | None) -> CutSetup:
-    assert machine.table is not None
-    known = next((hob for hob in machine.hobs if abs(hob.module_mm - module) < 1e-9), None)
-    hob = known or Hob(module=module, depth_rule="2.25m")
-    changed = machine.model_copy(
-        update={
-            "table": machine.table.model_copy(update={"microsteps": parts.microsteps}),
-            "encoder": machine.encoder.model_copy(update={"lines": parts.lines}),
-            "hobs": (hob.model_copy(update={"gashes": parts.gashes}),),
-        }
-    )
-    return setup(changed, teeth, feed=parts.feed, face_width=face_width)
 
 
 def _to_refine(prepared: CutSetup, gear: VirtualGear, places: list[int]) -> int | None:

@@ -1,9 +1,10 @@
 """The flank that is left: at each of its points the least of what single gashes leave, (30.5).
 
-Which gash, which turn of the table: the line of action says when an ideal hob touches there; the gashes and turns next
-to that are tried, so many that a further one could only cut if the errors were larger than they are. Where the edge of
-such a pass crosses the foot of the point is a root of (30.6) in h and τ, found by Newton's method for all points and
-passes in one call.
+Which gash, which turn of the table: the line of action says when an ideal hob touches there, and the second derivatives
+of δ say which gash leaves the least at the turns of the table next to that: on a helical gear one that touches at
+another height of the profile. So many gashes and turns are tried that a further one could only cut if the errors were
+larger than they are. Where the edge of such a pass crosses the foot of the point is a root of (30.6) in h and τ, found
+by Newton's method for all points and passes in one call.
 """
 
 from __future__ import annotations
@@ -108,19 +109,21 @@ class Cut:
         """How many gashes and turns of the table to either side can leave less than their neighbors.
 
         A pass that is so many gashes or turns off leaves the ridge more, which grows with the square of that; it can be
-        the least only if the errors change by as much until there.
+        the least only if the errors change by as much until there, or, of another turn, if its gashes come half way
+        between those of the nearest turn.
         """
         job, gear = self.job, self.job.gear
         (flat,) = evaluate("generating_flat", 0.5 * longest, job.hob.starts, gear.teeth, job.hob.gashes)
-        shape = (0.0, job.hob.diameter, gear.teeth, gear.module, gear.alpha, gear.beta)
-        (mark,) = evaluate("feed_mark", job.feed, *shape)
+        mark = job.feed_mark(0.5 * longest)
         away = np.arange(MOST + 1.0)
         gains = [
             change - 4 * ridge * np.maximum(away - 0.5, 0.0) ** 2
             for change, ridge in zip(self.errors.variation(away), (flat, mark), strict=True)
         ]
+        gains[1] += flat
         by_gash, by_turn = (
-            1 + int(np.flatnonzero(own + other.max() >= 0).max(initial=0)) for own, other in (gains, gains[::-1])
+            1 + int(np.flatnonzero(own + other >= 0).max(initial=0))
+            for own, other in ((gains[0], gains[1].max() - flat), (gains[1], gains[0].max()))
         )
         return min(by_gash, MOST), min(by_turn, MOST)
 
@@ -129,24 +132,40 @@ class Cut:
     ) -> np.ndarray:
         job = self.job
         on_gear, edge, tau, thread = job.contact(side, length)
-        hob, teeth = job.hob, job.gear.teeth
+        hob, teeth, travel = job.hob, job.gear.teeth, job.travel_per_rad
+        form, slope = ridge_form()(
+            np.column_stack([edge, tau, thread]), np.array([travel]), np.array(job.pair(side), float)
+        )
         # the turn of the hob, and of the table, at which an ideal hob touches there
-        psi = (height - on_gear - job.start_height) / job.travel_per_rad
+        psi = (height - on_gear - job.start_height) / travel
         first = hob.sign * space
         turned = np.rint(((psi - tau + thread) / TURN * hob.starts - first) / teeth)
         nearby = turned[:, None] + np.arange(-turns, turns + 1)
         ridge = (first[:, None] + teeth * nearby).astype(np.int64)  # R of (30.2)
-        gash = np.rint(hob.gashes * (ridge / hob.starts - (thread / TURN)[:, None]))
+        nominal = TURN / hob.starts * ridge - thread[:, None]  # turn of a gash that would touch at this length
+        too_high = travel * (nominal + tau[:, None] - psi[:, None])
+        best = nominal + _least_along(form, travel)[:, None] * too_high
+        gash = np.rint(hob.gashes / TURN * best)
         gash = (gash[:, :, None] + np.arange(-gashes, gashes + 1)).astype(np.int64)
         at = (ridge[:, :, None] * hob.gashes - gash * hob.starts) * (TURN / (hob.gashes * hob.starts))
         shape = at.shape
+        turn = gash * (TURN / hob.gashes)
+        moved = np.stack([at - thread[:, None, None], travel * (turn + tau[:, None, None] - psi[:, None, None])])
+        begin = np.stack([edge, tau])[:, :, None, None] + np.einsum("nij,jnrg->inrg", slope, moved)
         passes = _Passes(
             side,
-            (gash * (TURN / hob.gashes)).ravel(),
+            turn.ravel(),
             at.ravel(),
-            *(np.broadcast_to(value[:, None, None], shape).ravel() for value in (length, height, edge, tau)),
+            *(np.broadcast_to(value[:, None, None], shape).ravel() for value in (length, height)),
+            *(start.ravel() for start in begin),
         )
         return passes.solve(job, self.errors, shape[1] * shape[2]).reshape(len(space), -1).min(axis=1)
+
+
+def _least_along(form: np.ndarray, travel: float) -> np.ndarray:
+    """By how much the hob turns (n,), per mm that it is too high, until it leaves the least: H x along (-1, v)."""
+    by_thread, both, by_height = form[:, 0, 0], form[:, 0, 1], form[:, 1, 1]
+    return (both - travel * by_height) / (by_thread - 2 * travel * both + travel**2 * by_height)
 
 
 @dataclass(frozen=True)
@@ -232,3 +251,24 @@ def newton_step() -> Points:
     return Points(
         ca.Function("hobbing_newton", [unknown, target, given, travel, pair], [step, delta, miss]), shared=(3, 4)
     )
+
+
+@cache
+def ridge_form() -> Points:
+    """What a pass leaves next to where it touches: arguments h, τ and ϑ of the contact, v, PAIR.
+
+    Results: H (2, 2), by which it leaves xᵀ H x/2 at a foot that it passes turned by ϑ and too high by Z, x = (ϑ, Z),
+    and by how much h and τ of the edge that crosses the foot change with x.
+    """
+    rule = kernel("hobbed_deviation")
+    contact, high, travel, pair = (ca.SX.sym(name, size) for name, size in zip("chvp", (3, 1, 1, 10), strict=True))
+    none = ca.SX.zeros(3)
+    place = (contact[0], 0, contact[1], contact[2], travel, 0, none)
+    foot, height, delta = rule.function(*place, *ca.vertsplit(pair))
+    moves = ca.vertcat(contact, high)
+    slope = ca.jacobian(ca.vertcat(foot, height + high), moves)
+    follow = -ca.solve(slope[:, :2], slope[:, 2:])
+    along = ca.vertcat(follow, ca.SX.eye(2))
+    # without derivatives of the foot: δ has none of the first order where it touches
+    form = along.T @ ca.hessian(delta, moves)[0] @ along
+    return Points(ca.Function("hobbing_ridge", [contact, travel, pair], [form, follow]), shared=(1, 2))

@@ -55,6 +55,11 @@ class CutSetup:
         """Gear, hob and feed."""
         return self.train.job
 
+    @property
+    def hob_length(self) -> float:
+        """How much of the hob's length cuts the flanks that are measured [mm]."""
+        return self.job.generating_length(float(self.where.profile[0]), float(self.where.profile[-1]))
+
 
 def setup(
     machine: HobbingMachine,
@@ -95,7 +100,13 @@ def setup(
             f"{tool.starts} start{'s' * (tool.starts > 1)}"
         )
     train = DriveTrain(machine, job, planned.ratio, rule, planned.rpm, seconds)
-    return CutSetup(train, layout(job), chosen.name, chosen.diameter is None)
+    found = CutSetup(train, layout(job), chosen.name, chosen.diameter is None)
+    if chosen.length is not None and chosen.length < found.hob_length:
+        raise InputError(
+            f"{machine.name}: hob {chosen.name}: length = {chosen.length:g}: the flanks of this gear need "
+            f"{found.hob_length:.1f} mm of it"
+        )
+    return found
 
 
 def hob_tool(hob: Hob, starts: int, sign: int) -> HobTool:
@@ -120,11 +131,9 @@ def cut_and_inspect(cut: CutSetup, rule: Rule, progress: Callable[[int], object]
 
 def ridges(job: HobbingJob) -> tuple[float, float]:
     """Height of the ridges between flats and between feed marks at the reference cylinder [mm] (30.9, 30.10)."""
-    gear, hob = job.gear, job.hob
     length = job.reference_diameter / 2 * math.sin(job.transverse[1])
-    (flat,) = evaluate("generating_flat", length, hob.starts, gear.teeth, hob.gashes)
-    (mark,) = evaluate("feed_mark", job.feed, 0.0, hob.diameter, gear.teeth, gear.module, gear.alpha, gear.beta)
-    return flat, mark
+    (flat,) = evaluate("generating_flat", length, job.hob.starts, job.gear.teeth, job.hob.gashes)
+    return flat, job.feed_mark(length)
 
 
 def blame(

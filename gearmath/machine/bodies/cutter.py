@@ -129,7 +129,7 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
     height = max(spec.blade_profile_height for spec in own.values())
     if len(flanks) == 1 and space is None:
         spec = own[flanks[0]]
-        angle = math.radians(spec.blade_pressure_angle)
+        angle = spec.alpha
         return one_blade(spec.blade_point_radius, angle, SIDES[flanks[0]], spec.blade_profile_height)
     if len(flanks) == 1 and space is not None:
         (flank,) = flanks
@@ -167,7 +167,7 @@ def _profile(sections: dict[str, Section], spec: Flank, side: int) -> Profile:
         return Profile(lowest.point_radius, lowest.pressure_angle, **rounded)
     return Profile(
         spec.blade_point_radius,
-        math.radians(spec.blade_pressure_angle),
+        spec.alpha,
         1 / lowest.arc[2],
         spec.blade_reference_height,
         **rounded,

@@ -32,7 +32,7 @@ def work_profiles(member: Member, fixture: Fixture) -> dict[str, np.ndarray]:
         for end in (0.0, 1.0)
         for edge in (0.0, 1.0)
     }
-    delta = math.radians(member.blank.pitch_angle)
+    delta = member.blank.delta
     inward = np.array([math.sin(delta), -math.cos(delta)])  # along the end faces, away from the tip
     below = member.blank.clearance + _UNDER_ROOT
     toe, heel = (corners[end, 0.0] + below * inward for end in (0.0, 1.0))

@@ -26,7 +26,7 @@ class SpaceBody:
     def __init__(self, member: Member, name: str) -> None:
         space = tooth_space(member, name, _COLUMNS)
         low, high = space.ordered
-        gamma_f, gamma_a = (math.radians(angle) for angle in (member.blank.root_angle, member.blank.face_angle))
+        gamma_f, gamma_a = member.blank.delta_f, member.blank.delta_a
         parts = [_flank(low), _flank(high), _bridge(low.point[-1], high.point[-1], gamma_f)]
         parts.append(_bridge(turned(high.point[0], -space.pitch), low.point[0], gamma_a))
         parts.append(_bridge(high.point[0], turned(low.point[0], space.pitch), gamma_a))
@@ -34,7 +34,7 @@ class SpaceBody:
         self.normal = np.concatenate([normal for _, normal in parts])
         self.pitch = space.pitch
         self.teeth = member.teeth
-        self._cone = math.radians(member.blank.pitch_angle)
+        self._cone = member.blank.delta
         self._distance, self._middle = self._middle_line(space)
         self._spacing = 0.75 * float(np.linalg.norm(np.diff(low.point[0], axis=0), axis=1).max())
 

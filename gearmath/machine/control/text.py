@@ -31,7 +31,7 @@ _SKIP = re.compile(r"^[ \t]*/", re.MULTILINE)
 
 def is_for_linuxcnc(text: str) -> bool:
     """Whether the head of a program says that it is for LinuxCNC."""
-    return _FOR_LINUXCNC.search(text) is not None
+    return "LinuxCNC" in text and _FOR_LINUXCNC.search(text) is not None
 
 
 def program_text(path: Path) -> str:

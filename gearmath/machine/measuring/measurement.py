@@ -33,7 +33,7 @@ def measure_member(true: FlankFile, member: Member, name: str, shop: SimulatedMa
     """
     file = _in_order(true, member)
     nominal = file.point - file.deviation[:, None] * file.normal
-    place = _work_axis(file, member, name), math.radians(member.blank.root_angle), 0.0, np.zeros(3), np.zeros(3)
+    place = _work_axis(file, member, name), member.blank.delta_f, 0.0, np.zeros(3), np.zeros(3)
     metal, _ = mounted(file.point, file.normal, shop.measuring_clamp(name))
     (axes,) = kernel("probe_axes")(metal, *place)
     axes[:, :3] += np.linspace(0.0, 1.0, len(file))[:, None] * shop.measuring.drift.vector

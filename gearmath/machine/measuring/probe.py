@@ -37,7 +37,7 @@ class ProbeMachine:
     """The machine with a member on its table and a probe in its spindle: what :func:`run_program` takes as a probe.
 
     ``stock`` is the metal that flank and tooth have too much, at least ``lowest``; its slope turns the normal of a
-    flank, which is left out: at 2 um per mm it would move a touch by some nm. ``seat`` says how the member sits on the
+    flank, which is left out: at 2 um per mm it would move a touch by some nm. ``seat`` is its clamping on the
     work axis. ``touches`` keeps the centres of the tip in the member.
     """
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Self
 
 import casadi as ca
@@ -51,9 +51,9 @@ _FRACTIONS = np.array([-0.3, -0.07, *np.linspace(0.0, 1.0, 9), 1.07, 1.3])
 _LONG, _SOME, _INNER = math.radians(0.7), 15, np.linspace(0.1, 0.9, 9)
 #: A point that the exact path comes this near to, or nearer, is still one of the flank. [mm]
 _UNTOUCHED = 1e-5
-#: So many of the lowest and of the highest points of a block are looked at twice.
+#: So many of the lowest and of the highest points of a block are refined.
 _REFINED = 40
-#: What is looked at may be less than what lies between by this factor.
+#: Safety factor between samples: what lies between them may be more than what they show.
 _BETWEEN = 0.975
 #: A block is long enough when it uses this part of the tolerance; no block rolls further than this [rad].
 _USED, _LONGEST = 0.96, math.radians(3.0)
@@ -195,7 +195,7 @@ class ExactPass:
         """Smallest distance of entry (n,) within a block: Newton from the contact on the exact path.
 
         What is left of the slope after a step is taken off as if the curvature held: t - t'²/(2 t''). The second step
-        is made only where the first one shows the extremes, until these are among what was looked at twice.
+        is made only where the first one shows the extremes, until these are among those that were refined.
         """
         s = np.clip((self.theta[chosen] - start) / (end - start), 0.0, 1.0)
         at_contact, smallest, change = self._step(block, s, chosen)
@@ -236,9 +236,12 @@ def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]
 def flank_curve(
     member: Member, flank: str, up: float | None = None, across: float | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``."""
-    share = np.linspace(0.0, 1.0, _COLUMNS)
-    place = (share if across is None else np.full(_COLUMNS, across), share if up is None else np.full(_COLUMNS, up))
+    """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``.
+
+    Up the tooth they begin as deep as the blade reaches, where the foot of the flank ends.
+    """
+    along, depth = np.linspace(0.0, 1.0, _COLUMNS), np.linspace(-_DEEP, 1.0, _COLUMNS)
+    place = (along if across is None else np.full(_COLUMNS, across), depth if up is None else np.full(_COLUMNS, up))
     axial, radial = kernel("flank_place")(member.blank.vector, *place)
     return flank_row(member, flank, Grid(axial[None], radial[None]))
 
@@ -273,7 +276,7 @@ def flank_row(member: Member, flank: str, grid: Grid) -> tuple[np.ndarray, np.nd
     u = points.contact[:, 0]
     if section.arc is None:
         on_blade = (u > section.lower + _TIP) & (u < section.upper)
-        blade = np.broadcast_to([spec.blade_point_radius, math.radians(spec.blade_pressure_angle)], (len(u), 2))
+        blade = np.broadcast_to([spec.blade_point_radius, spec.alpha], (len(u), 2))
     else:
         on_blade = (u > section.lower) & (u < section.upper)
         blade = np.column_stack(kernel("touching_blade")(u, np.array(section.arc), side))
@@ -305,8 +308,17 @@ def roll_nodes(
     Of that, ``rounding`` [mm] is left for the increments of the control, but never more than half.
     Raises InputError for a tolerance out of range.
     """
+    offset = (0.0, 0.0, 0.0) if pivot_offset is None else tuple(map(float, pivot_offset))
+    return _roll_nodes(member, cut, tolerance, pivot_height, offset, rounding).copy()
+
+
+@lru_cache(maxsize=64)
+def _roll_nodes(
+    member: Member, cut: Cut, tolerance: float, pivot_height: float, pivot_offset: tuple[float, ...], rounding: float
+) -> np.ndarray:
+    """They are asked for again by whatever plans the same pass again: another space, a sheet, a settings file."""
     member = on_one_machine(member, cut)
-    exact = ExactPass.of(member, cut, pivot_height, np.zeros(3) if pivot_offset is None else pivot_offset)
+    exact = ExactPass.of(member, cut, pivot_height, np.array(pivot_offset))
     return fewest_nodes(exact, roll_range(member, cut), tolerance, rounding, _LONGEST)
 
 

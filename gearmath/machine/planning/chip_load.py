@@ -66,7 +66,7 @@ def _load(member: Member, flank: str, machine: MillingMachine, one: Pass, rpm: f
         down, period_down = np.array([[0.0, 0.0, plunge_feed / 60]]), period[:1]
     else:
         down, period_down = down[~rolling], period[~rolling]
-    angle, side = math.radians(spec.blade_pressure_angle), SIDES[flank]
+    angle, side = spec.alpha, SIDES[flank]
     roll = None
     if rolling.any():
         passing = _passing(member, flank, machine, one, index)

@@ -258,7 +258,7 @@ def plunge_lift(member: Member) -> float:
 
 def _flattest(member: Member, cut: Cut) -> float:
     """The smaller pressure angle [rad] of the blades of a pass."""
-    return min(math.radians(member.flank(flank).blade_pressure_angle) for flank in cut.flanks)
+    return min(member.flank(flank).alpha for flank in cut.flanks)
 
 
 def _check_motions(member: Member, name: str, cut: Cut) -> None:

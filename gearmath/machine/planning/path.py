@@ -103,7 +103,7 @@ def below_the_flank(member: Member, flank: str, across: np.ndarray) -> Iterator[
     if spec.blade_edge_radius == 0.0:
         spec = spec.model_copy(update={"blade_edge_radius": SHARP_EDGE})
     how = cut_generation_of(member, flank)
-    delta = math.radians(member.blank.pitch_angle)
+    delta = member.blank.delta
     direction = (math.cos(delta), math.sin(delta))
     axial, radial = kernel("flank_place")(member.blank.vector, across, np.full(len(across), 0.5))
     distance = axial * direction[0] + radial * direction[1]

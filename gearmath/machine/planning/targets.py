@@ -116,6 +116,6 @@ def targets_of_space(
     positions = []
     for distance in (standoff, np.zeros(len(row)), np.full(len(row), -calibration.overtravel)):
         (tip,) = kernel("probe_target")(points.point, points.normal, r, distance)
-        positions.append(tip_positions(tip, A, math.radians(member.blank.root_angle), machine, calibration))
+        positions.append(tip_positions(tip, A, member.blank.delta_f, machine, calibration))
     n = len(row)
     return Targets(np.full(n, flank), np.zeros(n, dtype=int), row, col, *positions)

@@ -7,7 +7,6 @@ space it moves at a height that clears the whole member at every position of A.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -30,7 +29,7 @@ def clear_height(member: Member, machine: MillingMachine, calibration: Calibrati
     """Z [mm] at which the tip clears the member at every A, with B at the root angle."""
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 1.0]), np.ones(2))
     tips = np.stack([radial, np.zeros(2), axial], axis=1)
-    here = tip_positions(tips, np.zeros(2), math.radians(member.blank.root_angle), machine, calibration)
+    here = tip_positions(tips, np.zeros(2), member.blank.delta_f, machine, calibration)
     return float(here[:, 2].max()) + calibration.tip_radius + CLEARANCE
 
 

@@ -159,6 +159,20 @@ def _rows(name: str) -> Kernel:
     return with_gradient(kernel(name), ("tip_radius", "tip_offset", "lobing"))
 
 
+def calibrate_tip(touches: CalibrationTouches, before: Calibration, lobing: bool = False, source: str = "") -> Tip:
+    """The tip from its touches on the sphere or, where there are none, in the ring; ``source`` is the file of before.
+
+    Raises InputError where neither was touched, or lobes are wanted of touches in the ring.
+    """
+    if before.sphere is not None and (touches.target == SPHERE).any():
+        return calibrate_on_sphere(touches, before.sphere, before, lobing)
+    if lobing:
+        raise InputError("--lobing needs touches on the sphere; there are none")
+    if before.ring is not None:
+        return calibrate_on_ring(touches, before.ring, before)
+    raise InputError(f"{source} has neither the ring nor the sphere that was touched")
+
+
 def with_gradient(of: Kernel, unknowns: tuple[str, ...]) -> Kernel:
     """Kernel: what a kernel with one output says, and its derivatives by some of its inputs, one after the other."""
     symbols = {quantity.name: ca.SX.sym(quantity.name, max(quantity.size, 1)) for quantity in of.inputs}

@@ -113,7 +113,7 @@ def _basis(member: Member, axial: np.ndarray, radial: np.ndarray) -> ca.Function
     """z_w, r_w -> the functions of the spline (1,m) over a grid of places (rows, columns)."""
     rows, columns = axial.shape
     point = np.stack([radial.ravel(), 0 * radial.ravel(), axial.ravel()], axis=1)
-    delta = math.radians(member.blank.pitch_angle)
+    delta = member.blank.delta
     along, depth = kernel("root_place")(point, delta)
     z, r = ca.SX.sym("z"), ca.SX.sym("r")
     place = kernel("root_place").function(ca.vertcat(r, 0, z), delta)

@@ -54,7 +54,7 @@ def conjugate_places(
     none.
     """
     found = ease_off.conjugate_places(member, mate, gear_set.shaft_angle, point, normal)
-    delta, mean = np.radians(mate.blank.pitch_angle), mate.blank.mean_cone_distance
+    delta, mean = mate.blank.delta, mate.blank.mean_cone_distance
     away = np.hypot(found.axial - mean * np.cos(delta), found.radial - mean * np.sin(delta))
     away = np.where(np.isfinite(away), away, np.inf)
     if not (away <= _FARTHEST * mate.blank.face_width).all():
@@ -78,7 +78,7 @@ def _interpolated(mate: Member, known: Grid, deviation: np.ndarray, wanted: Grid
 def _scaled(mate: Member, grid: Grid) -> np.ndarray:
     """Places as parts of face width and depth (n,2), along and across the pitch cone, so that both count alike."""
     points = np.stack([grid.radial.ravel(), 0 * grid.radial.ravel(), grid.axial.ravel()], axis=1)
-    along, down = kernel("root_place")(points, np.radians(mate.blank.pitch_angle))
+    along, down = kernel("root_place")(points, mate.blank.delta)
     depth = mate.blank.mean_addendum + mate.blank.mean_dedendum
     return np.stack([(along - mate.blank.mean_cone_distance) / mate.blank.face_width, down / depth], axis=1)
 

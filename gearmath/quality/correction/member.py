@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearmath.bevel.identify.blade import blade_curve, nominal_curvature
 from gearmath.bevel.identify.compensation import identify
 from gearmath.bevel.identify.flank_target import FlankTarget, located
 from gearmath.bevel.identify.identification import Identification
@@ -25,7 +26,7 @@ from gearmath.quality.correction.checks import check_determined, made_worse, ref
 from gearmath.quality.correction.fit import CorrectionFit, changed_settings, without_shift
 from gearmath.quality.correction.own_index import LEAST_OFF, near_the_median, teeth_as_indexed_on_average
 from gearmath.quality.correction.representative import representative_tooth
-from gearmath.quality.correction.target import blade_curve, flank_target, nominal_curvature
+from gearmath.quality.correction.target import flank_target
 from gearmath.quality.correction.unknown_rotation import UnknownRotation, rotation_columns
 from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.pitch import evaluate_pitch, index_correction
@@ -192,7 +193,7 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
     full = representative_tooth(measured, found[0].flank)
     # the settings put right where the others stand, not the tooth that was measured in full
     others = np.delete(turn, full % member.teeth)
-    radius = member.blank.mean_cone_distance * np.sin(np.radians(member.blank.pitch_angle))
+    radius = member.blank.mean_cone_distance * np.sin(member.blank.delta)
     return before + turn - others[near_the_median(others, LEAST_OFF / radius)].mean()
 
 

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from gearmath.bevel.flank import solve_flank
 from gearmath.bevel.grid import file_grid
+from gearmath.bevel.identify.blade import blade_curve, by_foot
 from gearmath.bevel.identify.flank_target import FlankTarget
 from gearmath.bevel.identify.root_line import root_line
 from gearmath.bevel.method import cut_generation_of
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import turned
 from gearmath.errors import InputError
-from gearmath.kernels import kernel
 from gearmath.quality.correction.representative import representative_tooth
 from gearmath.quality.evaluation.pitch import reference_point
 from gearmath.quality.evaluation.topography import grid_shape, local_coordinates
-from gearmath.specs.bevel_set import Flank, Member
+from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
 
 #: Points of the file and of the set must agree this well, or the file belongs to another set. [mm]
@@ -87,26 +85,6 @@ def target_of(
         used,
         FlankPoints(nominal.contact[~used], nominal.point[~used], nominal.normal[~used]),
     )
-
-
-def blade_curve(spec: Flank) -> tuple[float, float]:
-    """Curvature [1/mm] of the blade of a flank, zero where it is straight, and its reference height [mm]."""
-    return 0.0 if spec.blade_spheric_radius is None else 1 / spec.blade_spheric_radius, spec.blade_reference_height
-
-
-def nominal_curvature(spec: Flank) -> float:
-    """Curvature [1/mm] of the blade that the nominal flank is cut by."""
-    return 0.0 if spec.nominal_spheric_radius is None else 1 / spec.nominal_spheric_radius
-
-
-def by_foot(spec: Flank, nominal: FlankPoints) -> FlankPoints:
-    """Points of a flank with the height of the foot (10.9) as the blade parameter, as the kernels on a line take it."""
-    if spec.nominal_spheric_radius is None:
-        return nominal
-    (foot,) = kernel("arc_foot")(
-        nominal.contact[:, 0], spec.nominal.vector[-1], spec.nominal_spheric_radius, spec.blade_reference_height
-    )
-    return replace(nominal, contact=np.column_stack([foot, nominal.contact[:, 1:]]))
 
 
 def _check_grid(flank: str, points: FlankFile, rows: int, columns: int) -> None:

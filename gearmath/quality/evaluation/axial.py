@@ -83,6 +83,32 @@ def axial_shift(file: FlankFile, member: Member, name: str, rows: NominalRows, c
     return Axial(shift, uncertainty, share, explains, together)
 
 
+@dataclass(frozen=True)
+class Explained:
+    """How much of a column is in the deviations of a file, and what is left of their squares [mm²].
+
+    ``of_form`` and ``left_of_form`` with each flank turned by itself, the others with both turned alike.
+    """
+
+    of_form: float
+    left_of_form: float
+    together: float
+    left: float
+
+
+def explained_by(column: np.ndarray, file: FlankFile, columns: np.ndarray) -> Explained:
+    """What a column (n,) alone explains of a file; ``columns`` (n,6) are those of (18.2)."""
+    used = np.isfinite(file.deviation)
+    values, lever, flank, column = file.deviation[used], columns[used, 5], file.flank[used], column[used]
+    found = []
+    for turning in (np.stack([np.where(flank == each, lever, 0.0) for each in FLANKS], axis=1), lever[:, None]):
+        own = column - _projected(turning, column)
+        rest = values - _projected(np.hstack([turning, column[:, None]]), values)
+        size = float(own @ own)
+        found += [float(own @ values) / size if size > 1e-12 * float(column @ column) else 0.0, float(rest @ rest)]
+    return Explained(*found)
+
+
 def _by_settings(
     file: FlankFile, member: Member, name: str, rows: NominalRows, used: np.ndarray, axial: np.ndarray
 ) -> float | None:

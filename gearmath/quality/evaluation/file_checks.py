@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from gearmath.errors import InputError
+from gearmath.quality.evaluation.digits import file_resolution
 from gearmath.quality.evaluation.nominal import NominalRows, nominal_rows
 from gearmath.quality.evaluation.pitch import reference_point
 from gearmath.quality.evaluation.topography import grid_shape
@@ -97,7 +98,9 @@ def _shown(vector: np.ndarray) -> str:
 
 
 def _factor(file: FlankFile, along: np.ndarray) -> str:
-    """What is wrong with the deviations of nearly all points, where one factor says it; else nothing."""
+    """What is wrong with the deviations of nearly all points, where one factor or their digits say it; else nothing."""
+    if (step := file_resolution(file)) and np.nanmax(np.abs(along - file.deviation)) <= step:
+        return f": they are rounded to {step * 1000:g} um, which is too coarse"
     large = np.abs(along) > 2 * SAME_DEVIATION
     ratio = file.deviation[large & np.isfinite(file.deviation)] / along[large & np.isfinite(file.deviation)]
     words = {

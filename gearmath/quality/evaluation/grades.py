@@ -19,15 +19,20 @@ def grade_member(
     runout: Runout | None,
     closing: Closing,
     uncertainties: Mapping[str, float],
+    doubt: str | None = None,
+    rounded: float = 0.0,
 ) -> Verdict | None:
     """The grade of pitch and runout, of what is known of every tooth; None where pitch was not measured.
 
     There is none where a drift that was taken out is larger than the tolerance of the grade, none of a runout that
     noise of the points alone makes as large, and none of a figure whose standard uncertainty (``uncertainties`` of the
-    pitch of each flank [mm]) is larger than the step to the next grade.
+    pitch of each flank [mm]) is larger than the step to the next grade. There is none at all where ``doubt`` says why,
+    and none of a figure whose step to the next grade is less than that to which the file is ``rounded`` [mm].
     """
     if not pitches:
         return None
+    if doubt is not None:
+        return judge(member, name, {}, dict.fromkeys(("f_pt", "F_p", "F_r"), doubt))
     whole = {flank: pitch for flank, pitch in pitches.items() if pitch.withheld is None}
     of_flanks = {flank: {"f_pt": pitch.largest_single, "F_p": pitch.total} for flank, pitch in whole.items()}
     measured, withheld = {}, {}
@@ -58,7 +63,7 @@ def grade_member(
     of_pitch = max((value for value in uncertainties.values() if math.isfinite(value)), default=math.nan)
     unsure = {"f_pt": of_pitch, "F_p": of_pitch, "F_r": math.nan if runout is None else runout.uncertainty}
     for key in tuple(measured):
-        if why := _too_unsure(verdict, key, unsure[key] * 1000):
+        if why := _too_unsure(verdict, key, unsure[key] * 1000) or _too_coarse(verdict, key, rounded * 1000):
             withheld[key] = why
             del measured[key]
             of_flanks = {flank: {k: v for k, v in one.items() if k != key} for flank, one in of_flanks.items()}
@@ -67,16 +72,24 @@ def grade_member(
 
 def _too_unsure(verdict: Verdict, key: str, u: float) -> str:
     """Why a figure of standard uncertainty ``u`` [um] has no grade; nothing where it has one, or u is not known."""
+    words, step = _next_grade(verdict, key)
+    return f"its standard uncertainty of {u:.1f} um is larger than {words}" if u > step else ""
+
+
+def _too_coarse(verdict: Verdict, key: str, rounded: float) -> str:
+    """Why a figure of a file that is rounded to so much [um] has no grade; nothing where it has one."""
+    words, step = _next_grade(verdict, key)
+    return f"the file is rounded to {rounded:g} um, more than {words}" if rounded > step else ""
+
+
+def _next_grade(verdict: Verdict, key: str) -> tuple[str, float]:
+    """The step [um] from the grade of a figure to the next coarser one, in words too; infinite where it has none."""
     grade = verdict.grades.get(key)
-    if grade is None or not math.isfinite(u):
-        return ""
+    if grade is None:
+        return "", math.inf
     fine, coarse = (grade, grade + 1) if grade < GRADES[-1] else (grade - 1, grade)
     step = _tolerance(verdict, key, coarse) - _tolerance(verdict, key, fine)
-    if u <= step:
-        return ""
-    return (
-        f"its standard uncertainty of {u:.1f} um is larger than the step of {step:g} um from grade {fine} to {coarse}"
-    )
+    return f"the step of {step:g} um from grade {fine} to {coarse}", step
 
 
 def _tolerance(verdict: Verdict, key: str, grade: int) -> float:

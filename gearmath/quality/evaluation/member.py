@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.quality.evaluation.closing import Closing, close_run
 from gearmath.quality.evaluation.completeness import cut_off, missing_points, silent_points
+from gearmath.quality.evaluation.digits import file_resolution
 from gearmath.quality.evaluation.drift import MeasuredDrift, untold_drift, without_drift
 from gearmath.quality.evaluation.file_checks import check_belongs, check_phase, check_points
 from gearmath.quality.evaluation.grades import grade_member
@@ -21,7 +21,7 @@ from gearmath.quality.evaluation.pitch import Pitch, evaluate_pitch, pitch_uncer
 from gearmath.quality.evaluation.registration import Registration, register, stated_noise
 from gearmath.quality.evaluation.rotation import Rotation, common_rotation
 from gearmath.quality.evaluation.spaces import Runout, Thickness, evaluate_runout, evaluate_thickness
-from gearmath.quality.evaluation.suspicions import suspicions
+from gearmath.quality.evaluation.suspicions import Suspicions, suspicions
 from gearmath.quality.evaluation.tolerance import Verdict
 from gearmath.quality.evaluation.topography import (
     Orders,
@@ -223,7 +223,7 @@ def evaluate_member(
             remarks += (f"rotation of the work not taken out: {error}",)
     progress(1)
     flanks = as_measured if judged is measured else _flanks(judged, member)
-    angle = math.radians(member.blank.pitch_angle)
+    angle = member.blank.delta
     before = evaluate_runout(measured, member.teeth, angle, noise)
     runout = before if judged is measured else evaluate_runout(judged, member.teeth, angle, noise, taken)
     each_zeroed = file.header["phase_zeroed"].lower() == "true"
@@ -239,11 +239,12 @@ def evaluate_member(
     runout = runout and replace(runout, reason=spaces)
     thickness = thickness and replace(thickness, reason=spaces)
     pitches = {flank: figures.pitch for flank, figures in flanks.items() if figures.pitch is not None}
-    verdict = grade_member(member, name, pitches, runout, closing, pitch_uncertainties(judged, member.teeth, noise))
-    suspected: tuple[str, ...] = ()
+    suspected = Suspicions((), None)
     if not closing.topography_withheld:
         in_full = {flank: figures.topographies for flank, figures in flanks.items()}
         suspected = suspicions(file, judged, member, name, in_full, seat)
+    sure, rounded = pitch_uncertainties(judged, member.teeth, noise), file_resolution(file)
+    verdict = grade_member(member, name, pitches, runout, closing, sure, suspected.no_grade, rounded)
     progress(1)
     return MemberEvaluation(
         name,
@@ -259,8 +260,8 @@ def evaluate_member(
         turn,
         verdict,
         left_out,
-        (*remarks, *suspected),
-        suspected,
+        (*remarks, *suspected.said),
+        suspected.said,
     )
 
 

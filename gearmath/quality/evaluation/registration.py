@@ -1,7 +1,7 @@
 """Registration: how the work was clamped when it was measured, found in its own points, and taken out of them.
 
-The unknown seat (16.6), eccentricity and tilt, is fitted by Gauss-Newton on the exact transform: measured points are
-brought back into the work by (18.1) and judged against the exact nominal surface. Left free, and so never taken for
+The unknown clamping (16.6), eccentricity and tilt, is fitted by Gauss-Newton on the exact transform: measured points
+are brought back into the work by (18.1) and judged against the exact nominal surface. Left free, and so never taken for
 clamping, are the mean deviation of every point of the grid over the teeth (form, settings, axial position) and the
 turning of every tooth (pitch). Of the pitch, the most general model that the points allow is used: every flank of
 every tooth free; both flanks of a space turned together; the same without tilt. Chapter 18 says what each can tell.
@@ -140,11 +140,11 @@ class Registration:
 
 
 def register(file: FlankFile, member: Member, name: str, untold: np.ndarray | None = None) -> Registration:
-    """The seat of a measured member, and its file without it.
+    """The clamping of a measured member, and its file without it.
 
     Points without a deviation are carried along and take no part. ``untold`` (n,q) are patterns that the deviations may
     have besides, such as drift that is not known: they are left free, and stay in. Raises InputError for too few teeth,
-    a single flank, or points that do not tell the eccentricity; ComputationError if no seat explains them.
+    a single flank, or points that do not tell the eccentricity; ComputationError if no clamping explains them.
     """
     rows = nominal_rows(file, member, name)
     check_points(file, rows, member, name)
@@ -193,7 +193,9 @@ def _fit(
         if np.abs(model.columns @ step).max() < _CONVERGED:
             return seat, deviation, asked - model.columns @ step
         seat[found] += step
-    raise ComputationError(f"no seat of the {file.member} explains its points: after {_ITERATIONS} steps it moves on")
+    raise ComputationError(
+        f"no clamping of the {file.member} explains its points: after {_ITERATIONS} steps it moves on"
+    )
 
 
 def _without(file: FlankFile, rows: NominalRows, columns: np.ndarray, seat: np.ndarray, member: Member) -> np.ndarray:

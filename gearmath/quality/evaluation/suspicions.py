@@ -1,7 +1,7 @@
 """What a whole measurement looks like that is no error of the gear: said before any figure and any correction.
 
-A wrong radius of the tip, or a wrong zero, moves all points of both flanks out alike; work that is clamped away from
-its seat along its axis moves them as one setting does; an uncertainty far below the scatter of the points is not that
+A wrong radius of the tip, or a wrong zero, moves all points of both flanks out alike; work that is clamped off
+along its axis moves them as one setting does; an uncertainty far below the scatter of the points is not that
 of this measurement; teeth or flanks that agree to the last digit, where points scatter, were copied. Most of this
 cannot be told from an error of the gear by points alone, so it is said, and nothing is taken out.
 """
@@ -10,13 +10,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
+from gearmath.bevel.check_blank import transverse_module
+from gearmath.bevel.check_mates import BACKLASH
+from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.quality.evaluation.axial import TWIN, axial_shift
+from gearmath.quality.evaluation.axial import TWIN, axial_shift, explained_by
+from gearmath.quality.evaluation.digits import no_measurement, said_of_digits
+from gearmath.quality.evaluation.exchanged import exchanged_lines
 from gearmath.quality.evaluation.nominal import nominal_rows
 from gearmath.quality.evaluation.registration import Registration, stated_noise
+from gearmath.quality.evaluation.rivals import rival_columns
 from gearmath.quality.evaluation.topography import Topography
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
@@ -29,6 +36,9 @@ _LEAST_AXIAL, _SIGNIFICANT, _EXPLAINS = 0.02, 3.0, 0.8
 #: ... or where form and thickness, which other settings change in other proportions, agree on it to this part, the form
 #: by so many standard uncertainties.
 _AGREE, _SURE = 0.3, 4.0
+#: ... and where no error of another setting, and no even offset, explains it as well; those that leave less than so
+#: many times its squares are named.
+_NEARLY = 1.5
 #: Points of a grid that tell fifteen terms of a surface of fourth degree and the noise beside them.
 _LEAST_POINTS = 30
 #: So many times the stated uncertainty is no chance, and less than so much [mm] is rounding of the file.
@@ -41,6 +51,14 @@ _FINE = 0.3
 _LEAST_SAME, _MOST_NAMED = 2, 4
 
 
+@dataclass(frozen=True)
+class Suspicions:
+    """Sentences on a measurement, and why it has no grade; None where nothing of it stands against one."""
+
+    said: tuple[str, ...]
+    no_grade: str | None
+
+
 def suspicions(
     raw: FlankFile,
     file: FlankFile,
@@ -48,28 +66,55 @@ def suspicions(
     name: str,
     flanks: dict[str, tuple[Topography, ...]],
     seat: Registration | None,
-) -> tuple[str, ...]:
-    """Sentences on a measurement: ``raw`` as read, ``file`` without clamping and rotation, ``flanks`` in full."""
-    offset = tuple(_offset(flanks))
-    axial = [] if offset else _axial(_in_full(file, flanks), member, name)
+) -> Suspicions:
+    """What a measurement looks like: ``raw`` as read, ``file`` without clamping and rotation, ``flanks`` in full."""
+    axial = tuple(_axial(_in_full(file, flanks), member, name))
+    offset = () if axial else tuple(_offset(flanks))
+    too_far = _beyond_backlash(file, member, flanks) if offset else None
     scatter = min((_noise(each[0]) for each in flanks.values() if each), default=math.nan)
-    return (*offset, *axial, *_scatter(file, scatter, seat), *_copies(raw, scatter))
+    lines = [line for each in flanks.values() if each for line in exchanged_lines(raw, each[0])]
+    of_points = (*said_of_digits(raw), *lines, *_scatter(file, scatter, seat), *_copies(raw, scatter))
+    said = (*axial, *offset, *([too_far] if too_far else []), *of_points)
+    return Suspicions(said, no_measurement(raw) or too_far)
 
 
 def _offset(flanks: dict[str, tuple[Topography, ...]]) -> Iterator[str]:
     """Whether all points of both flanks are out alike."""
+    found = _even_offset(flanks)
+    if found is not None:
+        yield (
+            f"all points of both flanks stand {found[0] * 1000:+.0f} um out, evenly within {found[1] * 1000:.0f} um: a "
+            "wrong tip radius or zero of the probe does that, a depth of cut, or even stock; check it before a setting "
+            "is corrected for it"
+        )
+
+
+def _even_offset(flanks: dict[str, tuple[Topography, ...]]) -> tuple[float, float] | None:
+    """Offset of all points of both flanks, and how even it is [mm]; None where there is none."""
     firsts = [each[0].deviation for each in flanks.values() if each]
     if len(firsts) != len(FLANKS):
-        return
+        return None
     means = [float(np.nanmean(one)) for one in firsts]
     spread = max(float(np.nanstd(one)) for one in firsts)
     spread = max(spread, abs(means[0] - means[1]) / 2)
     mean = sum(means) / len(means)
-    if abs(mean) >= _LEAST_OFFSET and spread <= _EVEN * abs(mean):
-        yield (
-            f"all points of both flanks stand {mean * 1000:+.0f} um out, evenly within {spread * 1000:.0f} um: a wrong "
-            "tip radius or zero of the probe does that, or even stock; check it before a setting is corrected for it"
-        )
+    return (mean, spread) if abs(mean) >= _LEAST_OFFSET and spread <= _EVEN * abs(mean) else None
+
+
+def _beyond_backlash(file: FlankFile, member: Member, flanks: dict[str, tuple[Topography, ...]]) -> str | None:
+    """Why an even offset is more than a finished pair can have; None where it is not."""
+    found = _even_offset(flanks)
+    if found is None:
+        return None
+    (_, lever) = kernel("flank_turning")(1.0, file.point, file.normal)
+    arcs = [float(np.median(np.abs(lever[file.flank == flank]))) for flank in FLANKS]
+    change, limit = sum(arcs) * abs(found[0]), BACKLASH[1] * transverse_module(member)
+    if change <= limit:
+        return None
+    return (
+        f"that changes the tooth thickness by {change:.3g} mm, more than the backlash of any finished pair, "
+        f"{limit:.3g} mm, {BACKLASH[1]:g} of the module"
+    )
 
 
 def _in_full(file: FlankFile, flanks: dict[str, tuple[Topography, ...]]) -> FlankFile:
@@ -101,10 +146,39 @@ def _axial(file: FlankFile, member: Member, name: str) -> Iterator[str]:
         )
     else:
         return
+    rivals = _rivals(file, member, name, columns, found.explains >= _EXPLAINS)
+    if rivals is None:
+        return
+    also = f", and one of {' or '.join(rivals)} nearly so" if rivals else ""
     yield (
-        f"the work may stand {found.shift * 1000:+.0f} um off its seat along the axis, {why}; an error of {TWIN} looks "
-        "the same: check the seat before a setting is corrected for it"
+        f"the work may be clamped {found.shift * 1000:+.0f} um off along its axis, {why}; an error of {TWIN} looks "
+        f"the same{also}: check the clamping before a setting is corrected for it"
     )
+
+
+def _rivals(file: FlankFile, member: Member, name: str, columns: np.ndarray, by_form: bool) -> list[str] | None:
+    """What explains a file nearly as well as an axial shift, column 2 of (18.2); None where something does better.
+
+    ``by_form``, of the form; else of form and thickness together, where its own sizes agree on both.
+    """
+    axial = explained_by(columns[:, 2], file, columns)
+    near: dict[str, float] = {}
+    try:
+        others = list(rival_columns(file, member, name))
+    except InputError:
+        return None
+    for key, column in others:
+        rival = explained_by(column, file, columns)
+        if by_form:
+            left = rival.left_of_form / axial.left_of_form
+        elif abs(rival.together - rival.of_form) <= _AGREE * abs(rival.together):
+            left = rival.left / axial.left
+        else:
+            continue
+        if left <= 1:
+            return None
+        near[key] = min(left, near.get(key, math.inf))
+    return sorted((key for key, left in near.items() if left <= _NEARLY), key=lambda key: near[key])[:_MOST_NAMED]
 
 
 def _scatter(file: FlankFile, on_grid: float, seat: Registration | None) -> Iterator[str]:

@@ -115,7 +115,7 @@ def gear_data(member: Member, name: str) -> GearData:
     Raises ComputationError where a flank does not reach the mean point.
     """
     blank = member.blank
-    delta, distance = math.radians(blank.pitch_angle), blank.mean_cone_distance
+    delta, distance = blank.delta, blank.mean_cone_distance
     place = Grid(np.array([distance * math.cos(delta)]), np.array([distance * math.sin(delta)]))
     angles, modules = [], []
     for flank in FLANKS:

@@ -283,7 +283,7 @@ def _likeliest_cause(part: PointPart, frame: Frame, gear_set: BevelSet, name: st
 
 def _likely_offset(part: PointPart, frame: Frame, member: Member) -> float | None:
     """The apex offset [mm] at which the points lie on the blank and fit the flank best, None where they fit nowhere."""
-    height = member.blank.mean_cone_distance * math.cos(math.radians(member.blank.pitch_angle))
+    height = member.blank.mean_cone_distance * math.cos(member.blank.delta)
     point = replace(frame, apex_offset=0.0).placed(part.point)
     reach = member.blank.face_width
     start = height - float(np.median(point[:, 2]))

@@ -240,7 +240,7 @@ def _spaces(file: FlankFile, found: MemberEvaluation, member: Member, deviation:
         for rows in (one, other)
         for argument in (deviation[rows.tolist()].T, nominal_points_of(file)[rows].T, file.normal[rows].T)
     ]
-    shift, _ = kernel("ball_shift").function.map(len(one))(*points, math.radians(member.blank.pitch_angle))
+    shift, _ = kernel("ball_shift").function.map(len(one))(*points, member.blank.delta)
     allowances = [
         _by_tooth("flank_allowance", file, rows, deviation, nominal_points_of(file))[0] for rows in (one, other)
     ]

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from gearmath.bevel.identify.blade import blade_curve
 from gearmath.bevel.identify.flank_target import FlankTarget
 from gearmath.bevel.identify.identification import RANK, Identification
 from gearmath.bevel.identify.on_line import flank_on_line
@@ -31,7 +32,7 @@ from gearmath.errors import ComputationError
 from gearmath.kernels import kernel
 from gearmath.quality.correction.member import ROOT_LIMIT, MemberCorrection
 from gearmath.quality.correction.representative import representative_tooth
-from gearmath.quality.correction.target import blade_curve, flank_target
+from gearmath.quality.correction.target import flank_target
 from gearmath.quality.evaluation.topography import grid_shape
 from gearmath.quality.uncertainty.covariance import Covariance, coverage_factor
 from gearmath.quality.uncertainty.figures import Figure

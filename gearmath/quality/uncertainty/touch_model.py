@@ -6,7 +6,6 @@ derivative of equation (22.2) at zero error, by CasADi.
 
 from __future__ import annotations
 
-import math
 from functools import cache
 
 import casadi as ca
@@ -47,7 +46,7 @@ def sensitivities(
     points, opposite = (solve_flank(member, name, each, grid) for each in (flank, _other(flank)))
     (tip,) = kernel("probe_target")(points.point, points.normal, calibration.tip_radius, 0.0)
     (A,) = kernel("space_azimuth")(points.point, opposite.point)
-    axes = tip_positions(tip, A, math.radians(member.blank.root_angle), machine, calibration)
+    axes = tip_positions(tip, A, member.blank.delta_f, machine, calibration)
     n = len(axes)
     slopes = _slopes().map(n)(
         axes.T,

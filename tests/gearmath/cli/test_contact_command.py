@@ -39,7 +39,17 @@ def test_json_has_the_names_of_both_sides(nasa):
                 "transmission_error_arcsec",
                 "gear_cone_distance_mm",
                 "gear_height_mm",
+                "gear_follows_arcsec",
+                "second_derivative",
+                "semi_axes_mm",
+                "path_angle_deg",
             ]
+            assert (row["semi_axes_mm"] is None) == (row["kind"] != "interior")
+
+
+def test_whole_steps_are_whole_numbers_of_degrees(nasa):
+    # of 1 degree, which is no whole number of radians
+    assert {float(at) for at in range(-45, 46)} <= {row["pinion_rotation_deg"] for row in nasa["drive"]["path"]}
 
 
 def test_positions_are_whole_steps_and_changes_of_kind(nasa):

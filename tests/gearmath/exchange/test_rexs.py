@@ -2,55 +2,91 @@
 
 from __future__ import annotations
 
+import math
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import numpy as np
 import pytest
+from annotated_types import Ge, Gt
 
 from gearmath.bevel.tooth import tooth_space
 from gearmath.errors import InputError
 from gearmath.exchange.rexs import read_rexs, write_rexs
-from gearmath.exchange.rexs_names import OWN, right_flank
-from gearmath.specs.bevel_set import FLANKS, BevelSet, load_bevel_set
+from gearmath.exchange.rexs_names import GEAR, MACHINE, OWN, STAGE, TOOL, right_flank
+from gearmath.specs.bevel_set import FLANKS, BevelSet, Blank, Flank, load_bevel_set
 from gearmath.specs.toml import bundled
 
-SETS = ["nasa_tp3096_12x36", "crown_gear_formate_14x39", "crown_gear_hobbed_14x39", "crown_gear_universal_14x39"]
-#: Attributes of REXS 2.0.0 that the data model allows in these components, as far as they are written.
-ALLOWED = {
-    "bevel_stage": {"shaft_angle"},
+SETS = [
+    "nasa_tp3096_12x36",
+    "spiral_7x43",
+    "crown_gear_formate_14x39",
+    "crown_gear_hobbed_14x39",
+    "crown_gear_universal_14x39",
+]
+#: Lower limits in the data model, and whether they are excluded.
+ANY, POSITIVE, NOT_NEGATIVE = (-math.inf, True), (0.0, True), (0.0, False)
+#: The data model of REXS 2.0.0 (rexs_schema_2.0.0.xml of 2026-03-10), as far as it is written: by component the
+#: attributes that it maps to it, with unit, and lower limit (open or not), or the words of an enumeration.
+MODEL = {
+    "bevel_stage": {"shaft_angle": ("deg", POSITIVE)},  # and less than 180
     "bevel_gear": {
-        "number_of_teeth",
-        "spiral_angle_pitch_direction",
-        "pitch_angle",
-        "face_angle",
-        "root_angle",
-        "mean_cone_distance",
-        "face_width",
-        "mean_addendum",
-        "mean_dedendum",
-        "clearance_iso_23509_2025",
-        "pitch_apex_beyond_crossing_point",
+        "number_of_teeth": ("none", POSITIVE),
+        "spiral_angle_pitch_direction": ("none", ("left", "right")),
+        "pitch_angle": ("deg", POSITIVE),
+        "face_angle": ("deg", POSITIVE),
+        "root_angle": ("deg", POSITIVE),
+        "mean_cone_distance": ("mm", POSITIVE),
+        "face_width": ("mm", POSITIVE),
+        "mean_addendum": ("mm", POSITIVE),
+        "mean_dedendum": ("mm", POSITIVE),
+        "clearance_iso_23509_2025": ("mm", NOT_NEGATIVE),
+        "pitch_apex_beyond_crossing_point": ("mm", ANY),
     },
-    "bevel_gear_flank": set(),
+    "bevel_gear_flank": {},
     "bevel_gear_tool": {
-        "blade_point_radius",
-        "blade_pressure_angle",
-        "blade_profile_height",
-        "blade_spheric_radius",
-        "tool_edge_radius_bevel_gear_tool",
+        "blade_point_radius": ("mm", POSITIVE),
+        "blade_pressure_angle": ("deg", NOT_NEGATIVE),
+        "blade_profile_height": ("mm", POSITIVE),
+        "blade_spheric_radius": ("mm", ANY),
+        "tool_edge_radius_bevel_gear_tool": ("mm", POSITIVE),
     },
     "bevel_gear_manufacturing_settings": {
-        "radial_distance",
-        "center_roll_position",
-        "cutter_tilt",
-        "cutter_swivel",
-        "work_offset",
-        "sliding_base",
-        "machine_center_to_crossing_point",
-        "machine_root_angle",
-        "ratio_of_roll",
+        "radial_distance": ("mm", ANY),
+        "center_roll_position": ("deg", ANY),
+        "cutter_tilt": ("deg", ANY),
+        "cutter_swivel": ("deg", ANY),
+        "work_offset": ("mm", ANY),
+        "sliding_base": ("mm", ANY),
+        "machine_center_to_crossing_point": ("mm", ANY),
+        "machine_root_angle": ("deg", ANY),
+        "ratio_of_roll": ("none", NOT_NEGATIVE),
     },
+}
+#: Its relations: roles and the components that may have them, and whether an order is required.
+RELATIONS = {
+    "stage": ({"stage": "bevel_stage", "gear_1": "bevel_gear", "gear_2": "bevel_gear"}, False),
+    "flank": ({"gear": "bevel_gear", "left": "bevel_gear_flank", "right": "bevel_gear_flank"}, False),
+    "manufacturing_step": (
+        {
+            "workpiece": "bevel_gear_flank",
+            "tool": "bevel_gear_tool",
+            "manufacturing_settings": "bevel_gear_manufacturing_settings",
+        },
+        True,
+    ),
+}
+#: Its XSD (rexs-file.xsd): children of an element in their order, attributes that it requires, and what else it knows.
+XSD = {
+    "model": (["relations", "components"], {"version", "applicationId", "applicationVersion", "date"}, set()),
+    "relations": (["relation"], set(), set()),
+    "relation": (["ref"], {"id", "type"}, {"order"}),
+    "ref": ([], {"id", "role"}, {"hint"}),
+    "components": (["component"], set(), set()),
+    "component": (["attribute"], {"id", "type"}, {"name"}),
+    "attribute": (["array"], {"id"}, {"unit"}),
+    "array": (["c"], set(), {"code"}),
+    "c": ([], set(), set()),
 }
 
 
@@ -71,27 +107,75 @@ def test_round_trip_is_exact(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", SETS)
-def test_structure_and_names_are_those_of_the_standard(name: str, tmp_path: Path) -> None:
+def test_file_has_the_structure_that_the_xsd_asks_for(name: str, tmp_path: Path) -> None:
+    write_rexs(tmp_path / "set.rexs", load_bevel_set(bundled(f"{name}.toml")))
+    model = ET.parse(tmp_path / "set.rexs").getroot()
+    assert model.tag == "model"
+    for element in model.iter():
+        order, required, optional = XSD[element.tag]
+        places = [order.index(child.tag) for child in element]
+        assert places == sorted(places)
+        assert required <= set(element.keys()) <= required | optional
+    assert all(len(item) == 0 or not item.text.strip() for item in model.iter("attribute"))
+    for kind in ("relation", "component"):
+        numbers = [int(item.get("id")) for item in model.iter(kind)]
+        assert len(set(numbers)) == len(numbers)
+    assert {ref.get("id") for ref in model.iter("ref")} <= {item.get("id") for item in model.iter("component")}
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_names_units_and_values_are_those_of_the_data_model(name: str, tmp_path: Path) -> None:
     write_rexs(tmp_path / "set.rexs", load_bevel_set(bundled(f"{name}.toml")))
     model = ET.parse(tmp_path / "set.rexs").getroot()
     assert model.get("version") == "2.0.0"
-    assert {"applicationId", "applicationVersion", "date"} <= set(model.keys())
-    assert [child.tag for child in model] == ["relations", "components"]
     components = {item.get("id"): item.get("type") for item in model.iter("component")}
     assert len(components) == 15
     for item in model.iter("component"):
-        foreign = {one.get("id") for one in item if not one.get("id").startswith(OWN)}
-        assert foreign <= ALLOWED[item.get("type")]
-        assert {one.get("unit") for one in item} <= {"mm", "deg", "none"}
+        attributes = [one for one in item if not one.get("id").startswith(OWN)]
+        assert len({one.get("id") for one in item}) == len(item)
+        for one in attributes:
+            unit, allowed = MODEL[item.get("type")][one.get("id")]
+            assert one.get("unit") == unit
+            if isinstance(allowed[0], str):
+                assert one.text in allowed
+                continue
+            least, is_open = allowed
+            value = int(one.text) if one.get("id") == "number_of_teeth" else float(one.text)
+            assert value > least if is_open else value >= least
+        assert all(one.get("id").startswith("custom_") for one in item if one not in attributes)
     relations = [relation.get("type") for relation in model.iter("relation")]
     assert sorted(relations) == ["flank"] * 2 + ["manufacturing_step"] * 4 + ["stage"]
-    roles = {
-        "stage": ("bevel_stage", "bevel_gear", "bevel_gear"),
-        "flank": ("bevel_gear", "bevel_gear_flank", "bevel_gear_flank"),
-        "manufacturing_step": ("bevel_gear_flank", "bevel_gear_tool", "bevel_gear_manufacturing_settings"),
-    }
     for relation in model.iter("relation"):
-        assert tuple(components[ref.get("id")] for ref in relation) == roles[relation.get("type")]
+        roles, ordered = RELATIONS[relation.get("type")]
+        assert {ref.get("role"): components[ref.get("id")] for ref in relation} == roles
+        assert (relation.get("order") is not None) == ordered
+
+
+def test_every_value_that_a_set_may_have_is_one_of_the_data_model() -> None:
+    tables = {
+        "bevel_stage": (STAGE, BevelSet, ""),
+        "bevel_gear": (GEAR, Blank, "blank."),
+        "bevel_gear_manufacturing_settings": (MACHINE, Flank, ""),
+        "bevel_gear_tool": (TOOL, Flank, ""),
+    }
+    compared = 0
+    for component, (names, sheet, before) in tables.items():
+        assert {attribute for attribute, _ in names.values()} == set(MODEL[component])
+        for key, (attribute, unit) in names.items():
+            assert MODEL[component][attribute][0] == unit
+            field = sheet.model_fields.get(key.removeprefix(before))
+            if field is None or key == "hand":
+                continue
+            least, is_open = MODEL[component][attribute][1]
+            own = [
+                (m.gt, True) if isinstance(m, Gt) else (m.ge, False) for m in field.metadata if isinstance(m, Gt | Ge)
+            ]
+            # what is its default is not written: zero stands for a sharp edge
+            own = own or [(-math.inf, True)]
+            assert own[0][0] >= least
+            assert own[0][1] or own[0][0] > least or not is_open or field.default == own[0][0]
+            compared += 1
+    assert compared == 24
 
 
 @pytest.mark.parametrize("name", SETS)

@@ -86,12 +86,12 @@ def test_solid_that_is_read_back_is_closed_valid_and_has_the_volume(read, pinion
 
 
 def distances(shape, points: np.ndarray) -> np.ndarray:
-    """Of points (n,3) from the nearest surface of a shape [mm]."""
+    """Of points (n,3) from the nearest surface of a shape [mm], never too small: from a foot of the CAD kernel."""
     from OCP.Bnd import Bnd_Box
     from OCP.BRep import BRep_Tool
     from OCP.BRepBndLib import BRepBndLib
-    from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
     from OCP.gp import gp_Pnt
+    from OCP.ShapeAnalysis import ShapeAnalysis_Surface
     from OCP.TopAbs import TopAbs_ShapeEnum
     from OCP.TopExp import TopExp_Explorer
     from OCP.TopoDS import TopoDS
@@ -101,22 +101,24 @@ def distances(shape, points: np.ndarray) -> np.ndarray:
         face, box = TopoDS.Face(explorer.Current()), Bnd_Box()
         BRepBndLib.Add_s(face, box)
         box.Enlarge(0.001)
-        faces.append((box, BRep_Tool.Surface_s(face)))
+        faces.append((box, ShapeAnalysis_Surface(BRep_Tool.Surface_s(face))))
         explorer.Next()
-    found = []
-    for point in points:
-        at = gp_Pnt(*map(float, point))
-        near = [surface for box, surface in faces if not box.IsOut(at)]
-        found.append(min(GeomAPI_ProjectPointOnSurf(at, surface).LowerDistance() for surface in near))
-    return np.array(found)
+
+    def gap(surface, at) -> float:
+        surface.ValueOfUV(at, 1e-9)
+        return surface.Gap()
+
+    places = [gp_Pnt(*map(float, point)) for point in points]
+    return np.array([min(gap(surface, at) for box, surface in faces if not box.IsOut(at)) for at in places])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("part", "most"), [("main", 0.05e-3), ("edge", 1e-3)])
-def test_random_points_of_flank_and_fillet_lie_on_the_surface(part: str, most: float, read, gear_set: BevelSet) -> None:
-    member, n = gear_set.pinion, 250
+def test_a_thousand_random_points_lie_on_the_surface(part: str, most: float, read, gear_set: BevelSet) -> None:
+    member, n = gear_set.pinion, 1000
     blank, delta = member.blank, math.radians(member.blank.pitch_angle)
     space = tooth_space(member, "pinion", 21)
+    points = []
     for surface in (space.concave, space.convex):
         how = generation_of(member, surface.flank)
         # a blade without edge radius has the smallest that an edge has
@@ -124,14 +126,15 @@ def test_random_points_of_flank_and_fillet_lie_on_the_surface(part: str, most: f
         sections = blade_sections(blade, SIDES[surface.flank])
         section = sections[part]
         ends = sorted((section.lower, section.upper))
-        distance = blank.mean_cone_distance + blank.face_width * RNG.uniform(-0.499, 0.499, n)
-        u = RNG.uniform(*ends, n)
-        start = np.tile(_start(how, sections["main"], delta, blank.mean_cone_distance), (n, 1))
+        distance = blank.mean_cone_distance + blank.face_width * RNG.uniform(-0.499, 0.499, 2 * n)
+        u = RNG.uniform(*ends, 2 * n)
+        start = np.tile(_start(how, sections["main"], delta, blank.mean_cone_distance), (2 * n, 1))
         start[:, 0] = u
         found = solve_curve(how, section, u, (math.cos(delta), math.sin(delta)), distance, start)
         good = found.converged & (_height(found.point, delta) < _tip(member, distance))
-        assert good.sum() > n / 4
-        assert distances(read, found.point[good]).max() < most
+        points.append(found.point[good][: n // 2])
+    assert [len(one) for one in points] == [n // 2] * 2
+    assert distances(read, np.concatenate(points)).max() < most
 
 
 def _start(how, section, delta: float, distance: float) -> np.ndarray:

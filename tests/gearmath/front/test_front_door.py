@@ -128,7 +128,7 @@ def test_the_names_for_type_checkers_are_the_names_at_run_time() -> None:
     assert typed == set(gm.__all__)
 
 
-@pytest.mark.parametrize("module", ["sets", "machines", "gearbox"])
+@pytest.mark.parametrize("module", ["sets", "machines", "gearbox", "design", "probing"])
 def test_the_examples_of_the_front_door_are_true(module: str) -> None:
     result = doctest.testmod(importlib.import_module(f"gearmath.front.{module}"))
     assert result.attempted > 0

@@ -23,7 +23,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Locator, Page, TimeoutError, expect, sync_playwright
 
 from tests.gearmath.control.live.conftest import PASSWORD, TEN, Live, _live, live  # noqa: F401
 from tests.gearmath.hmi.stored import own_runs, stored_runs  # noqa: F401
@@ -40,6 +40,10 @@ OF_THE_BROWSER = {
     "www.google.com",
     "clients2.google.com",
 }
+#: What the cursor is on: the words of a button, the label of a field.
+_ON = """() => { const on = document.activeElement;
+  const label = on.closest("label")?.querySelector(".q-field__label") ?? on.querySelector(".q-btn__content .block");
+  return (on.getAttribute("aria-label") ?? (label ?? on).innerText).trim(); }"""
 #: What a test waits for at most [ms], on a computer that does other things too.
 PATIENCE = 60_000
 
@@ -65,7 +69,7 @@ class Served:
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, cwd=self.folder
         )
         assert self.process.stdout is not None
-        until = time.monotonic() + 60
+        until = time.monotonic() + 180
         while (match := _SHOWN.search(self.said)) is None:
             ready, _, _ = select.select([self.process.stdout], [], [], max(0.0, until - time.monotonic()))
             line = self.process.stdout.readline() if ready else ""
@@ -84,6 +88,11 @@ class Served:
     def token(self) -> str:
         return self.address.rsplit("=", 1)[-1]
 
+    @property
+    def pid(self) -> int:
+        assert self.process is not None
+        return self.process.pid
+
     def stop(self, kill: bool = False) -> str:
         """End it, and give what it has printed."""
         assert self.process is not None
@@ -96,8 +105,7 @@ class Served:
 
     def memory(self) -> float:
         """What it has in memory [MB]."""
-        assert self.process is not None
-        status = Path(f"/proc/{self.process.pid}/status").read_text("utf-8")
+        status = Path(f"/proc/{self.pid}/status").read_text("utf-8")
         return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1000  # type: ignore[index]
 
 
@@ -107,8 +115,8 @@ def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Se
     made: list[Served] = []
 
     def start(*arguments: str) -> Served:
-        made.append(Served(tmp_path_factory.mktemp("page"), arguments).start())
-        return made[-1]
+        made.append(Served(tmp_path_factory.mktemp("page"), arguments))
+        return made[-1].start()
 
     yield start
     for one in made:
@@ -182,12 +190,33 @@ class Operator:
     def go(self, name: str) -> Operator:
         """Open a page by its name in the address."""
         self.page.goto(f"{self.served.base}/{name}")
-        self.page.locator(".gm-main").wait_for()
+        return self.is_heard()
+
+    def is_heard(self) -> Operator:
+        """Wait until the server hears what is pressed, as a look at the page tells an operator."""
+        self.page.locator("body.gm-is-live .gm-main").wait_for()
         return self
+
+    def key(self, label: str, key: str) -> None:
+        """Press a key on a button that is reached by keyboard."""
+        self.is_heard()
+        one = self.page.get_by_role("button", name=label, exact=True)
+        one.focus()
+        expect(one).to_be_focused(timeout=PATIENCE)
+        self.page.keyboard.press(key)
 
     def press(self, label: str) -> None:
         """Press a button."""
         self.page.get_by_role("button", name=label, exact=True).click()
+
+    def tab_to(self, label: str) -> None:
+        """Press Tab until the cursor is on the button or field of this label."""
+        self.is_heard()
+        for _ in range(100):
+            self.page.keyboard.press("Tab")
+            if self.page.evaluate(_ON) == label:
+                return
+        raise AssertionError(f"{label} is not reached by Tab; at the end it was on {self.page.evaluate(_ON)!r}")
 
     def fill(self, label: str, value: str) -> None:
         """Type into a field, and leave it."""
@@ -207,7 +236,11 @@ class Operator:
     def sees(self, words: str | re.Pattern[str], where: Locator | None = None) -> Locator:
         """Wait until words are on the page."""
         found = (where or self.page).get_by_text(words).first
-        found.wait_for(timeout=PATIENCE)
+        try:
+            found.wait_for(timeout=PATIENCE)
+        except TimeoutError as error:
+            shown = " | ".join(self.page.locator("body").inner_text().split("\n"))
+            raise AssertionError(f"{words!r} is not on the page: {shown[:3000]}; console: {self.complaints}") from error
         return found
 
     def picture(self, name: str) -> Path:
@@ -271,7 +304,8 @@ def _stays(one: Operator, url: str) -> None:
 
 
 def _hear(one: Operator, kind: str, text: str) -> None:
-    if kind == "error":
+    """Errors, and the reason of a page that loads itself again: what was pressed then may be lost."""
+    if kind == "error" or text.startswith("reloading because"):
         one.complaints.append(text)
 
 

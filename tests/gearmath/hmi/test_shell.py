@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import WebSocketRoute, expect
 
 from gearmath.hmi.messages import Text, messages
 from gearmath.hmi.shell import PAGES
@@ -61,15 +64,45 @@ def test_the_address_that_is_shown_lets_the_browser_in(served: Served, operator:
 
 def test_language_and_look_are_chosen_by_keyboard_and_stay(served: Served, operator: Callable[..., Operator]) -> None:
     one = operator(served)
-    one.page.get_by_role("button", name="Deutsch").focus()
-    one.page.keyboard.press("Enter")
+    one.key("Deutsch", "Enter")
     one.page.get_by_role("heading", level=1, name="Maschine").wait_for()
-    one.page.get_by_role("button", name="Dunkel").focus()
-    one.page.keyboard.press("Space")
+    one.key("Dunkel", "Space")
     one.page.locator("body.body--dark").wait_for()
     one.go("gear")
     one.page.get_by_role("heading", level=1, name="Rad").wait_for()
     one.page.locator("body.body--dark").wait_for()
+
+
+def test_what_is_pressed_before_the_server_hears_it_waits_and_the_cursor_comes_back(
+    served: Served, operator: Callable[..., Operator]
+) -> None:
+    """The websocket is kept back as long as the test wants: a press on the picture of the page goes nowhere, and is no
+    surprise later. In a silence of the server the cursor is away, and after it where it was."""
+    one = operator(served, "gearbox")
+    kept: list[WebSocketRoute] = []
+    one.page.route_web_socket(re.compile("_nicegui_ws"), lambda route: kept.append(route))
+    one.page.reload()
+    one.page.locator(".gm-main").wait_for()
+    one.page.wait_for_timeout(500)
+    field = one.page.get_by_label("Teeth", exact=True)
+    assert kept
+    for part in (".gm-head", ".gm-nav", ".gm-main"):
+        assert one.page.locator(part).evaluate("e => e.inert"), part
+    field.focus()
+    assert one.page.evaluate("document.activeElement === document.body")
+    kept[0].connect_to_server()
+    one.is_heard()
+    field.fill("4")
+    os.kill(served.pid, signal.SIGSTOP)
+    try:
+        one.sees("No connection to the server", one.page.locator(".gm-lost"))
+        assert one.page.evaluate("document.activeElement === document.body")
+    finally:
+        os.kill(served.pid, signal.SIGCONT)
+    one.is_heard()
+    expect(field).to_be_focused()
+    one.page.keyboard.press("7")
+    assert field.input_value() == "47"
 
 
 def test_pages_are_reached_by_keyboard_alone(served: Served, operator: Callable[..., Operator]) -> None:
@@ -92,6 +125,8 @@ def test_the_ini_file_of_a_linuxcnc_is_taken_as_a_control(
     (served.folder / "PROBE.ngc").write_text("M2\n")
     one = operator(served, "machine")
     one.sees(re.compile("mill.ini: no LinuxCNC runs here|is LinuxCNC installed"), one.panel("Control"))
+    german = operator(served, "machine", language="de")
+    german.sees(re.compile("^Begründung auf Englisch: .*LinuxCNC"), german.panel("Steuerung"))
     one.go("programs").sees("PROBE.ngc")
 
 

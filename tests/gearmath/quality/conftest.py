@@ -122,44 +122,41 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
     the seat, the normals or the meshing is gearmath's. ``seat`` is (e_x, e_y, tilt_x, tilt_y).
     """
 
-    def met(member, flank, nominal, keep, i, seat, turn, form):
+    def met(member, flank, nominal, keep, tooth, seat, turn, form):
+        """Of all points at once: places ``keep`` (m,) of teeth ``tooth`` (m,), which are turned by ``turn`` (m,)."""
         x, side = member.flank(flank).nominal.vector, SIDES[flank]
-        axis_z, pitch = np.array([0.0, 0.0, 1.0]), 2 * np.pi * i / member.teeth
-        point, normal = (_about(axis_z, np.asarray(pitch), v[keep]) for v in (nominal.point, nominal.normal))
+        axis_z, pitch = np.array([0.0, 0.0, 1.0]), 2 * np.pi * tooth / member.teeth
+        point, normal = (_about(axis_z, pitch, v[keep]) for v in (nominal.point, nominal.normal))
         outward = nominal.normal[keep]
         e, tilt = np.array([*seat[:2], 0.0]), np.array([*seat[2:], 0.0])
         size = np.linalg.norm(tilt)
         axis = tilt / size if size else np.array([1.0, 0.0, 0.0])
 
         def surface(v):
-            return witness.surface(v[:, 0], v[:, 1], v[:, 2], x, side)
-
-        def slopes(v):
-            steps = [np.eye(4)[k] * _STEPS[k] for k in range(3)]
-            return [(surface(v + h) - surface(v - h)) / (2 * h.sum()) for h in steps]
+            return witness.surface(v[..., 0], v[..., 1], v[..., 2], x, side)
 
         def off(v):
-            s = surface(v)
-            u, b, th = slopes(v)
+            sides = np.stack([v, *(v + sign * step for step in np.diag(_STEPS)[:3] for sign in (1, -1))])
+            s, *beside = surface(sides)
+            u, b, th = ((beside[2 * k] - beside[2 * k + 1]) / (2 * _STEPS[k]) for k in range(3))
             n = np.cross(u, b)
-            n /= np.linalg.norm(n, axis=1, keepdims=True)
-            n *= np.sign(np.sum(n * outward, axis=1, keepdims=True))
-            grown = s + form(flank, s[:, 2], np.hypot(s[:, 0], s[:, 1]))[:, None] * n
-            there = _about(axis_z, np.asarray(pitch + turn), grown)
-            touched = point + v[:, 3:] * normal
+            n /= np.linalg.norm(n, axis=-1, keepdims=True)
+            n *= np.sign(np.sum(n * outward, axis=-1, keepdims=True))
+            grown = s + form(flank, s[..., 2], np.hypot(s[..., 0], s[..., 1]))[..., None] * n
+            there = _about(axis_z, pitch + turn, grown)
+            touched = point + v[..., 3:] * normal
             back = _about(axis, np.asarray(-size), touched - e)
-            return np.hstack([there - back, (np.sum(n * th, axis=1) / x[0])[:, None]])
+            return np.concatenate([there - back, np.sum(n * th, axis=-1, keepdims=True) / x[0]], axis=-1)
 
-        v = np.hstack([nominal.contact[keep], np.zeros((len(point), 1))])
-        for _ in range(5):
-            jacobian = np.stack(
-                [
-                    (off(v + np.eye(4)[k] * _STEPS[k]) - off(v - np.eye(4)[k] * _STEPS[k])) / (2 * _STEPS[k])
-                    for k in range(4)
-                ],
-                axis=2,
-            )
-            v = v - np.linalg.solve(jacobian, off(v)[..., None])[..., 0]
+        v, before, slopes = np.hstack([nominal.contact[keep], np.zeros((len(point), 1))]), np.inf, None
+        for _ in range(20):
+            rest = off(v)
+            if (far := np.abs(rest).max()) < 1e-10:
+                break
+            if far > 0.05 * before or slopes is None:  # the slopes of an earlier step do as long as they lead on
+                moved = off(v + np.array([[sign * step] for step in np.diag(_STEPS) for sign in (1, -1)]))
+                slopes = np.stack([(moved[2 * k] - moved[2 * k + 1]) / (2 * _STEPS[k]) for k in range(4)], axis=-1)
+            v, before = v - np.linalg.solve(slopes, rest[..., None])[..., 0], far
         assert np.abs(off(v)).max() < 1e-8
         return point, normal, v[:, 3]
 
@@ -178,13 +175,17 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
         row, col = (each.ravel() for each in np.indices(grid))
         header, files = flank_header(member, name, grid_.shape), []
         nominals = {flank: solve_flank(member, name, flank, grid_) for flank in FLANKS}
-        for i in teeth:
+        kept = [np.arange(len(row)) if places is None or i in whole else np.array(places) for i in teeth]
+        keep, tooth = np.concatenate(kept), np.repeat(list(teeth), [len(each) for each in kept])
+        found = {}
+        for flank in FLANKS:
+            turn = index[flank][tooth % member.teeth] if index else np.zeros(len(tooth))
+            found[flank] = met(member, flank, nominals[flank], keep, tooth, np.array(seat), turn, form)
+        for i, where in zip(teeth, kept, strict=True):
             for flank in FLANKS:
-                turn = index[flank][i % member.teeth] if index else 0.0
-                keep = np.arange(len(row)) if places is None or i in whole else np.array(places)
-                point, normal, found = met(member, flank, nominals[flank], keep, i, np.array(seat), turn, form)
-                touched = point + found[:, None] * normal
-                files.append(flank_file(header, name, flank, i, row[keep], col[keep], touched, normal, found))
+                point, normal, deviation = (each[tooth == i] for each in found[flank])
+                touched = point + deviation[:, None] * normal
+                files.append(flank_file(header, name, flank, i, row[where], col[where], touched, normal, deviation))
         return join(files)
 
     return make

@@ -167,32 +167,42 @@ class Rolling:
     def first(self, rotation: float) -> tuple[float, float, float] | None:
         """φ_2 [rad] at which the gear is stopped, and cone distance and height of the place on the gear [mm].
 
-        Points of either member are tried, so that the edges of both are lines of a grid. None where the place is at the
-        lowest one that the witness knows of the pinion: it may lie deeper.
+        None where the place is at the lowest one that the witness knows of the pinion: it may lie deeper.
+        """
+        found = self.contact(rotation)
+        return None if found is None else found[:3]
+
+    def contact(self, rotation: float) -> tuple[float, float, float, str] | None:
+        """The same, and the kind of the contact: how many borders of a member it lies on.
+
+        Points of either member are tried, so that the edges of both are lines of a grid.
         """
         found = [self._refined(points, rotation) for points in (self.from_gear, self.from_pinion)]
-        turn, across, up, lowest = max(found, key=lambda one: self.sense * one[0])
-        if lowest < self.pinion.lowest + 1e-3:
+        turn, *places = max(found, key=lambda one: self.sense * one[0])
+        across, up, _, up_1 = places
+        if up_1 < self.pinion.lowest + 1e-3:
             return None
+        on = [sum(abs(one - end) < 1e-5 for one, end in ((x, 0), (x, 1), (y, 1))) for x, y in (places[:2], places[2:])]
         blank = self.gear.member.blank
         distance = blank.mean_cone_distance + (across - 0.5) * blank.face_width
         bottom, tip = _heights(self.gear.member, np.array(distance))
-        return turn, distance, float(bottom + up * (tip - bottom))
+        kind = "corner" if max(on) > 1 else "edge" if max(on) else "interior"
+        return turn, distance, float(bottom + up * (tip - bottom)), kind
 
     def _refined(self, points: Callable[..., tuple[np.ndarray, ...]], rotation: float) -> tuple[float, ...]:
         across, up = np.meshgrid(np.linspace(0, 1, 101), np.linspace(0, 1, 41), indexing="ij")
-        width, best = 1.0, (math.nan,) * 4
+        width, best = 1.0, (math.nan,) * 5
         for _ in range(_LEVELS):
             turn, x, y, x_1, y_1 = points(across, up, rotation)
             inside = np.isfinite(turn) & (x >= 0) & (x <= 1) & (y <= 1) & (x_1 >= 0) & (x_1 <= 1) & (y_1 <= 1)
             inside &= (y >= self.gear.lowest) & (y_1 >= self.pinion.lowest)
             lead = np.where(inside, self.sense * turn, -np.inf)
             k = np.unravel_index(int(lead.argmax()), lead.shape)
-            best = (float(turn[k]), float(x[k]), float(y[k]), float(y_1[k]))
+            best = (float(turn[k]), float(x[k]), float(y[k]), float(x_1[k]), float(y_1[k]))
             width *= _SHRINK
             window = width * np.linspace(-0.5, 0.5, _GRID)
             across, up = np.meshgrid(np.clip(across[k] + window, 0, 1), np.clip(up[k] + window, 0, 1), indexing="ij")
-        return best if np.isfinite(lead[k]) else (-self.sense * math.inf, *(math.nan,) * 3)
+        return best if np.isfinite(lead[k]) else (-self.sense * math.inf, *(math.nan,) * 4)
 
 
 def _half(angle: np.ndarray) -> np.ndarray:

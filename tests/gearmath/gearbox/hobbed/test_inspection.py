@@ -15,6 +15,8 @@ from gearmath.gearbox.hobbed.classes import classes, outside, overall, tolerance
 from gearmath.gearbox.hobbed.envelope import Cut
 from gearmath.gearbox.hobbed.inspection import Inspection, PitchRow, Trace, inspect, layout
 from gearmath.gearbox.hobbed.job import HobbingJob, HobTool
+from gearmath.gearbox.hobbed.setup import setup
+from gearmath.specs.hobbing import find_hobbing_machine
 
 UM = 1e-3
 
@@ -42,14 +44,14 @@ def test_pitch_figures_of_a_row_are_those_of_the_definition():
 
 
 def test_class_is_the_finest_that_allows_every_figure():
-    """m = 4, d = 100, b = 25, by hand for class 5: f_pt 5.9 um, F_p 19.1; one class coarser allows √2 more."""
+    """m = 4, d = 100, b = 25, by hand for class 5: f_pt 6.7 um, F_p 20.5; one class coarser allows √2 more."""
     of = job(25, 4.0, 25.0)
     limits = tolerances(of, 5)
-    assert limits["f_pt"] == pytest.approx(5.9)
-    assert limits["F_p"] == pytest.approx(19.1)
-    assert limits["F_r"] == pytest.approx(0.9 * 19.1)
+    assert limits["f_pt"] == pytest.approx(6.7)
+    assert limits["F_p"] == pytest.approx(20.5)
+    assert limits["F_r"] == pytest.approx(0.9 * 20.5)
     flat = Trace("right", 0, np.array([0.0, 1.0, 2.0]), np.zeros(3), 1.0)
-    for size, expected in ((5.89, 5), (5.91, 6), (8.3, 6), (8.4, 7)):
+    for size, expected in ((6.69, 5), (6.71, 6), (9.4, 6), (9.5, 7)):
         row = PitchRow("right", np.array([0.0] * 24 + [size * UM]))
         rows = classes(of, Inspection((flat,), (flat,), (row,), np.zeros(25), ()))
         assert {each.figure: each.accuracy_class for each in rows}["f_pt"] == expected
@@ -104,3 +106,20 @@ def test_whole_cut_of_the_issue_needs_less_than_500_mb():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert int(done.stdout) / 1024 < 500
+
+
+@pytest.mark.parametrize("teeth", [24, 200])
+def test_hob_is_as_long_as_the_rack_that_generates_both_flanks(teeth):
+    """A large hob is a rack: where it cuts at L, the middle of its tooth is π/4 + (L - L_C)/cos α from the gear's,
+    to one side for the one flank, to the other for the other. And a pitch."""
+    of = HobbingJob(Gear(teeth, 1.0, math.radians(20), 0.0, 0.0), 1, HobTool(1, 1, 12, 4000.0, 1.25, 0.38), 20.0, 1.0)
+    middle = teeth / 2 * math.sin(math.radians(20))
+    expected = 2 * (math.pi / 4 + 2.3 / math.cos(math.radians(20))) + math.pi
+    assert of.generating_length(middle - 2.0, middle + 2.3) == pytest.approx(expected, rel=2e-3)
+
+
+def test_hob_that_is_too_short_is_refused():
+    machine = find_hobbing_machine("hobbing_default.toml")
+    short = [hob.model_copy(update={"length": 5.0}) for hob in machine.hobs]
+    with pytest.raises(InputError, match=r"hob m1: length = 5: the flanks of this gear need \d+\.\d mm"):
+        setup(machine.model_copy(update={"hobs": tuple(short)}), 24, hob="m1")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearmath.errors import ComputationError, InputError
+from gearmath.gearbox.helix import Helix
 from gearmath.gearbox.hobbed.choice import FEEDS, GASHES, LINES, MICROSTEPS, choose
 from gearmath.gearbox.hobbed.setup import cut_and_inspect, setup
 from gearmath.gearbox.hobbed.thread import cut_thread
@@ -53,10 +54,13 @@ def test_left_hand_thread_is_as_good_and_a_thread_shorter_than_its_lead_is_refus
         cut_thread(machine, plan_thread(machine, Fraction(3), 2), 5.0)
 
 
-@pytest.mark.parametrize(("wanted", "module", "teeth"), [(8, 1.0, 24)])
-def test_chosen_parts_reach_the_class_and_no_part_can_be_coarser(wanted, module, teeth):
-    machine = find_hobbing_machine("hobbing_default.toml")
-    found = choose(machine, wanted, module, teeth)
+@pytest.mark.parametrize(
+    ("name", "wanted", "teeth", "helix"),
+    [("hobbing_default.toml", 8, 24, None), ("hobbing_helical.toml", 7, 30, Helix(15.0, "left"))],
+)
+def test_chosen_parts_reach_the_class_and_no_part_can_be_coarser(name, wanted, teeth, helix):
+    machine = find_hobbing_machine(name)
+    found = choose(machine, wanted, 1.0, teeth, helix=helix)
     assert found.gear.accuracy_class <= wanted
     parts = found.parts
     for ladder, key in ((MICROSTEPS, "microsteps"), (LINES, "lines"), (GASHES, "gashes"), (FEEDS, "feed")):
@@ -71,8 +75,19 @@ def test_chosen_parts_reach_the_class_and_no_part_can_be_coarser(wanted, module,
                 "hobs": tuple(hob.model_copy(update={"gashes": coarser["gashes"]}) for hob in machine.hobs),
             }
         )
-        reached = cut_and_inspect(setup(changed, teeth, hob="m1", feed=coarser["feed"]), "exact").accuracy_class
+        reached = cut_and_inspect(
+            setup(changed, teeth, hob="m1", helix=helix, feed=coarser["feed"]), "exact"
+        ).accuracy_class
         assert reached is None or reached > wanted, key
+
+
+def test_feed_chosen_for_a_helical_gear_is_that_of_its_ratio_where_no_encoder_is_on_the_feed():
+    """A machine without that encoder cuts a helical gear at one feed only, which its ratio contains."""
+    machine = find_hobbing_machine("hobbing_default.toml")
+    found = choose(machine, 8, 1.0, 24, helix=Helix(20.0))
+    assert machine.feed is None
+    # 0.1 mm a turn of another feed would tilt the teeth by some hundredths over ten modules
+    assert abs(found.gear.found.figures["f_H_beta"]) < 2 * UM
 
 
 def test_class_that_a_bad_worm_forbids_is_not_promised():

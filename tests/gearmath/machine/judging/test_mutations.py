@@ -142,9 +142,11 @@ class Dense:
     witness: object
     lines: list[str]
     points: dict = field(default_factory=dict)
-    reached: dict = field(default_factory=dict)
+    above: dict = field(default_factory=dict)
     under: dict = field(default_factory=dict)
     passes: dict = field(default_factory=dict)
+    clear: dict = field(default_factory=dict)
+    taken_by: dict = field(default_factory=dict)
 
     def __post_init__(self):
         self.states = []
@@ -160,7 +162,9 @@ class Dense:
                 np.concatenate([one.normal for one in found]),
             )
             # what lies beyond the ends of the blades is no flank: the sharp tip alone comes there, in narrow scallops
-            self.reached[cut.tool] = np.concatenate([one.contact[:, 0] >= 0.0 for one in found])
+            reached = np.concatenate([one.contact[:, 0] >= 0.0 for one in found])
+            point, normal = self.points[cut.tool]
+            self.above[cut.tool] = (point + 1.1 * TOLERANCE * normal)[reached]
         for tool, (point, normal) in self.points.items():  # of the space and of both of its neighbors
             p, pitch = point - 1.1 * TOLERANCE * normal, 2 * np.pi / spec.teeth
             turns = [(np.cos(off * pitch), np.sin(off * pitch)) for off in (0, -1, 1)]
@@ -202,27 +206,42 @@ class Dense:
         found[pose, point] = (radius < r + slope * height) & (radius > hole - inner * height)
         return found
 
-    def within_reach(self, poses, tool, points):
-        """The points (p,3) that the blades can get to: in the middle they are no farther from them than they come.
+    def gaps(self, poses, tool, points):
+        """How far points (p,3) are out of the blades at poses (m,5), in height or radius; negative inside (m,p)."""
+        centre, axis = self.witness.vertical_pose(poses, self.height)
+        height = (centre * axis).sum(axis=1)[:, None] - axis @ points.T
+        # squares of 1e4 mm2 lose 1e-12 mm2: nothing at the blades, which are far from the axis
+        square = (points**2).sum(axis=1) - 2 * centre @ points.T + (centre**2).sum(axis=1)[:, None] - height**2
+        radius = np.sqrt(np.maximum(square, 0.0))
+        (r, slope), (hole, inner) = self.blades(tool)
+        return np.maximum(-height, np.maximum(radius - r - slope * height, hole - inner * height - radius))
+
+    def comes(self, tool, off):
+        """By how much :meth:`gaps` change, at most, where the ends of blocks go ``off`` (m,5).
 
         A pose moves a point, as the cutter sees it, by no more than X Y Z and its distance from the axes times A and B.
         """
-        middle = poses[len(poses) // 2]
-        off = np.abs(poses - middle).max(axis=0)
-        comes = off[:3].sum() + off[3:].sum() * float(np.linalg.norm(points, axis=1).max())
-        (centre,), (axis,) = self.witness.vertical_pose(middle[None], self.height)
-        away = points - centre
-        height = -(away @ axis)
-        radius = np.sqrt(np.maximum((away**2).sum(axis=1) - height**2, 0.0))
-        (r, slope), (hole, inner) = self.blades(tool)
-        gap = np.maximum.reduce([-height, radius - r - slope * height, hole - inner * height - radius])
-        return points[gap <= comes * (1.0 + max(slope, inner))]
+        off, ((_, slope), (_, inner)) = np.abs(off).max(axis=0), self.blades(tool)
+        away = float(np.linalg.norm(self.under[tool], axis=1).max())
+        return (off[:3].sum() + off[3:].sum() * away) * (1.0 + max(slope, inner))
+
+    def within_reach(self, ends, tool, turn, right):
+        """The points under the flanks that the blades can get to in a block, in place of the one to row ``right``."""
+        points = self.under[tool]
+        if right is None:
+            middle = ends.mean(axis=0)
+            return points[self.gaps(middle[None] - turn, tool, points)[0] <= self.comes(tool, ends - middle)]
+        own = self.axes[right - 1 : right + 1]
+        if right not in self.clear:
+            shares = np.linspace(0, 1, 33)[:, None]
+            found = self.gaps(own[0] + shares * (own[1] - own[0]) - turn, tool, points)
+            self.clear[right] = found.min(axis=0) - self.comes(tool, np.diff(own, axis=0)) / 64
+        return points[self.clear[right] <= self.comes(tool, ends - own)]
 
     def harm(self, rows, first, behind, machine=True):
         """The harm done by ``rows`` in the place of the right ones from ``first`` up to ``behind``, or None: to the
         part alone unless ``machine``."""
-        before, after = self.rows[first - 1] if first else None, self.rows[behind : behind + 1]
-        chain = [before, *rows, *after] if before else [*rows, *after]
+        chain = [*self.rows[max(first - 1, 0) : first], *rows, *self.rows[behind : behind + 1]]
         blocks = [(a, b) for a, b in itertools.pairwise(chain) if a.tool == b.tool]
         return (machine and self.limits(chain, blocks)) or self.metal(chain, blocks, first, behind, machine)
 
@@ -274,6 +293,8 @@ class Dense:
     def metal(self, chain, blocks, first, behind, machine):
         after = self.rows[max(first - 1, 0) : behind + 1]
         standing = [(row.at, row.rapid) for row in chain] == [(row.at, row.rapid) for row in after]
+        one_for_one = [row.tool for row in chain] == [row.tool for row in after]
+        right = {id(row): max(first - 1, 0) + k for k, row in enumerate(chain)} if one_for_one else {}
         new = blocks
         for a, b in new:
             tool = b.tool
@@ -289,7 +310,7 @@ class Dense:
                         return "rapid in the work"
                 continue
             space = self.space_of(b)
-            turn = np.array([0, 0, 0, 2 * np.pi * space / self.spec.teeth, 0])
+            turn = self.turn_of(space)
             middle = point[len(point) // 4]
             seen = [self.seen(end - turn, middle) for end in ends]
             way = np.linalg.norm(seen[1] - seen[0])
@@ -298,9 +319,12 @@ class Dense:
                 return "feed"
             if standing:
                 continue
+            there = right.get(id(b))
+            if there is not None and self.space_of(self.rows[there]) != space:
+                there = None
+            some = self.within_reach(ends, tool, turn, there)
             steps = int(np.clip(way / 0.04, 9, 400))
             poses = ends[0] + np.linspace(0, 1, steps)[:, None] * (ends[1] - ends[0]) - turn
-            some = self.within_reach(poses, tool, self.under[tool])
             if len(some) and self.inside(poses, tool, some).any():
                 return "gouge"
         return None if standing else self.left(new, first, behind)
@@ -311,29 +335,32 @@ class Dense:
         if not old:
             return None
         tool, space = self.rows[old[0]].tool, self.space_of(self.rows[old[0]])
-        turn = np.array([0, 0, 0, 2 * np.pi * space / self.spec.teeth, 0])
-        point, normal = self.points[tool]
-        above = (point + 1.1 * TOLERANCE * normal)[self.reached[tool]]
-        share = np.linspace(0, 1, 9)[:, None]
-
-        def cut(a, b, some):
-            a, b = np.array(a) - turn, np.array(b) - turn
-            return self.inside(a + share * (b - a), tool, some).any(axis=0)
-
-        mine = np.any([cut(self.axes[k - 1], self.axes[k], above) for k in old], axis=0)
-        some = above[mine]
-        if not len(some):
-            return None
-        done = np.zeros(len(some), bool)
-        for a, b in new:
-            if not b.rapid and b.tool == tool:
-                done |= cut(a.at, b.at, some)
+        left = np.flatnonzero(np.any([self.cuts(k, space) for k in old], axis=0))
         for k in itertools.chain(range(behind + 1, behind + 9), range(first - 1, first - 9, -1)):
-            if done.all() or not 0 < k < len(self.rows) or self.rows[k].rapid or self.rows[k].tool != tool:
+            if not 0 < k < len(self.rows) or self.rows[k].rapid or self.rows[k].tool != tool:
                 continue
             if self.space_of(self.rows[k]) == space:
-                done[~done] |= cut(self.axes[k - 1], self.axes[k], some[~done])
-        return None if done.all() else "uncut"
+                left = left[~self.cuts(k, space)[left]]
+        for a, b in new:
+            if len(left) and not b.rapid and b.tool == tool:
+                left = left[~self.taken(a.at, b.at, tool, space, left)]
+        return "uncut" if len(left) else None
+
+    def cuts(self, k, space):
+        """Which points above the flanks of a space the right program takes away on its way to row ``k``."""
+        if (k, space) not in self.taken_by:
+            self.taken_by[k, space] = self.taken(self.axes[k - 1], self.axes[k], self.rows[k].tool, space, slice(None))
+        return self.taken_by[k, space]
+
+    def taken(self, a, b, tool, space, some):
+        """Which of ``some`` points above the flanks of a space a block takes away, by nine poses of it."""
+        a, b = np.array(a), np.array(b)
+        poses = a + np.linspace(0, 1, 9)[:, None] * (b - a) - self.turn_of(space)
+        return self.inside(poses, tool, self.above[tool][some]).any(axis=0)
+
+    def turn_of(self, space):
+        """What the positions of a space are beside those of space 0."""
+        return np.array([0, 0, 0, 2 * np.pi * space / self.spec.teeth, 0])
 
     def seen(self, at, point):
         """A point of the work from the cutter centre, in the axes of the machine."""

@@ -93,7 +93,7 @@ def test_clamping_moves_the_work_against_the_probe(gear_set, name):
 
 @pytest.mark.parametrize("name", MEMBERS)
 def test_drift_grows_evenly_from_the_first_touch_to_the_last(gear_set, name):
-    """The work moves by d in the machine: d·(M(B) Rz(-A) n), and so the repeated tooth stands off its first touch."""
+    """The work moves by d in the machine: d·(M(B) Rz(-A) n), and so the repeated tooth is off its first touch."""
     member, d = gear_set.member(name), np.array([0.003, 0.004, -0.005])
     drift = SimulatedMeasuring(drift=Drift(X_um=3.0, Y_um=4.0, Z_um=-5.0))
     seen = measure_member(true_file(gear_set, name), member, name, shop(measuring=drift))

@@ -222,7 +222,7 @@ def against_b(at, place):
 
 #: Straight blocks may leave this much. [mm]
 TOLERANCE = 1e-4
-#: What is wrong, and how the tool stands off the work by it, in the machine.
+#: What is wrong, and how the tool is displaced from the work by it, in the machine.
 MOVES = {
     "X": (AxisErrors(X=0.02), lambda at, place: np.array([0.02, 0, 0])),
     "Y": (AxisErrors(Y=-0.02), lambda at, place: np.array([0, -0.02, 0])),

@@ -157,8 +157,8 @@ def fewest_blocks(left, start, end, tolerance, spacing):
     return int(count[-1])
 
 
-def held_against_the_fewest(left, spec, member, number, tolerances):
-    """Print tolerance, blocks and optimum, and hold them against each other.
+def compared_with_the_fewest(left, spec, member, number, tolerances):
+    """Print tolerance, blocks and optimum, and compare them.
 
     At the full tolerance, of which roll_nodes keeps the rounding; 20 candidates in the shortest block.
     """
@@ -176,7 +176,7 @@ def held_against_the_fewest(left, spec, member, number, tolerances):
 @each_cut
 def test_blocks_are_near_the_fewest_that_dynamic_programming_finds(gear_set, deviations, member, number):
     left = deviations(member, number)
-    held_against_the_fewest(left, gear_set.member(member), member, number, (1e-4, 5e-4, 2.5e-3))
+    compared_with_the_fewest(left, gear_set.member(member), member, number, (1e-4, 5e-4, 2.5e-3))
 
 
 @pytest.mark.slow
@@ -197,7 +197,7 @@ def test_blocks_of_other_sets_are_near_the_fewest(deviations, name, member, numb
     """Small pinions, whose flank the blade does not reach everywhere, and settings that move over the roll."""
     bevel_set = load_bevel_set(bundled(f"{name}.toml"))
     left = deviations(member, number, bevel_set=bevel_set)
-    held_against_the_fewest(left, bevel_set.member(member), member, number, tolerances)
+    compared_with_the_fewest(left, bevel_set.member(member), member, number, tolerances)
 
 
 @pytest.mark.parametrize("tolerance", [5e-4, 2.5e-3, 5e-2])

@@ -257,7 +257,7 @@ PROGRAMS = {
 
 @pytest.mark.parametrize("which", PROGRAMS)
 def test_lint(gear_set, which):
-    """Every rule of the control that a text can be held against, for every kind of program."""
+    """Every rule of the control that a text can be compared with, for every kind of program."""
     text = PROGRAMS[which](gear_set)
     assert text.isascii()
     assert text.endswith("M30\n")

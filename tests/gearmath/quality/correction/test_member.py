@@ -207,7 +207,7 @@ def without(file: FlankFile, dropped: np.ndarray) -> FlankFile:
 
 
 def test_points_that_are_missing_empty_or_excluded_are_left_out_and_said(gear_set, measured):
-    """A column in the middle is gone: the settings that the other points give mend the flank all the same."""
+    """A column in the middle is gone: the settings that the other points give correct the flank all the same."""
     gone = (measured.flank == "concave") & (measured.col == 4)
     whole, fewer = (correct(gear_set.pinion, "pinion", f) for f in (measured, without(measured, gone)))
     assert whole.left_out == {"concave": 0, "convex": 0}

@@ -329,5 +329,7 @@ def test_no_seat_is_given_that_still_moves(clamped, monkeypatch):
     member = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
     file = clamped(member, "pinion", SEAT, around(member), FIVE)
     monkeypatch.setattr(registration, "_ITERATIONS", 1)
-    with pytest.raises(ComputationError, match="no seat of the pinion explains its points: after 1 steps it moves on"):
+    with pytest.raises(
+        ComputationError, match="no clamping of the pinion explains its points: after 1 steps it moves on"
+    ):
         register(file, member, "pinion")
