@@ -101,7 +101,7 @@ def blades_of(member: Member, edge_radius: float = 0.0) -> Blades:
     own = {flank: _as_cut(member.flank(flank), edge_radius) for flank in FLANKS}
     sections = {flank: blade_sections(own[flank], SIDES[flank]) for flank in FLANKS}
     phases = {"concave": 0.0, "convex": blade_phase(member)}
-    width = own["concave"].blade_point_radius - own["convex"].blade_point_radius + _turned_width(member)
+    width = root_width(member)
     edges: list[Edge] = []
     for flank in FLANKS:
         parts = [_edge(own[flank], flank, part, section) for part, section in sections[flank].items()]
@@ -117,6 +117,11 @@ def blade_phase(member: Member) -> float:
         return 0.0
     turn = math.radians(member.concave.work_rotation_offset - member.convex.work_rotation_offset)
     return turn * member.teeth / (member.indexing_sign * member.blade_groups)
+
+
+def root_width(member: Member) -> float:
+    """The width [mm] of the root between both blades of a cutter, where it turns the work in between too."""
+    return member.concave.blade_point_radius - member.convex.blade_point_radius + _turned_width(member)
 
 
 def _turned_width(member: Member) -> float:
