@@ -15,7 +15,7 @@ from statistics import median
 from gearmath.bevel.blank import evaluate
 from gearmath.bevel.check_flank import CutFlank
 from gearmath.bevel.repair import Repair, Wanted, repairs
-from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SETTINGS, SIDES, Member, Settings
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member, Settings
 
 #: Spiral angle where none of the flanks of the set tells it. [rad]
 _SPIRAL = math.radians(35)
@@ -137,7 +137,7 @@ def _trials(members: Members, flanks: Mapping[Where, list[Repair]], total: float
         member = members[name]
         beside = flanks.get((name, FLANKS[1 - FLANKS.index(flank)]), [])
         for one in found:
-            shared = member.cutting == "completing" and one.key in MACHINE_SETTINGS
+            shared = one.key in member.shared_settings
             moved, left = _moved(member, flank, one), total - one.before + one.after
             yield _Trial(name, flank, shared, one, moved, left)
             other = next((each for each in beside if (each.key, each.solved) == (one.key, one.solved)), None)

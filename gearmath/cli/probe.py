@@ -89,7 +89,7 @@ def probe(
     from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
     from gearmath.machine.writing.linuxcnc import probing as linuxcnc
     from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
-    from gearmath.machine.writing.probing import probing_program
+    from gearmath.machine.writing.probing import SINUMERIK
     from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
@@ -102,7 +102,7 @@ def probe(
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     dialect = dialect_of(milling_machine, control, target if configuration else None, sheet)
     simulated = load_simulated_machine(find(errors)) if errors else None
-    write = linuxcnc.probing_program if dialect == LINUXCNC else probing_program
+    writer = linuxcnc.LINUXCNC if dialect == LINUXCNC else SINUMERIK
     with bars() as begin:
         made = checked_probing(
             bevel_set,
@@ -114,7 +114,7 @@ def probe(
             str(target),
             simulated,
             begin,
-            write,
+            writer,
         )
     page = None
     if sheet is not None:
