@@ -85,10 +85,10 @@ def check_pair(pair: BevelSet, slip: Callable[[str], str] = lambda _: "") -> Non
 
 
 def _file_passes(values: dict[str, Any]) -> bool:
-    """Whether the values of a set file are those of a pair."""
+    """Whether the values of a set file are those of a pair, and not of one at the limit of what mates may differ by."""
     try:
         pair = BevelSet.from_file(values)
-        _check(pair.members, pair.shaft_angle, {name: {} for name in pair.members})
+        _check(pair.members, pair.shaft_angle, {name: {} for name in pair.members}, _WELL)
     except (ValueError, Misfit, InputError, ComputationError):
         return False
     return True

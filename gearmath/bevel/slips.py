@@ -29,6 +29,10 @@ _OTHER_HAND = {"left": "right", "right": "left"}
 _TRIALS, _SAID = 250, 2
 #: Counts and numbers beyond these are no slips.
 _MOST_TEETH, _LARGEST = 1000, 1e9
+#: A slip changes a length or an angle by more than this, mm or degrees: less is a correction, by which a set that is
+#: just beyond a limit may pass. Of two values that must be one, any difference is a slip.
+_NO_CORRECTION = 0.5
+_MUST_BE_ONE = "for both flanks, not two"
 
 Values = dict[str, Any]
 Slip = tuple[str, Values]
@@ -137,7 +141,8 @@ def _of_settings(values: Values, refusal: str) -> Iterator[Slip]:
             others = [beside[key]] if _is_number(beside.get(key)) else []
             others += [1 / old] if key == RATIO and old else []
             others += [old * factor for factor in ((-1.0,) if key == _PHASE else (*_OF_ALL, *_factors(key)))]
-            for other in dict.fromkeys(value for value in others if value != old):
+            least = 0.0 if key == RATIO or _MUST_BE_ONE in refusal else _NO_CORRECTION
+            for other in dict.fromkeys(value for value in others if abs(value - old) > least):
                 words = f"{member}.{flank}.{key} = {other:.6g}, not {old:.6g}"
                 yield words, _changed(values, ((member, flank, key), other))
     for member in (name for name in MEMBERS if len([place for place in tables if place[0] == name]) == len(FLANKS)):
