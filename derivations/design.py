@@ -25,6 +25,21 @@ with the lever ρ of each place over that of the mean point. The settings follow
     R = P,   T·n = 0,   f = 0,   K(R_w, n_w, ∇f, T) = K_2 + D,   u = u_0      at θ = 0            (27.5)
 
 ten equations, f by (10.6) and K by (26.1), for u, β and eight settings.
+
+One machine that cuts both flanks at once gives each of them at a θ of its own
+
+    R = P,   T·n = 0,   f = 0,   φ_2''(K - K_2) = m'                                               (27.6)
+
+by (26.4): fourteen equations, six of them for (u, β, θ) of both, and leaves what K is otherwise to the least squares of
+the gap. Or crownings are asked for instead of parabola, path and ellipse, of the gap over the gear's flank: c_b at the
+ends of the face width b, c_h at the ends of the working depth h, and c_w, what the corner of heel and tip has beyond
+both. With the distances ξ and η from the vertex in cone distance and height, which change by M along the tangents of
+the gear, and what meets at φ = w·x/β_c having slid by v φ,
+
+    E = c_b (2 ξ/b)² + c_w (2 ξ/b)(2 η/h) + c_h (2 η/h)²,     (ξ, η) = N x,   N = M (1 + v wᵀ/β_c),
+    D = Nᵀ E_ξη N + w wᵀ/β_c                                                                       (27.7)
+
+with the second derivatives E_ξη.
 """
 
 from __future__ import annotations
@@ -36,7 +51,7 @@ import sympy as sp
 
 from derivations import notation as q
 from derivations.expression import Expression
-from derivations.local_synthesis import contact_motion, synthesis
+from derivations.local_synthesis import conjugate_curvature, contact_motion, synthesis
 from derivations.proof import DIGITS, is_close, is_zero, numbers
 
 
@@ -131,6 +146,73 @@ def wanted_gap() -> Expression:
         requires=(beta**2 - 1, w[1] ** 2 - sp.Rational(1, 10)),
         source="ease-off to second order, by roll angle and place along the tooth",
     )
+
+
+_CROWNINGS = (
+    q.face_width,
+    q.mean_working_depth,
+    q.wanted_length_crowning,
+    q.wanted_profile_crowning,
+    q.wanted_bias,
+)
+
+
+def _crowned_gap() -> sp.Expr:
+    """E (27.7)."""
+    b, h, length, profile, bias = (one.symbol for one in _CROWNINGS)
+    along, up = 2 * q.cone_distance_off.symbol / b, 2 * q.height_off.symbol / h
+    return length * along**2 + bias * along * up + profile * up**2
+
+
+def _on_gear() -> sp.Matrix:
+    """N (27.7): from a place on the pinion to cone distance and height of the place on the gear that it meets."""
+    w, v = sp.Matrix(q.roll_vector.symbol), sp.Matrix(q.sliding.symbol)
+    return sp.Matrix(q.axial_rates.symbol) * (sp.eye(2) + v * w.T / q.roll_acceleration.symbol)
+
+
+@cache
+def crowned_gap() -> Expression:
+    """E (27.7) as an Expression."""
+    return Expression(
+        "crowned_gap",
+        "Gap over the flank of the gear that has these crownings (27.7).",
+        (q.cone_distance_off, q.height_off, *_CROWNINGS),
+        ((q.ease_off, _crowned_gap()),),
+        source="gap to second order, by its values at the ends of the flank",
+    )
+
+
+@cache
+def crowned() -> Expression:
+    """D (27.7) as an Expression."""
+    w, beta, N = sp.Matrix(q.roll_vector.symbol), q.roll_acceleration.symbol, _on_gear()
+    A = N.T * sp.hessian(_crowned_gap(), (q.cone_distance_off.symbol, q.height_off.symbol)) * N
+    D = A + w * w.T / beta
+    return Expression(
+        "crowned",
+        "Relative curvature at the vertex of a gap that has these crownings (27.7).",
+        (q.roll_vector, q.roll_acceleration, q.sliding, q.axial_rates, *_CROWNINGS),
+        ((q.relative_curvature, sp.Matrix([D[0, 0], D[0, 1], D[1, 1]])),),
+        requires=(beta**2 - 1,),
+        source="ease-off to second order, in the tangent plane",
+    )
+
+
+def prove_crowned_gap_is_that_of_its_curvature_at_the_ends_of_the_flank() -> None:
+    """(27.7) xᵀ(D - w wᵀ/β_c)x/2 with x where cone distance and height are those of toe, heel, root and tip: with
+    (26.3) taken off it is c_b, c_h, and at the corner of heel and tip c_b + c_h + c_w."""
+    b, h, length, profile, bias = (one.symbol for one in _CROWNINGS)
+    D = crowned()["relative_curvature"] - conjugate_curvature()["conjugate_curvature"]
+    A, N = sp.Matrix([[D[0], D[1]], [D[1], D[2]]]), _on_gear()
+
+    def gap(along: sp.Expr, up: sp.Expr) -> sp.Expr:
+        x = N.inv() * sp.Matrix([along, up])
+        return (x.T * A * x)[0] / 2
+
+    for sign in (1, -1):
+        assert is_zero(gap(sign * b / 2, sp.S.Zero) - length)
+        assert is_zero(gap(sp.S.Zero, sign * h / 2) - profile)
+        assert is_zero(gap(b / 2, sign * h / 2) - length - profile - sign * bias)
 
 
 def prove_factors_are_those_of_sample_1() -> None:

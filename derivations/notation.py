@@ -535,6 +535,7 @@ contact_height = Quantity("contact_height", "where hob and flank touch, from the
 contact_edge = Quantity("contact_edge", "height of the hob's edge there", "mm", "h_c", scale=1e3)
 contact_turn = Quantity("contact_turn", "turn of the hob there, from the common perpendicular", "rad", r"\tau_c")
 contact_thread = Quantity("contact_thread", "where the thread stands then", "rad", r"\vartheta_c", scale=1e2)
+hob_axial_pitch = _length("hob_axial_pitch", "p_{x0}", 0.0, 1e3, "pitch of a hob's teeth along its axis")
 hob_addendum = _length("hob_addendum", "h_{a0}", 0.1, 60.0, "height of a hob's tooth above its reference cylinder")
 hob_tip_radius = _length(
     "hob_tip_radius", r"\rho_{a0}", 0.0, 12.0, "radius of the rounding at the tip of a hob's tooth"
@@ -1082,6 +1083,23 @@ sliding = Quantity(
     shape=(2,),
     scale=1e3,
 )
+axial_rates = Quantity(
+    "axial_rates",
+    "how cone distance and height on the gear change along the two tangents",
+    "1",
+    "M",
+    (-1.0, 1.0),
+    shape=(2, 2),
+)
+cone_distance_off = _length("cone_distance_off", r"\xi", -10.0, 10.0, "cone distance on the gear from the vertex")
+height_off = _length("height_off", r"\eta_h", -5.0, 5.0, "height on the gear from the vertex")
+wanted_length_crowning = _length(
+    "wanted_length_crowning", "c_b", 0.002, 0.1, "gap to the conjugate flank that is wanted at toe and heel"
+)
+wanted_profile_crowning = _length(
+    "wanted_profile_crowning", "c_h", 0.002, 0.1, "gap to the conjugate flank that is wanted at root and tip"
+)
+wanted_bias = _length("wanted_bias", "c_w", -0.002, 0.002, "gap wanted at heel and tip beyond both crownings")
 relative_curvature = Quantity(
     "relative_curvature",
     "D = K_1 - K_2: D_11, D_12, D_22",

@@ -76,6 +76,10 @@ The point of the flank σ of space i at L and z, ξ = σ (π/(2z) - 2x tan α_n/
 
     p = r_b (cos ξ, sin ξ) + σ L (sin ξ, -cos ξ),   n = (cos β_b sin ξ, -cos β_b cos ξ, ...) for σ = 1 (30.18)
 
+Of the length of the hob, flanks need what lies between the outermost ϑ of (30.8), and a tooth; its axial pitch is
+
+    p_x0 = 2π p_0/k                                                                            (30.19)
+
 What a part does wrong in every turn, worm, wheel, encoder, hob or screw, is a sum of sines of its turn u, each
 
     A sin(n u + χ)                                                                             (30.17)
@@ -264,6 +268,19 @@ def line_of_action() -> Expression:
             radius - sp.Rational(101, 100) * _worm()[2],
         ),
         source=_SOURCE,
+    )
+
+
+@cache
+def hob_pitch() -> Expression:
+    """(30.19) as an Expression."""
+    return Expression(
+        "hob_pitch",
+        "Pitch of a hob's teeth along its axis (30.19).",
+        (q.hob_starts, q.module, q.hob_diameter),
+        ((q.hob_axial_pitch, 2 * sp.pi / q.hob_starts.symbol * _worm()[0]),),
+        requires=(_HOB_FITS,),
+        source="worm, ISO 21771; proved",
     )
 
 
@@ -581,6 +598,15 @@ def prove_feed_marks_are_what_all_gashes_leave_half_way_between_two_feeds() -> N
                 left = apart**2 * (thread * height - both**2) / (8 * along)
                 (mark,) = feed_mark().function(length, contact[1], travel, *pair)
                 assert abs(left / mark - 1) < mpmath.mpf(10) ** -9
+
+
+def prove_threads_of_the_hob_rise_by_their_pitches_along_the_lead_angle() -> None:
+    """(30.19) Unrolled, k pitches rise over the circumference at λ; across the thread a pitch is π m_n."""
+    pitch, lead = hob_pitch()["hob_axial_pitch"], hobbing.swivel()["hob_lead_angle"]
+    at = {q.module.symbol: 2, q.hob_starts.symbol: 3, q.hob_diameter.symbol: 50}
+    rise = 3 * pitch.subs(at) / (sp.pi * 50)
+    assert abs(sp.N(rise - sp.tan(lead.subs(at)), 30)) < 1e-25
+    assert abs(sp.N((pitch * sp.cos(lead)).subs(at) - 2 * sp.pi, 30)) < 1e-25
 
 
 def prove_flat_at_the_reference_cylinder_is_the_formula_of_textbooks() -> None:

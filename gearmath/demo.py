@@ -14,6 +14,11 @@ import numpy as np
 import derivations
 from derivations import flank as flank_chapter
 from derivations import gearbox as gearbox_chapter
+from gearmath.bevel.contact.mesh import mesh
+from gearmath.bevel.contact.pattern import pattern
+from gearmath.bevel.contact.report import SIDES as SIDES_OF_CONTACT
+from gearmath.bevel.contact.system import Assembly
+from gearmath.bevel.design.route import design
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.export.cnc import export_cnc
@@ -30,18 +35,21 @@ from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.plot import member_figure, save
+from gearmath.quality.contact.pair import MeasuredPair, flanks_of
 from gearmath.quality.correction.member import correct
 from gearmath.quality.evaluation.pitch import Pitch, evaluate_pitch
 from gearmath.quality.evaluation.topography import Topography, evaluate_topography
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES
+from gearmath.specs.design import load_design
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
 from gearmath.specs.hobbing import load_hobbing_machine
 from gearmath.specs.milling_machine import load_milling_machine
-from gearmath.specs.set_text import save_corrected
+from gearmath.specs.set_text import save_corrected, set_text
 from gearmath.specs.simulated_machine import Probe, SimulatedMachine, load_simulated_machine
 from gearmath.specs.toml import bundled
 
 GEAR_SET, MILLING_MACHINE, SHOP = "nasa_tp3096_12x36.toml", "vertical_5axis.toml", "simulated_shop.toml"
+DESIGN = "design_7x43.toml"
 HOBBING_MACHINE, HOBBED_TEETH, EDGES = "hobbing_plewes.toml", 17, 2_000_000
 
 Say = Callable[[str], object]
@@ -49,13 +57,14 @@ Say = Callable[[str], object]
 
 @dataclass(frozen=True)
 class MemberResult:
-    """True state of one member, without probe noise, after the first cut and after the corrected one."""
+    """True state of one member, without probe noise, after the first cut and after the corrected one: ``cut``."""
 
     member: str
     before: dict[str, Topography]
     after: dict[str, Topography]
     pitch_before: list[Pitch]
     pitch_after: list[Pitch]
+    cut: tuple[FlankFile, FlankFile]
 
     @property
     def profile(self) -> tuple[float, float]:
@@ -104,6 +113,11 @@ def _run_steps(folder: Path, say: Say) -> list[MemberResult]:
             )
             save(figure, folder / f"{member}.png")
             say(f"  max profile error {result.profile[0] * 1000:+.2f} -> {result.profile[1] * 1000:+.2f} um")
+    with _step(say, "7 x 43: design; its pinion through the same loop; the contact pattern before and after"):
+        designed, shifts = run_designed(folder)
+        say(f"  max profile error {designed.profile[0] * 1000:+.2f} -> {designed.profile[1] * 1000:+.2f} um")
+        for side, (before, after) in shifts.items():
+            say(f"  {side}: the pattern's center is off by {before:.1%} -> {after:.1%} of the face width")
     with _step(say, "export C for the Teensy and for the CNC post-processor"):
         teensy = export_teensy(load_hobbing_machine(bundled(HOBBING_MACHINE)), folder / "teensy")
         cnc = export_cnc(folder / "cnc")
@@ -144,12 +158,43 @@ def compare_truths() -> tuple[float, int, int]:
     return float(worst), int((lowered == compiled).sum()), lowered.size
 
 
-def run_closed_loop(member: str, folder: Path) -> MemberResult:
-    """Cut, measure with a noisy probe, correct, cut again; the result is judged without noise."""
-    shop = load_simulated_machine(bundled(SHOP))
-    source, corrected = bundled(GEAR_SET), folder / f"{member}_corrected.toml"
-    first, measured = _cut_and_measure(source, member, shop, folder / f"{member.upper()}_1.MPF")
-    write_flank_csv(folder / f"{member}_measured.csv", measured)
+def run_designed(folder: Path) -> tuple[MemberResult, dict[str, tuple[float, float]]]:
+    """A pair is designed and its pinion cut, measured, corrected and cut again.
+
+    By side, before and after: how far the center of the contact pattern is from where it is on the nominal flanks, in
+    parts of the face width.
+    """
+    pair = design(load_design(bundled(DESIGN))).pair
+    source = folder / "designed.toml"
+    write_text(source, set_text(pair))
+    pair = load_pair(source)
+    result = run_closed_loop("pinion", folder, source, "designed_")
+    wanted = _pattern_centers(MeasuredPair(pair, {}))
+    width, shifts = pair.member("gear").blank.face_width, []
+    for file in result.cut:
+        found = _pattern_centers(MeasuredPair(pair, flanks_of(pair, "pinion", file)[0]))
+        shifts.append({side: float(np.linalg.norm(found[side] - wanted[side])) / width for side in wanted})
+    return result, {side: (shifts[0][side], shifts[1][side]) for side in wanted}
+
+
+def _pattern_centers(pair: MeasuredPair) -> dict[str, np.ndarray]:
+    """Cone distance and height (2,) [mm] of the center of the contact pattern, by side."""
+    found = {}
+    for side in SIDES_OF_CONTACT:
+        figures = pattern(mesh(pair.system(side), Assembly())).figures
+        found[side] = np.array([figures["center_cone_distance_mm"], figures["center_height_mm"]])
+    return found
+
+
+def run_closed_loop(member: str, folder: Path, source: Path | None = None, prefix: str = "") -> MemberResult:
+    """Cut, measure with a noisy probe, correct, cut again; the result is judged without noise.
+
+    ``source`` is the set, by default the bundled one; names of files begin with ``prefix``.
+    """
+    shop, name = load_simulated_machine(bundled(SHOP)), prefix + member
+    source, corrected = source or bundled(GEAR_SET), folder / f"{name}_corrected.toml"
+    first, measured = _cut_and_measure(source, member, shop, folder / f"{name.upper()}_1.MPF")
+    write_flank_csv(folder / f"{name}_measured.csv", measured)
     spec = load_pair(source).member(member)
     correction = correct(spec, member, measured)
     save_corrected(
@@ -159,15 +204,15 @@ def run_closed_loop(member: str, folder: Path) -> MemberResult:
         correction.settings,
         correction.index,
         check=check_pair,
-        origin=f"{member}_measured.csv",
+        origin=f"{name}_measured.csv",
     )
-    second, again = _cut_and_measure(corrected, member, shop, folder / f"{member.upper()}_2.MPF")
-    write_flank_csv(folder / f"{member}_measured_again.csv", again)
+    second, again = _cut_and_measure(corrected, member, shop, folder / f"{name.upper()}_2.MPF")
+    write_flank_csv(folder / f"{name}_measured_again.csv", again)
     before, after = ({flank: evaluate_topography(file, flank) for flank in FLANKS} for file in (first, second))
     pitch_before, pitch_after = (
         [pitch for flank in FLANKS if (pitch := evaluate_pitch(file, spec.teeth, flank))] for file in (first, second)
     )
-    return MemberResult(member, before, after, pitch_before, pitch_after)
+    return MemberResult(member, before, after, pitch_before, pitch_after, (first, second))
 
 
 def _cut_and_measure(gear_set: Path, name: str, shop: SimulatedMachine, program: Path) -> tuple[FlankFile, FlankFile]:

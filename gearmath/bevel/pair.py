@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from gearmath.bevel.blame import likely, most_changed
 from gearmath.bevel.blame_method import likely_method
@@ -21,6 +23,7 @@ from gearmath.bevel.check_mates import Cut, check_mates, check_space
 from gearmath.bevel.check_motion import check_motions
 from gearmath.bevel.method import cut_generation_of, generation_of
 from gearmath.bevel.misfit import Misfit
+from gearmath.bevel.slips import likely_slip
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.errors import ComputationError, InputError
 from gearmath.files import read_text
@@ -35,11 +38,22 @@ _WELL = 0.7
 def load_pair(path: Path) -> BevelSet:
     """Read a gear set that is one physical pair.
 
-    Raises InputError naming file, member, flank, key, value and limit of what cannot be.
+    Raises InputError naming file, member, flank, key, value and limit of what cannot be, and the usual slip without
+    which the file would be a pair, where there is one.
     """
-    pair = load_bevel_set(path)
+
+    def slip(refusal: str) -> str:
+        try:
+            return likely_slip(tomllib.loads(read_text(path)), refusal, _file_passes)
+        except (ValueError, RecursionError):  # no TOML, which the refusal says
+            return ""
+
     try:
-        check_pair(pair)
+        pair = load_bevel_set(path)
+    except InputError as error:
+        raise InputError(f"{error}{slip(str(error))}") from error
+    try:
+        check_pair(pair, slip)
     except InputError as error:
         unit = tomllib.loads(read_text(path)).get("unit", "mm")
         raise InputError(
@@ -48,8 +62,11 @@ def load_pair(path: Path) -> BevelSet:
     return pair
 
 
-def check_pair(pair: BevelSet) -> None:
-    """Refuse a set that is no physical pair. Raises InputError naming member, flank, key, value and limit."""
+def check_pair(pair: BevelSet, slip: Callable[[str], str] = lambda _: "") -> None:
+    """Refuse a set that is no physical pair. Raises InputError naming member, flank, key, value and limit.
+
+    ``slip`` says of a refusal without which slip there would be none, where that is known.
+    """
     cut: dict[str, Cut] = {name: {} for name in pair.members}
     try:
         _check(pair.members, pair.shaft_angle, cut)
@@ -57,8 +74,24 @@ def check_pair(pair: BevelSet) -> None:
         cause = ""
         if len(pair.members) == len(MEMBERS) and all(len(flanks) == len(FLANKS) for flanks in cut.values()):
             cause = likely_method(pair.members, lambda members: _passes(members, pair.shaft_angle))
-        cause = cause or likely(pair.members, misfit.where, cut, lambda members: _passes(members, pair.shaft_angle))
+        if not cause:
+            text = str(misfit)
+            cause = likely(
+                pair.members, misfit.where, cut, lambda one: _passes(one, pair.shaft_angle), lambda: slip(text)
+            )
         raise InputError(f"{misfit}{cause}") from misfit
+    except InputError as error:
+        raise InputError(f"{error}{slip(str(error))}") from error
+
+
+def _file_passes(values: dict[str, Any]) -> bool:
+    """Whether the values of a set file are those of a pair."""
+    try:
+        pair = BevelSet.from_file(values)
+        _check(pair.members, pair.shaft_angle, {name: {} for name in pair.members})
+    except (ValueError, Misfit, InputError, ComputationError):
+        return False
+    return True
 
 
 def _passes(members: dict[str, Member], shaft_angle: float) -> bool:

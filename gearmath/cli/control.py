@@ -84,24 +84,38 @@ def status(connection: Path, insecure: bool, as_json: bool) -> None:
 @verb()
 @click.option("--interval", type=click.FloatRange(0.1, 5.0), default=0.1, show_default=True, help="Seconds.")
 @click.option("--seconds", type=click.FloatRange(0.1, 86_400.0), help="How long.  [default: until Ctrl-C]")
+@click.argument("parameters", nargs=-1, metavar="[R10 R20-R25 ...]")
 @JSON
-def watch(connection: Path, insecure: bool, interval: float, seconds: float | None, as_json: bool) -> None:
-    """Positions X Y Z A B as they change, a line each time; with --json a JSON object a line."""
+def watch(
+    connection: Path,
+    insecure: bool,
+    interval: float,
+    seconds: float | None,
+    parameters: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Positions X Y Z A B as they change, or the R parameters that are named, a line each time; with --json a JSON
+    object a line.
+    """
     from gearmath.control.interface import AXES
     from gearmath.control.sinumerik import READ_STATE
 
+    reading, writing = _parameters(parameters)
+    if writing:
+        raise InputError(f"R{next(iter(writing))}=...: watch sets nothing: 'gearmath control rparam' does")
+    numbers = [*dict.fromkeys(reading)]
+    names, what = ([f"R{number}" for number in numbers], "parameters") if numbers else (AXES, "position")
+
     async def work(one: Control) -> None:
         begin: float | None = None
-        async for at, position in one.watch(interval):
+        async for at, found in one.watch_parameters(numbers, interval) if numbers else one.watch(interval):
             begin = at if begin is None else begin
+            values = dict(zip(names, found, strict=True))
             if as_json:
-                values = dict(zip(AXES, position, strict=True))
-                click.echo(json.dumps({"seconds": round(at - begin, 3), "position": values}))
+                click.echo(json.dumps({"seconds": round(at - begin, 3), what: values}))
             else:
-                click.echo(
-                    f"{at - begin:9.2f} s  "
-                    + "  ".join(f"{axis} {value:11.5f}" for axis, value in zip(AXES, position, strict=True))
-                )
+                shown = (f"{name} {value:11.5f}" for name, value in values.items())
+                click.echo(f"{at - begin:9.2f} s  {'  '.join(shown)}")
             if seconds is not None and at - begin >= seconds:
                 return
 

@@ -26,7 +26,12 @@ from gearmath.cli.runs import store_option
     help="Acknowledge the touches: this lets the waiting program move on. It must be given.",
 )
 @click.option("--resume", type=click.IntRange(1), metavar="RUN", help="Go on with a run of the store.")
-@click.option("--points", metavar="FIRST-LAST", help="Touch these points only, as a new run.")
+@click.option(
+    "--points",
+    metavar="POINTS",
+    help="Touch these points only, as a new run: numbers and stretches, 3,17-20. Where they do not follow each other, "
+    "the program is started once for each stretch.",
+)
 @click.option("--again-of", type=click.IntRange(1), metavar="RUN", help="With --points: the run that they belong to.")
 def measure(
     connection: Path,
@@ -66,16 +71,16 @@ def measure(
     with MeasurementStore.open(store_file) as store:
         if resume is not None:
             run = store.resume_run(resume)
-            parts = resumed(run)
+            stretches = resumed(run)
         else:
             assert program is not None
-            start, parts = begun(
+            start, stretches = begun(
                 name_of(connection, insecure), program, gear_set, machine, calibration, points, again_of
             )
             asyncio.run(check_ready(connect, start))
             run = store.begin_run(start)
         with bar(len(run.missing()), "touch") as progress:
-            asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(parts))
+            asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(*stretches))
         click.echo(f"{store_file}: run {run.id} is complete: {len(run.start.points)} touches")
 
 

@@ -75,7 +75,13 @@ _MEANINGLESS = {
 @click.option("--compare", type=click.Choice(["ideal", "exact", "float"]), help="Another rule beside it.")
 @click.option("--plot", "chart", type=NewFile(), metavar="CHART", help="Inspection chart to write: PNG, SVG or HTML.")
 @click.option("--csv", "points", type=NewFile(), metavar="POINTS.csv", help="Measured points to write.")
-@click.option("--stl", "flanks", type=NewFile(), metavar="FLANKS.stl", help="Flanks of all teeth to write, as cut.")
+@click.option(
+    "--stl",
+    "flanks",
+    type=NewFile(),
+    metavar="GEAR.stl",
+    help="The gear to write, a closed solid with its flanks as cut.",
+)
 @JSON
 def cut(machine: str, as_json: bool, chart: Path | None, points: Path | None, compare: str | None, **job: Any) -> None:
     """Cut a gear virtually, inspect it, give it classes, and tell which part of the machine is to blame.
@@ -146,12 +152,12 @@ def _cut_gear(
         write_traces(points, prepared.job, gears[0].found)
         click.echo(f"points: {points}", err=as_json)
     if job["flanks"] is not None:
-        from gearmath.exchange.hobbed_stl import ALL, write_flanks
+        from gearmath.exchange.hobbed_stl import ALL, write_gear
         from gearmath.gearbox.hobbed.envelope import Cut
 
         with bar(ALL * job["teeth"], "point", quiet=as_json) as progress:
-            write_flanks(job["flanks"], Cut(prepared.job, prepared.train), prepared.where, progress)
-        click.echo(f"flanks: {job['flanks']}", err=as_json)
+            write_gear(job["flanks"], Cut(prepared.job, prepared.train), prepared.where, progress)
+        click.echo(f"gear: {job['flanks']}", err=as_json)
     if as_json:
         echo_json(cut_values(prepared, gears, shares))
     else:

@@ -43,6 +43,7 @@ def cut_values(cut: CutSetup, gears: Sequence[VirtualGear], shares: Sequence[Con
         "feed": job.feed,
         "rpm": cut.train.rpm,
         "seconds": cut.train.seconds,
+        "generating_length": cut.hob_length,
         "generating_flat_um": flat * 1000,
         "feed_mark_um": mark * 1000,
         "tolerances": NOT_CONFIRMED,
@@ -72,6 +73,7 @@ def _head(cut: CutSetup) -> Iterator[str]:
     way = "climb" if job.climb else "conventional"
     feed = f"feed {job.feed:g} mm per turn of the table, {way}"
     yield f"  face width {job.face_width:g} mm, {feed}, {cut.train.rpm:.0f} rpm"
+    yield f"  {cut.hob_length:.1f} mm of the hob's length cut the flanks; more of it lets it be shifted"
     flat, mark = ridges(job)
     yield f"  ridges by themselves: generating flats {flat * 1000:.2f} um, feed marks {mark * 1000:.2f} um"
 

@@ -30,6 +30,7 @@ from gearmath.errors import ComputationError, InputError
 if TYPE_CHECKING:
     from gearmath.bevel.tooth import ToothSpace
     from gearmath.machine.control.executor import MachinePath
+    from gearmath.machine.judging.cut import MetalLeft
     from gearmath.machine.milling.run import CuttingRun
     from gearmath.specs.bevel_set import Member
     from gearmath.specs.flank_csv import FlankFile
@@ -189,14 +190,14 @@ def mill(
     limit, where flanks, fillets or root are gouged or keep stock by more than the program states (1 um where it states
     nothing), where spaces are left out, blocks end off the path of the settings, anything collides, rapid motion comes
     near the work, or the machine must not run it: travel, speed, acceleration, feed, spindle, modes. With --report,
-    without --errors, it is so too where a surface is off by more than --report-tolerance-um.
+    without --errors, it is so too where a surface is off by more than --report-tolerance-um from what the settings of
+    the set cut, corrected or not; what corrected settings are off their design is said beside it.
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.tooth import tooth_space
     from gearmath.machine.control.executor import execute
     from gearmath.machine.control.state import Setup
     from gearmath.machine.control.text import program_text, skip_blocks
-    from gearmath.machine.judging.cut import REPORTED
     from gearmath.machine.judging.program import faults_of
     from gearmath.machine.judging.stated import Stated, stated_member
     from gearmath.specs.flank_csv import write_flank_csv
@@ -222,7 +223,8 @@ def mill(
     click.echo(f"{target}: {len(file)} points, largest deviation {worst * 1000:.3f} um")
     with about(program):
         right = file if simulated is None else None
-        faults = _judge_metal(text, path, runs, spec, member, milling_machine, space, right)
+        left = _judge_metal(text, path, runs, spec, member, milling_machine, space, right)
+        faults = [*map(str, left.faults)]
         faults += map(str, faults_of(text, path, runs, spec, member, milling_machine))
     if report is not None:
         found = _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000, space)
@@ -234,9 +236,11 @@ def mill(
     else:
         cut = sorted({number for one in runs for number in one.spaces})
         stated = Stated.of(text)
-        within = f"within {1000 * (stated.tolerance or REPORTED):g} um"
+        within = f"within {1000 * left.tolerance:.4g} um"
         if stated.tolerance is None:
             within += ", as none is stated"
+        elif left.tolerance < stated.tolerance:
+            within += f", which its blocks are made for, of the {1000 * stated.tolerance:g} um that it states"
         if not stated.is_ours:
             click.echo(f"{program}: not judged: whether it looks at tool, offsets and units before it moves")
         click.echo(
@@ -297,8 +301,8 @@ def _judge_metal(
     machine: MillingMachine,
     space: ToothSpace | None,
     milled: FlankFile | None,
-) -> list[str]:
-    """Print what the blocks leave on a machine without errors; a sentence for each way in which that is wrong."""
+) -> MetalLeft:
+    """Print what the blocks leave on a machine without errors, and return it with what is wrong with that."""
     import math
 
     from gearmath.bevel.ridge import RIDGE, ridge, ridge_words
@@ -308,15 +312,15 @@ def _judge_metal(
     if space is not None and (left_between := ridge(as_cut(spec, space), space)) > RIDGE:
         click.echo(f"the root: {ridge_words(left_between)}")
     with bar(spec.teeth, "space") as progress:
-        faults, found = metal_faults(text, path, runs, spec, member, machine, space, progress, milled)
-    if found is not None and math.isfinite(found.lowest):
+        left = metal_faults(text, path, runs, spec, member, machine, space, progress, milled)
+    if (found := left.watch) is not None and math.isfinite(found.lowest):
         _, (number, flank, line) = found.worst
         click.echo(
             f"every block checked on {found.lines} normals of the flanks of these settings: {found.lowest * 1000:.3f} "
             f"to {found.highest * 1000:.3f} um, the largest by line {line} of the program (space {number}, {flank} "
             "flank)"
         )
-    return [str(fault) for fault in faults]
+    return left
 
 
 def _write_report(
@@ -333,9 +337,11 @@ def _write_report(
     import json
 
     from gearmath.files import write_text
-    from gearmath.machine.judging.report import milling_report
+    from gearmath.machine.judging.report import largest, milling_report
+    from gearmath.specs.bevel_set import FLANKS
 
-    with bar(5 * spec.teeth, "surface") as progress:
+    corrected = errors is None and any(spec.flank(flank).design for flank in FLANKS)
+    with bar(5 * spec.teeth * (1 + corrected), "surface") as progress:
         found = milling_report(path, spec, member, machine, errors, tolerance, progress=progress, space=space)
     write_text(target, json.dumps(found.as_dict(), indent=2) + "\n")
     seconds = found.timing.feed_seconds + found.timing.rapid_seconds
@@ -343,6 +349,11 @@ def _write_report(
         f"{target}: {seconds:.0f} s, {len(found.gouges)} surfaces gouged, {len(found.uncut)} with stock, "
         f"{len(found.collisions)} collisions"
     )
+    if own := found.surfaces_of_settings:
+        click.echo(
+            f"  corrected settings: the flanks deviate by up to {largest(own, 'flank') * 1000:.3f} um from those of "
+            f"these settings, and by {largest(found.surfaces, 'flank') * 1000:.3f} um from the design"
+        )
     for state in found.gouges[:5]:
         click.echo(f"  space {state.space}, {state.surface}: {state.lowest * 1000:.3f} um, line {state.line}")
     for state in found.uncut[:5]:

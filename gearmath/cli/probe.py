@@ -89,7 +89,7 @@ def probe(
     from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
     from gearmath.machine.writing.linuxcnc import probing as linuxcnc
     from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
-    from gearmath.machine.writing.probing import probing_program
+    from gearmath.machine.writing.probing import SINUMERIK
     from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
@@ -102,7 +102,7 @@ def probe(
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     dialect = dialect_of(milling_machine, control, target if configuration else None, sheet)
     simulated = load_simulated_machine(find(errors)) if errors else None
-    write = linuxcnc.probing_program if dialect == LINUXCNC else probing_program
+    writer = linuxcnc.LINUXCNC if dialect == LINUXCNC else SINUMERIK
     with bars() as begin:
         made = checked_probing(
             bevel_set,
@@ -114,7 +114,7 @@ def probe(
             str(target),
             simulated,
             begin,
-            write,
+            writer,
         )
     page = None
     if sheet is not None:
@@ -300,7 +300,7 @@ def _calibrate_tip(raw: Path, found: CalibrationTouches, calibration: str, lobin
     with about(raw):
         tip = calibrate_tip(found, load_calibration(source), lobing, str(source))
     save_calibration(source, target, tip.radius, tip.offset, tip.lobes)
-    return _tip_lines(tip)
+    return tip_lines(tip)
 
 
 def _calibrate_axes(
@@ -315,10 +315,10 @@ def _calibrate_axes(
     with about(raw):
         axes = calibrate_axes(found, load_milling_machine(source), probe)
     save_axes(source, target, axes.pivot_offset, axes.gauge_line_height)
-    return _axis_lines(axes, probe)
+    return axis_lines(axes, probe)
 
 
-def _axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
+def axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
     """What the machine file gets, what the zero offsets of the control should get, and what the touches do not fit."""
     u = axes.fit.uncertainty
     for name, value, unsure in zip("xyz", axes.pivot_offset, u[:3], strict=True):
@@ -337,7 +337,7 @@ def _residual_words(fit: Fit) -> str:
     return f"noise {_um(fit.noise)}, largest residual {float(abs(fit.residuals).max()) * 1000:.3f} um"
 
 
-def _tip_lines(tip: Tip) -> Iterator[str]:
+def tip_lines(tip: Tip) -> Iterator[str]:
     """Every value with its standard uncertainty, then what the touches do not fit."""
     yield f"tip radius {tip.radius:.5f} mm, u {_um(tip.radius_uncertainty)}"
     for axis, value, u in zip("XYZ", tip.offset, tip.offset_uncertainty, strict=True):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gearmath.cli.common import JSON, MACHINE, about, bar, echo_json, plot, save_plot, table
-from gearmath.errors import InputError
+from gearmath.cli.probe import CALIBRATION
 
 if TYPE_CHECKING:
     from gearmath.machine.judging.trajectory import Trajectory
@@ -18,38 +18,53 @@ if TYPE_CHECKING:
 @click.command("time")
 @click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF")
 @MACHINE
+@CALIBRATION
 @JSON
 @plot("the speed of the first pass, as asked and as the axes can")
-def program_time(program: Path, machine: str, as_json: bool, picture: Path | None) -> None:
+def program_time(program: Path, machine: str, calibration: str, as_json: bool, picture: Path | None) -> None:
     """How long a program takes: a model of the control with the limits of the machine file.
 
     Speed, acceleration and jerk of every axis bound the motion, the tolerance of the path mode the speed at corners.
     Programs for LinuxCNC, and others where [control] kind is linuxcnc, are blended as LinuxCNC does it. Dwells take
-    their time, tool changes none. Programs that probe are refused: their time depends on where they touch.
+    their time, tool changes none. In a program that probes every touch of a member counts to the end of its way, the
+    longest that it can be, those of ring and spheres to where they are; no host is waited for. --calibration, the
+    probe, is for such programs alone.
     """
     from gearmath.machine.control.executor import execute
     from gearmath.machine.control.state import Setup
     from gearmath.machine.control.text import is_for_linuxcnc, program_text
     from gearmath.machine.judging.trajectory import trajectory
-    from gearmath.machine.measuring.probe_run import writes_touches
+    from gearmath.machine.measuring.probe_run import probing_path, touches_artefacts, writes_touches
+    from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     milling_machine, text = load_milling_machine(find(machine)), program_text(program)
-    if writes_touches(text):
-        raise InputError(f"{program}: probes: its time depends on where it touches, and is not computed")
     if is_for_linuxcnc(text):
         control = milling_machine.control.model_copy(update={"kind": "linuxcnc"})
         milling_machine = milling_machine.model_copy(update={"control": control})
     with about(program), bar(1, "program", as_json) as progress:
-        path = execute(text, str(program), Setup.of(milling_machine))
+        if probes := writes_touches(text):
+            known = load_calibration(find(calibration))
+            path = probing_path(text, str(program), milling_machine, known)
+        else:
+            path = execute(text, str(program), Setup.of(milling_machine))
         found = trajectory(path, milling_machine)
         progress(1)
+    touches = None if not probes else "where they are met" if touches_artefacts(text) else "the end of their ways"
     if as_json:
         kind = milling_machine.control.kind or "sinumerik"
-        echo_json({"program": program.name, "machine": milling_machine.name, "control": kind} | found.as_dict())
+        said = {
+            "program": program.name,
+            "machine": milling_machine.name,
+            "control": kind,
+            "touches_counted_to": touches,
+        }
+        echo_json(said | found.as_dict())
     else:
         click.echo(_table(program, milling_machine, found))
+        if touches:
+            click.echo(f"touches counted to {touches}; no host is waited for")
     if picture is not None:
         from gearmath.plot.trajectory import speed_figure
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +15,7 @@ from gearmath.errors import InputError
 if TYPE_CHECKING:
     from gearmath.control.store import MeasurementStore
     from gearmath.control.store_evaluation import EvaluatedRun
+    from gearmath.control.store_run import StoredRun
 
 
 def store_option(words: str = "The measurement store.") -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -66,7 +66,8 @@ def list_(store_file: Path, as_json: bool) -> None:
 @click.option(
     "--evaluate",
     is_flag=True,
-    help="Evaluate the run by set, machine and probe as stored, and keep the result.",
+    help="Evaluate the run by set, machine and probe as stored, and keep the result; of a run on ring and spheres the "
+    "new calibration or machine file.",
 )
 @plot("the evaluation of the run")
 @JSON
@@ -76,9 +77,11 @@ def show(run: int, store_file: Path, evaluate: bool, picture: Path | None, as_js
 
     with _opened(store_file) as store:
         kept, figures = store.run(run), ""
-        if picture or evaluate:
+        if evaluate and not picture and kept.start.columns[2] != "member":
+            figures = _calibrated(kept)
+        elif picture or evaluate:
             (evaluated,) = _evaluated(store, (run,))
-        if evaluate:
+        if evaluate and not figures:
             from gearmath.cli.quality_text import evaluation_text
             from gearmath.control.store_evaluation import keep_results
 
@@ -186,13 +189,14 @@ def resume(run: int, store_file: Path, again: str | None, target: Path | None, a
     'gearmath control measure --resume RUN' does it with the control.
     """
     from gearmath.cli.runs_text import resume_text, resume_values
+    from gearmath.control.parts import chosen_points
     from gearmath.files import write_bytes
 
     with _opened(store_file) as store:
         kept = store.run(run)
         if again is not None:
             old = kept.start
-            points = {point: old.points[point] for point in _points(again, run, old.points)}
+            points = {point: old.points[point] for point in chosen_points("--again", again, old.points)}
             kept = store.begin_run(replace(old, points=points, refers_to=run, operator=""))
         elif kept.is_complete:
             raise InputError(f"{store_file}: run {run} is complete: --again probes points of it once more")
@@ -203,6 +207,18 @@ def resume(run: int, store_file: Path, again: str | None, target: Path | None, a
         echo_json(values)
     else:
         click.echo(resume_text(values))
+
+
+def _calibrated(run: StoredRun) -> str:
+    """A calibration run evaluated, its file kept with it."""
+    from gearmath.cli.probe import axis_lines, tip_lines
+    from gearmath.control.store_calibration import calibrate_run
+    from gearmath.quality.calibration.tip import Tip
+
+    made = calibrate_run(run)
+    run.add_result(made.role, made.file)
+    found = made.found
+    return "\n".join(tip_lines(found) if isinstance(found, Tip) else axis_lines(found, made.known))
 
 
 def _opened(path: Path) -> MeasurementStore:
@@ -218,17 +234,3 @@ def _evaluated(store: MeasurementStore, numbers: tuple[int, ...]) -> list[Evalua
     kept = [store.run(number) for number in numbers]
     with bar(STAGES * len(kept), "stage") as progress:
         return [evaluate_run(run, progress) for run in kept]
-
-
-def _points(text: str, run: int, there: Mapping[int, tuple[str, ...]]) -> list[int]:
-    """The numbers in a text such as 3,17-20, each a point that is ``there``."""
-    found: set[int] = set()
-    for part in text.split(","):
-        stretch = re.fullmatch(r"\s*(\d{1,9})\s*(?:-\s*(\d{1,9})\s*)?", part, re.ASCII)
-        if stretch is None:
-            raise InputError(f"--again {text}: must be numbers and stretches with commas between them, such as 3,17-20")
-        first, last = int(stretch[1]), int(stretch[2] or stretch[1])
-        if first not in there or last not in there or first > last:
-            raise InputError(f"--again {text}: {part.strip()}: run {run} has points {min(there)} to {max(there)}")
-        found.update(point for point in there if first <= point <= last)
-    return sorted(found)

@@ -117,6 +117,12 @@ class Control(Protocol):
         """Time [s] and position X Y Z A B, at every ``interval`` [s]."""
         ...
 
+    def watch_parameters(
+        self, numbers: Sequence[int], interval: float
+    ) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
+        """Time [s] and R parameters, at every ``interval`` [s]."""
+        ...
+
     async def probe_deflected(self) -> bool | None:
         """Whether the probe signals a touch now; None where the control does not tell."""
         ...

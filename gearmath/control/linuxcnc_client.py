@@ -113,6 +113,11 @@ class LinuxCncControl:
             yield time.monotonic(), (await self.status()).position
             await asyncio.sleep(interval)
 
+    def watch_parameters(
+        self, numbers: Sequence[int], interval: float
+    ) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
+        raise ComputationError(f"{self.name}: LinuxCNC has no R parameters, and shows those of its programs to none")
+
     async def probe_deflected(self) -> bool | None:
         return bool((await self._now())["probe"])
 

@@ -24,6 +24,7 @@ from gearmath.control.interface import (
     RunStart,
     Status,
 )
+from gearmath.control.parts import last_in_a_row
 from gearmath.errors import ComputationError, InputError
 
 Connect = Callable[[], Awaitable[Control]]
@@ -75,18 +76,26 @@ class Measuring:
         self._missing = run.missing()
         self._alarms: dict[str, Alarm] = {}
         self._odd: Handshake | None = None
-        self._last = max(run.start.points)
+        self._last = 0
+        """The last point of the stretch that the program makes now."""
         self.reconnected = 0
         self.is_ready = False
         """Whether the program may be started, or goes on already."""
 
-    async def to_the_end(self, parts: tuple[int, int] = (0, 0)) -> None:
-        """Prepare, wait until the operator starts the program, and keep every touch. ``parts`` are R90 and R91.
+    @property
+    def is_started(self) -> bool:
+        """Whether the program goes on, so far as is known."""
+        return self._number is not None
+
+    async def to_the_end(self, *stretches: tuple[int, int]) -> None:
+        """Prepare, wait until the operator starts the program, and keep every touch; for points that do not follow each
+        other once for each of the ``stretches``, R90 and R91 of each (none: the whole program).
 
         Raises ComputationError in one sentence where the run stops before it is complete; it may be resumed.
         """
         try:
-            await self._whole(parts)
+            for parts in stretches or ((0, 0),):
+                await self._stretch(parts)
         except asyncio.CancelledError:
             self._run.finish("interrupted by the operator of the host")
             raise
@@ -102,12 +111,17 @@ class Measuring:
             ) from error
         self._run.finish("complete")
 
-    async def _whole(self, parts: tuple[int, int]) -> None:
+    async def _stretch(self, parts: tuple[int, int]) -> None:
+        """One start of the program."""
+        follows, self._number, self._baseline, self.is_ready = self.is_ready, None, None, False
+        self._last = last_in_a_row(self._run.start.points, self._missing)
         control, ready = await self._again(self._patience.first), False
         try:
             while True:
                 try:
                     if not ready:
+                        if follows and self._baseline is None:
+                            await self._ended(control)
                         await self._prepare(control, parts)
                         ready = self.is_ready = True
                     await self._follow(control)
@@ -130,6 +144,12 @@ class Measuring:
     async def _again(self, seconds: float) -> Control:
         return await _connected(self._connect, seconds, self._patience)
 
+    async def _ended(self, control: Control) -> None:
+        """Until the program of the stretch before has ended: after its last touch it still moves away."""
+        while (await control.status()).channel is not ChannelState.RESET:
+            await self._hear(control)
+            await asyncio.sleep(self._patience.state)
+
     async def _prepare(self, control: Control, parts: tuple[int, int]) -> None:
         """The selected program must be the run's own; a channel in reset is told what to make."""
         start = self._run.start
@@ -140,15 +160,21 @@ class Measuring:
         if status.channel is ChannelState.RESET:
             self._baseline = handshake.number
             await control.prepare(*parts)
-            self._say(
-                f"{control.name}: ready for {start.program}, {len(self._missing)} touches: start it on the control"
-            )
+            touches = sum(point <= self._last for point in self._missing)
+            more = len(self._missing) - touches
+            later = f", {more} in later starts" if more else ""
+            self._say(f"{control.name}: ready for {start.program}, {touches} touches{later}: start it on the control")
         elif self._baseline is not None:
             pass  # started while the connection was lost
         elif not self._resumed(handshake):
             raise _started(control, status)
         else:
             self._number = handshake.number
+
+    @property
+    def _is_open(self) -> bool:
+        """Whether a point of this stretch is missing."""
+        return bool(self._missing) and self._missing[0] <= self._last
 
     def _resumed(self, handshake: Handshake) -> bool:
         """Whether the program that runs waits for this run to go on."""
@@ -171,7 +197,7 @@ class Measuring:
             if self._number is None:
                 await self._join(handshake)
             elif handshake.number != self._number:
-                if not self._missing:
+                if not self._is_open:
                     return
                 raise _Stopped(
                     f"{control.name}: the control is in run {handshake.number}, this one was run {self._number}: the "
@@ -191,19 +217,19 @@ class Measuring:
     async def _served(self, control: Control, handshake: Handshake) -> bool:
         """Keep and acknowledge what is offered; True when nothing more is to come."""
         point = handshake.offered
-        if not self._missing and handshake.acknowledged == point == self._last:
+        if not self._is_open and handshake.acknowledged == point == self._last:
             return True
         if point == handshake.acknowledged or point == 0:
-            return not self._missing and point == self._last
+            return not self._is_open and point == self._last
         if not handshake.waits:
             raise _Stopped(f"{control.name}: the program does not wait for a host: R104 must be 1 before it is started")
-        if point not in self.kept and (not self._missing or point != self._missing[0]):
+        if point not in self.kept and not (self._is_open and point == self._missing[0]):
             # once may be a look in the middle of a change
             if self._odd != handshake:
                 self._odd = handshake
                 await asyncio.sleep(self._patience.settle)
                 return False
-            first = self._missing[0] if self._missing else "none"
+            first = self._missing[0] if self._is_open else "none"
             raise _Stopped(f"{control.name}: point {point} is offered, the first one that is missing is {first}")
         touch = await control.touch(handshake.number)
         if point in self.kept:
@@ -220,14 +246,14 @@ class Measuring:
             await asyncio.sleep(self._patience.settle)
             return False
         await control.acknowledge(point)
-        return not self._missing and point == self._last
+        return not self._is_open and point == self._last
 
     async def _look_around(self, control: Control) -> bool:
         """Alarms, and whether the program still runs; True when it has ended and nothing is missing."""
         status = await control.status()
         await self._hear(control)
         if self._number is not None and status.channel is ChannelState.RESET:
-            if not self._missing:
+            if not self._is_open:
                 return True
             handshake = await control.handshake()
             await asyncio.sleep(self._patience.news)

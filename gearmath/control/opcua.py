@@ -20,7 +20,7 @@ from gearmath.control.r_parameters import check_numbers, check_values, groups_of
 from gearmath.control.refusals import asked, code_name
 from gearmath.control.transfer import Transfer
 from gearmath.control.ua_words import node_id
-from gearmath.errors import ComputationError
+from gearmath.errors import ComputationError, InputError
 from gearmath.specs.control_connection import ControlConnection
 
 #: R parameters of the handshake: point offered, run, point acknowledged, whether a host is waited for; the touch.
@@ -126,6 +126,30 @@ class OpcUaControl:
 
     async def watch(self, interval: float) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
         """Time [s] and position at every ``interval`` [s], by a subscription at the control's next interval."""
+        async for one in self._subscribed(self._position_names(), interval, "positions"):
+            yield one
+
+    async def watch_parameters(
+        self, numbers: Sequence[int], interval: float
+    ) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
+        """Time [s] and R parameters, in the same way.
+
+        Raises InputError for numbers that there are not, and for more than the control samples in a second.
+        """
+        check_numbers(numbers)
+        many = len(numbers) * 1000 / _next_interval(interval)
+        if many > sinumerik.SAMPLES_PER_SECOND:
+            raise InputError(
+                f"{len(numbers)} R parameters every {interval:g} s: the control samples {sinumerik.SAMPLES_PER_SECOND} "
+                "values a second at most"
+            )
+        names = [self._parameters(number, 1) for number in numbers]
+        async for one in self._subscribed(names, interval, "R parameters"):
+            yield one
+
+    async def _subscribed(
+        self, names: Sequence[str], interval: float, what: str
+    ) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
         latest: dict[str, float] = {}
 
         class Handler:
@@ -135,10 +159,9 @@ class OpcUaControl:
             def status_change_notification(self, status: Any) -> None:
                 latest["lost"] = 1.0
 
-        names = self._position_names()
-        milliseconds = next((one for one in sinumerik.INTERVALS_MS if one >= 1000 * interval - 1e-6), 5000)
+        milliseconds = _next_interval(interval)
         rate: Any = float(milliseconds)
-        with asked(self.name, "subscribing to positions", sinumerik.READ_STATE):
+        with asked(self.name, f"subscribing to {what}", sinumerik.READ_STATE):
             subscription = await self._client.create_subscription(milliseconds, Handler())
             self._subscriptions.append(subscription)
             await subscription.subscribe_data_change([self._node(name) for name in names], sampling_interval=rate)
@@ -148,7 +171,7 @@ class OpcUaControl:
                 due += interval
                 await asyncio.sleep(max(0.0, due - time.monotonic()))
                 if "lost" in latest or self._client.uaclient.state.name not in ("CONNECTED", "READY", "ACTIVE"):
-                    raise ConnectionLost(f"{self.name}: the connection is lost (positions)")
+                    raise ConnectionLost(f"{self.name}: the connection is lost ({what})")
                 if all(name in latest for name in names):
                     yield time.monotonic(), tuple(latest[name] for name in names)
         finally:
@@ -323,3 +346,9 @@ async def _end(client: Client) -> None:
         await asyncio.wait_for(client.disconnect(), 1.0)
     with _quietly():
         client.disconnect_socket()
+
+
+def _next_interval(seconds: float) -> int:
+    """The next of the control's own intervals that is not shorter [ms]."""
+    own = sinumerik.INTERVALS_MS
+    return next((one for one in own if one >= 1000 * seconds - 1e-6), own[-1])

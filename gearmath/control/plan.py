@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.control.linuxcnc_plan import touches_of
-from gearmath.control.parts import part_of
+from gearmath.control.parts import stretches_of
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import run_program
 from gearmath.machine.control.state import Probe, Setup
@@ -16,6 +16,8 @@ from gearmath.machine.measuring.collision_check import enough_steps, is_touch
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
 
 _FIRST, _LAST = 90, 91
+#: R90 and R91 of a whole program.
+WHOLE = (0, 0)
 _POSITION = ("X", "Y", "Z", "A", "B", "triggered")
 
 
@@ -61,12 +63,16 @@ def planned(text: str, program: str, setup: Setup, first: int = 0, last: int = 0
     raise InputError(f"{program}: offers no touches to a host: is it a program of 'nc probe' or 'nc calibrate'?")
 
 
-def resuming(
-    text: str, program: str, setup: Setup, plan: RunPlan, missing: list[int], probe: Probe = triggers
-) -> tuple[int, int]:
-    """R90 and R91 with which a program makes the points that are missing, and as few others as it can."""
-    if list(plan.points) == missing:
-        return 0, 0
-    part = part_of(plan.points, text)
-    low, high = part[missing[0]], part[missing[-1]]
-    return (low, high) if set(missing) <= set(planned(text, program, setup, low, high, probe).points) else (0, 0)
+def choosing(
+    text: str, program: str, setup: Setup, plan: RunPlan, wanted: list[int], probe: Probe = triggers
+) -> tuple[RunPlan, list[tuple[int, int]]]:
+    """Of the whole ``plan`` the points that are wanted and as few others as the program can, and R90 and R91 of each
+    start of it."""
+    if list(plan.points) != wanted:
+        stretches = stretches_of(plan.points, text, wanted)
+        made: dict[int, tuple[str, ...]] = {}
+        for low, high in stretches:
+            made |= planned(text, program, setup, low, high, probe).points
+        if set(wanted) <= made.keys():
+            return RunPlan(plan.columns, made), stretches
+    return plan, [WHOLE]

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 from gearmath.control.file_names import control_name, linuxcnc_name
 from gearmath.control.interface import RunStart
-from gearmath.control.plan import RunPlan, planned, resuming, triggers
+from gearmath.control.parts import chosen_points
+from gearmath.control.plan import WHOLE, choosing, planned, triggers
 from gearmath.control.store_run import StoredRun
 from gearmath.control.store_summary import parts
 from gearmath.errors import InputError
@@ -32,8 +32,9 @@ def begun(
     calibration: str,
     points: str | None = None,
     refers_to: int | None = None,
-) -> tuple[RunStart, tuple[int, int]]:
-    """A new run of a program, and the R90 and R91 with which it makes these ``points`` (``FIRST-LAST``; None: all).
+) -> tuple[RunStart, list[tuple[int, int]]]:
+    """A new run of a program, and R90 and R91 of each start with which it makes these ``points`` (such as ``3,17-20``;
+    None: all).
 
     Raises InputError where the program offers no touches, or has not these points.
     """
@@ -48,25 +49,16 @@ def begun(
     at, known = load_milling_machine(paths[MACHINE]), load_calibration(paths[CALIBRATION])
     setup = Setup.of(at, known.length)
     probe = Artefacts(at, known) if touches_artefacts(text) else triggers
-    plan, parts = planned(text, str(program), setup, probe=probe), (0, 0)
+    plan, stretches = planned(text, str(program), setup, probe=probe), [WHOLE]
     if points is not None:
-        wanted = _chosen(points, plan)
-        parts = resuming(text, str(program), setup, plan, wanted, probe)
-        plan = RunPlan(plan.columns, planned(text, str(program), setup, *parts, probe).points)
+        wanted = chosen_points("--points", points, plan.points)
+        plan, stretches = choosing(text, str(program), setup, plan, wanted, probe)
     files = {key: read_bytes(path) for key, path in paths.items()}
     settings = {key: path.name for key, path in paths.items()}
-    return RunStart(control, name, content, plan.columns, plan.points, files, settings, refers_to=refers_to), parts
+    return RunStart(control, name, content, plan.columns, plan.points, files, settings, refers_to=refers_to), stretches
 
 
-def resumed(run: StoredRun) -> tuple[int, int]:
-    """R90 and R91 with which the program of a run makes the first stretch of what is missing."""
+def resumed(run: StoredRun) -> list[tuple[int, int]]:
+    """R90 and R91 of each start with which the program of a run makes what is missing."""
     missing = run.missing()
-    return parts(run, missing)[0] if missing else (0, 0)
-
-
-def _chosen(points: str, plan: RunPlan) -> list[int]:
-    match = re.fullmatch(r"(\d{1,6})-(\d{1,6})", points, re.ASCII)
-    first, last = (int(match[1]), int(match[2])) if match else (0, 0)
-    if not min(plan.points) <= first <= last <= max(plan.points):
-        raise InputError(f"--points {points}: must be FIRST-LAST within {min(plan.points)} to {max(plan.points)}")
-    return list(range(first, last + 1))
+    return parts(run, missing) if missing else [WHOLE]

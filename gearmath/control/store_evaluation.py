@@ -57,7 +57,7 @@ def evaluate_run(run: StoredRun, progress: Callable[[int], object] = lambda _: N
                 f"{where}: is not whole: {len(missing)} of {len(whose.start.points)} points have no touch, the first "
                 f"is {missing[0]}"
             )
-    with _files(run) as folder, _of_run(where, folder):
+    with stored_files(run, (SET, MACHINE, CALIBRATION)) as folder, of_run(where, folder):
         pair = load_pair(folder / SET)
         at = load_milling_machine(folder / MACHINE), load_calibration(folder / CALIBRATION)
         touches = read_touch_csv(folder / "touches.csv")
@@ -81,11 +81,11 @@ def keep_results(evaluated: EvaluatedRun) -> None:
 
 
 @contextmanager
-def _files(run: StoredRun) -> Iterator[Path]:
-    """A folder with the files of a run, for what reads files."""
+def stored_files(run: StoredRun, roles: tuple[str, ...]) -> Iterator[Path]:
+    """A folder with these files of a run and its touches, for what reads files."""
     with TemporaryDirectory() as name:
         folder = Path(name)
-        for each in (SET, MACHINE, CALIBRATION):
+        for each in roles:
             if each not in run.start.files:
                 raise InputError(f"{run.store.path}: run {run.id}: was stored without {each}: it cannot be evaluated")
             (folder / each).write_bytes(run.start.files[each])
@@ -94,7 +94,7 @@ def _files(run: StoredRun) -> Iterator[Path]:
 
 
 @contextmanager
-def _of_run(where: str, folder: Path) -> Iterator[None]:
+def of_run(where: str, folder: Path) -> Iterator[None]:
     """Names the run, and not the folder for a moment, in the message of an error."""
     try:
         yield

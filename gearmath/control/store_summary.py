@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import groupby
 from typing import Any
 
-from gearmath.control.parts import part_of
+from gearmath.control.parts import stretches_of
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_run import COMPLETE, StoredRun
 from gearmath.control.store_touches import first_of
@@ -71,7 +70,4 @@ def _summary(row: tuple) -> RunSummary:
 def parts(run: StoredRun, points: list[int]) -> list[tuple[int, int]]:
     """First and last part of the program (R90, R91) of each stretch of ``points``, as one NC start can make it."""
     start = first_of(run).start
-    part = part_of(start.points, start.program_text.decode("utf-8", "replace"))
-    wanted = sorted({part[point] for point in points})
-    stretches = [list(each) for _, each in groupby(enumerate(wanted), lambda numbered: numbered[1] - numbered[0])]
-    return [(stretch[0][1], stretch[-1][1]) for stretch in stretches]
+    return stretches_of(start.points, start.program_text.decode("utf-8", "replace"), points)

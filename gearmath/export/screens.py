@@ -75,9 +75,10 @@ def screens(machine: HobbingMachine) -> Iterator[str]:
     """The chapter about the display."""
     yield "## Using it"
     yield ""
+    pages = "three" if machine.profile == "lathe" else "four"
     yield from paragraph(
         "Turn the knob to choose or to change, press to go on, hold for a second to go back or to the menu. While it "
-        "runs, turning shows three pages and a press asks `Stop?`; nothing there changes the ratio. The motor moves "
+        f"runs, turning shows {pages} pages and a press asks `Stop?`; nothing there changes the ratio. The motor moves "
         "only after `Start?` yes, `run on`, an armed jog, a press on `go`, or the one-turn test. A press stops a move."
     )
     yield from paragraph(
@@ -132,6 +133,10 @@ def _rows(machine: HobbingMachine) -> Iterator[Row]:
     yield from _CHECKS
     if not lathe and machine.feed is None:
         yield ("Table turns", "since the start of the job; times the feed per turn: the way of the pass (third page)")
+    if not lathe:
+        yield ("This pass", "turns of the table since the start, or the last `run on` (fourth page)")
+        yield ("Last pass", "the same of the pass before, up to `Stop?`; forgotten with another ratio (fourth page)")
+        yield ("Pass left", "time until this pass is as long as the last one, at the present speed (fourth page)")
     if machine.feed is not None:
         yield ("Feed", "axial feed since the start of the job (third page)")
     yield from _OTHERS

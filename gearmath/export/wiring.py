@@ -10,7 +10,8 @@ from schemdraw import Drawing, elements
 
 from gearmath.export.contactor import contactor
 from gearmath.export.diagram import TEXT, TITLE, Point, box, ground, line, pin_down, small, supply, text, titled
-from gearmath.export.netlist import netlist
+from gearmath.export.netlist import LOGIC, PLUS, netlist
+from gearmath.export.wiring_supply import regulator
 from gearmath.specs.hobbing import HobbingMachine
 
 #: Left and right edge of what stands in one column.
@@ -29,8 +30,9 @@ def wiring_svg(machine: HobbingMachine) -> str:
     right = _outputs(drawing, machine)
     bottom = min(left, right)
     box(drawing, _BOARD, 1.0, bottom, machine.hardware.title)
+    small(drawing, (_BOARD[1] - 0.5, 0.7), "U1")
     contactor(drawing, machine, bottom - 4.6)
-    _regulator(drawing, machine)
+    regulator(drawing, machine)
     supply(drawing, (_BOARD[0] + 1.5, 1.0), "+5 V", "Vin")
     ground(drawing, (_BOARD[0] + 1.5, bottom), "GND")
     return titled(drawing.get_imagedata("svg").decode("utf-8"), machine.name)
@@ -51,7 +53,7 @@ def _inputs(drawing: Drawing, machine: HobbingMachine) -> float:
         drawing.add(elements.Line().at((1.5, y)).to((_SENSOR[1] - 1.0, y)))
         drawing.add(elements.Switch(nc=True).at((_SENSOR[1] - 1.0, y)).to((_SENSOR[1] + 1.0, y)))
         ground(drawing, (1.5, y - 0.3), "")
-        text(drawing, (0.0, y + 0.7), "emergency stop, second contact, normally closed", align="left")
+        text(drawing, (0.0, y + 0.7), "S2: emergency stop, second contact 21-22, normally closed", align="left")
         y -= 1.8
     return y + 0.4
 
@@ -66,6 +68,7 @@ def _encoder(drawing: Drawing, machine: HobbingMachine, y: float, title: str, pi
     }
     top = 0.7 if index is not None else -0.9
     box(drawing, _SENSOR, y + top, y - 3.7, title, at=y - 3.3)
+    small(drawing, (0.4, y + top - 0.35), "B2" if title.startswith("feed") else "B1")
     supply(drawing, (1.0, y + top), "+5 V")
     ground(drawing, (1.0, y - 3.7), "")
     for name, (height, pin) in rows.items():
@@ -116,6 +119,7 @@ def _decoder(drawing: Drawing, machine: HobbingMachine, y: float, bias: str) -> 
 def _knob(drawing: Drawing, machine: HobbingMachine, y: float) -> float:
     box(drawing, _SENSOR, y + 0.7, y - 2.7, "")
     text(drawing, (1.0, y - 0.8), "knob", size=TITLE)
+    small(drawing, (0.4, y + 0.35), "S1")
     rows = (("A", machine.pins.knob_a), ("B", machine.pins.knob_b), ("button", machine.pins.button))
     for k, (name, pin) in enumerate(rows):
         text(drawing, (_SENSOR[1] - 0.2, y - 0.8 * k), name, align="right")
@@ -172,6 +176,7 @@ def _outputs(drawing: Drawing, machine: HobbingMachine) -> float:
         last -= 1.2 if last < top - pitch * (len(signals) - 1) else 2.2
         _drive(drawing, last, name, pin, "")
     box(drawing, _DRIVER, top + 1.9, last - 0.9, "step motor driver", at=top + 1.5)
+    small(drawing, (_DRIVER[0] + 0.4, top + 1.5), "A2")
     if opened:
         supply(drawing, (_DRIVER[1] - 1.2, top + 1.9), "+5 V to all + inputs")
     else:
@@ -182,7 +187,7 @@ def _outputs(drawing: Drawing, machine: HobbingMachine) -> float:
         box(drawing, _DRIVER, y + 1.2, y - 0.9, "relay K1", at=y - 0.1)
         small(drawing, ((_DRIVER[0] + _DRIVER[1]) / 2, y - 0.6), "D3 1N4148 across its coil")
         supply(drawing, (_DRIVER[1] - 0.7, y + 1.2), "+5 V")
-        y -= 3.6
+        y -= 5.2
     return _display(drawing, machine, y)
 
 
@@ -215,10 +220,10 @@ def _pump(drawing: Drawing, y: float, pin: int, transistor: str) -> None:
     drawing.add(elements.Capacitor().at((_BOARD[1], y)).to((node, y)))
     small(drawing, (_BOARD[1] + 0.9, y + 0.6), "C3 2.2 uF")
     drawing.add(elements.Diode().at((node, y - 1.5)).to((node, y)))
-    small(drawing, (node - 0.5, y - 1.0), "D1")
+    small(drawing, (node - 0.95, y - 1.0), "D1 1N5819")
     ground(drawing, (node, y - 1.5), "")
     drawing.add(elements.Diode().at((node, y)).to((store, y)))
-    small(drawing, (node + 0.8, y + 0.5), "D2")
+    small(drawing, (node + 0.8, y + 1.0), "D2 1N5819")
     drawing.add(elements.Capacitor(polar=True).at((store, y)).to((store, y - 1.5)))
     small(drawing, (store + 0.9, y - 1.0), "C4 10 uF")
     ground(drawing, (store, y - 1.5), "")
@@ -226,7 +231,7 @@ def _pump(drawing: Drawing, y: float, pin: int, transistor: str) -> None:
     drawing.add(elements.Resistor().at((store, y)).to((base, y)))
     small(drawing, (store + 1.0, y + 0.5), f"R{transistor[1:]}  1 k")
     bjt = drawing.add(elements.BjtNpn(circle=True).at((base, y)).anchor("base"))
-    text(drawing, (bjt.center[0] + 0.9, y), transistor, align="left")
+    text(drawing, (bjt.center[0] + 0.9, y), f"{transistor}  2N2222", align="left")
     ground(drawing, bjt.emitter, "")
     line(drawing, bjt.collector, (_DRIVER[0], bjt.collector[1]))
     text(drawing, (_DRIVER[0] + 0.2, bjt.collector[1]), "coil", align="left")
@@ -236,12 +241,14 @@ def _display(drawing: Drawing, machine: HobbingMachine, y: float) -> float:
     name = {"adafruit292": "Adafruit 292", "pcf8574": "PCF8574"}[machine.display.kind]
     box(drawing, _DRIVER, y + 0.7, y - 2.3, "display 4 x 20", at=y - 1.4)
     small(drawing, ((_DRIVER[0] + _DRIVER[1]) / 2, y - 1.9), f"{name}, address 0x{machine.display.i2c_address:02X}")
+    small(drawing, (_DRIVER[0] + 0.4, y + 0.35), "H1")
     supply(drawing, (_DRIVER[1] - 0.7, y + 0.7), "+5 V")
     ground(drawing, (_DRIVER[1] - 0.7, y - 2.3), "")
     for k, (signal, pin) in enumerate((("SDA", machine.pins.sda), ("SCL", machine.pins.scl))):
         height = y - 0.8 * k
         text(drawing, (_BOARD[1] - 0.2, height), f"pin {pin}", align="right")
         text(drawing, (_DRIVER[0] + 0.2, height), signal, align="left")
+        _pull_up(drawing, (_BOARD[1] + 0.9 + 1.1 * k, height), y + 0.5, f"RP{k + 1}", machine)
         if machine.hardware.five_volt_tolerant:
             line(drawing, (_BOARD[1], height), (_DRIVER[0], height))
             continue
@@ -252,41 +259,13 @@ def _display(drawing: Drawing, machine: HobbingMachine, y: float) -> float:
     return y - 2.3
 
 
-# --- supply -----------------------------------------------------------------------------------------------------------
-def _regulator(drawing: Drawing, machine: HobbingMachine) -> None:
-    """Regulator with its capacitors, above everything else."""
-    y = 5.2
-    text(drawing, (0.0, y + 0.45), "9 V DC", align="left")
-    line(drawing, (0.0, y), (3.0, y))
-    _capacitor(drawing, (1.0, y), "C1")
-    box(drawing, (3.0, 5.6), y + 0.7, y - 0.8, "LM7805")
-    ground(drawing, (4.3, y - 0.8), "")
-    line(drawing, (5.6, y), (8.0, y))
-    _capacitor(drawing, (6.4, y), "C2")
-    supply(drawing, (8.0, y), "+5 V")
-    if not machine.hardware.five_volt_tolerant:
-        _shifters(drawing, machine, y)
-
-
-def _shifters(drawing: Drawing, machine: HobbingMachine, y: float) -> None:
-    """Supplies of the level shifters; their channels stand in the lines."""
-    left = 11.0
-    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U5 74LVC245", at=y)
-    supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "VCC", "20")
-    supply(drawing, (left + 2.6, y + 0.7), "+3.3 V", "DIR", "1")
-    ground(drawing, (left + 0.7, y - 0.8), "GND", "10")
-    ground(drawing, (left + 2.6, y - 0.8), "OE", "19")
-    left += 5.4
-    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U6 BSS138", at=y)
-    supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "LV")
-    supply(drawing, (left + 2.6, y + 0.7), "+5 V", "HV")
-    ground(drawing, (left + 1.7, y - 0.8), "GND")
-    text(drawing, (left + 4.2, y + 0.35), "+3.3 V is the 3.3 V pin of the board.", align="left")
-    text(drawing, (left + 4.2, y - 0.25), f"No pin of the {machine.hardware.title} may ever see 5 V.", align="left")
-
-
-def _capacitor(drawing: Drawing, top: Point, name: str) -> None:
-    drawing.add(elements.Dot().at(top))
-    drawing.add(elements.Capacitor(polar=True).at(top).to((top[0], top[1] - 1.6)))
-    text(drawing, (top[0] + 0.35, top[1] - 1.15), f"{name} 10 uF", align="left")
-    ground(drawing, (top[0], top[1] - 1.6), "")
+def _pull_up(drawing: Drawing, foot: Point, above: float, name: str, machine: HobbingMachine) -> None:
+    """A resistor from a line to the supply of the board's pins, its body from ``above`` on."""
+    line(drawing, foot, (foot[0], above))
+    drawing.add(elements.Dot().at(foot))
+    drawing.add(elements.Resistor().at((foot[0], above)).to((foot[0], above + 1.3)))
+    drawing.add(elements.Vdd().at((foot[0], above + 1.3)))
+    last = name.endswith("2")
+    small(drawing, (foot[0] + (1.0 if last else -0.1), above + (0.6 if last else 2.0)), f"{name} 4.7 k")
+    if last:
+        small(drawing, (foot[0] + 0.5, above + 1.6), PLUS if machine.hardware.five_volt_tolerant else LOGIC)

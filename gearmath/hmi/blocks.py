@@ -59,7 +59,7 @@ def kept(
         elif not ended:
             widgets.progress(text, found.work)
         elif found.work.error:
-            widgets.Message(found.work.error, "error")
+            widgets.Message(text.quoted(found.work.error), "error")
         elif found.work.result is None:
             widgets.note(text("blocks.cancelled"))
             widgets.button(text("blocks.again"), found.forget)

@@ -12,13 +12,16 @@ from pathlib import Path
 from typing import Any
 
 from gearmath.control.interface import Touch
-from gearmath.control.measuring import Measuring, check_ready
+from gearmath.control.measuring import Measuring, Patience, check_ready
 from gearmath.control.run_start import begun, resumed
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_run import StoredRun
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.link import ControlLink
 from gearmath.hmi.state import Choice
+
+#: A session over an encrypted line takes seconds where control or server are busy: it is not given up before. [s]
+_PATIENCE = Patience(first=20.0)
 
 
 class RunState(StrEnum):
@@ -99,7 +102,7 @@ class MeasuringTask:
             return RunState.LOST
         if self._hold:
             return RunState.HOLDING
-        return RunState.RUNNING if self._times else RunState.READY
+        return RunState.RUNNING if self._measuring.is_started else RunState.READY
 
     @property
     def touches(self) -> Mapping[int, Touch]:
@@ -145,29 +148,30 @@ class MeasuringTask:
             self.count += 1
 
     async def _new(self, program: Path, choice: Choice, points: str | None, again_of: int | None) -> None:
-        start, parts = await asyncio.to_thread(
+        start, stretches = await asyncio.to_thread(
             begun, self._link.name, program, choice.gear_set, choice.machine, choice.calibration, points, again_of
         )
-        await check_ready(self._link.connect, start)
+        await check_ready(self._link.connect, start, _PATIENCE)
         with MeasurementStore.open(self._store) as store:
-            await self._measure(store.begin_run(start), parts)
+            await self._measure(store.begin_run(start), stretches)
 
     async def _old(self, number: int) -> None:
         with MeasurementStore.open(self._store) as store:
             run = store.resume_run(number)
             await self._measure(run, await asyncio.to_thread(resumed, run))
 
-    async def _measure(self, run: StoredRun, parts: tuple[int, int]) -> None:
+    async def _measure(self, run: StoredRun, stretches: list[tuple[int, int]]) -> None:
         self.run = run
         self._measuring = Measuring(
             self._link.connect,
             run,
+            _PATIENCE,
             progress=self._heard,
             say=self.sentences.append,
             holds=self._holds,
             lost=self._lost,
         )
-        await self._measuring.to_the_end(parts)
+        await self._measuring.to_the_end(*stretches)
 
     def _heard(self, touches: int) -> None:
         before = self._times[-1][1] if self._times else 0

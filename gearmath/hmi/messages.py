@@ -21,6 +21,11 @@ class Text:
         message = messages()[page][name][self.language]
         return message.format(**values) if values else message
 
+    def quoted(self, words: object) -> str:
+        """A sentence of the library or the control, which is English on every page, so that this is said; nothing of
+        nothing."""
+        return self("shell.quoted", words=words) if str(words) else ""
+
     def has(self, key: str) -> bool:
         """Whether there is a message of this key: words of a control or a file may have none."""
         page, _, name = key.partition(".")

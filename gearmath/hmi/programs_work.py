@@ -22,9 +22,14 @@ from gearmath.machine.judging.timing import timing
 from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.limits import check_spindle_speed
+from gearmath.machine.writing.cutting import program_of
+from gearmath.machine.writing.linuxcnc import cutting as linuxcnc_cutting
+from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
+from gearmath.machine.writing.linuxcnc.probing import LINUXCNC
+from gearmath.machine.writing.probing import SINUMERIK
 from gearmath.machine.writing.words import block_count, check_name
 from gearmath.specs.calibration import load_calibration
-from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.toml import find
 
 #: Lines of a program that the page shows from its beginning.
@@ -62,30 +67,38 @@ class ListedProgram:
 
 
 def write_cutting(folder: Path, choice: Choice, name: str, job: CuttingJob, progress: Progress) -> WrittenProgram:
-    """Write the cutting program ``name``.MPF of all spaces; ``job`` says the rest. Raises InputError, ComputationError.
+    """Write the cutting program ``name`` of all spaces, for the control of the machine file; ``job`` says the rest.
 
-    It is run before it is written: it keeps the limits of the machine, and collides with nothing.
+    It is run before it is written: it keeps the limits of the machine, and collides with nothing. Raises InputError,
+    ComputationError.
     """
-    file = _file(folder, name)
     machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
+    file, ngc = _file(folder, name, machine), _is_linuxcnc(machine)
     check_spindle_speed(file.stem, machine, job.spindle_rpm)
     whole = replace(job, spaces=range(pair.member(choice.member).teeth))
-    made = checked_cut(pair, choice.member, machine, whole, file.stem, file.name, progress.begin)
+    write = linuxcnc_cutting.program_of if ngc else program_of
+    made = checked_cut(pair, choice.member, machine, whole, file.stem, file.name, progress.begin, write)
     times = timing(made.path, machine)
     write_text(file, made.text)
-    return WrittenProgram(file, block_count(made.text), times.feed_seconds + times.rapid_seconds, None, "")
+    blocks = (linuxcnc_blocks if ngc else block_count)(made.text)
+    return WrittenProgram(file, blocks, times.feed_seconds + times.rapid_seconds, None, "")
 
 
 def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice, progress: Progress) -> WrittenProgram:
-    """Write the probing program ``name``.MPF. It is run before it is written: the probe stays clear of everything."""
-    file = _file(folder, name)
+    """Write the probing program ``name``, for the control of the machine file.
+
+    It is run before it is written: the probe stays clear of everything.
+    """
     machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
     calibration = load_calibration(find(choice.calibration))
+    file, ngc = _file(folder, name, machine), _is_linuxcnc(machine)
+    writer = LINUXCNC if ngc else SINUMERIK
     made = checked_probing(
-        pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, progress.begin
+        pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, progress.begin, writer
     )
     write_text(file, made.text)
-    return WrittenProgram(file, block_count(made.text), None, made.touches, made.clearance)
+    blocks = (linuxcnc_blocks if ngc else block_count)(made.text)
+    return WrittenProgram(file, blocks, None, made.touches, made.clearance)
 
 
 def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Progress) -> MilledProgram:
@@ -131,8 +144,12 @@ def _kept_name(name: str) -> str:
     return linuxcnc_name(name) if name.endswith(".ngc") else control_name(name)
 
 
-def _file(folder: Path, name: str) -> Path:
-    """The file of a program. Raises InputError for a name that the control or the writer refuses."""
-    stem = name.strip().upper().removesuffix(".MPF")
+def _is_linuxcnc(machine: MillingMachine) -> bool:
+    return machine.control.dialect(None) == "linuxcnc"
+
+
+def _file(folder: Path, name: str, machine: MillingMachine) -> Path:
+    """The file of a program for the control of a machine; a name that it or the writer refuses is an InputError."""
+    stem = name.strip().upper().removesuffix(".MPF").removesuffix(".NGC")
     check_name(stem)
-    return folder / control_name(f"{stem}.MPF")
+    return folder / (linuxcnc_name(f"{stem}.ngc") if _is_linuxcnc(machine) else control_name(f"{stem}.MPF"))

@@ -25,6 +25,10 @@ _ICONS = {"info": "info", "good": "check_circle", "warning": "warning", "error":
 _SAID: WeakKeyDictionary[Client, ui.notification] = WeakKeyDictionary()
 
 
+class Refusal(InputError):
+    """A refusal in words of the operator's language."""
+
+
 @contextmanager
 def panel(title: str, wide: bool = False) -> Iterator[ui.element]:
     """A part of a page under its title; ``wide`` takes the whole width."""
@@ -107,13 +111,22 @@ class NumberField:
     ) -> None:
         self._text, self._unit, self._low, self._high = text, unit, low, high
         self._changed, self._digits = changed, digits
-        typed = "" if value is None else f"{value:z.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:z.0f}"
+        typed = "" if value is None else self._words(value)
         self.field = ui.input(label, value=typed, validation=self._refusal).classes("gm-number")
         self.field.props('outlined dense hide-bottom-space inputmode="decimal" autocomplete="off"')
         self.field.props["suffix"] = unit
         self.field.props["hint"] = text("shell.range", low=f"{low:.10g}", high=f"{high:.10g} {unit}".rstrip())
         self.value, _ = self._parsed(typed)
         self.field.on("change", lambda: self._leave())
+
+    def show(self, value: float) -> None:
+        """Another number than was typed; nothing where it stands there already."""
+        if self.value != value:
+            self.field.value = self._words(value)
+            self.value = value
+
+    def _words(self, value: float) -> str:
+        return f"{value:z.{self._digits}f}".rstrip("0").rstrip(".") if self._digits else f"{value:z.0f}"
 
     def refuse(self, why: str) -> None:
         """Show a reason that is known only when the whole is judged."""
@@ -137,7 +150,7 @@ def numbers(fields: Mapping[str, NumberField]) -> dict[str, float]:
     for name, one in fields.items():
         if one.value is None:
             one.field.validate()
-            raise InputError(f"{one.field.props['label']}: {one.field.error}")
+            raise Refusal(f"{one.field.props['label']}: {one.field.error}")
         found[name] = one.value
     return found
 
@@ -158,6 +171,12 @@ def choice(label: str, options: Sequence[str] | dict[Any, str], value: Any, chan
     return found.classes("gm-choice").props("outlined dense options-dense")
 
 
+def say_error(error: Exception) -> None:
+    """Why something failed, framed where it is in another language than the page."""
+    is_foreign = ui.context.client.page.language == "de" and not isinstance(error, Refusal)
+    say(Text("de").quoted(error) if is_foreign else str(error), "error")
+
+
 def button(label: str, pressed: Callable[[], Any], icon: str = "", primary: bool = False) -> ui.button:
     """A button whose refusals are shown as a sentence."""
 
@@ -166,7 +185,7 @@ def button(label: str, pressed: Callable[[], Any], icon: str = "", primary: bool
         try:
             pressed()
         except (InputError, ComputationError) as error:
-            say(str(error), "error")
+            say_error(error)
 
     found = ui.button(label, on_click=guarded, icon=icon or None, color=None)
     return found.props("no-caps unelevated" if primary else "no-caps outline").classes(
@@ -252,7 +271,7 @@ def progress(text: Text, work: Work, ended: Callable[[], object] = lambda: None)
             stop.enabled = not work.progress.cancelled
         elif seen[0] != work.count:
             seen[0] = work.count
-            failed.show(work.error or "", "error")
+            failed.show(text.quoted(work.error or ""), "error")
             ended()
 
     look()

@@ -65,7 +65,7 @@ def run_state(text: Text, task: MeasuringTask) -> tuple[str, str]:
         RunState.ENDED: "error",
     }
     if state is RunState.ENDED:
-        words += f": {task.reason or text('measure.by_operator')}"
+        words += f": {text.quoted(task.reason) or text('measure.by_operator')}"
     return words, kinds.get(state, "info")
 
 

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch, Polygon
 from gearmath.bevel.contact.local import local
 from gearmath.bevel.contact.mesh import REACH, Mesh
 from gearmath.bevel.contact.pattern import ContactPattern, envelope, pattern
-from gearmath.bevel.contact.report import v_h
+from gearmath.bevel.contact.report import SIDES, v_h
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 
 _ARCSEC = math.degrees(1) * 3600
@@ -23,6 +23,10 @@ _KINDS = {"interior": AFTER, "edge": BEFORE, "corner": INK}
 _SAMPLES, _ELLIPSES = 361, 9
 #: Leads further behind than this many times what the pair runs on are not drawn.
 _SHOWN = 4.0
+#: Difference of leads [rad] that counts as none.
+_SAME_LEAD = 1e-10
+#: Contact lines to a pitch.
+_CONTACT_LINES = 4
 
 
 def contact_figure(runs: Mapping[str, Mesh], tolerances: Mapping[str, Any] | None = None) -> Figure:
@@ -35,9 +39,9 @@ def contact_figure(runs: Mapping[str, Mesh], tolerances: Mapping[str, Any] | Non
     rows = figure.subplots(len(runs), 4, squeeze=False, gridspec_kw=widths)
     for places, (side, run) in zip(rows, runs.items(), strict=True):
         found = pattern(run)
-        _draw_error(places[0], run, f"{side}: {run.outcome}")
+        _draw_error(places[0], run, f"{side}, pinion {SIDES[side]}: {run.outcome}")
         _draw_path(places[1], run, found)
-        _draw_pattern(places[2], run, found)
+        _draw_pattern(places[2], found, run.system.pitch)
         _draw_v_h(places[3], run, (tolerances or {}).get(side))
     return figure
 
@@ -49,7 +53,7 @@ def patterns_figure(states: Mapping[str, Mapping[str, Mesh]]) -> Figure:
     rows = figure.subplots(len(sides), len(states), squeeze=False, sharex=True, sharey=True)
     for places, side in zip(rows, sides, strict=True):
         for axes, (state, runs) in zip(places, states.items(), strict=True):
-            _draw_pattern(axes, runs[side], pattern(runs[side]))
+            _draw_pattern(axes, pattern(runs[side]))
             axes.set_title(f"{state}, {side}", fontsize=8, loc="left")
     return figure
 
@@ -108,7 +112,7 @@ def _draw_error(axes: Axes, run: Mesh, title: str) -> None:
     for kind, color in _KINDS.items():
         axes.plot([], [], color=color, label=f"{kind} contact")
     axes.plot([], [], color=INK, linewidth=3.0, alpha=0.25, label="gear follows")
-    axes.legend(fontsize=6, loc="best", frameon=False)
+    axes.legend(fontsize=6, loc="best", framealpha=0.8, edgecolor="none")
     _label(axes, title, "pinion / degree", "transmission error / arcsec")
 
 
@@ -117,9 +121,13 @@ def _draw_path(axes: Axes, run: Mesh, found: ContactPattern) -> None:
     tooth = _outline(axes, found)
     step = 3 * run.system.pitch / (_SAMPLES - 1)
     rows = run.path(step)
+    ahead = run.system.sense * run.followed(np.array([row.rotation for row in rows]))
+    carries = [run.system.sense * row.error > lead - _SAME_LEAD for row, lead in zip(rows, ahead, strict=True)]
     for kind, color in _KINDS.items():
-        among = [row for row in rows if row.kind == kind]
-        axes.plot([row.cone_distance for row in among], [row.height for row in among], ".", color=color, markersize=2)
+        for carrying, size, alpha in ((False, 1.0, 0.5), (True, 4.0, 1.0)):
+            among = [row for row, own in zip(rows, carries, strict=True) if row.kind == kind and own == carrying]
+            at = np.array([(row.cone_distance, row.height) for row in among]).reshape(-1, 2)
+            axes.plot(*at.T, ".", color=color, markersize=size, alpha=alpha)
     for thread, segment in run.interior:
         for rotation in np.linspace(*segment.ends, _ELLIPSES):
             touch = thread.at(run.system, float(rotation))
@@ -138,14 +146,15 @@ def _draw_path(axes: Axes, run: Mesh, found: ContactPattern) -> None:
             ellipse = axes.add_patch(Polygon(seen, fill=False, edgecolor=AFTER, linewidth=0.6, alpha=0.7))
             ellipse.set_clip_path(tooth)
     axes.plot(run.system.gear.blank.mean_cone_distance, 0, "+", color=INK, markersize=7)
-    _label(axes, "path on the gear", "cone distance / mm (toe left)", "height / mm")
+    words = "path of one pair of teeth on the gear (thick where it carries), ellipses"
+    _label(axes, words, "cone distance / mm (toe left)", "height / mm (tip up)")
 
 
 _AXES = ((math.cos, math.sin), (lambda a: -math.sin(a), math.cos))
 
 
-def _draw_pattern(axes: Axes, run: Mesh, found: ContactPattern) -> None:
-    """Lines of the ease-off in µm, and the area within the marking compound."""
+def _draw_pattern(axes: Axes, found: ContactPattern, pitch: float | None = None) -> None:
+    """Lines of the ease-off in µm, area within the marking compound; contact lines, four to a ``pitch`` [rad]."""
     _outline(axes, found)
     gap = np.ma.masked_invalid(found.gap * 1000)
     if gap.count():
@@ -156,12 +165,16 @@ def _draw_pattern(axes: Axes, run: Mesh, found: ContactPattern) -> None:
     if ease_off.count() and float(np.ptp(ease_off.compressed())) > 1e-3:
         lines = axes.contour(found.cone_distance, found.height, ease_off, levels=10, colors=[NOMINAL], linewidths=0.6)
         axes.clabel(lines, fontsize=6, fmt="%g")
-    _label(
-        axes,
-        f"pattern at {found.thickness * 1000:.3g} µm, ease-off in µm",
-        "cone distance / mm (toe left)",
-        "height / mm",
-    )
+    rotation = np.ma.masked_invalid(found.rotation)
+    words = f"pattern at {found.thickness * 1000:.3g} µm, ease-off in µm"
+    if pitch is not None and rotation.count():
+        steps = _CONTACT_LINES / pitch * np.array([rotation.min(), rotation.max()])
+        levels = np.arange(math.ceil(steps[0]), math.floor(steps[1]) + 1) * pitch / _CONTACT_LINES
+        if len(levels):
+            style: dict[str, Any] = {"colors": [BEFORE], "linewidths": 0.7, "linestyles": "--"}
+            axes.contour(found.cone_distance, found.height, rotation, levels=levels, **style)
+            words += "; dashed: contact lines"
+    _label(axes, words, "cone distance / mm (toe left)", "height / mm (tip up)")
 
 
 def _outline(axes: Axes, found: ContactPattern) -> Patch:

@@ -52,6 +52,10 @@ class CuttingErrors(Spec):
     """Of the speed of hob or spindle."""
     motor_time_constant_ms: float = Field(default=0.0, ge=0.0, le=1000.0)
     """Damping over stiffness of motor and belt: the table follows its steps with this lag."""
+    stop_in_cut_mm: float | None = Field(default=None, gt=0.0, le=1000.0)
+    """Height on the gear at which the hob was stopped within the cut and started again, in phase; None where not."""
+    run_up_seconds: float = Field(default=1.0, gt=0.0, le=60.0)
+    """How long the hob takes to its speed, and from it: the motor that lags catches up meanwhile."""
     microstep_percent: float = Field(default=0.0, ge=0.0, le=50.0)
     """Error of the position within a full step, amplitude in percent of it."""
     backlash_taken_by_cut: bool = False

@@ -94,12 +94,39 @@ class ContactRequest(Sheet):
     ``pattern_length`` is the major axis of the contact ellipse at 6.35 µm over the face width. ``position`` tells where
     the vertex lies: from toe (0) to heel (1), and from root to tip of the part of the flank that the mate reaches;
     without it halfway along the tooth, and as high as makes both halves of the path as long.
+
+    ``lengthwise_crowning``, ``profile_crowning`` and ``bias`` [um] may take the place of these three: the gap to a
+    flank that would roll without transmission error, at toe and heel, at root and tip, and what the corner of heel and
+    tip has beyond both.
     """
 
     transmission_error: float = Field(default=8.0, gt=0, le=120)
     path_angle: Angle | None = Field(default=None, ge=15, le=165)
     pattern_length: float = Field(default=0.5, ge=0.1, le=2)
     position: tuple[float, float] | None = Field(default=None, strict=False)
+    lengthwise_crowning: float | None = Field(default=None, gt=0, le=500)
+    profile_crowning: float | None = Field(default=None, gt=0, le=200)
+    bias: float = Field(default=0.0, ge=-200, le=200)
+
+    @model_validator(mode="after")
+    def _one_way(self) -> ContactRequest:
+        ways = (
+            ("lengthwise_crowning", "profile_crowning", "bias"),
+            ("transmission_error", "path_angle", "pattern_length"),
+        )
+        given = [[name for name in names if name in self.model_fields_set] for names in ways]
+        if given[0] and given[1]:
+            raise ValueError(f"{given[0][0]} takes the place of {given[1][0]}: only one of them may be given")
+        if not given[0]:
+            return self
+        length, profile = self.lengthwise_crowning, self.profile_crowning
+        if length is None or profile is None:
+            raise ValueError("lengthwise_crowning and profile_crowning belong together")
+        # beyond it the corners of the flank would stand out (27.7)
+        most = 2 * math.sqrt(length * profile)
+        if not abs(self.bias) < most:
+            raise ValueError(f"bias = {self.bias:g} um: must be below {most:.4g} in size with these crownings")
+        return self
 
     @model_validator(mode="after")
     def _inside(self) -> ContactRequest:
@@ -114,6 +141,8 @@ class Shop(Sheet):
     length_step: Length = Field(default=0.0, ge=0, le=1)
     angle_step: Angle = Field(default=0.0, ge=0, le=1)
     ratio_step: float = Field(default=0.0, ge=0, le=0.01)
+    #: Of 2C and 6D.
+    modified_roll_step: float = Field(default=0.0, ge=0, le=0.01)
     blade_angle_step: Angle = Field(default=0.0, ge=0, le=5)
     blade_radius_step: Length = Field(default=0.0, ge=0, le=10)
 

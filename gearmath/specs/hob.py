@@ -34,6 +34,8 @@ class Hob(Spec):
     depth_rule: Literal["2.25/P", "2.157/P", "2.2/P+0.002in", "2.25m"]
     diameter: float | None = Field(default=None, gt=0.0, le=500.0)
     """Reference diameter [mm], where the lead angle is taken; only the swivel angle needs it."""
+    length: float | None = Field(default=None, gt=0.0, le=500.0)
+    """Length of its toothed part [mm]; a hob that is too short for a gear is refused by ``gearbox cut``."""
     pressure_angle: float = Field(default=20.0, ge=10.0, le=30.0)
     """Normal pressure angle [degrees]."""
     gashes: int = Field(default=12, ge=int(notation.hob_gashes.domain[0]), le=int(notation.hob_gashes.domain[1]))

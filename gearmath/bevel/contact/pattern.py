@@ -24,7 +24,8 @@ _ROWS, _COLUMNS = 21, 41
 @dataclass(frozen=True)
 class ContactPattern:
     """The gear's flank on a grid, rows root to tip, columns toe to heel: cone distance, height above the pitch cone,
-    ease-off and least gap in the mesh (rows, columns) [mm]; NaN where the flanks have no common point.
+    ease-off and least gap in the mesh (rows, columns) [mm], and the ``rotation`` of the pinion [rad] at which a point
+    meets it; NaN where the flanks have no common point.
 
     ``marked`` where the gap is within the ``thickness`` [mm]; ``common`` where both flanks have a point.
     """
@@ -33,6 +34,7 @@ class ContactPattern:
     height: np.ndarray
     ease_off: np.ndarray
     gap: np.ndarray
+    rotation: np.ndarray
     common: np.ndarray
     thickness: float
 
@@ -89,5 +91,11 @@ def pattern(run: Mesh, thickness: float = MARKING, rows: int = _ROWS, columns: i
     middle = lead[rows // 2, columns // 2]
     reference = middle if np.isfinite(middle) else float(np.nanmax(lead)) if np.isfinite(lead).any() else math.nan
     return ContactPattern(
-        found.cone_distance, found.height, np.abs(found.lever) * (reference - lead), gap, found.common, thickness
+        found.cone_distance,
+        found.height,
+        np.abs(found.lever) * (reference - lead),
+        gap,
+        np.where(found.common, found.rotation, np.nan),
+        found.common,
+        thickness,
     )

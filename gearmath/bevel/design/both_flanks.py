@@ -34,6 +34,8 @@ _PARTS = 6
 _RIDGE, _BEYOND = 1e-4, 0.02
 #: What the root counts of how far it is off, and beyond the room that it has.
 _NEAR_ROOT, _OFF_ROOT = 0.005, 0.1
+#: What a parabola counts of how far it is off half a pitch from its vertex, before it is held.
+_PARABOLA = 10.0
 #: Coordinates go no farther, in sizes.
 _FARTHEST = 60.0
 
@@ -101,6 +103,15 @@ class BothFlanks:
             rates += [_NEAR_ROOT * by_x[4:], _OFF_ROOT * (beyond != 0)[:, None] * by_x[4:]]
         return np.concatenate(off), np.vstack(rates)
 
+    def parabolas(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What parabolas count in the fit (2,) [mm] where they are not held, and the derivatives."""
+        if self.parabolas_held:
+            return np.zeros(0), np.zeros((0, len(NAMES)))
+        found = [system.at_point(side.how, side.flank, x, side.wanted) for side in self.sides]
+        weight = _PARABOLA * self.weigh
+        off = [weight * (one.parabola - side.wanted.parabola) for one, side in zip(found, self.sides, strict=True)]
+        return np.array(off), weight * np.vstack([one.rates[6] for one in found])
+
     def met(self, x: np.ndarray, held: np.ndarray, values: np.ndarray) -> Met | None:
         """The vector near ``x`` that meets the conditions, at ``values`` (p,) of the coordinates ``held`` (p,f)."""
         x, where, sizes = x.copy(), self.index, SIZES[self.index]
@@ -155,6 +166,12 @@ def local(problem: BothFlanks, x: np.ndarray) -> np.ndarray | None:
     return x
 
 
+def nearest(problem: BothFlanks, x: np.ndarray) -> np.ndarray:
+    """The vector nearest to ``x`` that meets the conditions, or where Newton's method fails ``x`` itself."""
+    found = problem.met(x, np.zeros((0, len(problem.free))), np.zeros(0))
+    return x if found is None else found.x
+
+
 def moved(problem: BothFlanks, x: np.ndarray, held: Sequence[str], values: Sequence[float]) -> np.ndarray | None:
     """The vector with settings that are not free brought to values step by step; None where the way ends."""
     places = [NAMES.index(name) for name in held]
@@ -202,8 +219,10 @@ def whole(problem: BothFlanks, x: np.ndarray, contacts: Sequence[np.ndarray]) ->
             weight = 1 / math.sqrt(len(side.gap))
             off.append(weight * (-crossing.deviation - side.gap))
             rates.append(weight * by_x)
-        root, by_root = problem.root(x)
-        return Gaps(np.concatenate([*off, root]), np.vstack([*rates, by_root]), tuple(found))
+        for more, by_x in (problem.root(x), problem.parabolas(x)):
+            off.append(more)
+            rates.append(by_x)
+        return Gaps(np.concatenate(off), np.vstack(rates), tuple(found))
 
     best = _least(problem, x, gaps, contacts)
     if best is None:
@@ -247,12 +266,12 @@ def _least(
     low, high = problem.bounds[where].T
     known = [(np.zeros(len(held)), start.x, first)]
 
-    def nearest(values: np.ndarray) -> tuple[np.ndarray, np.ndarray, Gaps]:
+    def known_near(values: np.ndarray) -> tuple[np.ndarray, np.ndarray, Gaps]:
         return min(known, key=lambda one: float(np.linalg.norm(one[0] - values)))
 
     def at(v: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
         values = v * _FARTHEST
-        from_, near, there = nearest(values)
+        from_, near, there = known_near(values)
         found = problem.met(near, held, values - from_)
         left = None if found is None else gaps(found.x, there.contacts)
         if found is None or left is None or not np.isfinite(left.off).all():
@@ -267,7 +286,7 @@ def _least(
 
     ones = np.ones(len(held))
     values = minimize(at, -ones, ones).variables * _FARTHEST
-    _, found, left = nearest(values)
+    _, found, left = known_near(values)
     return found, left
 
 

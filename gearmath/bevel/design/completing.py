@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearmath.bevel.design import both_system as system
-from gearmath.bevel.design.both_flanks import BothFlanks, FittedBoth, Side, local, moved, of_flank, whole
+from gearmath.bevel.design.both_flanks import BothFlanks, FittedBoth, Side, local, moved, nearest, of_flank, whole
 from gearmath.bevel.design.both_system import NAMES, FlankPoint, index
 from gearmath.bevel.design.designed_flank import DesignedFlank, FlankFit
 from gearmath.bevel.design.local_settings import FIRST, ROOT
@@ -17,7 +17,9 @@ from gearmath.bevel.design.pinion import roll_rows, root_of
 from gearmath.bevel.design.request import Request
 from gearmath.bevel.design.rolling import Meeting
 from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section, turning_sense
+from gearmath.bevel.identify.flank_target import FlankTarget, locate
 from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.root import FLAT_BLADE
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.bevel.turning import half_turn, turned
@@ -126,8 +128,9 @@ def completing_pinion(
         )
     inner = {flank: requests[flank].inner for flank in FLANKS}
     everywhere = {flank: np.ones_like(inner[flank]) for flank in FLANKS}
-    near, fitted = found, None
+    near, fitted, shares = found, None, dict.fromkeys(FLANKS, 0.0)
     for stage, among in ((open_, inner), (open_, everywhere), (problem, everywhere)):
+        near = nearest(stage, near)
         kept, contacts = _reached(start, sides, near, among)
         if not all(one.any() for one in kept):
             continue
@@ -136,11 +139,16 @@ def completing_pinion(
         near = near if fitted is None else fitted.x
     shares = {flank: float(one.mean()) for flank, one in zip(FLANKS, kept, strict=True)}
     lost = min(shares, key=lambda flank: shares[flank])
-    if fitted is None or not shares[lost] >= _LEAST_SHARE:
+    if not shares[lost] >= _LEAST_SHARE:
         raise ComputationError(
             f"pinion {lost} flank: settings for the mean point were found, but they cut only {shares[lost]:.0%} of "
             f"the places that its mate needs, which must be at least {_LEAST_SHARE:.0%}: the others lie below the tip "
             "of the blade or are undercut"
+        )
+    if fitted is None:
+        raise ComputationError(
+            "pinion: settings were found that give both flanks their points, but none with the parabolas that both "
+            "sides ask for; ask for other paths, a longer pattern, or cutting = 'fixed_setting' in face milling"
         )
     return CompletingPinion(cut, dict(requests), fitted, tuple(contacts), shares, own)
 
@@ -247,6 +255,13 @@ def _reached(
         own = np.array([[x[index(name, side.flank)] for name in ("u", "beta", "theta")]])
         mean = turning_sense(cut, blade, own)
         reached = at.converged & (at.contact[:, 0] >= section.lower) & (np.sign(at.sense) == np.sign(mean))
-        kept.append(among[side.flank] & reached)
-        contacts.append(at.contact[kept[-1]])
+        reached &= among[side.flank]
+        if reached.any():
+            # at the border of undercut a line along the normal may not cross the flank
+            points = FlankPoints(at.contact, side.meeting.point, side.meeting.normal)
+            target = FlankTarget(cut, points, np.zeros(len(reached)))
+            with np.errstate(all="ignore"):
+                reached &= ~locate(target, target.vector).failed
+        kept.append(reached)
+        contacts.append(at.contact[reached])
     return kept, contacts

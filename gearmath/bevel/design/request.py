@@ -13,7 +13,7 @@ from gearmath.bevel.contact.surface import ContactSurface
 from gearmath.bevel.design.rolling import GearFlank, Meeting, Roll
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import Member
+from gearmath.specs.bevel_set import Blank, Member
 from gearmath.specs.design import ContactRequest
 
 #: Rows and columns of the gear's flank on which the gap is wanted, and heights at which its mate's tip is sought.
@@ -65,15 +65,22 @@ def request(side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: 
     axial, radial = (float(value) for value in kernel("flank_place")(blank, across, up))
     roll = gear.roll(axial, radial)
     w = roll.vector
-    parabola = _parabola(side, asked.transmission_error / ARCSEC, teeth, roll)
-    semi_axis = asked.pattern_length * surface.blank.face_width / 2
-    given = (w, roll.acceleration, roll.lever)
-    (own,) = kernel("path_on_pinion")(*given, roll.sliding, parabola, path)
-    (D,) = kernel("synthesis")(*given, own, parabola, semi_axis, MARKING)
-    _check_ellipse(side, asked, matrix(D), float(own), surface.blank.face_width)
-    meeting, along, inner = _flank(gear, roll, lowest)
-    lever = np.full(len(along), abs(roll.lever))
-    (gap,) = kernel("wanted_gap")(meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever)
+    if asked.lengthwise_crowning is None:
+        parabola = _parabola(side, asked.transmission_error / ARCSEC, teeth, roll)
+        semi_axis = asked.pattern_length * surface.blank.face_width / 2
+        given = (w, roll.acceleration, roll.lever)
+        own = float(kernel("path_on_pinion")(*given, roll.sliding, parabola, path)[0])
+        (D,) = kernel("synthesis")(*given, own, parabola, semi_axis, MARKING)
+        _check_ellipse(side, asked, matrix(D), own, surface.blank.face_width)
+    else:
+        D, own, path, parabola, semi_axis = _crowned(asked, roll, surface.blank)
+    meeting, places, along, inner = _flank(gear, roll, lowest)
+    if asked.lengthwise_crowning is None:
+        lever = np.full(len(along), abs(roll.lever))
+        (gap,) = kernel("wanted_gap")(meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever)
+    else:
+        off = _from_vertex(places, (axial, radial), surface.pitch_angle)
+        (gap,) = kernel("crowned_gap")(*off, *_crownings(asked, surface.blank))
     return Request(
         side,
         gear,
@@ -81,7 +88,7 @@ def request(side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: 
         (axial, radial),
         parabola,
         path,
-        float(own),
+        own,
         semi_axis,
         D,
         roll.gear_curvature + matrix(D),
@@ -89,6 +96,23 @@ def request(side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: 
         gap,
         inner,
     )
+
+
+def _crowned(asked: ContactRequest, roll: Roll, blank: Blank) -> tuple[np.ndarray, float, float, float, float]:
+    """D (3,) of the crownings, and what they make of path on pinion and gear [rad], parabola and half axis [mm]."""
+    (D,) = kernel("crowned")(roll.vector, roll.acceleration, roll.sliding, roll.axial, *_crownings(asked, blank))
+    velocity, second = kernel("contact_motion")(roll.vector, roll.acceleration, D, roll.lever)
+    on_gear = velocity + roll.sliding
+    (axes,) = kernel("contact_ellipse")(D, MARKING)
+    own, path = (math.atan2(one[1], one[0]) for one in (velocity, on_gear))
+    return D, own % math.pi, path % math.pi, float(second), float(np.max(axes))
+
+
+def _crownings(asked: ContactRequest, blank: Blank) -> tuple[float, ...]:
+    """Face width, working depth and the three crownings [mm]."""
+    depth = blank.mean_addendum + blank.mean_dedendum - blank.clearance
+    wanted = [(one or 0.0) / 1000 for one in (asked.lengthwise_crowning, asked.profile_crowning, asked.bias)]
+    return (blank.face_width, depth, *wanted)
 
 
 def matrix(components: np.ndarray) -> np.ndarray:
@@ -140,16 +164,29 @@ def _inside(meeting: Meeting, tip: np.ndarray) -> np.ndarray:
     return tip[1] * meeting.point[:, 2] + tip[2] * np.hypot(*meeting.point[:, :2].T) + tip[3]
 
 
-def _flank(gear: GearFlank, roll: Roll, lowest: float) -> tuple[Meeting, np.ndarray, np.ndarray]:
-    """Conjugate places of the gear's flank above ``lowest``, and how far along the tooth each lies [mm]."""
+def _from_vertex(
+    places: tuple[np.ndarray, np.ndarray], vertex: tuple[float, float], pitch_angle: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """How far places z_w, r_w (n,) of the gear lie from the vertex in cone distance and height (n,) [mm]."""
+    z, r = (place - at for place, at in zip(places, vertex, strict=True))
+    along, deep = kernel("root_place")(np.stack([r, 0 * r, z], axis=1), pitch_angle)
+    return along, -deep
+
+
+def _flank(
+    gear: GearFlank, roll: Roll, lowest: float
+) -> tuple[Meeting, tuple[np.ndarray, np.ndarray], np.ndarray, np.ndarray]:
+    """Conjugate places of the gear's flank above ``lowest``, z_w and r_w of each on the gear, how far along the tooth
+    each lies [mm], and which are about the middle."""
     up, across = (
         one.ravel() for one in np.meshgrid(np.linspace(lowest, 1, _ROWS), np.linspace(0, 1, _COLUMNS), indexing="ij")
     )
-    found = gear.meeting(*_place(gear.surface.blank.vector, across, up), roll.turn)
+    axial, radial = _place(gear.surface.blank.vector, across, up)
+    found = gear.meeting(axial, radial, roll.turn)
     kept = np.isfinite(found.point).all(axis=1)
     found = Meeting(*(array[kept] for array in vars(found).values()))
     inner = (np.abs(across - 0.5) < _INNER) & (np.abs((up - lowest) / (1 - lowest) - 0.5) < _INNER)
-    return found, (found.point - roll.point) @ roll.basis[:, 0], inner[kept]
+    return found, (axial[kept], radial[kept]), (found.point - roll.point) @ roll.basis[:, 0], inner[kept]
 
 
 def _parabola(side: str, amplitude: float, teeth: int, roll: Roll) -> float:

@@ -34,7 +34,7 @@ class Roll:
 
     ``point`` and ``normal`` (3,) of the pinion, outward; ``basis`` (3,2) of (26.7); ``gear_curvature`` (2,2) with the
     normal out of the gear; ``vector`` (2,), ``acceleration``, ``lever`` and ``sliding`` (2,) of (26.2). ``turn`` is the
-    gear's rotation, ``along`` the cone distance on the gear.
+    gear's rotation, ``axial`` (2,2) how cone distance and height on the gear change along the basis.
     """
 
     point: np.ndarray
@@ -46,6 +46,7 @@ class Roll:
     lever: float
     sliding: np.ndarray
     turn: float
+    axial: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +95,7 @@ class GearFlank:
         """What local synthesis needs at a place z_w, r_w [mm] of the gear's flank."""
         own = self.surface.solve(np.array([axial]), np.array([radial]))
         (turn,) = self.turns(own.point, own.normal)
-        point, normal, basis, curvature, vector, beta, lever, sliding = (
+        point, normal, basis, curvature, vector, beta, lever, sliding, on_blank = (
             np.asarray(one) for one in self._rolling(own.contact[0], turn)
         )
         at = point.ravel() + self._apex
@@ -108,11 +109,13 @@ class GearFlank:
             float(lever[0, 0]),
             sliding.ravel(),
             float(turn),
+            on_blank,
         )
 
     @property
     def _rolling(self) -> ca.Function:
-        """w, φ_2 -> point, outward normal of the gear, basis, K_2, w, β_c, lever, sliding in the frame of the pair."""
+        """w, φ_2 -> point, outward normal of the gear, basis, K_2, w, β_c, lever, sliding in the frame of the pair; how
+        cone distance and height on the gear change along the basis."""
         w, turn = ca.SX.sym("w", 3), ca.SX.sym("turn")
         own, own_normal, condition, _ = self.surface.function(w)
         root = self.surface.blank.delta_f
@@ -125,4 +128,8 @@ class GearFlank:
         K = kernel("flank_curvature").function(*rates, T)
         vector, beta, sliding = kernel("roll_at_contact").function(point, normal, T, K, *self._pair)
         lever, _ = kernel("transmission").function(point, normal, *self._pair)
-        return ca.Function("rolling", [w, turn], ca.cse([point, normal, T, K, vector, beta, lever, sliding]))
+        moved = ca.inv(ca.vertcat(basis.T @ ca.jacobian(own, w), ca.jacobian(condition, w)))[:, :2]
+        along, deep = kernel("root_place").function(own, self.surface.pitch_angle)
+        axial = ca.jacobian(ca.vertcat(along, -deep), w) @ moved
+        outputs = [point, normal, T, K, vector, beta, lever, sliding, axial]
+        return ca.Function("rolling", [w, turn], ca.cse([ca.densify(one) for one in outputs]))

@@ -7,12 +7,15 @@ each; the rest is rounded as it is. What the numbers then give is told by the co
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from gearmath.bevel.design import both_system
 from gearmath.bevel.design.completing import CompletingPinion
 from gearmath.bevel.design.local_settings import NAMES
-from gearmath.bevel.design.pinion import PinionFlank, refitted
+from gearmath.bevel.design.pinion import PinionFlank, refitted, roll_rows
 from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SETTINGS, Member
 from gearmath.specs.cut import ANGULAR, RATIO
 from gearmath.specs.design import Shop
@@ -55,6 +58,7 @@ def rounded_pinion(flank: PinionFlank, shop: Shop) -> PinionFlank:
         step = step_of(name, shop)
         if step and name != "work_rotation_offset":
             x[NAMES.index(name)] = _to_step(found, name, step)
+    _round_roll(x, NAMES, shop)
     if (x == found.x).all():
         return found
     local = replace(found.fitted.local, x=x)
@@ -72,7 +76,19 @@ def rounded_completing(pinion: CompletingPinion, shop: Shop) -> CompletingPinion
     for name in MACHINE_SETTINGS:
         if name != "work_rotation_offset" and (step := step_of(name, shop)):
             values[name] = _stepped(found.fitted.x[both_system.NAMES.index(name)], name, step)
-    return found.with_settings(values)
+    rounded = found.with_settings(values)
+    _round_roll(rounded.fitted.x, both_system.NAMES, shop)
+    return rounded
+
+
+def _round_roll(x: np.ndarray, names: Sequence[str], shop: Shop) -> None:
+    """Set 2C and 6D of a vector with these names to steps, at its ratio of roll (10.7)."""
+    if not shop.modified_roll_step:
+        return
+    rows = roll_rows(float(x[names.index("ratio_of_roll")]), (1.0, 1.0))
+    for name, row in zip(("modified_roll_2", "modified_roll_3"), rows, strict=True):
+        k = names.index(name)
+        x[k] = to_step(float(x[k] / row), shop.modified_roll_step) * row
 
 
 def _stepped(value: float, name: str, step: float) -> float:

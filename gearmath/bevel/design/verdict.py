@@ -138,11 +138,18 @@ def mean_module(made: Designed) -> float:
 def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]:
     """The figures of one side. Raises InputError where it does not run as asked."""
     flank, asked = made.flanks[side], made.data.contact(side)
-    found = vertex(run)
+    found, crowned = vertex(run), asked.lengthwise_crowning is not None
+    request = "crownings" if crowned else f"transmission_error = {asked.transmission_error:g} arcsec"
     if run.outcome == "interior contact" and found is None:
         raise InputError(
-            f"{side}: transmission_error = {asked.transmission_error:g} arcsec: the parabola has no vertex within both "
-            "flanks; position must be given, or the path come nearer to 90 degrees"
+            f"{side}: {request}: the parabola has no vertex within both flanks; "
+            "position must be given, or the path come nearer to 90 degrees"
+        )
+    if (run.outcome != "interior contact" or found is None) and crowned:
+        raise InputError(
+            f"{side}: {run.outcome}, with a contact ratio of {run.contact_ratio:.3g} within the flanks, which must let "
+            "one pair of teeth take over from the next: a smaller profile_crowning (now "
+            f"{asked.profile_crowning:g}) or another bias (now {asked.bias:g}) is needed"
         )
     if run.outcome != "interior contact" or found is None:
         raise InputError(
@@ -154,7 +161,7 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
     second, wanted = found.local.second_derivative, flank.request.parabola
     if not stepped and not abs(second - wanted) <= PARABOLA * abs(wanted):
         raise InputError(
-            f"{side}: transmission_error = {asked.transmission_error:g} arcsec: the second derivative at the vertex is "
+            f"{side}: {request}: the second derivative at the vertex is "
             f"{second / wanted:.1%} of the one that belongs to it, which must be within {PARABOLA:.0%}"
         )
     spread = run.leads.peak_to_peak

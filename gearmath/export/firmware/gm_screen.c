@@ -122,23 +122,18 @@ static void gm_draw_run_speed(gm_ui *ui, const gm_status *status) {
   }
 }
 
-#ifdef GM_PROFILE_LATHE
-/* Until the shoulder, at the present speed. */
-static void gm_time_left(gm_ui *ui, int row, const gm_status *status) {
-  gm_ratio left = {status->shoulder - status->position, 1};
-  if (status->shoulder == 0 || status->edge_rate == 0 || ui->loaded_ratio.numerator == 0) {
+/* Until so many motor steps more are made, at the present speed. */
+static void gm_time_left(gm_ui *ui, int row, const char *label, int64_t steps, const gm_status *status) {
+  gm_ratio left = {steps < 0 ? -steps : steps, 1};
+  if (status->edge_rate == 0 || ui->loaded_ratio.numerator == 0) {
     return;
   }
   /* steps over steps per edge and edges per second */
-  if (left.numerator < 0) {
-    left.numerator = -left.numerator;
-  }
   if (gm_ratio_times(&left, ui->loaded_ratio.denominator, (int64_t)gm_magnitude(ui->loaded_ratio.numerator)) == 0 &&
       gm_ratio_times(&left, 1, status->edge_rate) == 0) {
-    gm_quantity(ui, row, "Shoulder in", &left, 1, "s");
+    gm_quantity(ui, row, label, &left, 1, "s");
   }
 }
-#endif
 
 /* Where hob and table stand, since the start of the job. */
 static void gm_draw_run_place(gm_ui *ui, const gm_status *status) {
@@ -151,7 +146,9 @@ static void gm_draw_run_place(gm_ui *ui, const gm_status *status) {
     const int bad = gm_ratio_times(&place, GM_SCREW_STEPS_DEN, GM_SCREW_STEPS_NUM);
     gm_quantity(ui, 2, "Place", bad ? &none : &place, 3, "mm");
     gm_line(ui, 3, "");
-    gm_time_left(ui, 3, status);
+    if (status->shoulder != 0) {
+      gm_time_left(ui, 3, "Shoulder in", status->shoulder - status->position, status);
+    }
   }
 #else
   {
@@ -189,6 +186,25 @@ static void gm_draw_run_checks(gm_ui *ui, const gm_status *status) {
 #endif
 }
 
+#ifndef GM_PROFILE_LATHE
+/* From a start, or `run on`, to `Stop?`: this pass, the last one of the same job, and what is left until it is as long. */
+static void gm_draw_run_pass(gm_ui *ui, const gm_status *status) {
+  const int64_t steps = status->position - ui->pass_from;
+  gm_ratio now = {steps, 1}, last = {ui->pass, 1};
+  gm_ratio_times(&now, GM_MOTOR_STEPS_DEN, GM_MOTOR_STEPS);
+  gm_ratio_times(&last, GM_MOTOR_STEPS_DEN, GM_MOTOR_STEPS);
+  gm_quantity(ui, 1, "This pass", &now, 2, "turn");
+  gm_line(ui, 2, "No pass before");
+  gm_line(ui, 3, "");
+  if (ui->pass != 0) {
+    gm_quantity(ui, 2, "Last pass", &last, 2, "turn");
+    if (gm_magnitude(steps) < gm_magnitude(ui->pass)) {
+      gm_time_left(ui, 3, "Pass left", ui->pass - steps, status);
+    }
+  }
+}
+#endif
+
 static void gm_draw_run(gm_ui *ui, const gm_status *status) {
   gm_job_line(ui, 0, &ui->loaded);
   if (status->waiting) {
@@ -200,8 +216,12 @@ static void gm_draw_run(gm_ui *ui, const gm_status *status) {
     gm_draw_run_speed(ui, status);
   } else if (ui->choice == 1) {
     gm_draw_run_place(ui, status);
-  } else {
+  } else if (ui->choice == 2) {
     gm_draw_run_checks(ui, status);
+#ifndef GM_PROFILE_LATHE
+  } else {
+    gm_draw_run_pass(ui, status);
+#endif
   }
 }
 

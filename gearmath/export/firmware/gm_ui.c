@@ -107,6 +107,11 @@ static unsigned gm_start(gm_ui *ui, const gm_status *status) {
     return 0;
   }
   gm_arm_output(ui);
+  if (ui->loaded_ratio.numerator != ui->facts.ratio.numerator ||
+      ui->loaded_ratio.denominator != ui->facts.ratio.denominator) {
+    ui->pass = 0; /* another gear */
+  }
+  ui->pass_from = 0;
   ui->loaded = ui->edit;
   ui->loaded_ratio = ui->facts.ratio;
   ui->phase = 1;
@@ -145,6 +150,7 @@ static void gm_run_on(gm_ui *ui, const gm_status *status) {
   }
   gm_arm_output(ui);
   ui->edit = ui->loaded;
+  ui->pass_from = status->position;
   gm_go(ui, GM_PAGE_RUN);
 }
 
@@ -285,7 +291,7 @@ static void gm_knob(gm_ui *ui, int event, uint32_t now) {
     case GM_PAGE_READOUT: break;
     case GM_PAGE_STOP:
     case GM_PAGE_TEST_TABLE: gm_choose(ui, direction, 2); break;
-    case GM_PAGE_RUN: gm_choose(ui, direction, GM_RUN_VIEWS); break;
+    case GM_PAGE_RUN: gm_choose(ui, direction, gm_is_lathe() ? GM_THREAD_VIEWS : GM_GEAR_VIEWS); break;
     case GM_PAGE_STOPPED:
       gm_choose(ui, direction, gm_stopped_entries(ui));
       break;
@@ -303,7 +309,7 @@ static void gm_knob(gm_ui *ui, int event, uint32_t now) {
   }
 }
 
-static void gm_press_stop(gm_ui *ui) {
+static void gm_press_stop(gm_ui *ui, const gm_status *status) {
   if (!ui->choice) {
     gm_go(ui, GM_PAGE_RUN);
     return;
@@ -311,6 +317,7 @@ static void gm_press_stop(gm_ui *ui) {
   gm_mask();
   gm_core_stop(ui->core);
   gm_unmask();
+  ui->pass = status->position - ui->pass_from;
   gm_go(ui, GM_PAGE_STOPPED);
 }
 
@@ -328,7 +335,7 @@ static unsigned gm_press(gm_ui *ui, const gm_status *status, uint32_t now) {
       gm_go(ui, gm_edit_first());
       break;
     case GM_PAGE_RUN: gm_go(ui, GM_PAGE_STOP); break;
-    case GM_PAGE_STOP: gm_press_stop(ui); break;
+    case GM_PAGE_STOP: gm_press_stop(ui, status); break;
     case GM_PAGE_STOPPED: gm_press_stopped(ui, status); break;
     case GM_PAGE_MENU: gm_press_menu(ui); break;
     case GM_PAGE_JOG: gm_arm(ui, now); break;

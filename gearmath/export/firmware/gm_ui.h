@@ -61,7 +61,7 @@ enum { GM_MENU_JOB = 0, GM_MENU_JOG, GM_MENU_TEST_HOB, GM_MENU_TEST_TABLE, GM_ME
 enum { GM_STOPPED_WAIT = 0, GM_STOPPED_RUN_ON, GM_STOPPED_JOG, GM_STOPPED_NEW, GM_STOPPED_GEAR_ENTRIES,
        GM_STOPPED_SHOULDER = GM_STOPPED_GEAR_ENTRIES, GM_STOPPED_BACK, GM_STOPPED_NEXT, GM_STOPPED_ENTRIES };
 enum { GM_START_NO = 0, GM_START_YES, GM_START_SET, GM_START_ANSWERS };
-enum { GM_JOG_SIZES = 4, GM_RUN_VIEWS = 3, GM_MAX_DIVISIONS = 9999, GM_MAX_JOGS = 1000000 };
+enum { GM_JOG_SIZES = 4, GM_THREAD_VIEWS = 3, GM_GEAR_VIEWS = 4, GM_MAX_DIVISIONS = 9999, GM_MAX_JOGS = 1000000 };
 enum { GM_ARMED_MS = 60000, GM_WATCH_MS = 150 };
 enum { GM_TEST_READY = 0, GM_TEST_COUNTING, GM_TEST_DONE };
 
@@ -86,6 +86,8 @@ typedef struct {
   int then_run;   /* and after it the run goes on */
   int32_t at;     /* division where the table stands, counted on beyond a turn */
   int test;
+  int64_t pass_from; /* gear: motor steps at the beginning of this pass, */
+  int64_t pass;      /* and what the last one of this job took, 0 where there was none */
   int64_t counted; /* edges at the start of the test, then in it */
   int shifting;    /* lathe: the carriage moves to the next start */
   int32_t thread;  /* number of the start that is cut */

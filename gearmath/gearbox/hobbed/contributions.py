@@ -21,6 +21,7 @@ SOURCES = {
     "wheel": ("worm wheel, once a turn of the table", "the worm wheel: its eccentricity on the table"),
     "encoder": ("lines of the encoder", "the coupling of the encoder, or a better encoder"),
     "speed_ripple": ("ripple of the hob's speed behind the motor's lag", "a stiffer drive of the table"),
+    "stop_in_cut_mm": ("stop of the hob within the cut", "no stop within the cut, or a stiffer drive of the table"),
     "microstep_percent": ("microsteps that are not equal", "a better driver, or more reduction behind the motor"),
     "hob_eccentricity_um": ("eccentricity of the hob", "the runout of the hob on its arbor"),
     "hob_axial_runout_um": ("wobble of the hob along its axis", "the faces of the hob and its spacers"),
@@ -34,12 +35,15 @@ SOURCES = {
 #: Keys that only say how another one lies, or matter only with it.
 _WITH = {
     "speed_ripple": ("motor_time_constant_ms",),
+    "stop_in_cut_mm": ("motor_time_constant_ms", "run_up_seconds"),
     "hob_eccentricity_um": ("hob_eccentricity_phase",),
     "hob_axial_runout_um": ("hob_axial_runout_phase",),
     "feed": ("feed_screw_pitch",),
     "blank_eccentricity_um": ("blank_eccentricity_phase",),
     "blank_tilt_um_per_100mm": ("blank_tilt_phase",),
 }
+#: Sources that show only in what steps do.
+_BEHIND_STEPS = ("speed_ripple", "stop_in_cut_mm", "microstep_percent", "encoder")
 
 
 @dataclass(frozen=True)
@@ -67,7 +71,7 @@ def alone(train: DriveTrain, source: str) -> DriveTrain:
     kept: dict[str, Any] = {}
     if source in given:
         kept = {key: given[key] for key in (source, *_WITH.get(source, ()))}
-    stepping = source in ("steps", "speed_ripple", "microstep_percent", "encoder")
+    stepping = source in ("steps", *_BEHIND_STEPS)
     machine = train.machine.model_copy(update={"errors": CuttingErrors.model_validate(kept)})
     return replace(train, machine=machine, rule=train.rule if stepping else "ideal")
 
@@ -86,7 +90,7 @@ def contributions(
     squares = {}
     for name, seen in found.items():
         before = {"gashes": None, "steps": ideal}.get(name, ideal)
-        if name in ("speed_ripple", "microstep_percent", "encoder") and train.rule != "ideal":
+        if name in _BEHIND_STEPS and train.rule != "ideal":
             before = with_steps
         squares[name] = np.array([_mean_square(seen, before, kind) for kind in ("profiles", "helices", "pitch")])
     total = sum(squares.values())

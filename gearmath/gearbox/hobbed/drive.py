@@ -83,10 +83,19 @@ class DriveTrain:
             return self.step_error(psi) + self._within_step(psi)
         speed = self.rpm / 60 * TURN
         ripple = 1.0 + harmonics(errors.speed_ripple, psi, 0.01)
-        earlier = speed * ripple * lag
+        earlier = speed * self._part_of_speed(psi) * ripple * lag
         per_turn = self._steps_per_rad
         mean = sum(self._delayed(psi - earlier * k) for k in _LAGS) / len(_LAGS)
         return mean - per_turn * (earlier - speed * lag) * _LAGS.mean()
+
+    def _part_of_speed(self, psi: np.ndarray) -> np.ndarray:
+        """The hob's speed (n,) as part of that of the job: less on both sides of a stop, evenly slower and faster."""
+        height = self.errors.stop_in_cut_mm
+        if height is None:
+            return np.ones_like(psi)
+        stands = (height - self.job.start_height) / self.job.travel_per_rad
+        run_up = self.rpm / 60 * TURN * self.errors.run_up_seconds / 2
+        return np.sqrt(np.minimum(np.abs(psi - stands) / run_up, 1.0))
 
     def _delayed(self, psi: np.ndarray) -> np.ndarray:
         return self.step_error(psi) + self._within_step(psi)
@@ -223,7 +232,7 @@ class DriveTrain:
         per_turn = abs(self._steps_per_rad) * TURN
         steps = (1.0 if self.rule == "exact" else 12.0) + per_turn / float(self.machine.encoder_counts)
         steps += 2 * errors.microstep_percent / 100 * (self.machine.drive.microsteps or 1)
-        ripple = sum(each.amplitude_percent / 100 for each in errors.speed_ripple)
+        ripple = sum(each.amplitude_percent / 100 for each in errors.speed_ripple) + (errors.stop_in_cut_mm is not None)
         steps += 2 * errors.motor_time_constant_ms / 1000 * self.rpm / 60 * per_turn * ripple
         return starts + steps * self.step * job.base_radius
 

@@ -141,6 +141,16 @@ class HobbingJob:
         """Where hob and flank touch at lengths of roll (n,): height, edge, turn, thread (30.8)."""
         return kernel("line_of_action")(length, *self.pair(side))
 
+    def generating_length(self, shortest: float, longest: float) -> float:
+        """How much of the hob's length cuts the flanks [mm], both of them, between two lengths of roll: (30.8, 30.19).
+
+        And a tooth: the edges of one pitch cut both flanks of a space.
+        """
+        length = np.linspace(shortest, longest, 50)
+        threads = np.concatenate([self.contact(side, length)[3] for side in (1, -1)])
+        (pitch,) = evaluate("hob_pitch", self.hob.starts, self.gear.module, self.hob.diameter)
+        return (float(np.ptp(threads)) / TURN * self.hob.starts + 1.0) * pitch
+
     def feed_mark(self, length: float) -> float:
         """Height of the ridges between feed marks [mm] at a length of roll, by a hob of many gashes (30.10)."""
         _, edge, _, _ = (float(value[0]) for value in self.contact(1, np.array([length])))

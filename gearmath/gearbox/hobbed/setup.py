@@ -55,6 +55,11 @@ class CutSetup:
         """Gear, hob and feed."""
         return self.train.job
 
+    @property
+    def hob_length(self) -> float:
+        """How much of the hob's length cuts the flanks that are measured [mm]."""
+        return self.job.generating_length(float(self.where.profile[0]), float(self.where.profile[-1]))
+
 
 def setup(
     machine: HobbingMachine,
@@ -95,7 +100,13 @@ def setup(
             f"{tool.starts} start{'s' * (tool.starts > 1)}"
         )
     train = DriveTrain(machine, job, planned.ratio, rule, planned.rpm, seconds)
-    return CutSetup(train, layout(job), chosen.name, chosen.diameter is None)
+    found = CutSetup(train, layout(job), chosen.name, chosen.diameter is None)
+    if chosen.length is not None and chosen.length < found.hob_length:
+        raise InputError(
+            f"{machine.name}: hob {chosen.name}: length = {chosen.length:g}: the flanks of this gear need "
+            f"{found.hob_length:.1f} mm of it"
+        )
+    return found
 
 
 def hob_tool(hob: Hob, starts: int, sign: int) -> HobTool:

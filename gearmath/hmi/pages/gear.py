@@ -109,17 +109,23 @@ class _GearPage:
 
         def draw(found: Draft) -> None:
             own = (found.path, found.member.name, found.member.spec)
-            # typed elsewhere, or discarded: only then, for a field that is drawn anew loses the cursor
-            if of_file != [own] or self.mine != self.desk.typed:
+            # only then: a field that is drawn anew loses the cursor, and what is typed into it just now
+            if of_file != [own]:
                 of_file[:], self.mine = [own], self.desk.typed
                 place.clear()
                 fields.clear()
                 with place:
                     self._fields(found, fields)
+            before, self.mine = self.mine, self.desk.typed
+            self._show(found, fields, {at for at in fields if before.get(at) != self.mine.get(at)})  # typed elsewhere
             for at, field in fields.items():
                 if at in found.refused:
                     field.refuse(found.refused[at])
-            self._changes(found)
+            self._changes(found, lambda: discard(found))
+
+        def discard(found: Draft) -> None:
+            self.mine = self.desk.typed = {}
+            self._show(found, fields, set(fields))
 
         place = ui.element("div").classes("gm-follow")
         self.kept(draw)
@@ -134,6 +140,12 @@ class _GearPage:
                     text, label, shown, one.unit, one.low, one.high, self._typed(one), DECIMALS
                 )
 
+    def _show(self, found: Draft, fields: dict[Place, widgets.NumberField], places: set[Place]) -> None:
+        """In these fields the values that hold now."""
+        for one in setting_fields(found.member):
+            if one.place in places:
+                fields[one.place].show(self.desk.typed.get(one.place, one.value))
+
     def _typed(self, one: SettingField) -> Callable[[float], None]:
         def typed(value: float) -> None:
             others = {place: old for place, old in self.desk.typed.items() if place != one.place}
@@ -142,11 +154,11 @@ class _GearPage:
 
         return typed
 
-    def _changes(self, found: Draft) -> None:
+    def _changes(self, found: Draft, discard: Callable[[], None]) -> None:
         """What was typed against the file, why some of it is refused, and what may be done with the rest."""
         text = self.text
         for place, why in found.refused.items():
-            widgets.Message(f"{self._name(place)}: {text('gear.refused')}: {why}", "error")
+            widgets.Message(f"{self._name(place)}: {text('gear.refused')}: {text.quoted(why)}", "error")
         if not found.accepted:
             if not found.refused:
                 widgets.note(text("gear.unchanged"))
@@ -168,7 +180,7 @@ class _GearPage:
             if found.accepted and not found.refused:
                 widgets.button(text("gear.save"), lambda: self._save(found), "save", primary=True)
             if self.desk.typed:
-                widgets.button(text("gear.discard"), self._discard, "undo")
+                widgets.button(text("gear.discard"), discard, "undo")
 
     def _name(self, place: Place) -> str:
         flanks, key = place
@@ -179,9 +191,6 @@ class _GearPage:
         save_edited(found.path, target, found.member, found.edited)
         self._choose(gear_set=str(target))
         widgets.say(self.text("gear.saved", name=target.name), "good")
-
-    def _discard(self) -> None:
-        self.desk.typed = {}
 
     def _choose(self, **changes: str) -> None:
         if any(getattr(self.shared.choice, key) != value for key, value in changes.items()):
@@ -238,7 +247,7 @@ class _GearPage:
     def _flanks(self, found: Draft) -> None:
         text, view = self.text, found.view
         if view is None:
-            widgets.Message(found.no_view, "warning")
+            widgets.Message(text.quoted(found.no_view), "warning")
         elif self.look == "flat":
 
             def compute() -> Callable[[Progress], dict[str, str]]:

@@ -146,7 +146,7 @@ def _trend(shared: Shared, text: Text) -> None:
 
 def _show_trend(text: Text, found: Comparison, svg: str, left_out: list[str]) -> None:
     for sentence in left_out:
-        widgets.Message(sentence, "warning")
+        widgets.Message(text.quoted(sentence), "warning")
     widgets.note(text("history.bars"))
     with ui.element("div").classes("gm-follow"):
         blocks.chart(text, svg, text("history.trend"))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from nicegui import ui
 
 from gearmath.control.interface import AXES
-from gearmath.errors import InputError
 from gearmath.hmi import widgets
 from gearmath.hmi.messages import Text
 from gearmath.hmi.simulated import SimulatedMachine
@@ -35,7 +34,7 @@ def build(shared: Shared, text: Text) -> None:
         if shared.link is None:
             return
         view = shared.link.view
-        problem.text = "" if view.connected else view.problem
+        problem.text = "" if view.connected else text.quoted(view.problem)
         for name, found in facts(text, view).items():
             values[name].text = found
         for label, position in zip(axes, view.status.position if view.status else (), strict=False):
@@ -89,7 +88,7 @@ def _operator(shared: Shared, text: Text, machine: SimulatedMachine) -> None:
 
     def select() -> None:
         if not chosen["name"]:
-            raise InputError(text("measure.program_needed"))
+            raise widgets.Refusal(text("measure.program_needed"))
         machine.select(chosen["name"], shared.choice.gear_set)
 
     with widgets.panel(text("machine.operator"), wide=True):

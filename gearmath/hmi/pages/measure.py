@@ -8,7 +8,6 @@ from typing import Any
 
 from nicegui import ui
 
-from gearmath.errors import InputError
 from gearmath.hmi import programs_work, widgets
 from gearmath.hmi.link import ControlLink
 from gearmath.hmi.measuring_task import MeasuringTask, RunState
@@ -113,11 +112,11 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
 
     def checked() -> None:
         if not (check.is_done or by_hand.value):
-            raise InputError(text("measure.check_needed"))
+            raise widgets.Refusal(text("measure.check_needed"))
 
     def ask_to_start() -> None:
         if not (name := chosen["name"]):
-            raise InputError(text("measure.program_needed"))
+            raise widgets.Refusal(text("measure.program_needed"))
         checked()
         choice = shared.choice
         values = {"program": name, "control": link.name, "gear_set": choice.gear_set}
@@ -183,7 +182,7 @@ def _again(shared: Shared, text: Text, task: MeasuringTask, checked: Callable[[]
     def ask_again() -> None:
         run, wanted = chosen["run"], (points.value or "").strip()
         if run is None:
-            raise InputError(text("measure.program_needed"))
+            raise widgets.Refusal(text("measure.program_needed"))
         checked()
         program = complete_runs(shared.store)[run]
         choice = shared.choice

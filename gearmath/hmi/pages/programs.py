@@ -145,7 +145,7 @@ def _written(shared: Shared, text: Text) -> None:
         try:
             lines, count = programs_work.preview(shared.folder, name)
         except InputError as error:
-            widgets.say(str(error), "error")
+            widgets.say_error(error)
             return
         code.props["aria-label"] = text("programs.preview", name=name)
         content.text = lines
@@ -156,7 +156,7 @@ def _written(shared: Shared, text: Text) -> None:
 
     def needed() -> str:
         if not chosen["name"]:
-            raise InputError(text("measure.program_needed"))
+            raise widgets.Refusal(text("measure.program_needed"))
         return chosen["name"]
 
     def mill() -> None:

@@ -1,14 +1,14 @@
 """The blades of a face hobbing cutter one by one: the parts of their cutting edges, and where a line meets one.
 
-A blade group has an outer and an inner blade in the same direction. The edge of each has its main part, where there is
-one its Toprem, its rounding, and the tip, from there to a bit beyond the middle of the group's point width, so that
-both tips together leave no ridge.
+A blade group has an outer and an inner blade, in the same direction or the inner one behind. The edge of each has its
+main part, where there is one its Toprem, its rounding, and the tip, from there to a bit beyond the middle of the
+width of the space, so that both tips together leave no ridge.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import casadi as ca
@@ -35,7 +35,8 @@ class Edge:
 
     ``part`` is that of :func:`blade_sections`, or ``tip``.
 
-    ``tip_radius`` and ``offset`` [rad] are r_p and η of (17.2), ``side`` that of the blade.
+    ``tip_radius`` and ``offset`` [rad] are r_p and η of (17.2), ``side`` that of the blade, ``phase`` [rad] the angle
+    about the cutter's axis from the outer blade of its group.
     """
 
     flank: str
@@ -46,6 +47,7 @@ class Edge:
     tip_radius: float
     offset: float
     side: int
+    phase: float = 0.0
 
     @property
     def is_arc(self) -> bool:
@@ -98,12 +100,41 @@ def blades_of(member: Member, edge_radius: float = 0.0) -> Blades:
     """The blades of a face hobbed member as they are; ``edge_radius`` [mm] is given to blades that state none."""
     own = {flank: _as_cut(member.flank(flank), edge_radius) for flank in FLANKS}
     sections = {flank: blade_sections(own[flank], SIDES[flank]) for flank in FLANKS}
-    width = own["concave"].blade_point_radius - own["convex"].blade_point_radius
+    phases = {"concave": 0.0, "convex": blade_phase(member)}
+    width = root_width(member)
     edges: list[Edge] = []
     for flank in FLANKS:
-        edges += [_edge(own[flank], flank, part, section) for part, section in sections[flank].items()]
-        edges.append(_tip(own[flank], flank, next(iter(sections[flank].values())), width))
+        parts = [_edge(own[flank], flank, part, section) for part, section in sections[flank].items()]
+        parts.append(_tip(own[flank], flank, next(iter(sections[flank].values())), width))
+        edges += [replace(edge, phase=phases[flank]) for edge in parts]
     return Blades(member.blade_groups or 1, member.teeth, tuple(edges))
+
+
+def blade_phase(member: Member) -> float:
+    """The angle [rad] of the inner blades from the outer ones of their group: in it the work turns by what the work
+    rotation offsets of the flanks differ in (10.2)."""
+    if member.blade_groups is None:
+        return 0.0
+    turn = math.radians(member.concave.work_rotation_offset - member.convex.work_rotation_offset)
+    return turn * member.teeth / (member.indexing_sign * member.blade_groups)
+
+
+def root_width(member: Member) -> float:
+    """The width [mm] of the root between both blades of a cutter, where it turns the work in between too."""
+    return member.concave.blade_point_radius - member.convex.blade_point_radius + _turned_width(member)
+
+
+def _turned_width(member: Member) -> float:
+    """What that turn makes of the width of a space, square to it [mm]; the spiral angle from the crown gear (12.4)."""
+    turn = abs(math.radians(member.concave.work_rotation_offset - member.convex.work_rotation_offset))
+    if member.blade_groups is None or not turn:
+        return 0.0
+    blank, spec = member.blank, member.concave
+    radius = (spec.blade_point_radius + member.convex.blade_point_radius) / 2
+    mean, distance = blank.mean_cone_distance, spec.radial_distance
+    sine = (mean**2 + radius**2 - distance**2) / (2 * mean * radius)
+    spiral = math.asin(max(-1.0, min(sine, 1.0))) + abs(math.radians(spec.blade_offset_angle))
+    return turn * mean * math.sin(math.radians(blank.pitch_angle)) * math.cos(spiral)
 
 
 def _as_cut(spec: Flank, edge_radius: float) -> Flank:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 
 from gearmath.machine.judging.faults import Fault
+from gearmath.machine.judging.stated import Stated
 from gearmath.machine.planning.path import Cut
 from gearmath.machine.planning.setup_facts import BlankSizes, blade_words, member_note, work_notes, z_note
 from gearmath.specs.bevel_set import Member
@@ -13,7 +14,12 @@ from gearmath.specs.milling_machine import MillingMachine
 
 
 def header_faults(text: str, member: Member, name: str, machine: MillingMachine) -> Iterator[Fault]:
-    """Comments that say something else of cutter, blank, clamping and Z than the files of set and machine."""
+    """Comments that say something else of cutter, blank, clamping and Z than the files of set and machine.
+
+    And what a program of ours does not say, so that less could be judged.
+    """
+    if unsaid := Stated.of(text).unsaid:
+        yield Fault(f"the header does not state: {', '.join(unsaid)}")
     wanted = dict(_statements(member, name, machine))
     for number, line in enumerate(text.splitlines(), 1):
         if not line.startswith(";"):

@@ -14,10 +14,9 @@ from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control.executor import MachinePath, parsed
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import is_for_linuxcnc
-from gearmath.machine.judging.block_check import Watch
 from gearmath.machine.judging.chosen import chosen_faults, reads_choice
 from gearmath.machine.judging.collision import RAPID_CLEARANCE, collisions, rapid_approaches
-from gearmath.machine.judging.cut import as_cut, beside_the_path, hobbed, metal_left, missing
+from gearmath.machine.judging.cut import MetalLeft, as_cut, beside_the_path, hobbed, metal_left, missing, no_dry_run
 from gearmath.machine.judging.faults import Fault, first_of_each
 from gearmath.machine.judging.header import header_faults
 from gearmath.machine.judging.motion import motion_faults
@@ -26,6 +25,7 @@ from gearmath.machine.judging.start_state import start_faults
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import CuttingRun, runs_of
+from gearmath.machine.planning.rounding import control_share
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.milling_machine import MillingMachine
@@ -45,6 +45,7 @@ def faults_of(
         *motion_faults(path, runs, member, machine, stated),
         *missing(stated, runs, member, name),
         *beside_the_path(runs, member, machine, stated),
+        *no_dry_run(runs, member, machine, stated),
     ]
     asked = [*header_faults(text, member, name, machine)]
     if not is_for_linuxcnc(text):
@@ -65,7 +66,7 @@ def metal_faults(
     space: ToothSpace | None,
     progress: Callable[[int], object] = lambda _: None,
     milled: FlankFile | None = None,
-) -> tuple[list[Fault], Watch | None]:
+) -> MetalLeft:
     """What a program leaves of the metal that the settings of ``member`` would not, on a machine without errors.
 
     Stock and gouges, of the flank that is cut and of its opposite, which the same cutter passes. ``runs`` have sharp
@@ -77,10 +78,9 @@ def metal_faults(
     if space is None:
         known = milled if made == member else None
         left = mill_member(path, made, name, machine, None, progress, runs) if known is None else known
-        return list(hobbed(float(abs(left.deviation).max()), stated)), None
+        return hobbed(left.deviation, stated, control_share(made, name, machine).rounding)
     own = space if made == member else tooth_space(made, name, 7)
-    found = metal_left(runs, made, name, machine, stated, own, progress)
-    return list(found.faults), found.watch
+    return metal_left(runs, made, name, machine, stated, own, progress)
 
 
 def written_faults(
@@ -100,7 +100,7 @@ def written_faults(
     runs = runs_of(path, member, name, machine, None, space, SHARP_EDGE)
     found = faults_of(text, path, runs, member, name, machine)
     if Stated.of(text).coolant:
-        found += metal_faults(text, path, runs, member, name, machine, space, progress)[0]
+        found += metal_faults(text, path, runs, member, name, machine, space, progress).faults
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
@@ -9,6 +10,7 @@ from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
 from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control.executor import MachinePath
 from gearmath.machine.judging.collision import Collision, collisions
+from gearmath.machine.judging.cut import as_cut
 from gearmath.machine.judging.timing import Timing, timing
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.milling.surfaces import DEFAULT_COLUMNS, DEFAULT_TOLERANCE, SurfaceState, surface_states
@@ -19,23 +21,33 @@ from gearmath.specs.simulated_machine import SimulatedMachine
 
 @dataclass(frozen=True)
 class MillingReport:
-    """Everything that a program does to a member and to the machine; lengths in mm, ``tolerance`` too."""
+    """Everything that a program does to a member and to the machine; lengths in mm, ``tolerance`` too.
+
+    ``surfaces`` are compared with the design. Where the settings were corrected and the machine has no errors,
+    ``surfaces_of_settings`` are compared with what these settings cut, and judged; else there are none.
+    """
 
     member: str
     tolerance: float
     surfaces: tuple[SurfaceState, ...]
+    surfaces_of_settings: tuple[SurfaceState, ...]
     collisions: tuple[Collision, ...]
     timing: Timing
 
     @property
+    def judged(self) -> tuple[SurfaceState, ...]:
+        """The surfaces as the program should leave them."""
+        return self.surfaces_of_settings or self.surfaces
+
+    @property
     def gouges(self) -> tuple[SurfaceState, ...]:
         """Surfaces that are cut deeper than the tolerance allows."""
-        return tuple(state for state in self.surfaces if state.gouged)
+        return tuple(state for state in self.judged if state.gouged)
 
     @property
     def uncut(self) -> tuple[SurfaceState, ...]:
         """Surfaces on which more than the tolerance is left."""
-        return tuple(state for state in self.surfaces if state.uncut)
+        return tuple(state for state in self.judged if state.uncut)
 
     def as_dict(self) -> dict[str, object]:
         """For JSON."""
@@ -53,11 +65,22 @@ def milling_report(
     progress: Callable[[int], object] = lambda _: None,
     space: ToothSpace | None = None,
 ) -> MillingReport:
-    """The report of a whole program. ``progress`` is called for every surface of every space, five to a space;
-    ``space`` is the nominal space where it is known. Raises InputError if a tool is not of this member.
+    """The report of a whole program. ``progress`` is called for every surface of every space, five to a space, and
+    twice for corrected settings; ``space`` is the nominal space where it is known. Raises InputError if a tool is not
+    of this member.
     """
     space = space or tooth_space(member, name, columns)
     runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
     states = surface_states(path, member, name, machine, errors, None, tolerance, columns, runs, progress, space)
+    made, own = as_cut(member, space), []
+    if made != member and errors is None:
+        other = tooth_space(made, name, columns)
+        own = surface_states(path, made, name, machine, None, None, tolerance, columns, runs, progress, other)
     met = collisions(path, runs, member, machine, *obstacles(machine, errors))
-    return MillingReport(name, tolerance, tuple(states), tuple(met), timing(path, machine))
+    return MillingReport(name, tolerance, tuple(states), tuple(own), tuple(met), timing(path, machine))
+
+
+def largest(states: tuple[SurfaceState, ...], surface: str) -> float:
+    """The largest deviation [mm] on surfaces whose name has this word; 0 where nothing is cut."""
+    found = [max(-one.lowest, one.highest) for one in states if surface in one.surface]
+    return max((value for value in found if math.isfinite(value)), default=0.0)

@@ -1,7 +1,8 @@
 """A program as a control moves the axes: how long it takes, where it is slow, and how far it leaves the path.
 
-The axes stand at the ends of rapid blocks, at dwells and stops, and where the tool is changed; feed blocks between
-these are one run. The spindle, the tool change and the waiting of a program take what the program says, and no more.
+The axes stand at the ends of rapid blocks and of those that measure, at dwells and stops, and where the tool is
+changed; feed blocks between these are one run. The spindle, the tool change and the waiting of a program take what the
+program says, and no more.
 """
 
 from __future__ import annotations
@@ -114,6 +115,8 @@ def _runs(path: MachinePath) -> list[np.ndarray]:
     still[[0, 1, -1]] = True  # the first row is where the axes stand
     still[1:][path.rapid] = True  # after a rapid block
     still[:-1][path.rapid] = True  # and before one
+    if len(path.measuring):
+        still[1:][path.measuring] = True  # the rest of the way is deleted
     still[1:-1][path.tool[1:] != path.tool[:-1]] = True
     for halt in path.halts:
         still[halt.rows] = True

@@ -7,10 +7,13 @@ from collections.abc import Callable
 import numpy as np
 
 from gearmath.errors import ComputationError, InputError
-from gearmath.machine.control.executor import AS_WRITTEN, ProgramRun, run_program
+from gearmath.machine.control.executor import AS_WRITTEN, MachinePath, ProgramRun, run_program
 from gearmath.machine.control.state import Probe, Setup
+from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.collision_check import enough_steps, is_touch
 from gearmath.machine.measuring.probe_errors import ErringProbe
+from gearmath.specs.calibration import Calibration
+from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS
 
@@ -36,13 +39,30 @@ def touch_count(text: str, program: str, setup: Setup = AS_WRITTEN) -> int:
 
     def trigger(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
         nonlocal count
-        if not is_touch(start, end):
-            return None
-        count += 1
-        return end
+        met = _latest(start, end)
+        count += met is not None
+        return met
 
     run_program(text, program, trigger, step_limit=enough_steps(text), setup=setup)
     return count
+
+
+def probing_path(text: str, program: str, machine: MillingMachine, calibration: Calibration) -> MachinePath:
+    """The path of a program that probes: on ring and spheres as they are, on a member every touch as late as it may be.
+
+    Nothing is waited for: there is no host. Raises InputError for a text that cannot be run, ComputationError where it
+    sets an alarm.
+    """
+    there = Artefacts(machine, calibration) if touches_artefacts(text) else _latest
+    setup = Setup.of(machine, calibration.length)
+    done = run_program(text, program, there, step_limit=enough_steps(text), setup=setup)
+    check_ended(done, program)
+    return done.path
+
+
+def _latest(start: np.ndarray, end: np.ndarray) -> np.ndarray | None:
+    """A probe that triggers at the very end of a touch."""
+    return end if is_touch(start, end) else None
 
 
 def run_touches(

@@ -100,8 +100,12 @@ def removal_by_blades(
     for begin in range(0, len(point), _LINES):
         rows = np.arange(begin, min(begin + _LINES, len(point)))
         reach = _WINDOW - float(starts[rows].min())
-        passes = _passes(path, nodes, poses, point[rows], blades, machine, reach, seen)
+        given_passes = {
+            phase: _passes(path, nodes, poses, point[rows], blades, phase, machine, reach, seen)
+            for phase in {edge.phase for edge in blades.edges}
+        }
         for edge in blades.edges:
+            passes = given_passes[edge.phase]
             _, radius, height = edge.middle
             near = np.hypot(passes.radius - radius, passes.height - height) < reach + edge.half_length
             here = passes.at(near)
@@ -122,15 +126,16 @@ def _passes(
     poses: tuple[np.ndarray, ...],
     point: np.ndarray,
     blades: Blades,
+    phase: float,
     machine: tuple,
     reach: float,
     seen: _Computed,
 ) -> _Passes:
-    """All passes of blade groups within ``reach`` [mm] of any edge, wherever on the path."""
+    """All passes of the blades at a ``phase`` [rad] of the groups within ``reach`` [mm] of any edge of the path."""
     line, node = np.nonzero(_near(poses, point, blades, reach) & (np.diff(path.block) == 0))
     before, after = (_in_chunks(seen, len(node), nodes[node + k, :5], point[line], *machine) for k in (0, 1))
     pitch = 2 * math.pi / blades.groups
-    off = nodes[node, 5] - before[2]
+    off = nodes[node, 5] + phase - before[2]
     turned = half_turn(after[2] - before[2])
     change = nodes[node + 1, 5] - nodes[node, 5] - turned
     low, count = np.minimum(off, off + change) / pitch, np.abs(change) / pitch
@@ -150,7 +155,7 @@ def _passes(
                 between(path.fraction[j], path.fraction[j + 1]),
                 between(before[1][chosen], after[1][chosen]),
                 between(before[0][chosen], after[0][chosen]),
-                -number[chosen] * pitch,
+                phase - number[chosen] * pitch,
             )
         )
     return _Passes(*(np.concatenate([getattr(one, f) for one in found]) for f in _Passes.__dataclass_fields__))

@@ -32,7 +32,7 @@ from gearmath.machine.planning.path import (
     flank_points,
     roll_range,
 )
-from gearmath.specs.bevel_set import MACHINE_SETTINGS, SIDES, Flank, Member
+from gearmath.specs.bevel_set import SIDES, Flank, Member
 
 #: What five printed decimals of X Y Z [mm] and six of A B [deg], at 100 mm from either axis, may do to the flank.
 ROUNDING = 0.5e-5 * math.sqrt(3) + 2 * math.radians(0.5e-6) * 100.0
@@ -236,9 +236,12 @@ def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]
 def flank_curve(
     member: Member, flank: str, up: float | None = None, across: float | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``."""
-    share = np.linspace(0.0, 1.0, _COLUMNS)
-    place = (share if across is None else np.full(_COLUMNS, across), share if up is None else np.full(_COLUMNS, up))
+    """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``.
+
+    Up the tooth they begin as deep as the blade reaches, where the foot of the flank ends.
+    """
+    along, depth = np.linspace(0.0, 1.0, _COLUMNS), np.linspace(-_DEEP, 1.0, _COLUMNS)
+    place = (along if across is None else np.full(_COLUMNS, across), depth if up is None else np.full(_COLUMNS, up))
     axial, radial = kernel("flank_place")(member.blank.vector, *place)
     return flank_row(member, flank, Grid(axial[None], radial[None]))
 
@@ -336,7 +339,7 @@ def fewest_nodes(
 def on_one_machine(member: Member, cut: Cut) -> Member:
     """The member with all flanks of a pass at the machine settings of its first, which are what the pass runs at."""
     first = member.flank(cut.flanks[0])
-    shared = {name: getattr(first, name) for name in MACHINE_SETTINGS}
+    shared = {name: getattr(first, name) for name in member.shared_settings}
     return member.model_copy(update={name: member.flank(name).model_copy(update=shared) for name in cut.flanks})
 
 

@@ -7,7 +7,8 @@ space it moves at a height that clears the whole member at every position of A.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,35 +34,7 @@ def clear_height(member: Member, machine: MillingMachine, calibration: Calibrati
     return float(here[:, 2].max()) + calibration.tip_radius + CLEARANCE
 
 
-def probing_program(
-    bevel_set: BevelSet,
-    name: str,
-    machine: MillingMachine,
-    calibration: Calibration,
-    program_name: str,
-    topography: Sequence[int] = (0,),
-    pitch: bool = True,
-    repeat: int = 1,
-    around: Sequence[int] = (),
-) -> str:
-    """The program that probes a member, every point ``repeat`` times one after the other; see :func:`probe_targets`.
-
-    Raises InputError for travel, room, and a name that the control refuses.
-    """
-    member = bevel_set.member(name)
-    targets, level, room = probed(member, name, machine, calibration, program_name, topography, pitch, around)
-    header = (
-        *probing_notes(bevel_set, name, machine, calibration, len(targets), repeat),
-        "R90, R91: first and last point to touch, 0 for all; the program asks before it leaves points out",
-        "a run from point 1 on deletes the touches of the last run, one that begins later adds to them",
-        "R102 counts the runs, R101 the points offered, R103 those that a host has acknowledged",
-        "R104 = 1, set before the start: a host reads R200 to R205 of every point, and the program waits for it",
-        *(f"unconfirmed: {text}" for text in (NOT_ON_METAL, VARIABLES, PROBING)),
-    )
-    return write_touches(program_name, header, targets, name, member.teeth, machine, calibration, level, room, repeat)
-
-
-def probed(
+def _probed(
     member: Member,
     name: str,
     machine: MillingMachine,
@@ -80,7 +53,7 @@ def probed(
     return targets, level, room
 
 
-def probing_notes(
+def _probing_notes(
     bevel_set: BevelSet, name: str, machine: MillingMachine, calibration: Calibration, points: int, repeat: int
 ) -> Iterator[str]:
     """What the header says of set, machine and probe."""
@@ -125,3 +98,46 @@ def write_touches(
     blocks = Blocks(program_name, machine, calibration.length)
     plan = plan_of(targets, repeat)
     return blocks.text(header, point_loop(blocks, pattern, name, plan, level, room))
+
+
+@dataclass(frozen=True)
+class TouchWriter:
+    """How the programs of one control are written: what they say of themselves, and the text of their touches."""
+
+    notes: tuple[str, ...]
+    text: Callable[..., str]
+
+
+#: Programs for a SINUMERIK.
+SINUMERIK = TouchWriter(
+    (
+        "R90, R91: first and last point to touch, 0 for all; the program asks before it leaves points out",
+        "a run from point 1 on deletes the touches of the last run, one that begins later adds to them",
+        "R102 counts the runs, R101 the points offered, R103 those that a host has acknowledged",
+        "R104 = 1, set before the start: a host reads R200 to R205 of every point, and the program waits for it",
+        *(f"unconfirmed: {text}" for text in (NOT_ON_METAL, VARIABLES, PROBING)),
+    ),
+    write_touches,
+)
+
+
+def probing_program(
+    bevel_set: BevelSet,
+    name: str,
+    machine: MillingMachine,
+    calibration: Calibration,
+    program_name: str,
+    topography: Sequence[int] = (0,),
+    pitch: bool = True,
+    repeat: int = 1,
+    around: Sequence[int] = (),
+    writer: TouchWriter = SINUMERIK,
+) -> str:
+    """The program that probes a member, every point ``repeat`` times one after the other; see :func:`probe_targets`.
+
+    Raises InputError for travel, room, and a name that the control refuses.
+    """
+    member = bevel_set.member(name)
+    targets, level, room = _probed(member, name, machine, calibration, program_name, topography, pitch, around)
+    header = (*_probing_notes(bevel_set, name, machine, calibration, len(targets), repeat), *writer.notes)
+    return writer.text(program_name, header, targets, name, member.teeth, machine, calibration, level, room, repeat)

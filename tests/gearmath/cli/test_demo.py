@@ -73,6 +73,20 @@ def test_every_product_is_there(run):
 
 
 @pytest.mark.slow
+def test_correction_brings_the_pattern_of_the_designed_pair_back_within_2_percent_of_the_face_width(run):
+    folder, text = run
+    shifts = re.findall(r"(drive|coast): the pattern's center is off by ([\d.]+)% -> ([\d.]+)% of the face width", text)
+    assert [side for side, *_ in shifts] == ["drive", "coast"]
+    for _, before, after in shifts:
+        assert float(before) > 2  # the machine that is off moves it
+        assert float(after) <= 2
+    pair = load_bevel_set(folder / "designed.toml")
+    assert (pair.member("pinion").teeth, pair.member("gear").teeth) == (7, 43)
+    for name in ("DESIGNED_PINION_1.MPF", "DESIGNED_PINION_2.MPF", "designed_pinion_measured.csv"):
+        assert (folder / name).stat().st_size > 0, name
+
+
+@pytest.mark.slow
 def test_demo_shows_each_part_of_the_chain(run):
     _, text = run
     assert re.search(r"^ +10 +3\.183 +3$", text, re.M)  # the last row of the published table, R = 3.142

@@ -80,7 +80,12 @@ def test_text_says_what_was_asked_and_found(command, written, tmp_path):
         ("", "76.2", "[coast]\npath_angle = 50.0\n", r"coast: edge contact.*path_angle, now 50"),
         ("", "76.2", "[coast]\npath_angle = 5.0\n", r"coast\.path_angle = 5.*at least 15"),
         ("face_widht = 3", "76.2", "", r"face_widht"),
-        ("", "76.2", '[pinion]\ncutting = "completing"\n', r"pinion\.cutting = 'completing'"),
+        (
+            "",
+            '76.2\nprocess = "face_hobbing"\nblade_groups = 9',
+            "",
+            r"pinion\.cutting = 'fixed_setting': with face_hobbing it must be 'completing'",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_with_what_binds(refused, written, tmp_path, more, cutter, end, sentence):

@@ -109,18 +109,21 @@ def test_cut_writes_points_that_lie_on_the_involute(capsys, tmp_path):
         assert x * nx + y * ny == pytest.approx(float(row["roll_length"]), abs=1e-5)
 
 
-def test_cut_writes_the_flanks_of_all_teeth_as_stl_facing_out_of_the_metal(capsys, tmp_path):
-    """12 teeth, 25 x 41 points a flank; at radius r and width b a flank faces along the circle, the space between."""
-    path = tmp_path / "flanks.stl"
+def test_cut_writes_the_gear_as_a_closed_stl(capsys, tmp_path):
+    """12 teeth, x = 0.4, 5 mm wide: every edge is that of two facets, and the whole is as large as such a gear."""
+    path = tmp_path / "gear.stl"
     arguments = ("--teeth", "12", "--hob", "m1", "--shift", "0.4", "--width", "5", "--feed", "1", "--stl", str(path))
     assert gearmath(capsys, "gearbox", "cut", "hobbing_default.toml", *arguments)[0] == 0
     record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-    facets = np.frombuffer(path.read_bytes()[84:], record)
-    assert len(facets) == 12 * 2 * 2 * 24 * 40
-    middle = facets["corners"].mean(axis=1)
-    assert np.abs(middle[:, 2] - 2.5).max() < 2.5
-    assert np.hypot(middle[:, 0], middle[:, 1]).max() < 7.4
-    assert (np.einsum("ij,ij->i", middle[:, :2], facets["normal"][:, :2]) > 0).all()  # flanks look outwards, not in
+    corners = np.frombuffer(path.read_bytes()[84:], record)["corners"]
+    edges = {
+        (a.tobytes(), b.tobytes()) for facet in corners for a, b in zip(facet, np.roll(facet, -1, axis=0), strict=True)
+    }
+    assert len(edges) == 3 * len(corners)
+    assert all((b, a) in edges for a, b in edges)
+    points = corners.reshape(-1, 3)
+    assert np.hypot(points[:, 0], points[:, 1]).max() == pytest.approx(7.4, abs=0.01)  # r + m (1 + x)
+    assert (points[:, 2].min(), points[:, 2].max()) == pytest.approx((0.0, 5.0), abs=0.01)
 
 
 @pytest.mark.parametrize(

@@ -27,19 +27,26 @@ def test_calibration_run_is_planned_kept_and_calibrates_as_the_file_of_the_contr
     assert command("probe", program, "--errors", "simulated_shop.toml", "-o", raw)[0] == 0
     rows = [line.split(",") for line in raw.read_text("utf-8").splitlines() if line[:1].isdigit()]
     start, parts = begun("control", program, None, "vertical_5axis.toml", "probe.toml")
-    assert parts == (0, 0)
+    assert parts == [(0, 0)]
     assert start.points == {int(row[1]): (row[2],) for row in rows}
     with MeasurementStore.open(tmp_path / "runs.db") as store:
         run = store.begin_run(start)
         for row in rows:
             run.commit_touch(int(row[1]), Touch(1, *map(float, row[3:9])))
         kept.write_text(touch_csv(run), "utf-8")
+        status, shown, err = command("runs", "show", run.id, "--evaluate", "--store", tmp_path / "runs.db")
+        assert status == 0, err
+        (result,) = store.run(run.id).results().values()
     said = []
     for one in (raw, kept):
         status, out, err = command("calibrate", one, "-o", tmp_path / "found.toml")
         assert status == 0, err
         said.append((out, (tmp_path / "found.toml").read_text("utf-8")))
     assert said[0] == said[1]
+    # what 'gearmath calibrate' says of the raw file, but for the line that names the file it wrote
+    lines, file = said[0]
+    assert "\n".join(lines.splitlines()[:-1]) in shown
+    assert result.decode() == file
 
 
 def test_points_of_a_calibration_are_made_by_the_sections_that_hold_them(command, tmp_path: Path) -> None:
@@ -47,5 +54,5 @@ def test_points_of_a_calibration_are_made_by_the_sections_that_hold_them(command
     program = tmp_path / "AXES.MPF"
     assert command("nc", "calibrate", "--cycle", "axes", "-o", program)[0] == 0
     start, parts = begun("control", program, None, "vertical_5axis.toml", "probe.toml", points="12-17")
-    assert parts == (2, 2)
+    assert parts == [(2, 2)]
     assert list(start.points) == list(range(10, 19))

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from gearmath.export.netlist import netlist
 from gearmath.export.wiring import wiring_svg
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
 from gearmath.specs.toml import bundled
@@ -65,7 +66,7 @@ def test_transistors_stand_where_the_output_is_an_open_collector() -> None:
     base = machine("hobbing_plewes")
     drawn = words(wiring_svg(base))
     assert [word for word in drawn if "2N2222" in word] == ["T1 2N2222", "T2 2N2222"]
-    assert {"C1 10 uF", "C2 10 uF", "LM7805"} <= set(drawn)
+    assert {"C1 10 uF", "C2 10 uF", "U2 LM7805"} <= set(drawn)
     direct = base.model_copy(update={"driver": base.driver.model_copy(update={"output": "direct"})})
     assert not any("2N2222" in word for word in words(wiring_svg(direct)))
 
@@ -99,3 +100,18 @@ def test_drawing_is_the_same_in_every_process_and_carries_no_date_and_no_path() 
     assert len(hashes) == 1
     svg = wiring_svg(machine("hobbing_helical"))
     assert not re.search(r"20\d\d-|/home|/tmp|/work|\d\.\d{3}", svg)
+
+
+@pytest.mark.parametrize("name", [*MACHINES, "hobbing_default", "hobbing_minimum"])
+def test_every_part_of_the_list_stands_in_the_drawing_with_its_value(name: str) -> None:
+    """By its name, resistors and capacitors with their value too: who solders by the drawing needs no other list."""
+    given = machine(name)
+    drawn = words(wiring_svg(given))
+    for part in netlist(given).parts.values():
+        labels = [word for word in drawn if re.search(rf"\b{part.name}\b", word)]
+        if part.name == "U1":  # the board has its title beside
+            assert given.hardware.title in drawn
+        assert labels, part.name
+        value = re.match(r"([\d.]+) (kOhm|uF|nF)", part.what)
+        if value:
+            assert any(f"{value[1]} {value[2].removesuffix('Ohm')}" in label for label in labels), part.name

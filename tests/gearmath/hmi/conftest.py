@@ -40,6 +40,10 @@ OF_THE_BROWSER = {
     "www.google.com",
     "clients2.google.com",
 }
+#: What the cursor is on: the words of a button, the label of a field.
+_ON = """() => { const on = document.activeElement;
+  const label = on.closest("label")?.querySelector(".q-field__label") ?? on.querySelector(".q-btn__content .block");
+  return (on.getAttribute("aria-label") ?? (label ?? on).innerText).trim(); }"""
 #: What a test waits for at most [ms], on a computer that does other things too.
 PATIENCE = 60_000
 
@@ -65,7 +69,7 @@ class Served:
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, cwd=self.folder
         )
         assert self.process.stdout is not None
-        until = time.monotonic() + 60
+        until = time.monotonic() + 180
         while (match := _SHOWN.search(self.said)) is None:
             ready, _, _ = select.select([self.process.stdout], [], [], max(0.0, until - time.monotonic()))
             line = self.process.stdout.readline() if ready else ""
@@ -111,8 +115,8 @@ def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Se
     made: list[Served] = []
 
     def start(*arguments: str) -> Served:
-        made.append(Served(tmp_path_factory.mktemp("page"), arguments).start())
-        return made[-1]
+        made.append(Served(tmp_path_factory.mktemp("page"), arguments))
+        return made[-1].start()
 
     yield start
     for one in made:
@@ -204,6 +208,15 @@ class Operator:
     def press(self, label: str) -> None:
         """Press a button."""
         self.page.get_by_role("button", name=label, exact=True).click()
+
+    def tab_to(self, label: str) -> None:
+        """Press Tab until the cursor is on the button or field of this label."""
+        self.is_heard()
+        for _ in range(100):
+            self.page.keyboard.press("Tab")
+            if self.page.evaluate(_ON) == label:
+                return
+        raise AssertionError(f"{label} is not reached by Tab; at the end it was on {self.page.evaluate(_ON)!r}")
 
     def fill(self, label: str, value: str) -> None:
         """Type into a field, and leave it."""

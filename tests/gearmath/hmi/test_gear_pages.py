@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import expect
 
 import gearmath as gm
 from gearmath.hmi.messages import Text
@@ -61,8 +62,15 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
     assert other.page.get_by_label("Sliding base, concave", exact=True).input_value() == "0.36"
     one.picture("gear_refused")
     one.press("Discard changes")
+    # at once, before anything is computed: what is typed next is not overwritten
+    expect(one.page.get_by_label("Cutter swivel, convex", exact=True)).not_to_have_value("400")
+    early = one.page.get_by_label("Sliding base, convex", exact=True)
+    of_file = early.input_value()
+    early.fill("0.3")
     for both in (one, other):
         both.sees("All settings are those of the file.")
+    assert early.input_value() == "0.3"
+    early.fill(of_file)
     one.fill("Sliding base, concave", "0.36")
     one.page.get_by_role("button", name="Save as new set").click(timeout=LONG)
     one.sees("nasa_tp3096_12x36_pinion.toml: written")

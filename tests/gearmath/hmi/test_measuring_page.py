@@ -286,19 +286,51 @@ def test_chosen_points_are_touched_again_as_a_run_that_refers_to_the_old_one(
     one.sees("Complete: all touches are in the store")
     old = len(_runs(page))
     one.choose("Run", f"{old}: TEN.MPF")
-    one.fill("Points FIRST-LAST", "4-6")
+    one.fill("Points, such as 3,17-20", "2,4-6")
     begin = len(machine.nc.log)
     one.press("Record these points again")
     one.press("Yes, do it")
     one.sees("Ready: start TEN.MPF at the machine")
     machine.nc.start()
+    one.sees("1 of 4 points")
+    one.sees("Ready: start TEN.MPF at the machine")
+    machine.nc.start()
     one.sees("Complete: all touches are in the store")
-    one.sees("3 of 3 points")
-    assert [entry.point for entry in machine.since(begin, "acknowledged")] == [4, 5, 6]
+    one.sees("4 of 4 points")
+    assert [entry.point for entry in machine.since(begin, "acknowledged")] == [2, 4, 5, 6]
     with MeasurementStore.open(page.folder / "runs.db", create=False) as store:
         run = store.runs()[-1]
         assert run.start.refers_to == old
-        assert list(run.touches()) == [4, 5, 6]
+        assert list(run.touches()) == [2, 4, 5, 6]
+
+
+def test_a_run_is_recorded_held_and_ended_by_keyboard_alone(
+    machine: Live, page: Served, operator: Callable[..., Operator]
+) -> None:
+    """Tab, arrows, Enter and Space from the first picture of the page to the end of the run."""
+    one, begin = operator(page, "measure"), len(machine.nc.log)
+    _check_probe(one, machine)
+    one.tab_to("Probing program")
+    one.page.keyboard.press("Enter")
+    one.page.get_by_role("option", name=Live.NAME, exact=True).wait_for()
+    one.page.keyboard.press("ArrowDown")
+    one.page.keyboard.press("Enter")
+    one.page.get_by_role("option").first.wait_for(state="hidden")
+    for label in ("Start recording", "Yes, do it"):
+        one.tab_to(label)
+        one.page.keyboard.press("Enter")
+    one.sees("Ready: start TEN.MPF at the machine")
+    machine.nc.speed = SLOW / 20  # ten seconds a touch: the way to the button is long
+    machine.nc.start()
+    one.tab_to("Hold")
+    one.page.keyboard.press("Space")
+    one.sees(re.compile("Held: the program waits at point"))
+    machine.nc.speed = 0.0
+    for label in ("Go on", "Yes, do it"):
+        one.tab_to(label)
+        one.page.keyboard.press("Enter")
+    one.sees("Complete: all touches are in the store")
+    assert [entry.point for entry in machine.since(begin, "acknowledged")] == list(range(1, 11))
 
 
 def test_ending_a_run_moves_nothing_and_keeps_what_there_is(

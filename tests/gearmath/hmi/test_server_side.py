@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+import re
+import subprocess
+import sys
 import threading
 from pathlib import Path
 
 import pytest
 
 from gearmath.control.interface import Alarm
+from gearmath.control.run_start import begun
 from gearmath.errors import InputError
 from gearmath.hmi.alarm_book import MOST, AlarmBook
 from gearmath.hmi.probe_check import ProbeCheck
-from gearmath.hmi.programs_work import programs, read
+from gearmath.hmi.programs_work import programs, read, write_cutting, write_probing
+from gearmath.hmi.state import Choice
 from gearmath.hmi.tickets import Tickets
 from gearmath.hmi.work import Progress, Work
+from gearmath.machine.control.text import is_for_linuxcnc
+from gearmath.machine.measuring.checked import ProbingChoice
+from gearmath.machine.planning.cut_plan import CuttingJob
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import bundled
 
 
 def _alarm(number: int, text: str = "text") -> Alarm:
@@ -112,6 +122,41 @@ def test_what_fails_is_told_in_its_sentence() -> None:
     work.start("work", compute)
     work.wait(10)
     assert work.error == "set.toml: teeth = 0: must be at least 5"
+
+
+def test_programs_are_for_the_control_of_the_machine_file(tmp_path: Path) -> None:
+    """LinuxCNC in the machine file: its own text, under its own name, which the plan of a measuring run can read."""
+    text = bundled("vertical_5axis.toml").read_text("utf-8")
+    machine = tmp_path / "mill.toml"
+    machine.write_text(re.sub(r"^\[control\]", '[control]\nkind = "linuxcnc"  ', text, flags=re.M), "utf-8")
+    assert load_milling_machine(machine).control.kind == "linuxcnc"
+    choice, chosen = Choice(machine=str(machine)), ProbingChoice((), True, False, 1)
+    made = write_probing(tmp_path, choice, "probe_one.mpf", chosen, Progress())
+    assert made.file == tmp_path / "PROBE_ONE.ngc"
+    assert [one.name for one in programs(tmp_path)] == ["PROBE_ONE.ngc"]
+    start, _ = begun("LinuxCNC", made.file, choice.gear_set, choice.machine, choice.calibration)
+    assert len(start.points) == made.touches == 26
+    cut = write_cutting(tmp_path, choice, "CUT", CuttingJob(tolerance=0.01), Progress())
+    assert cut.file == tmp_path / "CUT.ngc"
+    assert is_for_linuxcnc(cut.file.read_text("utf-8"))
+
+
+def test_the_missing_extra_is_one_sentence_with_its_remedy(tmp_path: Path) -> None:
+    """As where only 'pip install gearmath' was done: nicegui cannot be imported."""
+    hide = (
+        "import sys\n"
+        "class Hidden:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name.partition('.')[0] == 'nicegui':\n"
+        "            raise ModuleNotFoundError(f'No module named {name!r}', name=name)\n"
+        "sys.meta_path.insert(0, Hidden())\n"
+        "from gearmath.cli import main; main()\n"
+    )
+    done = subprocess.run([sys.executable, "-c", hide, "hmi"], capture_output=True, text=True, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "nicegui is missing: install it with pip install '.[hmi]'" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_only_programs_whose_names_a_control_takes_are_listed_and_read(tmp_path: Path) -> None:

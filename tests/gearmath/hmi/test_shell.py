@@ -125,6 +125,8 @@ def test_the_ini_file_of_a_linuxcnc_is_taken_as_a_control(
     (served.folder / "PROBE.ngc").write_text("M2\n")
     one = operator(served, "machine")
     one.sees(re.compile("mill.ini: no LinuxCNC runs here|is LinuxCNC installed"), one.panel("Control"))
+    german = operator(served, "machine", language="de")
+    german.sees(re.compile("^Begründung auf Englisch: .*LinuxCNC"), german.panel("Steuerung"))
     one.go("programs").sees("PROBE.ngc")
 
 

@@ -17,34 +17,9 @@ from gearmath.machine.writing.linuxcnc.dialect import message
 from gearmath.machine.writing.linuxcnc.probe_words import LinuxCncBlocks
 from gearmath.machine.writing.point_loop import above_first
 from gearmath.machine.writing.probe_words import ProbingPlan
-from gearmath.machine.writing.probing import plan_of, probed, probing_notes
-from gearmath.specs.bevel_set import BevelSet
+from gearmath.machine.writing.probing import TouchWriter, plan_of
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
-
-
-def probing_program(
-    bevel_set: BevelSet,
-    name: str,
-    machine: MillingMachine,
-    calibration: Calibration,
-    program_name: str,
-    topography: Sequence[int] = (0,),
-    pitch: bool = True,
-    repeat: int = 1,
-    around: Sequence[int] = (),
-) -> str:
-    """The program that probes a member, every point ``repeat`` times one after the other.
-
-    Raises InputError for travel, room, and a name that the control refuses.
-    """
-    member = bevel_set.member(name)
-    targets, level, room = probed(member, name, machine, calibration, program_name, topography, pitch, around)
-    notes = (
-        *probing_notes(bevel_set, name, machine, calibration, len(targets), repeat),
-        f"unconfirmed: {NOT_ON_METAL}",
-    )
-    return write_touches(program_name, notes, targets, name, member.teeth, machine, calibration, level, room, repeat)
 
 
 def write_touches(
@@ -66,6 +41,10 @@ def write_touches(
     pattern = TouchPattern.of(targets, teeth, machine)
     blocks = LinuxCncBlocks(program_name, machine, calibration.length)
     return blocks.text(header, _points(blocks, pattern, name, plan_of(targets, repeat), level, room))
+
+
+#: Programs for LinuxCNC.
+LINUXCNC = TouchWriter((f"unconfirmed: {NOT_ON_METAL}",), write_touches)
 
 
 def _points(

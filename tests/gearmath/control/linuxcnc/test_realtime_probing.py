@@ -114,7 +114,7 @@ async def measured(
             control.start()
 
     try:
-        await asyncio.wait_for(Measuring(connect, run, say=say).to_the_end(parts), 120)
+        await asyncio.wait_for(Measuring(connect, run, say=say).to_the_end(*parts), 120)
     except ComputationError:
         print((control.folder / "log").read_text(errors="replace")[-3000:])  # pytest shows it where a test fails
         raise

@@ -399,6 +399,28 @@ def test_positions_come_ten_times_a_second_while_the_axes_move(live: Any) -> Non
     assert along == sorted(along)
 
 
+def test_r_parameters_are_watched_as_they_change_and_never_above_what_the_control_samples(live: Any) -> None:
+    async def work() -> list[tuple[float, ...]]:
+        control = await live.connect(sinumerik.READ_STATE, sinumerik.WRITE_STATE)
+        await control.write_parameters({10: 1.5, 20: 2.0})
+        found: list[tuple[float, ...]] = []
+        async for _, values in control.watch_parameters([10, 20], 0.1):
+            found.append(values)
+            if values == (1.5, 7.0) or len(found) == 100:
+                break
+            if len(found) == 1:
+                await control.write_parameters({20: 7.0})
+        with pytest.raises(InputError, match=r"R1000: R parameters go from 0 to 999"):
+            await anext(control.watch_parameters([1000], 1.0))
+        with pytest.raises(InputError, match=r"200 R parameters every 0.1 s: the control samples 1000 values a second"):
+            await anext(control.watch_parameters(range(200), 0.1))
+        await control.close()
+        return found
+
+    found = run(work())
+    assert (found[0], found[-1]) == ((1.5, 2.0), (1.5, 7.0))
+
+
 def test_a_connection_that_breaks_is_a_lost_connection_and_no_traceback(live: Any) -> None:
     async def work() -> None:
         for trouble in (live.control.line.cut, live.control.line.die):

@@ -9,7 +9,8 @@ import asyncio
 import contextlib
 import os
 import random
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +20,10 @@ from asyncua import ua
 from gearmath.control import sinumerik
 from gearmath.control.interface import RunStart
 from gearmath.control.measuring import Measuring, Patience
-from gearmath.control.plan import planned, resuming
+from gearmath.control.run_start import begun, resumed
 from gearmath.control.simulated.nc import NcAlarm
 from gearmath.control.store import MeasurementStore, StoredRun
-from gearmath.errors import ComputationError
-from gearmath.machine.control.state import Setup
+from gearmath.errors import ComputationError, InputError
 
 RIGHTS = (sinumerik.READ_STATE, sinumerik.WRITE_STATE, sinumerik.READ_ALARMS, sinumerik.READ_FILES)
 QUICK = Patience(state=0.1, last_retry=0.3, settle=0.05, first=60.0, give_up=60.0)
@@ -45,27 +45,27 @@ async def _measure(
     live: Any,
     run: StoredRun,
     trouble: Trouble = _nothing,
-    parts: tuple[int, int] = (0, 0),
+    stretches: Sequence[tuple[int, int]] = (),
     start: bool = True,
     seconds: float = 4.0,
 ) -> Measuring:
     """A run from the operator's start to its end, with trouble from the moment at which the host is ready."""
-    told = asyncio.Event()
+    told: asyncio.Queue[str] = asyncio.Queue()
     one = Measuring(
         lambda: live.connect(*RIGHTS, seconds=seconds),
         run,
         QUICK,
-        say=lambda sentence: told.set() if "start it" in sentence else None,
+        say=lambda sentence: told.put_nowait(sentence) if "start it" in sentence else None,
     )
 
     async def operator() -> None:
-        if start:
-            await told.wait()
+        while start:
+            await told.get()
             live.nc.start()
 
     others = [asyncio.create_task(operator()), asyncio.create_task(trouble())]  # type: ignore[arg-type]
     try:
-        await asyncio.wait_for(one.to_the_end(parts), 120)
+        await asyncio.wait_for(one.to_the_end(*stretches), 120)
     finally:
         for task in others:
             task.cancel()
@@ -151,6 +151,42 @@ def test_no_random_disconnect_loses_doubles_or_replays_a_touch(
     _check(live, begin, run)
 
 
+def test_scattered_points_are_touched_by_one_start_for_each_stretch(
+    live: Any, ten: RunStart, store: MeasurementStore, tmp_path: Path
+) -> None:
+    """Points 2, 5, 6 and 9 as a run of their own: three starts, no other point, and the line is cut between two."""
+    (tmp_path / live.NAME).write_text(live.TEN, "utf-8")
+    files = "vertical_5axis.toml", "probe.toml"
+    start, stretches = begun("control", tmp_path / live.NAME, "nasa_tp3096_12x36.toml", *files, points="2,5-6,9")
+    assert stretches == [(2, 2), (5, 6), (9, 9)]
+    live.load()
+    begin, run = len(live.nc.log), store.begin_run(replace(start, refers_to=store.begin_run(ten).id))
+
+    async def trouble() -> None:
+        while live.nc.parameters.get(103) != 6.0:
+            await asyncio.sleep(0.002)
+        live.soon(live.control.line.cut)
+
+    asyncio.run(_measure(live, run, trouble, stretches))
+    assert run.is_complete
+    assert list(run.start.points) == [2, 5, 6, 9]
+    assert [one.point for one in live.since(begin, "acknowledged")] == [2, 5, 6, 9]
+    # a part begins with R101 = R90 - 1, which the log has too
+    offered = {one.point: one for one in live.since(begin, "offered") if one.point in run.start.points}
+    assert {point: one.values for point, one in offered.items()} == {
+        point: tuple(touch)[1:] for point, touch in run.touches().items()
+    }
+    assert [one.number - offered[2].number for one in offered.values()] == [0, 1, 1, 2]
+
+
+@pytest.mark.parametrize("points", ["11", "0", "6-5", "1,,2", "3;4", "1-11", ""])
+def test_points_that_the_program_does_not_have_are_refused(live: Any, tmp_path: Path, points: str) -> None:
+    (tmp_path / live.NAME).write_text(live.TEN, "utf-8")
+    files = "vertical_5axis.toml", "probe.toml"
+    with pytest.raises(InputError, match="--points"):
+        begun("control", tmp_path / live.NAME, "nasa_tp3096_12x36.toml", *files, points=points)
+
+
 async def _at(live: Any, point: int) -> None:
     """Until the program offers a point."""
     while not (live.nc.channel and live.nc.parameters.get(101) == point):
@@ -160,9 +196,7 @@ async def _at(live: Any, point: int) -> None:
 def _resume(live: Any, store: MeasurementStore, run: StoredRun) -> StoredRun:
     """The operator starts the program again, with what is missing."""
     again = store.resume_run(run.id)
-    plan = planned(live.TEN, live.NAME, Setup())
-    parts = resuming(live.TEN, live.NAME, Setup(), plan, again.missing())
-    asyncio.run(_measure(live, again, parts=parts))
+    asyncio.run(_measure(live, again, stretches=resumed(again)))
     return again
 
 

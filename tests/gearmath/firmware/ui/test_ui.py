@@ -681,3 +681,28 @@ def test_running_on_after_a_motion_backwards_takes_up_the_play(panel):
             break
     assert p.mode == RUN
     assert (min(seen), p.position) == (at - 30, at)
+
+
+def test_time_left_of_a_pass_is_that_of_the_pass_before(panel):
+    """50 teeth: 20 turns of the hob are 0.4 turns of the table. The next gear, half as far at 5 turns/s of the hob, has
+    10 turns of it left: 2 s."""
+    p = panel("hobbing_plewes")
+    start(p, 26, 0, 0, 0)
+    p.edges(20 * 4096, ticks=10)
+    for _ in range(3):
+        p.knob(1)
+    assert [row.strip() for row in p.screen.split("\n")[1:]] == ["This pass  0.40 turn", "No pass before", ""]
+    stop(p)
+    p.ticks(500_000)
+    p.knob(1)
+    p.short()  # run on
+    p.edges(10 * 4096, ticks=10)
+    for _ in range(3):
+        p.knob(1)
+    rows = p.screen.split("\n")
+    assert rows[1].split() == ["This", "pass", "0.20", "turn"]
+    assert rows[2].split() == ["Last", "pass", "0.40", "turn"]
+    assert rows[3].split()[:2] == ["Pass", "left"]
+    assert float(rows[3].split()[2]) == pytest.approx(2.05, abs=0.06)  # at 20 000 edges/s, one decimal
+    p.edges(11 * 4096, ticks=10)
+    assert p.screen.split("\n")[3].strip() == ""  # longer than the last one

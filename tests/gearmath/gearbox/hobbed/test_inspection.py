@@ -15,6 +15,8 @@ from gearmath.gearbox.hobbed.classes import classes, outside, overall, tolerance
 from gearmath.gearbox.hobbed.envelope import Cut
 from gearmath.gearbox.hobbed.inspection import Inspection, PitchRow, Trace, inspect, layout
 from gearmath.gearbox.hobbed.job import HobbingJob, HobTool
+from gearmath.gearbox.hobbed.setup import setup
+from gearmath.specs.hobbing import find_hobbing_machine
 
 UM = 1e-3
 
@@ -104,3 +106,20 @@ def test_whole_cut_of_the_issue_needs_less_than_500_mb():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert int(done.stdout) / 1024 < 500
+
+
+@pytest.mark.parametrize("teeth", [24, 200])
+def test_hob_is_as_long_as_the_rack_that_generates_both_flanks(teeth):
+    """A large hob is a rack: where it cuts at L, the middle of its tooth is π/4 + (L - L_C)/cos α from the gear's,
+    to one side for the one flank, to the other for the other. And a pitch."""
+    of = HobbingJob(Gear(teeth, 1.0, math.radians(20), 0.0, 0.0), 1, HobTool(1, 1, 12, 4000.0, 1.25, 0.38), 20.0, 1.0)
+    middle = teeth / 2 * math.sin(math.radians(20))
+    expected = 2 * (math.pi / 4 + 2.3 / math.cos(math.radians(20))) + math.pi
+    assert of.generating_length(middle - 2.0, middle + 2.3) == pytest.approx(expected, rel=2e-3)
+
+
+def test_hob_that_is_too_short_is_refused():
+    machine = find_hobbing_machine("hobbing_default.toml")
+    short = [hob.model_copy(update={"length": 5.0}) for hob in machine.hobs]
+    with pytest.raises(InputError, match=r"hob m1: length = 5: the flanks of this gear need \d+\.\d mm"):
+        setup(machine.model_copy(update={"hobs": tuple(short)}), 24, hob="m1")

@@ -23,6 +23,7 @@ from gearmath.machine.control.tree import Block, Branch
 from gearmath.machine.judging.block_check import distances_off_the_way, off_the_way, watch, watched_flanks
 from gearmath.machine.judging.collision import rapid_approaches
 from gearmath.machine.judging.stated import stated_tolerance
+from gearmath.machine.milling.mill import expose
 from gearmath.machine.milling.removal import entry_along_block
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.planning.blocks import roll_nodes
@@ -231,6 +232,29 @@ def test_block_that_stands_off_its_way_is_named_with_what_it_is_off_by(gear_set,
     off, (space, _, line) = off_the_way([replace(run, axes=axes)], spec, vertical)
     assert off == pytest.approx(2e-3 * np.sin(np.radians(22.0)), abs=2e-5)
     assert (space, line) == (0, run.line[row])
+
+
+def test_no_corner_of_the_flank_is_left_out(gear_set, vertical, host_compiler):
+    """A 0.2 arcsec off in one block after another gouges at the foot, at the toe, in between: a fine grid, which shares
+    no line with the watch, finds nowhere a deeper place by more than a twentieth of the tolerance."""
+    spec = gear_set.gear
+    path = execute(cutting_program(gear_set, "gear", vertical, "CUT", CuttingJob((0,))), "CUT")
+    (run,) = runs_of(path, spec, "gear", vertical, None, tooth_space(spec, "gear", 7), SHARP_EDGE)
+    points = [flank_points(spec, flank, blank_grid(spec, 6, 161, 0.0)) for flank in ("concave", "convex")]
+    kept = [one.contact[:, 0] >= 0.0 for one in points]  # below the blade's end there is no flank
+    point = np.concatenate([one.point[k] for one, k in zip(points, kept, strict=True)])
+    normal = np.concatenate([one.normal[k] for one, k in zip(points, kept, strict=True)])
+    seen = []
+    for row in np.flatnonzero(run.cutting)[3:-3:5]:
+        axes = run.axes.copy()
+        axes[row, 3] -= 1e-6
+        runs = [replace(run, axes=axes)]
+        fine = expose(runs, vertical, None, point, normal, np.full(len(point), -1.0))
+        seen.append((watch(runs, spec, vertical).lowest, float(fine.distance.min())))
+    lowest, deepest = np.array(seen).T
+    assert len(seen) > 12
+    assert (deepest < -1.05 * TOLERANCE).sum() > 3
+    assert (lowest < deepest + 0.05 * TOLERANCE).all(), lowest - deepest
 
 
 @pytest.mark.parametrize(

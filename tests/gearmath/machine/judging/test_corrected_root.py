@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -114,13 +116,25 @@ def test_wider_cutters_than_those_of_the_set_are_seen_on_the_root(judged, host_c
 
 @pytest.mark.parametrize("change", [APART["convex"], -APART["convex"]], ids=["wider", "narrower"])
 def test_program_of_corrected_settings_is_passed_by_the_command(command, tmp_path, host_compiler, change):
-    """One flank corrected, as compensate writes it."""
+    """One flank corrected by 0.05 mm, as compensate writes it: that far from its design, and nowhere from its own."""
     settings = load_bevel_set(bundled(DESIGNED)).pinion.convex.vector.copy()
     settings[SETTINGS.index("blank_offset")] += change
     corrected, program = tmp_path / "corrected.toml", tmp_path / "CUT2.MPF"
     save_corrected(bundled(DESIGNED), corrected, "pinion", {"convex": settings})
     status, _, err = command("nc", "cut", corrected, "--member", "pinion", "--spaces", "0", "-o", program)
     assert status == 0, err
-    status, out, err = command("mill", corrected, "--program", program, "-o", tmp_path / "cut.csv")
+    files = "--report", tmp_path / "report.json", "-o", tmp_path / "cut.csv"
+    status, out, err = command("mill", corrected, "--program", program, *files)
     assert status == 0, err
     assert "passed: 1 of 7 spaces within 0.1 um" in out
+    said = re.search(r"by up to (\S+) um from those of these settings, and by (\S+) um from the design", out)
+    own, design = map(float, said.groups())
+    assert own < 0.2
+    assert 5.0 < design < 60.0
+    report = json.loads((tmp_path / "report.json").read_text())
+    worst = {
+        key: max(max(-one["lowest"], one["highest"]) for one in report[key] if "flank" in one["surface"])
+        for key in ("surfaces", "surfaces_of_settings")
+    }
+    assert worst["surfaces"] == pytest.approx(design / 1000, abs=1e-6)
+    assert worst["surfaces_of_settings"] == pytest.approx(own / 1000, abs=1e-6)

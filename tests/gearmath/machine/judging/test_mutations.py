@@ -207,7 +207,7 @@ class Dense:
         return found
 
     def gaps(self, poses, tool, points):
-        """How far points (p,3) are out of the blades at poses (m,5), in height or radius: (m,p), negative inside."""
+        """How far points (p,3) are out of the blades at poses (m,5), in height or radius; negative inside (m,p)."""
         centre, axis = self.witness.vertical_pose(poses, self.height)
         height = (centre * axis).sum(axis=1)[:, None] - axis @ points.T
         # squares of 1e4 mm2 lose 1e-12 mm2: nothing at the blades, which are far from the axis

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 
@@ -11,6 +12,8 @@ import pytest
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.errors import ComputationError, InputError
+from gearmath.machine.control.executor import run_program
+from gearmath.machine.control.state import Setup
 from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.measurement import measure_member
 from gearmath.machine.measuring.probe import ProbeMachine
@@ -184,15 +187,47 @@ def test_command_refuses_a_program_that_collides_and_one_of_the_mate(gear_set, r
     assert [path.name for path in tmp_path.iterdir()] == ["PP.MPF"]
 
 
-def test_a_program_that_touches_nothing_is_refused_and_one_that_touches_has_no_time(gear_set, refused, tmp_path):
+def test_a_program_that_touches_nothing_is_refused(gear_set, refused, tmp_path):
     """A cutting program by its words; a probing one that ends before its first touch when it is run."""
     program, out = tmp_path / "PP.MPF", ("--set", NASA, "-o", tmp_path / "raw.csv")
     program.write_text("; PP\nN10 G90 G94 G54\nN20 M30\n")
     refused("PP.MPF: writes no touches", "probe", program, *out)
     text = probing_program(gear_set, "gear", MACHINE, PROBE, "PP", topography=())
     program.write_text(text)
-    refused("PP.MPF: probes: its time depends", "nc", "time", program)
     start = text.index("MEAS=1")
     begin = text.rindex("\n", 0, start) + 1
     program.write_text(text[:begin] + "N9990 M30\n")
     refused("PP.MPF: touches nothing", "probe", program, *out)
+
+
+def test_time_of_a_probing_program_is_that_of_its_ways(gear_set, command, tmp_path):
+    """By hand: from F100 to F50 every touch takes its way / 50 - way / 100 minutes longer, all else is the same."""
+    text = probing_program(gear_set, "gear", MACHINE, PROBE, "PP", topography=())
+    ways = []
+
+    def met(start, end):
+        if np.abs(end - start)[:2].max() > 1e-6 and abs(end[2] - start[2]) > 1e-6:
+            ways.append(float(np.linalg.norm((end - start)[:3])))
+            return end
+        return None
+
+    run_program(text, "PP", met, setup=Setup.of(MACHINE, PROBE.length))
+    assert len(ways) == 2 * 36 + 2
+
+    def seconds(text):
+        (tmp_path / "PP.MPF").write_text(text)
+        status, out, _ = command("nc", "time", tmp_path / "PP.MPF", "--json")
+        assert status == 0
+        return json.loads(out)
+
+    fast, slow = seconds(text), seconds(text.replace("F100.000", "F50.000"))
+    assert fast["touches_counted_to"] == "the end of their ways"
+    assert slow["asked_seconds"] - fast["asked_seconds"] == pytest.approx(60 * sum(ways) * (1 / 50 - 1 / 100), rel=1e-6)
+    assert fast["total_seconds"] > fast["asked_seconds"] + fast["rapid_seconds"]
+
+
+def test_time_of_a_calibration_counts_to_the_ring_that_is_there(command, tmp_path):
+    (tmp_path / "CAL.MPF").write_text(calibration_program(MACHINE, PROBE, "CAL"))
+    status, out, _ = command("nc", "time", tmp_path / "CAL.MPF")
+    assert status == 0
+    assert "touches counted to where they are met; no host is waited for" in out

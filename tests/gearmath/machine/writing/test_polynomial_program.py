@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections import Counter
 from dataclasses import replace
 from functools import lru_cache
 
@@ -17,7 +18,8 @@ from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.tree import Block, Branch
 from gearmath.machine.control.values import number
-from gearmath.machine.judging.cut import as_cut, metal_left
+from gearmath.machine.judging.cut import as_cut, beside_the_path, metal_left
+from gearmath.machine.judging.motion import motion_faults
 from gearmath.machine.judging.program import faults_of
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.run import runs_of
@@ -65,8 +67,9 @@ def positions_of(start, blocks, u):
     """Positions (n,5) in mm and rad along the blocks of a roll, at parameters u (k,) of each: x0 + a1 u + a2 u^2 .."""
     here, found = start, []
     for written, _ in blocks:
-        ends = np.array([written[axis][0] for axis in "XYZAB"])
-        higher = [np.array(written[axis][1:]) for axis in "XYZAB"]
+        every = [written.get(axis, [here[k]]) for k, axis in enumerate("XYZAB")]  # an axis without a word stays
+        ends = np.array([values[0] for values in every])
+        higher = [np.array(values[1:]) for values in every]
         first = ends - here - np.array([a.sum() for a in higher])
         along = [
             x + a1 * u + sum(a * u**k for k, a in enumerate(more, 2))
@@ -298,3 +301,151 @@ def test_a_pass_in_straight_parts_is_the_exact_path_at_every_cradle_angle(degree
         off[:, 3] -= 2 * math.pi * np.round(off[:, 3] / (2 * math.pi))
         assert np.abs(off).max() < 2e-3  # mm and rad: the flank, along its normal, keeps 1e-4
         assert fine.seconds.sum() == pytest.approx(one.seconds.sum())
+
+
+# ------------------------------------------------------------------------------- programs with one thing wrong in them
+#: Mutants of every program, and how far apart the poses of a block are. [mm]
+SAMPLED, APART = 45, 0.06
+
+
+def mutants(lines):
+    """Polynomial blocks with one thing wrong, in every way: kind, line from 0, and the lines in its place."""
+    for k, line in enumerate(lines):
+        if "G93 POLY " not in line:
+            continue
+        yield "removed block", k, []
+        yield "doubled block", k, [line, line]
+        words = line.split(" ")
+        for j in range(1, len(words)):
+            yield "removed word", k, [" ".join(words[:j] + words[j + 1 :])]
+        for one in re.finditer(r",-?[0-9.]+(?=\))", line):
+            yield "removed coefficient", k, [line[: one.start()] + line[one.end() :]]
+        for one in re.finditer(r"(?<=[=(,F])(-?)([0-9.]+)", line[line.index("POLY") :]):
+            start, kind = (
+                one.start() + line.index("POLY"),
+                "F" if line[one.start() + line.index("POLY") - 1] == "F" else "PO",
+            )
+            if kind == "PO":
+                yield "sign", k, [line[:start] + ("" if one[1] else "-") + line[start + len(one[1]) :]]
+            for at in range(start + len(one[1]), start + len(one[0])):
+                for digit in "0123456789" if line[at].isdecimal() else "":
+                    if digit != line[at]:
+                        yield f"{kind} digit", k, [line[:at] + digit + line[at + 1 :]]
+
+
+class RightProgram:
+    """What a right program of one space leaves, and what harm another one does, by the cone and the machine of the
+    witness."""
+
+    def __init__(self, name, member, degree, witness):
+        self.text, self.witness = text_of(name, member, degree=degree), witness
+        self.spec = load_bevel_set(bundled(f"{name}.toml")).member(member)
+        self.limit = 1.1 * float(re.search(r"flank tolerance: ([0-9.]+) um", self.text)[1]) / 1000
+        self.known = {}
+        self.cuts = ["concave", "convex"] if self.spec.cutting != "completing" else [("concave", "convex")]
+        flanks = [(cut,) if isinstance(cut, str) else cut for cut in self.cuts]
+        self.points = {flank: self._points(flank) for some in flanks for flank in some}
+        self.flanks = flanks
+        self.right = rolls(self.text)
+        assert self.harm(self.text) is None
+
+    def _points(self, flank):
+        points = flank_points(self.spec, flank, blank_grid(self.spec, 5, 17, 0.05))
+        flat = points.contact[:, 0] > 0.1  # below is the fillet, which the edge of the blade cuts
+        return points.point[flat, None], points.normal[flat, None]
+
+    def harm(self, text):
+        """What is wrong with a text, or None; what cannot be read is wrong."""
+        try:
+            passes = rolls(text)
+            if [len(blocks) for _, blocks in passes] != [len(blocks) for _, blocks in self.right]:
+                return "number of blocks"
+            for (start, blocks), flanks in zip(passes, self.flanks, strict=True):
+                every = self.poses(start, blocks)
+                for axes, (_, seconds) in zip(every, blocks, strict=True):
+                    if found := self.too_fast(axes, seconds):
+                        return found
+                for flank in flanks:
+                    left = np.min([self.left(flank, axes) for axes in every], axis=0)
+                    if not np.abs(left).max() <= self.limit:
+                        return f"{flank} {left.min():.6f} to {left.max():.6f}"
+        except (KeyError, ValueError, IndexError, TypeError, ZeroDivisionError) as error:
+            return f"unreadable: {error!r}"
+        return None
+
+    def poses(self, start, blocks):
+        """Positions along every block of a roll: poses far apart leave scallops of their own."""
+        ends = positions_of(start, blocks, np.linspace(0.0, 1.0, 50)).reshape(len(blocks), 50, 5)
+        ways = np.linalg.norm(np.diff(ends[..., :3], axis=1), axis=2).sum(axis=1)
+        counts = np.clip(ways / APART, 20, 3000).astype(int)
+        return [
+            positions_of(start, blocks[: k + 1], np.linspace(0.0, 1.0, count))[-count:]
+            for k, count in enumerate(counts)
+        ]
+
+    def too_fast(self, axes, seconds):
+        """Axes over their limits, and the cutter past the middle of the tooth, on average over a block."""
+        way = np.abs(np.diff(axes, axis=0)).sum(axis=0)
+        if (way / seconds > 1.1 * MACHINE.max_speed).any():
+            return "speed"
+        middle = next(iter(self.points.values()))[0]
+        x, y, z = middle[len(middle) // 2, 0]
+        a, b = axes[:, 3], axes[:, 4]
+        px, py = np.cos(a) * x + np.sin(a) * y, np.cos(a) * y - np.sin(a) * x
+        seen = np.stack([-np.sin(b) * px - np.cos(b) * z, py, np.cos(b) * px - np.sin(b) * z], axis=1) - axes[:, :3]
+        feed = 60.0 * np.linalg.norm(np.diff(seen, axis=0), axis=1).sum() / seconds
+        return "feed" if feed > 1.1 * 300.0 else None
+
+    def left(self, flank, axes):
+        """What the poses of one block leave on lines of a flank; those of right blocks are kept."""
+        key = flank, axes.tobytes()
+        if key not in self.known:
+            one = self.spec.flank(flank)
+            cone = one.blade_point_radius, math.radians(one.blade_pressure_angle), SIDES[flank]
+            pose = self.witness.vertical_pose(axes, MACHINE.pivot_height)
+            self.known[key] = self.witness.entry(*pose, *cone, *self.points[flank]).min(axis=1)
+        return self.known[key]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "member", "degree"), [(*ROLLING[1], 3), (*ROLLING[4], 5)])
+def test_no_wrong_word_of_a_polynomial_program_is_left_unseen(name, member, degree, witness):
+    right, random = RightProgram(name, member, degree, witness), np.random.default_rng(17)
+    lines = right.text.split("\n")
+    found = list(mutants(lines))
+    chosen = [found[k] for k in np.sort(random.choice(len(found), SAMPLED, replace=False))]
+    count, unseen = polynomial_trial(right, lines, chosen, name, member, MACHINES[degree])
+    kinds = sorted({kind for kind, _ in count})
+    print(
+        f"\n{name} {member}: {len(chosen)} of {len(found)} mutants, {len(unseen)} unseen; refused or seen + harmless:"
+    )
+    print("; ".join(f"{kind} {count[kind, 'seen']} + {count[kind, 'harmless']}" for kind in kinds))
+    assert unseen == []
+    assert sum(count[kind, "seen"] for kind in kinds) > SAMPLED / 3
+
+
+def polynomial_trial(right, lines, chosen, name, member, machine):
+    """How many mutants are refused or seen and how many do no harm, by kind, and those that nobody sees."""
+    count, unseen = Counter(), []
+    for kind, k, new in chosen:
+        text = "\n".join([*lines[:k], *new, *lines[k + 1 :]])
+        if (harm := right.harm(text)) is None:
+            count[kind, "harmless"] += 1
+        elif seen(text, name, member, machine):
+            count[kind, "seen"] += 1
+        else:
+            unseen.append((kind, harm, lines[k], *new))
+    return count, unseen
+
+
+def seen(text, name, member, machine):
+    """Whether mill refuses a text, by its cheapest checks first."""
+    spec = load_bevel_set(bundled(f"{name}.toml")).member(member)
+    try:
+        path = execute(text, "CUT", Setup.of(machine))
+        runs = runs_of(path, spec, member, machine, None, tooth_space(spec, member, 7), SHARP_EDGE)
+        stated = Stated.of(text)
+        first = [*motion_faults(path, runs, spec, machine, stated), *beside_the_path(runs, spec, machine, stated)]
+    except InputError:
+        return True
+    return bool(first) or bool(judged(text, name, member, machine))

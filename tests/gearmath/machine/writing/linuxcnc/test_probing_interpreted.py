@@ -15,11 +15,11 @@ from gearmath.machine.control.executor import MachinePath, run_program
 from gearmath.machine.control.state import Setup
 from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.collision_check import enough_steps, is_touch
-from gearmath.machine.writing import probing
 from gearmath.machine.writing.axis_cycle import axis_program
 from gearmath.machine.writing.calibrating import calibration_program
 from gearmath.machine.writing.linuxcnc.probe_words import LinuxCncBlocks
-from gearmath.machine.writing.linuxcnc.probing import probing_program
+from gearmath.machine.writing.linuxcnc.probing import LINUXCNC
+from gearmath.machine.writing.probing import probing_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.calibration import Calibration, load_calibration
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
@@ -95,8 +95,8 @@ def test_the_interpreter_of_linuxcnc_moves_the_probe_as_our_reader_does(
 ) -> None:
     bevel_set = load_bevel_set(bundled(f"{gear_set}.toml"))
     arguments = bevel_set, name, machine, calibration, "PROBE", (0,), True, repeat, around
-    ours = path_of(probing.probing_program(*arguments), machine, calibration)
-    assert_same_path(interpreted(probing_program(*arguments), PROBE), ours, machine)
+    ours = path_of(probing_program(*arguments), machine, calibration)
+    assert_same_path(interpreted(probing_program(*arguments, writer=LINUXCNC), PROBE), ours, machine)
 
 
 @pytest.mark.parametrize("make", [calibration_program, axis_program])
@@ -114,15 +114,15 @@ def test_an_axis_with_backlash_turns_forwards_before_every_touch(
     loose = machine.model_copy(update={"axes": machine.axes.model_copy(update={"A": turning})})
     bevel_set = load_bevel_set(bundled("nasa_tp3096_12x36.toml"))
     arguments = bevel_set, "pinion", loose, calibration, "PROBE", (), True
-    ours = path_of(probing.probing_program(*arguments), loose, calibration)
-    assert_same_path(interpreted(probing_program(*arguments), PROBE), ours, loose)
+    ours = path_of(probing_program(*arguments), loose, calibration)
+    assert_same_path(interpreted(probing_program(*arguments, writer=LINUXCNC), PROBE), ours, loose)
 
 
 def test_only_the_chosen_points_are_touched(
     machine: MillingMachine, calibration: Calibration, interpreted: Interpreter
 ) -> None:
     bevel_set = load_bevel_set(bundled("nasa_tp3096_12x36.toml"))
-    text = probing_program(bevel_set, "pinion", machine, calibration, "PROBE", (), True)
+    text = probing_program(bevel_set, "pinion", machine, calibration, "PROBE", (), True, writer=LINUXCNC)
     whole, part = interpreted(text, PROBE), interpreted(text, PROBE, {3090: 4, 3091: 6})
     assert [said.strip().split(":")[0] for said in part.said] == [f"point {k} of 26" for k in (4, 5, 6)]
     first = whole.line.tolist().index(part.line[5])  # after home, the way down, and the turn to the first point

@@ -1,0 +1,64 @@
+"""The supply in the wiring diagram: regulator, capacitors across the chips, level shifters."""
+
+from __future__ import annotations
+
+from schemdraw import Drawing, elements
+
+from gearmath.export.diagram import TEXT, Point, box, ground, line, small, supply, text
+from gearmath.export.netlist import netlist
+from gearmath.specs.hobbing import HobbingMachine
+
+
+def regulator(drawing: Drawing, machine: HobbingMachine) -> None:
+    """Regulator with its capacitors, above everything else."""
+    y = 5.2
+    text(drawing, (0.0, y + 0.45), "9 V DC", align="left")
+    line(drawing, (0.0, y), (3.0, y))
+    _capacitor(drawing, (1.0, y), "C1")
+    box(drawing, (3.0, 5.6), y + 0.7, y - 0.8, "U2 LM7805")
+    small(drawing, (2.75, y + 0.25), "1")
+    small(drawing, (5.85, y + 0.25), "3")
+    ground(drawing, (4.3, y - 0.8), "", "2")
+    line(drawing, (5.6, y), (8.0, y))
+    _capacitor(drawing, (6.4, y), "C2")
+    supply(drawing, (8.0, y), "+5 V")
+    _bypasses(drawing, machine, y + 4.2)
+    if not machine.hardware.five_volt_tolerant:
+        _shifters(drawing, machine, y)
+
+
+def _bypasses(drawing: Drawing, machine: HobbingMachine, y: float) -> None:
+    """The capacitors across the supply pins of the chips, in a row."""
+    text(drawing, (0.0, y + 1.2), "Across the supply pins of each chip, as near as possible:", align="left")
+    found = netlist(machine)
+    for k, name in enumerate(part for part in found.parts if part.startswith("CB")):
+        (plus,) = (net for net, ends in found.nets.items() if (name, "1") in ends)
+        x = 1.0 + 4.2 * k
+        drawing.add(elements.Vdd().at((x, y)).label(plus, fontsize=TEXT))
+        drawing.add(elements.Capacitor().at((x, y)).to((x, y - 1.4)))
+        text(drawing, (x + 0.4, y - 0.7), f"{name} 100 nF, U{name[2:]}", align="left")
+        ground(drawing, (x, y - 1.4), "")
+
+
+def _shifters(drawing: Drawing, machine: HobbingMachine, y: float) -> None:
+    """Supplies of the level shifters; their channels stand in the lines."""
+    left = 11.0
+    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U5 74LVC245", at=y)
+    supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "VCC", "20")
+    supply(drawing, (left + 2.6, y + 0.7), "+3.3 V", "DIR", "1")
+    ground(drawing, (left + 0.7, y - 0.8), "GND", "10")
+    ground(drawing, (left + 2.6, y - 0.8), "OE", "19")
+    left += 5.4
+    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U6 BSS138", at=y)
+    supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "LV")
+    supply(drawing, (left + 2.6, y + 0.7), "+5 V", "HV")
+    ground(drawing, (left + 1.7, y - 0.8), "GND")
+    text(drawing, (left + 4.2, y + 0.35), "+3.3 V is the 3.3 V pin of the board.", align="left")
+    text(drawing, (left + 4.2, y - 0.25), f"No pin of the {machine.hardware.title} may ever see 5 V.", align="left")
+
+
+def _capacitor(drawing: Drawing, top: Point, name: str) -> None:
+    drawing.add(elements.Dot().at(top))
+    drawing.add(elements.Capacitor(polar=True).at(top).to((top[0], top[1] - 1.6)))
+    text(drawing, (top[0] + 0.35, top[1] - 1.15), f"{name} 10 uF", align="left")
+    ground(drawing, (top[0], top[1] - 1.6), "")

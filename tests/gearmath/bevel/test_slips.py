@@ -1,0 +1,159 @@
+"""A refused set file is told the usual slip that was made in it, by the whole check and not by its likeness."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import tomlkit
+
+from gearmath.bevel.pair import load_pair
+from gearmath.errors import InputError
+from gearmath.specs.bevel_set import FLANKS, MEMBERS
+from gearmath.specs.toml import bundled
+
+NASA, SPIRAL, UNIVERSAL = "nasa_tp3096_12x36", "spiral_7x43", "crown_gear_universal_14x39"
+MACHINE = (
+    "radial_distance",
+    "blank_offset",
+    "sliding_base",
+    "machine_center_to_crossing_point",
+    "blade_point_radius",
+)
+BLANK = ("mean_cone_distance", "face_width", "mean_addendum", "mean_dedendum", "clearance")
+
+
+def one(member: str, flank: str, key: str, change: Callable[[float], float]) -> Callable[[dict], None]:
+    def apply(values: dict) -> None:
+        values[member][flank][key] = change(values[member][flank][key])
+
+    return apply
+
+
+def exchange(*tables: tuple[str, str], key: str | None = None) -> Callable[[dict], None]:
+    def apply(values: dict) -> None:
+        (a, b), (c, d) = tables
+        if key is None:
+            values[a][b], values[c][d] = values[c][d], values[a][b]
+        else:
+            values[a][b][key], values[c][d][key] = values[c][d][key], values[a][b][key]
+
+    return apply
+
+
+def inches(tables: tuple[str, ...], keys: tuple[str, ...]) -> Callable[[dict], None]:
+    def apply(values: dict) -> None:
+        for member in MEMBERS:
+            for table in tables:
+                for key in keys:
+                    values[member][table][key] /= 25.4
+
+    return apply
+
+
+def hands(*members: str) -> Callable[[dict], None]:
+    def apply(values: dict) -> None:
+        for member in members:
+            values[member]["hand"] = {"left": "right", "right": "left"}[values[member]["hand"]]
+
+    return apply
+
+
+def set_to(key: str, value: object, *place: str) -> Callable[[dict], None]:
+    def apply(values: dict) -> None:
+        table = values
+        for part in place:
+            table = table[part]
+        table[key] = value
+
+    return apply
+
+
+#: Set, what is made wrong in it, and what the sentence must end with.
+SLIPS = {
+    "sign of the cradle angle": (
+        NASA,
+        one("pinion", "concave", "cradle_angle", lambda v: -v),
+        "pinion.concave.cradle_angle = -63.942, not 63.942",
+    ),
+    "sign of an offset that shows in the space": (
+        NASA,
+        one("pinion", "concave", "blank_offset", lambda v: -v),
+        "pinion.concave.blank_offset = 3.92623, not -3.92623",
+    ),
+    "radius ten times, refused by a limit": (
+        NASA,
+        one("pinion", "concave", "blade_point_radius", lambda v: 10 * v),
+        "pinion.concave.blade_point_radius = 75.3268, not 753.268",
+    ),
+    "both hands": (SPIRAL, hands("pinion", "gear"), "pinion.hand = 'left' and gear.hand = 'right'"),
+    "one hand": (NASA, hands("pinion"), "pinion.hand = 'left'"),
+    "flanks of the pinion": (
+        UNIVERSAL,
+        exchange(("pinion", "concave"), ("pinion", "convex")),
+        "pinion.concave and pinion.convex exchanged",
+    ),
+    "a key of both flanks": (
+        UNIVERSAL,
+        exchange(("pinion", "concave"), ("pinion", "convex"), key="radial_distance"),
+        "radial_distance of pinion.concave and pinion.convex exchanged",
+    ),
+    "one flank of a completing cut": (
+        NASA,
+        one("gear", "concave", "cradle_angle", lambda v: -v),
+        "gear.concave.cradle_angle = 59.2342, not -59.2342",
+    ),
+    "settings in inches": (NASA, inches(FLANKS, MACHINE), "times 25.4: they are in inches"),
+    "blanks in inches": (NASA, inches(("blank",), BLANK), "the lengths of the blanks times 25.4: they are in inches"),
+    "unit": (SPIRAL, set_to("unit", "inch"), "unit = 'mm'"),
+    "teeth": (NASA, set_to("teeth", 13, "pinion"), "pinion.teeth = 12, not 13"),
+    "method": (NASA, set_to("generation", "formate", "pinion"), "pinion.generation = 'generated', not 'formate'"),
+}
+
+
+def refusal(name: str, change: Callable[[dict], None], folder: Path) -> str:
+    values = tomllib.loads(bundled(f"{name}.toml").read_text("utf-8"))
+    change(values)
+    path = folder / "wrong.toml"
+    path.write_text(tomlkit.dumps(values), "utf-8")
+    with pytest.raises(InputError) as caught:
+        load_pair(path)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("case", SLIPS)
+def test_slip_that_was_made_is_named(case: str, tmp_path: Path) -> None:
+    name, change, words = SLIPS[case]
+    text = refusal(name, change, tmp_path)
+    assert "; it would be a pair with " in text
+    assert words in text.split("it would be a pair with ")[1]
+    assert "no single setting" not in text
+
+
+def test_no_slip_is_named_where_none_was_made(tmp_path: Path) -> None:
+    """The space is too wide by a whole list of settings that are a little off."""
+    text = refusal(NASA, one("pinion", "convex", "radial_distance", lambda v: v + 3), tmp_path)
+    assert "it would be a pair with" not in text
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        set_to("hand", ["left"], "pinion"),
+        set_to("teeth", 10**30, "gear"),
+        set_to("shaft_angle", "90 degrees"),
+        set_to("cradle_angle", 10**30, "pinion", "concave"),
+        set_to("concave", 3.0, "pinion"),
+    ],
+)
+def test_value_of_another_kind_or_size_is_refused_and_no_slip_fails_on_it(change, tmp_path: Path) -> None:
+    assert refusal(NASA, change, tmp_path).startswith(str(tmp_path))
+
+
+def test_file_that_is_no_toml_is_refused_as_such(tmp_path: Path) -> None:
+    path = tmp_path / "broken.toml"
+    path.write_text("[pinion\n", "utf-8")
+    with pytest.raises(InputError, match="is no TOML"):
+        load_pair(path)

@@ -1,0 +1,161 @@
+"""A header that was edited makes no wrong program a right one, and an honest one no right program a wrong one."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+from gearmath.machine.control.executor import execute
+from gearmath.machine.control.state import Setup
+from gearmath.machine.judging.program import faults_of, metal_faults
+from gearmath.machine.milling.run import runs_of
+from gearmath.machine.planning.cut_plan import CuttingJob
+from gearmath.machine.writing.cutting import cutting_program
+from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.milling_machine import load_milling_machine
+from gearmath.specs.toml import bundled
+
+MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
+COARSE = MACHINE.model_copy(
+    update={"name": "coarse", "control": MACHINE.control.model_copy(update={"increments_per_mm": 1000})}
+)
+NASA = "nasa_tp3096_12x36", "gear"
+FORMATE = "crown_gear_formate_14x39", "gear"
+
+
+def written(case, machine=MACHINE, **job):
+    bevel_set = load_bevel_set(bundled(f"{case[0]}.toml"))
+    spaces = range(bevel_set.member(case[1]).teeth) if "hobbed" in case[0] else (0,)
+    return cutting_program(bevel_set, case[1], machine, "CUT", CuttingJob(**({"spaces": spaces} | job)))
+
+
+def judged(case, text, machine=MACHINE):
+    """The sentences of mill, and the tolerance [mm] that the flanks were compared with."""
+    spec = load_bevel_set(bundled(f"{case[0]}.toml")).member(case[1])
+    space = None if spec.process == "face_hobbing" else tooth_space(spec, case[1], 7)
+    path = execute(text, "CUT", Setup.of(machine))
+    runs = runs_of(path, spec, case[1], machine, None, space, SHARP_EDGE)
+    left = metal_faults(text, path, runs, spec, case[1], machine, space)
+    return [str(one) for one in (*left.faults, *faults_of(text, path, runs, spec, case[1], machine))], left.tolerance
+
+
+def bent(text, pattern, wrong):
+    changed, found = re.subn(pattern, wrong, text, count=1, flags=re.MULTILINE)
+    assert found
+    return changed
+
+
+def moved(text, axis, by):
+    """The block in the middle of the roll, with one axis elsewhere."""
+    lines = text.split("\n")
+    rows = [k for k, line in enumerate(lines) if " G93 G1 " in line]
+    k = rows[len(rows) // 2]
+    word = re.search(rf"{axis}(-?[\d.]+)", lines[k])
+    lines[k] = lines[k].replace(word[0], f"{axis}{float(word[1]) + by:.5f}")
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize("case", [NASA, ("crown_gear_7x43", "pinion")])
+def test_raised_tolerance_hides_no_gouge(case):
+    """By hand: Z is 2 um too low, where the header says 50 um and the blocks are made for 0.1 um."""
+    text = written(case)
+    raised = bent(text, r"^; flank tolerance: 0\.1 um", "; flank tolerance: 50 um")
+    said, tolerance = judged(case, raised)
+    assert said == []
+    assert 1e-4 <= tolerance < 4e-4
+    said, _ = judged(case, moved(raised, "Z", -0.002))
+    assert any(
+        re.search(r"leaves -[01]\.\d+ um, the program states 50 um, and its blocks are made f", o) for o in said
+    ), said
+
+
+@pytest.mark.parametrize(
+    ("case", "machine", "job"),
+    [
+        (NASA, MACHINE, {"tolerance": 1e-5}),
+        (NASA, MACHINE, {"tolerance": 1e-3}),
+        (NASA, MACHINE, {"tolerance": 1e-2, "blocks": "poly"}),
+        (NASA, MACHINE, {"tolerance": 0.1}),
+        (NASA, MACHINE, {"tolerance": 1e-3, "finishing_stock": 0.1}),
+        (NASA, COARSE, {"tolerance": 1e-4}),
+        (FORMATE, MACHINE, {"tolerance": 0.05}),
+        (("crown_gear_hobbed_14x39", "pinion"), MACHINE, {"tolerance": 5e-3}),
+        (NASA, MACHINE, {"tolerance": 1e-3, "feed": 3000.0}),
+        (NASA, MACHINE, {"tolerance": 1e-2, "feed": 20000.0}),
+        (NASA, MACHINE, {"tolerance": 1e-2, "feed": 2000.0, "blocks": "poly"}),
+    ],
+    ids=lambda value: (
+        value.name if hasattr(value, "name") else "-".join(map(str, getattr(value, "values", lambda: value)()))
+    ),
+)
+def test_honest_header_is_believed(case, machine, job):
+    """Whatever is asked: very fine, coarse, far coarser than the blocks come to, rounded by the control, and fast."""
+    said, tolerance = judged(case, written(case, machine, **job), machine)
+    assert said == []
+    assert tolerance > 0.0
+
+
+def test_raised_feed_hides_no_fast_block():
+    """By hand: one block in a tenth of its time, with a header that says ten times the feed."""
+    lines = bent(written(NASA), r"^; feed: 300 mm/min", "; feed: 3000 mm/min").split("\n")
+    assert judged(NASA, "\n".join(lines))[0] == []
+    rows = [k for k, line in enumerate(lines) if " G93 G1 " in line]
+    k = rows[len(rows) // 2]
+    lines[k] = re.sub(r"F([\d.]+)$", lambda f: f"F{9 * float(f[1]):.3f}", lines[k])
+    said, _ = judged(NASA, "\n".join(lines))
+    assert any(
+        re.search(r"at \d{4} mm/min past the tooth, the program states 3000 mm/min, and goes slo", o) for o in said
+    ), said
+
+
+def test_dry_run_that_cuts_is_seen():
+    """Without coolant, a header that says dry run let every program pass."""
+    said, _ = judged(
+        NASA, re.sub(r"(?m)^N\d+ M8\n", "", bent(written(NASA), "^; spaces", "; dry run: Z raised by 60 mm\n; spaces"))
+    )
+    assert any(re.search(r"is -?0\.000 mm above the path .* states a dry run 60 mm above it", one) for one in said), (
+        said
+    )
+    assert not any("dry run" in one for one in judged(NASA, written(NASA, dry_run=True))[0])
+
+
+def test_program_that_lost_the_line_with_our_name_is_judged_as_ours():
+    nameless = bent(written(NASA), r"^; gearmath .* cutting program\n", "")
+    assert judged(NASA, nameless)[0] == []
+    said, _ = judged(NASA, re.sub(r"(?m)^N\d+ M8\n", "", nameless))
+    assert any("cuts without coolant" in one for one in said)
+    plain = re.sub(r"(?m)^N\d+ ", "", nameless)
+    said, _ = judged(NASA, re.sub(r"IF \$TC_TP2.*\n(.*\n)*?.*ENDIF\n", "", plain))
+    assert any("another tool is in the spindle" in one for one in said)
+
+
+@pytest.mark.parametrize(
+    ("line", "what"),
+    [
+        ("flank tolerance", "flank tolerance"),
+        ("feed", "feed"),
+        ("spindle", "spindle"),
+        ("finish", "finish"),
+        ("spaces", "spaces"),
+    ],
+)
+def test_statement_that_is_missing_is_named(line, what):
+    said, _ = judged(NASA, re.sub(rf"(?m)^; {line}: .*\n", "", written(NASA, tolerance=1e-2)))
+    assert f"the header does not state: {what}" in said
+
+
+def test_lines_of_the_header_changed_one_by_one_hide_no_gouge():
+    """A figure of a header line ten times as large, with Z 0.02 mm too low in one block."""
+    text = moved(written(NASA, tolerance=1e-3), "Z", -0.02)
+    lines, random, tried = text.split("\n"), np.random.default_rng(0), 0
+    for k, line in enumerate(lines):
+        found = list(re.finditer(r"\d+(\.\d+)?", line)) if line.startswith(";") else []
+        for one in [found[j] for j in random.permutation(len(found))[: k % 2]]:  # of every second line
+            changed = line[: one.start()] + f"{10 * float(one[0]):g}" + line[one.end() :]
+            said, _ = judged(NASA, "\n".join([*lines[:k], changed, *lines[k + 1 :]]))
+            assert said, changed
+            tried += 1
+    assert tried > 10
