@@ -134,7 +134,7 @@ def _turned_width(member: Member) -> float:
     mean, distance = blank.mean_cone_distance, spec.radial_distance
     sine = (mean**2 + radius**2 - distance**2) / (2 * mean * radius)
     spiral = math.asin(max(-1.0, min(sine, 1.0))) + abs(math.radians(spec.blade_offset_angle))
-    return turn * mean * math.sin(math.radians(blank.pitch_angle)) * math.cos(spiral)
+    return turn * mean * math.sin(blank.delta) * math.cos(spiral)
 
 
 def _as_cut(spec: Flank, edge_radius: float) -> Flank:
