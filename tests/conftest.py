@@ -7,6 +7,10 @@ import shutil
 from collections import Counter
 from collections.abc import Generator
 
+# before NumPy is loaded, and for the commands that tests start: products of small matrices on several threads of the
+# BLAS cost more in waiting than they save, and the processes of a run take all cores already
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import pytest
 
 from gearmath.engine.compiler import find_compiler

@@ -6,6 +6,7 @@ Each verb lives in the module of its group and loads what it computes with when 
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 from collections.abc import Sequence
 
@@ -76,6 +77,10 @@ def gearmath() -> None:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command and exit with its status."""
+    # before anything heavy is loaded: small matrices on several threads of the BLAS wait more than they compute, and
+    # looking for plugins of pydantic, which no model here has, takes a tenth of a short command
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     try:
         with waiting("gearmath"):
             gearmath.main(args=arguments, prog_name="gearmath", standalone_mode=False)

@@ -13,7 +13,7 @@ from gearmath.specs.bevel_set import Member
 _COLUMNS = 33
 #: Points across the root, and across each land.
 _ACROSS = 7
-_CHUNK = 4_000_000
+_CHUNK = 300_000
 
 
 class SpaceBody:
@@ -63,10 +63,11 @@ class SpaceBody:
         """Distance (m,) [mm] of points (m,3) near space 0 from its surface, negative in the metal."""
         result = np.empty(len(point))
         rows = max(1, _CHUNK // (3 * len(self.point)))
-        squares = (self.point**2).sum(axis=1)
+        squares, twice = (self.point**2).sum(axis=1), 2 * self.point.T
         for begin in range(0, len(point), rows):
             part = point[begin : begin + rows]
-            nearest = np.argmin(squares - 2 * part @ self.point.T, axis=1)
+            product = part @ twice
+            nearest = np.argmin(np.subtract(squares, product, out=product), axis=1)
             off = part - self.point[nearest]
             along = (off * self.normal[nearest]).sum(axis=1)
             distance = np.linalg.norm(off, axis=1)
