@@ -24,9 +24,9 @@ from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.limits import check_spindle_speed
 from gearmath.machine.writing.cutting import program_of
 from gearmath.machine.writing.linuxcnc import cutting as linuxcnc_cutting
-from gearmath.machine.writing.linuxcnc import probing as linuxcnc_probing
 from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
-from gearmath.machine.writing.probing import probing_program
+from gearmath.machine.writing.linuxcnc.probing import LINUXCNC
+from gearmath.machine.writing.probing import SINUMERIK
 from gearmath.machine.writing.words import block_count, check_name
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
@@ -92,9 +92,9 @@ def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice
     machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
     calibration = load_calibration(find(choice.calibration))
     file, ngc = _file(folder, name, machine), _is_linuxcnc(machine)
-    write = linuxcnc_probing.probing_program if ngc else probing_program
+    writer = LINUXCNC if ngc else SINUMERIK
     made = checked_probing(
-        pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, progress.begin, write
+        pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, progress.begin, writer
     )
     write_text(file, made.text)
     blocks = (linuxcnc_blocks if ngc else block_count)(made.text)
