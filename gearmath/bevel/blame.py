@@ -15,7 +15,7 @@ from statistics import median
 from gearmath.bevel.blank import evaluate
 from gearmath.bevel.check_flank import CutFlank
 from gearmath.bevel.repair import Repair, Wanted, repairs
-from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SETTINGS, SIDES, Member, Settings
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member, Settings
 
 #: Spiral angle where none of the flanks of the set tells it. [rad]
 _SPIRAL = math.radians(35)
@@ -80,11 +80,13 @@ def likely(
     where: Sequence[Where],
     cut: Mapping[str, Mapping[str, CutFlank]],
     passes: Callable[[Members], bool],
+    slip: Callable[[], str],
 ) -> str:
     """What to say of the settings of some flanks (member, flank): which of them, changed alone, makes the set pass.
 
-    ``cut`` are the flanks that were found, ``passes`` is the whole check. Where no single setting does, the one is
-    named that would put the mean point and the root of a flank nearest to right, and no value is advised.
+    ``cut`` are the flanks that were found, ``passes`` is the whole check. Where no single setting does, ``slip`` may
+    name a slip; else the one is named that would put the mean point and the root of a flank nearest to right, and no
+    value is advised.
     """
     found = {(name, flank): one for name, flanks in cut.items() for flank, one in flanks.items()}
     flanks: dict[Where, list[Repair]] = {}
@@ -108,6 +110,8 @@ def likely(
     if good:
         said = [f"{one.place} = {one.repair.value:.6g}: {one.repair.other:.6g} would fit{one.where}" for one in good]
         return f"; the setting that alone explains it is {', or '.join(said)}"
+    if slipped := slip():
+        return slipped
     if trials and total > 1 and (most := _explain_most(trials, total)):
         said = [f"{one.place} = {one.repair.value:.6g}" for one in most]
         return f"; no single setting puts all of it right, most of it hangs on {', or '.join(said)}"
@@ -133,7 +137,7 @@ def _trials(members: Members, flanks: Mapping[Where, list[Repair]], total: float
         member = members[name]
         beside = flanks.get((name, FLANKS[1 - FLANKS.index(flank)]), [])
         for one in found:
-            shared = member.cutting == "completing" and one.key in MACHINE_SETTINGS
+            shared = one.key in member.shared_settings
             moved, left = _moved(member, flank, one), total - one.before + one.after
             yield _Trial(name, flank, shared, one, moved, left)
             other = next((each for each in beside if (each.key, each.solved) == (one.key, one.solved)), None)

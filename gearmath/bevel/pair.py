@@ -43,15 +43,15 @@ def load_pair(path: Path) -> BevelSet:
     """
 
     def slip(refusal: str) -> str:
-        return likely_slip(tomllib.loads(read_text(path)), refusal, _file_passes)
+        try:
+            return likely_slip(tomllib.loads(read_text(path)), refusal, _file_passes)
+        except (ValueError, RecursionError):  # no TOML, which the refusal says
+            return ""
 
     try:
         pair = load_bevel_set(path)
     except InputError as error:
-        try:
-            raise InputError(f"{error}{slip(str(error))}") from error
-        except tomllib.TOMLDecodeError:
-            raise error from None
+        raise InputError(f"{error}{slip(str(error))}") from error
     try:
         check_pair(pair, slip)
     except InputError as error:
@@ -74,8 +74,11 @@ def check_pair(pair: BevelSet, slip: Callable[[str], str] = lambda _: "") -> Non
         cause = ""
         if len(pair.members) == len(MEMBERS) and all(len(flanks) == len(FLANKS) for flanks in cut.values()):
             cause = likely_method(pair.members, lambda members: _passes(members, pair.shaft_angle))
-        cause = cause or slip(str(misfit))
-        cause = cause or likely(pair.members, misfit.where, cut, lambda members: _passes(members, pair.shaft_angle))
+        if not cause:
+            text = str(misfit)
+            cause = likely(
+                pair.members, misfit.where, cut, lambda one: _passes(one, pair.shaft_angle), lambda: slip(text)
+            )
         raise InputError(f"{misfit}{cause}") from misfit
     except InputError as error:
         raise InputError(f"{error}{slip(str(error))}") from error

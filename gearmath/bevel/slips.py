@@ -22,9 +22,13 @@ _OF_ALL: tuple[float, ...] = (-1.0, 0.1, 10.0)
 _OF_LENGTHS, _OF_ANGLES = (INCH, 1 / INCH), (180 / math.pi, math.pi / 180)
 #: What a backlash hangs on as much as on other settings: a smaller one would always do.
 _PHASE = "work_rotation_offset"
+#: Refusals of no value: nothing in it was a slip of one.
+_NO_VALUE = ("no such key", "the key is missing", "is no TOML", "cannot be read")
 _OTHER_HAND = {"left": "right", "right": "left"}
 #: So many files are tried, and so many that pass are named.
 _TRIALS, _SAID = 250, 2
+#: Counts and numbers beyond these are no slips.
+_MOST_TEETH, _LARGEST = 1000, 1e9
 
 Values = dict[str, Any]
 Slip = tuple[str, Values]
@@ -36,7 +40,9 @@ def likely_slip(values: Mapping[str, Any], refusal: str, passes: Callable[[Value
     ``refusal`` is the sentence; of settings, only those of the members and flanks that it names are tried.
     """
     given = dict(values)
-    if any(not isinstance(given.get(name, {}), dict) for name in MEMBERS):
+    if any(words in refusal for words in _NO_VALUE) or any(
+        not isinstance(given.get(name, {}), dict) for name in MEMBERS
+    ):
         return ""
     for tried in (_of_tables(given), _of_counts(given), _of_settings(given, refusal)):
         good = list(itertools.islice((words for words, one in itertools.islice(tried, _TRIALS) if passes(one)), _SAID))
@@ -65,7 +71,8 @@ def _tables(values: Values, *names: str) -> Iterator[tuple[tuple[str, str], Valu
 
 def _of_tables(values: Values) -> Iterator[Slip]:
     """Hands, units, and tables that are exchanged."""
-    hands = {name: values[name].get("hand") for name in MEMBERS if values.get(name, {}).get("hand") in _OTHER_HAND}
+    stated = {name: values.get(name, {}).get("hand") for name in MEMBERS}
+    hands = {name: hand for name, hand in stated.items() if isinstance(hand, str) and hand in _OTHER_HAND}
     for names in (*((name,) for name in hands), tuple(hands)):
         other = {name: _OTHER_HAND[hands[name]] for name in names}
         words = " and ".join(f"{name}.hand = {hand!r}" for name, hand in other.items())
@@ -101,10 +108,14 @@ def _of_counts(values: Values) -> Iterator[Slip]:
     """Tooth counts, the shaft angle, and how a member is cut."""
     for name in MEMBERS:
         teeth = values.get(name, {}).get("teeth")
-        if isinstance(teeth, int) and len([each for each in MEMBERS if each in values]) == len(MEMBERS):
+        if (
+            isinstance(teeth, int)
+            and 0 < teeth < _MOST_TEETH
+            and len([each for each in MEMBERS if each in values]) == len(MEMBERS)
+        ):
             for other in (teeth + 1, teeth - 1):
                 yield f"{name}.teeth = {other}, not {teeth}", _changed(values, ((name, "teeth"), other))
-    if values.get("shaft_angle") not in (None, 90.0):
+    if _is_number(values.get("shaft_angle")) and values["shaft_angle"] != 90:
         yield f"shaft_angle = 90, not {values['shaft_angle']}", _changed(values, (("shaft_angle",), 90.0))
     for name in (name for name in MEMBERS if name in values):
         given = values[name].get("generation", "generated")
@@ -138,8 +149,8 @@ def _of_settings(values: Values, refusal: str) -> Iterator[Slip]:
             if one[key] == two[key] != 0:
                 for factor in (-1.0, *_factors(key)):
                     changes = [((member, flank, key), factor * one[key]) for flank in FLANKS]
-                    words = f"{member}.concave.{key} and {member}.convex.{key} = {factor * one[key]:.6g}"
-                    yield words, _changed(values, *changes)
+                    other = f"{factor * one[key]:.6g}, not {one[key]:.6g}"
+                    yield f"{member}.concave.{key} and {member}.convex.{key} = {other}", _changed(values, *changes)
     for (member, flank), table in tables.items():
         for one_key, other_key in itertools.combinations([key for key in SETTINGS if _is_number(table.get(key))], 2):
             if flank in named and 0 != table[one_key] != table[other_key] != 0:
@@ -161,4 +172,4 @@ def _mate(name: str) -> str:
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST

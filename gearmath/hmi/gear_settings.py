@@ -8,7 +8,7 @@ from pathlib import Path
 
 from gearmath.bevel.pair import check_pair
 from gearmath.front.sets import Member
-from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SETTINGS
+from gearmath.specs.bevel_set import FLANKS, SETTINGS
 from gearmath.specs.cut import Settings
 from gearmath.specs.set_text import save_corrected
 from gearmath.specs.sheet import unit_of
@@ -43,7 +43,7 @@ def setting_fields(member: Member) -> list[SettingField]:
     """A field for each setting of each flank; one for both flanks where a completing cut shares it."""
     found = []
     for key in SETTINGS:
-        shared = member.spec.cutting == "completing" and key in MACHINE_SETTINGS
+        shared = key in member.spec.shared_settings
         low, high = setting_limits(key)
         for flanks in (FLANKS,) if shared else tuple((flank,) for flank in FLANKS):
             value = getattr(member.spec.flank(flanks[0]), key)

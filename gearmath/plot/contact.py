@@ -170,10 +170,10 @@ def _draw_pattern(axes: Axes, found: ContactPattern, pitch: float | None = None)
     if pitch is not None and rotation.count():
         steps = _CONTACT_LINES / pitch * np.array([rotation.min(), rotation.max()])
         levels = np.arange(math.ceil(steps[0]), math.floor(steps[1]) + 1) * pitch / _CONTACT_LINES
-        axes.contour(
-            found.cone_distance, found.height, rotation, levels=levels, colors=[BEFORE], linewidths=0.7, linestyles="--"
-        )
-        words += "; dashed: contact lines"
+        if len(levels):
+            style: dict[str, Any] = {"colors": [BEFORE], "linewidths": 0.7, "linestyles": "--"}
+            axes.contour(found.cone_distance, found.height, rotation, levels=levels, **style)
+            words += "; dashed: contact lines"
     _label(axes, words, "cone distance / mm (toe left)", "height / mm (tip up)")
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from derivations import notation
+from gearmath.machine.bodies.blades import blade_phase
 from gearmath.page import Page
 from gearmath.specs.bevel_set import (
     ADVANCE,
@@ -157,7 +159,7 @@ def _cutter(member: Member, unit: SheetUnit) -> Iterator[tuple[str, dict[str, st
     width = {flank: _stated(spec.blade_point_width or 0.0, unit) for flank, spec in specs.items()}
     if member.cutting == "completing":
         between = specs["concave"].blade_point_radius - specs["convex"].blade_point_radius
-        width = dict.fromkeys(FLANKS, unit.length(between))
+        width = dict.fromkeys(FLANKS, unit.length(between) if "work_rotation_offset" in member.shared_settings else "")
     yield ("point width", width)
     yield ("blade height", {flank: unit.length(spec.blade_profile_height) for flank, spec in specs.items()})
     if any(spec.toprem_angle is not None for spec in specs.values()):
@@ -172,6 +174,9 @@ def _cutter(member: Member, unit: SheetUnit) -> Iterator[tuple[str, dict[str, st
     if member.blade_groups is not None:
         yield ("blade groups", dict.fromkeys(FLANKS, str(member.blade_groups)))
         yield ("blade offset angle", {flank: unit.angle(spec.blade_offset_angle) for flank, spec in specs.items()})
+        if "work_rotation_offset" not in member.shared_settings:
+            behind = unit.angle(math.degrees(blade_phase(member)))
+            yield ("from the outer to the inner blade", {"concave": "", "convex": behind})
     elif any(spec.blade_count is not None for spec in specs.values()):
         yield ("blades", {flank: str(spec.blade_count or "") for flank, spec in specs.items()})
 

@@ -186,9 +186,7 @@ class Member(Sheet):
                 )
             self._check_cutter(flank)
         if self.cutting == "completing":
-            # in face hobbing the inner blades may follow the outer ones: that turns the work in between
-            own = ("work_rotation_offset",) if self.process == "face_hobbing" else ()
-            shared = [name for name in MACHINE_SETTINGS if name not in own]
+            shared = self.shared_settings
             differing = [name for name in shared if getattr(self.concave, name) != getattr(self.convex, name)]
             if self.concave.motion != self.convex.motion:
                 differing.append("motion")
@@ -217,6 +215,19 @@ class Member(Sheet):
                 f"at radial_distance = {shown(S):g} it must lie between {shown(abs(R - S) - slack):.4g} and "
                 f"{shown(R + S + slack):.4g}"
             )
+
+    @property
+    def shared_settings(self) -> tuple[str, ...]:
+        """The settings of the machine that both flanks have in common: none where each is cut by itself.
+
+        In face hobbing the inner blades may follow the outer ones; the work turns in between by what the work rotation
+        offsets differ in.
+        """
+        if self.cutting != "completing":
+            return ()
+        apart = self.concave.work_rotation_offset != self.convex.work_rotation_offset
+        own = ("work_rotation_offset",) if self.process == "face_hobbing" and apart else ()
+        return tuple(name for name in MACHINE_SETTINGS if name not in own)
 
     def flank(self, flank: str) -> Flank:
         return self.concave if flank == "concave" else self.convex

@@ -5,9 +5,9 @@ function gearmathChoose(cookie, value) {
 }
 
 (function () {
-  const silence = 4000; // ms without the beat of the server, which comes every second
+  const silence = 4000, slept = 10000; // ms without the beat of the server, which comes every second
   const parts = ".gm-head, .gm-nav, .gm-main, .q-dialog, .q-menu";
-  let beat = "", heard = Date.now(), left = null;
+  let beat = "", quiet = 0, last = Date.now(), left = null;
 
   // nothing is pressed while nobody hears it, from the first picture on: it would be lost, or sent later
   function open(live) {
@@ -23,14 +23,22 @@ function gearmathChoose(cookie, value) {
     }
   }
 
+  // whoever comes back to the page must hear the server first
+  document.addEventListener("visibilitychange", () => { if (!document.hidden) quiet = silence + 1; });
+
   setInterval(() => {
+    // a browser that was busy for some seconds has heard nothing in that time, whatever the server said; one that slept
+    // knows nothing
+    const passed = Math.max(0, Date.now() - last);
+    last = Date.now();
+    quiet += passed > slept ? silence + 1 : Math.min(passed, 1000);
     const now = document.querySelector(".gm-beat")?.textContent ?? "";
     if (now !== beat) {
       beat = now;
-      heard = Date.now();
+      quiet = 0;
     }
     const began = window.did_handshake === true, connected = began && window.socket.connected;
-    const silent = Date.now() - heard > silence;
+    const silent = quiet > silence;
     document.body.classList.toggle("gm-is-lost", silent || (began && !connected));
     document.body.classList.toggle("gm-is-live", connected && !silent);
     open(connected && !silent);

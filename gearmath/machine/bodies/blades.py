@@ -101,7 +101,7 @@ def blades_of(member: Member, edge_radius: float = 0.0) -> Blades:
     own = {flank: _as_cut(member.flank(flank), edge_radius) for flank in FLANKS}
     sections = {flank: blade_sections(own[flank], SIDES[flank]) for flank in FLANKS}
     phases = {"concave": 0.0, "convex": blade_phase(member)}
-    width = own["concave"].blade_point_radius - own["convex"].blade_point_radius + _turned_width(member)
+    width = root_width(member)
     edges: list[Edge] = []
     for flank in FLANKS:
         parts = [_edge(own[flank], flank, part, section) for part, section in sections[flank].items()]
@@ -119,6 +119,11 @@ def blade_phase(member: Member) -> float:
     return turn * member.teeth / (member.indexing_sign * member.blade_groups)
 
 
+def root_width(member: Member) -> float:
+    """The width [mm] of the root between both blades of a cutter, where it turns the work in between too."""
+    return member.concave.blade_point_radius - member.convex.blade_point_radius + _turned_width(member)
+
+
 def _turned_width(member: Member) -> float:
     """What that turn makes of the width of a space, square to it [mm]; the spiral angle from the crown gear (12.4)."""
     turn = abs(math.radians(member.concave.work_rotation_offset - member.convex.work_rotation_offset))
@@ -129,7 +134,7 @@ def _turned_width(member: Member) -> float:
     mean, distance = blank.mean_cone_distance, spec.radial_distance
     sine = (mean**2 + radius**2 - distance**2) / (2 * mean * radius)
     spiral = math.asin(max(-1.0, min(sine, 1.0))) + abs(math.radians(spec.blade_offset_angle))
-    return turn * mean * math.sin(math.radians(blank.pitch_angle)) * math.cos(spiral)
+    return turn * mean * math.sin(blank.delta) * math.cos(spiral)
 
 
 def _as_cut(spec: Flank, edge_radius: float) -> Flank:

@@ -32,7 +32,7 @@ from gearmath.machine.planning.path import (
     flank_points,
     roll_range,
 )
-from gearmath.specs.bevel_set import MACHINE_SETTINGS, SIDES, Flank, Member
+from gearmath.specs.bevel_set import SIDES, Flank, Member
 
 #: What five printed decimals of X Y Z [mm] and six of A B [deg], at 100 mm from either axis, may do to the flank.
 ROUNDING = 0.5e-5 * math.sqrt(3) + 2 * math.radians(0.5e-6) * 100.0
@@ -339,7 +339,7 @@ def fewest_nodes(
 def on_one_machine(member: Member, cut: Cut) -> Member:
     """The member with all flanks of a pass at the machine settings of its first, which are what the pass runs at."""
     first = member.flank(cut.flanks[0])
-    shared = {name: getattr(first, name) for name in MACHINE_SETTINGS}
+    shared = {name: getattr(first, name) for name in member.shared_settings}
     return member.model_copy(update={name: member.flank(name).model_copy(update=shared) for name in cut.flanks})
 
 

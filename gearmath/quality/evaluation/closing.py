@@ -35,6 +35,9 @@ _UNFELT = 0.15
 #: A slip between the flanks of a tooth counts from so many standard uncertainties of the width of a space; those are
 #: told by the median of the distances of the others from theirs.
 _BETWEEN, _MAD = 4.0, 1.4826
+#: A drift that grows with the square of the time is farthest from an even one at half of it, by this part. Over one
+#: turn of the work nine tenths of that are a first harmonic, which eccentricity has too.
+_CURVED = 0.25
 Kind = Literal["not measured", "still"] | Told
 
 
@@ -76,6 +79,11 @@ class Closing:
     def arc(self) -> float:
         """The largest of the arcs [mm], without its sign."""
         return max(map(abs, self.arcs.values()), default=0.0)
+
+    @property
+    def curved(self) -> float:
+        """What a drift taken out as even may have left in F_p [mm] if it slowed down or sped up; zero without one."""
+        return _CURVED * self.arc if self.kind in ("steady", "small") else 0.0
 
     @property
     def withheld(self) -> str | None:
@@ -126,7 +134,9 @@ class Closing:
         )
         how = {
             "small": f"the work or the machine moved by {self._size}: {measured}; taken out as an even drift",
-            "steady": f"the work or the machine drifted by {self._size}: {measured}; steady over the teeth, taken out",
+            "steady": f"the work or the machine drifted by {self._size}: {measured}; it neither stepped nor began "
+            "late nor ended early, taken out as an even drift; one that slowed down or sped up looks like "
+            f"eccentricity, and may have left up to {self.curved * 1000:.1f} um in F_p",
             "step": f"the work or the machine slipped by {self._size} {self._between}: {measured}; pitch is withheld",
             "uneven": f"the work or the machine drifted by {self._size}: {measured}; not steady over the teeth; "
             "pitch and runout are withheld",

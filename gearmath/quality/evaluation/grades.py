@@ -24,10 +24,11 @@ def grade_member(
 ) -> Verdict | None:
     """The grade of pitch and runout, of what is known of every tooth; None where pitch was not measured.
 
-    There is none where a drift that was taken out is larger than the tolerance of the grade, none of a runout that
-    noise of the points alone makes as large, and none of a figure whose standard uncertainty (``uncertainties`` of the
-    pitch of each flank [mm]) is larger than the step to the next grade. There is none at all where ``doubt`` says why,
-    and none of a figure whose step to the next grade is less than that to which the file is ``rounded`` [mm].
+    There is none where a drift that was taken out is larger than the tolerance of the grade, nor of a figure in which
+    it may have left more than the step to the next grade; none of a runout that noise of the points alone makes as
+    large, and none of a figure whose standard uncertainty (``uncertainties`` of the pitch of each flank [mm]) is larger
+    than the step to the next grade. There is none at all where ``doubt`` says why, and none of a figure whose step to
+    the next grade is less than that to which the file is ``rounded`` [mm].
     """
     if not pitches:
         return None
@@ -62,8 +63,14 @@ def grade_member(
         return judge(member, name, {}, dict.fromkeys(("f_pt", "F_p", "F_r"), why))
     of_pitch = max((value for value in uncertainties.values() if math.isfinite(value)), default=math.nan)
     unsure = {"f_pt": of_pitch, "F_p": of_pitch, "F_r": math.nan if runout is None else runout.uncertainty}
+    # of a parabola over all teeth, the steepest part lies between two of them
+    of_drift = {"F_p": closing.curved, "f_pt": closing.curved * 4 / member.teeth}
     for key in tuple(measured):
-        if why := _too_unsure(verdict, key, unsure[key] * 1000) or _too_coarse(verdict, key, rounded * 1000):
+        if why := (
+            _too_unsure(verdict, key, unsure[key] * 1000)
+            or _too_coarse(verdict, key, rounded * 1000)
+            or _left_by_drift(verdict, key, of_drift.get(key, 0.0) * 1000)
+        ):
             withheld[key] = why
             del measured[key]
             of_flanks = {flank: {k: v for k, v in one.items() if k != key} for flank, one in of_flanks.items()}
@@ -80,6 +87,16 @@ def _too_coarse(verdict: Verdict, key: str, rounded: float) -> str:
     """Why a figure of a file that is rounded to so much [um] has no grade; nothing where it has one."""
     words, step = _next_grade(verdict, key)
     return f"the file is rounded to {rounded:g} um, more than {words}" if rounded > step else ""
+
+
+def _left_by_drift(verdict: Verdict, key: str, left: float) -> str:
+    """Why a figure has no grade in which a drift may have left so much [um]; nothing where it has one."""
+    words, step = _next_grade(verdict, key)
+    return (
+        f"a drift that slowed down or sped up may have left {left:.1f} um in it, more than {words}"
+        if left > step
+        else ""
+    )
 
 
 def _next_grade(verdict: Verdict, key: str) -> tuple[str, float]:

@@ -69,23 +69,23 @@ def suspicions(
 ) -> Suspicions:
     """What a measurement looks like: ``raw`` as read, ``file`` without clamping and rotation, ``flanks`` in full."""
     axial = tuple(_axial(_in_full(file, flanks), member, name))
-    offset = () if axial else tuple(_offset(flanks))
-    too_far = _beyond_backlash(file, member, flanks) if offset else None
+    too_far = None if axial else _beyond_backlash(file, member, flanks)
+    offset = () if axial else tuple(_offset(flanks, too_far))
     scatter = min((_noise(each[0]) for each in flanks.values() if each), default=math.nan)
     lines = [line for each in flanks.values() if each for line in exchanged_lines(raw, each[0])]
     of_points = (*said_of_digits(raw), *lines, *_scatter(file, scatter, seat), *_copies(raw, scatter))
-    said = (*axial, *offset, *([too_far] if too_far else []), *of_points)
-    return Suspicions(said, no_measurement(raw) or too_far)
+    return Suspicions((*axial, *offset, *of_points), no_measurement(raw) or too_far)
 
 
-def _offset(flanks: dict[str, tuple[Topography, ...]]) -> Iterator[str]:
-    """Whether all points of both flanks are out alike."""
+def _offset(flanks: dict[str, tuple[Topography, ...]], too_far: str | None) -> Iterator[str]:
+    """Whether all points of both flanks are out alike, and whether ``too_far``."""
     found = _even_offset(flanks)
     if found is not None:
+        also = f"; {too_far}" if too_far else ""
         yield (
             f"all points of both flanks stand {found[0] * 1000:+.0f} um out, evenly within {found[1] * 1000:.0f} um: a "
             "wrong tip radius or zero of the probe does that, a depth of cut, or even stock; check it before a setting "
-            "is corrected for it"
+            f"is corrected for it{also}"
         )
 
 
@@ -112,7 +112,7 @@ def _beyond_backlash(file: FlankFile, member: Member, flanks: dict[str, tuple[To
     if change <= limit:
         return None
     return (
-        f"that changes the tooth thickness by {change:.3g} mm, more than the backlash of any finished pair, "
+        f"it changes the tooth thickness by {change:.3g} mm, more than the backlash of any finished pair, "
         f"{limit:.3g} mm, {BACKLASH[1]:g} of the module"
     )
 

@@ -14,6 +14,7 @@ from gearmath.bevel.nominal_file import flank_header
 from gearmath.bevel.turning import half_turn, turned
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
+from gearmath.quality.evaluation.digits import resolution, rounded_words
 from gearmath.quality.evaluation.file_checks import SAME_POINT
 from gearmath.quality.foreign.gaps import (
     fractions,
@@ -112,7 +113,8 @@ def foreign_file(
         turns, laid = _zeroed(laid, lattices, turns, frame, member, phase == "common")
         lattices = _lattices(laid, member)
     off = [standing_out(one, member) for one in laid]
-    gaps, doubts = [], kept
+    steps = {part.name: resolution(part.point.ravel()) for part in parts}
+    gaps, doubts = [], [*kept, *(f"{name}: x, y, z are {rounded_words(step)}" for name, step in steps.items() if step)]
     for one, lattice, far in zip(laid, lattices, off, strict=True):
         said = np.zeros(0) if lattice is None else np.where(far, far, noticeable(one, lattice, member))
         bad, less = outlier_words(one, said)

@@ -333,7 +333,8 @@ REFUSED = {
     "tilt of the wrong sign": (
         UNIVERSAL,
         {f"pinion.{flank}.cutter_tilt": -4.010704566 for flank in FLANKS},
-        r"concave flank: the tip of the blade leaves the root 16 mm below .* pinion\.concave\.cutter_tilt = -4\.0107",
+        r"concave flank: the tip of the blade leaves the root 16 mm below .* would be a pair with "
+        r"pinion\.concave\.cutter_tilt and pinion\.convex\.cutter_tilt = 4\.0107, not -4\.0107",
     ),
     "teeth of another module": (
         NASA,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from functools import cache
 
 import numpy as np
@@ -18,10 +19,11 @@ from gearmath.bevel.ease_off import ease_off, parts
 from gearmath.bevel.flank import Margins, blank_grid, nominal_points
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.tooth import mean_backlash, mean_pitch_radius, mean_tooth_thickness
-from gearmath.errors import InputError
+from gearmath.errors import ComputationError, InputError
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.blades import blade_phase, blades_of
 from gearmath.machine.planning.hobbing import six_axes
+from gearmath.specs.bevel_set import Member
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
 
@@ -43,6 +45,28 @@ STEPS = {
     "blade_radius_step": 0.05,
 }
 CASES = {"milled": MILLED, "hobbed": HOBBED, "milled in steps": {**MILLED, "shop": STEPS}}
+
+
+def family(seed: int) -> DesignData:
+    """A pair of the family of issue 13: tooth counts, ratio, spiral angle, cutter and method of the gear drawn."""
+    draw = random.Random(seed)
+    z_1, ratio = draw.randint(7, 20), draw.uniform(2, 7)
+    z_2, spiral, cutter = round(z_1 * ratio), draw.uniform(25, 40), draw.uniform(0.8, 1.5)
+    generation, module = draw.choice(["generated", "formate"]), draw.uniform(2.5, 6)
+    outer = module * z_2 / 2 / math.sin(math.atan2(z_2, z_1))
+    width = min(0.3 * outer, 10 * module)
+    values = {
+        "title": str(seed),
+        "pinion_teeth": z_1,
+        "wheel_teeth": z_2,
+        "outer_transverse_module": module,
+        "face_width": width,
+        "mean_spiral_angle": spiral,
+        "cutter": {"cutter_radius": cutter * (outer - width / 2)},
+        "gear": {"generation": generation},
+        "hand": draw.choice(["left", "right"]),
+    }
+    return checked(values, DesignData, str(seed))
 
 
 @cache
@@ -133,6 +157,26 @@ def test_inner_blades_pass_the_convex_flank_where_they_follow_the_outer_ones() -
     assert edges[:, 2] == pytest.approx(points.point[:, 2], abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"work_rotation_offset": 1.0}, None),
+        ({"cradle_angle": -50.0}, "a completing cut has one cradle_angle for both flanks"),
+    ],
+)
+def test_flanks_of_a_hobbed_member_may_differ_in_the_turn_of_the_work_alone(change: dict, said: str | None) -> None:
+    """Its inner blades may follow the outer ones; a milled member that is cut completing has one turn for both."""
+    for name in ("hobbed", "milled"):
+        values = made(name).pair.member("pinion").model_dump()
+        values["convex"] = {**values["convex"], **change}
+        words = said or "a completing cut has one work_rotation_offset for both flanks"
+        if name == "hobbed" and said is None:
+            assert "work_rotation_offset" not in checked(values, Member, name).shared_settings
+        else:
+            with pytest.raises(InputError, match=words):
+                checked(values, Member, name)
+
+
 @pytest.mark.parametrize("side", SIDES)
 def test_crownings_that_are_asked_for_are_those_of_the_ease_off_about_the_vertex(side: str) -> None:
     """The ease-off of chapter 24, which knows nothing of the design, on a fifth of the flank in both directions."""
@@ -172,3 +216,26 @@ def test_modified_roll_comes_in_the_steps_of_the_shop() -> None:
         for value in designed.pair.member("pinion").flank(flank).motion.modified_roll:
             assert value / 1e-4 == pytest.approx(round(value / 1e-4), abs=1e-6)
             assert abs(value) > 1e-4
+
+
+@pytest.mark.slow
+def test_hobbed_and_completing_draws_are_designed_as_asked_or_refused_in_a_sentence() -> None:
+    """The first draws of the family of issue 13: the parabola is within 2 percent, or the limit is told."""
+    designed, refused = 0, list[str]()
+    for seed in range(6):
+        for process in ({}, {"process": "face_hobbing", "blade_groups": 9}):
+            values = family(seed).model_dump(exclude_unset=True)
+            values["cutter"] |= process
+            values["pinion"] = {"cutting": "completing"}
+            try:
+                figures, _ = verdict(design(checked(values, DesignData, "draw")))
+            except (InputError, ComputationError) as error:
+                refused.append(str(error))
+                continue
+            designed += 1
+            for side in SIDES:
+                second = figures[side]["second_derivative"]
+                assert second["found"] == pytest.approx(second["asked"], rel=0.02), (seed, process)
+                assert figures[side]["outcome"] == "interior contact"
+    assert all(said and "\n" not in said for said in refused)
+    assert designed >= 4  # what is refused, mostly Formate gears and small pinions, is stated in docs/design.md

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from gearmath.export.host import run_axes
-from gearmath.gearbox.helix import Helix
+from gearmath.gearbox.helix import Helix, JobRatio
 from gearmath.gearbox.hobbed.drive import DriveTrain, rounding
 from gearmath.gearbox.hobbed.envelope import Cut
 from gearmath.gearbox.hobbed.inspection import inspect
@@ -94,19 +94,17 @@ def test_every_tooth_is_off_by_the_remainder_of_the_compiled_rule(teeth):
         point = (np.array([space]), lengths[at : at + 1], np.array([on_gear]))
         added = Cut(job, train).deviation(1, *point) - Cut(job).deviation(1, *point)
         real = psi / TURN * per_turn
-        edges = math.floor(real)
-        _, left = run_axes(
-            np.zeros(edges, np.int8),
-            np.ones(edges, np.int8),
-            ratio.base,
-            ratio.increment,
-            ratio.denominator,
-            ratio.first_remainder,
-        )
-        off = (ratio.first_remainder - left) / ratio.denominator + ratio.numerators[0] / ratio.denominator * (
-            edges - real
-        )
-        assert added[0] == pytest.approx(-off * normal_step(train), abs=0.01 * UM)
+        # the table's own error moves the moment of the cut by some hundredths of a count
+        counts = {math.floor(real - 0.1), math.floor(real + 0.1)}
+        expected = [-_kept(ratio, edges, real) * normal_step(train) for edges in counts]
+        assert min(abs(added[0] - each) for each in expected) < 0.01 * UM
+
+
+def _kept(ratio: JobRatio, edges: int, real: float) -> float:
+    """Steps that the compiled rule is ahead after so many edges, where the hob really is at ``real`` counts."""
+    hob, forward = np.zeros(edges, np.int8), np.ones(edges, np.int8)
+    _, left = run_axes(hob, forward, ratio.base, ratio.increment, ratio.denominator, ratio.first_remainder)
+    return (ratio.first_remainder - left + ratio.numerators[0] * (edges - real)) / ratio.denominator
 
 
 def test_floating_rule_delivers_after_any_count_what_it_does_edge_by_edge():

@@ -615,3 +615,13 @@ def test_grids_of_unlike_size_are_said_to_be(gear_set):
     less = replace(one, point=one.point.reshape(5, 9, 3)[:, 1:].reshape(-1, 3))
     doubts = foreign_file([less, other], PLAIN, gear_set, "pinion").doubts
     assert "concave.txt holds a grid of 5x8, convex.txt one of 5x9: are both whole?" in doubts
+
+
+@pytest.mark.parametrize(
+    ("digits", "said"), [(2, "p.txt: x, y, z are rounded to 10 um: no point is known better"), (4, "")]
+)
+def test_points_printed_to_too_few_digits_are_said_to_be(gear_set, digits, said):
+    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    found = foreign_file([PointPart("p.txt", "concave", 0, np.round(point, digits))], Frame(), gear_set, "pinion")
+    assert any("rounded" in doubt for doubt in found.doubts) == bool(said)
+    assert not said or found.doubts[0].startswith(said)
