@@ -34,7 +34,7 @@ def clear_height(member: Member, machine: MillingMachine, calibration: Calibrati
     return float(here[:, 2].max()) + calibration.tip_radius + CLEARANCE
 
 
-def _probed(
+def probed(
     member: Member,
     name: str,
     machine: MillingMachine,
@@ -53,7 +53,7 @@ def _probed(
     return targets, level, room
 
 
-def _probing_notes(
+def probing_notes(
     bevel_set: BevelSet, name: str, machine: MillingMachine, calibration: Calibration, points: int, repeat: int
 ) -> Iterator[str]:
     """What the header says of set, machine and probe."""
@@ -138,6 +138,6 @@ def probing_program(
     Raises InputError for travel, room, and a name that the control refuses.
     """
     member = bevel_set.member(name)
-    targets, level, room = _probed(member, name, machine, calibration, program_name, topography, pitch, around)
-    header = (*_probing_notes(bevel_set, name, machine, calibration, len(targets), repeat), *writer.notes)
+    targets, level, room = probed(member, name, machine, calibration, program_name, topography, pitch, around)
+    header = (*probing_notes(bevel_set, name, machine, calibration, len(targets), repeat), *writer.notes)
     return writer.text(program_name, header, targets, name, member.teeth, machine, calibration, level, room, repeat)
