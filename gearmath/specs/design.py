@@ -74,8 +74,8 @@ class PinionMethod(Sheet):
     def _tilt(self) -> PinionMethod:
         if self.cutting == "completing" and self.cutter_tilt is not None:
             raise ValueError(
-                "cutter_tilt belongs to cutting = 'fixed_setting': a completing pinion gets the tilt that the fit finds, "
-                "or none where free lacks 'cutter_tilt'"
+                "cutter_tilt belongs to cutting = 'fixed_setting': a completing pinion gets the tilt that the fit "
+                "finds, or none where free lacks 'cutter_tilt'"
             )
         return self
 
