@@ -50,7 +50,7 @@ def evaluate_run(run: StoredRun, progress: Callable[[int], object] = lambda _: N
     where = f"{run.store.path}: run {run.id}"
     if run.start.columns[2] != "member":
         raise InputError(
-            f"{where}: touches ring and spheres, not a member: 'gearmath runs show {run.id} --evaluate' calibrates by it"
+            f"{where}: touches ring and spheres, not a member: 'gearmath runs show {run.id} --evaluate' calibrates"
         )
     for whose in dict.fromkeys((run, first_of(run))):
         missing = run.missing() if whose is run else missing_points(run)
