@@ -70,6 +70,15 @@ class PinionMethod(Sheet):
     cutter_tilt: Angle | None = Field(default=None, ge=-30, le=30)
     blade_edge_radius: Length | None = Field(default=None, ge=0, le=10)
 
+    @model_validator(mode="after")
+    def _tilt(self) -> PinionMethod:
+        if self.cutting == "completing" and self.cutter_tilt is not None:
+            raise ValueError(
+                "cutter_tilt belongs to cutting = 'fixed_setting': a completing pinion gets the tilt that the fit "
+                "finds, or none where free lacks 'cutter_tilt'"
+            )
+        return self
+
     @property
     def may_change(self) -> tuple[Free, ...]:
         """What the fit of the whole flank may change."""

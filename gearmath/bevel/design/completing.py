@@ -35,7 +35,6 @@ _FLATTEST = math.radians(1)
 _ROOM = 0.15
 #: Where the root is held, in parts of the face width: the root that a tilted cutter leaves is hollow.
 _ROOT = (0.25, 0.75)
-_SWIVEL = 0.0
 _OFFSET = SETTINGS.index("work_rotation_offset")
 #: Least part of the places of each side that must be cut.
 _LEAST_SHARE = 0.7
@@ -219,10 +218,6 @@ def _crown_gear(start: Member, sides: list[Side], cone: np.ndarray) -> np.ndarra
         around = np.array([[0.0, *at.contact[0, 1:]]] * 2)
         root = solve_curve(side.how, flat, np.zeros(2), (math.cos(cone[0]), math.sin(cone[0])), cone[1:], around)
         x[[index(name, side.flank) for name in ROOT]] = root.contact[:, 1:].ravel()
-    # the direction in which the cutter will tilt: untilted, only its own angle counts from there
-    x[index("cutter_swivel")] = _SWIVEL
-    x[[index(name, flank) for flank in FLANKS for name in ("beta", *ROOT[::2])]] -= _SWIVEL
-    x[index("work_rotation_offset")] += sides[0].how.index_ratio * _SWIVEL
     return x
 
 

@@ -86,6 +86,12 @@ def test_text_says_what_was_asked_and_found(command, written, tmp_path):
             "",
             r"pinion\.cutting = 'fixed_setting': with face_hobbing it must be 'completing'",
         ),
+        (
+            "",
+            "76.2",
+            '[pinion]\ncutting = "completing"\ncutter_tilt = 3.0\n',
+            r"pinion.*: cutter_tilt belongs to cutting",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_with_what_binds(refused, written, tmp_path, more, cutter, end, sentence):

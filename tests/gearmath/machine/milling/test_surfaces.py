@@ -134,6 +134,7 @@ def test_command_writes_the_report_beside_the_flank_file(command, tmp_path, host
     assert status == 0, err
     assert "0 collisions" in out
     found = json.loads(report.read_text())
-    assert set(found) == {"member", "tolerance", "surfaces", "collisions", "timing"}
+    assert set(found) == {"member", "tolerance", "surfaces", "surfaces_of_settings", "collisions", "timing"}
+    assert found["surfaces_of_settings"] == []  # the set is not corrected
     assert len(found["surfaces"]) == 2 * len(SURFACES)
     assert found["timing"]["feed_seconds"] > 1
