@@ -114,8 +114,8 @@ def likely(
         return slipped
     if trials and total > 1 and (most := _explain_most(trials, total)):
         said = [f"{one.place} = {one.repair.value:.6g}" for one in most]
-        return f"; no single setting puts all of it right, most of it hangs on {', or '.join(said)}"
-    return "; no single setting puts it right"
+        return f"; no single setting was found that puts all of it right, most of it hangs on {', or '.join(said)}"
+    return "; no single setting was found that puts it right"
 
 
 def _explain_most(trials: Sequence[_Trial], total: float) -> list[_Trial]:

@@ -191,7 +191,8 @@ def mill(
     nothing), where spaces are left out, blocks end off the path of the settings, anything collides, rapid motion comes
     near the work, or the machine must not run it: travel, speed, acceleration, feed, spindle, modes. With --report,
     without --errors, it is so too where a surface is off by more than --report-tolerance-um from what the settings of
-    the set cut, corrected or not; what corrected settings are off their design is said beside it.
+    the set cut, corrected or not; what corrected settings are off their design is said beside it. Of face hobbed
+    members flanks alone are judged, fillets and root with --report only.
     """
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.tooth import tooth_space

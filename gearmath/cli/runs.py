@@ -77,7 +77,10 @@ def show(run: int, store_file: Path, evaluate: bool, picture: Path | None, as_js
 
     with _opened(store_file) as store:
         kept, figures = store.run(run), ""
-        if evaluate and not picture and kept.start.columns[2] != "member":
+        of_member = kept.start.columns[2] == "member"
+        if picture and not of_member:
+            raise InputError(f"--plot: run {run} touches ring and spheres; there is a picture of runs of a member only")
+        if evaluate and not of_member:
             figures = _calibrated(kept)
         elif picture or evaluate:
             (evaluated,) = _evaluated(store, (run,))

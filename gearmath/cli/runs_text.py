@@ -25,7 +25,7 @@ def list_text(path: Path, found: Sequence[RunSummary]) -> str:
             each.run,
             _local(each.begun),
             each.operator,
-            each.member or "artefacts",
+            each.member or "ring and spheres",
             each.program,
             f"{each.touches}/{each.points}",
             each.refers_to or "",
@@ -60,8 +60,8 @@ def show_text(values: dict[str, Any]) -> str:
 
 
 def _show_lines(values: dict[str, Any]) -> Iterator[str]:
-    what = values["member"] or "artefacts"
-    yield f"run {values['run']}: {values['program']} of the {what} on {values['control']}, {values['state']}"
+    what = f"the {values['member']}" if values["member"] else "ring and spheres"
+    yield f"run {values['run']}: {values['program']} of {what} on {values['control']}, {values['state']}"
     if values["refers_to"] is not None:
         yield f"points of run {values['refers_to']} probed again"
     yield f"{values['touches']} of {values['points']} points touched" + _missing_words(values["missing"])

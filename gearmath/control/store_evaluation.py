@@ -44,12 +44,14 @@ class EvaluatedRun:
 def evaluate_run(run: StoredRun, progress: Callable[[int], object] = lambda _: None) -> EvaluatedRun:
     """Evaluate a run by what is stored with it, as ``gearmath touches`` and ``gearmath evaluate`` would.
 
-    Raises InputError for a run on artefacts, for one that is not whole, and for one stored without set, machine or
-    calibration.
+    Raises InputError for a run on ring and spheres, for one that is not whole, and for one stored without set, machine
+    or calibration.
     """
     where = f"{run.store.path}: run {run.id}"
     if run.start.columns[2] != "member":
-        raise InputError(f"{where}: touches ring and spheres, not a member: 'gearmath calibrate' reads its touches")
+        raise InputError(
+            f"{where}: touches ring and spheres, not a member: 'gearmath runs show {run.id} --evaluate' calibrates"
+        )
     for whose in dict.fromkeys((run, first_of(run))):
         missing = run.missing() if whose is run else missing_points(run)
         if missing:

@@ -16,8 +16,9 @@ from gearmath.files import write_bytes
 def write_run(run: StoredRun, folder: Path) -> list[Path]:
     """Write all that is stored of a run into a new folder; ``run.json`` lists it with its hashes.
 
-    A file whose name, as a control gave it, could lead elsewhere is written under its role and number. Raises
-    InputError where the folder is there already.
+    A file whose name, as a control gave it, could lead elsewhere is written under its role and number, a new
+    calibration or machine file as ``new_calibration.toml`` or ``new_machine.toml`` beside the one that the run was
+    begun with. Raises InputError where the folder is there already.
     """
     try:
         folder.mkdir()
@@ -30,7 +31,9 @@ def write_run(run: StoredRun, folder: Path) -> list[Path]:
         contents[free] = content
         listed.append({"file": free, "role": role, "name": name, "sha256": sha256})
     for kind, content in run.results().items():
-        free = _free(folder, kind, f"result_{len(listed)}", contents)
+        # the file of a calibration run is a new state of one that it was begun with, and is called the same
+        name = f"new_{kind}" if kind in contents else kind
+        free = _free(folder, name, f"result_{len(listed)}", contents)
         contents[free] = content
         listed.append({"file": free, "role": "result", "name": kind})
     known = {

@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast, get_args
 
 from gearmath.errors import InputError
 from gearmath.front.machines import load_hobber
 from gearmath.front.tables import html_table
+from gearmath.gearbox.helix import Cut, Helix
 from gearmath.gearbox.hobbed.choice import Choice
 from gearmath.gearbox.hobbed.choice import choose as search
 from gearmath.gearbox.hobbed.contributions import Contribution
@@ -19,7 +20,7 @@ from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
 from gearmath.gearbox.train import plan as plan_gear
-from gearmath.specs.hobbing import HobbingMachine
+from gearmath.specs.hobbing import Hand, HobbingMachine
 from gearmath.specs.ratio import pitch as exact_pitch
 
 if TYPE_CHECKING:
@@ -80,8 +81,9 @@ def plan(
 ) -> Job:
     """Plan a gear of so many ``teeth`` on a hobbing machine, or a thread of a ``pitch`` ("1.25mm", "8tpi") on a lathe.
 
-    ``options`` of a gear: starts, hob, rpm, helix, shift, pin; of a thread: starts, hand, rpm. Raises InputError naming
-    the limit that the job would break.
+    ``options`` of a gear: starts, hob, rpm, helix [degrees] with hand ("right" or "left"), cut ("climb" or
+    "conventional") and, where the machine has no encoder on it, feed [mm per turn of the table]; shift, pin; of a
+    thread: starts, hand, rpm. Raises InputError naming the limit that the job would break.
 
     >>> import gearmath as gm
     >>> gm.plan("hobbing_plewes.toml", teeth=17).plan.teeth
@@ -98,7 +100,8 @@ def plan(
         return Job(plan_thread(known, wanted, **options))
     if teeth is None or pitch is not None:
         raise InputError(f"{known.name} is a hobbing machine: teeth are needed, and no pitch")
-    return Job(plan_gear(known, teeth, **options))
+    way, feed = options.pop("cut", "climb"), options.pop("feed", None)
+    return Job(plan_gear(known, teeth, **_with_helix(options, way, feed)))
 
 
 @dataclass(frozen=True)
@@ -119,11 +122,13 @@ class HobbedGear:
 def hob(machine: HobbingMachine | str | Path, teeth: int, **options: Any) -> HobbedGear:
     """Cut a gear virtually, inspect it, and tell which part of the machine is to blame; docs/virtual_hobbing.md.
 
-    ``options``: hob, starts, helix, shift, feed, face_width, rpm, seconds, climb, rule, as of ``gearmath gearbox cut``.
-    Raises InputError naming the limit that the job would break.
+    ``options``: hob, starts, helix [degrees], hand, shift, feed, face_width, rpm, seconds, climb, rule, as of
+    ``gearmath gearbox cut``. Raises InputError naming the limit that the job would break.
     """
     known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
-    prepared = setup(known, teeth, **options)
+    way = "climb" if options.get("climb", True) else "conventional"
+    feed = None if known.feed is not None else options.get("feed", 0.5)
+    prepared = setup(known, teeth, **_with_helix(options, way, feed))
     gear = cut_and_inspect(prepared, prepared.train.rule)
     return HobbedGear(prepared, gear, blame(prepared, gear))
 
@@ -131,9 +136,25 @@ def hob(machine: HobbingMachine | str | Path, teeth: int, **options: Any) -> Hob
 def choose(machine: HobbingMachine | str | Path, wanted: int, module: float, teeth: int, **options: Any) -> Choice:
     """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach the class ``wanted``.
 
-    ``module`` [mm] of a spur gear; ``options``: face_width [mm]. Raises InputError where no class can be given,
-    ComputationError where the finest parts do not reach it.
+    Normal ``module`` [mm]; ``options``: face_width [mm], helix [degrees], hand. Raises InputError where no class can be
+    given, ComputationError where the finest parts do not reach it.
     """
-    return search(
-        machine if isinstance(machine, HobbingMachine) else load_hobber(machine), wanted, module, teeth, **options
-    )
+    known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
+    return search(known, wanted, module, teeth, **_with_helix(options))
+
+
+def _with_helix(options: dict[str, Any], cut: str = "climb", feed: float | None = None) -> dict[str, Any]:
+    """The options with one helix of its angle [degrees] and hand. Raises InputError where it is none."""
+    helix, hand = options.get("helix"), options.get("hand")
+    if helix is None:
+        if hand is not None:
+            raise InputError(f"hand = {hand!r}: has no meaning without helix")
+        return options
+    hand = "right" if hand is None else hand
+    if hand not in get_args(Hand):
+        raise InputError(f"hand = {hand!r}: must be 'right' or 'left'")
+    if cut not in get_args(Cut):
+        raise InputError(f"cut = {cut!r}: must be 'climb' or 'conventional'")
+    per_turn = None if feed is None else Fraction(str(feed))
+    rest = {key: value for key, value in options.items() if key != "hand"}
+    return rest | {"helix": Helix(float(helix), cast("Hand", hand), cast("Cut", cut), per_turn)}

@@ -28,6 +28,9 @@ from gearmath.specs.calibration import Calibration
 from gearmath.specs.simulated_machine import SimulatedMachine
 from gearmath.specs.touch_csv import WORK_SPHERE, check_whole, read_calibration_csv
 
+#: Touches of one point at most, as of ``gearmath nc probe``.
+MOST_TOUCHES = 100
+
 
 @dataclass(frozen=True)
 class ProbingProgram:
@@ -89,6 +92,8 @@ def probing(
     >>> program.name, "MEAS=" in program.text
     ('PROBE', True)
     """
+    if isinstance(repeat, bool) or not isinstance(repeat, int) or not 1 <= repeat <= MOST_TOUCHES:
+        raise InputError(f"repeat = {repeat!r}: must be a whole number from 1 to {MOST_TOUCHES}")
     machine, probe = machine or load_machine(), probe or load_probe()
     choice = ProbingChoice(topography, pitch, registration, repeat)
     made = checked_probing(member.gear_set.spec, member.name, machine.spec, probe, choice, name, name)
@@ -104,6 +109,8 @@ def calibrating(
     """The program that touches ring and sphere on the table for the tip, or the sphere on the work side for the rotary
     axes. Raises InputError naming what the machine cannot do.
     """
+    if cycle not in ("tip", "axes"):
+        raise InputError(f"cycle = {cycle!r}: must be 'tip' or 'axes'")
     machine, probe = machine or load_machine(), probe or load_probe()
     text = (axis_program if cycle == "axes" else calibration_program)(machine.spec, probe, name)
     refuse_faults(judge_calibration(text, name, machine.spec, probe), name, "the program is not written")

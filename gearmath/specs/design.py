@@ -130,7 +130,8 @@ class ContactRequest(Sheet):
             return self
         length, profile = self.lengthwise_crowning, self.profile_crowning
         if length is None or profile is None:
-            raise ValueError("lengthwise_crowning and profile_crowning belong together")
+            alone = " and ".join(given[0])
+            raise ValueError(f"{alone}: lengthwise_crowning and profile_crowning must both be given")
         # beyond it the corners of the flank would stand out (27.7)
         most = 2 * math.sqrt(length * profile)
         if not abs(self.bias) < most:

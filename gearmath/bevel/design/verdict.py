@@ -145,18 +145,23 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
             f"{side}: {request}: the parabola has no vertex within both flanks; "
             "position must be given, or the path come nearer to 90 degrees"
         )
-    if (run.outcome != "interior contact" or found is None) and crowned:
-        raise InputError(
-            f"{side}: {run.outcome}, with a contact ratio of {run.contact_ratio:.3g} within the flanks, which must let "
-            "one pair of teeth take over from the next: a smaller profile_crowning (now "
-            f"{asked.profile_crowning:g}) or another bias (now {asked.bias:g}) is needed"
-        )
     if run.outcome != "interior contact" or found is None:
+        changes = (
+            (
+                f"a smaller profile_crowning (now {asked.profile_crowning:g} um)",
+                f"another bias (now {asked.bias:g} um)",
+            )
+            if crowned
+            else (
+                "a path nearer to the length of the tooth "
+                f"(path_angle, now {math.degrees(flank.request.path_angle):.4g} degrees)",
+                f"a smaller transmission_error (now {asked.transmission_error:g} arcsec)",
+                f"a shorter pattern_length (now {asked.pattern_length:g})",
+            )
+        ) + ("finer steps in [shop]",) * stepped
         raise InputError(
-            f"{side}: {run.outcome}, with a contact ratio of {run.contact_ratio:.3g} within the flanks, which must let "
-            "one pair of teeth take over from the next: a path nearer to the length of the tooth "
-            f"(path_angle, now {math.degrees(flank.request.path_angle):.4g}), a smaller transmission_error (now "
-            f"{asked.transmission_error:g}) or a shorter pattern_length (now {asked.pattern_length:g}) is needed"
+            f"{side}: {run.outcome}: one pair of teeth does not take over from the next within the flanks, where the "
+            f"contact ratio is {run.contact_ratio:.3g}: {', '.join(changes[:-1])} or {changes[-1]} is needed"
         )
     second, wanted = found.local.second_derivative, flank.request.parabola
     if not stepped and not abs(second - wanted) <= PARABOLA * abs(wanted):

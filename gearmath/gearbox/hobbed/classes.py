@@ -14,11 +14,11 @@ FIGURES = ("f_pt", "F_p", "F_r", "f_H_alpha", "f_f_alpha", "F_alpha", "f_H_beta"
 FINEST, COARSEST = 1, 11
 #: What the standard covers: module, reference diameter, face width [mm], teeth, helix angle [degrees].
 COVERED = {
-    "module": (0.5, 70.0),
-    "diameter": (5.0, 15_000.0),
-    "face width": (4.0, 1200.0),
-    "teeth": (5, 1000),
-    "helix": (0, 45),
+    "module": (0.5, 70.0, " mm"),
+    "reference diameter": (5.0, 15_000.0, " mm"),
+    "face width": (4.0, 1200.0, " mm"),
+    "number of teeth": (5, 1000, ""),
+    "helix angle": (0, 45, " degrees"),
 }
 NOT_CONFIRMED = "tolerances of ISO 1328-1:2013 [unconfirmed]: as other programs have them, no printed example was found"
 
@@ -37,9 +37,9 @@ def outside(job: HobbingJob) -> str | None:
     """Why the standard does not cover a gear, or None."""
     gear = job.gear
     values = (gear.module, job.reference_diameter, job.face_width, gear.teeth, math.degrees(gear.beta))
-    for (what, (low, high)), value in zip(COVERED.items(), values, strict=True):
+    for (what, (low, high, unit)), value in zip(COVERED.items(), values, strict=True):
         if not low <= value <= high:
-            return f"{what} {value:g} is outside {low:g} to {high:g}, which ISO 1328-1 covers"
+            return f"{what} {value:g} is outside {low:g} to {high:g}{unit}, which ISO 1328-1 covers"
     return None
 
 

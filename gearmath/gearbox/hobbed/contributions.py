@@ -34,15 +34,14 @@ SOURCES = {
 }
 #: Keys that only say how another one lies, or matter only with it.
 _WITH = {
-    "speed_ripple": ("motor_time_constant_ms",),
-    "stop_in_cut_mm": ("motor_time_constant_ms", "run_up_seconds"),
+    "stop_in_cut_mm": ("run_up_seconds",),
     "hob_eccentricity_um": ("hob_eccentricity_phase",),
     "hob_axial_runout_um": ("hob_axial_runout_phase",),
     "feed": ("feed_screw_pitch",),
     "blank_eccentricity_um": ("blank_eccentricity_phase",),
     "blank_tilt_um_per_100mm": ("blank_tilt_phase",),
 }
-#: Sources that show only in what steps do.
+#: Sources that show only in what steps do. The motor's lag evens out steps, so that these and the steps alone have it.
 _BEHIND_STEPS = ("speed_ripple", "stop_in_cut_mm", "microstep_percent", "encoder")
 
 
@@ -72,6 +71,8 @@ def alone(train: DriveTrain, source: str) -> DriveTrain:
     if source in given:
         kept = {key: given[key] for key in (source, *_WITH.get(source, ()))}
     stepping = source in ("steps", *_BEHIND_STEPS)
+    if stepping:
+        kept["motor_time_constant_ms"] = train.errors.motor_time_constant_ms
     machine = train.machine.model_copy(update={"errors": CuttingErrors.model_validate(kept)})
     return replace(train, machine=machine, rule=train.rule if stepping else "ideal")
 

@@ -71,14 +71,15 @@ def test_figures_that_no_single_setting_explains_are_said_to_be_so() -> None:
             "pinion.concave.sliding_base": 5.0,
         },
     )
-    assert "no single setting puts" in text
+    assert "no single setting was found that puts" in text
     assert "would fit" not in text
 
 
 def test_setting_is_named_without_a_value_where_it_is_not_all_that_is_wrong() -> None:
     text = refusal(NASA, {"pinion.concave.cradle_angle": 63.9420304635, "pinion.concave.blank_offset": -3.9262})
     assert text.endswith(
-        "no single setting puts all of it right, most of it hangs on pinion.concave.cradle_angle = 63.942"
+        "no single setting was found that puts all of it right, most of it hangs on "
+        "pinion.concave.cradle_angle = 63.942"
     )
 
 

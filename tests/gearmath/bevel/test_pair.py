@@ -319,7 +319,7 @@ REFUSED = {
     "blank offsets of the flanks with the wrong signs": (
         NASA,
         {"pinion.concave.blank_offset": -3.9262277584, "pinion.convex.blank_offset": 4.426244511222},
-        r"-31\.2 degrees .* convex flank has -38\.47; they must agree within 4; no single setting puts it right",
+        r"-31\.2 degrees .* convex flank has -38\.47; they must agree within 4; no single setting was found that",
     ),
     "blades of the other flank, mirrored on both members of uniform depth": (
         HOBBED,

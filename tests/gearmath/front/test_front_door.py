@@ -5,9 +5,11 @@ from __future__ import annotations
 import ctypes
 import doctest
 import importlib
+import math
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -145,3 +147,29 @@ def test_the_page_of_the_api_has_the_names_of_the_package() -> None:
     page = (Path(__file__).parents[3] / "docs" / "api.md").read_text()
     listed = set(re.findall(r"::\s*gearmath\.(\w+)", page))
     assert listed == set(gm.__all__) - {"__version__"}
+
+
+def test_a_helix_is_its_angle_and_hand_as_on_the_command_line() -> None:
+    """The lead of a left-hand helix is that of a right-hand one the other way: z m π/sin(β), by hand."""
+    right = gm.plan("hobbing_helical.toml", teeth=30, hob="m1", helix=15.0).plan
+    left = gm.plan("hobbing_helical.toml", teeth=30, hob="m1", helix=15.0, hand="left").plan
+    for each in (right, left):
+        assert each.helix.lead == pytest.approx(30 * math.pi / math.sin(math.radians(15.0)))
+    assert right.feed_numerator == -left.feed_numerator
+    found = gm.choose("hobbing_helical.toml", 11, 1.0, 30, helix=15.0, hand="left", face_width=5.0)
+    assert found.gear.found
+
+
+@pytest.mark.parametrize(
+    ("call", "sentence"),
+    [
+        (lambda pinion: gm.probing(pinion, repeat=0), "repeat = 0: must be a whole number from 1 to 100"),
+        (lambda pinion: gm.probing(pinion, repeat=2.5), "repeat = 2.5: must be a whole number"),
+        (lambda _: gm.calibrating(cycle="axis"), "cycle = 'axis': must be 'tip' or 'axes'"),
+        (lambda _: gm.plan("hobbing_helical.toml", teeth=30, hand="left"), "hand = 'left': has no meaning without"),
+        (lambda _: gm.plan("hobbing_helical.toml", teeth=30, helix=15, hand="links"), "must be 'right' or 'left'"),
+    ],
+)
+def test_an_argument_that_cannot_be_is_refused_in_a_sentence(call: Callable[..., object], sentence: str) -> None:
+    with pytest.raises(gm.InputError, match=sentence):
+        call(gm.load_set("nasa_tp3096_12x36.toml").pinion)

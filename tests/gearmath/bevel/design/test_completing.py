@@ -197,7 +197,8 @@ def test_crownings_that_are_asked_for_are_those_of_the_ease_off_about_the_vertex
 @pytest.mark.parametrize(
     ("asked", "sentence"),
     [
-        ({"lengthwise_crowning": 30.0}, "lengthwise_crowning and profile_crowning belong together"),
+        ({"lengthwise_crowning": 30.0}, "lengthwise_crowning: lengthwise_crowning and profile_crowning must both be"),
+        ({"bias": 3.0}, "bias: lengthwise_crowning and profile_crowning must both be given"),
         ({"lengthwise_crowning": 30.0, "profile_crowning": 8.0, "path_angle": 60.0}, "takes the place of path_angle"),
         (
             {"lengthwise_crowning": 32.0, "profile_crowning": 8.0, "bias": 40.0},

@@ -15,7 +15,7 @@ from gearmath.gearbox.hobbed.drive import DriveTrain, rounding
 from gearmath.gearbox.hobbed.envelope import Cut
 from gearmath.gearbox.hobbed.inspection import inspect
 from gearmath.gearbox.hobbed.job import TURN
-from gearmath.gearbox.hobbed.setup import CutSetup, setup
+from gearmath.gearbox.hobbed.setup import CutSetup, blame, cut_and_inspect, setup
 from gearmath.gearbox.simulation import FloatRule
 from gearmath.specs.cutting_errors import CuttingErrors
 from gearmath.specs.hobbing import HobbingMachine, find_hobbing_machine
@@ -260,3 +260,15 @@ def test_stop_within_the_cut_lets_a_motor_that_lags_catch_up_as_its_equation_of_
     found = train.motor_error(stands + turned[asked])
     np.testing.assert_allclose(found, ahead[asked], atol=1.5 + 0.02 * ahead.max())  # rounding to steps and counts
     assert ahead.max() == pytest.approx(2 * lag * 16000 / 24, rel=0.05)
+
+
+def test_stop_that_is_far_outside_of_the_cut_is_not_to_blame():
+    """The motor's lag alone evens out the steps; that is no share of a stop that no tooth meets."""
+    given = {"motor_time_constant_ms": 5.0, "run_up_seconds": 0.5}
+    prepared = setup(machine(**given, stop_in_cut_mm=500.0), 24, hob="m1", face_width=5.0)
+    without = setup(machine(**given), 24, hob="m1", face_width=5.0)
+    whole = cut_and_inspect(prepared, "exact")
+    assert whole.found.figures == pytest.approx(cut_and_inspect(without, "exact").found.figures, abs=1e-6)
+    shares = {each.source: each for each in blame(prepared, whole)}
+    assert shares["stop_in_cut_mm"].pitch_percent == pytest.approx(0.0, abs=0.01)
+    assert shares["stop_in_cut_mm"].profile_percent == pytest.approx(0.0, abs=0.01)
