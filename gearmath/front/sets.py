@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -281,10 +282,12 @@ class Tooth:
         return html_table(f"tooth of the {self.member.name}", ["figure", "mm"], list(self.figures.items()))
 
 
-def _check_keys(name: str, flank: str, keys: Iterable[str]) -> None:
-    for key in keys:
+def _check_keys(name: str, flank: str, values: Mapping[str, float]) -> None:
+    for key, value in values.items():
         if key not in SETTINGS:
             raise InputError(f"{name}.{flank}.{key}: is no setting; there are {', '.join(SETTINGS)}")
+        if not isinstance(value, Real) or isinstance(value, bool) or not math.isfinite(value):
+            raise InputError(f"{name}.{flank}.{key} = {value!r}: must be a finite number of mm or degrees")
 
 
 def _changed(spec: Flank, to: Mapping[str, float]) -> dict[str, Any]:

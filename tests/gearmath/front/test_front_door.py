@@ -66,6 +66,8 @@ def test_a_change_and_its_opposite_leave_the_flank_as_it_was() -> None:
     ("change", "sentence"),
     [
         ({"radial_distanc": 0.1}, "pinion.concave.radial_distanc: is no setting"),
+        ({"radial_distance": "0.1"}, "pinion.concave.radial_distance = '0.1': must be a finite number"),
+        ({"radial_distance": float("nan")}, "pinion.concave.radial_distance = nan: must be a finite number"),
         ({"radial_distance": 30.0}, "pinion"),
         ({"blade_pressure_angle": 8.0}, "pinion"),
     ],
