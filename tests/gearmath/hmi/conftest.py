@@ -40,8 +40,9 @@ OF_THE_BROWSER = {
     "www.google.com",
     "clients2.google.com",
 }
-#: What the cursor is on: the words of a button, the label of a field.
+#: What the cursor is on: the words of a button, the label of a field, nothing on the page as a whole.
 _ON = """() => { const on = document.activeElement;
+  if (on === document.body) return "";
   const label = on.closest("label")?.querySelector(".q-field__label") ?? on.querySelector(".q-btn__content .block");
   return (on.getAttribute("aria-label") ?? (label ?? on).innerText).trim(); }"""
 #: What a test waits for at most [ms], on a computer that does other things too.
