@@ -94,17 +94,19 @@ def watch(
     parameters: tuple[str, ...],
     as_json: bool,
 ) -> None:
-    """Positions X Y Z A B as they change, or the R parameters that are named, a line each time; with --json a JSON
-    object a line.
+    """Positions X Y Z (mm) and A B (degrees) as they change, or the R parameters that are named, a line each time.
+
+    With --json a JSON object a line.
     """
     from gearmath.control.interface import AXES
     from gearmath.control.sinumerik import READ_STATE
 
-    reading, writing = _parameters(parameters)
+    reading, writing = _parameters(parameters, "R10 or R20-R25")
     if writing:
         raise InputError(f"R{next(iter(writing))}=...: watch sets nothing: 'gearmath control rparam' does")
     numbers = [*dict.fromkeys(reading)]
     names, what = ([f"R{number}" for number in numbers], "parameters") if numbers else (AXES, "position")
+    units = dict.fromkeys("XYZ", " mm") | dict.fromkeys("AB", " degrees")
 
     async def work(one: Control) -> None:
         begin: float | None = None
@@ -114,7 +116,7 @@ def watch(
             if as_json:
                 click.echo(json.dumps({"seconds": round(at - begin, 3), what: values}))
             else:
-                shown = (f"{name} {value:11.5f}" for name, value in values.items())
+                shown = (f"{name} {value:11.5f}{units.get(name, '')}" for name, value in values.items())
                 click.echo(f"{at - begin:9.2f} s  {'  '.join(shown)}")
             if seconds is not None and at - begin >= seconds:
                 return
@@ -164,7 +166,7 @@ def rparam(connection: Path, insecure: bool, parameters: tuple[str, ...], as_jso
     """
     from gearmath.control.sinumerik import READ_STATE, WRITE_STATE
 
-    reading, writing = _parameters(parameters)
+    reading, writing = _parameters(parameters, "R10, R20-R25 or R30=1.5")
     numbers = [*dict.fromkeys([*writing, *reading])]
 
     async def work(one: Control) -> list[float]:
@@ -179,8 +181,8 @@ def rparam(connection: Path, insecure: bool, parameters: tuple[str, ...], as_jso
     click.echo("\n".join(f"R{number} = {value:.10g}" for number, value in zip(numbers, found, strict=True)))
 
 
-def _parameters(words: tuple[str, ...]) -> tuple[list[int], dict[int, float]]:
-    """Numbers to read, and values to write."""
+def _parameters(words: tuple[str, ...], examples: str) -> tuple[list[int], dict[int, float]]:
+    """Numbers to read, and values to write; a word that is neither is told the ``examples``."""
     import re
 
     reading: list[int] = []
@@ -188,7 +190,7 @@ def _parameters(words: tuple[str, ...]) -> tuple[list[int], dict[int, float]]:
     for word in words:
         match = re.fullmatch(r"[Rr]?(\d{1,4})(?:-[Rr]?(\d{1,4})|=(\S+))?", word, re.ASCII)
         if match is None:
-            raise InputError(f"{word!r}: must be like R10, R20-R25 or R30=1.5")
+            raise InputError(f"{word!r}: must be like {examples}")
         first, last = int(match[1]), int(match[2] or match[1])
         if match[3] is None:
             if last < first:

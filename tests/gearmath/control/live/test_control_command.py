@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import select
 import subprocess
 import sys
@@ -61,6 +62,22 @@ def test_parameters_are_read_and_set(live: Any, typed: Typed) -> None:
         '{\n  "R30": 1.5,\n  "R29": 0.0,\n  "R31": 0.0\n}\n',
     )
     assert live.nc.parameters[30] == 1.5
+
+
+def test_positions_and_parameters_are_watched_with_their_units(live: Any, typed: Typed) -> None:
+    live.load()
+    live.nc.parameters[30] = 1.5
+    status, out, said = typed("watch", "--seconds", "0.1")
+    assert (status, bool(out)) == (0, True), said
+    line = r" +\d\.\d\d s( +[XYZ] +-?\d+\.\d{5} mm){3}( +[AB] +-?\d+\.\d{5} degrees){2}"
+    assert all(re.fullmatch(line, one) for one in out.splitlines()), out
+    status, out, _ = typed("watch", "R30", "R29", "--seconds", "0.1", "--json")
+    assert (status, bool(out)) == (0, True)
+    assert all(json.loads(one)["parameters"] == {"R30": 1.5, "R29": 0.0} for one in out.splitlines())
+    for word, sentence in (("X", "'X': must be like R10 or R20-R25"), ("R30=1", "watch sets nothing")):
+        status, _, said = typed("watch", word)
+        assert status == 2
+        assert sentence in said
 
 
 def test_programs_go_there_and_back(live: Any, typed: Typed, tmp_path: Path) -> None:
