@@ -98,6 +98,8 @@ def watch(
 
     With --json a JSON object a line.
     """
+    from contextlib import aclosing
+
     from gearmath.control.interface import AXES
     from gearmath.control.sinumerik import READ_STATE
 
@@ -110,16 +112,18 @@ def watch(
 
     async def work(one: Control) -> None:
         begin: float | None = None
-        async for at, found in one.watch_parameters(numbers, interval) if numbers else one.watch(interval):
-            begin = at if begin is None else begin
-            values = dict(zip(names, found, strict=True))
-            if as_json:
-                click.echo(json.dumps({"seconds": round(at - begin, 3), what: values}))
-            else:
-                shown = (f"{name} {value:11.5f}{units.get(name, '')}" for name, value in values.items())
-                click.echo(f"{at - begin:9.2f} s  {'  '.join(shown)}")
-            if seconds is not None and at - begin >= seconds:
-                return
+        stream = one.watch_parameters(numbers, interval) if numbers else one.watch(interval)
+        async with aclosing(stream):  # what is left open stays on the control
+            async for at, found in stream:
+                begin = at if begin is None else begin
+                values = dict(zip(names, found, strict=True))
+                if as_json:
+                    click.echo(json.dumps({"seconds": round(at - begin, 3), what: values}))
+                else:
+                    shown = (f"{name} {value:11.5f}{units.get(name, '')}" for name, value in values.items())
+                    click.echo(f"{at - begin:9.2f} s  {'  '.join(shown)}")
+                if seconds is not None and at - begin >= seconds:
+                    return
 
     ask(connection, insecure, (READ_STATE,), work)
 

@@ -6,7 +6,7 @@ first one.
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Mapping, Sequence
+from collections.abc import AsyncGenerator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple, Protocol
@@ -113,13 +113,13 @@ class Control(Protocol):
         """A program or result file."""
         ...
 
-    def watch(self, interval: float) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
+    def watch(self, interval: float) -> AsyncGenerator[tuple[float, tuple[float, ...]], None]:
         """Time [s] and position X Y Z A B, at every ``interval`` [s]."""
         ...
 
     def watch_parameters(
         self, numbers: Sequence[int], interval: float
-    ) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
+    ) -> AsyncGenerator[tuple[float, tuple[float, ...]], None]:
         """Time [s] and R parameters, at every ``interval`` [s]."""
         ...
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import AsyncIterator, Mapping, Sequence
+from collections.abc import AsyncGenerator, Mapping, Sequence
 from configparser import ConfigParser
 from configparser import Error as IniError
 from contextlib import suppress
@@ -108,14 +108,14 @@ class LinuxCncControl:
             raise ComputationError(f"{self.name}: there is no {name}")
         return read_bytes(found)
 
-    async def watch(self, interval: float) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
+    async def watch(self, interval: float) -> AsyncGenerator[tuple[float, tuple[float, ...]], None]:
         while True:
             yield time.monotonic(), (await self.status()).position
             await asyncio.sleep(interval)
 
     def watch_parameters(
         self, numbers: Sequence[int], interval: float
-    ) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
+    ) -> AsyncGenerator[tuple[float, tuple[float, ...]], None]:
         raise ComputationError(f"{self.name}: LinuxCNC has no R parameters, and shows those of its programs to none")
 
     async def probe_deflected(self) -> bool | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Mapping, Sequence
+from collections.abc import AsyncGenerator, Mapping, Sequence
 from typing import Any
 
 from asyncua import Client, ua
@@ -124,14 +124,16 @@ class OpcUaControl:
         check_values(values)
         await self._write(values)
 
-    async def watch(self, interval: float) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
-        """Time [s] and position at every ``interval`` [s], by a subscription at the control's next interval."""
-        async for one in self._subscribed(self._position_names(), interval, "positions"):
-            yield one
+    def watch(self, interval: float) -> AsyncGenerator[tuple[float, tuple[float, ...]], None]:
+        """Time [s] and position at every ``interval`` [s], by a subscription at the control's next interval.
 
-    async def watch_parameters(
+        Whoever stops early must close it: a subscription that is left stays on the control.
+        """
+        return self._subscribed(self._position_names(), interval, "positions")
+
+    def watch_parameters(
         self, numbers: Sequence[int], interval: float
-    ) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
+    ) -> AsyncGenerator[tuple[float, tuple[float, ...]], None]:
         """Time [s] and R parameters, in the same way.
 
         Raises InputError for numbers that there are not, and for more than the control samples in a second.
@@ -144,12 +146,11 @@ class OpcUaControl:
                 "values a second at most"
             )
         names = [self._parameters(number, 1) for number in numbers]
-        async for one in self._subscribed(names, interval, "R parameters"):
-            yield one
+        return self._subscribed(names, interval, "R parameters")
 
     async def _subscribed(
         self, names: Sequence[str], interval: float, what: str
-    ) -> AsyncIterator[tuple[float, tuple[float, ...]]]:
+    ) -> AsyncGenerator[tuple[float, tuple[float, ...]], None]:
         latest: dict[str, float] = {}
 
         class Handler:
