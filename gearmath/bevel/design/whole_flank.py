@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.design import local_settings as local
+from gearmath.bevel.design.designed_flank import FlankFit
 from gearmath.bevel.design.local_settings import MOVING, NAMES, LocalSystem, WantedPoint
 from gearmath.bevel.design.rolling import Meeting
 from gearmath.bevel.generation import Generation
@@ -29,16 +30,10 @@ _AT_BOUND = 1e-6
 
 
 @dataclass(frozen=True)
-class Fitted:
-    """The settings found, the ease-off less what was wanted at the gear's grid (n,) [mm], and the bounds reached."""
+class Fitted(FlankFit):
+    """How well the flank fits at the gear's grid, and the settings found."""
 
     local: LocalSystem
-    off: np.ndarray
-    active: tuple[str, ...]
-
-    @property
-    def rms(self) -> float:
-        return float(np.sqrt(np.mean(self.off**2)))
 
 
 @dataclass(frozen=True)
@@ -102,7 +97,7 @@ def fit(problem: WholeFlank, start: LocalSystem, contact: np.ndarray) -> Fitted 
     if first is None:
         return None
     if not problem.extra:
-        return Fitted(first.local, first.off, ())
+        return Fitted(first.off, (), first.local)
     low, high = problem.bounds[:, 0] - begin, problem.bounds[:, 1] - begin
     scale, known = np.maximum(np.abs(low), np.abs(high)), [first]
 
@@ -119,4 +114,4 @@ def fit(problem: WholeFlank, start: LocalSystem, contact: np.ndarray) -> Fitted 
     best = min(known, key=lambda one: float(np.linalg.norm((one.values - begin) / scale - v)))
     room = np.minimum(v - low / scale, high / scale - v)
     active = tuple(name for name, left in zip(problem.extra, room, strict=True) if left < _AT_BOUND)
-    return Fitted(best.local, best.off, active)
+    return Fitted(best.off, active, best.local)

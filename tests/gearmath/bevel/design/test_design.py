@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import random
 from functools import cache
 
 import numpy as np
@@ -22,6 +21,7 @@ from gearmath.specs.bevel_set import SETTINGS, load_bevel_set
 from gearmath.specs.cut import ANGULAR
 from gearmath.specs.design import DesignData, load_design
 from gearmath.specs.toml import bundled, checked
+from tests.gearmath.bevel.design.family import family
 
 GENERATED = {
     "title": "12 x 36",
@@ -227,28 +227,6 @@ def test_what_is_held_at_the_mean_point_does_not_give_way_to_the_whole_flank() -
     assert free.fitted.rms < held.fitted.rms
     assert abs(free.x[NAMES.index("blade_pressure_angle")] - held.x[NAMES.index("blade_pressure_angle")]) > 1e-3
     assert np.abs(free.request.curvature - held.request.curvature).max() < 1e-12
-
-
-def family(seed: int) -> DesignData:
-    """A pair of the family of issue 13: tooth counts, ratio, spiral angle, cutter and method drawn."""
-    draw = random.Random(seed)
-    z_1, ratio = draw.randint(7, 20), draw.uniform(2, 7)
-    z_2, spiral, cutter = round(z_1 * ratio), draw.uniform(25, 40), draw.uniform(0.8, 1.5)
-    generation, module = draw.choice(["generated", "formate"]), draw.uniform(2.5, 6)
-    outer = module * z_2 / 2 / math.sin(math.atan2(z_2, z_1))
-    width = min(0.3 * outer, 10 * module)
-    values = {
-        "title": str(seed),
-        "pinion_teeth": z_1,
-        "wheel_teeth": z_2,
-        "outer_transverse_module": module,
-        "face_width": width,
-        "mean_spiral_angle": spiral,
-        "cutter": {"cutter_radius": cutter * (outer - width / 2)},
-        "gear": {"generation": generation},
-        "hand": draw.choice(["left", "right"]),
-    }
-    return checked(values, DesignData, str(seed))
 
 
 @pytest.mark.slow
