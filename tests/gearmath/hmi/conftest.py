@@ -116,7 +116,9 @@ def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Se
     made: list[Served] = []
 
     def start(*arguments: str) -> Served:
-        made.append(Served(tmp_path_factory.mktemp("page"), arguments))
+        folder = tmp_path_factory.mktemp("page") / "store"  # a test can look at what lies beside it, too
+        folder.mkdir()
+        made.append(Served(folder, arguments))
         return made[-1].start()
 
     yield start
