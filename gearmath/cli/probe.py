@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from gearmath.quality.calibration.tip import Fit, Tip
     from gearmath.specs.calibration import Calibration
     from gearmath.specs.milling_machine import MillingMachine
-    from gearmath.specs.touch_csv import CalibrationTouches
 
 _PROGRAM = ".MPF, or .ngc for LinuxCNC; its name becomes the program name"
 CALIBRATION = click.option(
@@ -266,56 +265,29 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
 
     Touches of ``nc calibrate --cycle axes`` make a new machine file of that of --machine.
     """
-    from gearmath.quality.evaluation.completeness import missing_calibration
-    from gearmath.specs.calibration import load_calibration
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import WORK_SPHERE, check_whole, read_calibration_csv
-
-    found = read_calibration_csv(raw, run)
-    known, spindle = load_calibration(find(calibration)), load_milling_machine(find(machine))
-    parts, untouched = missing_calibration(found, known, spindle)
-    check_whole(raw, run, found, parts)
-    if (found.target == WORK_SPHERE).any():
-        if lobing:
-            raise InputError("--lobing needs touches on the sphere of the table; these are on that of the work")
-        lines = _calibrate_axes(raw, found, calibration, machine, target)
-    else:
-        lines = _calibrate_tip(raw, found, calibration, lobing, target)
-    if found.joined:
-        click.echo(f"run {found.run}: {found.joined}")
-    for line in lines:
-        click.echo(line)
-    for one in (*parts, *untouched):
-        click.echo(f"run {found.run} is not whole: {one}")
-    click.echo(f"{target}: written")
-
-
-def _calibrate_tip(raw: Path, found: CalibrationTouches, calibration: str, lobing: bool, target: Path) -> Iterator[str]:
-    from gearmath.quality.calibration.tip import calibrate_tip
+    from gearmath.quality.calibration.axes import AxisCalibration
+    from gearmath.quality.evaluation.calibrated_run import calibrated_run
     from gearmath.specs.calibration import load_calibration, save_calibration
-    from gearmath.specs.toml import find
-
-    source = find(calibration)
-    with about(raw):
-        tip = calibrate_tip(found, load_calibration(source), lobing, str(source))
-    save_calibration(source, target, tip.radius, tip.offset, tip.lobes)
-    return tip_lines(tip)
-
-
-def _calibrate_axes(
-    raw: Path, found: CalibrationTouches, calibration: str, machine: str, target: Path
-) -> Iterator[str]:
-    from gearmath.quality.calibration.axes import calibrate_axes
-    from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine, save_axes
     from gearmath.specs.toml import find
 
-    source, probe = find(machine), load_calibration(find(calibration))
-    with about(raw):
-        axes = calibrate_axes(found, load_milling_machine(source), probe)
-    save_axes(source, target, axes.pivot_offset, axes.gauge_line_height)
-    return axis_lines(axes, probe)
+    source, of_axes = find(calibration), find(machine)
+    known = load_calibration(source)
+    made = calibrated_run(raw, load_milling_machine(of_axes), known, run, lobing, str(source))
+    found = made.found
+    if isinstance(found, AxisCalibration):
+        save_axes(of_axes, target, found.pivot_offset, found.gauge_line_height)
+        lines = axis_lines(found, known)
+    else:
+        save_calibration(source, target, found.radius, found.offset, found.lobes)
+        lines = tip_lines(found)
+    if made.touches.joined:
+        click.echo(f"run {made.touches.run}: {made.touches.joined}")
+    for line in lines:
+        click.echo(line)
+    for one in made.missing:
+        click.echo(f"run {made.touches.run} is not whole: {one}")
+    click.echo(f"{target}: written")
 
 
 def axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:

@@ -167,7 +167,7 @@ def calibrate_tip(touches: CalibrationTouches, before: Calibration, lobing: bool
     if before.sphere is not None and (touches.target == SPHERE).any():
         return calibrate_on_sphere(touches, before.sphere, before, lobing)
     if lobing:
-        raise InputError("--lobing needs touches on the sphere; there are none")
+        raise InputError("lobing needs touches on the sphere; there are none")
     if before.ring is not None:
         return calibrate_on_ring(touches, before.ring, before)
     raise InputError(f"{source} has neither the ring nor the sphere that was touched")
