@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, about, echo_json, member_of, nominal_words, output, table
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.specs.margins import Margins
@@ -77,7 +77,7 @@ def flank(
         with about(source):
             file = nominal_flank(spec, member, side, grid, margins)
     write_flank_csv(target, file)
-    click.echo(f"{target}: {len(file)} points of the {member}'s {side} flank{nominal_words(spec, side)}")
+    click.echo(f"{target}: {counted(len(file), 'point')} of the {member}'s {side} flank{nominal_words(spec, side)}")
 
 
 @click.command()

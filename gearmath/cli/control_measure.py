@@ -10,6 +10,7 @@ import click
 from gearmath.cli.common import bar
 from gearmath.cli.control_connect import CONNECTION, INSECURE, connector, name_of
 from gearmath.cli.runs import store_option
+from gearmath.errors import counted
 
 
 @click.command()
@@ -87,7 +88,7 @@ def measure(
             run = store.begin_run(start)
         with bar(len(run.missing()), "touch") as progress:
             asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(*stretches))
-        click.echo(f"{store_file}: run {run.id} is complete: {len(run.start.points)} touches")
+        click.echo(f"{store_file}: run {run.id} is complete: {counted(len(run.start.points), 'touch')}")
 
 
 def _say(sentence: str) -> None:

@@ -20,7 +20,7 @@ from gearmath.cli.common import (
     output,
 )
 from gearmath.cli.dialect import CONTROL, LINUXCNC, dialect_of
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 _FOLDER = click.option(
     "-o", "--output", "folder", type=click.Path(path_type=Path), required=True, help="Folder to write or to replace."
@@ -184,7 +184,7 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
     with about(source):
         found = solve_flank(spec, name, flank, blank_grid(spec, *shape, margin))
     write_points(target, name, flank, found.point, found.normal)
-    click.echo(f"{target}: {len(found.point)} points{nominal_words(spec, flank)}")
+    click.echo(f"{target}: {counted(len(found.point), 'point')}{nominal_words(spec, flank)}")
 
 
 @export.command()

@@ -25,7 +25,7 @@ from gearmath.cli.common import (
     output,
 )
 from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.quality.calibration.axes import AxisCalibration
@@ -134,7 +134,7 @@ def probe(
         page = probing_sheet(job, target.name)
     blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
     write_text(target, made.text)
-    click.echo(f"{target}: {made.touches} touches, {blocks} blocks; {made.clearance}")
+    click.echo(f"{target}: {counted(made.touches, 'touch')}, {counted(blocks, 'block')}; {made.clearance}")
     if configuration:
         write_configuration(target, milling_machine, probe_in_table(milling_machine, known))
     if sheet is not None and page is not None:
@@ -207,7 +207,7 @@ def nc_calibrate(
         page = calibration_sheet(at, known, cycle == "axes", target.name)
     blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(text)
     write_text(target, text)
-    click.echo(f"{target}: {planned_touches(text)} touches, {blocks} blocks")
+    click.echo(f"{target}: {counted(planned_touches(text), 'touch')}, {counted(blocks, 'block')}")
     if configuration:
         write_configuration(target, at, probe_in_table(at, known))
     if sheet is not None and page is not None:
@@ -244,7 +244,7 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
         click.echo(one)
     known = measured.deviation[np.isfinite(measured.deviation)]
     largest = f"{float(abs(known).max()) * 1000:.3f} um" + (" of those that were met" if missed else "")
-    click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {largest}")
+    click.echo(f"{target}: {counted(len(measured), 'point')} of run {found.run}, largest deviation {largest}")
     if found.joined:
         click.echo(f"run {found.run}: {found.joined}")
     for one in missing:
@@ -302,7 +302,7 @@ def axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
         ahead = math.remainder(math.radians(probe.work_sphere.azimuth) - axes.azimuth, 2 * math.pi)
         sure = math.degrees(axes.azimuth_uncertainty)
         yield f"A stands {math.degrees(ahead):.6f} degrees beyond its reading if azimuth is exact, u {sure:.6f}"
-    yield f"{len(axes.fit.residuals)} touches: {_residual_words(axes.fit)}"
+    yield f"{counted(len(axes.fit.residuals), 'touch')}: {_residual_words(axes.fit)}"
 
 
 def _residual_words(fit: Fit) -> str:
@@ -317,7 +317,7 @@ def tip_lines(tip: Tip) -> Iterator[str]:
     if tip.lobes[0] > 0.0:
         known = "kept" if math.isnan(tip.amplitude_uncertainty) else f"u {_um(tip.amplitude_uncertainty)}"
         yield f"lobes {tip.lobes[0] * 1000:.3f} um at {math.degrees(tip.lobes[1]):.2f} degrees, {known}"
-    yield f"{len(tip.fit.residuals)} touches: {_residual_words(tip.fit)}"
+    yield f"{counted(len(tip.fit.residuals), 'touch')}: {_residual_words(tip.fit)}"
 
 
 def _um(value: float) -> str:
