@@ -86,7 +86,7 @@ def flank(
 @click.option("--columns", type=click.IntRange(3, 400), default=25, show_default=True, help="Columns toe to heel.")
 @click.option("--space", is_flag=True, help="Write the surface of one tooth space, not the closed solid of the member.")
 @JSON
-@output("STL")
+@output("STL", ".stl")
 def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; backlash and ease-off of the pair; and an STL."""
     from gearmath.bevel.mates import pair_figures

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from gearmath.cli.common import (
+    HTML,
     JSON,
     MACHINE,
     MEMBER,
@@ -102,7 +103,7 @@ def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str
 @SET
 @MEMBER
 @JSON
-@output("STEP, mm")
+@output("STEP, mm", ".step", ".stp")
 def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None:
     """Closed solids for CAD: a member in its work frame, or, without --member, the pair in mesh.
 
@@ -136,7 +137,7 @@ def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None
 
 @export.command()
 @SET
-@output("binary STL, mm")
+@output("binary STL, mm", ".stl")
 def stl(gear_set: str, target: Path) -> None:
     """Triangles of the pair in mesh, both members whole, touching on the drive side; of one: 'gearmath tooth'."""
     from gearmath.bevel.pair import load_pair
@@ -189,7 +190,7 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
 
 @export.command()
 @SET
-@output("REXS 2.0.0: .rexs XML")
+@output("REXS 2.0.0: XML", ".rexs", ".xml")
 def rexs(gear_set: str, target: Path) -> None:
     """The set as REXS 2.0.0; what REXS has no name for stays in attributes of its own (docs/exchange.md)."""
     from gearmath.bevel.pair import load_pair
@@ -205,7 +206,7 @@ def rexs(gear_set: str, target: Path) -> None:
 
 @export.command()
 @SET
-@output("HTML that prints on A4")
+@output("HTML that prints on A4", *HTML)
 def summary(gear_set: str, target: Path) -> None:
     """The summary sheet of a set: blank, machine settings and cutter build of its members, in mm and in inches."""
     from gearmath.bevel.pair import load_pair
