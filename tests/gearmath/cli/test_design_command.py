@@ -102,7 +102,7 @@ def test_what_cannot_be_is_refused_with_what_binds(refused, written, tmp_path, m
 
 def test_gear_of_another_pair_is_refused(refused, written, tmp_path):
     refused(
-        r"pinion_teeth = 12: must be 7", "design", written(), "--from", "crown_gear_7x43.toml", "-o", tmp_path / "s"
+        r"pinion_teeth = 12: must be 7", "design", written(), "--from", "spiral_7x43.toml", "-o", tmp_path / "s"
     )
 
 

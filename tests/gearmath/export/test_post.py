@@ -28,7 +28,6 @@ ASAN = ("-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 SETS = (
     "nasa_tp3096_12x36",
     "spiral_7x43",
-    "crown_gear_7x43",
     "crown_gear_formate_14x39",
     "crown_gear_universal_14x39",
 )
