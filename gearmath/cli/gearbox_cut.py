@@ -31,6 +31,7 @@ _MEANINGLESS = {
         "shift": "--shift",
         "feed": "--feed",
         "width": "--width",
+        "hob_shift": "--hob-shift",
         "points": "--csv",
         "flanks": "--stl",
     },
@@ -62,6 +63,13 @@ _MEANINGLESS = {
     help="Axial feed, in mm per turn of the table.",
 )
 @click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@click.option(
+    "--hob-shift",
+    type=Number(-500.0, 500.0, "mm"),
+    default=0.0,
+    show_default=True,
+    help="The hob's middle from the pitch point, in mm, to the right as seen from the hob towards the gear.",
+)
 @click.option("--length", type=Number(1.0, 3000.0, "mm"), default=100.0, show_default=True, help="Of a thread, in mm.")
 @click.option("--rpm", type=float, help="Speed of hob or spindle in rpm; the highest within the limits if left out.")
 @click.option(
@@ -138,6 +146,7 @@ def _cut_gear(
         seconds=job["seconds"],
         climb=climb,
         rule=job["rule"],
+        hob_shift=job["hob_shift"],
     )
     rules = [prepared.train.rule] + ([compare] if compare not in (None, prepared.train.rule) else [])
     runs = len(rules) + len(sources(prepared.train))

@@ -38,6 +38,12 @@ def cut_values(cut: CutSetup, gears: Sequence[VirtualGear], shares: Sequence[Con
             "gashes": job.hob.gashes,
             "diameter": job.hob.diameter,
             "diameter_assumed": cut.assumed_diameter,
+            "tip_radius": job.hob.tip_radius,
+            "protuberance": job.hob.protuberance,
+            "topping": job.hob.dedendum is not None,
+            "gash_lead": job.hob.gash_lead,
+            "shift": job.hob_offset,
+            "shift_range": cut.offsets,
         },
         "face_width": job.face_width,
         "feed": job.feed,
@@ -73,7 +79,10 @@ def _head(cut: CutSetup) -> Iterator[str]:
     way = "climb" if job.climb else "conventional"
     feed = f"feed {job.feed:g} mm per turn of the table, {way}"
     yield f"  face width {job.face_width:g} mm, {feed}, {cut.train.rpm:.0f} rpm"
-    yield f"  {cut.hob_length:.1f} mm of the hob's length cut the flanks; more of it lets it be shifted"
+    shifted = "more of it lets it be shifted"
+    if cut.offsets is not None:
+        shifted = f"it may be shifted from {cut.offsets[0]:.1f} to {cut.offsets[1]:.1f} mm"
+    yield f"  {cut.hob_length:.1f} mm of the hob's length cut the flanks; {shifted}"
     flat, mark = ridges(job)
     yield f"  ridges by themselves: generating flats {flat * 1000:.2f} um, feed marks {mark * 1000:.2f} um"
 
