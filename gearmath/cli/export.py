@@ -19,7 +19,7 @@ from gearmath.cli.common import (
     nominal_words,
     output,
 )
-from gearmath.cli.dialect import CONTROL, LINUXCNC, dialect_of
+from gearmath.cli.dialect import CONTROL, dialect_of
 from gearmath.errors import InputError
 
 _FOLDER = click.option(
@@ -74,14 +74,11 @@ def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str
     from gearmath.export.post import post_file
     from gearmath.machine.judging.checked import checked_cut
     from gearmath.machine.planning.cut_plan import CuttingJob
-    from gearmath.machine.writing.cutting import program_of
-    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     milling_machine, source = load_milling_machine(find(machine)), find(gear_set)
-    dialect = dialect_of(milling_machine, control, None, None)
-    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
+    dialect = dialect_of(milling_machine, control)
     pair = load_pair(source)
     milled = {name: spec for name, spec in pair.members.items() if spec.process == "face_milling"}
     if not milled:
@@ -93,7 +90,7 @@ def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str
     for name, job in jobs.items():
         file = f"{name}.settings"
         with bars() as begin, about(source):
-            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, begin, write)
+            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, begin, dialect)
             files[file] = post_file(made.plan, dialect)
     return files
 

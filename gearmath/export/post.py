@@ -19,22 +19,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from gearmath.bevel.method import motion_of
 from gearmath.errors import ComputationError, InputError
+from gearmath.machine.judging.dialects import SINUMERIK, ControlDialect
 from gearmath.machine.planning.cut_plan import CuttingPlan, lift, middle_of_tooth, plunge_lift
 from gearmath.machine.planning.passes import Pass, tooth_angles
 from gearmath.machine.planning.path import Cut
-from gearmath.machine.writing.cutting import CLEARANCE, program_of
-from gearmath.machine.writing.linuxcnc.cutting import program_of as linuxcnc_program
+from gearmath.machine.writing.cutting import CLEARANCE
 from gearmath.machine.writing.words import Positions, feed_number
 from gearmath.specs.milling_machine import AXES
 from gearmath.version import __version__
 
-_LINUXCNC = "linuxcnc"
 #: The name of a program while its text is turned into a form.
 _NAME = "GM_POST_NAME"
 _NUMBER = re.compile(r"-?\d+\.\d+")
@@ -54,7 +53,7 @@ class _Form:
     rolls: list[tuple[Cut, str, float, Pass]]
 
 
-def post_file(plan: CuttingPlan, dialect: str = "sinumerik") -> str:
+def post_file(plan: CuttingPlan, dialect: ControlDialect = SINUMERIK) -> str:
     """The settings file of one planned member, for programs in a dialect.
 
     Raises InputError for a face hobbed member and for polynomial blocks, ComputationError where a number of the program
@@ -64,11 +63,8 @@ def post_file(plan: CuttingPlan, dialect: str = "sinumerik") -> str:
         raise InputError(f"{plan.name}: face hobbed: gm-post writes the cuts of face milling")
     if any(one.bends is not None for one in plan.passes):
         raise InputError(f"{plan.name}: blocks = poly: gm-post writes straight blocks")
-    positions = Positions.of(plan.machine, plan.machine.tool_length)
-    if dialect == _LINUXCNC:
-        positions = replace(positions, modulo=False)  # A counts on
-    form = _Form(plan, positions, _rolls(plan))
-    text = (linuxcnc_program if dialect == _LINUXCNC else program_of)(plan, _NAME).splitlines()
+    form = _Form(plan, dialect.positions(plan.machine), _rolls(plan))
+    text = dialect.cutting(plan, _NAME).splitlines()
     body = "".join(f"{line}\n" for line in (*_values(form), *_roll_lines(form), *_lines(form, text)))
     return f"gm-post 1\nsum {_fnv(body.encode('ascii')):016x}\n{body}"
 

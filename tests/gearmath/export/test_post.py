@@ -15,6 +15,7 @@ from gearmath.cli import main
 from gearmath.export.cnc import export_cnc
 from gearmath.export.post import post_file
 from gearmath.machine.control.executor import execute
+from gearmath.machine.judging.dialects import LINUXCNC
 from gearmath.machine.planning.cut_plan import CuttingJob, CuttingPlan, cutting_plan
 from gearmath.machine.planning.path import axis_positions
 from gearmath.machine.writing.cutting import program_of
@@ -109,7 +110,7 @@ def test_program_for_linuxcnc_is_that_of_its_python_writer(
     """No numbers of blocks, A counts on, and Z of the tip: the words come from the settings file."""
     machine = vertical.model_copy(update={"z_reference": "tip"})
     plan = planned(load_pair(bundled(f"{name}.toml")), member, machine, spaces=(0, 3), roughing_stock=0.2)
-    text = post_file(plan, "linuxcnc")
+    text = post_file(plan, LINUXCNC)
     assert post(gm_post, text, tmp_path, name="CUT.ngc") == (linuxcnc_program(plan, "CUT"), "")
 
 
