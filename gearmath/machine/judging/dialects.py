@@ -98,7 +98,9 @@ LINUXCNC = ControlDialect(
     cutting=linuxcnc_cutting.program_of,
     probing=linuxcnc_probing.LINUXCNC,
     blocks=LinuxCncBlocks,
-    positions=lambda machine: replace(_cutter_positions(machine), modulo=False),  # A counts on
+    positions=lambda machine: replace(
+        _cutter_positions(machine), modulo=False, turning_cutter=False
+    ),  # A and C count on
     block_count=block_count,
     sheet=LINUXCNC_WORDS,
     file_name=linuxcnc_name,
