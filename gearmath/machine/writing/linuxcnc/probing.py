@@ -24,7 +24,6 @@ from gearmath.specs.milling_machine import MillingMachine
 
 
 def write_touches(
-    kind: type[LinuxCncBlocks],
     program_name: str,
     header: Sequence[str],
     targets: Targets,
@@ -35,6 +34,7 @@ def write_touches(
     level: float,
     room: Room,
     repeat: int = 1,
+    kind: type[LinuxCncBlocks] = LinuxCncBlocks,
 ) -> str:
     """The text of a probing program of a ``kind`` of blocks, sideways at the ``level``; the probe comes from home.
 
@@ -47,7 +47,7 @@ def write_touches(
 
 def touch_writer(kind: type[LinuxCncBlocks]) -> TouchWriter:
     """The writer of probing programs in blocks of LinuxCNC or of a relative."""
-    return TouchWriter((f"unconfirmed: {NOT_ON_METAL}",), partial(write_touches, kind))
+    return TouchWriter((f"unconfirmed: {NOT_ON_METAL}",), partial(write_touches, kind=kind))
 
 
 #: Programs for LinuxCNC.
