@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import click
 
@@ -19,7 +20,7 @@ from gearmath.cli.common import (
     nominal_words,
     output,
 )
-from gearmath.cli.dialect import CONTROL, LINUXCNC, dialect_of
+from gearmath.cli.dialect import CONTROL, dialect_of
 from gearmath.errors import InputError
 
 _FOLDER = click.option(
@@ -52,48 +53,47 @@ def teensy(machine: str, folder: Path) -> None:
 @click.argument("gear_set", metavar="[SET]", required=False)
 @MACHINE
 @CONTROL
+@click.option(
+    "--blocks",
+    type=click.Choice(["g1", "poly"]),
+    default="g1",
+    show_default=True,
+    help="Straight blocks, or polynomials where the cutter rolls, in the programs of gm-post.",
+)
 @_FOLDER
-def cnc(gear_set: str | None, machine: str, control: str | None, folder: Path) -> None:
+def cnc(gear_set: str | None, machine: str, control: str | None, blocks: Literal["g1", "poly"], folder: Path) -> None:
     """C library of the bevel gear kernels for a CNC post-processor; with SET also settings files for its gm-post.
 
-    Of every face milled member of SET (a TOML file, or a bundled one) the folder gets MEMBER.settings, from which
-    gm-post, a C program of the folder, writes the program of 'gearmath nc cut' without Python.
+    Of every member of SET (a TOML file, or a bundled one) the folder gets MEMBER.settings, from which gm-post, a C
+    program of the folder, writes the program of 'gearmath nc cut' without Python.
     """
     from gearmath.export.cnc import export_cnc
 
-    settings = _settings(gear_set, machine, control) if gear_set is not None else {}
+    settings = _settings(gear_set, machine, control, blocks) if gear_set is not None else {}
     names = export_cnc(folder, settings)
     click.echo(f"{folder}: {len(names)} files")
     for name in settings:
         click.echo(f"{folder / name}: {name.removesuffix('.settings')}, for gm-post")
 
 
-def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str]:
+def _settings(gear_set: str, machine: str, control: str | None, blocks: Literal["g1", "poly"]) -> dict[str, str]:
     """Settings files of the members of a set, by name; their programs are run first."""
     from gearmath.bevel.pair import load_pair
     from gearmath.export.post import post_file
     from gearmath.machine.judging.checked import checked_cut
     from gearmath.machine.planning.cut_plan import CuttingJob
-    from gearmath.machine.writing.cutting import program_of
-    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     milling_machine, source = load_milling_machine(find(machine)), find(gear_set)
-    dialect = dialect_of(milling_machine, control, None, None)
-    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
+    dialect = dialect_of(milling_machine, control)
     pair = load_pair(source)
-    milled = {name: spec for name, spec in pair.members.items() if spec.process == "face_milling"}
-    if not milled:
-        raise InputError(f"{source}: process = face_hobbing: gm-post writes the cuts of face milled members")
-    for name in pair.members.keys() - milled.keys():
-        click.echo(f"{source}: {name}: face hobbed, no settings file: gm-post writes the cuts of face milling")
-    jobs = {name: CuttingJob(tuple(range(spec.teeth))) for name, spec in milled.items()}
+    jobs = {name: CuttingJob(tuple(range(spec.teeth)), blocks=blocks) for name, spec in pair.members.items()}
     files = {}
     for name, job in jobs.items():
         file = f"{name}.settings"
         with bars() as begin, about(source):
-            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, begin, write)
+            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, begin, dialect)
             files[file] = post_file(made.plan, dialect)
     return files
 
