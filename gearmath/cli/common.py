@@ -201,12 +201,12 @@ def bar(total: int, unit: str, quiet: bool = False) -> Iterator[Any]:
 
 
 @contextmanager
-def bars() -> Iterator[Callable[[int, str], Any]]:
+def bars(quiet: bool = False) -> Iterator[Callable[[int, str], Any]]:
     """Progress bars one after the other: each begins, with its total and unit, when the one before ends."""
     with ExitStack() as stack:
 
         def begin(total: int, unit: str) -> Any:
             stack.close()
-            return stack.enter_context(bar(total, unit))
+            return stack.enter_context(bar(total, unit, quiet))
 
         yield begin
