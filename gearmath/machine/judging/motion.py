@@ -16,7 +16,6 @@ from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.run import CuttingRun
 from gearmath.machine.planning.clear_space import clear_height, room_of
 from gearmath.machine.planning.cut_plan import DEFAULT_FEED, DEFAULT_SPINDLE_RPM, middle_of_tooth
-from gearmath.machine.planning.feeds import accelerations
 from gearmath.machine.planning.passes import tooth_angles
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
@@ -182,27 +181,28 @@ def speeds(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
     limits = machine.limits(where.shape[1])
     feed = np.flatnonzero(~path.rapid & (path.seconds > 0.0) & (np.arange(len(path.rapid)) > 0))
     inner = np.append(path.inner, False) if len(path.inner) else np.zeros(len(path.rapid) + 1, dtype=bool)
-    ends = np.flatnonzero((np.diff(feed) > 1) | _curve_ends(inner, feed)) + 1
-    for rows in np.split(feed, ends):
-        if not len(rows):
-            continue
-        steps = np.nan_to_num(where[rows] - where[rows - 1])
-        seconds = path.seconds[rows]
-        curved = inner[rows[0]]
-        gained = np.abs(accelerations(steps, seconds))[int(curved) : -1]
-        for values, limit, per, what in (
-            (np.abs(steps) / seconds[:, None], limits.max_speed, 60.0, "/min"),
-            (gained, limits.max_acceleration, 1.0, "/s2"),
-            (_jerks(steps, seconds) if curved else steps[:0], limits.max_jerk, 1.0, "/s3"),
-        ):
-            for row, axis in np.argwhere(values > limit * (1.0 + _SLACK)):
-                scale, unit = limits.scale[axis] * per, limits.units[axis]
-                yield Fault(
-                    f"needs {values[row, axis] * scale:.0f} {unit}{what} of {limits.names[axis]}: {machine.name} "
-                    f"allows {limit[axis] * scale:g} {unit}{what}",
-                    int(path.line[rows[row]]),
-                    "speed",
-                )
+    first = np.append(True, (np.diff(feed) > 1) | _curve_ends(inner, feed))[: len(feed)]
+    group = np.cumsum(first)
+    curved = inner[feed[first]][group - 1]
+    steps, seconds = np.nan_to_num(where[feed] - where[feed - 1]), path.seconds[feed]
+    speed = steps / seconds[:, None]
+    gained, times = _gained(speed, seconds, first)
+    found = []
+    for number, (values, asked, limit, per, what) in enumerate(
+        (
+            (np.abs(speed), np.full(len(feed), True), limits.max_speed, 60.0, "/min"),
+            (np.abs(gained), ~(curved & first), limits.max_acceleration, 1.0, "/s2"),
+            (_jerks(gained, times), curved & ~_up_to_second(first), limits.max_jerk, 1.0, "/s3"),
+        )
+    ):
+        for row, axis in np.argwhere((values > limit * (1.0 + _SLACK)) & asked[:, None]):
+            scale, unit = limits.scale[axis] * per, limits.units[axis]
+            what_is_needed = (
+                f"needs {values[row, axis] * scale:.0f} {unit}{what} of {limits.names[axis]}: {machine.name} "
+                f"allows {limit[axis] * scale:g} {unit}{what}"
+            )
+            found.append((group[row], number, row, Fault(what_is_needed, int(path.line[feed[row]]), "speed")))
+    yield from (fault for *_, fault in sorted(found, key=lambda one: one[:3]))
 
 
 def _curve_ends(inner: np.ndarray, feed: np.ndarray) -> np.ndarray:
@@ -212,11 +212,25 @@ def _curve_ends(inner: np.ndarray, feed: np.ndarray) -> np.ndarray:
     return last | (curved[feed[:-1]] != curved[feed[1:]])
 
 
-def _jerks(steps: np.ndarray, seconds: np.ndarray) -> np.ndarray:
-    """Change of acceleration over time (n-2,k) within a block of straight parts (n,k)."""
-    gained = accelerations(steps, seconds)[1:-1]
-    times = (seconds[1:] + seconds[:-1]) / 2
-    return np.abs(np.diff(gained, axis=0)) / ((times[1:] + times[:-1]) / 2)[:, None]
+def _gained(speed: np.ndarray, seconds: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Change of speed over time (n,k) from block to block, from standstill at each ``first``; and that time."""
+    before, earlier = np.zeros_like(speed), np.zeros_like(seconds)
+    before[1:], earlier[1:] = speed[:-1], seconds[:-1]
+    before[first], earlier[first] = 0.0, 0.0
+    times = (seconds + earlier) / 2
+    return (speed - before) / times[:, None], times
+
+
+def _up_to_second(first: np.ndarray) -> np.ndarray:
+    """Whether rows (n,) are the first or the second of their group."""
+    return first | np.append(False, first[:-1])[: len(first)]
+
+
+def _jerks(gained: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Change of acceleration over time (n,k), which means something from the third row of a group on."""
+    jerks = np.zeros_like(gained)
+    jerks[1:] = np.abs(np.diff(gained, axis=0)) / ((times[1:] + times[:-1]) / 2)[:, None]
+    return jerks
 
 
 def feeds(
