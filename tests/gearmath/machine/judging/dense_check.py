@@ -300,7 +300,8 @@ class Dense:
             if not len(some):
                 continue
             steps = int(np.clip(way[asked].max() / 0.04, 9, 400))
-            for few in np.array_split(np.arange(len(asked)), 1 + len(asked) * steps * len(some) // 1_000_000):
+            count = min(len(asked), 1 + len(asked) * steps * len(some) // 1_000_000)
+            for few in np.array_split(np.arange(len(asked)), count):
                 first, last = (one[few, None] for one in pair)
                 poses = first + np.linspace(0, 1, steps)[:, None] * (last - first) - turn
                 met = self.inside(poses.reshape(-1, 5), tool, some).reshape(len(few), -1).any(axis=1)

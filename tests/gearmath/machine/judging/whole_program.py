@@ -29,7 +29,8 @@ from gearmath.machine.judging.block_check import _height as height_on_blade
 from gearmath.machine.judging.block_check import watched_flanks
 from gearmath.machine.judging.collision import collisions, rapid_approaches
 from gearmath.machine.judging.cut import beside_limit, beside_the_path, distances_aside, metal_left, off_the_path
-from gearmath.machine.judging.motion import feeds, speeds, spindle, travel
+from gearmath.machine.judging.feed import feed_limits, feeds
+from gearmath.machine.judging.motion import speeds, spindle, travel
 from gearmath.machine.judging.program import faults_of
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.mill import expose
@@ -385,6 +386,7 @@ class Whole:
             *travel(path, MACHINE),
             *speeds(path, MACHINE),
             *feeds(path, runs, self.spec, MACHINE, self.stated),
+            *feed_limits(path, runs, self.spec, MACHINE),
             *beside_the_path(runs, self.spec, MACHINE, self.stated),
         ]
         seen = {one.line - 1 for one in found if one.line}
