@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from gearmath.control.file_names import control_name, linuxcnc_name
 from gearmath.control.interface import RunStart
 from gearmath.control.parts import chosen_points
 from gearmath.control.plan import WHOLE, choosing, planned, triggers
@@ -15,6 +14,7 @@ from gearmath.control.store_run import StoredRun
 from gearmath.control.store_summary import parts
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
+from gearmath.machine.control.file_names import control_name, linuxcnc_name
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import decoded, is_for_linuxcnc
 from gearmath.machine.measuring.artefacts import Artefacts
