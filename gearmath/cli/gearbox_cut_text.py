@@ -1,10 +1,8 @@
-"""What ``gearmath gearbox cut`` prints for people, and as JSON."""
+"""What ``gearmath gearbox cut`` prints for people."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
-from typing import Any
 
 from gearmath.cli.common import table
 from gearmath.gearbox.hobbed.choice import Choice
@@ -21,50 +19,6 @@ _LEAST_SHARE = 0.5
 def cut_text(cut: CutSetup, gears: Sequence[VirtualGear], shares: Sequence[Contribution]) -> str:
     """What was cut, the figures with their classes, and which part is to blame."""
     return "\n".join([*_head(cut), *_figures(cut, gears), *_thickness(gears), *_shares(shares)])
-
-
-def cut_values(cut: CutSetup, gears: Sequence[VirtualGear], shares: Sequence[Contribution]) -> dict[str, Any]:
-    """The same for programs. Figures in µm, dimensions in mm."""
-    job = cut.job
-    flat, mark = ridges(job)
-    return {
-        "machine": cut.train.machine.name,
-        "teeth": job.gear.teeth,
-        "module": job.gear.module,
-        "profile_shift": job.gear.shift,
-        "hob": {
-            "name": cut.hob_name,
-            "starts": job.hob.starts,
-            "gashes": job.hob.gashes,
-            "diameter": job.hob.diameter,
-            "diameter_assumed": cut.assumed_diameter,
-            "tip_radius": job.hob.tip_radius,
-            "protuberance": job.hob.protuberance,
-            "topping": job.hob.dedendum is not None,
-            "gash_lead": job.hob.gash_lead,
-            "shift": job.hob_offset,
-            "shift_range": cut.offsets,
-        },
-        "face_width": job.face_width,
-        "feed": job.feed,
-        "rpm": cut.train.rpm,
-        "seconds": cut.train.seconds,
-        "generating_length": cut.hob_length,
-        "generating_flat_um": flat * 1000,
-        "feed_mark_um": mark * 1000,
-        "tolerances": NOT_CONFIRMED,
-        "not_covered": outside(job),
-        "gears": [
-            {
-                "rule": gear.rule,
-                "accuracy_class": gear.accuracy_class,
-                "figures": [asdict(row) for row in gear.classes],
-                "thickness": [asdict(each) for each in gear.found.thicknesses],
-            }
-            for gear in gears
-        ],
-        "contributions": [asdict(share) for share in shares],
-    }
 
 
 def _head(cut: CutSetup) -> Iterator[str]:
@@ -145,26 +99,6 @@ def thread_text(planned: ThreadPlan, traces: Sequence[ThreadTrace]) -> str:
     return "\n".join([head, table(["rule", "one lead / um", "whole length / um", "drift / um"], rows)])
 
 
-def thread_values(planned: ThreadPlan, traces: Sequence[ThreadTrace]) -> dict[str, Any]:
-    """The same for programs."""
-    return {
-        "machine": planned.machine,
-        "pitch": float(planned.pitch),
-        "lead": float(planned.lead),
-        "length": float(traces[0].place[-1]),
-        "rpm": planned.rpm,
-        "threads": [
-            {
-                "rule": trace.rule,
-                "single_lead_um": trace.single_lead * 1000,
-                "total_um": trace.total * 1000,
-                "drift_um": trace.drift * 1000,
-            }
-            for trace in traces
-        ],
-    }
-
-
 def choice_text(found: Choice) -> str:
     """The parts, and the figures of the gear that they cut."""
     parts = found.parts
@@ -181,16 +115,3 @@ def choice_text(found: Choice) -> str:
             f"  {NOT_CONFIRMED}",
         ]
     )
-
-
-def choice_values(found: Choice) -> dict[str, Any]:
-    """The same for programs."""
-    return {
-        "class": found.wanted,
-        **asdict(found.parts),
-        "rpm": found.rpm,
-        "cuts": found.tried,
-        "reached": found.gear.accuracy_class,
-        "figures": [asdict(row) for row in found.gear.classes],
-        "tolerances": NOT_CONFIRMED,
-    }
