@@ -108,11 +108,10 @@ def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None
     leaves. Needs the extra cad: pip install '.[cad]'.
     """
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
     pair = load_set(gear_set)
     what = pair if member is None else pair.member(member)
-    with bars(quiet=as_json) as begin, about(find(gear_set)):
+    with bars(quiet=as_json) as begin, about(pair.source):
         written = what.to_step(target, begin)
     if as_json:
         echo_json({name: {"volume_mm3": one.volume} for name, one in written.items()})
@@ -127,10 +126,9 @@ def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None
 def stl(gear_set: str, target: Path) -> None:
     """Triangles of the pair in mesh, both members whole, touching on the drive side; of one: 'gearmath tooth'."""
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
     pair = load_set(gear_set)
-    with bars() as begin, about(find(gear_set)):
+    with bars() as begin, about(pair.source):
         triangles = pair.to_stl(target, begin)
     click.echo(f"{target}: {triangles} triangles, pinion axis Z, gear axis in the plane of Z and X")
 
@@ -150,13 +148,13 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
     For measuring machines that take such lists; row by row, root to tip, toe to heel. 'gearmath points' reads them.
     """
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
-    one = member_of(load_set(gear_set), member)
+    pair = load_set(gear_set)
+    one = member_of(pair, member)
     shape = _grid(grid)
     if not 0 <= margin < 0.5:
         raise InputError(f"--margin {margin:g}: must be at least 0 and less than 0.5")
-    with about(find(gear_set)):
+    with about(pair.source):
         found = one.flank(flank, shape, margin)
     found.to_text(target)
     click.echo(f"{target}: {len(found.file)} points{nominal_words(one, flank)}")
@@ -168,10 +166,9 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
 def rexs(gear_set: str, target: Path) -> None:
     """The set as REXS 2.0.0; what REXS has no name for stays in attributes of its own (docs/exchange.md)."""
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
     pair = load_set(gear_set)
-    with about(find(gear_set)):
+    with about(pair.source):
         count = pair.to_rexs(target)
     click.echo(f"{target}: {count} components")
 
@@ -184,3 +181,10 @@ def summary(gear_set: str, target: Path) -> None:
     from gearmath.front.sets import load_set
 
     click.echo(f"{load_set(gear_set).to_summary(target)}: summary sheet, prints on A4")
+
+
+def _grid(text: str) -> tuple[int, int]:
+    rows, _, columns = text.partition("x")
+    if not (rows.isdecimal() and columns.isdecimal() and 2 <= int(rows) <= 200 and 2 <= int(columns) <= 200):
+        raise InputError(f"--grid {text}: must read like 5x9, each from 2 to 200")
+    return int(rows), int(columns)

@@ -142,7 +142,7 @@ def _lines(form: _Form, text: Sequence[str]) -> Iterator[str]:
             yield _kept(line)
     ends = [*starts[1:], len(text)]
     each = {(cut.tool, stage): k for k, (cut, stage, _, _) in enumerate(rolls)}
-    angles = tooth_angles(plan.member.teeth, plan.member.index_correction)
+    angles = tooth_angles(plan.member.teeth, plan.member.rad("index_correction"))
     lifts = [lift(plan.member, cut, stock, plan.job.dry_run) for cut, _, stock, _ in rolls]
     for number, (one, (start, end)) in enumerate(zip(plan.passes, zip(starts, ends, strict=True), strict=True)):
         stage = plan.job.stages[number // len(plan.job.spaces) % len(plan.job.stages)][0]

@@ -237,7 +237,7 @@ def feeds(
             kinds = [(np.full(len(rows), True), stated.rpm, DEFAULT_SPINDLE_RPM)]
         else:
             unit = "mm/min"
-            turns = tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+            turns = tooth_angles(member.teeth, member.rad("index_correction"))[run.space[rows]]
             before, after = run.axes[rows - 1].copy(), run.axes[rows].copy()
             plunges = ~(after - before)[:, [0, 1, 3, 4]].any(axis=1)
             tooth, pose = middle_of_tooth(member, run.cut), (machine.pivot_height, machine.pivot)
