@@ -18,7 +18,7 @@ from gearmath.cli.common import (
     nominal_words,
     output,
 )
-from gearmath.cli.dialect import CONTROL, LINUXCNC, dialect_of
+from gearmath.cli.dialect import CONTROL, dialect_of
 from gearmath.errors import InputError
 
 _FOLDER = click.option(
@@ -57,43 +57,25 @@ def cnc(gear_set: str | None, machine: str, control: str | None, folder: Path) -
     Of every face milled member of SET (a TOML file, or a bundled one) the folder gets MEMBER.settings, from which
     gm-post, a C program of the folder, writes the program of 'gearmath nc cut' without Python.
     """
-    from gearmath.export.cnc import export_cnc
+    from gearmath.front.exports import export_cnc
+    from gearmath.front.machines import load_machine
+    from gearmath.front.sets import load_set
 
-    settings = _settings(gear_set, machine, control) if gear_set is not None else {}
-    names = export_cnc(folder, settings)
+    if gear_set is None:
+        click.echo(f"{folder}: {len(export_cnc(folder))} files")
+        return
+    on, pair = load_machine(machine), load_set(gear_set)
+    dialect = dialect_of(on.spec, control, None, None)
+    hobbed = {name for name, spec in pair.spec.members.items() if spec.process == "face_hobbing"}
+    if len(hobbed) < len(pair.spec.members):
+        for name in hobbed:
+            click.echo(f"{pair.source}: {name}: face hobbed, no settings file: gm-post writes the cuts of face milling")
+    with bars() as begin:
+        names = export_cnc(folder, pair, on, dialect, begin)
     click.echo(f"{folder}: {len(names)} files")
-    for name in settings:
-        click.echo(f"{folder / name}: {name.removesuffix('.settings')}, for gm-post")
-
-
-def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str]:
-    """Settings files of the members of a set, by name; their programs are run first."""
-    from gearmath.bevel.pair import load_pair
-    from gearmath.export.post import post_file
-    from gearmath.machine.judging.checked import checked_cut
-    from gearmath.machine.planning.cut_plan import CuttingJob
-    from gearmath.machine.writing.cutting import program_of
-    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.toml import find
-
-    milling_machine, source = load_milling_machine(find(machine)), find(gear_set)
-    dialect = dialect_of(milling_machine, control, None, None)
-    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
-    pair = load_pair(source)
-    milled = {name: spec for name, spec in pair.members.items() if spec.process == "face_milling"}
-    if not milled:
-        raise InputError(f"{source}: process = face_hobbing: gm-post writes the cuts of face milled members")
-    for name in pair.members.keys() - milled.keys():
-        click.echo(f"{source}: {name}: face hobbed, no settings file: gm-post writes the cuts of face milling")
-    jobs = {name: CuttingJob(tuple(range(spec.teeth))) for name, spec in milled.items()}
-    files = {}
-    for name, job in jobs.items():
-        file = f"{name}.settings"
-        with bars() as begin, about(source):
-            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, begin, write)
-            files[file] = post_file(made.plan, dialect)
-    return files
+    for name in pair.spec.members:
+        if name not in hobbed:
+            click.echo(f"{folder / f'{name}.settings'}: {name}, for gm-post")
 
 
 @export.command()

@@ -7,10 +7,16 @@ from pathlib import Path
 
 from derivations.expression import Expression
 from gearmath.engine.kernel import Kernel
+from gearmath.errors import InputError, about
 from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import export_cnc as _export_cnc
 from gearmath.export.folder import write_folder
+from gearmath.export.post import post_file
 from gearmath.export.teensy import export_teensy as _export_teensy
+from gearmath.front.machines import Machine, load_machine
+from gearmath.front.programs import cutting
+from gearmath.front.progress import Begin, silent
+from gearmath.front.sets import GearSet
 from gearmath.lowering import lower
 from gearmath.specs.hobbing import HobbingMachine
 
@@ -38,6 +44,33 @@ def export_teensy(machine: HobbingMachine, folder: str | Path) -> list[str]:
     return list(_export_teensy(machine, Path(folder)))
 
 
-def export_cnc(folder: str | Path) -> list[str]:
-    """Write the C library for a CNC post-processor; the names of its files. Raises InputError."""
-    return list(_export_cnc(Path(folder)))
+def export_cnc(
+    folder: str | Path,
+    pair: GearSet | None = None,
+    machine: Machine | None = None,
+    control: str | None = None,
+    begin: Begin = silent,
+) -> list[str]:
+    """Write the C library for a CNC post-processor; the names of its files.
+
+    With a ``pair`` also a settings file of each face milled member, from which ``gm-post``, a C program of the folder,
+    writes the program of :meth:`Member.program`. Raises InputError.
+    """
+    settings = {} if pair is None else _settings(pair, machine or load_machine(), control, begin)
+    return list(_export_cnc(Path(folder), settings))
+
+
+def _settings(pair: GearSet, machine: Machine, control: str | None, begin: Begin) -> dict[str, str]:
+    """Settings files of the face milled members of a set, by name; their programs are run first."""
+    milled = [pair.member(name) for name, spec in pair.spec.members.items() if spec.process == "face_milling"]
+    if not milled:
+        where = "" if pair.source is None else f"{pair.source}: "
+        raise InputError(f"{where}process = face_hobbing: gm-post writes the cuts of face milled members")
+    dialect, files = machine.spec.control.dialect(control), {}
+    for one in milled:
+        file = f"{one.name}.settings"
+        with about(pair.source):
+            made = cutting(one, machine, one.name.upper(), None, dialect, file, begin)
+            if made.made is not None:
+                files[file] = post_file(made.made.plan, dialect)
+    return files
