@@ -147,7 +147,7 @@ SHEET = click.option(
     "--sheet",
     type=NewFile(),
     metavar="SETUP.html",
-    help="Also write the set-up sheet of a program for a SINUMERIK: a page that prints on A4.",
+    help="Also write the set-up sheet of the program: a page that prints on A4.",
 )
 
 

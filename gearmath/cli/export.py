@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import click
 
@@ -18,7 +19,7 @@ from gearmath.cli.common import (
     nominal_words,
     output,
 )
-from gearmath.cli.dialect import CONTROL, dialect_of
+from gearmath.cli.dialect import CONTROL
 from gearmath.errors import InputError
 
 _FOLDER = click.option(
@@ -50,32 +51,30 @@ def teensy(machine: str, folder: Path) -> None:
 @click.argument("gear_set", metavar="[SET]", required=False)
 @MACHINE
 @CONTROL
+@click.option(
+    "--blocks",
+    type=click.Choice(["g1", "poly"]),
+    default="g1",
+    show_default=True,
+    help="Straight blocks, or polynomials where the cutter rolls, in the programs of gm-post.",
+)
 @_FOLDER
-def cnc(gear_set: str | None, machine: str, control: str | None, folder: Path) -> None:
+def cnc(gear_set: str | None, machine: str, control: str | None, blocks: Literal["g1", "poly"], folder: Path) -> None:
     """C library of the bevel gear kernels for a CNC post-processor; with SET also settings files for its gm-post.
 
-    Of every face milled member of SET (a TOML file, or a bundled one) the folder gets MEMBER.settings, from which
-    gm-post, a C program of the folder, writes the program of 'gearmath nc cut' without Python.
+    Of every member of SET (a TOML file, or a bundled one) the folder gets MEMBER.settings, from which gm-post, a C
+    program of the folder, writes the program of 'gearmath nc cut' without Python.
     """
     from gearmath.front.exports import export_cnc
     from gearmath.front.machines import load_machine
     from gearmath.front.sets import load_set
 
-    if gear_set is None:
-        click.echo(f"{folder}: {len(export_cnc(folder))} files")
-        return
-    on, pair = load_machine(machine), load_set(gear_set)
-    dialect = dialect_of(on.spec, control, None, None)
-    hobbed = {name for name, spec in pair.spec.members.items() if spec.process == "face_hobbing"}
-    if len(hobbed) < len(pair.spec.members):
-        for name in hobbed:
-            click.echo(f"{pair.source}: {name}: face hobbed, no settings file: gm-post writes the cuts of face milling")
+    pair = None if gear_set is None else load_set(gear_set)
     with bars() as begin:
-        names = export_cnc(folder, pair, on, dialect, begin)
+        names = export_cnc(folder, pair, load_machine(machine), control, blocks, begin)
     click.echo(f"{folder}: {len(names)} files")
-    for name in pair.spec.members:
-        if name not in hobbed:
-            click.echo(f"{folder / f'{name}.settings'}: {name}, for gm-post")
+    for name in () if pair is None else pair.spec.members:
+        click.echo(f"{folder / f'{name}.settings'}: {name}, for gm-post")
 
 
 @export.command()

@@ -29,6 +29,7 @@ _MEANINGLESS = {
         "shift": "--shift",
         "feed": "--feed",
         "width": "--width",
+        "hob_shift": "--hob-shift",
         "points": "--csv",
         "flanks": "--stl",
     },
@@ -60,6 +61,13 @@ _MEANINGLESS = {
     help="Axial feed, in mm per turn of the table.",
 )
 @click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@click.option(
+    "--hob-shift",
+    type=Number(-500.0, 500.0, "mm"),
+    default=0.0,
+    show_default=True,
+    help="The hob's middle from the pitch point, in mm, to the right as seen from the hob towards the gear.",
+)
 @click.option("--length", type=Number(1.0, 3000.0, "mm"), default=100.0, show_default=True, help="Of a thread, in mm.")
 @click.option("--rpm", type=float, help="Speed of hob or spindle in rpm; the highest within the limits if left out.")
 @click.option(
@@ -123,7 +131,10 @@ def _cut_gear(
         raise click.UsageError(f"{machine.name} is a hobbing machine: give --teeth")
     if job["hand"] is not None and job["helix"] is None:
         raise click.UsageError("--hand has no meaning without --helix")
-    options = {key: job[key] for key in ("hob", "starts", "helix", "hand", "shift", "feed", "rpm", "seconds", "rule")}
+    options = {
+        key: job[key]
+        for key in ("hob", "starts", "helix", "hand", "shift", "feed", "rpm", "seconds", "rule", "hob_shift")
+    }
     with bars(quiet=as_json) as begin:
         made = hob(
             machine, job["teeth"], compare, begin, face_width=job["width"], climb=job["way"] == "climb", **options

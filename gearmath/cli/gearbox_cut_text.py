@@ -33,7 +33,10 @@ def _head(cut: CutSetup) -> Iterator[str]:
     way = "climb" if job.climb else "conventional"
     feed = f"feed {job.feed:g} mm per turn of the table, {way}"
     yield f"  face width {job.face_width:g} mm, {feed}, {cut.train.rpm:.0f} rpm"
-    yield f"  {cut.hob_length:.1f} mm of the hob's length cut the flanks; more of it lets it be shifted"
+    shifted = "more of it lets it be shifted"
+    if cut.offsets is not None:
+        shifted = f"it may be shifted from {cut.offsets[0]:.1f} to {cut.offsets[1]:.1f} mm"
+    yield f"  {cut.hob_length:.1f} mm of the hob's length cut the flanks; {shifted}"
     flat, mark = ridges(job)
     yield f"  ridges by themselves: generating flats {flat * 1000:.2f} um, feed marks {mark * 1000:.2f} um"
 

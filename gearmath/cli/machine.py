@@ -110,16 +110,16 @@ def cut(
     check_name(target.stem)
     job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
     on = load_machine(machine)
-    dialect = dialect_of(on.spec, control, target if configuration else None, sheet)
+    dialect = dialect_of(on.spec, control, target if configuration else None)
     check_spindle_speed(target.stem, on.spec, rpm)
     one = member_of(load_set(gear_set), member)
     job = replace(job, spaces=_spaces(spaces, one.teeth))
     with bars() as begin:
-        made = cutting(one, on, target.stem, job, dialect, target, begin)
+        made = cutting(one, on, target.stem, job, dialect.name, target, begin)
     page = None if sheet is None else made.sheet(target.name)
     click.echo(f"{made.save(target)}: {len(job.spaces)} of {one.teeth} spaces, {made.blocks} blocks")
     if configuration and made.made is not None:
-        write_configuration(target, on.spec, tools_of(made.made.plan))
+        write_configuration(target, dialect, on.spec, tools_of(made.made.plan))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")

@@ -28,6 +28,7 @@ from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.front.probing import ProbingProgram
+    from gearmath.machine.judging.dialects import ControlDialect
     from gearmath.quality.calibration.axes import AxisCalibration
     from gearmath.quality.calibration.tip import Fit, Tip
     from gearmath.specs.calibration import Calibration
@@ -90,24 +91,24 @@ def probe(
     one = member_of(load_set(gear_set), member)
     teeth = _teeth(topography, one.teeth)
     on, known = load_machine(machine), load_probe(calibration)
-    dialect = dialect_of(on.spec, control, target if configuration else None, sheet)
+    dialect = dialect_of(on.spec, control, target if configuration else None)
     shop = load_shop(errors) if errors else None
     what = teeth, pitch, registration, repeat
     with bars() as begin:
-        made = probing(one, on, known, target.stem, *what, shop, dialect, target, begin)
-    _write(made, target, configuration, sheet)
+        made = probing(one, on, known, target.stem, *what, shop, dialect.name, target, begin)
+    _write(made, target, dialect if configuration else None, sheet)
 
 
-def _write(made: ProbingProgram, target: Path, configuration: bool, sheet: Path | None) -> None:
-    """Write a program of the probe with what belongs to it, and say so."""
+def _write(made: ProbingProgram, target: Path, configured: ControlDialect | None, sheet: Path | None) -> None:
+    """Write a program of the probe with what belongs to it, and say so; ``configured`` wants examples beside it."""
     from gearmath.files import write_text
 
     page = None if sheet is None else made.sheet(target.name)
     clear = f"; {made.clearance}" if made.clearance else ""
     click.echo(f"{made.save(target)}: {made.touches} touches, {made.blocks} blocks{clear}")
-    if configuration:
+    if configured is not None:
         machine = made.machine.spec
-        write_configuration(target, machine, probe_in_table(machine, made.probe))
+        write_configuration(target, configured, machine, probe_in_table(machine, made.probe))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
@@ -115,10 +116,11 @@ def _write(made: ProbingProgram, target: Path, configuration: bool, sheet: Path 
 
 def probe_in_table(machine: MillingMachine, calibration: Calibration) -> dict[str, tuple[int, float]]:
     """Number and length of the probe in the tool table of LinuxCNC, by its name."""
-    from gearmath.specs.control import PROBE, PROBE_NUMBER
+    from gearmath.machine.writing.linuxcnc.probe_words import probe_number
+    from gearmath.specs.control import PROBE
 
     length = calibration.length if machine.z_reference == "tip" else 0.0
-    return {PROBE: (machine.control.tool_numbers.get(PROBE, PROBE_NUMBER), length)}
+    return {PROBE: (probe_number(machine), length)}
 
 
 @click.command("calibrate")
@@ -153,11 +155,11 @@ def nc_calibrate(
     from gearmath.specs.toml import find
 
     on, known = load_machine(machine), load_probe(calibration)
-    dialect = dialect_of(on.spec, control, target if configuration else None, sheet)
+    dialect = dialect_of(on.spec, control, target if configuration else None)
     check_name(target.stem)
     with bars() as begin:
-        made = calibrating(on, known, cycle, target.stem, dialect, target, find(calibration), begin)
-    _write(made, target, configuration, sheet)
+        made = calibrating(on, known, cycle, target.stem, dialect.name, target, find(calibration), begin)
+    _write(made, target, dialect if configuration else None, sheet)
 
 
 @click.command(epilog=f"{TOUCH_CSV} {FLANK_CSV}")

@@ -12,11 +12,12 @@ from gearmath.errors import InputError, about
 from gearmath.files import write_text
 from gearmath.front.machines import Machine, load_machine, load_probe
 from gearmath.front.measured import Measurement
-from gearmath.front.programs import block_count
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, Member
 from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import readable
+from gearmath.machine.judging.dialects import named, of_text
 from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.checked import ProbingChoice, checked_probing, clearances, refuse_faults
 from gearmath.machine.measuring.collision_check import approaches
@@ -63,12 +64,12 @@ class ProbingProgram:
     @property
     def touches(self) -> int:
         """How many touches it plans."""
-        return planned_touches(self.text)
+        return planned_touches(self.read)
 
     @property
     def blocks(self) -> int:
         """How many blocks the control runs."""
-        return block_count(self.text)
+        return of_text(self.text).block_count(self.text)
 
     def save(self, path: str | Path) -> Path:
         """Write the program, in one step; the file should be called ``name``.MPF, which the control expects."""
@@ -79,28 +80,28 @@ class ProbingProgram:
         """The set-up sheet of the program in a ``file`` of this name: HTML that prints on A4."""
         from gearmath.setup_sheet import ProbingJob, calibration_sheet, probing_sheet
 
-        machine, member = self.machine.spec, self.member
+        machine, member, words = self.machine.spec, self.member, of_text(self.text).sheet
         if member is None:
-            return calibration_sheet(machine, self.probe, self.cycle == "axes", file)
+            return calibration_sheet(machine, self.probe, self.cycle == "axes", file, words)
         head, fixture = obstacles(machine, self.shop)
         title, radius = member.gear_set.title, head.spindle_radius
         what = title, member.name, member.spec, machine, self.probe, fixture, radius, self.touches, self.clearance
-        return probing_sheet(ProbingJob(*what), file)
+        return probing_sheet(ProbingJob(*what), file, words)
 
     def check(self, begin: Begin = silent) -> None:
         """Raise InputError where the probe meets a nominal member, touches what it lacks, or does what it must not."""
         machine, probe, name = self.machine.spec, self.probe, self.name
         if self.member is None:
-            found = judge_calibration(self.text, name, machine, probe, begin(self._measuring, "block"))
+            found = judge_calibration(self.read, name, machine, probe, begin(self._measuring, "block"))
         else:
             spec, own = self.member.spec, self.member.name
             if not self._count:
                 raise InputError(f"{name}: touches nothing of the member: no touch is measured before its end")
             head, fixture = obstacles(machine, self.shop)
-            heard = begin(3 * self._count + self.text.count("\n"), "step")
-            met = approaches(self.text, name, spec, own, machine, probe, fixture, head.spindle_radius, heard)
+            heard = begin(3 * self._count + self.read.count("\n"), "step")
+            met = approaches(self.read, name, spec, own, machine, probe, fixture, head.spindle_radius, heard)
             clearances(met, name, "it is not run")
-            found = judge_probing(self.text, name, spec, own, machine, probe, begin(self._measuring, "block"))
+            found = judge_probing(self.read, name, spec, own, machine, probe, begin(self._measuring, "block"))
         refuse_faults(found, name)
 
     def run(
@@ -125,9 +126,14 @@ class ProbingProgram:
             steps = 3 * count
             there = _on_machine(self.member, measured, self.machine, self.probe, shop)
         progress = begin(steps, "block")
-        raw = run_touches(self.text, self.name, there, shop, count, number, progress, self._setup)
+        raw = run_touches(self.read, self.name, there, shop, count, number, progress, self._setup)
         write_text(Path(path), raw)
         return Path(path)
+
+    @cached_property
+    def read(self) -> str:
+        """The text in words that are judged, line for line: those of another control are translated."""
+        return readable(self.text)
 
     @property
     def _setup(self) -> Setup:
@@ -136,11 +142,11 @@ class ProbingProgram:
     @property
     def _measuring(self) -> int:
         """Blocks that measure, for a bar."""
-        return self.text.count("MEAS=1")
+        return self.read.count("MEAS=1")
 
     @cached_property
     def _count(self) -> int:
-        return touch_count(self.text, self.name, self._setup)
+        return touch_count(self.read, self.name, self._setup)
 
 
 def probing(
@@ -168,16 +174,13 @@ def probing(
     >>> program.name, "MEAS=" in program.text
     ('PROBE', True)
     """
-    from gearmath.machine.writing.linuxcnc.probing import LINUXCNC
-    from gearmath.machine.writing.probing import SINUMERIK
-
     if isinstance(repeat, bool) or not isinstance(repeat, int) or not 1 <= repeat <= MOST_TOUCHES:
         raise InputError(f"repeat = {repeat!r}: must be a whole number from 1 to {MOST_TOUCHES}")
     machine, probe = machine or load_machine(), probe or load_probe()
     choice = ProbingChoice(topography, pitch, registration, repeat)
-    writer = LINUXCNC if machine.spec.control.dialect(control) == "linuxcnc" else SINUMERIK
+    dialect = named(machine.spec.control.dialect(control))
     where = member.gear_set.spec, member.name, machine.spec, probe
-    made = checked_probing(*where, choice, name, str(file or name), shop, begin, writer)
+    made = checked_probing(*where, choice, name, str(file or name), shop, begin, dialect)
     return ProbingProgram(member, machine, probe, name, made.text, made.clearance, shop)
 
 
@@ -196,18 +199,16 @@ def calibrating(
 
     Raises InputError naming what the machine cannot do.
     """
-    from gearmath.machine.writing.linuxcnc.probe_words import LinuxCncBlocks
-    from gearmath.machine.writing.probe_words import Blocks
-
     if cycle not in ("tip", "axes"):
         raise InputError(f"cycle = {cycle!r}: must be 'tip' or 'axes'")
     machine, probe = machine or load_machine(), probe or load_probe()
     make, target = (axis_program if cycle == "axes" else calibration_program), str(file or name)
-    words = LinuxCncBlocks if machine.spec.control.dialect(control) == "linuxcnc" else Blocks
+    dialect = named(machine.spec.control.dialect(control))
     with about(None if source is None else Path(source)):
-        text = make(machine.spec, probe, name, words)
-    progress = begin(planned_touches(text), "touch")
-    found = judge_calibration(text, target, machine.spec, probe, progress)
+        text = make(machine.spec, probe, name, dialect.blocks)
+    read = dialect.read(text)
+    progress = begin(planned_touches(read), "touch")
+    found = judge_calibration(read, target, machine.spec, probe, progress)
     refuse_faults(found, target, "the program is not written")
     return ProbingProgram(None, machine, probe, name, text, cycle=cycle)
 

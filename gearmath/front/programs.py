@@ -17,8 +17,9 @@ from gearmath.front.sets import Member
 from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
-from gearmath.machine.control.text import is_for_linuxcnc
+from gearmath.machine.control.text import readable
 from gearmath.machine.judging.checked import CheckedCut, checked_cut
+from gearmath.machine.judging.dialects import named, of_text
 from gearmath.machine.judging.program import faults_of, metal_faults
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.metal import metal
@@ -26,7 +27,6 @@ from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
 from gearmath.machine.planning.targets import teeth_around
-from gearmath.machine.writing.cutting import program_of
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 if TYPE_CHECKING:
@@ -63,10 +63,10 @@ class Program:
     @property
     def blocks(self) -> int:
         """How many blocks the control runs."""
-        return block_count(self.text)
+        return of_text(self.text).block_count(self.text)
 
     def save(self, path: str | Path) -> Path:
-        """Write the program, in one step; the file should be called ``name``.MPF, which the control expects."""
+        """Write the program, in one step; its file should be called ``name``.MPF, or .ngc for LinuxCNC."""
         write_text(Path(path), self.text)
         return Path(path)
 
@@ -82,7 +82,7 @@ class Program:
         if self.made is None:
             raise InputError(f"{self.name}: was not written here: a sheet needs the plan of its program")
         facts = SetupFacts.of(self.made.plan, PLUNGE_FEED)
-        return setup_sheet(facts, file, timing(self.path, self.machine.spec))
+        return setup_sheet(facts, file, timing(self.path, self.machine.spec), of_text(self.text).sheet)
 
     def mill(
         self, shop: SimulatedMachine | None = None, progress: Progress = unheard, number: int | None = None
@@ -119,16 +119,16 @@ class Program:
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
         known = None if milled is None else milled.file
         progress = begin(member.teeth, "space")
-        left = metal_faults(self.text, self.path, self.runs, member, name, machine, self.space, progress, known)
-        found = faults_of(self.text, self.path, self.runs, member, name, machine)
+        left = metal_faults(self.read, self.path, self.runs, member, name, machine, self.space, progress, known)
+        found = faults_of(self.read, self.path, self.runs, member, name, machine)
         return Judgement(left, (*map(str, left.faults), *map(str, found)))
 
     def faults(self) -> list[str]:
         """What :meth:`judge` finds, a sentence each; empty where the machine may run it. A dry run cuts no metal."""
-        if Stated.of(self.text).coolant:
+        if Stated.of(self.read).coolant:
             return list(self.judge().faults)
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
-        return [str(fault) for fault in faults_of(self.text, self.path, self.runs, member, name, machine)]
+        return [str(fault) for fault in faults_of(self.read, self.path, self.runs, member, name, machine)]
 
     def report(
         self, tolerance: float = 1e-3, shop: SimulatedMachine | None = None, begin: Begin = silent
@@ -146,12 +146,17 @@ class Program:
         """How long the control takes [s], where it is slow, and how far it leaves the path; as ``gearmath nc time``."""
         from gearmath.front.timing import timed
 
-        return timed(self.text, self.name, self.machine, path=self.path).trajectory
+        return timed(self.read, self.name, self.machine, path=self.path).trajectory
+
+    @cached_property
+    def read(self) -> str:
+        """The text in words that are judged, line for line: those of another control are translated."""
+        return readable(self.text)
 
     @cached_property
     def path(self) -> MachinePath:
         """The path that the machine takes. Raises InputError naming line and word of what the control refuses."""
-        return execute(self.text, self.name, Setup.of(self.machine.spec)) if self.made is None else self.made.path
+        return execute(self.read, self.name, Setup.of(self.machine.spec)) if self.made is None else self.made.path
 
     @cached_property
     def space(self) -> ToothSpace | None:
@@ -177,21 +182,12 @@ def cutting(
 ) -> Program:
     """The cutting program of a member, run before it is returned. Raises InputError naming what is wrong.
 
-    By default of all spaces, and for the control of the machine: ``control`` may be "sinumerik" or "linuxcnc".
+    By default of all spaces, and for the control of the machine: ``control`` may be "sinumerik", "linuxcnc", or one
+    that was registered.
     Sentences name the ``file`` it is for.
     """
-    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
-
     machine = load_machine() if machine is None else machine
     job = CuttingJob(range(member.teeth)) if job is None else job
-    write = linuxcnc.program_of if machine.spec.control.dialect(control) == "linuxcnc" else program_of
-    made = checked_cut(member.gear_set.spec, member.name, machine.spec, job, name, str(file or name), begin, write)
+    dialect = named(machine.spec.control.dialect(control))
+    made = checked_cut(member.gear_set.spec, member.name, machine.spec, job, name, str(file or name), begin, dialect)
     return Program(member, machine, name, made.text, made)
-
-
-def block_count(text: str) -> int:
-    """Blocks of a program, by the control that it is for."""
-    from gearmath.machine.writing.linuxcnc.dialect import block_count as of_linuxcnc
-    from gearmath.machine.writing.words import block_count as of_sinumerik
-
-    return (of_linuxcnc if is_for_linuxcnc(text) else of_sinumerik)(text)
