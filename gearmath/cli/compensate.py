@@ -19,7 +19,6 @@ from gearmath.cli.common import (
     about,
     bars,
     echo_json,
-    member_of,
     output,
     table,
 )
@@ -27,7 +26,6 @@ from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.bevel.identify.variables import Bounds
-    from gearmath.front.measured import Measurement
     from gearmath.front.sets import GearSet, Member
     from gearmath.quality.correction.thickness import By
 
@@ -119,12 +117,13 @@ def compensate(
     what, and which limit binds.
     """
     from gearmath.cli.compensate_text import say_analysis, say_changes, say_result, verdict
-    from gearmath.front.measured import load_measurement
+    from gearmath.front.measured import load_measurement, measurement_of
     from gearmath.front.sets import load_set
     from gearmath.quality.correction.member import ROOT_LIMIT
 
     pair = load_set(gear_set)
-    one, made = _measured(pair, member, measured)
+    made = measurement_of(measured, pair, member)
+    one = made.member
     with bars(quiet=as_json) as begin:
         found = made.compensate(
             _free(names),
@@ -173,16 +172,6 @@ def _free(names: str) -> str | tuple[str, ...]:
     return tuple(name.strip() for name in names.split(","))
 
 
-def _measured(pair: GearSet, member: str | None, path: Path) -> tuple[Member, Measurement]:
-    """The member that is asked for, and what was measured, which may be of another: that is said where it is read."""
-    from gearmath.front.measured import Measurement
-    from gearmath.specs.flank_csv import read_flank_csv
-
-    file = read_flank_csv(path)
-    one = member_of(pair, member, file.member)
-    return one, Measurement(one, file, path)
-
-
 def _mate(pair: GearSet, member: Member) -> Member:
     from gearmath.specs.bevel_set import MEMBERS
 
@@ -206,11 +195,12 @@ def _mate(pair: GearSet, member: Member) -> Member:
 @JSON
 def stock(measured: Path, gear_set: str, member: str | None, advance: bool, least: float, as_json: bool) -> None:
     """How a precut blank must stand so that both flanks share its stock: probe it, then turn it by this."""
+    from gearmath.front.measured import measurement_of
     from gearmath.front.sets import load_set
     from gearmath.quality.evaluation.completeness import missing_points
 
-    one, made = _measured(load_set(gear_set), member, measured)
-    found, file, spec = made.share_stock(advance, least / 1000), made.file, one.spec
+    made = measurement_of(measured, load_set(gear_set), member)
+    found, file, spec = made.share_stock(advance, least / 1000), made.file, made.member.spec
     remarks = list(missing_points(file, spec.teeth))
     if as_json:
         echo_json(

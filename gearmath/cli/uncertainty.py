@@ -20,7 +20,6 @@ from gearmath.cli.common import (
     Number,
     bars,
     echo_json,
-    member_of,
     plot,
     save_plot,
     table,
@@ -78,16 +77,14 @@ def uncertainty(
     """Standard uncertainties and 95 % intervals of everything that a measurement says."""
 
     from gearmath.front.judged import uncertainty as judged
-    from gearmath.front.measured import Measurement
+    from gearmath.front.measured import measurement_of
     from gearmath.front.sets import load_set
-    from gearmath.specs.flank_csv import read_flank_csv
 
     check_one_source(sigma_um, model)
-    file = read_flank_csv(measured)
-    one = member_of(load_set(gear_set), member, file.member)
+    made = measurement_of(measured, load_set(gear_set), member)
     with bars() as begin, _executor(cluster) as executor:
         found = judged(
-            Measurement(one, file, measured),
+            made,
             sigma_um,
             model,
             draws,

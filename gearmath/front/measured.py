@@ -116,6 +116,15 @@ class Measurement:
         return self.evaluate().plot()
 
 
+def measurement_of(path: str | Path, pair: GearSet, member: str | None) -> Measurement:
+    """A measured flank CSV, of the ``member`` that was asked for or else of the one that the file names.
+
+    Whether it is of that member is told where it is evaluated. Raises InputError.
+    """
+    file = read_flank_csv(Path(path))
+    return Measurement(pair.member(member or file.member), file, Path(path))
+
+
 def load_measurement(path: str | Path, member: Member | GearSet) -> Measurement:
     """Read a measured flank CSV of a member, or of the member of a set that the file names. Raises InputError."""
     file = read_flank_csv(Path(path))
