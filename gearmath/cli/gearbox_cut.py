@@ -84,7 +84,7 @@ _MEANINGLESS = {
 @click.option(
     "--stl",
     "flanks",
-    type=NewFile(),
+    type=NewFile(".stl"),
     metavar="GEAR.stl",
     help="The gear to write, a closed solid with its flanks as cut.",
 )
