@@ -43,20 +43,21 @@ class VirtualGear:
 
 @dataclass(frozen=True)
 class CutSetup:
-    """What is cut and measured. ``assumed_diameter``: the file does not say that of the hob."""
+    """What is cut and measured. ``assumed_diameter``: the file does not say that of the hob.
+
+    ``toothed_length`` of the hob [mm], None where the file does not say it.
+    """
 
     train: DriveTrain
     where: Layout
     hob_name: str
     assumed_diameter: bool
+    toothed_length: float | None = None
 
     @property
     def job(self) -> HobbingJob:
         """Gear, hob and feed."""
         return self.train.job
-
-    hob_ends: float | None = None
-    """Length of the hob's toothed part [mm], None where the file does not say it."""
 
     @cached_property
     def zone(self) -> tuple[float, float]:
@@ -71,9 +72,9 @@ class CutSetup:
     @property
     def offsets(self) -> tuple[float, float] | None:
         """Between which offsets [mm] the whole zone lies on the hob; None where its length is not known."""
-        if self.hob_ends is None:
+        if self.toothed_length is None:
             return None
-        return self.zone[1] - self.hob_ends / 2, self.zone[0] + self.hob_ends / 2
+        return self.zone[1] - self.toothed_length / 2, self.zone[0] + self.toothed_length / 2
 
 
 def setup(

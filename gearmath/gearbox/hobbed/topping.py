@@ -9,14 +9,14 @@ import casadi as ca
 import numpy as np
 
 from gearmath.engine.points import Points
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import BLOCK, Cut
 from gearmath.gearbox.hobbed.job import TURN
 from gearmath.gearbox.kernels import kernel
 
 #: Points across the facet of a gash, and along a feed, and how often they are drawn together around the highest.
 GRID, CLOSER = 7, 3
-#: Turns of the table to either side that are tried, and gashes beside those that a feed brings into play.
-TURNS, GASHES = 2, 2
+#: Turns of the table and gashes to either side that are tried.
+TURNS, GASHES = 2, 3
 #: Newton steps, and those at which the errors of the machine are asked for.
 STEPS, ASKED = 6, (0, 2)
 
@@ -44,6 +44,13 @@ def topped_radii(cut: Cut, height: float) -> np.ndarray:
 
 def topped_radius(cut: Cut, space: np.ndarray, angle: np.ndarray, height: np.ndarray) -> np.ndarray:
     """Radius (n,) [mm] at angles from the middle of spaces and at heights on the gear, of all gashes nearby."""
+    size = BLOCK // ((2 * TURNS + 1) * (2 * GASHES + 1))
+    blocks = [slice(start, start + size) for start in range(0, len(space), size)]
+    return np.concatenate([_least(cut, space[part], angle[part], height[part]) for part in blocks])
+
+
+def _least(cut: Cut, space: np.ndarray, angle: np.ndarray, height: np.ndarray) -> np.ndarray:
+    """The same of one block."""
     job, hob, teeth = cut.job, cut.job.hob, cut.job.gear.teeth
     # the root stands across the tooth where the gear has turned it to the common perpendicular
     thread = -hob.sign * teeth / hob.starts * angle
@@ -52,14 +59,21 @@ def topped_radius(cut: Cut, space: np.ndarray, angle: np.ndarray, height: np.nda
     nearest = np.rint(((psi + thread) / TURN * hob.starts - first) / teeth)
     ridge = first[:, None] + teeth * (nearest[:, None] + np.arange(-TURNS, TURNS + 1))
     gash = np.rint(hob.gashes / TURN * (TURN / hob.starts * ridge - thread[:, None] - job.gash_phase))
-    # a helical tooth turns away while the hob is fed: as many gashes more
+    # a helical tooth turns away by so many gashes while the hob is fed; what they leave grows evenly to both sides of
+    # the least, so that it is found in ever smaller strides
     turned = TURNS * job.feed * abs(job.turns_per_mm) * teeth / hob.starts * hob.gashes
-    reach = GASHES + math.ceil(turned)
-    tried = gash[:, :, None] + np.arange(-reach, reach + 1)
-    turn = tried * (TURN / hob.gashes) + job.gash_phase
-    at = TURN / hob.starts * ridge[:, :, None] - turn
-    flat = [np.broadcast_to(each, at.shape).ravel() for each in (turn, at, angle[:, None, None], height[:, None, None])]
-    return _radius(cut, *flat).reshape(len(space), -1).min(axis=1)
+    stride = GASHES ** max(0, math.ceil(math.log(max(turned, 1.0) / GASHES, GASHES)))
+    while True:
+        tried = gash[:, :, None] + stride * np.arange(-GASHES, GASHES + 1)
+        turn = tried * (TURN / hob.gashes) + job.gash_phase
+        at = TURN / hob.starts * ridge[:, :, None] - turn
+        points = (turn, at, angle[:, None, None], height[:, None, None])
+        radius = _radius(cut, *(np.broadcast_to(each, at.shape).ravel() for each in points)).reshape(at.shape)
+        if stride == 1:
+            least: np.ndarray = radius.min(axis=(1, 2))
+            return least
+        gash = np.take_along_axis(tried, radius.argmin(axis=2)[:, :, None], axis=2)[:, :, 0]
+        stride //= GASHES
 
 
 def _radius(cut: Cut, turn: np.ndarray, thread: np.ndarray, angle: np.ndarray, height: np.ndarray) -> np.ndarray:

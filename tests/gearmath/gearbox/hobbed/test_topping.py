@@ -73,13 +73,15 @@ def by_hand(of: HobbingJob, tooth: int, angle: float, height: float) -> float:
     return best
 
 
-@pytest.mark.parametrize(("beta", "starts"), [(0.0, 2), (25.0, 1)])
-def test_topped_tip_is_what_the_nearest_of_all_gashes_leaves(beta, starts):
+@pytest.mark.parametrize(
+    ("beta", "starts", "gashes", "feed"), [(0.0, 2, 10, 1.3), (25.0, 1, 10, 1.3), (40.0, 1, 24, 4.0)]
+)
+def test_topped_tip_is_what_the_nearest_of_all_gashes_leaves(beta, starts, gashes, feed):
     """Within 0.01 um of the lines of all gashes, each solved by itself; anywhere within a facet and a feed."""
-    of = job(10, 1.3, beta, starts=starts)
+    of = job(gashes, feed, beta, starts=starts)
     random = np.random.default_rng([22, starts])
     teeth = random.integers(0, 24, 4)
-    angles = math.pi / 24 + TURN * starts / (24 * 10) * random.uniform(-0.5, 0.5, 4)
+    angles = math.pi / 24 + TURN * starts / (24 * gashes) * random.uniform(-0.5, 0.5, 4)
     heights = random.uniform(9.0, 11.0, 4)
     found = topped_radius(Cut(of), teeth, angles, heights)
     cut = [by_hand(of, *row) for row in zip(teeth.tolist(), angles.tolist(), heights.tolist(), strict=True)]
