@@ -55,6 +55,8 @@ class Served:
 
     folder: Path
     arguments: tuple[str, ...]
+    before: str = ""
+    """Python that the process runs before the command."""
     port: int = 0
     address: str = ""
     process: subprocess.Popen[str] | None = None
@@ -62,7 +64,7 @@ class Served:
 
     def start(self) -> Served:
         """Start it, the second time on the same port."""
-        command = [sys.executable, "-c", "from gearmath.cli import main; main()", "hmi"]
+        command = [sys.executable, "-c", f"{self.before}\nfrom gearmath.cli import main; main()", "hmi"]
         command += ["--store", str(self.folder / "runs.db"), "--port", str(self.port), *self.arguments]
         environment = os.environ | {"GEARMATH_CONTROL_PASSWORD": PASSWORD, "PYTHONUNBUFFERED": "1"}
         environment.pop("PYTEST_CURRENT_TEST", None)  # NiceGUI serves otherwise in a test
@@ -115,10 +117,10 @@ def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Se
     """``serve(*arguments)``: the page with these arguments, in a folder of its own."""
     made: list[Served] = []
 
-    def start(*arguments: str) -> Served:
+    def start(*arguments: str, before: str = "") -> Served:
         folder = tmp_path_factory.mktemp("page") / "store"  # a test can look at what lies beside it, too
         folder.mkdir()
-        made.append(Served(folder, arguments))
+        made.append(Served(folder, arguments, before))
         return made[-1].start()
 
     yield start
@@ -149,23 +151,26 @@ class Elsewhere:
         self._listening.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def elsewhere() -> Iterator[Elsewhere]:
     found = Elsewhere()
     yield found
     found.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def chromium(elsewhere: Elsewhere) -> Iterator[Browser]:
-    """One browser for a module; at the end it has asked nobody else than this computer."""
+    """One browser for all tests of a process; at the end it has asked nobody else than this computer."""
     path = shutil.which("chromium") or shutil.which("chromium-browser")
     if path is None:
         pytest.skip("needs chromium")
     arguments = [
         "--no-sandbox",
+        # what is in space is drawn by SwiftShader; pages are not, which takes four times as long where there is no GPU
         "--use-angle=swiftshader",
         "--enable-unsafe-swiftshader",
+        "--disable-gpu-rasterization",
+        "--disable-gpu-compositing",
         f"--proxy-server=http://127.0.0.1:{elsewhere.port}",
         "--disable-component-update",
         "--disable-background-networking",

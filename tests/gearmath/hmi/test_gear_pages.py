@@ -80,7 +80,9 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
 
 def test_flanks_are_shown_in_space(served: Served, operator: Callable[..., Operator]) -> None:
     one = operator(served, "gear")
-    one.panel("Flanks of a tooth").locator("canvas").first.wait_for(timeout=LONG)
+    drawn = one.panel("Flanks of a tooth").locator("canvas").first
+    drawn.wait_for(timeout=LONG)
+    drawn.scroll_into_view_if_needed()
     one.picture("gear_space")
 
 
