@@ -99,6 +99,7 @@ def test_a_run_is_recorded_point_for_point_as_the_control_offered_it(
     shown = one.panel("Latest touches").get_by_role("row")
     first = shown.nth(1).inner_text().split("\t")
     assert first[0].strip() == "10"
+    assert first[1].strip() == "Pinion concave, tooth 10, row 2, column 4"
     assert float(first[2]) == pytest.approx(touches[10].X, abs=6e-5)
     heads = shown.nth(0).inner_text()
     assert all(f"{axis} / mm" in heads for axis in "XYZ")
