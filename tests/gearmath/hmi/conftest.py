@@ -218,10 +218,11 @@ class Operator:
         self.page.get_by_role("button", name=label, exact=True).click()
 
     def tab_to(self, label: str) -> None:
-        """Press Tab until the cursor is on the button or field of this label."""
+        """Press Tab until the cursor is on the button or field of this label, and the server hears what comes next."""
         self.is_heard()
         for _ in range(100):
             self.page.keyboard.press("Tab")
+            self.is_heard()  # while the server is silent the cursor is nowhere
             if self.page.evaluate(_ON) == label:
                 return
         raise AssertionError(f"{label} is not reached by Tab; at the end it was on {self.page.evaluate(_ON)!r}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import http.client
-import json
 import os
 import re
 import time
@@ -102,8 +101,16 @@ def _open_and_leave(served: Served, name: str) -> None:
     connection.request("GET", f"/{name}", headers=headers)
     html = connection.getresponse().read().decode()
     connection.close()
-    asked = json.loads(re.search(r"query: (\{.*?\})", html)[1])  # type: ignore[index]
-    query = asked | {"document_id": str(uuid.uuid4()), "tab_id": str(uuid.uuid4()), "EIO": 4, "transport": "websocket"}
+    client = re.search(r"'client_id': '([\w-]+)'", html)[1]  # type: ignore[index]
+    query = {
+        "client_id": client,
+        "document_id": uuid.uuid4(),
+        "tab_id": uuid.uuid4(),
+        "next_message_id": 0,
+        "implicit_handshake": "true",
+        "EIO": 4,
+        "transport": "websocket",
+    }
     url = f"ws://127.0.0.1:{served.port}/_nicegui_ws/socket.io/?{urlencode(query)}"
     with connect(url, additional_headers=headers, origin=served.base, proxy=None, open_timeout=PATIENCE / 1000) as line:  # type: ignore[arg-type]
         line.send("40")
