@@ -315,26 +315,22 @@ def test_a_run_is_recorded_held_and_ended_by_keyboard_alone(
     """Tab, arrows, Enter and Space from the first picture of the page to the end of the run."""
     one, begin = operator(page, "measure"), len(machine.nc.log)
     _check_probe(one, machine)
-    one.tab_to("Probing program")
-    one.page.keyboard.press("Enter")
+    one.strike("Probing program", "Enter")
     one.page.get_by_role("option", name=Live.NAME, exact=True).wait_for()
     one.page.keyboard.press("ArrowDown")
     one.page.keyboard.press("Enter")
     one.page.get_by_role("option").first.wait_for(state="hidden")
     for label in ("Start recording", "Yes, do it"):
-        one.tab_to(label)
-        one.page.keyboard.press("Enter")
+        one.strike(label, "Enter")
     one.sees("Ready: start TEN.MPF at the machine")
     machine.nc.speed = STANDS  # the way to the button is long
     machine.nc.start()
-    one.tab_to("Hold")
-    one.page.keyboard.press("Space")
+    one.strike("Hold", "Space")
     one.sees("Hold is asked for")
     machine.nc.speed = 0.0
     one.sees(re.compile("Held: the program waits at point"))
     for label in ("Go on", "Yes, do it"):
-        one.tab_to(label)
-        one.page.keyboard.press("Enter")
+        one.strike(label, "Enter")
     one.sees("Complete: all touches are in the store")
     assert [entry.point for entry in machine.since(begin, "acknowledged")] == list(range(1, 11))
 
