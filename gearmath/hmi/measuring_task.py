@@ -46,8 +46,10 @@ class MeasuringTask:
         self._measuring: Measuring | None = None
         self._future: Future[None] | None = None
         self._times: deque[tuple[float, int]] = deque(maxlen=50)
-        self._hold = self._was_lost = False
+        self._hold = False
         self._end = RunState.NONE
+        self.was_lost = False
+        """Whether the connection was lost, and nobody has asked to go on since."""
         self.run: StoredRun | None = None
         self.held_at: int | None = None
         """The point at which the program waits because of a hold; None while it does not."""
@@ -74,7 +76,7 @@ class MeasuringTask:
 
     def go_on(self) -> None:
         """Acknowledge again."""
-        self._hold = self._was_lost = False
+        self._hold = self.was_lost = False
         self.held_at = None
 
     def stop(self) -> None:
@@ -95,10 +97,10 @@ class MeasuringTask:
         if not self.is_going_on:
             return self._end
         if self._measuring is None or not self._measuring.is_ready:
-            return RunState.LOST if self._was_lost else RunState.PREPARING
+            return RunState.LOST if self.was_lost else RunState.PREPARING
         if self.held_at is not None:
             return RunState.HELD
-        if self._was_lost:
+        if self.was_lost:
             return RunState.LOST
         if self._hold:
             return RunState.HOLDING
@@ -130,7 +132,7 @@ class MeasuringTask:
             work.close()
             raise InputError("a measuring run goes on already: end it first")
         self._measuring, self.run, self.held_at = None, None, None
-        self._hold = self._was_lost = False
+        self._hold = self.was_lost = False
         self._end, self.reason = RunState.NONE, ""
         self._times.clear()
         self.sentences.clear()
@@ -184,4 +186,4 @@ class MeasuringTask:
 
     def _lost(self) -> None:
         """After a loss nothing is acknowledged until somebody asks for it."""
-        self._hold = self._was_lost = True
+        self._hold = self.was_lost = True

@@ -57,6 +57,8 @@ def run_state(text: Text, task: MeasuringTask) -> tuple[str, str]:
     state = task.state
     program = task.run.start.program if task.run is not None else ""
     words = text(f"measure.state_{state}").format(program=program, point=task.held_at)
+    if state is RunState.HELD and task.was_lost:  # why it is held
+        words = f"{text('measure.state_lost')}. {words}"
     kinds = {
         RunState.HOLDING: "warning",
         RunState.HELD: "warning",

@@ -247,15 +247,16 @@ class Nc:
                 self._say("offered", int(value), tuple(parameters.get(k, 0.0) for k in _TOUCH))
 
     def _travel(self, row: PathRow) -> None:
-        """The way of one block, in its time."""
+        """The way of one block, in its time; another speed counts at once, as that of an override switch does."""
         start = self._before or row.position
         self._before = row.position
-        seconds = row.seconds / self.speed if self.speed > 0.0 else 0.0
-        begin = time.monotonic()
-        while (gone := time.monotonic() - begin) < seconds and not self._resetting:
-            share = gone / seconds
+        share, at = 0.0, time.monotonic()
+        while share < 1.0 and row.seconds > 0.0 and self.speed > 0.0 and not self._resetting:
+            seconds = row.seconds / self.speed
             self.position = [a + share * (b - a) for a, b in zip(start, row.position, strict=True)]
-            time.sleep(min(_SLICE, seconds - gone))
+            time.sleep(min(_SLICE, (1.0 - share) * seconds))
+            before, at = at, time.monotonic()
+            share += (at - before) / seconds
             self._held()
         self.position = list(row.position)
 

@@ -120,7 +120,7 @@ class _GearPage:
             self._show(found, fields, {at for at in fields if before.get(at) != self.mine.get(at)})  # typed elsewhere
             for at, field in fields.items():
                 if at in found.refused:
-                    field.refuse(found.refused[at])
+                    field.refuse(self.text.quoted(found.refused[at]))
             self._changes(found, lambda: discard(found))
 
         def discard(found: Draft) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
-from gearmath.hmi import programs_work, widgets
+from gearmath.hmi import blocks, programs_work, widgets
 from gearmath.hmi.link import ControlLink
 from gearmath.hmi.measuring_task import MeasuringTask, RunState
 from gearmath.hmi.messages import Text
@@ -16,9 +16,12 @@ from gearmath.hmi.probe_check import ProbeCheck
 from gearmath.hmi.runs_work import UnfinishedRun, complete_runs, unfinished_runs
 from gearmath.hmi.state import Shared
 from gearmath.hmi.words import duration, run_state
+from gearmath.specs.bevel_set import MEMBERS
 
 #: Touches that are shown, the newest first.
 _SHOWN = 12
+#: What a program that probes a member says of the place of a point.
+_OF_MEMBER = ("member", "flank", "tooth", "row", "col")
 
 
 def build(shared: Shared, text: Text) -> None:
@@ -71,7 +74,7 @@ def _going_on(shared: Shared, text: Text, task: MeasuringTask) -> None:
         hold.enabled, go_on.enabled = task.is_going_on and not waits, waits
         end.enabled = task.is_going_on
         last = list(task.sentences)[-3:]
-        details.text = f"{text('measure.details')}: {' · '.join(last)}" if last else ""
+        details.text = f"{text('measure.details')}: {' · '.join(map(text.quoted, last))}" if last else ""
 
     look()
     ui.timer(widgets.LOOK, look)
@@ -90,13 +93,22 @@ def _touches(text: Text, task: MeasuringTask) -> None:
             place = run.start.points.get(point, ()) if run is not None else ()
             hit = text("machine.yes") if touch.triggered else text("measure.missed")
             position = {axis: f"{getattr(touch, axis):z.4f}" for axis in "XYZAB"}
-            found.append({"id": point, "place": " ".join(place), **position, "triggered": hit})
+            found.append({"id": point, "place": _place(text, place), **position, "triggered": hit})
         found.reverse()
         if rows.rows != found:
             rows.rows = found
 
     look()
     ui.timer(widgets.LOOK, look)
+
+
+def _place(text: Text, cells: tuple[str, ...]) -> str:
+    """Where a point is: member, flank, tooth, row and column; of a calibration program the cells of its file."""
+    if len(cells) != len(_OF_MEMBER) or cells[0] not in MEMBERS:
+        return " ".join(cells)
+    values = dict(zip(_OF_MEMBER, cells, strict=True))
+    flank = blocks.flank_names(text)[values.pop("flank")]
+    return text("measure.place_of", **{**values, "member": blocks.member_name(text, cells[0]), "flank": flank})
 
 
 def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> Callable[[], None]:

@@ -9,7 +9,7 @@ from typing import Any
 from nicegui import ui
 
 from gearmath.errors import ComputationError, InputError
-from gearmath.hmi import programs_work, widgets
+from gearmath.hmi import blocks, programs_work, widgets
 from gearmath.hmi.messages import Text
 from gearmath.hmi.programs_work import MilledProgram, WrittenProgram
 from gearmath.hmi.state import Shared
@@ -32,7 +32,7 @@ def build(shared: Shared, text: Text) -> None:
 def _head(shared: Shared, text: Text, name: str) -> ui.input:
     """What the program is for, and the field of its name."""
     choice = shared.choice
-    values = {"gear_set": choice.gear_set, "member": choice.member, "machine": choice.machine}
+    values = {"gear_set": choice.gear_set, "member": blocks.member_name(text, choice.member), "machine": choice.machine}
     widgets.note(text("programs.chosen", **values))
     return widgets.word(text("programs.name"), name, text("programs.name_hint"))
 

@@ -45,8 +45,11 @@ _ON = """() => { const on = document.activeElement;
   if (on === document.body) return "";
   const label = on.closest("label")?.querySelector(".q-field__label") ?? on.querySelector(".q-btn__content .block");
   return (on.getAttribute("aria-label") ?? (label ?? on).innerText).trim(); }"""
+#: Hear whether the next key reaches what the cursor is on.
+_LISTEN = """() => { window.struck = false;
+  document.activeElement.addEventListener("keydown", () => { window.struck = true; }, { once: true }); }"""
 #: What a test waits for at most [ms], on a computer that does other things too.
-PATIENCE = 60_000
+PATIENCE = 180_000
 
 
 @dataclass
@@ -55,6 +58,8 @@ class Served:
 
     folder: Path
     arguments: tuple[str, ...]
+    before: str = ""
+    """Python that the process runs before the command."""
     port: int = 0
     address: str = ""
     process: subprocess.Popen[str] | None = None
@@ -62,7 +67,7 @@ class Served:
 
     def start(self) -> Served:
         """Start it, the second time on the same port."""
-        command = [sys.executable, "-c", "from gearmath.cli import main; main()", "hmi"]
+        command = [sys.executable, "-c", f"{self.before}\nfrom gearmath.cli import main; main()", "hmi"]
         command += ["--store", str(self.folder / "runs.db"), "--port", str(self.port), *self.arguments]
         environment = os.environ | {"GEARMATH_CONTROL_PASSWORD": PASSWORD, "PYTHONUNBUFFERED": "1"}
         environment.pop("PYTEST_CURRENT_TEST", None)  # NiceGUI serves otherwise in a test
@@ -70,7 +75,7 @@ class Served:
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, cwd=self.folder
         )
         assert self.process.stdout is not None
-        until = time.monotonic() + 180
+        until = time.monotonic() + 300
         while (match := _SHOWN.search(self.said)) is None:
             ready, _, _ = select.select([self.process.stdout], [], [], max(0.0, until - time.monotonic()))
             line = self.process.stdout.readline() if ready else ""
@@ -100,7 +105,7 @@ class Served:
         assert self.process.stdout is not None
         (self.process.kill if kill else self.process.terminate)()
         with suppress(ValueError):
-            self.said += self.process.communicate(timeout=30)[0]
+            self.said += self.process.communicate(timeout=PATIENCE / 1000)[0]
         said, self.said = self.said, ""
         return said
 
@@ -115,10 +120,10 @@ def serve(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., Se
     """``serve(*arguments)``: the page with these arguments, in a folder of its own."""
     made: list[Served] = []
 
-    def start(*arguments: str) -> Served:
+    def start(*arguments: str, before: str = "") -> Served:
         folder = tmp_path_factory.mktemp("page") / "store"  # a test can look at what lies beside it, too
         folder.mkdir()
-        made.append(Served(folder, arguments))
+        made.append(Served(folder, arguments, before))
         return made[-1].start()
 
     yield start
@@ -149,23 +154,26 @@ class Elsewhere:
         self._listening.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def elsewhere() -> Iterator[Elsewhere]:
     found = Elsewhere()
     yield found
     found.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def chromium(elsewhere: Elsewhere) -> Iterator[Browser]:
-    """One browser for a module; at the end it has asked nobody else than this computer."""
+    """One browser for all tests of a process; at the end it has asked nobody else than this computer."""
     path = shutil.which("chromium") or shutil.which("chromium-browser")
     if path is None:
         pytest.skip("needs chromium")
     arguments = [
         "--no-sandbox",
+        # what is in space is drawn by SwiftShader; pages are not, which takes four times as long where there is no GPU
         "--use-angle=swiftshader",
         "--enable-unsafe-swiftshader",
+        "--disable-gpu-rasterization",
+        "--disable-gpu-compositing",
         f"--proxy-server=http://127.0.0.1:{elsewhere.port}",
         "--disable-component-update",
         "--disable-background-networking",
@@ -213,13 +221,25 @@ class Operator:
         self.page.get_by_role("button", name=label, exact=True).click()
 
     def tab_to(self, label: str) -> None:
-        """Press Tab until the cursor is on the button or field of this label."""
+        """Press Tab until the cursor is on the button or field of this label, and the server hears what comes next."""
         self.is_heard()
         for _ in range(100):
             self.page.keyboard.press("Tab")
+            self.is_heard()  # while the server is silent the cursor is nowhere
             if self.page.evaluate(_ON) == label:
                 return
         raise AssertionError(f"{label} is not reached by Tab; at the end it was on {self.page.evaluate(_ON)!r}")
+
+    def strike(self, label: str, key: str) -> None:
+        """Press a key on the button or field of this label, reached by Tab; once more where the page has not taken it,
+        because the server fell silent just then."""
+        for _ in range(10):
+            self.tab_to(label)
+            self.page.evaluate(_LISTEN)
+            self.page.keyboard.press(key)
+            if self.page.evaluate("window.struck"):
+                return
+        raise AssertionError(f"{label} does not take {key}")
 
     def fill(self, label: str, value: str) -> None:
         """Type into a field, and leave it."""
@@ -249,14 +269,15 @@ class Operator:
     def picture(self, name: str) -> Path:
         """Leave a screenshot."""
         PICTURES.mkdir(parents=True, exist_ok=True)
-        self.page.screenshot(path=PICTURES / f"{name}.png", timeout=60_000)
+        self.page.screenshot(path=PICTURES / f"{name}.png", timeout=PATIENCE)
         return PICTURES / f"{name}.png"
 
     def axe(self) -> list[str]:
         """Serious and critical violations that axe-core finds, with the first place of each."""
         from axe_core_python.sync_playwright import Axe
 
-        found: dict[str, Any] = Axe().run(self.page)
+        # of what passes, nothing is told: most of the time goes into the telling
+        found: dict[str, Any] = Axe().run(self.page, options={"resultTypes": ["violations"]})
         return [
             f"{one['id']}: {one['nodes'][0]['html'][:200]}"
             for one in found["violations"]
@@ -307,8 +328,9 @@ def _stays(one: Operator, url: str) -> None:
 
 
 def _hear(one: Operator, kind: str, text: str) -> None:
-    """Errors, and the reason of a page that loads itself again: what was pressed then may be lost."""
-    if kind == "error" or text.startswith("reloading because"):
+    """Errors, and the reason of a page that loads itself again: what was pressed then may be lost. Not where a busy
+    server was waited for in vain: nothing can be pressed before it is heard."""
+    if kind == "error" or (text.startswith("reloading because") and "connection timed out" not in text):
         one.complaints.append(text)
 
 

@@ -14,10 +14,8 @@ from playwright.sync_api import expect
 
 import gearmath as gm
 from gearmath.hmi.messages import Text
-from tests.gearmath.hmi.conftest import Operator, Served
+from tests.gearmath.hmi.conftest import PATIENCE, Operator, Served
 
-#: A computation of some seconds, on a computer that does other things too. [ms]
-LONG = 90_000
 #: What a browser without WebGL says when it is asked for it.
 _NO_WEBGL = """
 const known = HTMLCanvasElement.prototype.getContext;
@@ -42,15 +40,15 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
     one.go("gear")
     settings = one.panel("Settings")
     one.sees("This browser has no WebGL: the flanks are shown flat.")
-    one.panel("Flanks of a tooth").locator("figure svg").nth(1).wait_for(timeout=LONG)
+    one.panel("Flanks of a tooth").locator("figure svg").nth(1).wait_for(timeout=PATIENCE)
     one.sees("All settings are those of the file.")
     one.fill("Cutter swivel, convex", "400")
     one.sees("400 °: must lie between -360 and 360 °", settings)
     one.fill("Cutter tilt, convex", "44")
-    settings.get_by_text(re.compile("Cutter tilt, convex: refused: pinion")).wait_for(timeout=LONG)
+    settings.get_by_text(re.compile("Cutter tilt, convex: refused: pinion")).wait_for(timeout=PATIENCE)
     assert one.page.get_by_label("Cutter tilt, convex", exact=True).input_value() == "44"
     one.fill("Sliding base, concave", "0,36")
-    settings.get_by_text("Changed against the file").wait_for(timeout=LONG)
+    settings.get_by_text("Changed against the file").wait_for(timeout=PATIENCE)
     row = settings.get_by_role("row").filter(has_text="Sliding base, concave").inner_text().split()
     assert row[-5:] == ["concave", "0.296487", "0.360000", "+0.063513", "mm"]
     assert one.page.get_by_label("Cutter swivel, convex", exact=True).input_value() == "400"
@@ -58,7 +56,7 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
     other = operator(served)  # a second page shows the same
     other.context.add_init_script(_NO_WEBGL)
     other.go("gear")
-    other.page.get_by_text("Changed against the file").wait_for(timeout=LONG)
+    other.page.get_by_text("Changed against the file").wait_for(timeout=PATIENCE)
     assert other.page.get_by_label("Sliding base, concave", exact=True).input_value() == "0.36"
     one.picture("gear_refused")
     one.press("Discard changes")
@@ -72,7 +70,7 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
     assert early.input_value() == "0.3"
     early.fill(of_file)
     one.fill("Sliding base, concave", "0.36")
-    one.page.get_by_role("button", name="Save as new set").click(timeout=LONG)
+    one.page.get_by_role("button", name="Save as new set").click(timeout=PATIENCE)
     one.sees("nasa_tp3096_12x36_pinion.toml: written")
     saved = gm.load_set(served.folder / "nasa_tp3096_12x36_pinion.toml")
     assert saved.pinion.spec.concave.sliding_base == 0.36
@@ -80,7 +78,9 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
 
 def test_flanks_are_shown_in_space(served: Served, operator: Callable[..., Operator]) -> None:
     one = operator(served, "gear")
-    one.panel("Flanks of a tooth").locator("canvas").first.wait_for(timeout=LONG)
+    drawn = one.panel("Flanks of a tooth").locator("canvas").first
+    drawn.wait_for(timeout=PATIENCE)
+    drawn.scroll_into_view_if_needed()
     one.picture("gear_space")
 
 
@@ -92,7 +92,7 @@ def test_the_pair_is_shown_in_contact_on_its_measured_flanks(served: Served, ope
     one.choose("Deviations of", "a measured run")
     one.press("Compute contact")
     rows = one.panel("Contact of the pair").get_by_role("row")
-    rows.nth(2).wait_for(timeout=LONG)
+    rows.nth(2).wait_for(timeout=PATIENCE)
     assert [rows.nth(k).inner_text().split()[0] for k in (1, 2)] == ["drive", "coast"]
     assert one.axe() == []
     one.picture("gear_contact")
@@ -103,9 +103,9 @@ def test_a_result_stands_with_tolerance_caveat_and_uncertainty(
     served: Served, operator: Callable[..., Operator], language: str, dark: bool, size: tuple[int, int]
 ) -> None:
     one, text = operator(served, "result", language, dark, size), Text(language)
-    one.panel(text("result.topography")).locator("svg").nth(1).wait_for(timeout=LONG)
+    one.panel(text("result.topography")).locator("svg").nth(1).wait_for(timeout=PATIENCE)
     one.sees(text("result.caveat"))
-    one.page.get_by_text(text("result.how_sure")).wait_for(timeout=LONG)
+    one.page.get_by_text(text("result.how_sure")).wait_for(timeout=PATIENCE)
     sure = one.panel(text("result.uncertainty"))
     assert sure.get_by_role("row").count() > 15
     figures = sure.locator("tbody tr td:first-child").all_inner_texts()
@@ -121,7 +121,7 @@ def test_a_result_stands_with_tolerance_caveat_and_uncertainty(
 
 def test_the_inspection_sheet_is_saved(served: Served, operator: Callable[..., Operator]) -> None:
     one = operator(served, "result")
-    with one.page.expect_download(timeout=LONG) as waiting:
+    with one.page.expect_download(timeout=PATIENCE) as waiting:
         one.press("Save the inspection sheet")
     assert waiting.value.suggested_filename == "inspection_run_2.html"
     assert Path(waiting.value.path()).read_text("utf-8").startswith("<!doctype html>")
@@ -135,7 +135,7 @@ def test_the_pair_is_brought_into_contact_at_the_assembly_that_is_typed(
     one.context.add_init_script(_NO_WEBGL)
     one.go("gear")
     panel = one.panel("Tragbild des Paars")
-    panel.get_by_label("V: Achse des Rads versetzt", exact=True).wait_for(timeout=LONG)
+    panel.get_by_label("V: Achse des Rads versetzt", exact=True).wait_for(timeout=PATIENCE)
     one.fill("V: Achse des Rads versetzt", "50,1")
     one.press("Tragbild berechnen")
     one.sees("V: Achse des Rads versetzt: 50,1 mm: muss zwischen -50 und 50 mm liegen")
@@ -146,7 +146,7 @@ def test_the_pair_is_brought_into_contact_at_the_assembly_that_is_typed(
     other = operator(served, "gear", "de")  # a second page shows the same
     assert other.page.get_by_label("J: Tellerrad zurückgezogen", exact=True).input_value() == "10"
     one.press("Tragbild berechnen")
-    one.page.get_by_text("Berührung verloren").first.wait_for(timeout=LONG)
+    one.page.get_by_text("Berührung verloren").first.wait_for(timeout=PATIENCE)
     assert panel.get_by_role("table").get_by_text("V 0, H 10, J 10 mm").count() == 1
     assert one.page.get_by_text("muss zwischen -50 und 50 mm liegen").count() == 0
     other.fill("H: Ritzel zurückgezogen", "0")
@@ -164,7 +164,7 @@ def test_a_correction_is_seen_before_and_after_then_rejected_with_a_note_and_acc
     none = one.sees("There is no correction of this run yet: compute it first.")
     one.sees("As measured")
     one.press("Compute correction")
-    one.page.get_by_text("concave, expected after the correction").wait_for(timeout=LONG)
+    one.page.get_by_text("concave, expected after the correction").wait_for(timeout=PATIENCE)
     none.wait_for(state="hidden")
     shown = one.panel("Correction")
     assert shown.locator("svg").count() == 4
@@ -175,10 +175,10 @@ def test_a_correction_is_seen_before_and_after_then_rejected_with_a_note_and_acc
     one.press("Reject")
     one.sees("Rejected: <img src=x onerror=alert(1)>")
     one.press("Compute correction")
-    one.page.get_by_text("concave, expected after the correction").wait_for(timeout=LONG)
+    one.page.get_by_text("concave, expected after the correction").wait_for(timeout=PATIENCE)
     one.press("Accept: write new set and program")
     one.page.get_by_text("Written beside the old files: nasa_tp3096_12x36_run1.toml, PINION_R1.MPF").wait_for(
-        timeout=LONG
+        timeout=PATIENCE
     )
     assert (served.folder / "PINION_R1.MPF").stat().st_size > 10_000
     history = operator(served, "history", "de")
@@ -191,9 +191,9 @@ def test_history_shows_what_a_control_said_as_text_compares_two_runs_and_draws_t
     one = operator(served, "history")
     one.sees("alarm 65001: <script>alert(2)</script>", one.panel("Runs"))
     compared = one.panel("Comparison of two runs")
-    compared.get_by_text("more than noise").first.wait_for(timeout=LONG)
+    compared.get_by_text("more than noise").first.wait_for(timeout=PATIENCE)
     one.press("Show the trend of this member")
-    one.panel("Trend").locator("svg").first.wait_for(timeout=LONG)
+    one.panel("Trend").locator("svg").first.wait_for(timeout=PATIENCE)
     assert one.axe() == []
     one.picture("history")
 
@@ -211,7 +211,7 @@ def test_a_job_is_planned_refused_simulated_and_its_firmware_taken(
     one.sees(re.compile("must lie between 0 and 800 1/min"))
     one.fill("Encoder edges", "20000")
     one.press("Simulate")
-    one.panel("Error of the step rule over time").locator("svg").first.wait_for(timeout=LONG)
+    one.panel("Error of the step rule over time").locator("svg").first.wait_for(timeout=PATIENCE)
     with one.page.expect_download() as waiting:
         one.press("Download the firmware folder")
     with zipfile.ZipFile(io.BytesIO(Path(waiting.value.path()).read_bytes())) as packed:

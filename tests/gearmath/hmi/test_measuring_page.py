@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
 import time
 from collections.abc import Callable, Iterator
@@ -16,8 +15,10 @@ from gearmath.control.store import MeasurementStore
 from tests.gearmath.control.live.conftest import Live
 from tests.gearmath.hmi.conftest import PATIENCE, Operator, Served
 
-#: So fast runs the machine where a test does something between two touches: half a second a touch.
+#: So fast runs the machine up to the touch at which a test does something: half a second a touch.
 SLOW = 0.4
+#: So fast while it does: hours a touch. However long a page takes, the machine is on the way to its next point.
+STANDS = 1e-5
 
 
 @pytest.fixture
@@ -55,6 +56,24 @@ def _run(page: Served, number: int = -1) -> tuple[list[int], dict[int, Touch], s
         return list(run.start.points), dict(run.touches()), (run.endings() or [{"outcome": "open"}])[-1]["outcome"]
 
 
+def _runs_until(machine: Live, begin: int, touches: int) -> None:
+    """Let the program run until so many touches are acknowledged; the machine then stands before the next one."""
+    machine.nc.speed = SLOW
+    if not machine.nc.channel:
+        machine.nc.start()
+    _wait(lambda: len(machine.since(begin, "acknowledged")) >= touches)
+    machine.nc.speed = STANDS
+
+
+def _hold(one: Operator, machine: Live) -> int:
+    """Hold before the next point, and give the point at which the program waits."""
+    one.press("Hold")
+    one.sees("Hold is asked for")
+    machine.nc.speed = 0.0
+    held = one.sees(re.compile("Held: the program waits at point"))
+    return int(re.search(r"point (\d+)", held.inner_text())[1])  # type: ignore[index]
+
+
 def _wait(condition: Callable[[], Any], seconds: float = PATIENCE / 1000) -> None:
     until = time.monotonic() + seconds
     while not condition():
@@ -80,6 +99,7 @@ def test_a_run_is_recorded_point_for_point_as_the_control_offered_it(
     shown = one.panel("Latest touches").get_by_role("row")
     first = shown.nth(1).inner_text().split("\t")
     assert first[0].strip() == "10"
+    assert first[1].strip() == "Pinion concave, tooth 10, row 2, column 4"
     assert float(first[2]) == pytest.approx(touches[10].X, abs=6e-5)
     heads = shown.nth(0).inner_text()
     assert all(f"{axis} / mm" in heads for axis in "XYZ")
@@ -100,25 +120,22 @@ def test_hold_is_answered_after_a_reconnect_and_nothing_moves_until_go_on(
 ) -> None:
     one, begin = operator(page, "measure"), len(machine.nc.log)
     _record(one, machine)
-    machine.nc.speed = SLOW
-    machine.nc.start()
-    _wait(lambda: len(machine.since(begin, "acknowledged")) >= 2)
+    _runs_until(machine, begin, 2)
     machine.soon(machine.control.line.cut)
     one.sees("The connection was lost: nothing is acknowledged until you press Go on")
-    one.sees(re.compile("Held: the program waits at point"))
+    machine.nc.speed = 0.0
+    one.sees(re.compile("The connection was lost: .* Held: the program waits at point"))
     waiting = len(machine.since(begin, "acknowledged"))
     one.page.wait_for_timeout(1000)
     assert len(machine.since(begin, "acknowledged")) == waiting
+    machine.nc.speed = SLOW
     one.press("Go on")
     one.press("Yes, do it")
-    _wait(lambda: len(machine.since(begin, "acknowledged")) > waiting)
-    one.press("Hold")
-    held = one.sees(re.compile("Held: the program waits at point"))
-    point = int(re.search(r"point (\d+)", held.inner_text())[1])  # type: ignore[index]
+    _runs_until(machine, begin, waiting + 1)
+    point = _hold(one, machine)
     one.page.wait_for_timeout(500)
     assert machine.since(begin, "acknowledged")[-1].point == point - 1
     one.picture("measure_held")
-    machine.nc.speed = 0.0
     one.press("Go on")
     one.press("Yes, do it")
     one.sees("Complete: all touches are in the store")
@@ -131,12 +148,8 @@ def test_pages_come_and_go_reload_and_sleep_without_a_word_to_the_control(
     one, other = operator(page, "measure"), operator(page, "measure", language="de", dark=True, size=(800, 1280))
     begin = len(machine.nc.log)
     _record(one, machine)
-    machine.nc.speed = SLOW
-    machine.nc.start()
-    _wait(lambda: len(machine.since(begin, "acknowledged")) >= 2)
-    one.press("Hold")
-    held = one.sees(re.compile("Held: the program waits at point"))
-    point = int(re.search(r"point (\d+)", held.inner_text())[1])  # type: ignore[index]
+    _runs_until(machine, begin, 2)
+    point = _hold(one, machine)
     before = machine.nc.log[begin:], dict(machine.nc.parameters)
     # two pages show the same
     other.sees(f"Gehalten: das Programm wartet an Punkt {point}")
@@ -159,7 +172,6 @@ def test_pages_come_and_go_reload_and_sleep_without_a_word_to_the_control(
     again.sees(f"Held: the program waits at point {point}")
     assert (machine.nc.log[begin:], dict(machine.nc.parameters)) == before
     # a run that pages left goes on without any
-    machine.nc.speed = 0.0
     again.press("Go on")
     again.press("Yes, do it")
     again.page.close()
@@ -178,16 +190,13 @@ def test_an_answer_that_is_sent_twice_or_late_does_nothing(
         """() => { window.sent = []; const emit = window.socket.emit.bind(window.socket);
           window.socket.emit = (...words) => { window.sent.push(words); return emit(...words); }; }"""
     )
+    _runs_until(machine, begin, 1)
+    _hold(one, machine)
     machine.nc.speed = SLOW
-    machine.nc.start()
-    _wait(lambda: len(machine.since(begin, "acknowledged")) >= 1)
-    one.press("Hold")
-    one.sees(re.compile("Held: the program waits at point"))
     one.press("Go on")
     one.press("Yes, do it")
-    _wait(lambda: len(machine.since(begin, "acknowledged")) >= 3)
-    one.press("Hold")
-    one.sees(re.compile("Held: the program waits at point"))
+    _runs_until(machine, begin, 3)
+    _hold(one, machine)
     waiting = len(machine.since(begin, "acknowledged"))
     one.page.evaluate("() => { for (const words of window.sent.slice()) window.socket.emit(...words); }")
     one.page.wait_for_timeout(1000)
@@ -201,9 +210,7 @@ def test_a_partial_run_is_kept_and_resumed_on_request_after_the_server_was_kille
 ) -> None:
     one, begin = operator(page, "measure"), len(machine.nc.log)
     _record(one, machine)
-    machine.nc.speed = SLOW
-    machine.nc.start()
-    _wait(lambda: len(machine.since(begin, "acknowledged")) >= 3)
+    _runs_until(machine, begin, 3)
     one.forgiven = ("ERR_CONNECTION_REFUSED", "WebSocket connection", "Failed to fetch", "ERR_EMPTY_RESPONSE")
     one.page.close()
     page.stop(kill=True)
@@ -231,9 +238,7 @@ def test_after_an_emergency_stop_the_touches_are_kept_and_the_alarm_stays_until_
 ) -> None:
     one, begin = operator(page, "measure"), len(machine.nc.log)
     _record(one, machine)
-    machine.nc.speed = SLOW
-    machine.nc.start()
-    _wait(lambda: len(machine.since(begin, "acknowledged")) >= 2)
+    _runs_until(machine, begin, 2)
     machine.soon(machine.nc.emergency_stop)
     one.sees("Unseen alarms: 1")
     machine.nc.reset()
@@ -310,25 +315,22 @@ def test_a_run_is_recorded_held_and_ended_by_keyboard_alone(
     """Tab, arrows, Enter and Space from the first picture of the page to the end of the run."""
     one, begin = operator(page, "measure"), len(machine.nc.log)
     _check_probe(one, machine)
-    one.tab_to("Probing program")
-    one.page.keyboard.press("Enter")
+    one.strike("Probing program", "Enter")
     one.page.get_by_role("option", name=Live.NAME, exact=True).wait_for()
     one.page.keyboard.press("ArrowDown")
     one.page.keyboard.press("Enter")
     one.page.get_by_role("option").first.wait_for(state="hidden")
     for label in ("Start recording", "Yes, do it"):
-        one.tab_to(label)
-        one.page.keyboard.press("Enter")
+        one.strike(label, "Enter")
     one.sees("Ready: start TEN.MPF at the machine")
-    machine.nc.speed = SLOW / 20  # ten seconds a touch: the way to the button is long
+    machine.nc.speed = STANDS  # the way to the button is long
     machine.nc.start()
-    one.tab_to("Hold")
-    one.page.keyboard.press("Space")
-    one.sees(re.compile("Held: the program waits at point"))
+    one.strike("Hold", "Space")
+    one.sees("Hold is asked for")
     machine.nc.speed = 0.0
+    one.sees(re.compile("Held: the program waits at point"))
     for label in ("Go on", "Yes, do it"):
-        one.tab_to(label)
-        one.page.keyboard.press("Enter")
+        one.strike(label, "Enter")
     one.sees("Complete: all touches are in the store")
     assert [entry.point for entry in machine.since(begin, "acknowledged")] == list(range(1, 11))
 
@@ -338,15 +340,13 @@ def test_ending_a_run_moves_nothing_and_keeps_what_there_is(
 ) -> None:
     one, begin = operator(page, "measure"), len(machine.nc.log)
     _record(one, machine)
-    machine.nc.speed = SLOW
-    machine.nc.start()
-    _wait(lambda: len(machine.since(begin, "acknowledged")) >= 2)
+    _runs_until(machine, begin, 2)
     one.press("End the run")
     one.press("Yes, do it")
     one.sees("ended by the operator of this page")
-    waiting, position = len(machine.since(begin, "acknowledged")), list(machine.nc.position)
-    with contextlib.suppress(AssertionError):
-        _wait(lambda: len(machine.since(begin, "offered")) > waiting, 2.0)
+    waiting = len(machine.since(begin, "acknowledged"))
+    machine.nc.speed = 0.0  # the program goes on to its next point, and waits there
+    _wait(lambda: len(machine.since(begin, "offered")) > waiting)
     position = list(machine.nc.position)
     time.sleep(0.5)
     assert list(machine.nc.position) == position

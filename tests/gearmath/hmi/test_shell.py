@@ -34,7 +34,7 @@ def test_every_page_shows_itself_without_serious_violation_of_accessibility(
         one.page.get_by_role("link", name=text(f"{name}.title"), exact=True).click()
         one.page.wait_for_url(f"**/{name}")
         one.page.get_by_role("heading", level=1, name=text(f"{name}.title")).wait_for()
-        one.page.wait_for_timeout(300)
+        one.is_heard()
         one.picture(f"{name}_{language}_{'dark' if dark else 'light'}_{size[0]}x{size[1]}")
         assert one.page.evaluate("document.documentElement.lang")[:2] == language
         assert one.axe() == [], name
@@ -83,9 +83,9 @@ def test_what_is_pressed_before_the_server_hears_it_waits_and_the_cursor_comes_b
     one.page.route_web_socket(re.compile("_nicegui_ws"), lambda route: kept.append(route))
     one.page.reload()
     one.page.locator(".gm-main").wait_for()
-    one.page.wait_for_timeout(500)
     field = one.page.get_by_label("Teeth", exact=True)
-    assert kept
+    while not kept:  # the browser asks for the websocket
+        one.page.wait_for_timeout(50)
     for part in (".gm-head", ".gm-nav", ".gm-main"):
         assert one.page.locator(part).evaluate("e => e.inert"), part
     field.focus()
