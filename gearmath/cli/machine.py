@@ -120,7 +120,10 @@ def cut(
     dialect = dialect_of(milling_machine, control, target if configuration else None)
     check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))
-    member, spec = member_of(bevel_set, member)
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(bevel_set), member)
+    member, spec = one.name, one.spec
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
     with bars() as begin:
         made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin, dialect)
@@ -204,7 +207,10 @@ def mill(
     from gearmath.specs.toml import find
 
     pair, text = load_pair(find(gear_set)), program_text(program)
-    member, spec = member_of(pair, member, stated_member(text))
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(pair), member, stated_member(text))
+    member, spec = one.name, one.spec
     milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
     path = execute(text, str(program), Setup.of(milling_machine))

@@ -93,7 +93,10 @@ def probe(
     from gearmath.specs.toml import find
 
     bevel_set = load_pair(find(gear_set))
-    member, spec = member_of(bevel_set, member)
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(bevel_set), member)
+    member, spec = one.name, one.spec
     choice = ProbingChoice(_teeth(topography, spec.teeth), pitch, registration, repeat)
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
     dialect = dialect_of(milling_machine, control, target if configuration else None)

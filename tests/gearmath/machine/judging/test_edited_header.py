@@ -58,7 +58,7 @@ def moved(text, axis, by):
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("case", [NASA, ("crown_gear_7x43", "pinion")])
+@pytest.mark.parametrize("case", [NASA, ("spiral_7x43", "pinion")])
 def test_raised_tolerance_hides_no_gouge(case):
     """By hand: Z is 2 um too low, where the header says 50 um and the blocks are made for 0.1 um."""
     text = written(case)

@@ -44,7 +44,7 @@ from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
-SETS = ("nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_universal_14x39", "crown_gear_formate_14x39")
+SETS = ("nasa_tp3096_12x36", "spiral_7x43", "crown_gear_universal_14x39", "crown_gear_formate_14x39")
 CASES = [(name, member) for name in SETS for member in ("pinion", "gear")]
 TOLERANCE, RPM, FEED, PLUNGE = 1e-4, 120.0, 300.0, 200.0
 #: Spaces of the programs in CI, and mutants of each of them: blocks, wrong digits in each of them, and everything else.
