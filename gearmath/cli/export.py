@@ -184,3 +184,10 @@ def summary(gear_set: str, target: Path) -> None:
     from gearmath.front.sets import load_set
 
     click.echo(f"{load_set(gear_set).to_summary(target)}: summary sheet, prints on A4")
+
+
+def _grid(text: str) -> tuple[int, int]:
+    rows, _, columns = text.partition("x")
+    if not (rows.isdecimal() and columns.isdecimal() and 2 <= int(rows) <= 200 and 2 <= int(columns) <= 200):
+        raise InputError(f"--grid {text}: must read like 5x9, each from 2 to 200")
+    return int(rows), int(columns)
