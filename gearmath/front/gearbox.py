@@ -233,8 +233,8 @@ def hob(
     """Cut a gear virtually, inspect it, and tell which part of the machine is to blame; docs/virtual_hobbing.md.
 
     ``compare`` is a second rule, cut beside the first. ``options``: hob, starts, helix [degrees], hand, shift, feed,
-    face_width, rpm, seconds, climb, rule, hob_shift [mm], as of ``gearmath gearbox cut``. Raises InputError naming the limit that the
-    job would break.
+    face_width, rpm, seconds, climb, rule, hob_shift [mm], as of ``gearmath gearbox cut``. Raises InputError naming
+    the limit that the job would break.
     """
     known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
     way = "climb" if options.get("climb", True) else "conventional"
