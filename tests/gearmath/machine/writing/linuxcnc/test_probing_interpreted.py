@@ -76,17 +76,24 @@ def assert_same_path(theirs: Interpreted, ours: MachinePath, machine: MillingMac
 
 
 @pytest.mark.parametrize(
-    ("gear_set", "name", "repeat", "around"),
+    ("gear_set", "name", "topography", "repeat", "around"),
     [
-        ("nasa_tp3096_12x36", "pinion", 2, (0, 3)),
-        ("nasa_tp3096_12x36", "gear", 1, ()),
-        ("spiral_7x43", "pinion", 1, ()),
-        ("crown_gear_hobbed_14x39", "pinion", 1, ()),
+        ("nasa_tp3096_12x36", "pinion", (0,), 2, (0, 3)),
+        ("nasa_tp3096_12x36", "gear", (0,), 1, ()),
+        ("spiral_7x43", "pinion", (0,), 1, ()),
+        ("spiral_7x43", "gear", (), 1, ()),
+        ("crown_gear_formate_14x39", "pinion", (), 1, ()),
+        ("crown_gear_formate_14x39", "gear", (), 1, ()),
+        ("crown_gear_universal_14x39", "pinion", (), 1, ()),
+        ("crown_gear_universal_14x39", "gear", (), 1, ()),
+        ("crown_gear_hobbed_14x39", "pinion", (0,), 1, ()),
+        ("crown_gear_hobbed_14x39", "gear", (), 1, ()),
     ],
 )
 def test_the_interpreter_of_linuxcnc_moves_the_probe_as_our_reader_does(
     gear_set: str,
     name: str,
+    topography: tuple[int, ...],
     repeat: int,
     around: tuple[int, ...],
     machine: MillingMachine,
@@ -94,7 +101,7 @@ def test_the_interpreter_of_linuxcnc_moves_the_probe_as_our_reader_does(
     interpreted: Interpreter,
 ) -> None:
     bevel_set = load_bevel_set(bundled(f"{gear_set}.toml"))
-    arguments = bevel_set, name, machine, calibration, "PROBE", (0,), True, repeat, around
+    arguments = bevel_set, name, machine, calibration, "PROBE", topography, True, repeat, around
     ours = path_of(probing_program(*arguments), machine, calibration)
     assert_same_path(interpreted(probing_program(*arguments, writer=LINUXCNC), PROBE), ours, machine)
 
