@@ -49,8 +49,6 @@ class ControlDialect:
 
     name: str
     """As ``--control`` and ``[control] kind`` have it."""
-    title: str
-    """As sentences have it."""
     suffix: str
     """Of a program's file, with its dot."""
     cutting: Callable[[CuttingPlan, str], str]
@@ -81,7 +79,6 @@ def _cutter_positions(machine: MillingMachine) -> Positions:
 
 SINUMERIK = ControlDialect(
     name="sinumerik",
-    title="SINUMERIK 840D sl",
     suffix=".MPF",
     cutting=cutting.program_of,
     probing=SINUMERIK_TOUCHES,
@@ -93,7 +90,6 @@ SINUMERIK = ControlDialect(
 )
 LINUXCNC = ControlDialect(
     name="linuxcnc",
-    title="LinuxCNC",
     suffix=".ngc",
     cutting=linuxcnc_cutting.program_of,
     probing=linuxcnc_probing.LINUXCNC,
@@ -143,7 +139,7 @@ def register(dialect: ControlDialect) -> ControlDialect:
 
 
 def relative_of_linuxcnc(
-    name: str, title: str, suffix: str, own: type[Dialect], mark: str, as_read: Callable[[str], str]
+    name: str, suffix: str, own: type[Dialect], mark: str, as_read: Callable[[str], str]
 ) -> ControlDialect:
     """A dialect of RS-274 that differs from LinuxCNC's by its ``own`` words.
 
@@ -153,7 +149,6 @@ def relative_of_linuxcnc(
     return replace(
         LINUXCNC,
         name=name,
-        title=title,
         suffix=suffix,
         cutting=partial(linuxcnc_cutting.program_of, words=own),
         probing=linuxcnc_probing.touch_writer(kind),

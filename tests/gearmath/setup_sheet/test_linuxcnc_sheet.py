@@ -9,6 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from gearmath.machine.judging.dialects import LINUXCNC
+from gearmath.machine.writing.axis_cycle import axis_program
+from gearmath.setup_sheet import calibration_sheet
+from gearmath.specs.calibration import load_calibration
+from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
+from gearmath.specs.toml import bundled
 from tests.gearmath.setup_sheet.test_setup_sheet import cells
 
 SET = "nasa_tp3096_12x36.toml"
@@ -16,20 +22,26 @@ KINDS = {
     "cutting": ("nc", "cut", SET, "--member", "pinion", "--spaces", "0,1", "--tolerance-um", "2"),
     "probing": ("nc", "probe", SET, "--member", "pinion", "--topography", "none", "--no-registration"),
     "tip": ("nc", "calibrate"),
-    "axes": ("nc", "calibrate", "--cycle", "axes"),
+    "axes": (),
 }
 #: Words of a SINUMERIK that no other control has.
 OF_ANOTHER = re.compile(r"SINUMERIK|\bR9[01]\b|\bR104\b|RESET|NC start|length 1 of|CTOL|OTOL|\$|\bD1\b|WRITE|MEAS|M70")
 
 
 @pytest.fixture(params=KINDS)
-def written(request: pytest.FixtureRequest, command: Callable, tmp_path: Path) -> tuple[str, str, str]:
-    """Kind, program and sheet of a program for LinuxCNC."""
-    program, sheet = tmp_path / "GEAR.ngc", tmp_path / "sheet.html"
-    status, out, err = command(*KINDS[request.param], "--control", "linuxcnc", "--sheet", sheet, "-o", program)
+def written(
+    request: pytest.FixtureRequest, command: Callable, vertical: MillingMachine, tmp_path: Path
+) -> tuple[str, str, str]:
+    """Kind, program and sheet of a program for LinuxCNC; that of the axes without its run, which takes longest."""
+    if request.param == "axes":
+        probe = load_calibration(bundled("probe.toml"))
+        sheet = calibration_sheet(vertical, probe, True, "GEAR.ngc", LINUXCNC.sheet)
+        return "axes", axis_program(vertical, probe, "GEAR", LINUXCNC.blocks), unescape(sheet)
+    target, page = tmp_path / "GEAR.ngc", tmp_path / "sheet.html"
+    status, out, err = command(*KINDS[request.param], "--control", "linuxcnc", "--sheet", page, "-o", target)
     assert status == 0, err
-    assert f"{sheet}: set-up sheet" in out
-    return request.param, program.read_text("ascii"), unescape(sheet.read_text("utf-8"))
+    assert f"{page}: set-up sheet" in out
+    return request.param, target.read_text("ascii"), unescape(page.read_text("utf-8"))
 
 
 def test_sheet_says_what_the_program_for_linuxcnc_does_and_no_word_of_another_control(
@@ -69,8 +81,6 @@ def test_sheet_says_what_the_program_for_linuxcnc_does_and_no_word_of_another_co
 def test_exact_path_adds_nothing_and_numbers_of_the_machine_file_are_on_the_sheet(
     command: Callable, tmp_path: Path
 ) -> None:
-    from gearmath.specs.toml import bundled
-
     numbers = "tool_numbers = { PINION_CONCAVE = 12, PINION_CONVEX = 7, PROBE = 30 }"
     text = bundled("vertical_5axis.toml").read_text("utf-8")
     text = re.sub(r"^(\[control\].*)$", rf'\1\nkind = "linuxcnc"\n{numbers}', text, flags=re.MULTILINE)
@@ -81,5 +91,6 @@ def test_exact_path_adds_nothing_and_numbers_of_the_machine_file_are_on_the_shee
     found = cells(sheet.read_text("utf-8"))
     assert found["number in the tool table"] == ["T12", "T7"]
     assert found["path mode G61, besides"] == ["0.0000"]
-    assert command(*KINDS["tip"], "--machine", machine, "--sheet", sheet, "-o", tmp_path / "TIP.ngc")[0] == 0
-    assert "The probe is tool T30" in sheet.read_text("utf-8")
+    probe = load_calibration(bundled("probe.toml"))
+    page = calibration_sheet(load_milling_machine(machine), probe, False, "TIP.ngc", LINUXCNC.sheet)
+    assert "The probe is tool T30" in page

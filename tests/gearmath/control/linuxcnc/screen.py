@@ -32,6 +32,7 @@ def aborted() -> bool:
     command.abort()
     command.wait_complete()
     os.unlink("abort")
+    until(lambda: stat.interp_state == linuxcnc.INTERP_IDLE, 10)
     command.mode(linuxcnc.MODE_MDI)
     command.wait_complete()
     command.mdi(f"G49 G53 G0 Z{height}")
@@ -39,6 +40,14 @@ def aborted() -> bool:
     command.mode(linuxcnc.MODE_AUTO)
     command.wait_complete()
     return True
+
+
+def ended() -> bool:
+    """Whether the program has ended; where it waits for the operator, who reads what it says, it goes on."""
+    if stat.interp_state == linuxcnc.INTERP_PAUSED:
+        command.auto(linuxcnc.AUTO_RESUME)
+        command.wait_complete()
+    return aborted() or stat.interp_state == linuxcnc.INTERP_IDLE
 
 
 def until(test, seconds: float) -> None:
@@ -72,7 +81,7 @@ while not os.path.exists("leave"):
         command.auto(linuxcnc.AUTO_RUN, 0)
         until(lambda: stat.interp_state != linuxcnc.INTERP_IDLE, 10)
         say("running")
-        until(lambda: aborted() or stat.interp_state == linuxcnc.INTERP_IDLE, 600)
+        until(ended, 600)
         heard = []
         while not os.path.exists("host") and (one := errors.poll()) is not None:
             heard.append(one[1].strip())

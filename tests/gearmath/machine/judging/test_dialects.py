@@ -20,13 +20,17 @@ from gearmath.machine.control.text import program_text
 from gearmath.machine.judging import dialects
 from gearmath.machine.judging.dialects import LINUXCNC, SINUMERIK, ControlDialect, known, of_text, register
 from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
+from gearmath.machine.writing.axis_cycle import axis_program
+from gearmath.machine.writing.calibrating import calibration_program
+from gearmath.machine.writing.probing import probing_program
 from gearmath.specs import control as known_controls
 from gearmath.specs.bevel_set import BevelSet
+from gearmath.specs.calibration import load_calibration
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.toml import bundled
 
 PAGE = Path(__file__).parents[4] / "docs" / "how_to" / "another_machine.md"
-SET = "nasa_tp3096_12x36.toml"
+SET, PROBE = "nasa_tp3096_12x36.toml", "probe.toml"
 #: Of every program that these tests write; another member and another machine write the same words.
 CUT = ("nc", "cut", SET, "--member", "pinion", "--spaces", "0", "--tolerance-um", "2")
 
@@ -55,30 +59,38 @@ def test_dialect_of_the_page_has_about_twenty_lines() -> None:
     assert len(code) <= 20
 
 
-def test_every_kind_of_program_is_written_in_the_words_of_a_new_dialect_with_its_sheet(
-    command: Callable, mill5: ControlDialect, tmp_path: Path
+def test_every_kind_of_program_is_written_in_the_words_of_a_new_dialect(
+    gear_set: BevelSet, vertical: MillingMachine, mill5: ControlDialect
 ) -> None:
-    kinds = {
-        "CUT": CUT,
-        "TOUCH": ("nc", "probe", SET, "--member", "pinion", "--topography", "none", "--no-registration"),
-        "TIP": ("nc", "calibrate"),
-        "AXES": ("nc", "calibrate", "--cycle", "axes"),
+    plan, probe = cutting_plan(gear_set, "pinion", vertical, CuttingJob((0,), 2e-3)), load_calibration(bundled(PROBE))
+    writers: dict[str, Callable[[ControlDialect], str]] = {
+        "cutting": lambda one: one.cutting(plan, "GEAR"),
+        "probing": lambda one: probing_program(
+            gear_set, "pinion", vertical, probe, "GEAR", (), around=(0, 5), writer=one.probing
+        ),
+        "tip": lambda one: calibration_program(vertical, probe, "GEAR", one.blocks),
+        "axes": lambda one: axis_program(vertical, probe, "GEAR", one.blocks),
     }
-    for name, arguments in kinds.items():
-        mine, theirs, sheet = tmp_path / f"{name}.nc", tmp_path / f"{name}.ngc", tmp_path / f"{name}.html"
-        status, out, err = command(*arguments, "--control", "mill5", "-o", mine, "--sheet", sheet)
-        assert (status, err.strip().count("\n")) == (0, 0), err
-        assert f"{mine}: " in out
-        assert f"{name}.nc" in sheet.read_text("utf-8")
-        assert command(*arguments, "--control", "linuxcnc", "-o", theirs)[0] == 0
-        text = mine.read_text("ascii")
-        assert of_text(text) is mill5
-        assert mill5.block_count(text) == LINUXCNC.block_count(theirs.read_text("ascii"))
-        assert text.startswith("%\n")
-        assert text.endswith(" M30\n%\n")
-        changed = unlike(text, theirs.read_text("ascii"))
+    for write in writers.values():
+        mine, theirs = write(mill5), write(LINUXCNC)
+        assert of_text(mine) is mill5
+        assert mill5.block_count(mine) == LINUXCNC.block_count(theirs)
+        assert mine.startswith("%\n")
+        assert mine.endswith(" M30\n%\n")
+        changed = unlike(mine, theirs)
         assert {one for one, _ in changed} <= {"; control: Mill 5", "M30", *(f"G43 H{k}" for k in (1, 2, 99))}
         assert ("; control: Mill 5", "; control: LinuxCNC") in changed
+
+
+def test_commands_judge_a_program_of_a_new_dialect_and_write_its_sheet(
+    command: Callable, mill5: ControlDialect, tmp_path: Path
+) -> None:
+    for name, arguments in {"CUT": CUT, "TIP": ("nc", "calibrate")}.items():
+        program, sheet = tmp_path / f"{name}.nc", tmp_path / f"{name}.html"
+        status, _, err = command(*arguments, "--control", "mill5", "-o", program, "--sheet", sheet)
+        assert status == 0, err
+        assert of_text(program.read_text("ascii")) is mill5
+        assert f"{name}.nc" in sheet.read_text("utf-8")
 
 
 def test_program_of_a_new_dialect_is_read_as_the_same_motion(
