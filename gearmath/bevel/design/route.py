@@ -16,6 +16,7 @@ from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, settings_tab
 from gearmath.bevel.design.request import Request, gear_flank, request
 from gearmath.bevel.design.rounding import rounded_completing, rounded_gear, rounded_pinion
 from gearmath.bevel.design.start import blank_for, edge_radius
+from gearmath.bevel.design.tip_heights import with_tip_heights
 from gearmath.bevel.slots import slots_of
 from gearmath.bevel.tooth import mean_backlash
 from gearmath.errors import InputError
@@ -58,10 +59,12 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
         data.hand,
     )
     backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
-    pinion = _with_edge(
-        start.member("pinion"), edge_radius(data.pinion.blade_edge_radius, slots.pinion, blank.clearance)
-    )
-    gear = _with_edge(start.member("gear"), edge_radius(data.gear.blade_edge_radius, slots.wheel, blank.clearance))
+    given_edges = {"pinion": data.pinion.blade_edge_radius, "gear": data.gear.blade_edge_radius}
+    rounds = {
+        member: edge_radius(given_edges[member], own, blank.clearance, data.cutter.process == "face_hobbing")
+        for member, own in (("pinion", slots.pinion), ("gear", slots.wheel))
+    }
+    pinion, gear = (_with_edge(start.member(member), rounds[member]) for member in ("pinion", "gear"))
     gear = rounded_gear(gear, data.shop)
     if given is not None:
         pinion, gear = _on_blank_of(given.member("pinion"), pinion, name), given.member("gear")
@@ -104,7 +107,10 @@ def _at_once(
     values = start.model_dump()
     for flank in flanks.values():
         values[flank.name] = {**values[flank.name], **settings_table(flank.x)}
-    return completing_backlash(checked(values, Member, "pinion"), gear, backlash, data.shop), dict(flanks)
+    found = completing_backlash(checked(values, Member, "pinion"), gear, backlash, data.shop)
+    if found.process == "face_hobbing":
+        found = with_tip_heights(found, "pinion", data.shop.length_step)
+    return found, dict(flanks)
 
 
 def _single(data: DesignData, blank: BevelBlank) -> Method:
