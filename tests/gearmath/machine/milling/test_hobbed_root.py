@@ -127,7 +127,7 @@ def test_blade_with_a_longer_tip_is_the_one_whose_plane_lies_lower(flank: str, t
     assert list(one) == list(other)
     for name, section in one.items():
         if name == "edge":
-            assert section.arc == pytest.approx(np.array(other[name].arc) + [0, height, 0])
+            assert section.arc == pytest.approx(np.add(other[name].arc, (0, height, 0)))
             continue
         assert section.lower == pytest.approx(other[name].lower + height)
         assert section.upper == pytest.approx(other[name].upper + height)
