@@ -47,8 +47,7 @@ def design(
 
     With --reverse it is a file of design data, of a blank, or a gear set, of which blank and method are taken.
     """
-    from gearmath.bevel.design.route import design as designed
-    from gearmath.bevel.design.verdict import verdict
+    from gearmath.bevel.design.accepted import accepted
     from gearmath.bevel.pair import load_pair
     from gearmath.errors import InputError
     from gearmath.files import write_text
@@ -68,10 +67,8 @@ def design(
     gear = None if given is None else load_pair(find(given))
     if gear is not None and len(gear.members) < 2:
         raise InputError(f"{given}: a set with both members is needed: the blank of the pinion is taken from it")
-    with bar(2, "step", quiet=as_json) as done, about(path):
-        made = designed(asked, str(path), gear)
-        done(1)
-        figures, runs = verdict(made)
+    with bar(1, "design", quiet=as_json) as done, about(path):
+        made, figures, runs = accepted(asked, str(path), gear)
         done(1)
     write_text(target, set_text(made.pair))
     if sheet is not None:

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any
 from gearmath.bevel.blank import BevelBlank, blank_of
 from gearmath.bevel.blank_table import by_name, rows, set_fragment
 from gearmath.bevel.contact.mesh import Mesh
+from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.design.reverse import ReversedMember
 from gearmath.bevel.design.reverse_route import load_known, reversed_set
-from gearmath.bevel.design.route import design as designed
-from gearmath.bevel.design.verdict import verdict
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.slots import slots_of
 from gearmath.errors import about
@@ -55,8 +54,7 @@ def design(path: str | Path, gear: GearSet | None = None) -> PairDesign:
     """
     source = find(str(path))
     with about(source):
-        made = designed(load_design(source), str(source), None if gear is None else gear.spec)
-        figures, runs = verdict(made)
+        made, figures, runs = accepted(load_design(source), str(source), None if gear is None else gear.spec)
     return PairDesign(GearSet(made.pair), figures, runs)
 
 

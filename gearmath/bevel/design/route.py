@@ -39,10 +39,11 @@ class Designed:
     blank_data: BlankData
 
 
-def design(data: DesignData, name: str = "design data", given: BevelSet | None = None) -> Designed:
+def design(data: DesignData, name: str = "design data", given: BevelSet | None = None, along: float = 0.5) -> Designed:
     """A pair from the data of a design, to the gear of a ``given`` set or to one of its own.
 
-    ``name`` is the data's file in messages. Raises InputError naming key, value and limit of what cannot be,
+    ``name`` is the data's file in messages, ``along`` the place of a vertex of which none is asked for, from toe (0) to
+    heel (1). Raises InputError naming key, value and limit of what cannot be,
     ComputationError where no settings are found.
     """
     completing = data.pinion.cutting == "completing"
@@ -70,7 +71,7 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
         pinion, gear = _on_blank_of(given.member("pinion"), pinion, name), given.member("gear")
         if data.backlash is None:
             backlash = mean_backlash(given.member("pinion"), gear)
-    requests = {side: _asked(data, side, pinion, gear, start.shaft_angle) for side in OWN}
+    requests = {side: _asked(data, side, pinion, gear, start.shaft_angle, along) for side in OWN}
     if completing:
         found, flanks = _at_once(data, requests, pinion, gear, backlash)
     else:
@@ -79,11 +80,11 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
     return Designed(data, pair, flanks, backlash, blank_data)
 
 
-def _asked(data: DesignData, side: str, pinion: Member, gear: Member, shaft_angle: float) -> Request:
+def _asked(data: DesignData, side: str, pinion: Member, gear: Member, shaft_angle: float, along: float) -> Request:
     """What a side asks of its flank of the pinion."""
     own = OWN[side]
     facing = gear_flank(nominal_surface(gear, FLANKS[1 - FLANKS.index(own)]), pinion, shaft_angle)
-    return request(side, data.contact(side), facing, pinion.teeth, nominal_surface(pinion, own).borders[0])
+    return request(side, data.contact(side), facing, pinion.teeth, nominal_surface(pinion, own).borders[0], along)
 
 
 def _one_by_one(
