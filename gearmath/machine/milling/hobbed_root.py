@@ -13,8 +13,8 @@ from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 
 #: Places along a tip; steps along a normal, each of which leaves some hundredths.
 _ALONG, _STEPS = 9, 3
-#: A place of the root is beside the end of a tip within this [mm].
-_STEP = 0.1
+#: A place of the root is beside the end of a tip within this part of its length.
+_STEP = 0.08
 
 
 def root_of_tips(member: Member, point: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -34,12 +34,12 @@ def root_of_tips(member: Member, point: np.ndarray, normal: np.ndarray) -> tuple
         height = np.fmin(one, other)
         missing = (height - place @ (-along[1], along[0])) / rising
         point = point + np.where(np.isfinite(missing), missing, 0.0)[:, None] * normal
-    return point, np.fmin(away, away_too) * np.hypot(point[:, 0], point[:, 1]) > _STEP
+    return point, ~(np.fmin(away, away_too) <= _STEP)
 
 
 def _left_by(member: Member, flank: str, distance: np.ndarray, azimuth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Heights (n,) [mm] above the pitch cone that the tip of one kind of blade leaves at cone distances and azimuths
-    (n,), NaN beside it; and the angle (n,) [rad] from there to its end."""
+    (n,), NaN beside it; and how far (n,) each lies from its end, in parts of its length."""
     spec, side, how = member.flank(flank), SIDES[flank], generation_of(member, flank)
     (tip,) = (edge for edge in blades_of(member).edges if (edge.flank, edge.part) == (flank, "tip"))
     (direction, _), count = cone_distances(member.blank), len(distance)
@@ -60,4 +60,4 @@ def _left_by(member: Member, flank: str, distance: np.ndarray, azimuth: np.ndarr
         order = np.argsort(across[:, k])
         if np.isfinite(across[:, k]).all():
             height[k] = np.interp(0.0, across[order, k], up[order, k], left=np.nan, right=np.nan)
-    return height, np.abs(across[-1])
+    return height, np.abs(across[-1]) / np.abs(across[-1] - across[0])
