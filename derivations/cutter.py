@@ -17,8 +17,11 @@ A blade of circular arc (10.3) of radius r touches the straight one at the heigh
 
 The edge is rounded with radius r_e: tangent to the tip plane and to the straight part, or to an arc of radius r:
 
-    h_e = r_e,   ρ_e = r_p - s r_e (1 - sin α)/cos α,   joined at height r_e (1 - sin α)       (1.5)
-    ρ_e = ρ_b + s sign(r) √((r - r_e)² - (h_b - r_e)²)                                         (1.6)
+    h_e = h_t + r_e,   ρ_e = ρ(h_t) - s r_e (1 - sin α)/cos α,   joined at h_t + r_e (1 - sin α)  (1.5)
+    ρ_e = ρ_b + s sign(r) √((r - r_e)² - (h_b - h_e)²)                                         (1.6)
+
+h_t is the height of the tip above the plane in which r_p is measured, the tip plane of (1.1): outer and inner blades of
+a tilted hobbing cutter have tips of their own, for all others it is 0.
 """
 
 from __future__ import annotations
@@ -92,16 +95,28 @@ def spheric_blade() -> Expression:
 
 
 @cache
+def blade_tip() -> Expression:
+    """ρ(h_t) of (1.1) as an Expression."""
+    return Expression(
+        "blade_tip",
+        "Radius of a straight blade where it ends, its tip being above the plane of its point radius (1.1).",
+        (q.blade_point_radius, q.blade_pressure_angle, q.blade_tip_height, q.side),
+        ((q.blade_tip_radius, radius(q.blade_tip_height.symbol)),),
+        source="(1.1)",
+    )
+
+
+@cache
 def edge_round() -> Expression:
     """(1.5) as an Expression."""
-    r, alpha = q.blade_edge_radius.symbol, q.blade_pressure_angle.symbol
+    r, alpha, tip = q.blade_edge_radius.symbol, q.blade_pressure_angle.symbol, q.blade_tip_height.symbol
     flat = (1 - sp.sin(alpha)) / sp.cos(alpha)
-    center = sp.Matrix([q.blade_point_radius.symbol - q.side.symbol * r * flat, r, r])
+    center = sp.Matrix([radius(tip) - q.side.symbol * r * flat, tip + r, r])
     return Expression(
         "edge_round",
         "Arc of the rounded edge between tip plane and straight blade, and the height where they join (1.5).",
-        (q.blade_point_radius, q.blade_pressure_angle, q.blade_edge_radius, q.side),
-        ((q.blade_arc, center), (q.joint_height, r * (1 - sp.sin(alpha)))),
+        (q.blade_point_radius, q.blade_pressure_angle, q.blade_edge_radius, q.blade_tip_height, q.side),
+        ((q.blade_arc, center), (q.joint_height, tip + r * (1 - sp.sin(alpha)))),
         source="circle tangent to two lines",
     )
 
@@ -111,15 +126,16 @@ def edge_round_of_arc() -> Expression:
     """(1.6) as an Expression."""
     center_radius, center_height, r = q.main_arc.symbols
     edge = q.blade_edge_radius.symbol
-    across = sp.sqrt((r - edge) ** 2 - (center_height - edge) ** 2)
+    height = q.blade_tip_height.symbol + edge
+    across = sp.sqrt((r - edge) ** 2 - (center_height - height) ** 2)
     center = center_radius + q.side.symbol * sp.sign(r) * across
-    joint = sp.asin((center_height - edge) / (r - edge))
+    joint = sp.asin((center_height - height) / (r - edge))
     return Expression(
         "edge_round_of_arc",
         "Arc of the rounded edge between tip plane and arc blade, and the normal's angle where they join (1.6).",
-        (q.main_arc, q.blade_edge_radius, q.side),
-        ((q.blade_arc, sp.Matrix([center, edge, edge])), (q.joint_angle, joint)),
-        requires=((r - edge) ** 2 - (center_height - edge) ** 2,),
+        (q.main_arc, q.blade_edge_radius, q.blade_tip_height, q.side),
+        ((q.blade_arc, sp.Matrix([center, height, edge])), (q.joint_angle, joint)),
+        requires=((r - edge) ** 2 - (center_height - height) ** 2,),
         source="circle tangent to a line and to a circle",
     )
 
@@ -135,9 +151,10 @@ def prove_edge_round_touches_tip_plane_and_blade() -> None:
     Its centre is found from the two distances, (1.1) alone; the joint is the foot of the centre on the blade.
     """
     r, alpha, side = q.blade_edge_radius.symbol, q.blade_pressure_angle.symbol, q.side.symbol
+    tip = q.blade_tip_height.symbol
     rho, h = sp.symbols("rho h", real=True)
     for one in (1, -1):
-        ((found_rho, found_h),) = sp.linsolve([h - r, _off_blade(rho, h).subs(side, one) - r], [rho, h])
+        ((found_rho, found_h),) = sp.linsolve([h - tip - r, _off_blade(rho, h).subs(side, one) - r], [rho, h])
         center_radius, center_height, _ = edge_round()["blade_arc"].subs(side, one)
         assert is_zero(found_rho - center_radius)
         assert is_zero(found_h - center_height)
@@ -157,9 +174,19 @@ def prove_edge_round_of_an_arc_touches_it() -> None:
     # s² = 1, sign(r)² = 1
     between = sp.expand(across**2 + up**2).subs(sp.sign(r) ** 2, 1).subs(q.side.symbol**2, 1)
     assert is_zero(between - (r - edge) ** 2)
-    assert is_zero(center_height - q.blade_edge_radius.symbol)  # touches the tip plane
+    assert is_zero(center_height - q.blade_tip_height.symbol - edge)  # touches the plane of the tip
     # a point of an arc at the angle u lies r sin u below its centre (10.3): both arcs are at one height at the joint
     assert is_zero((center_height - edge * sp.sin(joint)) - (main_height - r * sp.sin(joint)))
+
+
+def prove_edge_round_of_a_sharp_blade_is_its_tip() -> None:
+    """(1.5) With r_e → 0 centre and joint come to the end of the blade."""
+    r = q.blade_edge_radius.symbol
+    end = sp.Matrix([blade_tip()["blade_tip_radius"], q.blade_tip_height.symbol])
+    center = edge_round()["blade_arc"].subs(r, 0)
+    assert is_zero(center[0] - end[0])
+    assert is_zero(center[1] - end[1])
+    assert is_zero(edge_round()["joint_height"].subs(r, 0) - end[1])
 
 
 def prove_toprem_meets_the_blade() -> None:

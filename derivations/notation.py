@@ -739,6 +739,10 @@ blade_curvature = Quantity(
 )
 reference_height = _length("reference_height", "h_r", 0.0, 15.0, "height at which arc and straight blade touch")
 blade_edge_radius = _length("blade_edge_radius", "r_e", 0.1, 3.0, "radius of the rounded blade edge")
+blade_tip_radius = _length("blade_tip_radius", "r_t", 20.0, 250.0, "radius of the blade at its tip")
+blade_tip_height = _length(
+    "blade_tip_height", "h_t", -2.0, 2.0, "height of the blade's tip above the plane of its point radius"
+)
 joint_height = _length("joint_height", "h_j", 0.0, 5.0, "height above the tip plane at which edge and blade join")
 joint_angle = _angle("joint_angle", r"u_j", 0.0, 1.5, "angle of the normal at which edge and arc blade join")
 roll_coefficients = Quantity(

@@ -272,7 +272,9 @@ def prove_a_line_is_in_the_cone_between_its_ends_and_nowhere_else() -> None:
 def prove_edge_joins_tip_plane_and_blade() -> None:
     """(16.5) With the edge of (1.5), E of blade and edge agree where they join, and those of edge and tip plane."""
     alpha, side = q.blade_pressure_angle.symbol, q.side.symbol
-    (center, height, r), joint = cutter.edge_round()["blade_arc"], cutter.edge_round()["joint_height"]
+    (center, height, r), joint = (
+        cutter.edge_round()[name].subs(q.blade_tip_height.symbol, 0) for name in ("blade_arc", "joint_height")
+    )
     along = sp.Matrix([sp.cos(alpha), -sp.sin(alpha)])
     # beyond the joint, by a along n, and below the tip plane at the centre's radius, by a: both are a
     a = sp.Symbol("a", positive=True)
@@ -293,7 +295,7 @@ def prove_excess_is_zero_on_the_sections_of_the_blade_and_has_their_sign() -> No
     for side in (1, -1):
         with mpmath.workdps(DIGITS):
             arc = cutter.spheric_blade().function(radius, alpha, r, reference, side)
-            *edge, joint = cutter.edge_round_of_arc().function(*arc, rounded, side)
+            *edge, joint = cutter.edge_round_of_arc().function(*arc, rounded, 0, side)
             own = [radius, alpha, 1 / r, reference, edge[0], rounded, joint]
             other = [radius - side * 40, alpha, 0, 0, 0 if side == 1 else 1000, 0, 0]  # far away, without an edge
             for (center, height, size), angles in (

@@ -374,7 +374,7 @@ def prove_interference_height_is_that_of_the_point_that_the_tip_of_the_mate_reac
         height = r * cosine**2 + reached * sine - (r - dedendum)
         found = running_interference().function(r, mate, addendum, dedendum, closer, alpha)
         assert is_close(found[:1], [height])
-        edge = cutter.edge_round().function(mpmath.mpf(80), alpha, found[1], 1)
+        edge = cutter.edge_round().function(mpmath.mpf(80), alpha, found[1], 0, 1)
         assert is_close(edge[3:], [height])  # there the round of the edge ends
 
 

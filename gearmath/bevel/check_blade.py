@@ -6,6 +6,7 @@ import math
 
 from gearmath.bevel.blank import evaluate
 from gearmath.bevel.method import blade_sections
+from gearmath.bevel.root import tip_radius
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
@@ -76,6 +77,11 @@ def _check_method(member: Member, table: str, spec: Flank) -> None:
         raise InputError(
             f"{table}.blade_offset_angle = {spec.blade_offset_angle:g}: belongs to face_hobbing, in face milling it "
             "must be 0 or left out"
+        )
+    if spec.blade_tip_height != 0 and not member.blade_groups:
+        raise InputError(
+            f"{table}.blade_tip_height = {spec.blade_tip_height:g}: belongs to face_hobbing, whose blades cut one "
+            "flank each; in face milling it must be 0 or left out"
         )
 
 
@@ -178,4 +184,4 @@ def tip_taken(spec: Flank, side: int) -> float:
     edge = blade_sections(spec, side).get("edge")
     if edge is None or edge.arc is None:
         return 0.0
-    return abs(edge.point_radius - edge.arc[0])
+    return abs(tip_radius(spec, side) - edge.arc[0])

@@ -14,6 +14,7 @@ from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.root import ENDS, PLACES, above_root, mean_place, root_trace
+from gearmath.bevel.tooth import space_widths
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
@@ -152,7 +153,12 @@ def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarr
     if not reached.all():
         k = round(int(np.argmax(~reached)) / (len(reached) - 1) * (len(PLACES) - 1))
         raise Misfit.of(name, flank, f"the tip of the blade does not reach the root at the {PLACES[k]}")
-    off = above_root(member, found.point)[list(ENDS)]
+    # the tip plane of a tilted cutter leans across the space: it lies on the root in the middle
+    middle = found
+    if member.cutting == "completing" and member.flank(flank).nominal.cutter_tilt:
+        half = space_widths(member, name)[0].mean / 2
+        middle = root_trace(member, flank, how, mean, half)
+    off = above_root(member, middle.point)[list(ENDS)]
     beyond = ~(np.abs(off) <= share * clearance)
     if beyond.any():
         k = int(np.argmax(np.abs(off) / share))

@@ -70,16 +70,16 @@ def blade_sections(spec: Flank, side: int) -> dict[str, Section]:
     """
     radius, alpha = spec.nominal.blade_point_radius, spec.nominal.alpha
     sections: dict[str, Section] = {}
-    bottom = 0.0
+    bottom = spec.blade_tip_height
     if spec.toprem_angle is not None:
-        bottom, angle = spec.toprem_height, spec.rad("toprem_angle")
+        lowest, bottom, angle = bottom, spec.toprem_height, spec.rad("toprem_angle")
         (toprem_radius,) = kernel("toprem")(radius, alpha, angle, bottom, side)
-        sections["toprem"] = Section(0.0, bottom, float(toprem_radius), angle)
+        sections["toprem"] = Section(lowest, bottom, float(toprem_radius), angle)
     sections["main"] = _main(spec, side, bottom)
     if spec.blade_edge_radius == 0.0:
         return sections
-    lowest = next(iter(sections))
-    edge, sections[lowest] = _rounded(spec.blade_edge_radius, side, sections[lowest])
+    first = next(iter(sections))
+    edge, sections[first] = _rounded(spec.blade_edge_radius, spec.blade_tip_height, side, sections[first])
     return {"edge": edge, **sections}
 
 
@@ -93,15 +93,15 @@ def _main(spec: Flank, side: int, bottom: float) -> Section:
     return Section(min(ends), max(ends), radius, alpha, _triple(arc))
 
 
-def _rounded(edge_radius: float, side: int, lowest: Section) -> tuple[Section, Section]:
+def _rounded(edge_radius: float, tip: float, side: int, lowest: Section) -> tuple[Section, Section]:
     """The rounded edge, and the lowest section of the blade without what the rounding takes away."""
     if lowest.arc is not None:
-        arc, joint = kernel("edge_round_of_arc")(np.array(lowest.arc), edge_radius, side)
+        arc, joint = kernel("edge_round_of_arc")(np.array(lowest.arc), edge_radius, tip, side)
         # the normal of a convex arc falls from the tip upwards, that of a concave one rises
         start = float(joint)
         rest = replace(lowest, upper=start) if lowest.arc[2] > 0 else replace(lowest, lower=start)
     else:
-        arc, height = kernel("edge_round")(lowest.point_radius, lowest.pressure_angle, edge_radius, side)
+        arc, height = kernel("edge_round")(lowest.point_radius, lowest.pressure_angle, edge_radius, tip, side)
         rest, start = replace(lowest, lower=float(height)), lowest.pressure_angle
     if rest.lower >= rest.upper:
         raise ValueError(f"blade_edge_radius = {edge_radius}: nothing is left of the section above it")

@@ -14,10 +14,12 @@ import numpy as np
 
 from gearmath.bevel.generation import Generation, Section, SurfacePoints, solve_curve
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import SIDES, Blank, Member
+from gearmath.specs.bevel_set import SIDES, Blank, Flank, Member
 
 #: The tip plane of the cutter as a blade: nearly square to its axis, so that it shows where the root is deepest.
 FLAT_BLADE = math.radians(89.9)
+#: Radius of a round that stands for a corner [mm].
+_POINT = 1e-3
 #: Places of a trace over the face width; a slot ends askew, so that it is as wide as its end shows only beyond it.
 ACROSS = np.linspace(-0.25, 1.25, 13)
 #: Those of them at the ends and in the middle of the face width, and what they are called.
@@ -72,10 +74,32 @@ def root_trace(member: Member, flank: str, how: Generation, start: np.ndarray, n
     """
     blank = member.blank
     distance, _ = _heights(blank)
-    radius = member.flank(flank).nominal.blade_point_radius - SIDES[flank] * narrower
-    count = len(ACROSS)
-    begin = np.column_stack([np.zeros(count), np.repeat(start[:, 1:], count, axis=0)])
-    return solve_curve(how, Section(0.0, 1.0, radius, FLAT_BLADE), np.zeros(count), _along(blank), distance, begin)
+    section, u = tip_plane(member.flank(flank), SIDES[flank], narrower)
+    ends = np.full(len(ACROSS), u)
+    begin = np.column_stack([ends, np.repeat(start[:, 1:], len(ACROSS), axis=0)])
+    return solve_curve(how, section, ends, _along(blank), distance, begin)
+
+
+def tip_plane(spec: Flank, side: int, narrower: float = 0.0) -> tuple[Section, float]:
+    """The tip plane of a blade as a section that is square to the cutter's axis, and its u where the corner is; with
+    ``narrower`` [mm] so far from it.
+
+    Of a blade whose tip is at the plane of its point radius a straight one; else the lowest point of a vanishing round,
+    as the blade's plane is turned about the point radius (17.2) and that must stay.
+    """
+    nominal = spec.nominal
+    if spec.blade_tip_height == 0:
+        return Section(0.0, 1.0, nominal.blade_point_radius - side * narrower, FLAT_BLADE), 0.0
+    radius = tip_radius(spec, side) - side * narrower
+    point = (radius, spec.blade_tip_height + _POINT, _POINT)
+    return Section(0.0, math.pi / 2, nominal.blade_point_radius, nominal.alpha, point), math.pi / 2
+
+
+def tip_radius(spec: Flank, side: int) -> float:
+    """Radius of a blade at its tip [mm]."""
+    nominal = spec.nominal
+    (radius,) = kernel("blade_tip")(nominal.blade_point_radius, nominal.alpha, spec.blade_tip_height, side)
+    return float(radius)
 
 
 def above_root(member: Member, point: np.ndarray) -> np.ndarray:

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any
 from gearmath.bevel.blank import BevelBlank, blank_of
 from gearmath.bevel.blank_table import TableRow, by_name, rows, set_fragment
 from gearmath.bevel.contact.mesh import Mesh
+from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.design.reverse import ReversedMember
 from gearmath.bevel.design.reverse_route import load_known, reversed_set
-from gearmath.bevel.design.route import design as designed
-from gearmath.bevel.design.verdict import verdict
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.slots import slots_of
 from gearmath.errors import about
@@ -56,11 +55,9 @@ def design(path: str | Path, gear: GearSet | None = None, begin: Begin = silent)
     """
     source = find(str(path))
     asked = load_design(source)
-    progress = begin(2, "step")
+    progress = begin(1, "design")
     with about(source):
-        made = designed(asked, str(source), None if gear is None else gear.spec)
-        progress(1)
-        figures, runs = verdict(made)
+        made, figures, runs = accepted(asked, str(source), None if gear is None else gear.spec)
         progress(1)
     return PairDesign(GearSet(made.pair), figures, runs)
 

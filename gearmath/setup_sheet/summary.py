@@ -161,6 +161,8 @@ def _cutter(member: Member, unit: SheetUnit) -> Iterator[tuple[str, dict[str, st
         between = specs["concave"].blade_point_radius - specs["convex"].blade_point_radius
         width = dict.fromkeys(FLANKS, unit.length(between) if "work_rotation_offset" in member.shared_settings else "")
     yield ("point width", width)
+    if any(spec.blade_tip_height for spec in specs.values()):
+        yield ("height of the tip", {flank: unit.length(spec.blade_tip_height) for flank, spec in specs.items()})
     yield ("blade height", {flank: unit.length(spec.blade_profile_height) for flank, spec in specs.items()})
     if any(spec.toprem_angle is not None for spec in specs.values()):
         angles = {flank: spec.toprem_angle for flank, spec in specs.items()}

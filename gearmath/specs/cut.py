@@ -130,6 +130,8 @@ class Flank(Settings):
 
     blade_profile_height: Length = Field(gt=0, le=60)
     blade_edge_radius: Length = Field(default=0.0, ge=0, le=10)
+    #: Of a hobbing blade: its tip stands so far above the plane of the point radius, or below it where negative (mm).
+    blade_tip_height: Length = Field(default=0.0, ge=-2, le=2)
     #: Of a fixed-setting cutter, which has another side (mm); without it the root of the space decides.
     blade_point_width: Length | None = Field(default=None, gt=0, le=60)
     #: Blades that cut this flank in a turn of the cutter, 1 for a fly cutter; they make the chip, and not the flank.

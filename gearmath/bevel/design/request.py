@@ -51,14 +51,17 @@ class Request:
     inner: np.ndarray
 
 
-def request(side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: np.ndarray) -> Request:
-    """What is asked of a side. ``tip`` (4,) is the pinion's border there (25.4).
+def request(
+    side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: np.ndarray, along_tooth: float = 0.5
+) -> Request:
+    """What is asked of a side. ``tip`` (4,) is the pinion's border there (25.4), ``along_tooth`` where the vertex lies
+    from toe (0) to heel (1) if no position is asked for.
 
     Raises InputError where no pinion touches the gear as is asked, with the limit.
     """
     blank, surface = gear.surface.blank.vector, gear.surface
     path = _PATH[side] if asked.path_angle is None else asked.rad("path_angle")
-    across = 0.5 if asked.position is None else asked.position[0]
+    across = along_tooth if asked.position is None else asked.position[0]
     lowest = _reached(gear, across, tip)
     part = _middle(gear, across, lowest, path) if asked.position is None else asked.position[1]
     up = lowest + (1 - lowest) * part

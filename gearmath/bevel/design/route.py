@@ -16,6 +16,7 @@ from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, settings_tab
 from gearmath.bevel.design.request import Request, gear_flank, request
 from gearmath.bevel.design.rounding import rounded_completing, rounded_gear, rounded_pinion
 from gearmath.bevel.design.start import blank_for, edge_radius
+from gearmath.bevel.design.tip_heights import with_tip_heights
 from gearmath.bevel.slots import slots_of
 from gearmath.bevel.tooth import mean_backlash
 from gearmath.errors import InputError
@@ -38,10 +39,11 @@ class Designed:
     blank_data: BlankData
 
 
-def design(data: DesignData, name: str = "design data", given: BevelSet | None = None) -> Designed:
+def design(data: DesignData, name: str = "design data", given: BevelSet | None = None, along: float = 0.5) -> Designed:
     """A pair from the data of a design, to the gear of a ``given`` set or to one of its own.
 
-    ``name`` is the data's file in messages. Raises InputError naming key, value and limit of what cannot be,
+    ``name`` is the data's file in messages, ``along`` the place of a vertex of which none is asked for, from toe (0) to
+    heel (1). Raises InputError naming key, value and limit of what cannot be,
     ComputationError where no settings are found.
     """
     completing = data.pinion.cutting == "completing"
@@ -58,16 +60,18 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
         data.hand,
     )
     backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
-    pinion = _with_edge(
-        start.member("pinion"), edge_radius(data.pinion.blade_edge_radius, slots.pinion, blank.clearance)
-    )
-    gear = _with_edge(start.member("gear"), edge_radius(data.gear.blade_edge_radius, slots.wheel, blank.clearance))
+    given_edges = {"pinion": data.pinion.blade_edge_radius, "gear": data.gear.blade_edge_radius}
+    rounds = {
+        member: edge_radius(given_edges[member], own, blank.clearance, data.cutter.process == "face_hobbing")
+        for member, own in (("pinion", slots.pinion), ("gear", slots.wheel))
+    }
+    pinion, gear = (_with_edge(start.member(member), rounds[member]) for member in ("pinion", "gear"))
     gear = rounded_gear(gear, data.shop)
     if given is not None:
         pinion, gear = _on_blank_of(given.member("pinion"), pinion, name), given.member("gear")
         if data.backlash is None:
             backlash = mean_backlash(given.member("pinion"), gear)
-    requests = {side: _asked(data, side, pinion, gear, start.shaft_angle) for side in OWN}
+    requests = {side: _asked(data, side, pinion, gear, start.shaft_angle, along) for side in OWN}
     if completing:
         found, flanks = _at_once(data, requests, pinion, gear, backlash)
     else:
@@ -76,11 +80,11 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
     return Designed(data, pair, flanks, backlash, blank_data)
 
 
-def _asked(data: DesignData, side: str, pinion: Member, gear: Member, shaft_angle: float) -> Request:
+def _asked(data: DesignData, side: str, pinion: Member, gear: Member, shaft_angle: float, along: float) -> Request:
     """What a side asks of its flank of the pinion."""
     own = OWN[side]
     facing = gear_flank(nominal_surface(gear, FLANKS[1 - FLANKS.index(own)]), pinion, shaft_angle)
-    return request(side, data.contact(side), facing, pinion.teeth, nominal_surface(pinion, own).borders[0])
+    return request(side, data.contact(side), facing, pinion.teeth, nominal_surface(pinion, own).borders[0], along)
 
 
 def _one_by_one(
@@ -104,7 +108,10 @@ def _at_once(
     values = start.model_dump()
     for flank in flanks.values():
         values[flank.name] = {**values[flank.name], **settings_table(flank.x)}
-    return completing_backlash(checked(values, Member, "pinion"), gear, backlash, data.shop), dict(flanks)
+    found = completing_backlash(checked(values, Member, "pinion"), gear, backlash, data.shop)
+    if found.process == "face_hobbing":
+        found = with_tip_heights(found, "pinion", data.shop.length_step)
+    return found, dict(flanks)
 
 
 def _single(data: DesignData, blank: BevelBlank) -> Method:

@@ -15,9 +15,12 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity, notation
+from gearmath.bevel.check_blade import tip_taken
 from gearmath.bevel.generation import Section
 from gearmath.bevel.method import blade_sections
 from gearmath.bevel.newton import newton_step
+from gearmath.bevel.root import Widths, tip_radius
+from gearmath.bevel.tooth import space_widths
 from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
@@ -26,7 +29,7 @@ NEWTON_STEPS = 6
 #: Largest change of u [mm or rad], of the fraction of a block, and of the distance [mm] in one step.
 _STEP_LIMITS = {False: (6.0, 0.15, 6.0), True: (0.5, 0.15, 6.0)}
 #: A tip reaches beyond the middle of the point width by this part of it.
-_TIP_OVERLAP = 0.05
+_TIP_OVERLAP = 0.03
 
 
 @dataclass(frozen=True)
@@ -101,11 +104,16 @@ def blades_of(member: Member, edge_radius: float = 0.0) -> Blades:
     own = {flank: _as_cut(member.flank(flank), edge_radius) for flank in FLANKS}
     sections = {flank: blade_sections(own[flank], SIDES[flank]) for flank in FLANKS}
     phases = {"concave": 0.0, "convex": blade_phase(member)}
-    width = root_width(member)
+    slots = slots_between(member)
     edges: list[Edge] = []
     for flank in FLANKS:
         parts = [_edge(own[flank], flank, part, section) for part, section in sections[flank].items()]
-        parts.append(_tip(own[flank], flank, next(iter(sections[flank].values())), width))
+        other = FLANKS[1 - FLANKS.index(flank)]
+        slot = slots[flank]
+        # beyond the middle of the widest place; not into the fillet of the other blade at the narrowest
+        room = slot.least - tip_taken(own[other], SIDES[other])
+        length = min((0.5 + _TIP_OVERLAP) * slot.most, (0.5 * slot.most + room) / 2)
+        parts.append(_tip(own[flank], flank, next(iter(sections[flank].values())), length))
         edges += [replace(edge, phase=phases[flank]) for edge in parts]
     return Blades(member.blade_groups or 1, member.teeth, tuple(edges))
 
@@ -119,22 +127,13 @@ def blade_phase(member: Member) -> float:
     return turn * member.teeth / (member.indexing_sign * member.blade_groups)
 
 
-def root_width(member: Member) -> float:
-    """The width [mm] of the root between both blades of a cutter, where it turns the work in between too."""
-    return member.concave.blade_point_radius - member.convex.blade_point_radius + _turned_width(member)
-
-
-def _turned_width(member: Member) -> float:
-    """What that turn makes of the width of a space, square to it [mm]; the spiral angle from the crown gear (12.4)."""
-    turn = abs(member.concave.rad("work_rotation_offset") - member.convex.rad("work_rotation_offset"))
-    if member.blade_groups is None or not turn:
-        return 0.0
-    blank, spec = member.blank, member.concave
-    radius = (spec.blade_point_radius + member.convex.blade_point_radius) / 2
-    mean, distance = blank.mean_cone_distance, spec.radial_distance
-    sine = (mean**2 + radius**2 - distance**2) / (2 * mean * radius)
-    spiral = math.asin(max(-1.0, min(sine, 1.0))) + abs(spec.rad("blade_offset_angle"))
-    return turn * mean * math.sin(blank.delta) * math.cos(spiral)
+def slots_between(member: Member) -> dict[str, Widths]:
+    """By flank the point width of a cutter that would leave the root between both blades: that of this cutter, or where
+    it turns the work in between what the space shows."""
+    if not blade_phase(member):
+        width = tip_radius(member.concave, SIDES["concave"]) - tip_radius(member.convex, SIDES["convex"])
+        return dict.fromkeys(FLANKS, Widths(width, width, width, width, width))
+    return space_widths(member, "member")[1]
 
 
 def _as_cut(spec: Flank, edge_radius: float) -> Flank:
@@ -149,14 +148,15 @@ def _edge(spec: Flank, flank: str, part: str, section: Section) -> Edge:
     return Edge(flank, part, section.lower, section.upper, shape, spec.blade_point_radius, offset, side)
 
 
-def _tip(spec: Flank, flank: str, lowest: Section, width: float) -> Edge:
-    """From where the rounding or the blade ends, at height zero, towards the other blade of the group."""
-    side = SIDES[flank]
-    first = lowest.point_radius if lowest.arc is None else lowest.arc[0]
-    last = spec.blade_point_radius - side * (0.5 + _TIP_OVERLAP) * width
+def _tip(spec: Flank, flank: str, lowest: Section, reach: float) -> Edge:
+    """From where the rounding or the blade ends, at its tip, ``reach`` [mm] from its corner towards the other blade."""
+    side, height = SIDES[flank], spec.blade_tip_height
+    corner = tip_radius(spec, side)
+    first = corner if lowest.arc is None else lowest.arc[0]
+    last = corner - side * reach
     length = max(side * (first - last), 0.0)
     offset = spec.rad("blade_offset_angle")
-    return Edge(flank, "tip", 0.0, length, (first, 0.0, -float(side), 0.0), spec.blade_point_radius, offset, side)
+    return Edge(flank, "tip", 0.0, length, (first, height, -float(side), 0.0), spec.blade_point_radius, offset, side)
 
 
 def _quantities(is_arc: bool) -> tuple[Quantity, ...]:

@@ -14,6 +14,7 @@ import numpy as np
 from gearmath.bevel.generation import Section
 from gearmath.bevel.method import blade_sections
 from gearmath.bevel.ridge import opposite, other_side, point_width
+from gearmath.bevel.root import tip_radius
 from gearmath.bevel.tooth import ToothSpace
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
@@ -126,6 +127,8 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
     ``space``; without a space, that side is out of reach.
     """
     own = {flank: member.flank(flank) for flank in flanks}
+    base = min(spec.blade_tip_height for spec in own.values())
+    own = {flank: _from_tip(spec, SIDES[flank]) for flank, spec in own.items()}
     height = max(spec.blade_profile_height for spec in own.values())
     if len(flanks) == 1 and space is None:
         spec = own[flanks[0]]
@@ -137,7 +140,7 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
     sections = {flank: blade_sections(_edged(_as_cut(spec), edge_radius), SIDES[flank]) for flank, spec in own.items()}
     toprem = max(sections[flank]["toprem"].upper if "toprem" in sections[flank] else 0.0 for flank in own)
     lowest = [_profile(sections[flank], own[flank], SIDES[flank]) for flank in FLANKS]
-    bodies = [Body(0.0, lowest[0], lowest[1], height)]
+    bodies = [Body(base, lowest[0], lowest[1], height)]
     if toprem > 0.0:
         mains = [
             _profile({"main": sections[flank]["main"]}, own[flank], SIDES[flank]).raised(toprem, SIDES[flank])
@@ -145,6 +148,15 @@ def cutter_of(member: Member, flanks: tuple[str, ...], space: ToothSpace | None,
         ]
         bodies.append(Body(toprem, mains[0], mains[1], height - toprem))
     return Cutter(tuple(bodies), height)
+
+
+def _from_tip(spec: Flank, side: int) -> Flank:
+    """A blade whose tip has a height, with that as its plane: all bodies of a cutter begin at its lowest tip."""
+    height = spec.blade_tip_height
+    if height == 0.0:
+        return spec
+    values = {"blade_point_radius": tip_radius(spec, side), "blade_tip_height": 0.0}
+    return spec.model_copy(update=values | {"blade_reference_height": spec.blade_reference_height - height})
 
 
 def _as_cut(spec: Flank) -> Flank:

@@ -12,6 +12,7 @@ from gearmath.bevel.tooth import SHARP_EDGE, SpaceFlank, ToothSpace, tooth_space
 from gearmath.bevel.turning import turned
 from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.control.executor import MachinePath
+from gearmath.machine.milling.hobbed_root import root_of_tips
 from gearmath.machine.milling.mill import expose, thickness
 from gearmath.machine.milling.removal import removal
 from gearmath.machine.milling.run import CuttingRun, runs_of
@@ -131,10 +132,12 @@ def surface_states(
 def generated_root(root: Surface, member: Member, name: str, space: ToothSpace) -> Surface:
     """A root moved along its normals to the envelope of all tips that generate it at the nominal settings.
 
-    Points that no tool comes near stay; so does the ruled root of a face hobbed member.
+    Points that no tool comes near stay; those at a step of it, in face hobbing where a tip ends, are left out.
     """
     if member.process == "face_hobbing":
-        return root
+        point, even = root_of_tips(_as_designed(member), root.point, root.normal)
+        moved = (point, root.normal, root.row, root.col, root.start)
+        return Surface(root.name, *(values[even] for values in moved))
     where = left_by_exact_motion(member, name, space, root)
     moved = root.point + np.where(np.isfinite(where), where, 0.0)[:, None] * root.normal
     return replace(root, point=moved)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from gearmath.bevel.ridge import edge_taken, point_width
 from gearmath.bevel.tooth import ToothSpace
-from gearmath.machine.bodies.blades import root_width
+from gearmath.machine.bodies.blades import slots_between
 from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.planning.path import Cut
 from gearmath.specs.bevel_set import Flank, Member
@@ -56,7 +56,7 @@ def tools_of(member: Member, name: str, space: ToothSpace | None) -> tuple[Tool,
         blades = {flank: member.flank(flank) for flank in cut.flanks}
         cutter = cutter_of(member, cut.flanks, space)
         if space is None:
-            point = PointWidth(root_width(member), True)
+            point = PointWidth(slots_between(member)["concave"].mean, True)
         else:
             ((flank, spec),) = blades.items()
             slot, stated = space.slots[flank], spec.blade_point_width is not None

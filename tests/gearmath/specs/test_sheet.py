@@ -127,6 +127,7 @@ def test_every_length_and_no_other_number_is_taken_as_inches():
         "blade_point_radius",
         "blade_profile_height",
         "blade_edge_radius",
+        "blade_tip_height",
         "blade_point_width",
         "blade_spheric_radius",
         "blade_reference_height",

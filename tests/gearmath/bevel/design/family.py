@@ -29,3 +29,14 @@ def family(seed: int) -> DesignData:
         "hand": draw.choice(["left", "right"]),
     }
     return checked(values, DesignData, str(seed))
+
+
+def mixed(seed: int) -> DesignData:
+    """A pair of the whole family: the same, and the method of the pinion drawn too, milled or hobbed."""
+    values, draw = family(seed).model_dump(exclude_unset=True), random.Random(f"method {seed}")
+    method, groups = draw.choice(["fixed", "completing", "hobbed"]), draw.randint(7, 17)
+    if method != "fixed":
+        values["pinion"] = {"cutting": "completing"}
+    if method == "hobbed":
+        values["cutter"] |= {"process": "face_hobbing", "blade_groups": groups}
+    return checked(values, DesignData, str(seed))

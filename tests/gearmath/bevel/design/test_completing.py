@@ -12,6 +12,7 @@ from gearmath.bevel.blank import blank_of
 from gearmath.bevel.contact.report import ARCSEC, SIDES, side_mesh
 from gearmath.bevel.contact.system import Assembly, System, TouchPoint
 from gearmath.bevel.crown_gear import Method, crown_gear_set
+from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.design.route import Designed, design
 from gearmath.bevel.design.verdict import verdict, vertex
 from gearmath.bevel.ease_off import ease_off, parts
@@ -25,7 +26,7 @@ from gearmath.machine.planning.hobbing import six_axes
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
-from tests.gearmath.bevel.design.family import family
+from tests.gearmath.bevel.design.family import family, mixed
 
 MILLED = {
     "title": "12 x 36",
@@ -218,3 +219,16 @@ def test_hobbed_and_completing_draws_are_designed_as_asked_or_refused_in_a_sente
                 assert figures[side]["outcome"] == "interior contact"
     assert all(said and "\n" not in said for said in refused)
     assert designed >= 4  # what is refused, mostly Formate gears and small pinions, is stated in docs/design.md
+
+
+def test_small_hobbed_pinion_has_its_contact_nearer_to_the_heel_where_nobody_asks_for_a_place() -> None:
+    """10 x 35: with the vertex in the middle of the face width it runs on an edge, as its toe is undercut."""
+    asked = mixed(4)
+    with pytest.raises(InputError, match="edge contact"):
+        verdict(design(asked))
+    made, figures, _ = accepted(asked)
+    gear = made.pair.member("gear").blank
+    for side in SIDES:
+        second = figures[side]["second_derivative"]
+        assert second["found"] == pytest.approx(second["asked"], rel=0.02)
+        assert figures[side]["vertex"]["gear_cone_distance_mm"] > gear.mean_cone_distance + 0.1 * gear.face_width
