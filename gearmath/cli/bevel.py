@@ -89,7 +89,7 @@ def flank(
 @output("STL")
 def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; backlash and ease-off of the pair; and an STL."""
-    from gearmath.bevel.mates import pair_figures
+    from gearmath.bevel.mates import edge_note, pair_figures
     from gearmath.bevel.pair import load_pair
     from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
     from gearmath.bevel.tooth import space_figures, tooth_space
@@ -100,7 +100,7 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     member, spec = member_of(bevel_set, member)
     with about(source):
         surface = tooth_space(spec, member, columns)
-        mates = pair_figures(bevel_set)
+        mates, note = pair_figures(bevel_set), edge_note(bevel_set)
     triangles = space_triangles(surface) if space else member_triangles(spec, surface)
     write_stl(target, triangles, f"{member} {'space' if space else 'member'}")
     figures = space_figures(spec, surface)
@@ -114,6 +114,8 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     click.echo("grid of flank files, where 'gearmath evaluate' measures")
     if mates is not None:
         _echo_pair(mates)
+    if note:
+        click.echo(f"note: {note}")
     click.echo(f"{target}: {len(triangles)} triangles")
 
 

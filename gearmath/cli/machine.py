@@ -102,6 +102,7 @@ def cut(
     Before it is written it is run: it must keep the limits of the machine, collide with nothing, and leave both flanks
     within the tolerance.
     """
+    from gearmath.bevel.mates import edge_note
     from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
     from gearmath.machine.judging.checked import checked_cut
@@ -135,6 +136,8 @@ def cut(
     count = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
     write_text(target, made.text)
     click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {count} blocks")
+    if note := edge_note(bevel_set):
+        click.echo(f"note: {note}")
     if configuration:
         write_configuration(target, milling_machine, linuxcnc.tools_of(made.plan))
     if sheet is not None and page is not None:
