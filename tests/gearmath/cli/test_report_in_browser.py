@@ -28,7 +28,8 @@ addEventListener('load', () => {
     parseFloat(frame.contentWindow.getComputedStyle(word).fontSize) *
     Math.hypot(word.getScreenCTM().a, word.getScreenCTM().b));
   const charts = [...page.querySelectorAll('svg')].map(chart => chart.getBoundingClientRect());
-  const apart = (a, b) => a.right <= b.left + 1 || b.right <= a.left + 1 || a.bottom <= b.top + 1 || b.bottom <= a.top + 1;
+  const beside = (a, b) => a.right <= b.left + 1 || b.right <= a.left + 1;
+  const apart = (a, b) => beside(a, b) || a.bottom <= b.top + 1 || b.bottom <= a.top + 1;
   const overlapping = charts.filter((a, k) => charts.slice(k + 1).some(b => !apart(a, b))).length;
   document.title = JSON.stringify({
     charts: charts.length, overlapping, rows: new Set(charts.map(chart => Math.round(chart.top))).size,
