@@ -120,7 +120,7 @@ def compensate(
     Points that missed, drift and clamping are taken out first, as 'evaluate' does. Says in two lines what remains of
     what, and which limit binds.
     """
-    from gearmath.bevel.pair import check_pair, load_pair
+    from gearmath.bevel.pair import load_pair
     from gearmath.cli.compensate_text import say_analysis, say_changes, say_result, verdict
     from gearmath.quality.correction import member as correcting
     from gearmath.quality.correction.member import ROOT_LIMIT, correct
@@ -167,7 +167,7 @@ def compensate(
         correction.index,
         correction.motions,
         correction.curvatures,
-        check=check_pair,
+        check=_check_cut,
         origin=f"{measured.name} and {source.name}",
     )
     values = correction_values(spec, correction) | {"remarks": [*evaluation.remarks, *correction.remarks]}
@@ -192,6 +192,18 @@ def compensate(
         if remark not in evaluation.first:
             click.echo(remark)
     click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
+
+
+def _check_cut(corrected: BevelSet) -> None:
+    """Raise ComputationError where corrected settings cut no pair: the measurement is not to blame."""
+    from gearmath.bevel.pair import check_pair
+
+    try:
+        check_pair(corrected)
+    except InputError as error:
+        raise ComputationError(
+            f"the corrected settings cut no pair, nothing is written: {error}; name fewer settings with --settings"
+        ) from error
 
 
 def _uncertainty(
