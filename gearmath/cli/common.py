@@ -19,7 +19,7 @@ from gearmath.errors import about as about
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearmath.specs.bevel_set import BevelSet, Member
+    from gearmath.front.sets import GearSet, Member
 
 #: The gear set of a verb whose first argument is another file.
 SET_OPTION = click.option(
@@ -70,15 +70,22 @@ class Number(click.FloatRange):
 
 
 class NewFile(click.Path):
-    """A file to write: that it can be written there, by no other option too, is checked before any work is done."""
+    """A file to write: that it can be written there, by no other option too, is checked before any work is done.
 
-    def __init__(self) -> None:
+    ``suffixes``: how its name must end, where other programs know the file by that.
+    """
+
+    def __init__(self, *suffixes: str) -> None:
         super().__init__(path_type=Path, dir_okay=False)
+        self.suffixes = suffixes
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         from gearmath.files import check_place
 
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        if self.suffixes and path.suffix.lower() not in self.suffixes:
+            option = f"{param.opts[0]} " if param is not None else ""
+            raise InputError(f"{option}{path}: the name must end in {' or '.join(self.suffixes)}")
         check_place(path)
         if ctx is not None and param is not None:
             taken = ctx.meta.setdefault(f"{__name__}.written", {})
@@ -105,21 +112,21 @@ def SET(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_set
 
 
-def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> tuple[str, Member]:
-    """Name and data of a member: ``given`` by --member, ``stated`` by a file, or the only one of the set.
+def member_of(pair: GearSet, given: str | None, stated: str | None = None) -> Member:
+    """A member: ``given`` by --member, ``stated`` by a file, or the only one of the set.
 
     Raises InputError where none of these tells it.
     """
-    members = list(pair.members)
+    members = list(pair.spec.members)
     name = given or stated or (members[0] if len(members) == 1 else None)
     if name is None:
         raise InputError("--member is missing: the set has both, so it must be pinion or gear")
-    return name, pair.member(name)
+    return pair.member(name)
 
 
 def nominal_words(member: Member, flank: str) -> str:
     """What to add where nominal points of a flank are written that is cut with other settings; else nothing."""
-    changed = member.flank(flank).design is not None
+    changed = member.spec.flank(flank).design is not None
     return ": the nominal flank, by the settings under 'design', not what the corrected ones cut" if changed else ""
 
 
@@ -128,7 +135,7 @@ def plot(what: str) -> Any:
     return click.option(
         "--plot",
         "picture",
-        type=NewFile(),
+        type=NewFile(".png"),
         metavar="PICTURE.png",
         help=f"Picture to write (PNG): {what}.",
     )
@@ -142,24 +149,26 @@ def save_plot(figure: Figure, path: Path, as_json: bool) -> None:
     click.echo(f"picture: {path}", err=as_json)
 
 
+#: How names of pages end.
+HTML = (".html", ".htm")
 #: The option --sheet of programs.
 SHEET = click.option(
     "--sheet",
-    type=NewFile(),
+    type=NewFile(*HTML),
     metavar="SETUP.html",
-    help="Also write the set-up sheet of a program for a SINUMERIK: a page that prints on A4.",
+    help="Also write the set-up sheet of the program: a page that prints on A4.",
 )
 
 
-def output(suffix: str) -> Any:
-    """The option -o for one output file."""
+def output(kind: str, *suffixes: str) -> Any:
+    """The option -o for one output file, its kind as the help has it, and how its name must end (default: any)."""
     return click.option(
         "-o",
         "--output",
         "target",
-        type=NewFile(),
+        type=NewFile(*suffixes),
         required=True,
-        help=f"File to write ({suffix}).",
+        help=f"File to write ({kind}).",
     )
 
 
@@ -201,12 +210,12 @@ def bar(total: int, unit: str, quiet: bool = False) -> Iterator[Any]:
 
 
 @contextmanager
-def bars() -> Iterator[Callable[[int, str], Any]]:
+def bars(quiet: bool = False) -> Iterator[Callable[[int, str], Any]]:
     """Progress bars one after the other: each begins, with its total and unit, when the one before ends."""
     with ExitStack() as stack:
 
         def begin(total: int, unit: str) -> Any:
             stack.close()
-            return stack.enter_context(bar(total, unit))
+            return stack.enter_context(bar(total, unit, quiet))
 
         yield begin

@@ -9,7 +9,7 @@ import click
 
 from gearmath.cli.common import MACHINE, MEMBER, about, bar, member_of, output
 from gearmath.cli.probe import CALIBRATION
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.machine.control.state import Probe
@@ -103,7 +103,10 @@ def probe(
         if gear_set is None:
             raise InputError(f"--set is missing: {program} probes a member")
         pair = load_pair(find(gear_set))
-        name, spec = member_of(pair, member, stated_member(text))
+        from gearmath.front.sets import GearSet
+
+        one = member_of(GearSet(pair), member, stated_member(text))
+        name, spec = one.name, one.spec
         there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
         count = touch_count(text, str(program), setup)
         if not count:
@@ -117,7 +120,7 @@ def probe(
         raw = run_touches(text, str(program), there, shop, count, run, progress, setup)
     write_text(target, raw)
     rows = [line for line in raw.splitlines() if line[:1].isdigit()]
-    click.echo(f"{target}: {len(rows)} touches of run {run}")
+    click.echo(f"{target}: {counted(len(rows), 'touch')} of run {run}")
 
 
 def _check_clear(

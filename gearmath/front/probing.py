@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from gearmath.errors import InputError, about
+from gearmath.errors import InputError
 from gearmath.files import write_text
 from gearmath.front.machines import Machine, load_machine, load_probe
 from gearmath.front.measured import Measurement
 from gearmath.front.sets import GearSet, Member
 from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import readable
+from gearmath.machine.judging.dialects import named
 from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.checked import ProbingChoice, checked_probing, refuse_faults
 from gearmath.machine.measuring.judge import judge_calibration
@@ -21,12 +23,12 @@ from gearmath.machine.measuring.probe_run import run_touches, touch_count
 from gearmath.machine.milling.milled_surface import MilledSurface
 from gearmath.machine.writing.axis_cycle import axis_program
 from gearmath.machine.writing.calibrating import calibration_program
-from gearmath.quality.calibration.axes import AxisCalibration, calibrate_axes
-from gearmath.quality.calibration.tip import Tip, calibrate_tip
+from gearmath.quality.calibration.axes import AxisCalibration
+from gearmath.quality.calibration.tip import Tip
+from gearmath.quality.evaluation.calibrated_run import calibrated_run
 from gearmath.quality.evaluation.measured_run import measured_run
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.simulated_machine import SimulatedMachine
-from gearmath.specs.touch_csv import WORK_SPHERE, check_whole, read_calibration_csv
 
 #: Touches of one point at most, as of ``gearmath nc probe``.
 MOST_TOUCHES = 100
@@ -59,15 +61,13 @@ class ProbingProgram:
         Against nominal flanks or, with ``measured``, the metal that it tells of; ``shop`` errs in axes, clamping and
         probe, and each run ``number`` has its own noise. Raises InputError where it touches what is not there.
         """
-        setup = Setup.of(self.machine.spec, self.probe.length)
+        setup, text = Setup.of(self.machine.spec, self.probe.length), readable(self.text)
         if self.member is None:
-            raw = run_touches(
-                self.text, self.name, Artefacts(self.machine.spec, self.probe), shop, run=number, setup=setup
-            )
+            raw = run_touches(text, self.name, Artefacts(self.machine.spec, self.probe), shop, run=number, setup=setup)
         else:
             there = _on_machine(self.member, measured, self.machine, self.probe, shop)
-            count = touch_count(self.text, self.name, setup)
-            raw = run_touches(self.text, self.name, there, shop, count, number, setup=setup)
+            count = touch_count(text, self.name, setup)
+            raw = run_touches(text, self.name, there, shop, count, number, setup=setup)
         write_text(Path(path), raw)
         return Path(path)
 
@@ -96,7 +96,8 @@ def probing(
         raise InputError(f"repeat = {repeat!r}: must be a whole number from 1 to {MOST_TOUCHES}")
     machine, probe = machine or load_machine(), probe or load_probe()
     choice = ProbingChoice(topography, pitch, registration, repeat)
-    made = checked_probing(member.gear_set.spec, member.name, machine.spec, probe, choice, name, name)
+    dialect = named(machine.spec.control.dialect(None))
+    made = checked_probing(member.gear_set.spec, member.name, machine.spec, probe, choice, name, name, dialect=dialect)
     return ProbingProgram(member, machine, probe, name, made.text)
 
 
@@ -112,8 +113,9 @@ def calibrating(
     if cycle not in ("tip", "axes"):
         raise InputError(f"cycle = {cycle!r}: must be 'tip' or 'axes'")
     machine, probe = machine or load_machine(), probe or load_probe()
-    text = (axis_program if cycle == "axes" else calibration_program)(machine.spec, probe, name)
-    refuse_faults(judge_calibration(text, name, machine.spec, probe), name, "the program is not written")
+    dialect = named(machine.spec.control.dialect(None))
+    text = (axis_program if cycle == "axes" else calibration_program)(machine.spec, probe, name, dialect.blocks)
+    refuse_faults(judge_calibration(dialect.read(text), name, machine.spec, probe), name, "the program is not written")
     return ProbingProgram(None, machine, probe, name, text)
 
 
@@ -141,18 +143,11 @@ def calibrate(
 ) -> Tip | AxisCalibration:
     """The tip of the probe from touches on sphere or ring, or the rotary axes from those on the work side's sphere.
 
-    Both have standard uncertainties [mm, rad]. Raises InputError naming file and touch.
+    Both have standard uncertainties [mm, rad]. By default those of the last run, which must be whole. Raises InputError
+    naming file and touch.
     """
-    machine, probe, path = machine or load_machine(), probe or load_probe(), Path(path)
-    found = read_calibration_csv(path, run)
-    check_whole(path, run, found, ())
-    on_work = bool((found.target == WORK_SPHERE).any())
-    if on_work and lobing:
-        raise InputError("lobing needs touches on the sphere of the table; these are on that of the work")
-    with about(path):
-        if on_work:
-            return calibrate_axes(found, machine.spec, probe)
-        return calibrate_tip(found, probe, lobing, "the calibration")
+    machine, probe = machine or load_machine(), probe or load_probe()
+    return calibrated_run(Path(path), machine.spec, probe, run, lobing).found
 
 
 def _on_machine(

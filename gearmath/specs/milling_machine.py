@@ -109,6 +109,12 @@ class MillingMachine(Spec):
     """The Z to which programs retract before anything else moves; the top of the travel if left out."""
     cutter_direction: Literal["M3", "M4"] = "M3"
     spindle_speed_rpm: _Speeds
+    max_feed_per_min: float | None = Field(default=None, gt=0)
+    """Highest feed of the cutter past the tooth [mm/min]; None for no limit but those of the axes."""
+    max_feed_per_turn: float | None = Field(default=None, gt=0)
+    """The same in a turn of the cutter [mm]: what all of its blades together may take."""
+    max_cutting_speed: float | None = Field(default=None, gt=0)
+    """Highest speed of the blade tips [m/min]."""
     axes: Axes
     control: ControlSettings = ControlSettings()
     cutter_head: CutterHead = CutterHead()

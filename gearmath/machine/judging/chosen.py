@@ -44,7 +44,8 @@ def chosen_faults(text: str, name: str, path: MachinePath, setup: Setup) -> Iter
         part = cut_rows(alone.path)
         if not len(part):
             yield Fault(f"with R90={number} R91={number} cuts nothing", kind="part")
-        elif not same(part, whole[done : done + len(part)]):
+            return
+        if not same(part, whole[done : done + len(part)]):
             line = int(alone.path.line[~alone.path.rapid][0])
             yield Fault(
                 f"with R90={number} R91={number} does not make section {number} of the whole run, and that alone",

@@ -11,6 +11,7 @@ import numpy as np
 from gearmath.bevel.method import motion_of
 from gearmath.bevel.ridge import point_width
 from gearmath.bevel.tooth import ToothSpace
+from gearmath.errors import counted
 from gearmath.machine.judging.alike import alike
 from gearmath.machine.judging.block_check import MOST_LINES, Watch, watch
 from gearmath.machine.judging.faults import Fault
@@ -70,25 +71,44 @@ def beside_the_path(runs: list[CuttingRun], member: Member, machine: MillingMach
     Above it only where it rolls, between the first and the last block of a pass, by its median: a stock raises all of
     it.
     """
-    half = machine.control.half_increments
-    rounding = math.sqrt(3) * half[0] + (2 * FROM_AXIS + FROM_CUTTER) * half[3]
-    # rounded X and Y are off, and so is the cradle rotation found from them, by which A is compared
-    limit = max(allowed(stated), 3.0 * rounding)
+    limit = beside_limit(machine, stated)
     for run in runs:
         rows, off = off_the_path(run, member, machine)
-        aside = np.abs(off * np.array([1.0, 1.0, 0.0, 1.0, 1.0])).sum(axis=1)
-        below = np.maximum(-off[:, 2], 0.0)
         number = np.cumsum(~run.cutting)[rows]
         rolls = np.append(False, np.diff(run.axes[:, :2], axis=0).any(axis=1)) & run.cutting
         inner = rolls[rows] & np.append(run.cutting[1:], False)[rows] & run.cutting[rows - 1]
-        above = np.zeros(len(rows))
+        middle = np.full(len(rows), np.nan)
         if member.generation == "generated":
-            for one in np.unique(number[inner]):
-                own = inner & (number == one)
-                above[own] = np.abs(off[own, 2] - np.median(off[own, 2]))
-        aside = np.maximum(np.hypot(aside, below), above)
+            middle[inner] = _medians(off[inner, 2], number[inner])
+        aside = distances_aside(off, middle)
         for k in np.flatnonzero((aside > limit) & run.at_ends[rows]):
             yield Fault(f"ends {aside[k]:.6f} mm beside the path of these settings", int(run.line[rows[k]]), "beside")
+
+
+def beside_limit(machine: MillingMachine, stated: Stated) -> float:
+    """How far [mm] the end of a block may lie beside the path: the rounding of the control makes some of it."""
+    half = machine.control.half_increments
+    rounding = math.sqrt(3) * half[0] + (2 * FROM_AXIS + FROM_CUTTER) * half[3]
+    # rounded X and Y are off, and so is the cradle rotation found from them, by which A is compared
+    return max(allowed(stated), 3.0 * rounding)
+
+
+def distances_aside(off: np.ndarray, middle: np.ndarray) -> np.ndarray:
+    """How far (n,) positions count as beside their path that are ``off`` (n,5) it, as :func:`off_the_path` has them.
+
+    ``middle`` (n,) is the median height of a pass above its path where the positions must keep to it, and else NaN.
+    """
+    aside = np.abs(off * np.array([1.0, 1.0, 0.0, 1.0, 1.0])).sum(axis=1)
+    below = np.maximum(-off[:, 2], 0.0)
+    return np.maximum(np.hypot(aside, below), np.nan_to_num(np.abs(off[:, 2] - middle)))
+
+
+def _medians(values: np.ndarray, group: np.ndarray) -> np.ndarray:
+    """The median (n,) of the values in the group of each, groups ascending."""
+    _, of_group, count = np.unique(group, return_inverse=True, return_counts=True)
+    ordered, begin = values[np.lexsort((values, of_group))], np.cumsum(count) - count
+    median: np.ndarray = (ordered[begin + (count - 1) // 2] + ordered[begin + count // 2]) / 2
+    return median[of_group]
 
 
 def no_dry_run(runs: list[CuttingRun], member: Member, machine: MillingMachine, stated: Stated) -> Iterator[Fault]:
@@ -209,7 +229,7 @@ def metal_left(
         )
     uncut = sum(state.unmet for state in states)
     if uncut and not found.uncut:
-        faults.append(Fault(f"{uncut} points of fillets and roots are not cut at all"))
+        faults.append(Fault(f"leaves {counted(uncut, 'point')} of fillets and roots uncut"))
     return MetalLeft(found, tolerance, tuple(faults))
 
 

@@ -9,25 +9,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearmath.kernels import kernel
 from gearmath.machine.control.executor import MachinePath
 from gearmath.machine.judging.faults import Fault
+from gearmath.machine.judging.feed import STATED_SLACK, feed_limits, feeds
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.run import CuttingRun
 from gearmath.machine.planning.clear_space import clear_height, room_of
-from gearmath.machine.planning.cut_plan import DEFAULT_FEED, DEFAULT_SPINDLE_RPM, middle_of_tooth
-from gearmath.machine.planning.feeds import accelerations
-from gearmath.machine.planning.passes import tooth_angles
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 
 #: Speeds and accelerations may pass their limits by this part: the rounding of block times.
 _SLACK = 1e-3
-#: And feeds and spindle speeds what the header states, by its digits; a height its limit. [mm]
-_STATED_SLACK, _HEIGHT_SLACK = 1e-2, 1e-3
-
-#: The part of the blocks that says how fast a program is, and how much faster some of them may be.
-_MOST_BLOCKS, _BESIDE_MOST = 0.75, 2.0
+#: And a height its limit. [mm]
+_HEIGHT_SLACK = 1e-3
 
 
 def motion_faults(
@@ -42,6 +36,8 @@ def motion_faults(
     yield from travel(path, machine)
     yield from speeds(path, machine)
     yield from feeds(path, runs, member, machine, stated)
+    if not stated.raised:
+        yield from feed_limits(path, runs, member, machine)
     yield from waiting(path)
     if stated.coolant:
         yield from dry(path)
@@ -83,7 +79,7 @@ def path_modes(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
             continue
         if mode != "G642" or control.path_mode != "G642":
             yield Fault(f"cuts with {mode}, the machine file has {control.path_mode}", line, "path mode")
-        elif contour > within * (1 + _STATED_SLACK) or orientation > turned * (1 + _STATED_SLACK):
+        elif contour > within * (1 + STATED_SLACK) or orientation > turned * (1 + STATED_SLACK):
             yield Fault(
                 f"cuts with CTOL={contour:g} OTOL={orientation:g}, the machine file allows {within:g} mm and "
                 f"{turned:.3g} degrees",
@@ -137,7 +133,7 @@ def spindle(path: MachinePath, machine: MillingMachine, stated: Stated) -> Itera
         ),
         ((speed > high) | ((speed < low) & (speed != 0.0)), f"cuts at a speed outside of {low:g} to {high:g} rpm"),
         (
-            np.abs(speed - (wanted or 0.0)) > _STATED_SLACK * (wanted or np.inf),
+            np.abs(speed - (wanted or 0.0)) > STATED_SLACK * (wanted or np.inf),
             f"cuts at another speed than the {wanted or 0.0:g} rpm that the program states",
         ),
     ):
@@ -182,27 +178,28 @@ def speeds(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
     limits = machine.limits(where.shape[1])
     feed = np.flatnonzero(~path.rapid & (path.seconds > 0.0) & (np.arange(len(path.rapid)) > 0))
     inner = np.append(path.inner, False) if len(path.inner) else np.zeros(len(path.rapid) + 1, dtype=bool)
-    ends = np.flatnonzero((np.diff(feed) > 1) | _curve_ends(inner, feed)) + 1
-    for rows in np.split(feed, ends):
-        if not len(rows):
-            continue
-        steps = np.nan_to_num(where[rows] - where[rows - 1])
-        seconds = path.seconds[rows]
-        curved = inner[rows[0]]
-        gained = np.abs(accelerations(steps, seconds))[int(curved) : -1]
-        for values, limit, per, what in (
-            (np.abs(steps) / seconds[:, None], limits.max_speed, 60.0, "/min"),
-            (gained, limits.max_acceleration, 1.0, "/s2"),
-            (_jerks(steps, seconds) if curved else steps[:0], limits.max_jerk, 1.0, "/s3"),
-        ):
-            for row, axis in np.argwhere(values > limit * (1.0 + _SLACK)):
-                scale, unit = limits.scale[axis] * per, limits.units[axis]
-                yield Fault(
-                    f"needs {values[row, axis] * scale:.0f} {unit}{what} of {limits.names[axis]}: {machine.name} "
-                    f"allows {limit[axis] * scale:g} {unit}{what}",
-                    int(path.line[rows[row]]),
-                    "speed",
-                )
+    first = np.append(True, (np.diff(feed) > 1) | _curve_ends(inner, feed))[: len(feed)]
+    group = np.cumsum(first)
+    curved = inner[feed[first]][group - 1]
+    steps, seconds = np.nan_to_num(where[feed] - where[feed - 1]), path.seconds[feed]
+    speed = steps / seconds[:, None]
+    gained, times = _gained(speed, seconds, first)
+    found = []
+    for number, (values, asked, limit, per, what) in enumerate(
+        (
+            (np.abs(speed), np.full(len(feed), True), limits.max_speed, 60.0, "/min"),
+            (np.abs(gained), ~(curved & first), limits.max_acceleration, 1.0, "/s2"),
+            (_jerks(gained, times), curved & ~_up_to_second(first), limits.max_jerk, 1.0, "/s3"),
+        )
+    ):
+        for row, axis in np.argwhere((values > limit * (1.0 + _SLACK)) & asked[:, None]):
+            scale, unit = limits.scale[axis] * per, limits.units[axis]
+            what_is_needed = (
+                f"needs {values[row, axis] * scale:.0f} {unit}{what} of {limits.names[axis]}: {machine.name} "
+                f"allows {limit[axis] * scale:g} {unit}{what}"
+            )
+            found.append((group[row], number, row, Fault(what_is_needed, int(path.line[feed[row]]), "speed")))
+    yield from (fault for *_, fault in sorted(found, key=lambda one: one[:3]))
 
 
 def _curve_ends(inner: np.ndarray, feed: np.ndarray) -> np.ndarray:
@@ -212,52 +209,22 @@ def _curve_ends(inner: np.ndarray, feed: np.ndarray) -> np.ndarray:
     return last | (curved[feed[:-1]] != curved[feed[1:]])
 
 
-def _jerks(steps: np.ndarray, seconds: np.ndarray) -> np.ndarray:
-    """Change of acceleration over time (n-2,k) within a block of straight parts (n,k)."""
-    gained = accelerations(steps, seconds)[1:-1]
-    times = (seconds[1:] + seconds[:-1]) / 2
-    return np.abs(np.diff(gained, axis=0)) / ((times[1:] + times[:-1]) / 2)[:, None]
+def _gained(speed: np.ndarray, seconds: np.ndarray, first: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Change of speed over time (n,k) from block to block, from standstill at each ``first``; and that time."""
+    before, earlier = np.zeros_like(speed), np.zeros_like(seconds)
+    before[1:], earlier[1:] = speed[:-1], seconds[:-1]
+    before[first], earlier[first] = 0.0, 0.0
+    times = (seconds + earlier) / 2
+    return (speed - before) / times[:, None], times
 
 
-def feeds(
-    path: MachinePath, runs: list[CuttingRun], member: Member, machine: MillingMachine, stated: Stated
-) -> Iterator[Fault]:
-    """Feed of the cutter past the tooth and of the plunge, and in face hobbing the speed of C, beyond what is stated.
-
-    ``runs`` are those of the path on a machine without errors. The header can be edited: what it states counts up to
-    twice what three quarters of the blocks do, or up to the feed that is taken where nobody asks for one.
-    """
-    for run in runs:
-        here = path.tool == path.tools.index(run.cut.tool)
-        seconds = path.seconds[here]
-        rows = np.flatnonzero(run.cutting & (seconds > 0.0) & (np.arange(len(seconds)) > 0))
-        if run.blades is not None:
-            unit = "rpm"
-            speed = np.abs(run.turned[rows] - run.turned[rows - 1]) / seconds[rows] * 60.0 / (2 * np.pi)
-            kinds = [(np.full(len(rows), True), stated.rpm, DEFAULT_SPINDLE_RPM)]
-        else:
-            unit = "mm/min"
-            turns = tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
-            before, after = run.axes[rows - 1].copy(), run.axes[rows].copy()
-            plunges = ~(after - before)[:, [0, 1, 3, 4]].any(axis=1)
-            tooth, pose = middle_of_tooth(member, run.cut), (machine.pivot_height, machine.pivot)
-            for ends in (before, after):
-                ends[:, 3] -= turns
-            (first,), (last,) = (kernel("seen_from_tool")(ends, tooth, *pose) for ends in (before, after))
-            speed = np.linalg.norm(last - first, axis=1) / seconds[rows] * 60.0
-            plunge = max(stated.feed, stated.plunge) if stated.feed and stated.plunge else None
-            kinds = [(~plunges, stated.feed, DEFAULT_FEED), (plunges, plunge, DEFAULT_FEED)]
-        for kind, wanted, default in kinds:
-            most = _most(speed[kind], wanted, default)
-            for k in np.flatnonzero(kind & (speed > most * (1.0 + _STATED_SLACK))):
-                what = f"moves the cutter at {speed[k]:.0f} {unit} past the tooth, the program states {wanted:g} {unit}"
-                if most < (wanted or 0.0):
-                    what += f", and goes slower nearly everywhere: {most:.0f} {unit} count"
-                yield Fault(what, int(run.line[rows[k]]), "feed")
+def _up_to_second(first: np.ndarray) -> np.ndarray:
+    """Whether rows (n,) are the first or the second of their group."""
+    return first | np.append(False, first[:-1])[: len(first)]
 
 
-def _most(speed: np.ndarray, stated: float | None, default: float) -> float:
-    """How fast blocks of one kind may be, which do ``speed`` (n,), where ``stated`` is that or nothing."""
-    if stated is None or not len(speed):
-        return np.inf
-    return min(stated, max(default, _BESIDE_MOST * float(np.quantile(speed, _MOST_BLOCKS))))
+def _jerks(gained: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Change of acceleration over time (n,k), which means something from the third row of a group on."""
+    jerks = np.zeros_like(gained)
+    jerks[1:] = np.abs(np.diff(gained, axis=0)) / ((times[1:] + times[:-1]) / 2)[:, None]
+    return jerks

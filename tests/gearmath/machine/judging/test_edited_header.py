@@ -12,8 +12,9 @@ from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.judging.program import faults_of, metal_faults
 from gearmath.machine.milling.run import runs_of
-from gearmath.machine.planning.cut_plan import CuttingJob
+from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
 from gearmath.machine.writing.cutting import cutting_program
+from gearmath.machine.writing.linuxcnc.cutting import program_of as linuxcnc_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
@@ -22,14 +23,19 @@ MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 COARSE = MACHINE.model_copy(
     update={"name": "coarse", "control": MACHINE.control.model_copy(update={"increments_per_mm": 1000})}
 )
+#: A machine whose file says nothing of feeds.
+FREE = MACHINE.model_copy(update=dict.fromkeys(("max_feed_per_min", "max_feed_per_turn", "max_cutting_speed")))
 NASA = "nasa_tp3096_12x36", "gear"
 FORMATE = "crown_gear_formate_14x39", "gear"
 
 
-def written(case, machine=MACHINE, **job):
+def written(case, machine=MACHINE, control="sinumerik", **job):
     bevel_set = load_bevel_set(bundled(f"{case[0]}.toml"))
     spaces = range(bevel_set.member(case[1]).teeth) if "hobbed" in case[0] else (0,)
-    return cutting_program(bevel_set, case[1], machine, "CUT", CuttingJob(**({"spaces": spaces} | job)))
+    asked = CuttingJob(**({"spaces": spaces} | job))
+    if control == "linuxcnc":
+        return linuxcnc_program(cutting_plan(bevel_set, case[1], machine, asked), "CUT")
+    return cutting_program(bevel_set, case[1], machine, "CUT", asked)
 
 
 def judged(case, text, machine=MACHINE):
@@ -58,7 +64,7 @@ def moved(text, axis, by):
     return "\n".join(lines)
 
 
-@pytest.mark.parametrize("case", [NASA, ("crown_gear_7x43", "pinion")])
+@pytest.mark.parametrize("case", [NASA, ("spiral_7x43", "pinion")])
 def test_raised_tolerance_hides_no_gouge(case):
     """By hand: Z is 2 um too low, where the header says 50 um and the blocks are made for 0.1 um."""
     text = written(case)
@@ -83,9 +89,9 @@ def test_raised_tolerance_hides_no_gouge(case):
         (NASA, COARSE, {"tolerance": 1e-4}),
         (FORMATE, MACHINE, {"tolerance": 0.05}),
         (("crown_gear_hobbed_14x39", "pinion"), MACHINE, {"tolerance": 5e-3}),
-        (NASA, MACHINE, {"tolerance": 1e-3, "feed": 3000.0}),
-        (NASA, MACHINE, {"tolerance": 1e-2, "feed": 20000.0}),
-        (NASA, MACHINE, {"tolerance": 1e-2, "feed": 2000.0, "blocks": "poly"}),
+        (NASA, FREE, {"tolerance": 1e-3, "feed": 3000.0}),
+        (NASA, FREE, {"tolerance": 1e-2, "feed": 20000.0}),
+        (NASA, FREE, {"tolerance": 1e-2, "feed": 2000.0, "blocks": "poly"}),
     ],
     ids=lambda value: (
         value.name if hasattr(value, "name") else "-".join(map(str, getattr(value, "values", lambda: value)()))
@@ -101,14 +107,53 @@ def test_honest_header_is_believed(case, machine, job):
 def test_raised_feed_hides_no_fast_block():
     """By hand: one block in a tenth of its time, with a header that says ten times the feed."""
     lines = bent(written(NASA), r"^; feed: 300 mm/min", "; feed: 3000 mm/min").split("\n")
-    assert judged(NASA, "\n".join(lines))[0] == []
+    assert judged(NASA, "\n".join(lines), FREE)[0] == []
     rows = [k for k, line in enumerate(lines) if " G93 G1 " in line]
     k = rows[len(rows) // 2]
     lines[k] = re.sub(r"F([\d.]+)$", lambda f: f"F{9 * float(f[1]):.3f}", lines[k])
-    said, _ = judged(NASA, "\n".join(lines))
+    said, _ = judged(NASA, "\n".join(lines), FREE)
     assert any(
         re.search(r"at \d{4} mm/min past the tooth, the program states 3000 mm/min, and goes slo", o) for o in said
     ), said
+
+
+def faster(text, feeds, speeds):
+    """A program with all of its feeds and spindle speeds, header and blocks, times so much."""
+
+    def times(factor, places):
+        return lambda f: f"{f[1]}{factor * float(f[2]):.{places}f}{f[3]}"
+
+    for pattern, factor, places in (
+        (r"^(; feed: )([\d.]+)( mm/min)", feeds, 3),
+        (r"^(; spindle: .* plunge: )([\d.]+)( mm/min)", feeds, 3),
+        (r"^((?!N\d+ G4 )(?:N\d+|G).* F)([\d.]+)()$", feeds, 6),
+        (r"^(; spindle: )([\d.]+)( rpm)", speeds, 3),
+        (r"^((?:N\d+ )?S)([\d.]+)( M3.*)$", speeds, 3),
+    ):
+        text, found = re.subn(pattern, times(factor, places), text, flags=re.MULTILINE)
+        assert found, pattern
+    return text
+
+
+@pytest.mark.parametrize(
+    ("case", "job", "feeds", "speeds", "what"),
+    [
+        (NASA, {}, 10.0, 1.0, r"past the tooth by \d{4} mm/min: .* has max_feed_per_min 2000"),
+        (NASA, {"blocks": "poly", "tolerance": 1e-2}, 10.0, 1.0, r"past the tooth by \d{4} mm/min"),
+        (FORMATE, {"control": "linuxcnc"}, 11.0, 1.0, r"past the tooth by \d{4} mm/min"),
+        (FORMATE, {}, 11.0, 1.0, r"past the tooth by \d{4} mm/min: .* has max_feed_per_min 2000"),
+        (NASA, {}, 1.0, 0.2, r"by 1[0-2]\.\d mm a turn of it: .* has max_feed_per_turn 10"),
+        (NASA, {}, 6.0, 6.0, r"with \d{3} m/min at the tips of its blades: .* has max_cutting_speed 300"),
+    ],
+)
+def test_feeds_and_speeds_raised_in_header_and_blocks_meet_the_limits_of_the_machine(case, job, feeds, speeds, what):
+    """By hand: 300 mm/min times 10; 300 / (120 / 5) = 12.5 mm; 2 pi 76 mm 720 rpm = 344 m/min."""
+    right = written(case, **job)
+    wrong = faster(right, feeds, speeds)
+    assert judged(case, right)[0] == []
+    assert any(re.search(what, one) for one in judged(case, wrong)[0])
+    # and nothing else tells: so it was before the machine file had limits
+    assert not any("past the tooth" in one or "speed" in one for one in judged(case, wrong, FREE)[0])
 
 
 def test_dry_run_that_cuts_is_seen():
