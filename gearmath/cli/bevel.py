@@ -88,23 +88,7 @@ def flank(
 @output("STL", ".stl")
 def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; backlash and ease-off of the pair; and an STL."""
-<<<<<<< HEAD
-    from gearmath.bevel.mates import edge_note, pair_figures
-    from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
-    from gearmath.bevel.tooth import space_figures, tooth_space
-    from gearmath.specs.toml import find
-
-    source = find(gear_set)
-    bevel_set = load_pair(source)
-    member, spec = member_of(bevel_set, member)
-    with about(source):
-        surface = tooth_space(spec, member, columns)
-        mates, note = pair_figures(bevel_set), edge_note(bevel_set)
-    triangles = space_triangles(surface) if space else member_triangles(spec, surface)
-    write_stl(target, triangles, f"{member} {'space' if space else 'member'}")
-    figures = space_figures(spec, surface)
-=======
+    from gearmath.bevel.mates import edge_note
     from gearmath.front.sets import load_set
     from gearmath.specs.toml import find
 
@@ -112,9 +96,8 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     one = member_of(pair, member)
     with about(find(gear_set)):
         made = one.tooth(columns)
-        mates = pair.mates()
+        mates, note = pair.mates(), edge_note(pair.spec)
     triangles, figures = made.to_stl(target, whole_member=not space), made.figures
->>>>>>> d832cf1b3229f7258fd4f75c484075849c567df0
     if as_json:
         echo_json({"triangles": triangles, **figures} | ({} if mates is None else {"pair": mates}))
         return
@@ -125,13 +108,9 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     click.echo("grid of flank files, where 'gearmath evaluate' measures")
     if mates is not None:
         _echo_pair(mates)
-<<<<<<< HEAD
     if note:
         click.echo(f"note: {note}")
-    click.echo(f"{target}: {len(triangles)} triangles")
-=======
     click.echo(f"{target}: {triangles} triangles")
->>>>>>> d832cf1b3229f7258fd4f75c484075849c567df0
 
 
 def _echo_pair(mates: dict[str, Any]) -> None:

@@ -135,13 +135,9 @@ def cut(
         facts = SetupFacts.of(made.plan, PLUNGE_FEED)
         page = setup_sheet(facts, target.name, timing(made.path, milling_machine), dialect.sheet)
     write_text(target, made.text)
-<<<<<<< HEAD
-    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {count} blocks")
+    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {dialect.block_count(made.text)} blocks")
     if note := edge_note(bevel_set):
         click.echo(f"note: {note}")
-=======
-    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {dialect.block_count(made.text)} blocks")
->>>>>>> d832cf1b3229f7258fd4f75c484075849c567df0
     if configuration:
         write_configuration(target, dialect, milling_machine, tools_of(made.plan))
     if sheet is not None and page is not None:
