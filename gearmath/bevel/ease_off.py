@@ -112,3 +112,16 @@ def hollow(found: Parts) -> float:
 
     least = min(edge(found.crowning, found.profile_crowning), edge(found.profile_crowning, found.crowning), 0.0)
     return -least
+
+
+def is_least_inside(found: Parts) -> bool:
+    """Whether the second order of an ease-off has its least gap on the grid, and not beyond one of its edges.
+
+    Where it has not, the flanks run on that edge: whichever place of the path of contact comes first there carries.
+    """
+    determinant = 4 * found.crowning * found.profile_crowning - found.twist**2
+    if not (found.crowning > 0 and determinant > 0):
+        return False
+    along = found.twist * found.profile_slope - 2 * found.profile_crowning * found.slope
+    up = found.twist * found.slope - 2 * found.crowning * found.profile_slope
+    return max(abs(along), abs(up)) <= determinant

@@ -12,7 +12,7 @@ from gearmath.bevel.blank import evaluate
 from gearmath.bevel.check_blank import transverse_module
 from gearmath.bevel.check_ease_off import ease_off_parts
 from gearmath.bevel.check_flank import cut_flank
-from gearmath.bevel.ease_off import hollow
+from gearmath.bevel.ease_off import Parts, hollow, is_least_inside
 from gearmath.bevel.method import generation_of
 from gearmath.bevel.tooth import mean_backlash
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet
@@ -54,8 +54,37 @@ def pair_figures(pair: BevelSet) -> dict[str, Any] | None:
             "spiral_angle_difference_deg": math.degrees(own.spiral_angle + mate.spiral_angle),
             "ease_off_um": {name: 1000 * getattr(found[flank], part) for name, part in parts.items()}
             | {"hollow": 1000 * hollow(found[flank])},
+            "least_gap_inside": is_least_inside(found[flank]),
         }
     return figures
+
+
+def edge_note(pair: BevelSet) -> str:
+    """What to say of a pair that the check takes, and that runs on edges of its teeth all the same; empty of others.
+
+    A slip that is too small to be refused shows so, a digit of a ratio of roll; so do sets that never were designed.
+    """
+    if pair.pinion is None or pair.gear is None:
+        return ""
+    found = ease_off_parts(pair.pinion, pair.gear, pair.shaft_angle)
+    said = [_edge(flank, one) for flank, one in found.items() if not is_least_inside(one)]
+    if not said:
+        return ""
+    return (
+        f"the pair runs on edges of its teeth ({'; '.join(said)}): where it was designed otherwise, a figure of the "
+        "set is wrong; 'gearmath contact' shows its path"
+    )
+
+
+def _edge(flank: str, found: Parts) -> str:
+    """The slopes and crownings by which the least gap of a flank lies beyond an edge."""
+    slope, crowning, profile_slope, profile_crowning = (
+        1000 * value for value in (found.slope, found.crowning, found.profile_slope, found.profile_crowning)
+    )
+    return (
+        f"pinion {flank}: ease-off with a slope of {slope:+.1f} um and crowning of {crowning:+.1f} um along the tooth,"
+        f" {profile_slope:+.1f} and {profile_crowning:+.1f} um from root to tip"
+    )
 
 
 def _normal(pair: BevelSet, gear: dict[str, Any], transverse: float) -> float:

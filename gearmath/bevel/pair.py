@@ -84,11 +84,11 @@ def check_pair(pair: BevelSet, slip: Callable[[str], str] = lambda _: "") -> Non
         raise InputError(f"{error}{slip(str(error))}") from error
 
 
-def _file_passes(values: dict[str, Any]) -> bool:
-    """Whether the values of a set file are those of a pair, and not of one at the limit of what mates may differ by."""
+def _file_passes(values: dict[str, Any], share: float) -> bool:
+    """Whether the values of a set file are those of a pair that uses this part of what mates may differ by."""
     try:
         pair = BevelSet.from_file(values)
-        _check(pair.members, pair.shaft_angle, {name: {} for name in pair.members}, _WELL)
+        _check(pair.members, pair.shaft_angle, {name: {} for name in pair.members}, share)
     except (ValueError, Misfit, InputError, ComputationError):
         return False
     return True

@@ -1,4 +1,4 @@
-"""Which usual slip makes a refused set file a pair again: of one value, of two exchanged ones, or of a whole table.
+"""Which usual slip makes a refused set file a pair again: of one value, of two exchanged ones, of a table, of a digit.
 
 A slip is named only where the file without it passes the whole check.
 """
@@ -12,6 +12,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
+from gearmath.bevel.misprints import exchanged_digits, wrong_digits
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, Blank, Flank
 from gearmath.specs.cut import ANGULAR, RATIO
 from gearmath.specs.ratio import INCH
@@ -25,8 +26,11 @@ _PHASE = "work_rotation_offset"
 #: Refusals of no value: nothing in it was a slip of one.
 _NO_VALUE = ("no such key", "the key is missing", "is no TOML", "cannot be read")
 _OTHER_HAND = {"left": "right", "right": "left"}
-#: So many files are tried, and so many that pass are named.
-_TRIALS, _SAID = 250, 2
+#: So many files are tried of each kind, of wrong digits so many, and so many that pass are named.
+_TRIALS, _DIGITS, _SAID = 250, 250, 2
+#: A slip makes a pair that uses no more than this part of what mates may differ by; of digits that would all do, those
+#: are named that still pass where ever less of it is left, by halves, down to the least.
+_WELL, _LEAST = 0.7, 0.05
 #: Counts and numbers beyond these are no slips.
 _MOST_TEETH, _LARGEST = 1000, 1e9
 #: A slip changes a length or an angle by more than this, mm or degrees: less is a correction, by which a set that is
@@ -38,21 +42,42 @@ Values = dict[str, Any]
 Slip = tuple[str, Values]
 
 
-def likely_slip(values: Mapping[str, Any], refusal: str, passes: Callable[[Values], bool]) -> str:
+def likely_slip(values: Mapping[str, Any], refusal: str, passes: Callable[[Values, float], bool]) -> str:
     """What to say of the values of a set file that was refused; empty where no slip that is tried makes it pass.
 
-    ``refusal`` is the sentence; of settings, only those of the members and flanks that it names are tried.
+    ``refusal`` is the sentence; of settings, only those of the members and flanks that it names are tried. ``passes``
+    says whether values are a pair that uses no more than a part of what mates may differ by.
     """
     given = dict(values)
     if any(words in refusal for words in _NO_VALUE) or any(
         not isinstance(given.get(name, {}), dict) for name in MEMBERS
     ):
         return ""
-    for tried in (_of_tables(given), _of_counts(given), _of_settings(given, refusal)):
-        good = list(itertools.islice((words for words, one in itertools.islice(tried, _TRIALS) if passes(one)), _SAID))
+    for tried in (_of_tables(given), _of_counts(given), _of_blanks(given, refusal), _of_settings(given, refusal)):
+        good: list[str] = []
+        for words, one in itertools.islice(tried, _TRIALS):
+            if len(good) < _SAID and words not in good and passes(one, _WELL):
+                good.append(words)
         if good:
             return f"; it would be a pair with {', or with '.join(good)}"
+    for change in (exchanged_digits, wrong_digits):
+        digits = list(itertools.islice(_of_digits(given, refusal, change), _DIGITS))
+        if good := [words for words, _ in _best(digits, passes)]:
+            return f"; it would be a pair with {', or with '.join(good)}"
     return ""
+
+
+def _best(slips: list[Slip], passes: Callable[[Values, float], bool]) -> list[Slip]:
+    """Those that leave the least of what mates may differ by; none where more are alike than can be said."""
+    share = _WELL
+    left = [one for one in slips if passes(one[1], share)]
+    while len(left) > 1 and share > _LEAST:
+        share /= 2
+        better = [one for one in left if passes(one[1], share)]
+        if not better:
+            break
+        left = better
+    return left if len(left) <= _SAID else []
 
 
 def _changed(values: Values, *changes: tuple[tuple[str, ...], object]) -> Values:
@@ -102,6 +127,9 @@ def _of_tables(values: Values) -> Iterator[Slip]:
             one, two = ((name, flank) for flank in FLANKS)
             exchanged = _changed(values, (one, tables[two]), (two, tables[one]))
             yield f"{name}.concave and {name}.convex exchanged", exchanged
+    if all(isinstance(values.get(name), dict) for name in MEMBERS):
+        exchanged = _changed(values, *(((name,), values[_mate(name)]) for name in MEMBERS))
+        yield "the tables pinion and gear exchanged", exchanged
     flanks = dict(_tables(values, *FLANKS))
     if len(flanks) == len(MEMBERS) * len(FLANKS):
         exchanged = _changed(values, *(((name, flank), flanks[_mate(name), flank]) for name, flank in flanks))
@@ -117,7 +145,7 @@ def _of_counts(values: Values) -> Iterator[Slip]:
             and 0 < teeth < _MOST_TEETH
             and len([each for each in MEMBERS if each in values]) == len(MEMBERS)
         ):
-            for other in (teeth + 1, teeth - 1):
+            for other in dict.fromkeys((teeth + 1, teeth - 1, int(str(teeth)[::-1]))):
                 yield f"{name}.teeth = {other}, not {teeth}", _changed(values, ((name, "teeth"), other))
     if _is_number(values.get("shaft_angle")) and values["shaft_angle"] != 90:
         yield f"shaft_angle = 90, not {values['shaft_angle']}", _changed(values, (("shaft_angle",), 90.0))
@@ -127,10 +155,65 @@ def _of_counts(values: Values) -> Iterator[Slip]:
         yield f"{name}.generation = {method!r}, not {given!r}", _changed(values, ((name, "generation"), method))
 
 
+def _of_blanks(values: Values, refusal: str) -> Iterator[Slip]:
+    """One value of a blank, alone or of both: the mate's, or in another unit; two exchanged."""
+    tables = dict(_tables(values, "blank"))
+    for place, key in _blank_keys(values, refusal):
+        old, mates = tables[place][key], tables.get((_mate(place[0]), "blank"), {}).get(key)
+        others = [old * factor for factor in (*_OF_ALL, *(_OF_LENGTHS if _unit("blank", key) == "mm" else _OF_ANGLES))]
+        for other in dict.fromkeys((mates, *others) if _is_number(mates) and mates != old else others):
+            yield f"{place[0]}.blank.{key} = {other:.6g}, not {old:.6g}", _changed(values, ((*place, key), other))
+            if mates == old:
+                both = _changed(values, *(((*each, key), other) for each in tables))
+                yield f"{key} of both blanks = {other:.6g}, not {old:.6g}", both
+    for place, table in tables.items():
+        for one, two in itertools.combinations([key for key, value in table.items() if _is_number(value)], 2):
+            exchanged = _changed(values, ((*place, one), table[two]), ((*place, two), table[one]))
+            yield f"{place[0]}.blank.{one} and {two} exchanged", exchanged
+
+
+def _blank_keys(values: Values, refusal: str) -> list[tuple[tuple[str, str], str]]:
+    """The values of the blanks that are not zero, first those whose member and key a refusal names."""
+    found = [(place, key) for place, table in _tables(values, "blank") for key in table if _is_number(table[key])]
+    some = [(place, key) for place, key in found if values[place[0]]["blank"][key]]
+    return sorted(some, key=lambda one: (one[1] not in refusal, one[0][0] not in refusal))
+
+
+def _of_digits(values: Values, refusal: str, change: Callable[[float], Iterator[float]]) -> Iterator[Slip]:
+    """Digits of one value of a blank that is named; else of a setting of a flank, of both where one cut gives both."""
+    tables = dict(_tables(values, "blank"))
+    named = [(place, key) for place, key in _blank_keys(values, refusal) if key in refusal]
+    for place, key in named:
+        old = tables[place][key]
+        for other in change(old):
+            yield f"{place[0]}.blank.{key} = {other:.9g}, not {old:.9g}", _changed(values, ((*place, key), other))
+    if ".blank." in refusal.partition(":")[0]:
+        return
+    for key, ((member, flank), table) in itertools.product(SETTINGS, _named(values, refusal)):
+        if not _is_number(table.get(key)) or not table[key]:
+            continue
+        completing = values[member].get("cutting") == "completing"
+        shared = completing and all(values[member].get(each, {}).get(key) == table[key] for each in FLANKS)
+        if shared and flank == FLANKS[1]:
+            continue
+        places = [(member, each, key) for each in (FLANKS if shared else (flank,))]
+        names = " and ".join(".".join(place) for place in places)
+        for other in change(table[key]):
+            words = f"{names} = {other:.9g}, not {table[key]:.9g}"
+            yield words, _changed(values, *((place, other) for place in places))
+
+
+def _named(values: Values, refusal: str) -> list[tuple[tuple[str, str], Values]]:
+    """The flanks with their tables that a refusal names, all where it names none."""
+    members = set(re.findall(r"\b(pinion|gear)\b", refusal)) or set(MEMBERS)
+    flanks = set(re.findall(r"\b(concave|convex)\b", refusal)) or set(FLANKS)
+    tables = _tables(values, *FLANKS)
+    return [(place, table) for place, table in tables if place[0] in members and place[1] in flanks]
+
+
 def _of_settings(values: Values, refusal: str) -> Iterator[Slip]:
     """One setting, a setting of both flanks exchanged, or two of one table."""
-    members = set(re.findall(r"\b(pinion|gear)\b", refusal)) or set(MEMBERS)
-    named = set(re.findall(r"\b(concave|convex)\b", refusal)) or set(FLANKS)
+    members, named = ({place[k] for place, _ in _named(values, refusal)} for k in (0, 1))
     tables = {place: table for place, table in _tables(values, *FLANKS) if place[0] in members}
     for (member, flank), table in tables.items():
         if flank not in named:

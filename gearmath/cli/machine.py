@@ -98,6 +98,7 @@ def cut(
     Before it is written it is run: it must keep the limits of the machine, collide with nothing, and leave both flanks
     within the tolerance.
     """
+    from gearmath.bevel.mates import edge_note
     from gearmath.files import write_text
     from gearmath.front.machines import load_machine
     from gearmath.front.programs import cutting
@@ -118,6 +119,8 @@ def cut(
         made = cutting(one, on, target.stem, job, dialect.name, target, begin)
     page = None if sheet is None else made.sheet(target.name)
     click.echo(f"{made.save(target)}: {len(job.spaces)} of {one.teeth} spaces, {made.blocks} blocks")
+    if note := edge_note(one.gear_set.spec):
+        click.echo(f"note: {note}")
     if configuration and made.made is not None:
         write_configuration(target, dialect, on.spec, tools_of(made.made.plan))
     if sheet is not None and page is not None:

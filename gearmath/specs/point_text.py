@@ -200,11 +200,11 @@ def _rows(
                 continue
         elif one == columns or (begins_with_text and len(one) < 3):
             continue
-        raise InputError(
-            f"{path}, line {number}: has {counted(len(one), 'number')}, the rows "
-            f"{'below' if number < first else 'above'} have {len(columns)}: "
-            f"{lines[number - 1][:40]!r}"
-        )
+        rest = f"the rows {'below' if number < first else 'above'} have"
+        what = f"{counted(len(one), 'number')}, {rest} {len(columns)}"
+        if len(one) == len(columns):
+            what = f"its numbers in columns {_list(one)}, {rest} them in {_list(columns)}"
+        raise InputError(f"{path}, line {number}: has {what}: {lines[number - 1][:40]!r}")
     for line in lines[: first - 1]:
         announced = _ANNOUNCED.fullmatch(line)
         if announced and len(rows) < int(announced[1] or announced[2]):
@@ -214,6 +214,10 @@ def _rows(
     if len(rows) > MOST_POINTS:
         raise InputError(f"{path}: holds {len(rows)} points, the limit is {MOST_POINTS}")
     return rows, _names(lines[: first - 1], split, columns, len(cells[first])), remarks
+
+
+def _list(columns: tuple[int, ...]) -> str:
+    return ", ".join(str(column + 1) for column in columns)
 
 
 def _names(above: Sequence[str], split: str, columns: tuple[int, ...], width: int) -> dict[int, str]:

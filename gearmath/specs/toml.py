@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import tomllib
 from collections.abc import Callable, Mapping
 from importlib import resources
@@ -51,8 +52,15 @@ def parse(text: str, model: type[SpecT], name: str) -> SpecT:
     try:
         values = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # no TOML, or numbers and nesting beyond all measure
-        raise InputError(f"{name}: is no TOML: {error}") from error
+        raise InputError(f"{name}: is no TOML: {error}{_comma(text, str(error))}") from error
     return _checked(values, model, model.from_file, name)
+
+
+def _comma(text: str, refusal: str) -> str:
+    """What to say of a decimal comma in the line that a refusal names; empty where there is none."""
+    line, lines = re.search(r"at line (\d+)", refusal), text.splitlines()
+    number = re.search(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$", lines[int(line[1]) - 1]) if line else None
+    return f"; {number[1]} has a decimal comma, TOML wants a point" if number else ""
 
 
 def checked(values: Mapping[str, Any], model: type[SpecT], name: str) -> SpecT:

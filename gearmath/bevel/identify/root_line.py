@@ -3,7 +3,8 @@
     h(u) = 0,   L(R) = L_0,   f(u, β, θ; x) = 0    →    depth D below the pitch cone     (20.3, 20.4)
 
 Flanks hardly show the depth of a cut. So a fit that is free to do so buys topography with depth; here it is watched.
-That line lies above the deepest one of the space, and moves with it within some ten percent.
+That line lies above the deepest one of the space, and moves with it within some ten percent as long as settings change
+by little; a machine root angle and a ratio of roll at their limits part the two by a millimetre.
 """
 
 from __future__ import annotations
@@ -86,7 +87,7 @@ class RootLine:
     """Where the root of a flank is watched: cone distances (2,) [mm] of toe and heel, and starts (2,3) for u, β, θ.
 
     ``deepest`` is the line that the tip plane of the cutter leaves, in the middle of the space, in place of the end of
-    the flank: the two part where the blade's pressure angle or radius is free within the bounds of a design.
+    the flank: a correction is limited by it, and so is a design whose pressure angle or radius is free.
     """
 
     how: Generation

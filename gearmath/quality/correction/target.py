@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from gearmath.bevel.flank import solve_flank
@@ -60,7 +62,9 @@ def flank_target(
     used = np.zeros(rows * columns, dtype=bool)
     used[at] = True
     along, up = local_coordinates(nominal.point.reshape(rows, columns, 3), reference_point(measured))
-    return target_of(member, flank, nominal, np.stack([along.ravel(), up.ravel()], axis=1), used, deviation)
+    target = target_of(member, flank, nominal, np.stack([along.ravel(), up.ravel()], axis=1), used, deviation)
+    # the end of a flank may rise where the tip of the cutter goes deeper, by settings at their limits: this is the root
+    return target if target.root is None else replace(target, root=replace(target.root, deepest=True))
 
 
 def target_of(

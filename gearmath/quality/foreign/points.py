@@ -249,10 +249,10 @@ def _likeliest_cause(part: PointPart, frame: Frame, gear_set: BevelSet, name: st
     mirror = np.array([-1, 1, 1]) if frame.axis[1] != "x" else np.array([1, -1, 1])
     choices: list[list[tuple[str, object]]] = [
         [("", part.flank), (f"--flank {other_flank}", other_flank)],
-        [("", 1.0), ("--unit inch", INCH), ("--unit mm", 1 / INCH)],
+        [("", 1.0), ("--unit inch", INCH), ("--unit mm", 1 / INCH), ("lengths times 1000: the file is in m", 1000.0)],
         [("", frame.axis), *((f"--axis {axis}", axis) for axis in AXES if axis != frame.axis)],
         [("", name), *((f"--member {other}", other) for other in others)],
-        [("", 1), ("the mirror image: the file is of the other hand", mirror)],
+        [("", 1), ("the mirror image: the file is of the other hand, or two of its columns are exchanged", mirror)],
     ]
 
     def fit(flank: str, scale: float, axis: str, which: str, hand: np.ndarray) -> float:

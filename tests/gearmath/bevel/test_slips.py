@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 import tomlkit
 
+from gearmath.bevel.misprints import exchanged_digits, wrong_digits
 from gearmath.bevel.pair import load_pair
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
@@ -35,7 +36,9 @@ def one(member: str, flank: str, key: str, change: Callable[[float], float]) -> 
 def exchange(*tables: tuple[str, str], key: str | None = None) -> Callable[[dict], None]:
     def apply(values: dict) -> None:
         (a, b), (c, d) = tables
-        if key is None:
+        if not a:
+            values[b], values[d] = values[d], values[b]
+        elif key is None:
             values[a][b], values[c][d] = values[c][d], values[a][b]
         else:
             values[a][b][key], values[c][d][key] = values[c][d][key], values[a][b][key]
@@ -67,6 +70,27 @@ def set_to(key: str, value: object, *place: str) -> Callable[[dict], None]:
         for part in place:
             table = table[part]
         table[key] = value
+
+    return apply
+
+
+def blanks(key: str, value: float) -> Callable[[dict], None]:
+    def apply(values: dict) -> None:
+        for member in MEMBERS:
+            values[member]["blank"][key] = value
+
+    return apply
+
+
+def blank_angles(values: dict) -> None:
+    blank = values["pinion"]["blank"]
+    blank["face_angle"], blank["root_angle"] = blank["root_angle"], blank["face_angle"]
+
+
+def completing(key: str, value: float) -> Callable[[dict], None]:
+    def apply(values: dict) -> None:
+        for flank in FLANKS:
+            values["gear"][flank][key] = value
 
     return apply
 
@@ -108,6 +132,45 @@ SLIPS = {
     "settings in inches": (NASA, inches(FLANKS, MACHINE), "times 25.4: they are in inches"),
     "blanks in inches": (NASA, inches(("blank",), BLANK), "the lengths of the blanks times 25.4: they are in inches"),
     "unit": (SPIRAL, set_to("unit", "inch"), "unit = 'mm'"),
+    "a decimal place in a blank": (
+        SPIRAL,
+        set_to("face_width", 2.54, "pinion", "blank"),
+        "pinion.blank.face_width = 25.4, not 2.54",
+    ),
+    "a decimal place, refused by a sum": (
+        SPIRAL,
+        set_to("clearance", 6.32676551, "gear", "blank"),
+        "gear.blank.clearance = 0.632677, not 6.32677",
+    ),
+    "both blanks": (SPIRAL, blanks("face_width", 254.0), "face_width of both blanks = 25.4, not 254"),
+    "two digits of a length that both have": (
+        SPIRAL,
+        set_to("mean_cone_distance", 67.91078879, "gear", "blank"),
+        "gear.blank.mean_cone_distance = 76.9108, not 67.9108",
+    ),
+    "two digits of an angle of the blank": (
+        SPIRAL,
+        set_to("pitch_angle", 9.426112746, "pinion", "blank"),
+        "pinion.blank.pitch_angle = 9.24611275, not 9.42611275",
+    ),
+    "two angles of a blank": (SPIRAL, blank_angles, "pinion.blank.face_angle and root_angle exchanged"),
+    "one digit of a setting": (
+        SPIRAL,
+        one("pinion", "convex", "radial_distance", lambda v: v + 10),
+        "pinion.convex.radial_distance = 88.558, not 98.558",
+    ),
+    "two digits of a setting": (
+        SPIRAL,
+        set_to("ratio_of_roll", 6.323208, "pinion", "concave"),
+        "pinion.concave.ratio_of_roll = 6.233208, not 6.323208",
+    ),
+    "two digits of a setting of both flanks": (
+        SPIRAL,
+        completing("radial_distance", 95.422),
+        "gear.concave.radial_distance and gear.convex.radial_distance = 94.522, not 95.422",
+    ),
+    "digits of a tooth count": (SPIRAL, set_to("teeth", 34, "gear"), "gear.teeth = 43, not 34"),
+    "members": (SPIRAL, exchange(("", "pinion"), ("", "gear")), "the tables pinion and gear exchanged"),
     "teeth": (NASA, set_to("teeth", 13, "pinion"), "pinion.teeth = 12, not 13"),
     "method": (NASA, set_to("generation", "formate", "pinion"), "pinion.generation = 'generated', not 'formate'"),
 }
@@ -132,9 +195,15 @@ def test_slip_that_was_made_is_named(case: str, tmp_path: Path) -> None:
     assert "no single setting" not in text
 
 
+def several(values: dict) -> None:
+    for flank in FLANKS:
+        for key in ("radial_distance", "cradle_angle", "blade_point_radius"):
+            values["pinion"][flank][key] *= 1.031
+
+
 def test_no_slip_is_named_where_none_was_made(tmp_path: Path) -> None:
     """The space is too wide by a whole list of settings that are a little off."""
-    text = refusal(NASA, one("pinion", "convex", "radial_distance", lambda v: v + 3), tmp_path)
+    text = refusal(NASA, several, tmp_path)
     assert "it would be a pair with" not in text
 
 
@@ -157,3 +226,19 @@ def test_file_that_is_no_toml_is_refused_as_such(tmp_path: Path) -> None:
     path.write_text("[pinion\n", "utf-8")
     with pytest.raises(InputError, match="is no TOML"):
         load_pair(path)
+
+
+def test_decimal_comma_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "comma.toml"
+    path.write_text(bundled(f"{SPIRAL}.toml").read_text("utf-8").replace("= 94.728", "= 94,728"), "utf-8")
+    with pytest.raises(InputError, match=r"94,728 has a decimal comma, TOML wants a point$"):
+        load_pair(path)
+
+
+def test_misprints_are_of_the_digits_as_they_are_written() -> None:
+    assert list(exchanged_digits(-88.558)) == [-85.858, -88.585]
+    assert list(exchanged_digits(10.05)) == [10.5]
+    assert 88.558 in wrong_digits(98.558)
+    assert 118.9 not in wrong_digits(18.9)
+    assert list(wrong_digits(0.0)) == list(exchanged_digits(0.0)) == []
+    assert list(exchanged_digits(float("nan"))) == list(wrong_digits(1e300)) == []

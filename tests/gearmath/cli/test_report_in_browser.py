@@ -1,4 +1,4 @@
-"""The sheet in a real browser: A4 when printed, and every word inside and readable on a telephone, 420 px wide."""
+"""The sheet in a real browser: A4 when printed; every word inside and readable on a telephone and on a screen."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from gearmath.plot.topography import um_per_row
 from gearmath.quality.evaluation.pitch import Pitch
 from gearmath.quality.evaluation.topography import Topography
 
-#: Measures the page in a frame of 420 px: its width, and of every word of the drawings the height and the right end.
+#: Measures the page in a frame: its width, and of every word of the drawings the height and the ends; and where the
+#: drawings stand, which of them overlap, and how much of the width the widest element takes.
 MEASURE = """
 addEventListener('load', () => {
   const frame = document.querySelector('iframe'), page = frame.contentDocument;
@@ -26,7 +27,12 @@ addEventListener('load', () => {
   const sizes = words.map(word =>
     parseFloat(frame.contentWindow.getComputedStyle(word).fontSize) *
     Math.hypot(word.getScreenCTM().a, word.getScreenCTM().b));
+  const charts = [...page.querySelectorAll('svg')].map(chart => chart.getBoundingClientRect());
+  const beside = (a, b) => a.right <= b.left + 1 || b.right <= a.left + 1;
+  const apart = (a, b) => beside(a, b) || a.bottom <= b.top + 1 || b.bottom <= a.top + 1;
+  const overlapping = charts.filter((a, k) => charts.slice(k + 1).some(b => !apart(a, b))).length;
   document.title = JSON.stringify({
+    charts: charts.length, overlapping, rows: new Set(charts.map(chart => Math.round(chart.top))).size,
     width: page.documentElement.scrollWidth, words: words.length, smallest: Math.min(...sizes),
     left: Math.min(...boxes.map(box => box.left)), right: Math.max(...boxes.map(box => box.right))});
 });
@@ -62,14 +68,18 @@ def test_sheet_prints_on_a4_in_whole_pages(browser, sheet, tmp_path):
         assert size == pytest.approx([0, 0, 210 / 25.4 * 72, 297 / 25.4 * 72], abs=1.0)
 
 
-def test_sheet_fits_420_px_and_its_smallest_word_can_be_read(browser, sheet, tmp_path):
-    frame = f'<iframe style="width: 420px; height: 3000px; border: 0" srcdoc="{escape(sheet)}"></iframe>'
+@pytest.mark.parametrize(("width", "rows"), [(420, 3), (1280, 2)])
+def test_sheet_fits_a_telephone_and_a_screen_and_its_smallest_word_can_be_read(browser, sheet, tmp_path, width, rows):
+    """The three drawings stand one above the other at 420 px; at 1280 px both flanks stand side by side."""
+    frame = f'<iframe style="width: {width}px; height: 3000px; border: 0" srcdoc="{escape(sheet)}"></iframe>'
     (tmp_path / "frame.html").write_text(f"<!doctype html><body>{frame}<script>{MEASURE}</script>", "utf-8")
-    options = ["--window-size=800,3000", "--virtual-time-budget=5000", "--dump-dom", f"file://{tmp_path}/frame.html"]
+    size, page = f"--window-size={width + 100},3000", f"file://{tmp_path}/frame.html"
+    options = [size, "--virtual-time-budget=5000", "--dump-dom", page]
     dom = subprocess.run([*browser, *options], check=True, capture_output=True, timeout=120, text=True).stdout
     found = json.loads(unescape(re.search(r"<title>(.*?)</title>", dom)[1]))
-    assert found["width"] <= 420
+    assert found["width"] <= width
     assert found["words"] > 2 * 45
     assert found["left"] >= 0
-    assert found["right"] <= 420
+    assert found["right"] <= width
     assert found["smallest"] >= 8.5
+    assert (found["charts"], found["overlapping"], found["rows"]) == (3, 0, rows)

@@ -8,7 +8,6 @@ import re
 from pathlib import Path
 
 import pytest
-from gearmath.control.file_names import control_name
 
 import gearmath
 from gearmath.bevel.pair import load_pair

@@ -116,6 +116,10 @@ def test_inches_become_millimetres(tmp_path):
             "".join(f"1.5 2.5 {k}.5 0 0 2\n" for k in range(5)),
             r"the normals in columns 4 to 6 have length 2: must be 1",
         ),
+        (
+            LAYOUTS["blanks"] + "Mean 12.3 45.6 78.9\n",
+            r"line 4: has its numbers in columns 2, 3, 4, the rows above have them in 1, 2, 3: 'Mean 12.3 45.6 78.9'$",
+        ),
         (LAYOUTS["blanks"] + "15.0 ***** 80.0\n", r"line 4: has 2 numbers, the rows above have 3"),
         (LAYOUTS["blanks"] + "15.0 nan 80.0\n", r"line 4: nan: must be a number, at most 100000 in size$"),
         (LAYOUTS["blanks"] + "15.0 1e30 80.0\n", r"line 4: 1e\+30: must be a number"),

@@ -270,10 +270,15 @@ def test_points_of_something_else_are_refused_with_what_would_fit(gear_set):
         "most would fit with --flank concave": (replace(part, flank="convex"), Frame(), "pinion"),
         "most would fit with --unit inch": (replace(part, point=part.point / 25.4), Frame(), "pinion"),
         "most would fit with --unit mm": (replace(part, point=part.point * 25.4), Frame(), "pinion"),
+        "most would fit with lengths times 1000: the file is in m": (
+            replace(part, point=part.point / 1000),
+            Frame(),
+            "pinion",
+        ),
         "most would fit with --axis -z": (replace(part, point=part.point * [1, -1, -1]), Frame(), "pinion"),
         "most would fit with --axis +x": (replace(part, point=part.point[:, [2, 0, 1]]), Frame(), "pinion"),
         "most would fit with --member pinion": (part, Frame(), "gear"),
-        "most would fit with the mirror image: the file is of the other hand": (
+        "most would fit with the mirror image: the file is of the other hand, or two of its columns are exchanged": (
             replace(part, point=part.point * [1, -1, 1]),
             Frame(),
             "pinion",
