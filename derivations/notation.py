@@ -514,9 +514,12 @@ flank_side = Quantity(
 edge_height = _length(
     "edge_height", "h_e", -30.0, 30.0, "height of a point of an edge above the hob's reference cylinder"
 )
-edge_relief = _length("edge_relief", "w_e", 0.0, 30.0, "how far an edge is inside the thread, along the hob's axis")
+edge_relief = _length("edge_relief", "w_e", -10.0, 30.0, "how far an edge is inside the thread, along the hob's axis")
 hob_turn = _angle("hob_turn", r"\tau", -0.6, 0.6, "turn of a gash past the common perpendicular")
 thread_angle = _angle("thread_angle", r"\vartheta", -7.0, 7.0, "where the thread stands, as a turn of the hob")
+gash_twist = Quantity("gash_twist", "turn of a gash per length along the hob", "rad/mm", r"\kappa_i", (-0.02, 0.02))
+gash_thread = _angle("gash_thread", r"\vartheta_0", -7.0, 7.0, "where the thread stands in the gash's middle section")
+edge_along_hob = _length("edge_along_hob", "y_e", -1e3, 1e3, "where an edge stands along the hob's axis")
 hob_feed = Quantity("hob_feed", "travel of the hob along the gear per radian of its turn", "mm/rad", "v", (-0.5, 0.5))
 table_error = _angle("table_error", r"\Delta\varphi", -0.1, 0.1, "table angle beyond that of ideal meshing")
 tool_displacement = _vector(
@@ -543,6 +546,18 @@ hob_tip_radius = _length(
 tip_turn = _angle("tip_turn", r"\gamma", 0.15, pi / 2, "direction of the normal of the rounding, from the hob's axis")
 rounding_height = Quantity("rounding_height", "height of a point of the rounding", "mm", "h_r", scale=1e2)
 tip_relief = Quantity("tip_relief", "how far it is inside the thread, along the hob's axis", "mm", "w_r", scale=1e2)
+protuberance = _length(
+    "protuberance", "p_{r0}", 0.0, 3.0, "how far the tip of a hob's tooth protrudes beyond its flank, along the normal"
+)
+protuberance_angle = _angle("protuberance_angle", r"\alpha_{pr}", 0.0, 0.5, "pressure angle of the protruding flank")
+hob_dedendum = _length(
+    "hob_dedendum", "h_{f0}", 0.1, 60.0, "depth of a topping hob's root below its reference cylinder"
+)
+topped_radius = _length("topped_radius", r"\rho_a", 0.0, 1e4, "radius of the tip that a topping hob leaves")
+tip_facet = Quantity(
+    "tip_facet", "height of the ridges between facets of a topped tip", "mm", r"\delta_{ya}", scale=1e1
+)
+tip_feed_mark = Quantity("tip_feed_mark", "height of the ridges of the feed on it", "mm", r"\delta_{xa}", scale=1e1)
 form_height = Quantity("form_height", "height up to which the edge is straight", "mm", "h_F", scale=1e2)
 land_half_width = Quantity("land_half_width", "half the land between both roundings", "mm", "w_a", scale=1e2)
 hob_gashes = _count("hob_gashes", "n_i", 4, 40, "gashes of a hob")

@@ -53,14 +53,34 @@ For a spur gear that is f_a² sin α_n/(8 (r_0 + h)); textbooks write (f_a/cos �
 hob for 2 (r_0 + h). With a helix angle δ_x is less than that, at 30° about half: what one turn of the table leaves is
 cut by another gash of the next, at another height of the profile. Few gashes do so in part only.
 
-Rounding of the tip of the edge, centre at h_a0 - ρ_a0, normal direction γ:
+Rounding of the tip of the edge, centre at h_a0 - ρ_a0, normal direction γ. With a protuberance p_r0 it lies that much
+beyond the flank, along the normal of it, and begins at γ = α_pr, where the straight flank of the protuberance ends:
 
-    h_r = h_a0 - ρ_a0 (1 - sin γ),   w_r cos λ = ρ_a0 ((1 - sin α_n sin γ)/cos α_n - cos γ)    (30.11)
-    h_F = h_a0 - ρ_a0 (1 - sin α_n),   w_a = π m_n/4 - (h_a0 - ρ_a0) tan α_n - ρ_a0/cos α_n    (30.12)
+    h_r = h_a0 - ρ_a0 (1 - sin γ)
+    w_r cos λ = ρ_a0 ((1 - sin α_n sin γ)/cos α_n - cos γ) - p_r0/cos α_n                      (30.11)
+    w_a = π m_n/4 - (h_a0 - ρ_a0) tan α_n - (ρ_a0 - p_r0)/cos α_n                              (30.12)
+
+The edge is straight up to h_F: to the rounding without a protuberance, else to where that begins,
+
+    h_F = h_a0 - ρ_a0 (1 - sin α_n),   with a protuberance                                     (30.20)
+    h_F = h_a0 - ρ_a0 (1 - sin α_pr) - (p_r0 - ρ_a0 (1 - cos(α_n - α_pr))) cos α_pr/sin(α_n - α_pr)
 
 The straight edge cuts away the involute next to the base cylinder, undercut, in a gear of less teeth than
 
     z_min = 2 cos β (h_F/m_n - x)/sin² α_t                                                     (30.13)
+
+Gashes of the lead p_i around the hob: κ = s_h 2π/p_i, crossing its threads at a right angle if κ = s_h p_0/r_0². The
+edge at y of (30.2) passes the common perpendicular when the hob has turned by κ y more than in the gash's middle, so
+
+    ϑ_0 = ϑ + κ y,   ϑ = (ϑ_0 - κ (y - s_h p_0 ϑ))/(1 + κ s_h p_0),   ϑ_0 = 2π (R/k - c/n_i)   (30.21)
+
+where y - s_h p_0 ϑ is the part of (30.2) that has no ϑ. Edges then follow each other more closely along the thread, by
+1 + κ s_h p_0, as if n_i were that much larger; 1/cos² λ for gashes at a right angle.
+
+The root of a topping hob, h_f0 below r_0, turns the tip of the gear to ρ_a. Between its gashes stay ridges of δ_ya,
+between feeds δ_xa, to first order in λ on a spur gear:
+
+    ρ_a = d/2 + x m_n + h_f0,   δ_ya = ρ_a (π k/(z n_i))²/2,   δ_xa = f_a²/(8 (r_0 - h_f0))    (30.22)
 
 Errors of hob and clamping: a hob shifted by e_0 (towards the gear, along p, along a), a travel that is wrong by Δz, a
 gear whose axis is shifted by e_2 and tilted by ω in space. To first order in ω,
@@ -142,6 +162,12 @@ def _thread_half(radius: sp.Expr) -> sp.Expr:
     return reduced * (sp.pi / (2 * q.hob_starts.symbol) + roll)
 
 
+def _threadless() -> sp.Expr:
+    """What of y in (30.2) has no ϑ."""
+    radius = q.hob_diameter.symbol / 2 + q.edge_height.symbol
+    return q.flank_side.symbol * (_thread_half(radius) - q.edge_relief.symbol)
+
+
 def _base_radius() -> sp.Expr:
     return gear.diameter() * sp.cos(gear.transverse_angle()) / 2
 
@@ -169,8 +195,8 @@ def _place() -> tuple[sp.Expr, sp.Expr, sp.Expr]:
     along, across = _axes()
     reduced = _worm()[0]
     radius = q.hob_diameter.symbol / 2 + q.edge_height.symbol
-    s_h, side, tau, theta = (quantity.symbol for quantity in (q.hob_sign, q.flank_side, q.hob_turn, q.thread_angle))
-    y = s_h * reduced * theta + side * (_thread_half(radius) - q.edge_relief.symbol)
+    s_h, tau, theta = (quantity.symbol for quantity in (q.hob_sign, q.hob_turn, q.thread_angle))
+    y = s_h * reduced * theta + _threadless()
     distance = _pitch_radii()[1] + q.hob_diameter.symbol / 2
     moved = sp.Matrix(q.tool_displacement.symbol)
     P = sp.Matrix([distance - radius * sp.cos(tau), 0, 0]) + radius * sp.sin(tau) * across + y * along + moved
@@ -285,6 +311,36 @@ def hob_pitch() -> Expression:
 
 
 @cache
+def gash_of_thread() -> Expression:
+    """(30.2, 30.21) as an Expression."""
+    theta = q.thread_angle.symbol
+    along = q.hob_sign.symbol * _worm()[0] * theta + _threadless()
+    return Expression(
+        "gash_of_thread",
+        "Where an edge stands along the hob, and the thread angle of its gash in the middle of the hob (30.2, 30.21).",
+        (q.edge_height, q.edge_relief, q.thread_angle, q.gash_twist, *PAIR),
+        ((q.edge_along_hob, along), (q.gash_thread, theta + q.gash_twist.symbol * along)),
+        requires=(_HOB_FITS, _thread_exists()),
+        source="helix of constant lead; proved",
+    )
+
+
+@cache
+def thread_of_gash() -> Expression:
+    """(30.21) as an Expression."""
+    twist = q.gash_twist.symbol
+    denser = 1 + twist * q.hob_sign.symbol * _worm()[0]
+    return Expression(
+        "thread_of_gash",
+        "Where the thread stands at a height of the edge that a helical gash cuts from it (30.21).",
+        (q.edge_height, q.edge_relief, q.gash_thread, q.gash_twist, *PAIR),
+        ((q.thread_angle, (q.gash_thread.symbol - twist * _threadless()) / denser),),
+        requires=(_HOB_FITS, _thread_exists(), denser - sp.Rational(1, 2)),
+        source="helix of constant lead; proved",
+    )
+
+
+@cache
 def generating_flat() -> Expression:
     """(30.9) as an Expression."""
     per_gash = sp.pi * q.hob_starts.symbol / (q.teeth.symbol * q.hob_gashes.symbol)
@@ -345,30 +401,69 @@ def hob_tip() -> Expression:
     """(30.11) as an Expression."""
     alpha, gamma, rho = q.pressure_angle.symbol, q.tip_turn.symbol, q.hob_tip_radius.symbol
     short = (1 - sp.sin(alpha) * sp.sin(gamma)) / sp.cos(alpha) - sp.cos(gamma)
+    across = rho * short - q.protuberance.symbol / sp.cos(alpha)
     return Expression(
         "hob_tip",
         "A point of the rounding at the tip of a hob's tooth (30.11).",
-        (q.tip_turn, q.hob_addendum, q.hob_tip_radius, q.pressure_angle, q.hob_lead_angle),
+        (q.tip_turn, q.hob_addendum, q.hob_tip_radius, q.protuberance, q.pressure_angle, q.hob_lead_angle),
         (
             (q.rounding_height, q.hob_addendum.symbol - rho * (1 - sp.sin(gamma))),
-            (q.tip_relief, rho * short / sp.cos(q.hob_lead_angle.symbol)),
+            (q.tip_relief, across / sp.cos(q.hob_lead_angle.symbol)),
         ),
-        requires=(gamma - alpha, sp.Rational(6, 5) - q.hob_lead_angle.symbol),
+        requires=(sp.Rational(6, 5) - q.hob_lead_angle.symbol,),
         source="basic rack of ISO 53; proved",
     )
 
 
 @cache
 def hob_form() -> Expression:
-    """(30.12) as an Expression."""
+    """(30.12, 30.20) as an Expression."""
     alpha, rho, top = q.pressure_angle.symbol, q.hob_tip_radius.symbol, q.hob_addendum.symbol
-    land = sp.pi * q.module.symbol / 4 - (top - rho) * sp.tan(alpha) - rho / sp.cos(alpha)
+    land = sp.pi * q.module.symbol / 4 - (top - rho) * sp.tan(alpha) - (rho - q.protuberance.symbol) / sp.cos(alpha)
     return Expression(
         "hob_form",
-        "How far up a hob's edge is straight, and half of the land on its tip (30.12).",
-        (q.module, q.hob_addendum, q.hob_tip_radius, q.pressure_angle),
+        "How far up a hob's edge without a protuberance is straight, and half of the land on its tip (30.12, 30.20).",
+        (q.module, q.hob_addendum, q.hob_tip_radius, q.protuberance, q.pressure_angle),
         ((q.form_height, top - rho * (1 - sp.sin(alpha))), (q.land_half_width, land)),
         source="basic rack of ISO 53; proved",
+    )
+
+
+@cache
+def protuberance_form() -> Expression:
+    """(30.20) as an Expression."""
+    alpha, flat, rho, top = (
+        quantity.symbol for quantity in (q.pressure_angle, q.protuberance_angle, q.hob_tip_radius, q.hob_addendum)
+    )
+    beyond = q.protuberance.symbol - rho * (1 - sp.cos(alpha - flat))
+    height = top - rho * (1 - sp.sin(flat)) - beyond * sp.cos(flat) / sp.sin(alpha - flat)
+    return Expression(
+        "protuberance_form",
+        "How far up a hob's edge is straight below a protuberance (30.20).",
+        (q.hob_addendum, q.hob_tip_radius, q.protuberance, q.pressure_angle, q.protuberance_angle),
+        ((q.form_height, height),),
+        requires=(alpha - flat - sp.Rational(1, 100), beyond),
+        source="basic rack with protuberance; proved",
+    )
+
+
+@cache
+def topped_tip() -> Expression:
+    """(30.22) as an Expression."""
+    radius = _pitch_radii()[1] + q.hob_dedendum.symbol
+    per_gash = sp.pi * q.hob_starts.symbol / (q.teeth.symbol * q.hob_gashes.symbol)
+    feed = q.hob_feed.symbol * 2 * sp.pi * q.teeth.symbol / q.hob_starts.symbol
+    return Expression(
+        "topped_tip",
+        "Radius of the tip that the root of a topping hob leaves, and the ridges on it (30.22).",
+        (q.hob_dedendum, q.hob_gashes, q.hob_feed, *PAIR),
+        (
+            (q.topped_radius, radius),
+            (q.tip_facet, radius * per_gash**2 / 2),
+            (q.tip_feed_mark, feed**2 / 8 / (q.hob_diameter.symbol / 2 - q.hob_dedendum.symbol)),
+        ),
+        requires=(_HOB_FITS, q.hob_diameter.symbol / 2 - q.hob_dedendum.symbol - 1, radius - 1),
+        source="cuts of a line and of a circle that turn; proved",
     )
 
 
@@ -618,16 +713,67 @@ def prove_flat_at_the_reference_cylinder_is_the_formula_of_textbooks() -> None:
 
 
 def prove_rounding_leaves_the_flank_tangentially_and_ends_on_the_tip() -> None:
-    """(30.11, 30.12) At γ = α_n it is on the flank, w_r without slope; at γ = π/2 on the tip, w_a from the middle."""
+    """(30.11, 30.12) At γ = α_n it is p_r0 beyond the flank along its normal, w_r without slope; at γ = π/2 it is on
+
+    the tip, w_a from the middle.
+    """
     rule, alpha, gamma = hob_tip(), q.pressure_angle.symbol, q.tip_turn.symbol
     relief = rule["tip_relief"]
-    assert sp.simplify(relief.subs(gamma, alpha)) == 0
+    normal = relief * sp.cos(q.hob_lead_angle.symbol) * sp.cos(alpha)
+    assert sp.simplify(normal.subs(gamma, alpha) + q.protuberance.symbol) == 0
     assert sp.simplify(sp.diff(relief, gamma).subs(gamma, alpha)) == 0
     assert sp.simplify(rule["rounding_height"].subs(gamma, alpha) - hob_form()["form_height"]) == 0
     assert rule["rounding_height"].subs(gamma, sp.pi / 2) == q.hob_addendum.symbol
     straight = sp.pi * q.module.symbol / 4 - q.hob_addendum.symbol * sp.tan(alpha)
     across = relief.subs(gamma, sp.pi / 2) * sp.cos(q.hob_lead_angle.symbol)
     assert sp.simplify(straight - across - hob_form()["land_half_width"]) == 0
+
+
+def prove_protuberance_begins_on_the_flank_and_runs_into_the_rounding_tangentially() -> None:
+    """(30.11, 30.20) From h_F, on the flank, a straight line at α_pr meets the rounding at γ = α_pr with its slope."""
+    alpha, flat, gamma = q.pressure_angle.symbol, q.protuberance_angle.symbol, q.tip_turn.symbol
+    rule, begin = hob_tip(), protuberance_form()["form_height"]
+    height, across = rule["rounding_height"], rule["tip_relief"] * sp.cos(q.hob_lead_angle.symbol)
+    slope = sp.tan(flat) - sp.tan(alpha)  # of the relief along that line
+    at = {alpha: sp.Rational(35, 100), flat: sp.Rational(12, 100), q.hob_addendum.symbol: 3}
+    for rho, pr in ((sp.Rational(6, 10), sp.Rational(1, 10)), (0, sp.Rational(1, 5))):
+        given = at | {q.hob_tip_radius.symbol: rho, q.protuberance.symbol: pr}
+        end = ((height - begin) * slope - across).subs(gamma, flat).subs(given)
+        assert abs(sp.N(end, 30)) < 1e-25
+        if rho:
+            along = (sp.diff(across, gamma) / sp.diff(height, gamma) - slope).subs(gamma, flat).subs(given)
+            assert abs(sp.N(along, 30)) < 1e-25
+
+
+def prove_edge_of_a_helical_gash_lies_on_its_thread_and_on_its_gash() -> None:
+    """(30.21) ϑ of ϑ_0 is ϑ again; across the threads neighbors are 1 + κ s_h p_0 closer, 1/cos² λ at a right angle."""
+    there = gash_of_thread()["gash_thread"]
+    back = thread_of_gash()["thread_angle"].subs(q.gash_thread.symbol, there)
+    assert sp.simplify(back - q.thread_angle.symbol) == 0
+    reduced, lead = _worm()[0], _lead_angle()
+    normal = q.hob_sign.symbol * reduced / (q.hob_diameter.symbol / 2) ** 2
+    closer = 1 / sp.diff(thread_of_gash()["thread_angle"], q.gash_thread.symbol)
+    at = {q.module.symbol: 2, q.hob_starts.symbol: 3, q.hob_diameter.symbol: 50}
+    for hand in (1, -1):
+        along = closer.subs(q.gash_twist.symbol, normal).subs(at | {q.hob_sign.symbol: hand})
+        assert abs(sp.N(along - 1 / sp.cos(lead.subs(at)) ** 2, 30)) < 1e-25
+
+
+def prove_ridges_on_a_topped_tip_are_half_way_between_two_cuts() -> None:
+    """(30.22) Two lines at ρ_a, a gash's turn of the gear apart, meet δ_ya higher; two circles of r_0 - h_f0, a feed
+
+    apart, δ_xa higher: the first terms of both.
+    """
+    rule, e = topped_tip(), sp.symbols("epsilon", positive=True)
+    radius, half = sp.symbols("R w", positive=True)
+    assert sp.series(radius / sp.cos(half * e) - radius, e, 0, 4).removeO() == radius * half**2 * e**2 / 2
+    circle = sp.series(radius - sp.sqrt(radius**2 - (half * e / 2) ** 2), e, 0, 4).removeO()
+    assert sp.simplify(circle - half**2 * e**2 / (8 * radius)) == 0
+    k, z, n = q.hob_starts.symbol, q.teeth.symbol, q.hob_gashes.symbol
+    assert sp.simplify(rule["tip_facet"] - rule["topped_radius"] * (sp.pi * k / (z * n)) ** 2 / 2) == 0
+    feed = 2 * sp.pi * z / k * q.hob_feed.symbol
+    left = rule["tip_feed_mark"] - feed**2 / (8 * (q.hob_diameter.symbol / 2 - q.hob_dedendum.symbol))
+    assert sp.simplify(left) == 0
 
 
 def prove_undercut_begins_where_the_straight_edge_reaches_the_base_cylinder() -> None:

@@ -27,12 +27,9 @@ if TYPE_CHECKING:
     from gearmath.front.design import settings_of as settings_of
     from gearmath.front.exports import export_c as export_c
     from gearmath.front.exports import export_cnc as export_cnc
-    from gearmath.front.exports import export_points as export_points
-    from gearmath.front.exports import export_rexs as export_rexs
-    from gearmath.front.exports import export_step as export_step
-    from gearmath.front.exports import export_stl as export_stl
-    from gearmath.front.exports import export_summary as export_summary
     from gearmath.front.exports import export_teensy as export_teensy
+    from gearmath.front.flanks import FlankSurface as FlankSurface
+    from gearmath.front.flanks import Tooth as Tooth
     from gearmath.front.gearbox import HobbedGear as HobbedGear
     from gearmath.front.gearbox import Job as Job
     from gearmath.front.gearbox import choose as choose
@@ -55,10 +52,8 @@ if TYPE_CHECKING:
     from gearmath.front.probing import load_touches as load_touches
     from gearmath.front.probing import probing as probing
     from gearmath.front.programs import Program as Program
-    from gearmath.front.sets import FlankSurface as FlankSurface
     from gearmath.front.sets import GearSet as GearSet
     from gearmath.front.sets import Member as Member
-    from gearmath.front.sets import Tooth as Tooth
     from gearmath.front.sets import load_set as load_set
     from gearmath.kernels import kernel as kernel
     from gearmath.lowering import lower as lower
@@ -66,7 +61,8 @@ if TYPE_CHECKING:
 
 #: The names of the front door, and the modules that have them.
 _HOMES = {
-    "gearmath.front.sets": ("load_set", "GearSet", "Member", "FlankSurface", "Tooth"),
+    "gearmath.front.sets": ("load_set", "GearSet", "Member"),
+    "gearmath.front.flanks": ("FlankSurface", "Tooth"),
     "gearmath.front.machines": ("load_machine", "load_shop", "load_probe", "load_hobber", "Machine"),
     "gearmath.front.programs": ("Program",),
     "gearmath.front.measured": ("load_measurement", "Measurement", "Evaluation", "Correction"),
@@ -75,16 +71,7 @@ _HOMES = {
     "gearmath.front.design": ("design", "PairDesign", "settings_of", "load_blank", "Blank", "load_rexs"),
     "gearmath.front.gearbox": ("plan", "Job", "hob", "HobbedGear", "choose"),
     "gearmath.front.contact": ("contact", "Contact"),
-    "gearmath.front.exports": (
-        "export_c",
-        "export_teensy",
-        "export_cnc",
-        "export_step",
-        "export_stl",
-        "export_points",
-        "export_rexs",
-        "export_summary",
-    ),
+    "gearmath.front.exports": ("export_c", "export_teensy", "export_cnc"),
     "gearmath.control.store": ("MeasurementStore",),
     "gearmath.control.store_evaluation": ("evaluate_run",),
     "gearmath.demo": ("run_demo",),

@@ -8,11 +8,23 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET, about, echo_json, member_of, nominal_words, output, table
+from gearmath.cli.common import (
+    FLANK_CSV,
+    JSON,
+    MEMBER,
+    SET,
+    about,
+    echo_json,
+    member_of,
+    nominal_words,
+    output,
+    table,
+)
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.specs.margins import Margins
+
 
 _MOST_POINTS = 1_000_000
 
@@ -49,12 +61,7 @@ def flank(
     target: Path,
 ) -> None:
     """Nominal points and outward normals of one flank, as a flank CSV."""
-    from gearmath.bevel.flank import blank_grid
-    from gearmath.bevel.grid import listed_grid
-    from gearmath.bevel.nominal_file import nominal_flank
-    from gearmath.bevel.pair import load_pair
-    from gearmath.specs.flank_csv import write_flank_csv
-    from gearmath.specs.places import read_places
+    from gearmath.front.sets import load_set
     from gearmath.specs.toml import find
 
     given = {"": margin, "-root": root, "-tip": tip, "-toe": toe, "-heel": heel}
@@ -63,21 +70,11 @@ def flank(
         for name, value in given.items():
             if value is not None:
                 raise InputError(f"--margin{name} {value:g}: listed places (--places) have no margins")
-    source = find(gear_set)
-    pair = load_pair(source)
-    member, spec = member_of(pair, member)
-    if places is not None:
-        axial, radial = read_places(places)
-        with about(places):
-            grid = listed_grid(spec, axial, radial, shape or (len(axial), 1))
-        with about(source):
-            file = nominal_flank(spec, member, side, grid, None)
-    else:
-        grid = blank_grid(spec, *(shape or (5, 9)), margins)
-        with about(source):
-            file = nominal_flank(spec, member, side, grid, margins)
-    write_flank_csv(target, file)
-    click.echo(f"{target}: {len(file)} points of the {member}'s {side} flank{nominal_words(spec, side)}")
+    one = member_of(load_set(gear_set), member)
+    with about(find(gear_set)):
+        found = one.flank(side, shape, margins, places)
+    found.to_csv(target)
+    click.echo(f"{target}: {len(found.file)} points of the {one.name}'s {side} flank{nominal_words(one, side)}")
 
 
 @click.command()
@@ -89,23 +86,17 @@ def flank(
 @output("STL")
 def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; backlash and ease-off of the pair; and an STL."""
-    from gearmath.bevel.mates import pair_figures
-    from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
-    from gearmath.bevel.tooth import space_figures, tooth_space
+    from gearmath.front.sets import load_set
     from gearmath.specs.toml import find
 
-    source = find(gear_set)
-    bevel_set = load_pair(source)
-    member, spec = member_of(bevel_set, member)
-    with about(source):
-        surface = tooth_space(spec, member, columns)
-        mates = pair_figures(bevel_set)
-    triangles = space_triangles(surface) if space else member_triangles(spec, surface)
-    write_stl(target, triangles, f"{member} {'space' if space else 'member'}")
-    figures = space_figures(spec, surface)
+    pair = load_set(gear_set)
+    one = member_of(pair, member)
+    with about(find(gear_set)):
+        made = one.tooth(columns)
+        mates = pair.mates()
+    triangles, figures = made.to_stl(target, whole_member=not space), made.figures
     if as_json:
-        echo_json({"triangles": len(triangles), **figures} | ({} if mates is None else {"pair": mates}))
+        echo_json({"triangles": triangles, **figures} | ({} if mates is None else {"pair": mates}))
         return
     click.echo(table(["figure", "value"], [[name, f"{value:.4f}"] for name, value in figures.items()]))
     click.echo(
@@ -114,7 +105,7 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     click.echo("grid of flank files, where 'gearmath evaluate' measures")
     if mates is not None:
         _echo_pair(mates)
-    click.echo(f"{target}: {len(triangles)} triangles")
+    click.echo(f"{target}: {triangles} triangles")
 
 
 def _echo_pair(mates: dict[str, Any]) -> None:
@@ -149,6 +140,7 @@ def _margins(given: dict[str, float | None]) -> Margins:
 
 
 def _grid(size: str) -> tuple[int, int]:
+    """Rows and columns of the option --grid."""
     match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", size)
     rows, columns = (int(part) for part in match.groups()) if match else (0, 0)
     if not (rows >= 2 and columns >= 2 and rows * columns <= _MOST_POINTS):

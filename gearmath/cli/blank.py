@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -28,27 +28,21 @@ def blank(data: str, as_json: bool, as_set: bool, target: Path | None) -> None:
     """
     import json
 
-    from gearmath.bevel.blank import blank_of
-    from gearmath.bevel.blank_table import by_name, rows, set_fragment
-    from gearmath.bevel.slots import slots_of
     from gearmath.errors import InputError
     from gearmath.files import write_text
-    from gearmath.specs.blank_data import load_blank_data
+    from gearmath.front.design import load_blank
     from gearmath.specs.toml import find
 
     if as_json and as_set:
         raise InputError("--json and --fragment: only one of them may be given")
-    path = find(data)
-    given = load_blank_data(path)
-    made = blank_of(given, str(path))
-    if as_set:
-        text = set_fragment(made)
-    else:
-        with about(path):
-            found = rows(made, slots_of(made))
-        head = {"title": given.title, "process": made.process, "units": "mm, degree"}
-        values: dict[str, Any] = {**head, **by_name(found)}
-        text = json.dumps(values, indent=2) + "\n" if as_json else f"{given.title}\n\n{_text(found)}\n"
+    path, made = find(data), load_blank(data)
+    with about(path):
+        if as_set:
+            text = made.fragment()
+        elif as_json:
+            text = json.dumps(made.to_dict(), indent=2) + "\n"
+        else:
+            text = f"{made.title}\n\n{_text(made.rows)}\n"
     if target is None:
         click.echo(text, nl=False)
         return

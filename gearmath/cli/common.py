@@ -19,7 +19,7 @@ from gearmath.errors import about as about
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearmath.specs.bevel_set import BevelSet, Member
+    from gearmath.front.sets import GearSet, Member
 
 #: The gear set of a verb whose first argument is another file.
 SET_OPTION = click.option(
@@ -105,21 +105,21 @@ def SET(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_set
 
 
-def member_of(pair: BevelSet, given: str | None, stated: str | None = None) -> tuple[str, Member]:
-    """Name and data of a member: ``given`` by --member, ``stated`` by a file, or the only one of the set.
+def member_of(pair: GearSet, given: str | None, stated: str | None = None) -> Member:
+    """A member: ``given`` by --member, ``stated`` by a file, or the only one of the set.
 
     Raises InputError where none of these tells it.
     """
-    members = list(pair.members)
+    members = list(pair.spec.members)
     name = given or stated or (members[0] if len(members) == 1 else None)
     if name is None:
         raise InputError("--member is missing: the set has both, so it must be pinion or gear")
-    return name, pair.member(name)
+    return pair.member(name)
 
 
 def nominal_words(member: Member, flank: str) -> str:
     """What to add where nominal points of a flank are written that is cut with other settings; else nothing."""
-    changed = member.flank(flank).design is not None
+    changed = member.spec.flank(flank).design is not None
     return ": the nominal flank, by the settings under 'design', not what the corrected ones cut" if changed else ""
 
 
@@ -147,7 +147,7 @@ SHEET = click.option(
     "--sheet",
     type=NewFile(),
     metavar="SETUP.html",
-    help="Also write the set-up sheet of a program for a SINUMERIK: a page that prints on A4.",
+    help="Also write the set-up sheet of the program: a page that prints on A4.",
 )
 
 
@@ -201,12 +201,12 @@ def bar(total: int, unit: str, quiet: bool = False) -> Iterator[Any]:
 
 
 @contextmanager
-def bars() -> Iterator[Callable[[int, str], Any]]:
+def bars(quiet: bool = False) -> Iterator[Callable[[int, str], Any]]:
     """Progress bars one after the other: each begins, with its total and unit, when the one before ends."""
     with ExitStack() as stack:
 
         def begin(total: int, unit: str) -> Any:
             stack.close()
-            return stack.enter_context(bar(total, unit))
+            return stack.enter_context(bar(total, unit, quiet))
 
         yield begin

@@ -135,7 +135,10 @@ def compensate(
     source = find(gear_set)
     pair = load_pair(source)
     file = read_flank_csv(measured)
-    member, spec = member_of(pair, member, file.member)
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(pair), member, file.member)
+    member, spec = one.name, one.spec
     moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
     with about(measured), bar(STAGES + correcting.STAGES, "stage", as_json) as progress:
         evaluation = evaluate_member(file, spec, member, registered, progress, rotated)
@@ -270,7 +273,10 @@ def stock(measured: Path, gear_set: str, member: str | None, advance: bool, leas
     from gearmath.specs.toml import find
 
     pair, file = load_pair(find(gear_set)), read_flank_csv(measured)
-    member, spec = member_of(pair, member, file.member)
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(pair), member, file.member)
+    member, spec = one.name, one.spec
     with about(measured):
         found = share_stock(spec, member, file, advance, least / 1000)
     remarks = list(missing_points(file, spec.teeth))

@@ -56,7 +56,7 @@ def name_of(path: Path, insecure: bool) -> str:
 
 def file_name(name: str) -> str:
     """A name as the control keeps it. Raises InputError for what it would not, or what names a path."""
-    from gearmath.control.file_names import control_name, linuxcnc_name
+    from gearmath.machine.control.file_names import control_name, linuxcnc_name
 
     return linuxcnc_name(name) if is_linuxcnc() else control_name(name)
 

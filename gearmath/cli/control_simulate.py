@@ -131,9 +131,9 @@ async def _console(control: SimulatedControl) -> None:
 async def _command(control: SimulatedControl, word: str, rest: list[str]) -> str:
     from datetime import timedelta
 
-    from gearmath.control.file_names import control_name
     from gearmath.control.simulated.nc import NcAlarm
     from gearmath.control.sinumerik import FOLDERS
+    from gearmath.machine.control.file_names import control_name
 
     nc = control.nc
     if word == "select":

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from gearmath.cli.common import JSON, NewFile, about, bar, echo_json, output, plot, save_plot, table
+from gearmath.cli.common import JSON, NewFile, bars, echo_json, output, plot, save_plot, table
 from gearmath.cli.design_reverse import reverse_design
 
 
@@ -47,43 +47,30 @@ def design(
 
     With --reverse it is a file of design data, of a blank, or a gear set, of which blank and method are taken.
     """
-    from gearmath.bevel.design.route import design as designed
-    from gearmath.bevel.design.verdict import verdict
-    from gearmath.bevel.pair import load_pair
     from gearmath.errors import InputError
-    from gearmath.files import write_text
-    from gearmath.setup_sheet.summary import summary_sheet
-    from gearmath.specs.design import load_design
-    from gearmath.specs.set_text import set_text
-    from gearmath.specs.toml import find
+    from gearmath.front.design import design as designed
+    from gearmath.front.sets import load_set
 
-    path = find(data)
     if points is not None:
         for option, other in (("--from", given), ("--plot", picture)):
             if other is not None:
                 raise InputError(f"{option} and --reverse: only one of them may be given")
-        reverse_design(points, path, target, sheet, as_json)
+        reverse_design(points, data, target, sheet, as_json)
         return
-    asked = load_design(path)
-    gear = None if given is None else load_pair(find(given))
-    if gear is not None and len(gear.members) < 2:
+    gear = None if given is None else load_set(given)
+    if gear is not None and len(gear.spec.members) < 2:
         raise InputError(f"{given}: a set with both members is needed: the blank of the pinion is taken from it")
-    with bar(2, "step", quiet=as_json) as done, about(path):
-        made = designed(asked, str(path), gear)
-        done(1)
-        figures, runs = verdict(made)
-        done(1)
-    write_text(target, set_text(made.pair))
+    with bars(quiet=as_json) as begin:
+        made = designed(data, gear, begin)
+    made.gear_set.save(target)
     if sheet is not None:
-        write_text(sheet, summary_sheet(made.pair))
+        made.gear_set.to_summary(sheet)
     if picture is not None:
-        from gearmath.plot.contact import contact_figure
-
-        save_plot(contact_figure(runs), picture, as_json)
+        save_plot(made.plot(), picture, as_json)
     if as_json:
-        echo_json({"set": str(target), **figures})
+        echo_json({"set": str(target), **made.to_dict()})
         return
-    click.echo(_text(asked.title, figures))
+    click.echo(_text(made.gear_set.title, made.figures))
     click.echo(f"{target}: written")
     if sheet is not None:
         click.echo(f"{sheet}: summary sheet, prints on A4")

@@ -7,64 +7,32 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import about, bar, echo_json, table
+from gearmath.cli.common import bars, echo_json, table
 
 if TYPE_CHECKING:
     from gearmath.bevel.design.reverse import ReversedFlank
 
 
-def reverse_design(points: Path, data: Path, target: Path, sheet: Path | None, as_json: bool) -> None:
+def reverse_design(points: Path, data: str, target: Path, sheet: Path | None, as_json: bool) -> None:
     """Find the settings of the member of a flank file, write them as a set, and print how well they do."""
-    from gearmath.bevel.design.reverse_route import load_known, reversed_set
-    from gearmath.files import write_text
-    from gearmath.setup_sheet.summary import summary_sheet
-    from gearmath.specs.flank_csv import read_flank_csv
-    from gearmath.specs.set_text import set_text
+    from gearmath.front.design import settings_of
 
-    known = load_known(data)
-    file = read_flank_csv(points)
-    with bar(1, "member", quiet=as_json) as done, about(points):
-        found, how_well = reversed_set(known, file, f"settings found from the points of {points.name}")
-        done(1)
-    write_text(target, set_text(found))
+    with bars(quiet=as_json) as begin:
+        made = settings_of(points, data, begin)
+    made.gear_set.save(target)
     if sheet is not None:
-        write_text(sheet, summary_sheet(found))
-    member = how_well.member
-    figures: dict[str, Any] = {
-        "set": str(target),
-        "member": file.member,
-        "cutting": member.cutting,
-        "process": member.process,
-        "generation": member.generation,
-        **{name: _figures(flank) for name, flank in how_well.flanks.items()},
-    }
+        made.gear_set.to_summary(sheet)
+    figures = made.to_dict()
     if as_json:
-        echo_json(figures)
+        echo_json({"set": str(target), **figures})
         return
-    click.echo(f"{known.title}: {file.member}, {member.cutting}, {member.process}, {member.generation}")
-    for name, flank in how_well.flanks.items():
+    how = ", ".join(figures[key] for key in ("member", "cutting", "process", "generation"))
+    click.echo(f"{made.title}: {how}")
+    for name, flank in made.found.flanks.items():
         click.echo("\n" + _text(name, figures[name], flank))
     click.echo(f"\n{target}: written")
     if sheet is not None:
         click.echo(f"{sheet}: summary sheet, prints on A4")
-
-
-def _figures(flank: ReversedFlank) -> dict[str, Any]:
-    worst = flank.largest
-    return {
-        "points": len(flank.after),
-        "rms_before_um": 1000 * flank.rms_before,
-        "rms_um": 1000 * flank.rms,
-        "scatter_um": 1000 * flank.scatter,
-        "not_reproduced_um": 1000 * flank.not_reproduced,
-        "largest": {
-            "deviation_um": 1000 * float(flank.after[worst]),
-            "row": int(flank.given.row[worst]),
-            "col": int(flank.given.col[worst]),
-        },
-        "fitted": list(flank.free),
-        "bounds_reached": list(flank.active),
-    }
 
 
 def _text(name: str, found: dict[str, Any], flank: ReversedFlank) -> str:

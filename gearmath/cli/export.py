@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import click
 
@@ -12,14 +13,13 @@ from gearmath.cli.common import (
     MEMBER,
     SET,
     about,
-    bar,
     bars,
     echo_json,
     member_of,
     nominal_words,
     output,
 )
-from gearmath.cli.dialect import CONTROL, LINUXCNC, dialect_of
+from gearmath.cli.dialect import CONTROL, dialect_of
 from gearmath.errors import InputError
 
 _FOLDER = click.option(
@@ -40,11 +40,10 @@ def teensy(machine: str, folder: Path) -> None:
 
     Firmware, the machine's constants, wiring diagram and README. The folder's name becomes the sketch's name.
     """
-    from gearmath.export.teensy import export_teensy
-    from gearmath.specs.hobbing import load_hobbing_machine
-    from gearmath.specs.toml import find
+    from gearmath.front.exports import export_teensy
+    from gearmath.front.machines import load_hobber
 
-    names = export_teensy(load_hobbing_machine(find(machine)), folder)
+    names = export_teensy(load_hobber(machine), folder)
     click.echo(f"{folder}: {len(names)} files")
 
 
@@ -52,48 +51,47 @@ def teensy(machine: str, folder: Path) -> None:
 @click.argument("gear_set", metavar="[SET]", required=False)
 @MACHINE
 @CONTROL
+@click.option(
+    "--blocks",
+    type=click.Choice(["g1", "poly"]),
+    default="g1",
+    show_default=True,
+    help="Straight blocks, or polynomials where the cutter rolls, in the programs of gm-post.",
+)
 @_FOLDER
-def cnc(gear_set: str | None, machine: str, control: str | None, folder: Path) -> None:
+def cnc(gear_set: str | None, machine: str, control: str | None, blocks: Literal["g1", "poly"], folder: Path) -> None:
     """C library of the bevel gear kernels for a CNC post-processor; with SET also settings files for its gm-post.
 
-    Of every face milled member of SET (a TOML file, or a bundled one) the folder gets MEMBER.settings, from which
-    gm-post, a C program of the folder, writes the program of 'gearmath nc cut' without Python.
+    Of every member of SET (a TOML file, or a bundled one) the folder gets MEMBER.settings, from which gm-post, a C
+    program of the folder, writes the program of 'gearmath nc cut' without Python.
     """
     from gearmath.export.cnc import export_cnc
 
-    settings = _settings(gear_set, machine, control) if gear_set is not None else {}
+    settings = _settings(gear_set, machine, control, blocks) if gear_set is not None else {}
     names = export_cnc(folder, settings)
     click.echo(f"{folder}: {len(names)} files")
     for name in settings:
         click.echo(f"{folder / name}: {name.removesuffix('.settings')}, for gm-post")
 
 
-def _settings(gear_set: str, machine: str, control: str | None) -> dict[str, str]:
+def _settings(gear_set: str, machine: str, control: str | None, blocks: Literal["g1", "poly"]) -> dict[str, str]:
     """Settings files of the members of a set, by name; their programs are run first."""
     from gearmath.bevel.pair import load_pair
     from gearmath.export.post import post_file
     from gearmath.machine.judging.checked import checked_cut
     from gearmath.machine.planning.cut_plan import CuttingJob
-    from gearmath.machine.writing.cutting import program_of
-    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     milling_machine, source = load_milling_machine(find(machine)), find(gear_set)
-    dialect = dialect_of(milling_machine, control, None, None)
-    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
+    dialect = dialect_of(milling_machine, control)
     pair = load_pair(source)
-    milled = {name: spec for name, spec in pair.members.items() if spec.process == "face_milling"}
-    if not milled:
-        raise InputError(f"{source}: process = face_hobbing: gm-post writes the cuts of face milled members")
-    for name in pair.members.keys() - milled.keys():
-        click.echo(f"{source}: {name}: face hobbed, no settings file: gm-post writes the cuts of face milling")
-    jobs = {name: CuttingJob(tuple(range(spec.teeth))) for name, spec in milled.items()}
+    jobs = {name: CuttingJob(tuple(range(spec.teeth)), blocks=blocks) for name, spec in pair.members.items()}
     files = {}
     for name, job in jobs.items():
         file = f"{name}.settings"
         with bars() as begin, about(source):
-            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, begin, write)
+            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, begin, dialect)
             files[file] = post_file(made.plan, dialect)
     return files
 
@@ -109,29 +107,18 @@ def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None
     Flanks, fillets, roots and lands are B-splines: flanks within 0.05 um, fillets within 1 um of what the cutter
     leaves. Needs the extra cad: pip install '.[cad]'.
     """
-    from gearmath.bevel.pair import load_pair
-    from gearmath.exchange.body import member_patches
-    from gearmath.exchange.in_mesh import pair_patches
-    from gearmath.exchange.step import require_kernel, write_step
+    from gearmath.front.sets import load_set
     from gearmath.specs.toml import find
 
-    require_kernel()
-    source = find(gear_set)
-    pair = load_pair(source)
-    alone = member is not None or len(pair.members) == 1
-    with bar(4 if alone else 5, "stage", as_json) as done, about(source):
-        if alone:
-            name, spec = member_of(pair, member)
-            bodies = [(name, member_patches(spec, name))]
-        else:
-            bodies = pair_patches(pair)
-        done(2)
-        volumes = write_step(target, bodies, done)
+    pair = load_set(gear_set)
+    what = pair if member is None else pair.member(member)
+    with bars(quiet=as_json) as begin, about(find(gear_set)):
+        written = what.to_step(target, begin)
     if as_json:
-        echo_json({name: {"volume_mm3": value} for (name, _), value in zip(bodies, volumes, strict=True)})
+        echo_json({name: {"volume_mm3": one.volume} for name, one in written.items()})
         return
-    for (name, patches), value in zip(bodies, volumes, strict=True):
-        click.echo(f"{target}: {name}, closed solid of {len(patches)} faces, {value:.2f} mm^3")
+    for name, one in written.items():
+        click.echo(f"{target}: {name}, closed solid of {one.faces} faces, {one.volume:.2f} mm^3")
 
 
 @export.command()
@@ -139,21 +126,13 @@ def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None
 @output("binary STL, mm")
 def stl(gear_set: str, target: Path) -> None:
     """Triangles of the pair in mesh, both members whole, touching on the drive side; of one: 'gearmath tooth'."""
-    from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.solid import write_stl
-    from gearmath.exchange.in_mesh import pair_triangles
+    from gearmath.front.sets import load_set
     from gearmath.specs.toml import find
 
-    source = find(gear_set)
-    pair = load_pair(source)
-    with bar(2, "stage") as done, about(source):
-        for name in ("pinion", "gear"):
-            pair.member(name)
-        triangles = pair_triangles(pair)
-        done(1)
-        write_stl(target, triangles, "pair in mesh")
-        done(1)
-    click.echo(f"{target}: {len(triangles)} triangles, pinion axis Z, gear axis in the plane of Z and X")
+    pair = load_set(gear_set)
+    with bars() as begin, about(find(gear_set)):
+        triangles = pair.to_stl(target, begin)
+    click.echo(f"{target}: {triangles} triangles, pinion axis Z, gear axis in the plane of Z and X")
 
 
 @export.command()
@@ -170,21 +149,17 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
 
     For measuring machines that take such lists; row by row, root to tip, toe to heel. 'gearmath points' reads them.
     """
-    from gearmath.bevel.flank import blank_grid, solve_flank
-    from gearmath.bevel.pair import load_pair
-    from gearmath.exchange.point_lines import write_points
+    from gearmath.front.sets import load_set
     from gearmath.specs.toml import find
 
-    source = find(gear_set)
-    pair = load_pair(source)
-    name, spec = member_of(pair, member)
+    one = member_of(load_set(gear_set), member)
     shape = _grid(grid)
     if not 0 <= margin < 0.5:
         raise InputError(f"--margin {margin:g}: must be at least 0 and less than 0.5")
-    with about(source):
-        found = solve_flank(spec, name, flank, blank_grid(spec, *shape, margin))
-    write_points(target, name, flank, found.point, found.normal)
-    click.echo(f"{target}: {len(found.point)} points{nominal_words(spec, flank)}")
+    with about(find(gear_set)):
+        found = one.flank(flank, shape, margin)
+    found.to_text(target)
+    click.echo(f"{target}: {len(found.file)} points{nominal_words(one, flank)}")
 
 
 @export.command()
@@ -192,14 +167,12 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
 @output("REXS 2.0.0: .rexs XML")
 def rexs(gear_set: str, target: Path) -> None:
     """The set as REXS 2.0.0; what REXS has no name for stays in attributes of its own (docs/exchange.md)."""
-    from gearmath.bevel.pair import load_pair
-    from gearmath.exchange.rexs import write_rexs
+    from gearmath.front.sets import load_set
     from gearmath.specs.toml import find
 
-    source = find(gear_set)
-    pair = load_pair(source)
-    with about(source):
-        count = write_rexs(target, pair)
+    pair = load_set(gear_set)
+    with about(find(gear_set)):
+        count = pair.to_rexs(target)
     click.echo(f"{target}: {count} components")
 
 
@@ -208,13 +181,9 @@ def rexs(gear_set: str, target: Path) -> None:
 @output("HTML that prints on A4")
 def summary(gear_set: str, target: Path) -> None:
     """The summary sheet of a set: blank, machine settings and cutter build of its members, in mm and in inches."""
-    from gearmath.bevel.pair import load_pair
-    from gearmath.files import write_text
-    from gearmath.setup_sheet.summary import summary_sheet
-    from gearmath.specs.toml import find
+    from gearmath.front.sets import load_set
 
-    write_text(target, summary_sheet(load_pair(find(gear_set))))
-    click.echo(f"{target}: summary sheet, prints on A4")
+    click.echo(f"{load_set(gear_set).to_summary(target)}: summary sheet, prints on A4")
 
 
 def _grid(text: str) -> tuple[int, int]:

@@ -15,12 +15,8 @@ from gearmath.cli.common import JSON, echo_json, plot, save_plot
 from gearmath.cli.gearbox_cut import choose, cut
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from gearmath.gearbox.helix import Helix
-    from gearmath.gearbox.job import ThreadPlan
+    from gearmath.front.gearbox import Job
     from gearmath.gearbox.simulation import Pattern
-    from gearmath.gearbox.train import GearboxPlan
     from gearmath.specs.hobbing import HobbingMachine
 
 LONG_RUN = 20_000_000  # edges; more of them take over two seconds
@@ -48,9 +44,9 @@ def _job_options(command: Callable) -> Callable:
     @functools.wraps(command)
     def with_plan(machine: str, **options: Any) -> Any:
         own = {key: options.pop(key) for key in list(options) if key not in _KEYS}
-        from gearmath.specs.hobbing import find_hobbing_machine
+        from gearmath.front.machines import load_hobber
 
-        return command(job=_plan(find_hobbing_machine(machine), options), **own)
+        return command(job=_plan(load_hobber(machine), options), **own)
 
     for option in reversed(_JOB):
         with_plan = option(with_plan)
@@ -76,14 +72,14 @@ gearbox.add_command(choose)
 @gearbox.command("plan")
 @_job_options
 @JSON
-def plan_job(job: GearboxPlan | ThreadPlan, as_json: bool) -> None:
+def plan_job(job: Job, as_json: bool) -> None:
     """Exact ratio, rates against the limits, and what to set and measure."""
     from gearmath.cli.gearbox_text import plan_text
 
     if as_json:
-        echo_json(_values(asdict(job)))
+        echo_json(_values(job.to_dict()))
     else:
-        click.echo(plan_text(job))
+        click.echo(plan_text(job.plan))
 
 
 @gearbox.command("simulate")
@@ -95,7 +91,7 @@ def plan_job(job: GearboxPlan | ThreadPlan, as_json: bool) -> None:
 @plot("the errors over time")
 @JSON
 def simulate(
-    job: GearboxPlan | ThreadPlan,
+    job: Job,
     pattern: Pattern,
     edges: int,
     start: int,
@@ -107,25 +103,23 @@ def simulate(
     from tqdm import tqdm
 
     from gearmath.cli.gearbox_text import simulation_text
-    from gearmath.export.host import run_axes
-    from gearmath.gearbox.simulation import Trace, simulate_job
+    from gearmath.gearbox.simulation import Trace
 
-    trace = Trace(edges)
+    trace, plan = Trace(edges), job.plan
     with tqdm(total=edges, unit="edge", unit_scale=True, disable=edges < LONG_RUN or None) as bar:
-        result = simulate_job(run_axes, job.ratio, pattern, edges, seed, bar.update, trace.add, start)
+        result = job.simulate(pattern, edges, seed, start, trace, bar.update)
     if picture is not None:
-        save_plot(_error_figure(job, trace), picture, as_json)
+        save_plot(job.plot(trace=trace), picture, as_json)
     if as_json:
         terms = ("steps_numerator", "steps_denominator", "feed_numerator")
-        echo_json(_values({key: getattr(job, key) for key in terms} | asdict(result)))
+        echo_json(_values({key: getattr(plan, key) for key in terms} | asdict(result)))
     else:
-        click.echo(simulation_text(result, job))
+        click.echo(simulation_text(result, plan))
 
 
-def _plan(machine: HobbingMachine, options: dict[str, Any]) -> GearboxPlan | ThreadPlan:
+def _plan(machine: HobbingMachine, options: dict[str, Any]) -> Job:
     """The plan of a gear or of a thread, by the machine's profile."""
-    from gearmath.gearbox.job import plan_thread
-    from gearmath.gearbox.train import plan
+    from gearmath.front.gearbox import plan
 
     given = {key: value for key, value in options.items() if value is not None}
     needed, other = ("pitch", "teeth") if machine.profile == "lathe" else ("teeth", "pitch")
@@ -136,45 +130,14 @@ def _plan(machine: HobbingMachine, options: dict[str, Any]) -> GearboxPlan | Thr
         unfit = sorted(set(given) - set(_THREAD_KEYS))
         if unfit:
             raise click.UsageError(f"--{unfit[0]} has no meaning for a thread")
-        from gearmath.specs.ratio import pitch_of
-
-        return plan_thread(machine, pitch_of(given.pop("pitch")), **given)
-    gear = {key: given[key] for key in ("teeth", "starts", "hob", "rpm", "run_up", "shift", "pin") if key in given}
-    return plan(machine, **gear, helix=_helix(given))
-
-
-def _helix(given: dict[str, Any]) -> Helix | None:
-    from gearmath.errors import InputError
-    from gearmath.gearbox.helix import Helix
-
-    if "helix" not in given:
+    elif "helix" not in given:
         for key in ("hand", "cut", "feed"):
             if key in given:
                 raise click.UsageError(f"--{key} has no meaning without --helix")
-        return None
-    feed = None
-    if "feed" in given:
-        try:
-            feed = Fraction(given["feed"])
-        except (ValueError, ZeroDivisionError):
-            raise InputError(f"feed = {given['feed']!r}: must be a number of mm per turn of the table") from None
-    return Helix(given["helix"], given.get("hand", "right"), given.get("cut", "climb"), feed)
+    return plan(machine, **given)
 
 
 def _values(values: dict[str, Any]) -> dict[str, Any]:
     """For JSON: a fraction as number, and exactly beside it."""
     exact = {f"{key}_exact": str(value) for key, value in values.items() if isinstance(value, Fraction)}
     return {key: float(value) if isinstance(value, Fraction) else value for key, value in values.items()} | exact
-
-
-def _error_figure(job: GearboxPlan | ThreadPlan, trace: Any) -> Figure:
-    from matplotlib.figure import Figure
-
-    from gearmath.plot import draw_gearbox_error
-
-    figure = Figure(figsize=(8, 4), layout="constrained")
-    axes = figure.subplots()
-    done, exact, floating = trace.arrays
-    draw_gearbox_error(axes, done / job.edge_rate_hz, exact, floating)
-    axes.set_title(f"{job.machine}: {job.steps_numerator}/{job.steps_denominator} steps per count, {job.rpm:.0f} rpm")
-    return figure

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import click
 from click.core import ParameterSource
 
-from gearmath.cli.common import JSON, NewFile, Number, bar, echo_json
+from gearmath.cli.common import JSON, NewFile, Number, bars, echo_json
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearmath.gearbox.helix import Helix
-    from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear
+    from gearmath.gearbox.hobbed.drive import Rule
     from gearmath.specs.hobbing import HobbingMachine
 
 #: Suffixes of a chart.
@@ -31,6 +29,7 @@ _MEANINGLESS = {
         "shift": "--shift",
         "feed": "--feed",
         "width": "--width",
+        "hob_shift": "--hob-shift",
         "points": "--csv",
         "flanks": "--stl",
     },
@@ -62,6 +61,13 @@ _MEANINGLESS = {
     help="Axial feed, in mm per turn of the table.",
 )
 @click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@click.option(
+    "--hob-shift",
+    type=Number(-500.0, 500.0, "mm"),
+    default=0.0,
+    show_default=True,
+    help="The hob's middle from the pitch point, in mm, to the right as seen from the hob towards the gear.",
+)
 @click.option("--length", type=Number(1.0, 3000.0, "mm"), default=100.0, show_default=True, help="Of a thread, in mm.")
 @click.option("--rpm", type=float, help="Speed of hob or spindle in rpm; the highest within the limits if left out.")
 @click.option(
@@ -83,17 +89,17 @@ _MEANINGLESS = {
     help="The gear to write, a closed solid with its flanks as cut.",
 )
 @JSON
-def cut(machine: str, as_json: bool, chart: Path | None, points: Path | None, compare: str | None, **job: Any) -> None:
+def cut(machine: str, as_json: bool, chart: Path | None, points: Path | None, compare: Rule | None, **job: Any) -> None:
     """Cut a gear virtually, inspect it, give it classes, and tell which part of the machine is to blame.
 
     The machine's errors are the section [errors] of MACHINE; without it, only gashes, feed and steps are seen. On a
     lathe: the pitch error of a thread over its length.
     """
-    from gearmath.specs.hobbing import find_hobbing_machine
+    from gearmath.front.machines import load_hobber
 
     if chart is not None and chart.suffix.lower() not in CHARTS:
         raise click.UsageError(f"--plot {chart}: must end in .png, .svg or .html")
-    loaded = find_hobbing_machine(machine)
+    loaded = load_hobber(machine)
     _refuse_meaningless(loaded)
     if loaded.profile == "lathe":
         _cut_thread(loaded, as_json, chart, compare, job)
@@ -115,73 +121,37 @@ def _cut_gear(
     as_json: bool,
     chart: Path | None,
     points: Path | None,
-    compare: str | None,
+    compare: Rule | None,
     job: dict[str, Any],
 ) -> None:
-    from gearmath.cli.gearbox_cut_text import cut_text, cut_values
-    from gearmath.gearbox.hobbed.contributions import sources
-    from gearmath.gearbox.hobbed.setup import blame, cut_and_inspect, setup
+    from gearmath.cli.gearbox_cut_text import cut_text
+    from gearmath.front.gearbox import hob
 
     if job["teeth"] is None:
         raise click.UsageError(f"{machine.name} is a hobbing machine: give --teeth")
-    climb = job["way"] == "climb"
-    prepared = setup(
-        machine,
-        job["teeth"],
-        hob=job["hob"],
-        starts=job["starts"],
-        helix=_helix(machine, job),
-        shift=job["shift"],
-        feed=job["feed"],
-        face_width=job["width"],
-        rpm=job["rpm"],
-        seconds=job["seconds"],
-        climb=climb,
-        rule=job["rule"],
-    )
-    rules = [prepared.train.rule] + ([compare] if compare not in (None, prepared.train.rule) else [])
-    runs = len(rules) + len(sources(prepared.train))
-    with bar(runs * prepared.where.points, "point", quiet=as_json) as progress:
-        gears = [cut_and_inspect(prepared, rule, progress) for rule in rules]  # type: ignore[arg-type]
-        shares = blame(prepared, gears[0], progress)
+    if job["hand"] is not None and job["helix"] is None:
+        raise click.UsageError("--hand has no meaning without --helix")
+    options = {
+        key: job[key]
+        for key in ("hob", "starts", "helix", "hand", "shift", "feed", "rpm", "seconds", "rule", "hob_shift")
+    }
+    with bars(quiet=as_json) as begin:
+        made = hob(
+            machine, job["teeth"], compare, begin, face_width=job["width"], climb=job["way"] == "climb", **options
+        )
+    text = cut_text(made.setup, made.gears, made.shares)
     if chart is not None:
-        _chart(chart, prepared, gears, cut_text(prepared, gears, shares), as_json)
+        _save(chart, made.plot(), made.title, text, as_json)
     if points is not None:
-        from gearmath.exchange.hobbed_csv import write_traces
-
-        write_traces(points, prepared.job, gears[0].found)
-        click.echo(f"points: {points}", err=as_json)
+        click.echo(f"points: {made.to_csv(points)}", err=as_json)
     if job["flanks"] is not None:
-        from gearmath.exchange.hobbed_stl import ALL, write_gear
-        from gearmath.gearbox.hobbed.envelope import Cut
-
-        with bar(ALL * job["teeth"], "point", quiet=as_json) as progress:
-            write_gear(job["flanks"], Cut(prepared.job, prepared.train), prepared.where, progress)
+        with bars(quiet=as_json) as begin:
+            made.to_stl(job["flanks"], begin)
         click.echo(f"gear: {job['flanks']}", err=as_json)
     if as_json:
-        echo_json(cut_values(prepared, gears, shares))
+        echo_json(made.to_dict())
     else:
-        click.echo(cut_text(prepared, gears, shares))
-
-
-def _helix(machine: HobbingMachine, job: dict[str, Any]) -> Helix | None:
-    from gearmath.gearbox.helix import Helix
-
-    if job["helix"] is None:
-        if job["hand"] is not None:
-            raise click.UsageError("--hand has no meaning without --helix")
-        return None
-    feed = None if machine.feed is not None else Fraction(str(job["feed"]))
-    return Helix(job["helix"], job["hand"] or "right", job["way"], feed)
-
-
-def _chart(path: Path, prepared: CutSetup, gears: list[VirtualGear], text: str, as_json: bool) -> None:
-    from gearmath.plot.hobbed import inspection_figure
-
-    job = prepared.job
-    title = f"{prepared.train.machine.name}: {job.gear.teeth} teeth, module {job.gear.module:.4g} mm, virtual"
-    figure = inspection_figure(title, [(gear.rule, gear.found) for gear in gears])
-    _save(path, figure, title, text, as_json)
+        click.echo(text)
 
 
 def _save(path: Path, figure: Figure, title: str, text: str, as_json: bool) -> None:
@@ -207,28 +177,23 @@ def _cut_thread(
     machine: HobbingMachine,
     as_json: bool,
     chart: Path | None,
-    compare: str | None,
+    compare: Rule | None,
     job: dict[str, Any],
 ) -> None:
-    from gearmath.cli.gearbox_cut_text import thread_text, thread_values
-    from gearmath.gearbox.hobbed.thread import cut_thread
-    from gearmath.gearbox.job import plan_thread
-    from gearmath.specs.ratio import pitch_of
+    from gearmath.cli.gearbox_cut_text import thread_text
+    from gearmath.front.gearbox import plan
 
     if job["pitch"] is None:
         raise click.UsageError(f"{machine.name} is a lathe: give --pitch")
-    given = {"starts": 1 if job["starts"] is None else job["starts"], "hand": job["hand"] or "right", "rpm": job["rpm"]}
-    planned = plan_thread(machine, pitch_of(job["pitch"]), **given)
-    rules = [job["rule"]] + ([compare] if compare not in (None, job["rule"]) else [])
-    traces = [cut_thread(machine, planned, job["length"], rule, job["seconds"]) for rule in rules]
+    given = {key: job[key] for key in ("starts", "hand", "rpm") if job[key] is not None}
+    made = plan(machine, pitch=job["pitch"], **given).thread(job["length"], job["rule"], job["seconds"], compare)
+    text = thread_text(made.plan, made.traces)
     if chart is not None:
-        from gearmath.plot.hobbed import thread_figure
-
-        _save(chart, thread_figure(machine.name, traces), machine.name, thread_text(planned, traces), as_json)
+        _save(chart, made.plot(), machine.name, text, as_json)
     if as_json:
-        echo_json(thread_values(planned, traces))
+        echo_json(made.to_dict())
     else:
-        click.echo(thread_text(planned, traces))
+        click.echo(text)
 
 
 @click.command()
@@ -237,6 +202,13 @@ def _cut_thread(
 @click.option("--module", type=Number(0.1, 25.0, "mm"), required=True, help="Normal module in mm.")
 @click.option("--teeth", type=click.IntRange(min=1), required=True, help="Teeth of the gear.")
 @click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@click.option(
+    "--hob-shift",
+    type=Number(-500.0, 500.0, "mm"),
+    default=0.0,
+    show_default=True,
+    help="The hob's middle from the pitch point, in mm, to the right as seen from the hob towards the gear.",
+)
 @click.option("--helix", type=float, help="Helix angle in degrees; a spur gear if left out.")
 @click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of the helix; right if left out.")
 @JSON
@@ -254,18 +226,14 @@ def choose(
 
     The rest is that of MACHINE, hobbing_default.toml if left out, with its section [errors].
     """
-    from gearmath.cli.gearbox_cut_text import choice_text, choice_values
-    from gearmath.gearbox.helix import Helix
-    from gearmath.gearbox.hobbed.choice import MOST_CUTS
-    from gearmath.gearbox.hobbed.choice import choose as search
-    from gearmath.specs.hobbing import find_hobbing_machine
+    from gearmath.cli.gearbox_cut_text import choice_text
+    from gearmath.front.gearbox import choose as search
 
     if helix is None and hand is not None:
         raise click.UsageError("--hand has no meaning without --helix")
-    inclined = None if helix is None else Helix(helix, hand or "right")
-    with bar(MOST_CUTS, "cut", quiet=as_json) as progress:
-        found = search(find_hobbing_machine(machine), wanted, module, teeth, width, inclined, progress)
+    with bars(quiet=as_json) as begin:
+        found = search(machine, wanted, module, teeth, begin, face_width=width, helix=helix, hand=hand)
     if as_json:
-        echo_json(choice_values(found))
+        echo_json(found.as_dict())
     else:
         click.echo(choice_text(found))

@@ -1,10 +1,8 @@
-"""What ``gearmath gearbox cut`` prints for people, and as JSON."""
+"""What ``gearmath gearbox cut`` prints for people."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
-from typing import Any
 
 from gearmath.cli.common import table
 from gearmath.gearbox.hobbed.choice import Choice
@@ -23,44 +21,6 @@ def cut_text(cut: CutSetup, gears: Sequence[VirtualGear], shares: Sequence[Contr
     return "\n".join([*_head(cut), *_figures(cut, gears), *_thickness(gears), *_shares(shares)])
 
 
-def cut_values(cut: CutSetup, gears: Sequence[VirtualGear], shares: Sequence[Contribution]) -> dict[str, Any]:
-    """The same for programs. Figures in µm, dimensions in mm."""
-    job = cut.job
-    flat, mark = ridges(job)
-    return {
-        "machine": cut.train.machine.name,
-        "teeth": job.gear.teeth,
-        "module": job.gear.module,
-        "profile_shift": job.gear.shift,
-        "hob": {
-            "name": cut.hob_name,
-            "starts": job.hob.starts,
-            "gashes": job.hob.gashes,
-            "diameter": job.hob.diameter,
-            "diameter_assumed": cut.assumed_diameter,
-        },
-        "face_width": job.face_width,
-        "feed": job.feed,
-        "rpm": cut.train.rpm,
-        "seconds": cut.train.seconds,
-        "generating_length": cut.hob_length,
-        "generating_flat_um": flat * 1000,
-        "feed_mark_um": mark * 1000,
-        "tolerances": NOT_CONFIRMED,
-        "not_covered": outside(job),
-        "gears": [
-            {
-                "rule": gear.rule,
-                "accuracy_class": gear.accuracy_class,
-                "figures": [asdict(row) for row in gear.classes],
-                "thickness": [asdict(each) for each in gear.found.thicknesses],
-            }
-            for gear in gears
-        ],
-        "contributions": [asdict(share) for share in shares],
-    }
-
-
 def _head(cut: CutSetup) -> Iterator[str]:
     job, hob = cut.job, cut.job.hob
     hand = "" if not job.gear.beta else f", {'right' if job.helix_sign > 0 else 'left'}-hand helix"
@@ -73,7 +33,10 @@ def _head(cut: CutSetup) -> Iterator[str]:
     way = "climb" if job.climb else "conventional"
     feed = f"feed {job.feed:g} mm per turn of the table, {way}"
     yield f"  face width {job.face_width:g} mm, {feed}, {cut.train.rpm:.0f} rpm"
-    yield f"  {cut.hob_length:.1f} mm of the hob's length cut the flanks; more of it lets it be shifted"
+    shifted = "more of it lets it be shifted"
+    if cut.offsets is not None:
+        shifted = f"it may be shifted from {cut.offsets[0]:.1f} to {cut.offsets[1]:.1f} mm"
+    yield f"  {cut.hob_length:.1f} mm of the hob's length cut the flanks; {shifted}"
     flat, mark = ridges(job)
     yield f"  ridges by themselves: generating flats {flat * 1000:.2f} um, feed marks {mark * 1000:.2f} um"
 
@@ -136,26 +99,6 @@ def thread_text(planned: ThreadPlan, traces: Sequence[ThreadTrace]) -> str:
     return "\n".join([head, table(["rule", "one lead / um", "whole length / um", "drift / um"], rows)])
 
 
-def thread_values(planned: ThreadPlan, traces: Sequence[ThreadTrace]) -> dict[str, Any]:
-    """The same for programs."""
-    return {
-        "machine": planned.machine,
-        "pitch": float(planned.pitch),
-        "lead": float(planned.lead),
-        "length": float(traces[0].place[-1]),
-        "rpm": planned.rpm,
-        "threads": [
-            {
-                "rule": trace.rule,
-                "single_lead_um": trace.single_lead * 1000,
-                "total_um": trace.total * 1000,
-                "drift_um": trace.drift * 1000,
-            }
-            for trace in traces
-        ],
-    }
-
-
 def choice_text(found: Choice) -> str:
     """The parts, and the figures of the gear that they cut."""
     parts = found.parts
@@ -172,16 +115,3 @@ def choice_text(found: Choice) -> str:
             f"  {NOT_CONFIRMED}",
         ]
     )
-
-
-def choice_values(found: Choice) -> dict[str, Any]:
-    """The same for programs."""
-    return {
-        "class": found.wanted,
-        **asdict(found.parts),
-        "rpm": found.rpm,
-        "cuts": found.tried,
-        "reached": found.gear.accuracy_class,
-        "figures": [asdict(row) for row in found.gear.classes],
-        "tolerances": NOT_CONFIRMED,
-    }

@@ -22,7 +22,7 @@ from gearmath.cli.common import (
     member_of,
     output,
 )
-from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
+from gearmath.cli.dialect import TARGET, dialect_of, write_configuration
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.cli.program_time import program_time
 from gearmath.errors import ComputationError, InputError
@@ -109,34 +109,34 @@ def cut(
     from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.planning.setup_facts import SetupFacts
-    from gearmath.machine.writing.cutting import program_of
-    from gearmath.machine.writing.linuxcnc import cutting as linuxcnc
-    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
-    from gearmath.machine.writing.words import block_count, check_name
+    from gearmath.machine.writing.linuxcnc.cutting import tools_of
+    from gearmath.machine.writing.words import check_name
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
 
     check_name(target.stem)
     job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
     milling_machine = load_milling_machine(find(machine))
-    dialect = dialect_of(milling_machine, control, target if configuration else None, sheet)
+    dialect = dialect_of(milling_machine, control, target if configuration else None)
     check_spindle_speed(target.stem, milling_machine, rpm)
     bevel_set = load_pair(find(gear_set))
-    member, spec = member_of(bevel_set, member)
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(bevel_set), member)
+    member, spec = one.name, one.spec
     job = replace(job, spaces=_spaces(spaces, spec.teeth))
-    write = linuxcnc.program_of if dialect == LINUXCNC else program_of
     with bars() as begin:
-        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin, write)
+        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin, dialect)
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import setup_sheet
 
-        page = setup_sheet(SetupFacts.of(made.plan, PLUNGE_FEED), target.name, timing(made.path, milling_machine))
-    count = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
+        facts = SetupFacts.of(made.plan, PLUNGE_FEED)
+        page = setup_sheet(facts, target.name, timing(made.path, milling_machine), dialect.sheet)
     write_text(target, made.text)
-    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {count} blocks")
+    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {dialect.block_count(made.text)} blocks")
     if configuration:
-        write_configuration(target, milling_machine, linuxcnc.tools_of(made.plan))
+        write_configuration(target, dialect, milling_machine, tools_of(made.plan))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
@@ -207,7 +207,10 @@ def mill(
     from gearmath.specs.toml import find
 
     pair, text = load_pair(find(gear_set)), program_text(program)
-    member, spec = member_of(pair, member, stated_member(text))
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(pair), member, stated_member(text))
+    member, spec = one.name, one.spec
     milling_machine = load_milling_machine(find(machine))
     simulated = load_simulated_machine(find(errors)) if errors else None
     path = execute(text, str(program), Setup.of(milling_machine))

@@ -107,7 +107,10 @@ def points(
     sides, teeth = _for_each(texts, sides, "--flank"), _for_each(texts, teeth, "--tooth")
     _check_lengths(apex_offset, tip_radius)
     loaded = load_pair(find(gear_set))
-    member, spec = member_of(loaded, member)
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(loaded), member)
+    member, spec = one.name, one.spec
     _check_parts(texts, sides, teeth, spec.teeth)
     read = [read_point_text(path, unit) for path in texts]
     told = [

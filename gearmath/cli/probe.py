@@ -24,7 +24,7 @@ from gearmath.cli.common import (
     member_of,
     output,
 )
-from gearmath.cli.dialect import LINUXCNC, TARGET, dialect_of, write_configuration
+from gearmath.cli.dialect import TARGET, dialect_of, write_configuration
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
@@ -87,22 +87,20 @@ def probe(
     from gearmath.files import write_text
     from gearmath.machine.bodies.profiles import obstacles
     from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
-    from gearmath.machine.writing.linuxcnc import probing as linuxcnc
-    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
-    from gearmath.machine.writing.probing import SINUMERIK
-    from gearmath.machine.writing.words import block_count
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.simulated_machine import load_simulated_machine
     from gearmath.specs.toml import find
 
     bevel_set = load_pair(find(gear_set))
-    member, spec = member_of(bevel_set, member)
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(bevel_set), member)
+    member, spec = one.name, one.spec
     choice = ProbingChoice(_teeth(topography, spec.teeth), pitch, registration, repeat)
     milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
-    dialect = dialect_of(milling_machine, control, target if configuration else None, sheet)
+    dialect = dialect_of(milling_machine, control, target if configuration else None)
     simulated = load_simulated_machine(find(errors)) if errors else None
-    writer = linuxcnc.LINUXCNC if dialect == LINUXCNC else SINUMERIK
     with bars() as begin:
         made = checked_probing(
             bevel_set,
@@ -114,7 +112,7 @@ def probe(
             str(target),
             simulated,
             begin,
-            writer,
+            dialect,
         )
     page = None
     if sheet is not None:
@@ -132,12 +130,11 @@ def probe(
             made.touches,
             made.clearance,
         )
-        page = probing_sheet(job, target.name)
-    blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(made.text)
+        page = probing_sheet(job, target.name, dialect.sheet)
     write_text(target, made.text)
-    click.echo(f"{target}: {made.touches} touches, {blocks} blocks; {made.clearance}")
+    click.echo(f"{target}: {made.touches} touches, {dialect.block_count(made.text)} blocks; {made.clearance}")
     if configuration:
-        write_configuration(target, milling_machine, probe_in_table(milling_machine, known))
+        write_configuration(target, dialect, milling_machine, probe_in_table(milling_machine, known))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
@@ -145,10 +142,11 @@ def probe(
 
 def probe_in_table(machine: MillingMachine, calibration: Calibration) -> dict[str, tuple[int, float]]:
     """Number and length of the probe in the tool table of LinuxCNC, by its name."""
-    from gearmath.specs.control import PROBE, PROBE_NUMBER
+    from gearmath.machine.writing.linuxcnc.probe_words import probe_number
+    from gearmath.specs.control import PROBE
 
     length = calibration.length if machine.z_reference == "tip" else 0.0
-    return {PROBE: (machine.control.tool_numbers.get(PROBE, PROBE_NUMBER), length)}
+    return {PROBE: (probe_number(machine), length)}
 
 
 @click.command("calibrate")
@@ -182,10 +180,7 @@ def nc_calibrate(
     from gearmath.machine.measuring.judge import judge_calibration
     from gearmath.machine.writing.axis_cycle import axis_program
     from gearmath.machine.writing.calibrating import calibration_program
-    from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
-    from gearmath.machine.writing.linuxcnc.probe_words import LinuxCncBlocks
-    from gearmath.machine.writing.probe_words import Blocks
-    from gearmath.machine.writing.words import block_count, check_name
+    from gearmath.machine.writing.words import check_name
     from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
@@ -194,23 +189,23 @@ def nc_calibrate(
     source = find(calibration)
     make = axis_program if cycle == "axes" else calibration_program
     at, known = load_milling_machine(find(machine)), load_calibration(source)
-    dialect = dialect_of(at, control, target if configuration else None, sheet)
+    dialect = dialect_of(at, control, target if configuration else None)
     check_name(target.stem)
     with about(source):
-        text = make(at, known, target.stem, LinuxCncBlocks if dialect == LINUXCNC else Blocks)
-    with bar(planned_touches(text), "touch") as progress:
-        found = judge_calibration(text, str(target), at, known, progress)
+        text = make(at, known, target.stem, dialect.blocks)
+    read = dialect.read(text)
+    with bar(planned_touches(read), "touch") as progress:
+        found = judge_calibration(read, str(target), at, known, progress)
     refuse_faults(found, str(target), "the program is not written")
     page = None
     if sheet is not None:
         from gearmath.setup_sheet import calibration_sheet
 
-        page = calibration_sheet(at, known, cycle == "axes", target.name)
-    blocks = (linuxcnc_blocks if dialect == LINUXCNC else block_count)(text)
+        page = calibration_sheet(at, known, cycle == "axes", target.name, dialect.sheet)
     write_text(target, text)
-    click.echo(f"{target}: {planned_touches(text)} touches, {blocks} blocks")
+    click.echo(f"{target}: {planned_touches(read)} touches, {dialect.block_count(text)} blocks")
     if configuration:
-        write_configuration(target, at, probe_in_table(at, known))
+        write_configuration(target, dialect, at, probe_in_table(at, known))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")

@@ -103,7 +103,10 @@ def probe(
         if gear_set is None:
             raise InputError(f"--set is missing: {program} probes a member")
         pair = load_pair(find(gear_set))
-        name, spec = member_of(pair, member, stated_member(text))
+        from gearmath.front.sets import GearSet
+
+        one = member_of(GearSet(pair), member, stated_member(text))
+        name, spec = one.name, one.spec
         there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
         count = touch_count(text, str(program), setup)
         if not count:

@@ -17,16 +17,10 @@ def rexs(file: Path, target: Path) -> None:
 
     Says what of the file has no place in a set and was left aside. The names: docs/exchange.md.
     """
-    from gearmath.bevel.pair import check_pair
-    from gearmath.cli.common import about
-    from gearmath.exchange.rexs import read_rexs
-    from gearmath.files import write_text
-    from gearmath.specs.set_text import set_text
+    from gearmath.front.design import load_rexs
 
-    pair, left_aside = read_rexs(file)
-    with about(file):
-        check_pair(pair)
-    write_text(target, set_text(pair))
-    for text in left_aside:
+    pair = load_rexs(file)
+    pair.save(target)
+    for text in pair.remarks:
         click.echo(f"left aside: {text}")
     click.echo(f"{target}: {pair.title}")

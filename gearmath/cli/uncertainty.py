@@ -99,7 +99,10 @@ def uncertainty(
     check_one_source(sigma_um, model)
     file = read_flank_csv(measured)
     pair = load_pair(find(gear_set))
-    member, spec = member_of(pair, member, file.member)
+    from gearmath.front.sets import GearSet
+
+    one = member_of(GearSet(pair), member, file.member)
+    member, spec = one.name, one.spec
     with about(measured):
         evaluation = evaluate_member(file, spec, member, registered, rotated=rotated)
         figures = figures_of(file, spec, evaluation)

@@ -13,7 +13,6 @@ from asyncua.common.subscription import Subscription
 
 from gearmath.control import sinumerik
 from gearmath.control.alarms import Alarms
-from gearmath.control.file_names import control_name, shown
 from gearmath.control.interface import Alarm, ChannelState, ConnectionLost, Handshake, Status, Touch
 from gearmath.control.login import log_in
 from gearmath.control.r_parameters import check_numbers, check_values, groups_of, parts_of
@@ -21,6 +20,7 @@ from gearmath.control.refusals import asked, code_name
 from gearmath.control.transfer import Transfer
 from gearmath.control.ua_words import node_id
 from gearmath.errors import ComputationError, InputError
+from gearmath.machine.control.file_names import control_name, shown
 from gearmath.specs.control_connection import ControlConnection
 
 #: R parameters of the handshake: point offered, run, point acknowledged, whether a host is waited for; the touch.

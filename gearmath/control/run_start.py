@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gearmath.control.file_names import control_name, linuxcnc_name
 from gearmath.control.interface import RunStart
 from gearmath.control.parts import chosen_points
 from gearmath.control.plan import WHOLE, choosing, planned, triggers
@@ -12,6 +11,7 @@ from gearmath.control.store_run import StoredRun
 from gearmath.control.store_summary import parts
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
+from gearmath.machine.control.file_names import control_name, linuxcnc_name
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import decoded, is_for_linuxcnc
 from gearmath.machine.measuring.artefacts import Artefacts

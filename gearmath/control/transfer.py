@@ -9,11 +9,11 @@ from asyncua import Client, ua
 from asyncua.common.node import Node
 
 from gearmath.control import sinumerik
-from gearmath.control.file_names import control_name
 from gearmath.control.refusals import asked, refusal
 from gearmath.control.sinumerik import Confirmed
 from gearmath.control.ua_words import node_id
 from gearmath.errors import ComputationError
+from gearmath.machine.control.file_names import control_name
 
 #: Bytes of one Read or Write of a file object.
 _CHUNK = 1 << 18

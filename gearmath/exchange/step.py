@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import tempfile
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,10 +20,18 @@ from gearmath.files import write_bytes
 _SAME = 1e-6
 
 
+@dataclass(frozen=True)
+class WrittenSolid:
+    """A closed solid: how many faces it has, and its volume [mm³]."""
+
+    faces: int
+    volume: float
+
+
 def write_step(
     path: Path, bodies: Sequence[tuple[str, Sequence[Patch]]], progress: Callable[[int], object] = lambda _: None
-) -> list[float]:
-    """Write closed solids [mm] by name, and their volumes [mm³].
+) -> dict[str, WrittenSolid]:
+    """Write closed solids [mm]; what was written, by name.
 
     Raises InputError where the extra ``cad`` is not installed, ComputationError where patches do not close.
     """
@@ -45,7 +54,8 @@ def write_step(
             raise ComputationError("the CAD kernel could not write the STEP file")
         write_bytes(path, target.read_bytes())
     progress(1)
-    return [volume_of(solid) for solid in solids]
+    written = zip(bodies, solids, strict=True)
+    return {name: WrittenSolid(len(patches), volume_of(solid)) for (name, patches), solid in written}
 
 
 def volume_of(solid: Any) -> float:

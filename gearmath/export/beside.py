@@ -1,4 +1,4 @@
-"""What a machine takes beside the parts of its circuit: motor, supplies, fuses, contactor, sockets."""
+"""What a machine takes beside the parts of its circuit: contactor, sockets, heat sink, what all is soldered on."""
 
 from __future__ import annotations
 
@@ -8,34 +8,37 @@ from collections.abc import Iterator
 from gearmath.export.netlist import Netlist
 from gearmath.specs.hobbing import HobbingMachine
 
-#: Fuses 5 x 20 mm, slow [mA], and how much more than the largest current one must carry.
-_FUSES, _SPARE = (315, 400, 500, 630, 800, 1000, 1250, 1600), 1.25
+#: Junction of an LM7805 at most, room [degrees C], and thermal resistance [K/W]: to air without a heat sink, to the
+#: case with its pad.
+_HOT, ROOM, _BARE, _PAD = 125.0, 40.0, 65.0, 6.0
+#: What it stands without a heat sink [W].
+BARE_WATTS = (_HOT - ROOM) / _BARE
+#: Voltage of the supply that the parts list asks for.
+_SUPPLY = 9.0
 #: Pins on either side of a board.
 _ROWS = {"teensy32": 14, "teensy40": 14, "teensy41": 24}
 
 
 def beside(machine: HobbingMachine, found: Netlist) -> Iterator[tuple[str, str, str]]:
     """Part, what to buy, what for. What nobody states in the machine file is to be taken from a data sheet."""
-    drive = machine.lead_screw if machine.table is None else machine.table
-    assert drive is not None
-    kind = f"step motor, {drive.full_steps} full steps a turn" if drive.pulses is None else "servo motor with its drive"
-    yield "M1", f"{kind}; torque and current: by the machine, and within the driver", "turns what the gearbox drives"
-    yield "G1", f"supply, 9 V DC, {supply_amperes(found.current):.1f} A or more", "the circuit, by U2"
-    fuse = next(one for one in _FUSES if one >= _SPARE * found.current)
-    yield "F2", f"fuse {fuse} mA slow, 5 x 20 mm, with holder", "between + of G1 and U2"
-    yield "G2", "supply of the motor: voltage and current by the data sheets of driver and motor", "A2 alone"
-    yield "F3", "fuse as the data sheet of the driver asks for, with holder", "between + of G2 and A2"
     yield "KM1", "contactor with an auxiliary contact 13-14, coil for the control circuit", "power of the spindle"
     yield "F1", "fuse 1 A, with holder", "control circuit of KM1"
     yield "S3, S4", "push buttons: stop, normally closed, red; start, normally open, green", "control circuit of KM1"
     yield "XU1", f"2 socket strips of {_ROWS[machine.board]} pins, 2.54 mm", "U1, which is flashed out of them"
     for name, pins in _chips(found):
         yield f"X{name}", f"socket DIP-{pins}", name
+    if (sink := heat_sink(found.current, _SUPPLY)) is not None:
+        yield "HS2", f"heat sink for TO-220 of at most {sink} K/W, with pad and screw", "U2"
+    yield "-", "strip board, 100 x 160 mm, or a printed one; screw terminals of 5.08 mm", "all but A2, B, S, H, G and M"
+    yield "-", "wire: 0.14 to 0.25 mm2 for signals, 0.5 mm2 for supplies and 0 V; resistors of 1/4 W", "the circuit"
+    yield "-", "cabinet of metal, cable glands, shielded twisted cables for encoder and motor", "all of it"
 
 
-def supply_amperes(current: int) -> float:
-    """Current [A] of the supply for parts that take so many mA: half more, in tenths."""
-    return -(-current * 15 // 1000) / 10
+def heat_sink(current: int, volts: float) -> int | None:
+    """The largest thermal resistance [K/W] of a heat sink on U2 for so many mA at a supply, or None where none is
+    needed, or none is enough."""
+    watts = (volts - 5.0) * current / 1000
+    return int((_HOT - ROOM) / watts - _PAD) if watts > BARE_WATTS and (_HOT - ROOM) / watts > _PAD else None
 
 
 def _chips(found: Netlist) -> Iterator[tuple[str, str]]:

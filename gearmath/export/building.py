@@ -1,19 +1,15 @@
-"""The chapters of the README that build the machine: parts, connections, power, switches, scope check, first cut."""
+"""The chapters of the README that build the machine: parts, power, encoders, contactor, switches, scope check."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gearmath.export.beside import beside, supply_amperes
+from gearmath.export.beside import BARE_WATTS, ROOM, beside, heat_sink
 from gearmath.export.markdown import bullets, paragraph, table
-from gearmath.export.netlist import GROUND, LOGIC, PLUS, Netlist, netlist
+from gearmath.export.netlist import Netlist, netlist, supply_amperes
 from gearmath.specs.hobbing import HobbingMachine
 
-#: Junction of an LM7805 at most, room, and thermal resistance: to air without a heat sink, to the case with its pad.
-_HOT, _ROOM, _BARE, _PAD = 125.0, 40.0, 65.0, 6.0
 _SUPPLIES = (9.0, 12.0)
-#: Pins that are pads on the underside of the board.
-_UNDERSIDE = {"teensy32": range(24, 34), "teensy40": range(24, 40), "teensy41": range(42, 55)}
 
 
 def order(machine: HobbingMachine) -> Iterator[str]:
@@ -23,15 +19,14 @@ def order(machine: HobbingMachine) -> Iterator[str]:
     yield from bullets(
         (
             "Parts: buy them, every one is in the list.",
-            "Wiring: solder by the diagram, tick off every connection, measure. U1 is not in its socket yet: "
-            "with 9 V on, "
-            "its socket must have 5 V between Vin and GND.",
+            "Wiring: solder by the diagram, tick off every connection, measure. U1 and the chips are not in their "
+            "sockets yet: with 9 V on, that of U1 must have 5 V between Vin and GND.",
             "Encoder and decoder: the resistor of the LS7184N, the mode jumper, the output of your encoder."
             if machine.encoder.has_ls7184
             else "Encoder and decoder: the output of your encoder.",
             "Step motor driver: switches and current; motor power stays off.",
             "Flashing: U1 by USB alone, out of its socket; then into it.",
-            "Commissioning: encoder, motor, directions, emergency stop, one after the other.",
+            "Commissioning: display, stops, encoder, motor, directions, one after the other.",
             f"The first cut, and what the display shows meanwhile: Using it. What stops the {work}: Faults.",
         ),
         numbered=True,
@@ -53,44 +48,14 @@ def _power(found: Netlist) -> Iterator[str]:
     current = found.current / 1000
     watts = {volts: (volts - 5.0) * current for volts in _SUPPLIES}
     words = ", ".join(f"{watts[volts]:.1f} W at {volts:g} V" for volts in _SUPPLIES)
-    bare = (_HOT - _ROOM) / _BARE
-    sinks = [
-        f"at most {(_HOT - _ROOM) / watts[volts] - _PAD:.0f} K/W at {volts:g} V"
-        for volts in _SUPPLIES
-        if watts[volts] > bare and (_HOT - _ROOM) / watts[volts] > _PAD
-    ]
+    needed = {volts: heat_sink(found.current, volts) for volts in _SUPPLIES}
+    sinks = [f"at most {ohms} K/W at {volts:g} V" for volts, ohms in needed.items() if ohms is not None]
     heat = f"It needs a heat sink of {', '.join(sinks)}, its pad counted in." if sinks else "It needs no heat sink."
     yield from paragraph(
         f"Supply: 9 V DC, {supply_amperes(found.current):.1f} A, of its own, not that of the motor. The parts take "
         f"{found.current} mA from +5 V at the most, so that U2 has to get rid of {words}; without a heat sink it "
         "stands "
-        f"{bare:.1f} W in a cabinet at {_ROOM:g} degrees C. {heat} The metal of U2 is 0 V."
-    )
-
-
-def connections(machine: HobbingMachine) -> Iterator[str]:
-    """Every net as a row, to tick off while soldering."""
-    found = netlist(machine)
-    yield "### Every connection"
-    yield ""
-    yield from paragraph(
-        "One row is one net: join all that stands in it, and nothing else. `U5 2 A1` is pin 2 of U5, which its "
-        "data sheet "
-        "calls A1. Tick the rows off, then check every row and its neighbors with a meter before power comes on."
-    )
-    order = [name for name in found.nets if name not in (PLUS, LOGIC, GROUND)]
-    rows = [
-        (name, ", ".join(f"{part} {pin}" for part, pin in found.nets[name]))
-        for name in (*order, PLUS, LOGIC, GROUND)
-        if name in found.nets
-    ]
-    yield from table(("net", "joins"), rows)
-    if machine.driver.output != "open_collector":
-        return
-    yield from paragraph(
-        "T: a 2N2222 in a plastic case of the TO-92 kind is made with two orders of its legs (E B C and C B E): "
-        "look into "
-        "the data sheet of yours. The ring of a diode is its cathode."
+        f"{BARE_WATTS:.1f} W in a cabinet at {ROOM:g} degrees C. {heat} The metal of U2 is 0 V."
     )
 
 
@@ -160,9 +125,13 @@ def chain(machine: HobbingMachine) -> Iterator[str]:
         "F1: fuse of the control circuit, 1 A. Best is 24 V from a transformer of its own; mains only by an "
         "electrician.",
         "S3: stop, normally closed, red. S4: start, normally open, green.",
-        "KM1: contactor of the motor, its main contacts in the motor's lines, its normally open contact 13-14 "
-        "across S4: "
-        "this is the latch. Whatever opens the chain lets KM1 fall, and only a press on S4 brings it back.",
+        "KM1: contactor of the motor of the spindle, for its current in AC-3, its main contacts 1-2, 3-4, 5-6 in the "
+        "lines of the motor, its normally open contact 13-14 across S4: this is the latch. Whatever opens the chain "
+        "lets KM1 fall, and only a press on S4 brings it back.",
+        "A motor that is not protected yet gets an overload relay behind KM1, set to the current on its plate, whose "
+        "contact 95-96 goes into the chain beside S3.",
+        "A spindle with an inverter: KM1 never stands between inverter and motor. It feeds the inverter, or a contact "
+        "of it is wired to the inverter's input for enable, as the manual of the inverter says.",
         "An RC element (100 nF and 100 Ohm, made for it) across the coil of KM1, for 24 V DC a 1N4007, ring to +.",
     ]
     if stop:
@@ -211,16 +180,6 @@ def switches(machine: HobbingMachine) -> Iterator[str]:
     )
 
 
-def underside(machine: HobbingMachine) -> Iterator[str]:
-    """Which pins of the machine are pads on the underside of the board."""
-    pads = [f"{number} (`{name}`)" for name, number in machine.pins.used() if number in _UNDERSIDE[machine.board]]
-    if pads:
-        yield from paragraph(
-            f"Pads on the underside of a {machine.hardware.title}, to be soldered before it goes into its socket: "
-            f"{', '.join(pads)}."
-        )
-
-
 def scope(machine: HobbingMachine) -> Iterator[str]:
     """What STEP and DIR look like on an oscilloscope."""
     high, low, setup, hold = (ticks * machine.tick_ns / 1000 for ticks in machine.timing_ticks)
@@ -238,43 +197,3 @@ def scope(machine: HobbingMachine) -> Iterator[str]:
         ("jog", f"intervals fall to {1e6 / machine.move_max_rate:.0f} us and rise again: a ramp, no jump"),
     ]
     yield from table(("signal", "must be"), rows)
-
-
-def first_cut(machine: HobbingMachine) -> Iterator[str]:
-    """Advice for the first cut, with the figures of this machine."""
-    lathe = machine.profile == "lathe"
-    yield "## The first cut"
-    yield ""
-    acceleration = machine.limits.acceleration_hz_per_s
-    common = (
-        f"The motor speeds up by {acceleration:g} steps/s every second. `gearmath gearbox plan` tells for each "
-        "job how long "
-        "the run-up takes, and after how long a running machine is caught up. Do not cut before `In phase`."
-    )
-    advice = (common, *(_THREAD if lathe else _GEAR))
-    yield from bullets(advice, numbered=True)
-
-
-_GEAR = (
-    "Take brass or a hard plastic, 30 to 60 teeth, and a blank of the diameter that the page `Blank` shows.",
-    "Swivel the hob head by the lead angle of the hob (stamped on it), for helical teeth by helix less lead "
-    "angle where "
-    "both have one hand, by their sum where not.",
-    "Touch the blank with the turning hob, go beside it, and set the whole depth of the page `Depth`. Cut it in "
-    "one pass: "
-    "a shallow first pass lets the hob drag the blank round.",
-    "Feed 0.1 to 0.3 mm per turn of the table for small modules. Conventional cut where the feed has play, climb "
-    "cut where "
-    "it has none.",
-    "Start hob and gearbox clear of the blank, wait for `In phase`, then feed in. At the end feed clear of the "
-    "blank before "
-    "you answer `Stop?`.",
-    "Count the teeth, and measure the span that `gearmath gearbox plan` gives. Too thick by s: deeper by s/(2 sin 20).",
-)
-_THREAD = (
-    "Take brass or aluminum, a relief groove of two pitches at the end of the thread, and a slow spindle.",
-    "First a scratch of 0.05 mm: measure ten pitches with a rule or a thread gauge before you go deeper.",
-    "Keep the half nut closed for the whole thread: the gearbox finds the thread again, the half nut would not.",
-    "At the end draw the tool out first, then answer `Stop?`; jog back, and `run on` waits for the same groove.",
-    "Take the play of the lead screw out by coming back further than the start of the thread, then forward.",
-)

@@ -5,17 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import astuple
 
-from gearmath.export.building import (
-    chain,
-    connections,
-    encoder_outputs,
-    first_cut,
-    order,
-    parts_chapter,
-    scope,
-    switches,
-    underside,
-)
+from gearmath.export.building import chain, encoder_outputs, order, parts_chapter, scope, switches
+from gearmath.export.commissioning import commissioning, first_cut
+from gearmath.export.connecting import connections, underside
 from gearmath.export.header import versions
 from gearmath.export.machine_header import PIN_SENTENCES
 from gearmath.export.markdown import bullets, escaped, paragraph, table
@@ -60,7 +52,7 @@ def guide(machine: HobbingMachine, sketch: str) -> str:
         _decoder(machine),
         _timing(machine),
         _flashing(machine, sketch),
-        _commissioning(machine),
+        commissioning(machine),
         first_cut(machine),
         screens(machine),
         faults(machine),
@@ -89,15 +81,20 @@ def _flashing(machine: HobbingMachine, sketch: str) -> Iterator[str]:
     yield "## Flashing"
     yield ""
     yield from paragraph(
-        "Arduino IDE with Teensyduino 1.59 or newer. The versions below are the oldest whose calls were compared."
+        "With the Arduino IDE and Teensyduino 1.59 or newer (pjrc.com says how both are installed), a USB cable that "
+        "carries data too, and these libraries; all but the last come with Teensyduino. The versions are the oldest "
+        "whose calls were compared."
     )
     libraries = [_LIBRARIES[name] for name in ("Encoder", "EEPROM", "Wire", machine.display.kind)]
     yield from table(("library", "version", "from"), libraries)
     speed = "72 MHz or 96 MHz" if machine.board == "teensy32" else "600 MHz"
     steps = [
-        f"Keep this folder's name: the IDE asks that `{sketch}.ino` lies in a folder `{sketch}`.",
+        f"Tools, Manage Libraries: look for `{libraries[-1][0]}`, install it and what it asks for.",
+        f"Keep this folder's name: the IDE asks that `{sketch}.ino` lies in a folder `{sketch}`. File, Open it.",
         f"Tools, Board: {machine.hardware.title}. The sketch refuses to compile for another one.",
-        f"Tools, CPU Speed: {speed}. Tools, Optimize: Faster. Upload.",
+        f"Tools, CPU Speed: {speed}. Tools, Optimize: Faster.",
+        "U1 by USB alone, out of its socket. Sketch, Upload; if the loader waits, press the button on U1.",
+        "Unplug the USB cable, then put U1 into its socket, the way round in which its Vin meets +5 V and its GND 0 V.",
     ]
     yield from bullets(steps, numbered=True)
     yield from memory(machine)
@@ -107,7 +104,8 @@ def _pins(machine: HobbingMachine) -> Iterator[str]:
     yield "## Pins"
     yield ""
     used = sorted(machine.pins.used(), key=lambda pin: pin[1])
-    rows = [(str(number), f"`{name}`", PIN_SENTENCES[name]) for name, number in used]
+    leading = "spindle" if machine.profile == "lathe" else "hob"
+    rows = [(str(number), f"`{name}`", PIN_SENTENCES[name].replace("hob", leading)) for name, number in used]
     yield from table(("pin", "name in the machine file", "what hangs on it"), rows)
     title = machine.hardware.title
     yield from underside(machine)
@@ -151,17 +149,37 @@ def _decoder_words(machine: HobbingMachine) -> Iterator[str]:
         f"**MODE, pin 6 of the LS7184N: {jumper}** (x{machine.encoder.edges_per_line}). Any other place makes every "
         "ratio wrong by a factor of 2 or 4; the encoder test below finds it."
     )
+    yield from _bias(machine)
+    if machine.hob_counter:
+        yield from paragraph(f"A counter of the board counts those pulses.{_counter_words(machine)}")
+
+
+def _bias(machine: HobbingMachine) -> Iterator[str]:
+    """The resistor of the output pulse: its value is in a chart of the data sheet, which was not found as numbers."""
     longest = 1_000_000_000 // (_UNEVEN * machine.max_edge_rate)
+    name = "RB1 and RB2" if machine.feed is not None else "RB1"
     yield from paragraph(
-        "RBIAS, pin 1, sets the length of the output pulse, and the chip is blind while it lasts. **The value of RB1 "
-        "(RB2) is not given here: take it from the chart of the data sheet of your LS7184N, for a pulse of 1 us "
-        "to 2 us, "
-        "and look at pin 8 with an oscilloscope.** At this machine's "
+        "RBIAS, pin 1, sets the length of the output pulse, and the chip is blind while it lasts. **The value of "
+        f"{name} is not confirmed: take it from the chart of the data sheet of your LS7184N, for a pulse of 1 us to 2 "
+        "us, or find it as below.** Tables for the older LS7084 do not hold. At this machine's "
         f"{machine.max_edge_rate} edges/s the pulse must stay below {longest} ns, since the edges of a real encoder "
         f"come up to {_UNEVEN} times closer than on the average."
     )
-    if machine.hob_counter:
-        yield from paragraph(f"A counter of the board counts those pulses.{_counter_words(machine)}")
+    rate = machine.max_edge_rate
+    low, high = (5000 * (1 - rate * pulse * 1e-6) for pulse in (2.0, 1.0))
+    yield from bullets(
+        (
+            "With what: a trimmer of 1 MOhm and a resistor of 47 kOhm in series in the place of RB1, the trimmer at "
+            "its largest. A larger resistance makes a longer pulse.",
+            "With an oscilloscope at pin 8 (CLK), ground at pin 3: turn the encoder, and turn the trimmer down until "
+            "each pulse, which is low, lasts 1 us to 2 us.",
+            "With a multimeter alone, DC volts at pin 8 against pin 3: 5.00 V while the encoder stands. At "
+            f"{machine.limits.hob_rpm:g} rpm, {rate} edges/s, the mean is {high / 1000:.2f} V for pulses of 1 us and "
+            f"{low / 1000:.2f} V for 2 us (from 5.00 V). At half the speed it must have fallen half as far: if it has "
+            "fallen further than that, edges are lost at the full speed, and the pulse is still too long.",
+            "Measure trimmer and resistor together, and solder the nearest fixed resistor in.",
+        )
+    )
 
 
 def _counter_words(machine: HobbingMachine) -> str:
@@ -190,8 +208,11 @@ def _advice(machine: HobbingMachine) -> Iterator[str]:
             "RL: driver inputs with opto-couplers limit their current themselves, and RL is a plain wire. A bare "
             "opto-coupler needs 330 Ohm (about 10 mA at 5 V)."
         )
-    yield "Join all grounds at one point, and keep the cables of the motor away from those of the encoder."
-    yield "A board fed by Vin must not be fed by USB as well: cut its VUSB pad, or take the 5 V away while flashing."
+    yield "All 0 V meet at one point, pin 2 of U2. Keep the cables of the motor away from those of the encoder."
+    yield (
+        "A board fed by Vin must not be fed by USB as well: U1 is flashed out of its socket. To flash it in its "
+        "socket, first cut the trace between its pads VUSB and VIN; from then on it needs the 9 V for flashing too."
+    )
     if machine.pins.estop is not None:
         yield (
             "The emergency stop switches the power off by itself. Its second contact only tells the board. What must "
@@ -250,48 +271,3 @@ def _enable(machine: HobbingMachine) -> str:
     )
     current = " Current through its opto-coupler would switch the motor off." * (machine.driver.timing.enable == "dark")
     return f"ENABLE: the board's pin is {level} while the driver is enabled, in every mode.{current}{doubt}"
-
-
-def _commissioning(machine: HobbingMachine) -> Iterator[str]:
-    yield "## Commissioning"
-    yield ""
-    yield from bullets(_steps(machine), numbered=True)
-
-
-def _steps(machine: HobbingMachine) -> Iterator[str]:
-    lathe = machine.profile == "lathe"
-    driven, leading = ("lead screw", "spindle") if lathe else ("table", "hob")
-    yield (
-        "Motor power off, board powered: the display says `PHASE IS LOST`. Press once, then hold the button until the "
-        "menu comes."
-    )
-    yield (
-        f"`test hob encoder`: press, turn the {leading} once by hand in its working direction, press. It must count "
-        f"{round(machine.encoder_counts)}. `decoder mode?` means the MODE jumper or the number of lines; "
-        "`OK, but backwards` asks for channels A and B to be exchanged."
-    )
-    yield (
-        f"Motor power on, nothing clamped. `test one turn`: mark the {driven}, answer yes; "
-        f"{round(machine.motor_steps)} steps must bring the mark back exactly. If not, full steps, microsteps"
-        f"{', belt' if lathe else ', belt or worm'} of the machine file are not those of the machine."
-    )
-    yield (
-        f"Direction: jog forward. If the {driven} turns the wrong way, change `invert_direction` of the driver and "
-        "export again."
-    )
-    if machine.pins.estop is not None:
-        yield "Press the emergency stop, then pull its wire off: each time `EMERGENCY STOP` must come."
-    if machine.pins.healthy is not None:
-        yield "In that state K1 must have let go, and the machine must not start."
-    if machine.pins.index is not None:
-        yield f"Run a job without load: `Checked` on its third page must count every turn of the {leading}."
-    if machine.feed is not None:
-        up = "climb" if machine.feed_climbs else "conventional"
-        yield (
-            "Move the feed by hand: `Feed` on the third page must show its travel in mm, growing in a conventional "
-            f"cut. The machine file says that its counts grow in a {up} cut."
-        )
-    trial = (
-        "a thread in scrap, and measure it over many turns" if lathe else "a gear of few teeth in wax, and count them"
-    )
-    yield f"Cut air, then {trial}."

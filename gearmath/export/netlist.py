@@ -14,6 +14,10 @@ End = tuple[str, str]
 PLUS, LOGIC, GROUND = "+5 V", "+3.3 V", "0 V"
 #: Input and output pin of channel k of a 74LVC245, A to B; 1 is DIR, 19 is OE, 10 GND, 20 VCC.
 _SHIFTER_IN, _SHIFTER_OUT = range(2, 10), range(18, 10, -1)
+#: Fuses 5 x 20 mm, slow [mA], and how much more than the largest current one must carry.
+_FUSES, _SPARE = (315, 400, 500, 630, 800, 1000, 1250, 1600), 1.25
+#: Ends of the windings of a step motor.
+WINDINGS = ("A+", "A-", "B+", "B-")
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,14 @@ def netlist(machine: HobbingMachine) -> Netlist:
     _driver(found, machine)
     if machine.pins.healthy is not None:
         _pump(found, machine.pins.healthy, _outputs(machine) + 1)
+    _motor(found, machine)
+    _supplies(found)
     return found
+
+
+def supply_amperes(current: int) -> float:
+    """Current [A] of the supply for parts that take so many mA: half more, in tenths."""
+    return -(-current * 15 // 1000) / 10
 
 
 def _board(pin: int) -> End:
@@ -74,7 +85,11 @@ def _bypass(found: Netlist, chip: str, net: str) -> None:
 
 
 def _supply(found: Netlist, machine: HobbingMachine) -> None:
-    found.part("U1", machine.hardware.title, "the board", 50 if machine.board == "teensy32" else 110)
+    old = machine.board == "teensy32"
+    board = machine.hardware.title
+    if old:
+        board += ', used or from old stock, since it is made no longer; or `board = "teensy40"` in the machine file'
+    found.part("U1", board, "the board", 50 if old else 110)
     found.part("U2", "LM7805, TO-220", "5 V from the supply")
     for name, side in (("C1", "input"), ("C2", "output")):
         found.part(name, "10 uF 25 V, electrolytic, + to the supply", f"at the {side} of U2, within 20 mm")
@@ -82,6 +97,31 @@ def _supply(found: Netlist, machine: HobbingMachine) -> None:
     found.join("supply", ("U2", "1 IN"), ("C1", "+"))
     found.join(PLUS, ("U2", "3 OUT"), ("C2", "+"), ("U1", "Vin"))
     found.join(GROUND, ("U2", "2 GND"), ("C1", "-"), ("C2", "-"), ("U1", "GND"))
+
+
+def _supplies(found: Netlist) -> None:
+    """Supply of the circuit and its fuse, for the current of all parts."""
+    found.part("G1", f"supply, 9 V DC, {supply_amperes(found.current):.1f} A or more", "the circuit, by U2")
+    fuse = next(one for one in _FUSES if one >= _SPARE * found.current)
+    found.part("F2", f"fuse {fuse} mA slow, 5 x 20 mm, with holder", "between + of G1 and U2")
+    found.join("9 V", ("G1", "+"), ("F2", "1"))
+    found.join("supply", ("F2", "2"))
+    found.join(GROUND, ("G1", "-"))
+
+
+def _motor(found: Netlist, machine: HobbingMachine) -> None:
+    """Motor, and the power of its driver, which has nothing in common with that of the circuit."""
+    drive = machine.drive
+    servo = drive.pulses is not None
+    kind = "servo motor of the drive A2" if servo else f"step motor, {drive.full_steps} full steps a turn"
+    found.part("M1", f"{kind}; torque and current: by the machine, and within the driver", "turns what is geared")
+    for end in ("motor cable",) if servo else WINDINGS:
+        found.join(f"motor {end}" if not servo else end, ("A2", end), ("M1", end))
+    found.part("G2", "supply of the motor: voltage and current by the data sheets of driver and motor", "A2 alone")
+    found.part("F3", "fuse as the data sheet of the driver asks for, with holder", "between + of G2 and A2")
+    found.join("motor supply", ("G2", "+"), ("F3", "1"))
+    found.join("motor power", ("F3", "2"), ("A2", "power +"))
+    found.join("motor power -", ("G2", "-"), ("A2", "power -"))
 
 
 def _encoders(found: Netlist, machine: HobbingMachine) -> None:

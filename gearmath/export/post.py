@@ -3,16 +3,22 @@
 The text of the program is that of the Python writer: what it wrote, with a slot wherever a number stands that the C
 program computes. So no text of a program is kept twice, and a change of the writer needs no change here. Lines:
 
-    gm-post 1                          the format
+    gm-post 2                          the format
     sum HEX                            FNV-1a, 64 bits, of all that follows, without carriage returns
     KEY NUMBERS                        machine and job: mm, rad, s, as the planner has them
     roll NAME                          then its settings, motion, tooth, plunge and nodes: one path of the cutter
+    planned C POWERS                   or so, and the end of every block as it was planned: see below
+    to NUMBERS                         X Y Z A B, C if there is one, coefficients a_2 .. of each axis, seconds
     pass ROLL LIFT ANGLE DWELL         one tooth space: where the path is raised and turned to
     c TEXT, n TEXT                     a line; a line with a number
     r TEXT, b TEXT                     the same for every node but the first
     s TEXT, e TEXT                     a line where the sum is right, and one where the file was edited
 
-Slots are {NAME}, {TIME}, {UP}, {X} {Y} {Z} {A} {B} of a node, and {F} of the block that ends there; {{ is a brace.
+Slots are {NAME}, {TIME}, {UP}, {X} {Y} {Z} {A} {B} {C} of a node, and of the block that ends there {F} and {PX} ..
+{PB}, the end and the coefficients of a polynomial; {{ is a brace.
+
+Straight blocks of milled members are computed from their settings. Rolls of polynomials, and those of face hobbing, are
+planned by derivatives and searches that are not in the C library: they stand there as positions and times.
 """
 
 from __future__ import annotations
@@ -24,17 +30,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearmath.bevel.method import motion_of
-from gearmath.errors import ComputationError, InputError
-from gearmath.machine.planning.cut_plan import CuttingPlan, lift, middle_of_tooth, plunge_lift
+from gearmath.errors import ComputationError
+from gearmath.machine.judging.dialects import SINUMERIK, ControlDialect
+from gearmath.machine.planning.cut_plan import CuttingPlan, first_pass, lift, middle_of_tooth, plunge_lift
 from gearmath.machine.planning.passes import Pass, tooth_angles
 from gearmath.machine.planning.path import Cut
-from gearmath.machine.writing.cutting import CLEARANCE, program_of
-from gearmath.machine.writing.linuxcnc.cutting import program_of as linuxcnc_program
+from gearmath.machine.writing.cutting import CLEARANCE
+from gearmath.machine.writing.program import pass_words
 from gearmath.machine.writing.words import Positions, feed_number
 from gearmath.specs.milling_machine import AXES
 from gearmath.version import __version__
 
-_LINUXCNC = "linuxcnc"
 #: The name of a program while its text is turned into a form.
 _NAME = "GM_POST_NAME"
 _NUMBER = re.compile(r"-?\d+\.\d+")
@@ -47,30 +53,25 @@ _EDITED = (
 
 @dataclass(frozen=True)
 class _Form:
-    """A plan, the paths of its cutters, and how positions stand in the text of the control's dialect."""
+    """A plan, the paths of its cutters, and how positions stand in the text of the control's dialect.
+
+    A roll is a cut, the name of its stage, its stock [mm], and a pass along it.
+    """
 
     plan: CuttingPlan
     positions: Positions
     rolls: list[tuple[Cut, str, float, Pass]]
 
 
-def post_file(plan: CuttingPlan, dialect: str = "sinumerik") -> str:
+def post_file(plan: CuttingPlan, dialect: ControlDialect = SINUMERIK) -> str:
     """The settings file of one planned member, for programs in a dialect.
 
-    Raises InputError for a face hobbed member and for polynomial blocks, ComputationError where a number of the program
-    has no slot.
+    Raises InputError as the writer does, ComputationError where a number of the program has no slot.
     """
-    if plan.member.process == "face_hobbing":
-        raise InputError(f"{plan.name}: face hobbed: gm-post writes the cuts of face milling")
-    if any(one.bends is not None for one in plan.passes):
-        raise InputError(f"{plan.name}: blocks = poly: gm-post writes straight blocks")
-    positions = Positions.of(plan.machine, plan.machine.tool_length)
-    if dialect == _LINUXCNC:
-        positions = replace(positions, modulo=False)  # A counts on
-    form = _Form(plan, positions, _rolls(plan))
-    text = (linuxcnc_program if dialect == _LINUXCNC else program_of)(plan, _NAME).splitlines()
+    form = _Form(plan, dialect.positions(plan.machine), _rolls(plan))
+    text = dialect.cutting(plan, _NAME).splitlines()
     body = "".join(f"{line}\n" for line in (*_values(form), *_roll_lines(form), *_lines(form, text)))
-    return f"gm-post 1\nsum {_fnv(body.encode('ascii')):016x}\n{body}"
+    return f"gm-post 2\nsum {_fnv(body.encode('ascii')):016x}\n{body}"
 
 
 def _fnv(data: bytes) -> int:
@@ -88,7 +89,7 @@ def _values(form: _Form) -> Iterator[str]:
     plan, machine, positions = form.plan, form.plan.machine, form.positions
     yield f"# gearmath {__version__}: {plan.name} on {machine.name}; mm, rad, s".encode("ascii", "replace").decode()
     yield f"decimals {positions.mm} {positions.degrees}"
-    yield f"modulo {int(positions.modulo)}"
+    yield f"modulo {int(positions.modulo)} {int(positions.turning_cutter)}"
     yield f"length {_numbers([positions.length])}"
     yield f"pivot {_numbers([machine.pivot_height, *machine.pivot])}"
     for axis, (low, high) in zip(AXES, machine.travel, strict=True):
@@ -106,16 +107,36 @@ def _rolls(plan: CuttingPlan) -> list[tuple[Cut, str, float, Pass]]:
     for cut in Cut.of(plan.member, plan.name):
         for k, (stage, stock, _) in enumerate(plan.job.stages):
             passes = [one for one in plan.passes if one.tool == cut.tool]
-            found.append((cut, stage, stock, passes[k * len(plan.job.spaces)]))
+            found.append((cut, stage, stock, passes[k * _passes_of_a_stage(plan)]))
     return found
+
+
+def _passes_of_a_stage(plan: CuttingPlan) -> int:
+    return 1 if plan.member.process == "face_hobbing" else len(plan.job.spaces)
+
+
+def _planned(form: _Form, cut: Cut, number: int, one: Pass) -> Iterator[str]:
+    """A roll as it was planned; one of polynomials through space 0 without stock: every pass raises and turns it."""
+    plan, turns = form.plan, one.axes.shape[1] - len(AXES)
+    if one.bends is not None:
+        job = replace(plan.job, tolerance=plan.job.stages[number % len(plan.job.stages)][2])
+        _, one = first_pass(plan.member, cut, plan.machine, job, plan.share)
+    bends = np.zeros((len(one.seconds), 0)) if one.bends is None else one.bends.reshape(len(one.seconds), -1)
+    yield f"planned {turns} {bends.shape[1] // len(AXES)}"
+    blocks = np.vstack([np.zeros(bends.shape[1]), bends])
+    seconds = np.append(0.0, one.seconds)
+    yield from (f"to {_numbers(row)}" for row in np.column_stack([one.axes, blocks, seconds]))
 
 
 def _roll_lines(form: _Form) -> Iterator[str]:
     plan = form.plan
-    for cut, stage, _, one in form.rolls:
+    for number, (cut, stage, _, one) in enumerate(form.rolls):
         flank = plan.member.flank(cut.flanks[0])
         motion = motion_of(flank)
         yield f"roll {cut.tool}_{stage}"
+        if one.bends is not None or plan.member.process == "face_hobbing":
+            yield from _planned(form, cut, number, one)
+            continue
         yield f"settings {_numbers(flank.vector)}"
         if motion.any():
             yield from (f"motion {_numbers(row)}" for row in motion)
@@ -143,9 +164,10 @@ def _lines(form: _Form, text: Sequence[str]) -> Iterator[str]:
     ends = [*starts[1:], len(text)]
     each = {(cut.tool, stage): k for k, (cut, stage, _, _) in enumerate(rolls)}
     angles = tooth_angles(plan.member.teeth, plan.member.index_correction)
-    lifts = [lift(plan.member, cut, stock, plan.job.dry_run) for cut, _, stock, _ in rolls]
+    hobbed, count = plan.member.process == "face_hobbing", _passes_of_a_stage(plan)
+    lifts = [0.0 if hobbed else lift(plan.member, cut, stock, plan.job.dry_run) for cut, _, stock, _ in rolls]
     for number, (one, (start, end)) in enumerate(zip(plan.passes, zip(starts, ends, strict=True), strict=True)):
-        stage = plan.job.stages[number // len(plan.job.spaces) % len(plan.job.stages)][0]
+        stage = plan.job.stages[number // count % len(plan.job.stages)][0]
         roll = each[one.tool, stage]
         yield f"pass {roll} {_numbers([lifts[roll], angles[one.tooth], one.dwell])}"
         yield from _section(form, one, up, text[start:end])
@@ -153,8 +175,8 @@ def _lines(form: _Form, text: Sequence[str]) -> Iterator[str]:
 
 def _section(form: _Form, one: Pass, up: str, lines: Sequence[str]) -> Iterator[str]:
     """One section: positions before the first block, the blocks as one line, the rest."""
-    words = form.positions.words(one.axes)
-    slots = tuple(_NUMBER.sub(f"{{{axis}}}", word) for axis, word in zip(AXES, words[0], strict=True))
+    words = pass_words(one, form.positions)
+    slots, ends = ([_slot(word) for word in words[k]] for k in (0, -1))
     feeds = [f"F{feed_number(60.0 / seconds)}" for seconds in one.seconds.tolist()]
     node = 0
     for line in lines:
@@ -164,7 +186,7 @@ def _section(form: _Form, one: Pass, up: str, lines: Sequence[str]) -> Iterator[
         if following and parts[-len(following) :] == following:
             if node == 0:
                 begin = " ".join(map(_literal, parts[: -len(following)]))
-                yield f"{'b' if numbered else 'r'} {begin} {' '.join(slots)} F{{F}}"
+                yield f"{'b' if numbered else 'r'} {begin} {' '.join(ends)} F{{F}}"
             node += 1
             continue
         if line.startswith(";"):
@@ -176,6 +198,12 @@ def _section(form: _Form, one: Pass, up: str, lines: Sequence[str]) -> Iterator[
         yield f"{'n' if numbered else 'c'} {' '.join(parts)}"
     if node != len(feeds):
         raise ComputationError(f"{form.plan.name}: {len(feeds) - node} blocks of section {one.label!r} have no slots")
+
+
+def _slot(word: str) -> str:
+    """The word of an axis with a slot for its number, or for all that stands in the brackets of a polynomial."""
+    axis, curved = re.sub("PO", "", word).strip("[")[0], "PO" in word
+    return re.sub(r"\(.*\)", f"({{P{axis}}})", word) if curved else _NUMBER.sub(f"{{{axis}}}", word)
 
 
 def _split(line: str) -> tuple[bool, str]:

@@ -190,9 +190,10 @@ def _matrix(machine: HobbingMachine) -> Iterator[str]:
         "off until your press. So is a program that has come to a halt: the watchdog resets the processor within "
         "a second."
     )
+    outputs = ("the fail-safe output goes off at once and stays off",) * (pins.healthy is not None)
+    outputs += ("ENABLE stays on",) * (pins.enable is not None)
     yield from paragraph(
-        "In every one of them the fail-safe output goes off at once and stays off, ENABLE stays on, and a step that "
-        "has begun ends at its full length."
+        f"In every one of them {', '.join((*outputs, 'a step that has begun ends at its full length'))}."
     )
 
 
@@ -201,13 +202,15 @@ def faults(machine: HobbingMachine) -> Iterator[str]:
     leading = "spindle" if machine.profile == "lathe" else "hob"
     yield "## Faults"
     yield ""
+    wired = machine.pins.healthy is not None
+    sound = "emergency stop, too fast" if machine.pins.estop is not None else "too fast"
     yield from paragraph(
-        f"A fault stops the {leading} where the fail-safe output is wired, and stays on the display until its cause is "
-        "gone and the button is held. Where the drive is sound (emergency stop, too fast) the motor follows until the "
+        f"A fault {f'stops the {leading} by the fail-safe output, and ' if wired else ''}stays on the display until "
+        f"its cause is gone and the button is held. Where the drive is sound ({sound}) the motor follows until the "
         f"{leading} stands, so that the work is not spoiled, and the phase is kept. After every other fault the motor "
-        "brakes at once and the phase is lost. Only that act of yours lets the fail-safe output go on again."
+        f"brakes at once and the phase is lost.{' Only you let the fail-safe output go on again.' * wired}"
     )
-    if machine.pins.healthy is None:
+    if not wired:
         yield from paragraph(f"**This machine has no fail-safe output: stop the {leading} yourself, at once.**")
     yield from table(("page", "meaning"), _quoted(_faults(machine, leading)))
     yield from _matrix(machine)
@@ -224,7 +227,8 @@ def _faults(machine: HobbingMachine, leading: str) -> Iterator[Row]:
         f"more than {limits.lag_steps} steps waited: the motor cannot keep up with the {leading}",
     )
     yield ("FAULT hob too fast", f"more than {machine.max_edge_rate} encoder counts per second: {limits.hob_rpm:g} rpm")
-    yield ("FAULT hob turned", f"the {leading} turned during a jog or an index move")
+    if machine.profile != "lathe":
+        yield ("FAULT hob turned", "the hob turned during a jog or an index move")
     if machine.pins.index is not None:
         yield (
             "FAULT hob encoder",

@@ -10,7 +10,7 @@ from schemdraw import Drawing, elements
 
 from gearmath.export.contactor import contactor
 from gearmath.export.diagram import TEXT, TITLE, Point, box, ground, line, pin_down, small, supply, text, titled
-from gearmath.export.netlist import LOGIC, PLUS, netlist
+from gearmath.export.netlist import LOGIC, PLUS, WINDINGS, netlist
 from gearmath.export.wiring_supply import regulator
 from gearmath.specs.hobbing import HobbingMachine
 
@@ -67,7 +67,8 @@ def _encoder(drawing: Drawing, machine: HobbingMachine, y: float, title: str, pi
         if pin is not None
     }
     top = 0.7 if index is not None else -0.9
-    box(drawing, _SENSOR, y + top, y - 3.7, title, at=y - 3.3)
+    box(drawing, _SENSOR, y + top, y - 3.7, "")
+    text(drawing, (sum(_SENSOR) / 2, y - 3.3), title)
     small(drawing, (0.4, y + top - 0.35), "B2" if title.startswith("feed") else "B1")
     supply(drawing, (1.0, y + top), "+5 V")
     ground(drawing, (1.0, y - 3.7), "")
@@ -175,6 +176,7 @@ def _outputs(drawing: Drawing, machine: HobbingMachine) -> float:
     for name, pin in straight:
         last -= 1.2 if last < top - pitch * (len(signals) - 1) else 2.2
         _drive(drawing, last, name, pin, "")
+    last = min(last, _motor(drawing, machine))
     box(drawing, _DRIVER, top + 1.9, last - 0.9, "step motor driver", at=top + 1.5)
     small(drawing, (_DRIVER[0] + 0.4, top + 1.5), "A2")
     if opened:
@@ -213,6 +215,29 @@ def _drive(drawing: Drawing, y: float, name: str, pin: int, transistor: str) -> 
     text(drawing, (_DRIVER[0] + 0.2, height), f"{name} -" if name else "coil", align="left")
 
 
+def _motor(drawing: Drawing, machine: HobbingMachine) -> float:
+    """Motor and supply to the right of the driver; returns the height of the lowest wire."""
+    edge, near, far = _DRIVER[1], _DRIVER[1] + 3.4, _DRIVER[1] + 6.4
+    ends = ("motor cable",) if machine.drive.pulses is not None else WINDINGS
+    for k, end in enumerate(ends):
+        text(drawing, (edge - 0.2, 0.9 - 0.6 * k), end, align="right")
+        line(drawing, (edge, 0.9 - 0.6 * k), (near, 0.9 - 0.6 * k))
+    box(drawing, (near, far), 1.4, -1.4, "motor M1")
+    for k, end in enumerate(("power +", "power -")):
+        height = -2.4 - 1.2 * k
+        text(drawing, (edge - 0.2, height), end, align="right")
+        line(drawing, (edge, height), (edge + 0.8, height))
+        if k == 0:
+            drawing.add(elements.Fuse().at((edge + 0.8, height)).to((edge + 2.4, height)))
+            small(drawing, (edge + 1.6, height + 0.65), "F3")
+            line(drawing, (edge + 2.4, height), (near, height))
+        else:
+            line(drawing, (edge + 0.8, height), (near, height))
+        small(drawing, (near + 0.3, height), end[-1])
+    box(drawing, (near, far), -1.8, -4.2, "supply G2")
+    return -3.6
+
+
 def _pump(drawing: Drawing, y: float, pin: int, transistor: str) -> None:
     """Charge pump and transistor of the fail-safe relay: direct current of the pin, high or low, does not pass C3."""
     node, store = _BOARD[1] + 1.8, _BOARD[1] + 3.4
@@ -248,11 +273,11 @@ def _display(drawing: Drawing, machine: HobbingMachine, y: float) -> float:
         height = y - 0.8 * k
         text(drawing, (_BOARD[1] - 0.2, height), f"pin {pin}", align="right")
         text(drawing, (_DRIVER[0] + 0.2, height), signal, align="left")
-        _pull_up(drawing, (_BOARD[1] + 0.9 + 1.1 * k, height), y + 0.5, f"RP{k + 1}", machine)
+        _pull_up(drawing, (_BOARD[1] + 2.2 + 0.7 * k, height), y + 0.5, f"RP{k + 1}", machine)
         if machine.hardware.five_volt_tolerant:
             line(drawing, (_BOARD[1], height), (_DRIVER[0], height))
             continue
-        edges = (_BOARD[1] + 3.0, _BOARD[1] + 5.4)
+        edges = (_BOARD[1] + 3.6, _BOARD[1] + 6.0)
         line(drawing, (_BOARD[1], height), (edges[0], height))
         _shift(drawing, height, "BSS138", edges)
         line(drawing, (edges[1], height), (_DRIVER[0], height))
@@ -265,7 +290,7 @@ def _pull_up(drawing: Drawing, foot: Point, above: float, name: str, machine: Ho
     drawing.add(elements.Dot().at(foot))
     drawing.add(elements.Resistor().at((foot[0], above)).to((foot[0], above + 1.3)))
     drawing.add(elements.Vdd().at((foot[0], above + 1.3)))
-    last = name.endswith("2")
-    small(drawing, (foot[0] + (1.0 if last else -0.1), above + (0.6 if last else 2.0)), f"{name} 4.7 k")
-    if last:
-        small(drawing, (foot[0] + 0.5, above + 1.6), PLUS if machine.hardware.five_volt_tolerant else LOGIC)
+    side = 1.0 if name.endswith("2") else -1.0
+    volts = PLUS if machine.hardware.five_volt_tolerant else LOGIC
+    small(drawing, (foot[0] + 0.55 * side, above + 1.6), volts)
+    small(drawing, (foot[0] + side, above + 0.6), f"{name} 4.7 k")

@@ -5,23 +5,28 @@ from __future__ import annotations
 from schemdraw import Drawing, elements
 
 from gearmath.export.diagram import TEXT, Point, box, ground, line, small, supply, text
-from gearmath.export.netlist import netlist
+from gearmath.export.netlist import GROUND, netlist
 from gearmath.specs.hobbing import HobbingMachine
 
 
 def regulator(drawing: Drawing, machine: HobbingMachine) -> None:
     """Regulator with its capacitors, above everything else."""
     y = 5.2
-    text(drawing, (0.0, y + 0.45), "9 V DC", align="left")
-    line(drawing, (0.0, y), (3.0, y))
-    _capacitor(drawing, (1.0, y), "C1")
-    box(drawing, (3.0, 5.6), y + 0.7, y - 0.8, "U2 LM7805")
-    small(drawing, (2.75, y + 0.25), "1")
-    small(drawing, (5.85, y + 0.25), "3")
-    ground(drawing, (4.3, y - 0.8), "", "2")
-    line(drawing, (5.6, y), (8.0, y))
-    _capacitor(drawing, (6.4, y), "C2")
-    supply(drawing, (8.0, y), "+5 V")
+    box(drawing, (0.0, 2.2), y + 0.7, y - 0.8, "G1 9 V")
+    small(drawing, (2.45, y + 0.25), "+")
+    ground(drawing, (1.1, y - 0.8), "", "-")
+    line(drawing, (2.2, y), (2.8, y))
+    drawing.add(elements.Fuse().at((2.8, y)).to((4.2, y)))
+    small(drawing, (3.5, y + 0.65), "F2")
+    line(drawing, (4.2, y), (7.0, y))
+    _capacitor(drawing, (4.8, y), "C1")
+    box(drawing, (7.0, 9.6), y + 0.7, y - 0.8, "U2 LM7805")
+    small(drawing, (6.75, y + 0.25), "1")
+    small(drawing, (9.85, y + 0.25), "3")
+    ground(drawing, (8.3, y - 0.8), "", "2")
+    line(drawing, (9.6, y), (12.0, y))
+    _capacitor(drawing, (10.4, y), "C2")
+    supply(drawing, (12.0, y), "+5 V")
     _bypasses(drawing, machine, y + 4.2)
     if not machine.hardware.five_volt_tolerant:
         _shifters(drawing, machine, y)
@@ -42,12 +47,15 @@ def _bypasses(drawing: Drawing, machine: HobbingMachine, y: float) -> None:
 
 def _shifters(drawing: Drawing, machine: HobbingMachine, y: float) -> None:
     """Supplies of the level shifters; their channels stand in the lines."""
-    left = 11.0
+    left = 14.0
     box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U5 74LVC245", at=y)
     supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "VCC", "20")
     supply(drawing, (left + 2.6, y + 0.7), "+3.3 V", "DIR", "1")
     ground(drawing, (left + 0.7, y - 0.8), "GND", "10")
     ground(drawing, (left + 2.6, y - 0.8), "OE", "19")
+    unused = sorted(pin.split(" ")[1] for part, pin in netlist(machine).nets[GROUND] if part == "U5" and " A" in pin)
+    if unused:
+        small(drawing, (left + 1.7, y - 2.1), f"{', '.join(unused)}: to 0 V")
     left += 5.4
     box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U6 BSS138", at=y)
     supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "LV")

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearmath.bevel.blank import BevelBlank, blank_of
-from gearmath.bevel.blank_table import by_name, rows, set_fragment
+from gearmath.bevel.blank_table import TableRow, by_name, rows, set_fragment
 from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.design.reverse import ReversedMember
 from gearmath.bevel.design.reverse_route import load_known, reversed_set
@@ -18,6 +18,7 @@ from gearmath.bevel.pair import check_pair
 from gearmath.bevel.slots import slots_of
 from gearmath.errors import about
 from gearmath.exchange.rexs import read_rexs
+from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet
 from gearmath.front.tables import html_table
 from gearmath.specs.blank_data import load_blank_data
@@ -48,27 +49,55 @@ class PairDesign:
         return contact_figure(dict(self.runs))
 
 
-def design(path: str | Path, gear: GearSet | None = None) -> PairDesign:
+def design(path: str | Path, gear: GearSet | None = None, begin: Begin = silent) -> PairDesign:
     """A pair that runs as the file of design data asks, or a pinion to a given ``gear``; docs/design.md.
 
     Raises InputError naming key, value and limit of what cannot be, ComputationError where no settings are found.
     """
     source = find(str(path))
+    asked = load_design(source)
+    progress = begin(2, "step")
     with about(source):
-        made = designed(load_design(source), str(source), None if gear is None else gear.spec)
+        made = designed(asked, str(source), None if gear is None else gear.spec)
+        progress(1)
         figures, runs = verdict(made)
+        progress(1)
     return PairDesign(GearSet(made.pair), figures, runs)
 
 
-def settings_of(points: str | Path | FlankFile, data: str | Path) -> tuple[GearSet, ReversedMember]:
+@dataclass(frozen=True)
+class FoundSettings:
+    """The settings of a member that was measured: ``found`` says by flank how well they make its points [mm].
+
+    ``title`` is that of the file of its blank.
+    """
+
+    title: str
+    gear_set: GearSet
+    found: ReversedMember
+
+    def to_dict(self) -> dict[str, Any]:
+        """As ``gearmath design --reverse --json`` prints it, but for the name of the file; deviations in um."""
+        member = self.found.member
+        stated = {key: getattr(member, key) for key in ("cutting", "process", "generation")}
+        (name,) = self.gear_set.spec.members
+        flanks = {flank: found.as_dict() for flank, found in self.found.flanks.items()}
+        return {"member": name, **stated, **flanks}
+
+
+def settings_of(points: str | Path | FlankFile, data: str | Path, begin: Begin = silent) -> FoundSettings:
     """The settings of the member with these flanks, and how well they make them, as ``gearmath design --reverse``.
 
     ``data`` is a file of design data, of a blank, or a gear set: blank and method are taken of it. Raises InputError.
     """
+    known = load_known(find(str(data)))
     file = points if isinstance(points, FlankFile) else read_flank_csv(Path(points))
-    name = "points" if isinstance(points, FlankFile) else Path(points).name
-    found, how_well = reversed_set(load_known(find(str(data))), file, f"settings found from the points of {name}")
-    return GearSet(found), how_well
+    name = Path("points" if isinstance(points, FlankFile) else points)
+    progress = begin(1, "member")
+    with about(name):
+        found, how_well = reversed_set(known, file, f"settings found from the points of {name.name}")
+    progress(1)
+    return FoundSettings(known.title, GearSet(found), how_well)
 
 
 @dataclass(frozen=True)
@@ -78,20 +107,24 @@ class Blank:
     title: str
     spec: BevelBlank
 
+    @property
+    def rows(self) -> list[TableRow]:
+        """Its figures [mm, degrees] with their symbols, and slot widths and edge radii to AGMA 929."""
+        return rows(self.spec, slots_of(self.spec))
+
     def to_dict(self) -> dict[str, Any]:
-        """Its figures by name [mm, degrees], with slot widths to AGMA 929."""
-        return by_name(rows(self.spec, slots_of(self.spec)))
+        """As ``gearmath blank --json`` prints it."""
+        return {"title": self.title, "process": self.spec.process, "units": "mm, degree", **by_name(self.rows)}
 
     def fragment(self) -> str:
         """The part of a gear set file that the blank is, TOML."""
         return set_fragment(self.spec)
 
     def _repr_html_(self) -> str:
-        found = rows(self.spec, slots_of(self.spec))
         return html_table(
             self.title,
             ["figure", "symbol", "unit", "value"],
-            [[row.name.replace("_", " "), row.symbol, row.unit, ", ".join(map(str, row.values))] for row in found],
+            [[row.name.replace("_", " "), row.symbol, row.unit, ", ".join(map(str, row.values))] for row in self.rows],
         )
 
 
@@ -108,8 +141,11 @@ def load_blank(path: str | Path) -> Blank:
 
 
 def load_rexs(path: str | Path) -> GearSet:
-    """The set of the bevel stage in a REXS 2.0.0 file. Raises InputError naming what is missing or no pair."""
-    pair, _ = read_rexs(Path(path))
+    """The set of the bevel stage in a REXS 2.0.0 file; its remarks say what of the file has no place in a set.
+
+    Raises InputError naming what is missing or no pair.
+    """
+    pair, left_aside = read_rexs(Path(path))
     with about(Path(path)):
         check_pair(pair)
-    return GearSet(pair)
+    return GearSet(pair, left_aside)

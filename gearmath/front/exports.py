@@ -1,4 +1,4 @@
-"""Files for other programs: C of kernels, of the gearbox and of the post-processor; solids, points, REXS, sheets."""
+"""C of kernels, of the gearbox and of the post-processor."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import export_cnc as _export_cnc
 from gearmath.export.folder import write_folder
 from gearmath.export.teensy import export_teensy as _export_teensy
-from gearmath.files import write_text
-from gearmath.front.sets import FlankSurface, GearSet, Member
 from gearmath.lowering import lower
 from gearmath.specs.hobbing import HobbingMachine
 
@@ -43,54 +41,3 @@ def export_teensy(machine: HobbingMachine, folder: str | Path) -> list[str]:
 def export_cnc(folder: str | Path) -> list[str]:
     """Write the C library for a CNC post-processor; the names of its files. Raises InputError."""
     return list(_export_cnc(Path(folder)))
-
-
-def export_step(what: GearSet | Member, path: str | Path) -> list[float]:
-    """Write closed solids for CAD: a member in its work frame, or a set in mesh; their volumes [mm³].
-
-    Raises InputError where the kernel of CAD is not installed: pip install '.[cad]'.
-    """
-    from gearmath.exchange.body import member_patches
-    from gearmath.exchange.in_mesh import pair_patches
-    from gearmath.exchange.step import require_kernel, write_step
-
-    require_kernel()
-    if isinstance(what, Member):
-        bodies = [(what.name, member_patches(what.spec, what.name))]
-    else:
-        bodies = pair_patches(what.spec)
-    return write_step(Path(path), bodies)
-
-
-def export_stl(pair: GearSet, path: str | Path) -> int:
-    """Write the pair in mesh as triangles, touching on the drive side; how many. Of one member: ``.tooth().to_stl``."""
-    from gearmath.bevel.solid import write_stl
-    from gearmath.exchange.in_mesh import pair_triangles
-
-    triangles = pair_triangles(pair.spec)
-    write_stl(Path(path), triangles, "pair in mesh")
-    return len(triangles)
-
-
-def export_points(surface: FlankSurface, path: str | Path) -> int:
-    """Write points and outward normals of a flank as plain text, a row ``x y z i j k`` each [mm]; how many."""
-    from gearmath.exchange.point_lines import write_points
-
-    point, normal = surface.point.reshape(-1, 3), surface.normal.reshape(-1, 3)
-    write_points(Path(path), surface.member.name, surface.flank, point, normal)
-    return len(point)
-
-
-def export_rexs(pair: GearSet, path: str | Path) -> int:
-    """Write the set as REXS 2.0.0; the number of its components."""
-    from gearmath.exchange.rexs import write_rexs
-
-    return write_rexs(Path(path), pair.spec)
-
-
-def export_summary(pair: GearSet, path: str | Path) -> Path:
-    """Write the summary sheet of a set, HTML that prints on A4: blank, settings and cutter build, in mm and inches."""
-    from gearmath.setup_sheet.summary import summary_sheet
-
-    write_text(Path(path), summary_sheet(pair.spec))
-    return Path(path)

@@ -1,8 +1,7 @@
-"""The electronic gearbox: plan a job, run its compiled rule."""
+"""The electronic gearbox: plan a job, run its compiled rule, cut a gear or a thread virtually."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -10,18 +9,22 @@ from typing import TYPE_CHECKING, Any, cast, get_args
 
 from gearmath.errors import InputError
 from gearmath.front.machines import load_hobber
+from gearmath.front.progress import Begin, Progress, silent, unheard
 from gearmath.front.tables import html_table
 from gearmath.gearbox.helix import Cut, Helix
-from gearmath.gearbox.hobbed.choice import Choice
+from gearmath.gearbox.hobbed.choice import MOST_CUTS, Choice
 from gearmath.gearbox.hobbed.choice import choose as search
-from gearmath.gearbox.hobbed.contributions import Contribution
+from gearmath.gearbox.hobbed.contributions import Contribution, sources
+from gearmath.gearbox.hobbed.drive import Rule
 from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear, blame, cut_and_inspect, setup
+from gearmath.gearbox.hobbed.thread import ThreadTrace, cut_thread
+from gearmath.gearbox.hobbed.values import cut_values
 from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
 from gearmath.gearbox.train import plan as plan_gear
 from gearmath.specs.hobbing import Hand, HobbingMachine
-from gearmath.specs.ratio import pitch as exact_pitch
+from gearmath.specs.ratio import pitch_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
 class Job:
     """A job of the electronic gearbox; ``plan`` has exact ratio, rates against limits, what to set and measure."""
 
+    machine: HobbingMachine
     plan: GearboxPlan | ThreadPlan
 
     @property
@@ -38,14 +42,44 @@ class Job:
         """Motor steps for each count of the encoder, exactly."""
         return self.plan.exact_pulse_ratio
 
-    def simulate(self, pattern: Pattern = "forward", edges: int = 1_000_000, seed: int = 0) -> Simulation:
-        """Run the compiled step rule over so many encoder edges: "forward", "dither" or "reversals"; errors in steps.
+    def simulate(
+        self,
+        pattern: Pattern = "forward",
+        edges: int = 1_000_000,
+        seed: int = 0,
+        start: int = 0,
+        trace: Trace | None = None,
+        progress: Progress = unheard,
+    ) -> Simulation:
+        """Run the compiled step rule over so many encoder edges, "forward", "dither" or "reversals"; errors in steps.
 
-        Raises ComputationError where there is no C compiler.
+        It begins at the count ``start``; a ``trace`` keeps the errors on the way, for :meth:`plot`. Raises
+        ComputationError where there is no C compiler.
         """
         from gearmath.export.host import run_axes
 
-        return simulate_job(run_axes, self.plan.ratio, pattern, edges, seed)
+        kept = Trace(edges) if trace is None else trace
+        return simulate_job(run_axes, self.plan.ratio, pattern, edges, seed, progress, kept.add, start)
+
+    def thread(
+        self,
+        length: float = 100.0,
+        rule: Rule = "exact",
+        seconds: float = 0.0,
+        compare: Rule | None = None,
+    ) -> HobbedThread:
+        """The thread of ``length`` [mm] that a lathe would cut after ``seconds`` of running, by a rule or by two.
+
+        Raises InputError where the job is no thread, or the thread is shorter than one lead.
+        """
+        if not isinstance(self.plan, ThreadPlan):
+            raise InputError(f"{self.plan.machine} is a hobbing machine: it cuts no thread")
+        traces = (
+            cut_thread(self.machine, self.plan, length, each, seconds)
+            for each in dict.fromkeys((rule, compare))
+            if each
+        )
+        return HobbedThread(self.plan, tuple(traces))
 
     def to_dict(self) -> dict[str, Any]:
         """The plan by name, exact numbers as fractions."""
@@ -56,19 +90,26 @@ class Job:
         pattern: Pattern = "forward",
         edges: int = 1_000_000,
         start: int = 0,
-        progress: Callable[[int], object] = lambda edges: None,
+        progress: Progress = unheard,
+        trace: Trace | None = None,
     ) -> Figure:
-        """The error of the exact rule, and of a floating-point one, over time [steps, s], after ``start`` edges."""
+        """The error of the exact rule, and of a floating-point one, over time [steps, s], after ``start`` edges.
+
+        Of a new run, or of a ``trace`` that :meth:`simulate` has filled.
+        """
         from matplotlib.figure import Figure
 
-        from gearmath.export.host import run_axes
         from gearmath.plot import draw_gearbox_error
 
-        trace = Trace(edges)
-        simulate_job(run_axes, self.plan.ratio, pattern, edges, 0, progress, trace.add, start)
+        if trace is None:
+            trace = Trace(edges)
+            self.simulate(pattern, edges, 0, start, trace, progress)
         figure = Figure(figsize=(8, 4), layout="constrained")
+        axes, plan = figure.subplots(), self.plan
         done, exact, floating = trace.arrays
-        draw_gearbox_error(figure.subplots(), done / self.plan.edge_rate_hz, exact, floating)
+        draw_gearbox_error(axes, done / plan.edge_rate_hz, exact, floating)
+        steps = f"{plan.steps_numerator}/{plan.steps_denominator} steps per count"
+        axes.set_title(f"{plan.machine}: {steps}, {plan.rpm:.0f} rpm")
         return figure
 
     def _repr_html_(self) -> str:
@@ -81,9 +122,9 @@ def plan(
 ) -> Job:
     """Plan a gear of so many ``teeth`` on a hobbing machine, or a thread of a ``pitch`` ("1.25mm", "8tpi") on a lathe.
 
-    ``options`` of a gear: starts, hob, rpm, helix [degrees] with hand ("right" or "left"), cut ("climb" or
+    ``options`` of a gear: starts, hob, rpm, run_up [s], helix [degrees] with hand ("right" or "left"), cut ("climb" or
     "conventional") and, where the machine has no encoder on it, feed [mm per turn of the table]; shift, pin; of a
-    thread: starts, hand, rpm. Raises InputError naming the limit that the job would break.
+    thread: starts, hand, rpm, run_up. Raises InputError naming the limit that the job would break.
 
     >>> import gearmath as gm
     >>> gm.plan("hobbing_plewes.toml", teeth=17).plan.teeth
@@ -93,68 +134,150 @@ def plan(
     if known.profile == "lathe":
         if pitch is None or teeth is not None:
             raise InputError(f"{known.name} is a lathe: pitch is needed, and no teeth")
-        try:
-            wanted = exact_pitch(pitch)
-        except ValueError as error:
-            raise InputError(f"pitch = {pitch!r}: {error}") from None
-        return Job(plan_thread(known, wanted, **options))
+        return Job(known, plan_thread(known, pitch_of(pitch), **options))
     if teeth is None or pitch is not None:
         raise InputError(f"{known.name} is a hobbing machine: teeth are needed, and no pitch")
     way, feed = options.pop("cut", "climb"), options.pop("feed", None)
-    return Job(plan_gear(known, teeth, **_with_helix(options, way, feed)))
+    return Job(known, plan_gear(known, teeth, **_with_helix(options, way, feed)))
+
+
+@dataclass(frozen=True)
+class HobbedThread:
+    """The thread that the gearbox would cut: ``traces`` have where the carriage is too far [mm], one of each rule."""
+
+    plan: ThreadPlan
+    traces: tuple[ThreadTrace, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As ``gearmath gearbox cut --json`` prints it: dimensions in mm, deviations in um."""
+        return {
+            "machine": self.plan.machine,
+            "pitch": float(self.plan.pitch),
+            "lead": float(self.plan.lead),
+            "length": float(self.traces[0].place[-1]),
+            "rpm": self.plan.rpm,
+            "threads": [
+                {
+                    "rule": trace.rule,
+                    "single_lead_um": trace.single_lead * 1000,
+                    "total_um": trace.total * 1000,
+                    "drift_um": trace.drift * 1000,
+                }
+                for trace in self.traces
+            ],
+        }
+
+    def plot(self) -> Figure:
+        """The deviation along the thread."""
+        from gearmath.plot.hobbed import thread_figure
+
+        return thread_figure(self.plan.machine, list(self.traces))
 
 
 @dataclass(frozen=True)
 class HobbedGear:
-    """The gear that the gearbox would cut: ``gear`` has its inspection and classes, ``shares`` who is to blame."""
+    """The gear that the gearbox would cut: ``gears`` have its inspection and classes, one of each rule; ``shares`` says
+    which part of the machine is to blame.
+    """
 
     setup: CutSetup
-    gear: VirtualGear
+    gears: tuple[VirtualGear, ...]
     shares: tuple[Contribution, ...]
+
+    @property
+    def gear(self) -> VirtualGear:
+        """As the first rule cuts it."""
+        return self.gears[0]
+
+    @property
+    def title(self) -> str:
+        """Machine, teeth and module."""
+        gear = self.setup.job.gear
+        return f"{self.setup.train.machine.name}: {gear.teeth} teeth, module {gear.module:.4g} mm, virtual"
+
+    def to_dict(self) -> dict[str, Any]:
+        """As ``gearmath gearbox cut --json`` prints it: figures in um, dimensions in mm."""
+        return cut_values(self.setup, self.gears, self.shares)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the measured points of the first rule; docs/virtual_hobbing.md."""
+        from gearmath.exchange.hobbed_csv import write_traces
+
+        write_traces(Path(path), self.setup.job, self.gear.found)
+        return Path(path)
+
+    def to_stl(self, path: str | Path, begin: Begin = silent) -> Path:
+        """Write the gear, a closed solid with its flanks as cut, as binary STL in mm."""
+        from gearmath.exchange.hobbed_stl import ALL, write_gear
+        from gearmath.gearbox.hobbed.envelope import Cut as Envelope
+
+        setup = self.setup
+        progress = begin(ALL * setup.job.gear.teeth, "point")
+        write_gear(Path(path), Envelope(setup.job, setup.train), setup.where, progress)
+        return Path(path)
 
     def plot(self) -> Figure:
         """The inspection chart."""
         from gearmath.plot.hobbed import inspection_figure
 
-        return inspection_figure(self.setup.train.machine.name, [(self.gear.rule, self.gear.found)])
+        return inspection_figure(self.title, [(gear.rule, gear.found) for gear in self.gears])
 
 
-def hob(machine: HobbingMachine | str | Path, teeth: int, **options: Any) -> HobbedGear:
+def hob(
+    machine: HobbingMachine | str | Path,
+    teeth: int,
+    compare: Rule | None = None,
+    begin: Begin = silent,
+    **options: Any,
+) -> HobbedGear:
     """Cut a gear virtually, inspect it, and tell which part of the machine is to blame; docs/virtual_hobbing.md.
 
-    ``options``: hob, starts, helix [degrees], hand, shift, feed, face_width, rpm, seconds, climb, rule, as of
-    ``gearmath gearbox cut``. Raises InputError naming the limit that the job would break.
+    ``compare`` is a second rule, cut beside the first. ``options``: hob, starts, helix [degrees], hand, shift, feed,
+    face_width, rpm, seconds, climb, rule, hob_shift [mm], as of ``gearmath gearbox cut``. Raises InputError naming
+    the limit that the job would break.
     """
     known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
     way = "climb" if options.get("climb", True) else "conventional"
     feed = None if known.feed is not None else options.get("feed", 0.5)
     prepared = setup(known, teeth, **_with_helix(options, way, feed))
-    gear = cut_and_inspect(prepared, prepared.train.rule)
-    return HobbedGear(prepared, gear, blame(prepared, gear))
+    rules: tuple[Rule, ...] = tuple(dict.fromkeys(rule for rule in (prepared.train.rule, compare) if rule))
+    progress = begin((len(rules) + len(sources(prepared.train))) * prepared.where.points, "point")
+    gears = tuple(cut_and_inspect(prepared, rule, progress) for rule in rules)
+    return HobbedGear(prepared, gears, blame(prepared, gears[0], progress))
 
 
-def choose(machine: HobbingMachine | str | Path, wanted: int, module: float, teeth: int, **options: Any) -> Choice:
+def choose(
+    machine: HobbingMachine | str | Path,
+    wanted: int,
+    module: float,
+    teeth: int,
+    begin: Begin = silent,
+    **options: Any,
+) -> Choice:
     """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach the class ``wanted``.
 
     Normal ``module`` [mm]; ``options``: face_width [mm], helix [degrees], hand. Raises InputError where no class can be
     given, ComputationError where the finest parts do not reach it.
     """
     known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
-    return search(known, wanted, module, teeth, **_with_helix(options))
+    return search(known, wanted, module, teeth, **_with_helix(options), progress=begin(MOST_CUTS, "cut"))
 
 
-def _with_helix(options: dict[str, Any], cut: str = "climb", feed: float | None = None) -> dict[str, Any]:
+def _with_helix(options: dict[str, Any], cut: str = "climb", feed: float | str | None = None) -> dict[str, Any]:
     """The options with one helix of its angle [degrees] and hand. Raises InputError where it is none."""
     helix, hand = options.get("helix"), options.get("hand")
+    rest = {key: value for key, value in options.items() if key != "hand"}
     if helix is None:
         if hand is not None:
             raise InputError(f"hand = {hand!r}: has no meaning without helix")
-        return options
+        return rest
     hand = "right" if hand is None else hand
     if hand not in get_args(Hand):
         raise InputError(f"hand = {hand!r}: must be 'right' or 'left'")
     if cut not in get_args(Cut):
         raise InputError(f"cut = {cut!r}: must be 'climb' or 'conventional'")
-    per_turn = None if feed is None else Fraction(str(feed))
-    rest = {key: value for key, value in options.items() if key != "hand"}
+    try:
+        per_turn = None if feed is None else Fraction(str(feed))
+    except (ValueError, ZeroDivisionError):
+        raise InputError(f"feed = {feed!r}: must be a number of mm per turn of the table") from None
     return rest | {"helix": Helix(float(helix), cast("Hand", hand), cast("Cut", cut), per_turn)}

@@ -13,6 +13,8 @@ from gearmath.front.machines import Machine, load_machine, load_probe
 from gearmath.front.measured import Measurement
 from gearmath.front.sets import GearSet, Member
 from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import readable
+from gearmath.machine.judging.dialects import named
 from gearmath.machine.measuring.artefacts import Artefacts
 from gearmath.machine.measuring.checked import ProbingChoice, checked_probing, refuse_faults
 from gearmath.machine.measuring.judge import judge_calibration
@@ -59,15 +61,13 @@ class ProbingProgram:
         Against nominal flanks or, with ``measured``, the metal that it tells of; ``shop`` errs in axes, clamping and
         probe, and each run ``number`` has its own noise. Raises InputError where it touches what is not there.
         """
-        setup = Setup.of(self.machine.spec, self.probe.length)
+        setup, text = Setup.of(self.machine.spec, self.probe.length), readable(self.text)
         if self.member is None:
-            raw = run_touches(
-                self.text, self.name, Artefacts(self.machine.spec, self.probe), shop, run=number, setup=setup
-            )
+            raw = run_touches(text, self.name, Artefacts(self.machine.spec, self.probe), shop, run=number, setup=setup)
         else:
             there = _on_machine(self.member, measured, self.machine, self.probe, shop)
-            count = touch_count(self.text, self.name, setup)
-            raw = run_touches(self.text, self.name, there, shop, count, number, setup=setup)
+            count = touch_count(text, self.name, setup)
+            raw = run_touches(text, self.name, there, shop, count, number, setup=setup)
         write_text(Path(path), raw)
         return Path(path)
 
@@ -96,7 +96,8 @@ def probing(
         raise InputError(f"repeat = {repeat!r}: must be a whole number from 1 to {MOST_TOUCHES}")
     machine, probe = machine or load_machine(), probe or load_probe()
     choice = ProbingChoice(topography, pitch, registration, repeat)
-    made = checked_probing(member.gear_set.spec, member.name, machine.spec, probe, choice, name, name)
+    dialect = named(machine.spec.control.dialect(None))
+    made = checked_probing(member.gear_set.spec, member.name, machine.spec, probe, choice, name, name, dialect=dialect)
     return ProbingProgram(member, machine, probe, name, made.text)
 
 
@@ -112,8 +113,9 @@ def calibrating(
     if cycle not in ("tip", "axes"):
         raise InputError(f"cycle = {cycle!r}: must be 'tip' or 'axes'")
     machine, probe = machine or load_machine(), probe or load_probe()
-    text = (axis_program if cycle == "axes" else calibration_program)(machine.spec, probe, name)
-    refuse_faults(judge_calibration(text, name, machine.spec, probe), name, "the program is not written")
+    dialect = named(machine.spec.control.dialect(None))
+    text = (axis_program if cycle == "axes" else calibration_program)(machine.spec, probe, name, dialect.blocks)
+    refuse_faults(judge_calibration(dialect.read(text), name, machine.spec, probe), name, "the program is not written")
     return ProbingProgram(None, machine, probe, name, text)
 
 

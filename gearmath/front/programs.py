@@ -13,7 +13,9 @@ from gearmath.front.measured import Measurement
 from gearmath.front.sets import Member
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import readable
 from gearmath.machine.judging.checked import checked_cut
+from gearmath.machine.judging.dialects import named
 from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.specs.simulated_machine import SimulatedMachine
@@ -35,12 +37,12 @@ class Program:
     @property
     def blocks(self) -> int:
         """How many blocks the control runs."""
-        from gearmath.machine.writing.words import block_count
+        from gearmath.machine.judging.dialects import of_text
 
-        return block_count(self.text)
+        return of_text(self.text).block_count(self.text)
 
     def save(self, path: str | Path) -> Path:
-        """Write the program, in one step; the file should be called ``name``.MPF, which the control expects."""
+        """Write the program, in one step; its file should be called ``name``.MPF, or .ngc for LinuxCNC."""
         write_text(Path(path), self.text)
         return Path(path)
 
@@ -61,7 +63,7 @@ class Program:
         from gearmath.machine.judging.program import written_faults
 
         member = self.member
-        found = written_faults(self.text, self._path(), member.spec, member.name, self.machine.spec)
+        found = written_faults(readable(self.text), self._path(), member.spec, member.name, self.machine.spec)
         return [str(fault) for fault in found]
 
     def time(self) -> Trajectory:
@@ -71,7 +73,7 @@ class Program:
         return trajectory(self._path(), self.machine.spec)
 
     def _path(self) -> MachinePath:
-        return execute(self.text, self.name, Setup.of(self.machine.spec))
+        return execute(readable(self.text), self.name, Setup.of(self.machine.spec))
 
 
 def cutting(
@@ -79,6 +81,9 @@ def cutting(
 ) -> Program:
     """The cutting program of a member, run before it is returned. Raises InputError naming what is wrong."""
     machine = load_machine() if machine is None else machine
+    dialect = named(machine.spec.control.dialect(None))
     wanted = list(range(member.teeth) if spaces is None else spaces)
-    made = checked_cut(member.gear_set.spec, member.name, machine.spec, CuttingJob(wanted, **job), name, name)
+    made = checked_cut(
+        member.gear_set.spec, member.name, machine.spec, CuttingJob(wanted, **job), name, name, dialect=dialect
+    )
     return Program(member, machine, name, made.text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from numbers import Real
 from pathlib import Path
@@ -11,17 +12,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.grid import listed_grid
+from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.bevel.pair import check_pair, load_pair
-from gearmath.errors import InputError
+from gearmath.errors import InputError, about
+from gearmath.files import write_text
+from gearmath.front.flanks import FlankSurface, Tooth
+from gearmath.front.progress import Begin, silent
 from gearmath.front.tables import html_table
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet, Design, Flank
 from gearmath.specs.bevel_set import Member as MemberSpec
 from gearmath.specs.cut import ANGULAR
+from gearmath.specs.margins import Margins
+from gearmath.specs.places import read_places
 from gearmath.specs.toml import checked, find
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+    from gearmath.exchange.step import WrittenSolid
     from gearmath.front.machines import Machine
     from gearmath.front.measured import Measurement
     from gearmath.front.programs import Program
@@ -29,9 +37,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class GearSet:
-    """A pinion and a gear, or one of them, that are one physical pair; ``spec`` is the checked content of the file."""
+    """A pinion and a gear, or one of them, that are one physical pair; ``spec`` is the checked content of the file.
+
+    ``remarks`` say what was left aside where it was read.
+    """
 
     spec: BevelSet
+    remarks: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -63,7 +75,6 @@ class GearSet:
 
     def save(self, path: str | Path) -> Path:
         """Write the set as TOML (mm, degrees), in one step. Raises InputError where the place cannot be written."""
-        from gearmath.files import write_text
         from gearmath.specs.set_text import set_text
 
         write_text(Path(path), set_text(self.spec))
@@ -72,6 +83,61 @@ class GearSet:
     def to_dict(self) -> dict[str, Any]:
         """The set with the keys of its file, mm and degrees."""
         return self.spec.model_dump(exclude_defaults=True)
+
+    def mates(self) -> dict[str, Any] | None:
+        """Backlash [mm] at the mean point, and by the pinion's flank what it and its mate differ by [degrees, um].
+
+        None where the set has one member. Raises InputError where flanks do not meet.
+        """
+        from gearmath.bevel.mates import pair_figures
+
+        return pair_figures(self.spec)
+
+    def to_step(self, path: str | Path, begin: Begin = silent) -> dict[str, WrittenSolid]:
+        """Write the pair in mesh, or the only member, as closed solids for CAD; by member, what was written.
+
+        Raises InputError where the kernel of CAD is not installed: pip install '.[cad]'.
+        """
+        if len(self.spec.members) == 1:
+            return self.member(next(iter(self.spec.members))).to_step(path, begin)
+        from gearmath.exchange.in_mesh import pair_patches
+        from gearmath.exchange.step import require_kernel, write_step
+
+        require_kernel()
+        progress = begin(5, "stage")
+        bodies = pair_patches(self.spec)
+        progress(2)
+        return write_step(Path(path), bodies, progress)
+
+    def to_stl(self, path: str | Path, begin: Begin = silent) -> int:
+        """Write the pair in mesh as triangles, touching on the drive side; how many. Of one member: ``tooth().to_stl``.
+
+        Raises InputError where the set has one member.
+        """
+        from gearmath.bevel.solid import write_stl
+        from gearmath.exchange.in_mesh import pair_triangles
+
+        for name in MEMBERS:
+            self.spec.member(name)
+        progress = begin(2, "stage")
+        triangles = pair_triangles(self.spec)
+        progress(1)
+        write_stl(Path(path), triangles, "pair in mesh")
+        progress(1)
+        return len(triangles)
+
+    def to_rexs(self, path: str | Path) -> int:
+        """Write the set as REXS 2.0.0; the number of its components."""
+        from gearmath.exchange.rexs import write_rexs
+
+        return write_rexs(Path(path), self.spec)
+
+    def to_summary(self, path: str | Path) -> Path:
+        """Write the summary sheet, HTML that prints on A4: blank, settings and cutter build, in mm and inches."""
+        from gearmath.setup_sheet.summary import summary_sheet
+
+        write_text(Path(path), summary_sheet(self.spec))
+        return Path(path)
 
     def _repr_html_(self) -> str:
         flanks = [(name, flank) for name in self.spec.members for flank in FLANKS]
@@ -161,24 +227,32 @@ class Member:
         spec = self.spec.model_copy(update=flanks)
         return self.gear_set.with_member(replace(self, spec=spec)).member(self.name)
 
-    def flank(self, flank: str, grid: tuple[int, int] = (5, 9), margin: float = 0.1) -> FlankSurface:
+    def flank(
+        self,
+        flank: str,
+        grid: tuple[int, int] | None = None,
+        margin: float | Margins = 0.1,
+        places: tuple[np.ndarray, np.ndarray] | str | Path | None = None,
+    ) -> FlankSurface:
         """Nominal points and outward normals of a flank on a grid, rows root to tip and columns toe to heel.
 
-        ``margin`` is the part of working depth and face width left out on each side. Raises InputError naming flank,
-        row and column of a point that the cutter does not make.
+        ``grid`` is (5, 9) if not given; ``margin`` is the part of working depth and face width left out on each side.
+        ``places`` are listed ones in their stead: z_w and radius (n,) [mm] from the pitch apex, or a file of such
+        lines; one column where ``grid`` is not given. Raises InputError naming flank, row and column of a point that
+        the cutter does not make.
 
         >>> import gearmath as gm
         >>> gm.load_set("nasa_tp3096_12x36.toml").pinion.flank("concave").point.shape
         (5, 9, 3)
         """
-        from gearmath.bevel.flank import blank_grid, solve_flank
-        from gearmath.bevel.nominal_file import nominal_flank
-
         _check_flank(flank)
-        places = blank_grid(self.spec, *grid, margin)
-        points = solve_flank(self.spec, self.name, flank, places)
-        file = nominal_flank(self.spec, self.name, flank, places, margin)
-        return FlankSurface(self, flank, points.point.reshape(*grid, 3), points.normal.reshape(*grid, 3), file)
+        if places is None:
+            at = blank_grid(self.spec, *(grid or (5, 9)), margin)
+            return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, margin))
+        axial, radial = read_places(Path(places)) if isinstance(places, str | Path) else places
+        with about(Path(places)) if isinstance(places, str | Path) else nullcontext():
+            at = listed_grid(self.spec, axial, radial, grid or (len(axial), 1))
+        return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, None))
 
     def tooth(self, columns: int = 25) -> Tooth:
         """The whole tooth space, root and fillets too. Raises InputError where the cutter does not make it."""
@@ -186,6 +260,20 @@ class Member:
 
         space = tooth_space(self.spec, self.name, columns)
         return Tooth(self, space, space_figures(self.spec, space))
+
+    def to_step(self, path: str | Path, begin: Begin = silent) -> dict[str, WrittenSolid]:
+        """Write the closed solid of the member in its work frame for CAD; by its name, what was written.
+
+        Raises InputError where the kernel of CAD is not installed: pip install '.[cad]'.
+        """
+        from gearmath.exchange.body import member_patches
+        from gearmath.exchange.step import require_kernel, write_step
+
+        require_kernel()
+        progress = begin(4, "stage")
+        bodies = [(self.name, member_patches(self.spec, self.name))]
+        progress(2)
+        return write_step(Path(path), bodies, progress)
 
     def deviations(self, grid: tuple[int, int] = (5, 9), margin: float = 0.1) -> Measurement:
         """The flanks that the settings cut as deviations [mm] from the nominal ones, on the exact surface.
@@ -222,66 +310,6 @@ class Member:
         return html_table(f"{self.name} of {self.gear_set.title}", ["setting (mm, degree)", *FLANKS], rows)
 
 
-@dataclass(frozen=True)
-class FlankSurface:
-    """Points (rows, columns, 3) [mm] and outward unit normals of one flank, in the work frame; ``file`` is its CSV."""
-
-    member: Member
-    flank: str
-    point: np.ndarray
-    normal: np.ndarray
-    file: Any
-
-    def to_csv(self, path: str | Path) -> Path:
-        """Write the flank CSV of docs/files.md."""
-        from gearmath.specs.flank_csv import write_flank_csv
-
-        write_flank_csv(Path(path), self.file)
-        return Path(path)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Points and normals as nested lists."""
-        return {"flank": self.flank, "point": self.point.tolist(), "normal": self.normal.tolist()}
-
-    def plot(self) -> Figure:
-        """The flank in space, seen along the normal of its middle."""
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(6, 5), layout="constrained")
-        axes: Any = figure.add_subplot(projection="3d")
-        axes.plot_surface(*np.moveaxis(self.point, -1, 0), edgecolor="0.4", linewidth=0.5, alpha=0.6)
-        middle = self.normal[self.normal.shape[0] // 2, self.normal.shape[1] // 2]
-        azimuth, elevation = math.atan2(middle[1], middle[0]), math.asin(middle[2])
-        axes.view_init(math.degrees(elevation), math.degrees(azimuth))
-        axes.set(xlabel="x / mm", ylabel="y / mm", zlabel="z / mm", aspect="equal")
-        axes.set_title(f"{self.member.name}, {self.flank} flank")
-        return figure
-
-
-@dataclass(frozen=True)
-class Tooth:
-    """A whole tooth space; ``figures`` are thickness, top land and so on [mm] by name."""
-
-    member: Member
-    space: Any
-    figures: dict[str, float]
-
-    def to_stl(self, path: str | Path, whole_member: bool = True) -> Path:
-        """Write the closed solid of the member, or the surface of one space, as binary STL in mm."""
-        from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
-
-        triangles = member_triangles(self.member.spec, self.space) if whole_member else space_triangles(self.space)
-        write_stl(Path(path), triangles, self.member.name)
-        return Path(path)
-
-    def to_dict(self) -> dict[str, float]:
-        """The figures [mm] by name."""
-        return dict(self.figures)
-
-    def _repr_html_(self) -> str:
-        return html_table(f"tooth of the {self.member.name}", ["figure", "mm"], list(self.figures.items()))
-
-
 def _check_keys(name: str, flank: str, values: Mapping[str, float]) -> None:
     for key, value in values.items():
         if key not in SETTINGS:
@@ -304,6 +332,3 @@ def _shallow(spec: BevelSet | MemberSpec | Flank) -> dict[str, Any]:
 def _check_flank(flank: str) -> None:
     if flank not in FLANKS:
         raise InputError(f"flank = {flank!r}: must be {' or '.join(FLANKS)}")
-
-
-__all__ = ["MEMBERS", "FlankSurface", "GearSet", "Member", "Tooth", "load_set"]

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import functools
-import tomllib
-from importlib import resources
+from gearmath.hmi.language_files import language_file
+from gearmath.hmi.reasons import german
 
 LANGUAGES = {"en": "English", "de": "Deutsch"}
 
@@ -22,9 +21,11 @@ class Text:
         return message.format(**values) if values else message
 
     def quoted(self, words: object) -> str:
-        """A sentence of the library or the control, which is English on every page, so that this is said; nothing of
-        nothing."""
-        return self("shell.quoted", words=words) if str(words) else ""
+        """A sentence of the library, in German where its German is known, or of the control: what stays English on a
+        German page is said to be so. Nothing of nothing."""
+        said = str(words)
+        known = german(said) if self.language == "de" else None
+        return known or (self("shell.quoted", words=said) if said else "")
 
     def has(self, key: str) -> bool:
         """Whether there is a message of this key: words of a control or a file may have none."""
@@ -32,7 +33,6 @@ class Text:
         return name in messages().get(page, {})
 
 
-@functools.cache
 def messages() -> dict[str, dict[str, dict[str, str]]]:
     """By page, name and language."""
-    return tomllib.loads(resources.files("gearmath.hmi").joinpath("messages.toml").read_text("utf-8"))
+    return language_file("messages.toml")

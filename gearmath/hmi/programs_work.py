@@ -8,7 +8,6 @@ from itertools import islice
 from pathlib import Path
 
 from gearmath.bevel.pair import load_pair
-from gearmath.control.file_names import control_name, linuxcnc_name
 from gearmath.errors import InputError
 from gearmath.files import read_bytes, write_text
 from gearmath.front.machines import load_machine, load_shop
@@ -16,20 +15,17 @@ from gearmath.front.programs import Program
 from gearmath.front.sets import load_set
 from gearmath.hmi.state import Choice
 from gearmath.hmi.work import Progress
-from gearmath.machine.control.text import decoded
+from gearmath.machine.control.file_names import control_name
+from gearmath.machine.control.text import decoded, readable
 from gearmath.machine.judging.checked import checked_cut
+from gearmath.machine.judging.dialects import ControlDialect, known, named
 from gearmath.machine.judging.timing import timing
 from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.limits import check_spindle_speed
-from gearmath.machine.writing.cutting import program_of
-from gearmath.machine.writing.linuxcnc import cutting as linuxcnc_cutting
-from gearmath.machine.writing.linuxcnc.dialect import block_count as linuxcnc_blocks
-from gearmath.machine.writing.linuxcnc.probing import LINUXCNC
-from gearmath.machine.writing.probing import SINUMERIK
-from gearmath.machine.writing.words import block_count, check_name
+from gearmath.machine.writing.words import check_name
 from gearmath.specs.calibration import load_calibration
-from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
+from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import find
 
 #: Lines of a program that the page shows from its beginning.
@@ -73,15 +69,14 @@ def write_cutting(folder: Path, choice: Choice, name: str, job: CuttingJob, prog
     ComputationError.
     """
     machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
-    file, ngc = _file(folder, name, machine), _is_linuxcnc(machine)
+    dialect = named(machine.control.dialect(None))
+    file = _file(folder, name, dialect)
     check_spindle_speed(file.stem, machine, job.spindle_rpm)
     whole = replace(job, spaces=range(pair.member(choice.member).teeth))
-    write = linuxcnc_cutting.program_of if ngc else program_of
-    made = checked_cut(pair, choice.member, machine, whole, file.stem, file.name, progress.begin, write)
+    made = checked_cut(pair, choice.member, machine, whole, file.stem, file.name, progress.begin, dialect)
     times = timing(made.path, machine)
     write_text(file, made.text)
-    blocks = (linuxcnc_blocks if ngc else block_count)(made.text)
-    return WrittenProgram(file, blocks, times.feed_seconds + times.rapid_seconds, None, "")
+    return WrittenProgram(file, dialect.block_count(made.text), times.feed_seconds + times.rapid_seconds, None, "")
 
 
 def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice, progress: Progress) -> WrittenProgram:
@@ -91,21 +86,20 @@ def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice
     """
     machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
     calibration = load_calibration(find(choice.calibration))
-    file, ngc = _file(folder, name, machine), _is_linuxcnc(machine)
-    writer = LINUXCNC if ngc else SINUMERIK
+    dialect = named(machine.control.dialect(None))
+    file = _file(folder, name, dialect)
     made = checked_probing(
-        pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, progress.begin, writer
+        pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, progress.begin, dialect
     )
     write_text(file, made.text)
-    blocks = (linuxcnc_blocks if ngc else block_count)(made.text)
-    return WrittenProgram(file, blocks, None, made.touches, made.clearance)
+    return WrittenProgram(file, dialect.block_count(made.text), None, made.touches, made.clearance)
 
 
 def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Progress) -> MilledProgram:
     """Mill a cutting program of the folder: on a machine without errors, and on that of the file ``shop``."""
     content = read(folder, name)
     member = load_set(choice.gear_set).member(choice.member)
-    program = Program(member, load_machine(choice.machine), name, decoded(content, name))
+    program = Program(member, load_machine(choice.machine), name, readable(decoded(content, name)))
     progress.total = 2 * member.teeth * (1 if shop is None else 2)
     largest = float(abs(program.mill(None, progress).deviation).max())
     of_shop = None if shop is None else float(abs(program.mill(load_shop(shop), progress).deviation).max())
@@ -115,7 +109,8 @@ def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Pr
 def programs(folder: Path) -> list[ListedProgram]:
     """The programs of a folder whose names a control takes, the newest first."""
     found = []
-    for path in (*folder.glob("*.[MS]PF"), *folder.glob("*.ngc")):
+    suffixes = {".SPF", *(one.suffix for one in known())}
+    for path in (one for one in folder.iterdir() if one.suffix in suffixes):
         try:
             _kept_name(path.name)
             status = path.stat()
@@ -140,16 +135,15 @@ def preview(folder: Path, name: str) -> tuple[str, int]:
 
 
 def _kept_name(name: str) -> str:
-    """The name as its control keeps it, LinuxCNC one that ends in .ngc. Raises InputError."""
-    return linuxcnc_name(name) if name.endswith(".ngc") else control_name(name)
+    """The name as its control keeps it, which its ending tells. Raises InputError."""
+    by_suffix = (one.file_name for one in known() if name.endswith(one.suffix))
+    return next(by_suffix, control_name)(name)
 
 
-def _is_linuxcnc(machine: MillingMachine) -> bool:
-    return machine.control.dialect(None) == "linuxcnc"
-
-
-def _file(folder: Path, name: str, machine: MillingMachine) -> Path:
-    """The file of a program for the control of a machine; a name that it or the writer refuses is an InputError."""
-    stem = name.strip().upper().removesuffix(".MPF").removesuffix(".NGC")
+def _file(folder: Path, name: str, dialect: ControlDialect) -> Path:
+    """The file of a program of a dialect; a name that its control or the writer refuses is an InputError."""
+    stem = name.strip().upper()
+    for one in known():
+        stem = stem.removesuffix(one.suffix.upper())
     check_name(stem)
-    return folder / (linuxcnc_name(f"{stem}.ngc") if _is_linuxcnc(machine) else control_name(f"{stem}.MPF"))
+    return folder / dialect.file_name(f"{stem}{dialect.suffix}")

@@ -6,14 +6,15 @@ import math
 from collections.abc import Iterator
 
 from gearmath.machine.planning.artefact_targets import axis_sections, sphere_directions, sphere_positions, tip_sections
-from gearmath.machine.planning.setup_facts import CALIBRATING, NOT_ON_METAL, R_D, VARIABLES
+from gearmath.machine.planning.setup_facts import R_D
 from gearmath.machine.planning.targets import POSITIONING_FEED
 from gearmath.machine.writing.axis_cycle import above_all
 from gearmath.machine.writing.calibrating import sideways_level
+from gearmath.machine.writing.sheet_words import SINUMERIK_WORDS, SheetWords
 from gearmath.page import Page
 from gearmath.setup_sheet.artefact_drawing import plan_drawing, section_drawing, work_sphere_drawing
 from gearmath.setup_sheet.probing import STOPS, touch_rows
-from gearmath.setup_sheet.references import references
+from gearmath.setup_sheet.references import chosen_parts, references
 from gearmath.specs.calibration import Calibration, WorkSphere
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.version import __version__
@@ -22,8 +23,10 @@ _FROM = "a touch starts from the surface, in the bore from its middle, at"
 _NOT_KNOWN = "The program knows no table, seat, stem or work: the ways of probe and spindle must be clear of them."
 
 
-def calibration_sheet(machine: MillingMachine, probe: Calibration, axes: bool, program: str) -> str:
-    """The page of one calibration program as HTML; ``program`` is its file name.
+def calibration_sheet(
+    machine: MillingMachine, probe: Calibration, axes: bool, program: str, words: SheetWords = SINUMERIK_WORDS
+) -> str:
+    """The page of one calibration program as HTML, in the ``words`` of its control; ``program`` is its file name.
 
     ``axes`` says that it touches the sphere on the work side, to find the rotary axes; else ring and sphere on the
     table. The artefacts have to be in the calibration file.
@@ -41,7 +44,7 @@ def calibration_sheet(machine: MillingMachine, probe: Calibration, axes: bool, p
             ("Set up by, date", [""]),
         ],
     )
-    page.first("Unconfirmed", [f"{text}." for text in (NOT_ON_METAL, VARIABLES, CALIBRATING)])
+    page.first("Unconfirmed", [f"{text}." for text in words.calibrating_unconfirmed])
     page.first("To be watched", _watched(machine, probe, sphere))
     page.heading("What is touched")
     if sphere is None:
@@ -52,7 +55,7 @@ def calibration_sheet(machine: MillingMachine, probe: Calibration, axes: bool, p
         sections, places = axis_sections(machine, probe, sphere), sphere_positions(machine, probe, sphere)
     page.heading("Before the start", new_sheet=True)
     page.paragraph(f"{R_D}. Z counts up.")
-    references(page, machine, "center of the tip", probe.length, "length of the probe", STOPS, more_before="")
+    references(page, machine, words, "center of the tip", probe.length, "length of the probe", STOPS, more_before="")
     touches = sum(one.touches for one in sections)
     page.table(
         "Probe and touches",
@@ -68,10 +71,8 @@ def calibration_sheet(machine: MillingMachine, probe: Calibration, axes: bool, p
     )
     page.subheading("Start, start again, and the result")
     page.paragraph(
-        "The probe is read at input 1 ($A_PROBE[1], MEAS=1). R90 and R91 are the first and the last section that are "
-        "touched, 0 for all; the program shows them, and waits for NC start. After a stop: RESET, R90 = the section of "
-        "the last message, R91 = 0, and start from the beginning of the program. R104 = 1, set before the start, lets "
-        "a host acknowledge every touch."
+        f"{words.probe(machine)} {chosen_parts(words, 'section', 'touched', 'the section of the last message')} "
+        + words.host.format(part="touch")
     )
     rows = [[str(number), one.what, str(one.touches)] for number, one in enumerate(sections, 1)]
     columns = ["section", "what is touched", "touches"]
@@ -81,11 +82,11 @@ def calibration_sheet(machine: MillingMachine, probe: Calibration, axes: bool, p
             [*row, *(f"{value + 0.0:.3f}" for value in at[:3].round(3))] for row, at in zip(rows, places, strict=True)
         ]
     page.table("Sections", columns, rows)
-    stem = program.rsplit(".", 1)[0]
+    result = words.result(program.rsplit(".", 1)[0])
     made = "--calibration PROBE.toml --machine MACHINE.toml -o NEW_" + ("MACHINE.toml" if axes else "PROBE.toml")
     page.paragraph(
-        f"The touches are in the file {stem}_T, where the control keeps what WRITE makes: fetch it, and give it to "
-        f"'gearmath calibrate {stem}_T {made}'."
+        f"The touches are in the file {result}, {words.result_place}: fetch it, and give it to "
+        f"'gearmath calibrate {result} {made}'."
     )
     return page.html
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gearmath.machine.bodies.profiles import work_profiles
-from gearmath.machine.planning.setup_facts import NOT_ON_METAL, PROBING, R_D, VARIABLES, BlankSizes
+from gearmath.machine.planning.setup_facts import R_D, BlankSizes
 from gearmath.machine.planning.targets import APPROACH, APPROACH_FEED, MEASURING_FEED
+from gearmath.machine.writing.sheet_words import SINUMERIK_WORDS, SheetWords
 from gearmath.page import Page
 from gearmath.setup_sheet.machine_drawing import DrawnRing, machine_drawing
-from gearmath.setup_sheet.references import references
+from gearmath.setup_sheet.references import chosen_parts, references
 from gearmath.setup_sheet.work_drawing import work_drawing
 from gearmath.specs.bevel_set import Member, design_sha256
 from gearmath.specs.calibration import Calibration
@@ -33,8 +34,8 @@ class ProbingJob:
     clearances: str
 
 
-def probing_sheet(job: ProbingJob, program: str) -> str:
-    """The page of one probing program as HTML; ``program`` is its file name."""
+def probing_sheet(job: ProbingJob, program: str, words: SheetWords = SINUMERIK_WORDS) -> str:
+    """The page of one probing program as HTML, in the ``words`` of its control; ``program`` is its file name."""
     member, machine, probe = job.member, job.machine, job.probe
     page = Page(f"Set-up sheet for probing: {job.name}")
     page.paragraph(job.title)
@@ -50,7 +51,7 @@ def probing_sheet(job: ProbingJob, program: str) -> str:
             ("Set up by, date", [""]),
         ],
     )
-    page.first("Unconfirmed", [f"{text}." for text in (NOT_ON_METAL, VARIABLES, PROBING)])
+    page.first("Unconfirmed", [f"{text}." for text in words.probing_unconfirmed])
     page.first(
         "To be watched",
         [
@@ -76,7 +77,7 @@ def probing_sheet(job: ProbingJob, program: str) -> str:
         tall=True,
     )
     page.heading("Before the start", new_sheet=True)
-    references(page, machine, "center of the tip", probe.length, "length of the probe", STOPS)
+    references(page, machine, words, "center of the tip", probe.length, "length of the probe", STOPS)
     page.table(
         "Probe and touches",
         ["what", "value", "unit"],
@@ -90,15 +91,13 @@ def probing_sheet(job: ProbingJob, program: str) -> str:
     )
     page.subheading("Start, start again, and the result")
     page.paragraph(
-        "The probe is read at input 1 ($A_PROBE[1], MEAS=1). R90 and R91 are the first and the last point that are "
-        "touched, 0 for all; the program shows them, and waits for NC start. After a stop: RESET, R90 = the point of "
-        "the alarm, R91 = 0, and start from the beginning of the program. R104 = 1, set before the start, lets a host "
-        "acknowledge every point."
+        f"{words.probe(machine)} {chosen_parts(words, 'point', 'touched', 'the point of the alarm')} "
+        + words.host.format(part="point")
     )
-    stem = program.rsplit(".", 1)[0]
+    result = words.result(program.rsplit(".", 1)[0])
     page.paragraph(
-        f"The touches are in the file {stem}_T, where the control keeps what WRITE makes: fetch it, and give it to "
-        f"'gearmath touches {stem}_T --set SET.toml -o measured.csv'."
+        f"The touches are in the file {result}, {words.result_place}: fetch it, and give it to "
+        f"'gearmath touches {result} --set SET.toml -o measured.csv'."
     )
     return page.html
 

@@ -13,10 +13,11 @@ from gearmath.machine.planning.cut_plan import DRY_LIFT
 from gearmath.machine.planning.path import Cut
 from gearmath.machine.planning.setup_facts import R_D, SetupFacts
 from gearmath.machine.planning.tooling import Tool
+from gearmath.machine.writing.sheet_words import SINUMERIK_WORDS, PathWords, SheetWords
 from gearmath.page import Page
 from gearmath.setup_sheet.machine_drawing import CUTTER_TIP, DrawnRing, machine_drawing
 from gearmath.setup_sheet.point_drawing import point_drawing
-from gearmath.setup_sheet.references import references
+from gearmath.setup_sheet.references import chosen_parts, references
 from gearmath.setup_sheet.work_drawing import work_drawing
 from gearmath.specs.bevel_set import settings_sha256
 from gearmath.specs.milling_machine import MillingMachine
@@ -25,8 +26,11 @@ from gearmath.version import __version__
 _SIDES = {"concave": "outer", "convex": "inner"}
 
 
-def setup_sheet(facts: SetupFacts, program: str, timing: Timing) -> str:
-    """The page of one cutting program as HTML; ``program`` is its file name, ``timing`` that of its text."""
+def setup_sheet(facts: SetupFacts, program: str, timing: Timing, words: SheetWords = SINUMERIK_WORDS) -> str:
+    """The page of one cutting program as HTML, in the ``words`` of its control.
+
+    ``program`` is its file name, ``timing`` that of its text.
+    """
     plan = facts.plan
     member = plan.member
     page = Page(f"Set-up sheet: {plan.name}")
@@ -51,20 +55,20 @@ def setup_sheet(facts: SetupFacts, program: str, timing: Timing) -> str:
     )
     if plan.job.dry_run:
         page.first("Dry run", [f"Z is raised by {DRY_LIFT:g} mm, coolant is off: the program cuts air."])
-    page.first("Unconfirmed", [f"{text}." for text in facts.unconfirmed])
+    page.first("Unconfirmed", [f"{text}." for text in words.unconfirmed(facts)])
     page.first("Not stated by the files, or to be watched", [f"{text}." for text in facts.not_stated])
     page.heading("Machine and references")
     page.paragraph(f"{R_D}. C_t is the length of the tool from there to its tips; Z counts up.")
     page.drawings(list(_drawings(facts)), tall=True)
     page.heading("Before the start", new_sheet=True)
-    more = "and where R90 and R91 name no section"
-    references(page, plan.machine, CUTTER_TIP, plan.machine.tool_length, "C_t, tool_length", more)
-    _restart(page, facts)
+    more = f"and where {words.chosen} name no section"
+    references(page, plan.machine, words, CUTTER_TIP, plan.machine.tool_length, "C_t, tool_length", more)
+    _restart(page, facts, words)
     with page.columns():
-        _tools(page, facts)
+        _tools(page, facts, words.numbers(plan))
         _work(page, facts)
         _cut(page, facts, timing)
-        _tolerances(page, facts)
+        _tolerances(page, facts, words.path(plan))
     return page.html
 
 
@@ -96,7 +100,7 @@ def _rings(cutter: Cutter, machine: MillingMachine) -> list[DrawnRing]:
     ]
 
 
-def _tools(page: Page, facts: SetupFacts) -> None:
+def _tools(page: Page, facts: SetupFacts, numbers: dict[str, int]) -> None:
     page.subheading("Tools")
     if any(len(tool.blades) == 1 for tool in facts.tools):
         page.paragraph(
@@ -105,7 +109,7 @@ def _tools(page: Page, facts: SetupFacts) -> None:
         )
     blades = [(tool, flank) for tool in facts.tools for flank in tool.blades]
     groups = facts.plan.member.blade_groups
-    columns = [dict(_blade(tool, flank, groups)) for tool, flank in blades]
+    columns = [dict(_blade(tool, flank, groups, numbers)) for tool, flank in blades]
     keys = list(dict.fromkeys(key for column in columns for key in column))
     page.table(
         "Cutters; mm and degrees",
@@ -126,8 +130,10 @@ def _tools(page: Page, facts: SetupFacts) -> None:
     )
 
 
-def _blade(tool: Tool, flank: str, groups: int | None) -> Iterator[tuple[str, str]]:
+def _blade(tool: Tool, flank: str, groups: int | None, numbers: dict[str, int]) -> Iterator[tuple[str, str]]:
     spec, point = tool.blades[flank], tool.point
+    if tool.name in numbers:
+        yield "number in the tool table", f"T{numbers[tool.name]}"
     yield "blade", _SIDES[flank]
     yield "cuts flank", flank
     yield "point radius", f"{spec.blade_point_radius:.4f}"
@@ -236,29 +242,25 @@ def _bite(bite: Bite) -> tuple[str, str]:
     return f"{bite.advance:.3f}", f"{bite.chip:.3f}"
 
 
-def _tolerances(page: Page, facts: SetupFacts) -> None:
+def _tolerances(page: Page, facts: SetupFacts, path: PathWords) -> None:
     plan = facts.plan
-    control, share = plan.machine.control, plan.share
+    share = plan.share
     rows = [
         ["straight blocks and rounding", f"{plan.job.tolerance * 1000:g}"],
         ["of which rounding", f"{share.rounding * 1000:.4f}"],
-        [f"path mode {control.path_mode}, besides", f"{share.path_mode * 1000:.4f}"],
+        [f"path mode {path.mode}, besides", f"{path.adds * 1000:.4f}"],
     ]
     page.subheading("Tolerance of the flanks")
     page.table("Along the tooth normal, µm, at most", ["", "µm"], rows)
-    if control.path_mode == "G642":
-        page.paragraph(
-            f"CTOL {control.contour_tolerance_um:g} µm, OTOL {control.orientation_tolerance_arcsec:g} arcsec; "
-            f"{control.increments_per_mm} increments per mm, {control.increments_per_degree} per degree."
-        )
+    if path.figures:
+        page.paragraph(path.figures)
 
 
-def _restart(page: Page, facts: SetupFacts) -> None:
+def _restart(page: Page, facts: SetupFacts, words: SheetWords) -> None:
     page.subheading("Start, and start again at a space")
     page.paragraph(
-        "Each section is one tooth space with one tool, and stands by itself. R90 and R91 are the first and the last "
-        "that are cut, 0 for all; the program shows them, waits for NC start, and sets both to 0 at its end. After a "
-        "stop: RESET, R90 = the section that was cut when it stopped, R91 = 0, and start from the beginning."
+        "Each section is one tooth space with one tool, and stands by itself. "
+        + chosen_parts(words, "section", "cut", "the section that was cut when it stopped")
     )
     page.table(
         "Sections, and seconds in the cut of each",

@@ -18,6 +18,15 @@ def _power_of_ten(value: int) -> int:
     return value
 
 
+def _known_kind(value: str) -> str:
+    if value not in KINDS:
+        *others, last = (repr(kind) for kind in KINDS)
+        raise ValueError(f"must be {', '.join(others)} or {last}")
+    return value
+
+
+#: Controls that programs are written for; a dialect that is registered adds its name.
+KINDS = ["sinumerik", "linuxcnc"]
 #: Name of the probe as a tool, and its number where a file does not give it one.
 PROBE, PROBE_NUMBER = "PROBE", 99
 _Increments = Annotated[int, Field(ge=100, le=1_000_000), AfterValidator(_power_of_ten)]
@@ -29,7 +38,7 @@ class ControlSettings(Spec):
     Positions are written in whole increments, since the control rounds to them whatever is written.
     """
 
-    kind: Literal["sinumerik", "linuxcnc"] | None = None
+    kind: Annotated[str, AfterValidator(_known_kind)] | None = None
     """Which control the machine has; left out, programs are for a SINUMERIK unless --control says otherwise."""
     tool_numbers: dict[str, Annotated[int, Field(ge=1, le=99_999, strict=True)]] = Field(default={})
     """LinuxCNC: numbers of tools by their names; others are counted from 1, the probe has 99."""

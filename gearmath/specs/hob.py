@@ -25,6 +25,9 @@ DEPTH_RULES = {
 #: Tip radius of the hob in modules, which is the root fillet of the basic rack, ISO 53.
 TIP_RADII = {"A": 0.38, "B": 0.3, "C": 0.25, "D": 0.39}
 
+#: How much less the pressure angle of a protuberance is than that of the flank: at least, and usually [degrees].
+LEAST_PROTRUDING, USUAL_PROTRUDING = 2.0, 10.0
+
 
 class Hob(Spec):
     """One hob: its diametral pitch [1/in] or its module [mm], and the rule for the whole depth of its teeth."""
@@ -44,6 +47,14 @@ class Hob(Spec):
     """Basic rack of ISO 53, which says how the tips of its teeth are rounded."""
     tip_radius: float | None = Field(default=None, ge=0.0, le=1.0)
     """Radius of the tips in modules, where it is not that of the basic rack."""
+    protuberance: float = Field(default=0.0, ge=0.0, le=0.2)
+    """How far the tips protrude beyond the flank, along its normal, in modules."""
+    protuberance_angle: float | None = Field(default=None, ge=0.0, lt=30.0)
+    """Pressure angle of the protruding flank [degrees]: 10 less than that of the flank if not given."""
+    topping: bool = False
+    """Whether the root of the hob turns the tip of the gear, one module above the reference circle."""
+    gash_lead: float | None = Field(default=None, gt=0.0, le=100_000.0)
+    """Lead of the gashes around the hob [mm], of the other hand than its threads; straight gashes if not given."""
 
     @model_validator(mode="after")
     def _one_size(self) -> Hob:
@@ -57,6 +68,30 @@ class Hob(Spec):
         if self.diameter is not None and self.diameter <= 5.0 * self.module_mm:
             raise ValueError(f"diameter = {self.diameter:g}: must be more than five modules of {self.module_mm:g} mm")
         return self
+
+    @model_validator(mode="after")
+    def _protuberance_is_one(self) -> Hob:
+        given, angle = self.protuberance, self.protuberance_angle
+        if not given:
+            if angle is not None:
+                raise ValueError("protuberance_angle has no meaning without protuberance")
+            return self
+        if angle is not None and angle > self.pressure_angle - LEAST_PROTRUDING:
+            most = self.pressure_angle - LEAST_PROTRUDING
+            raise ValueError(f"protuberance_angle = {angle:g}: must be at most {most:g} degrees, to leave the flank")
+        radius = self.tip_rounding / self.module_mm
+        least = radius * (1.0 - math.cos(self.alpha - self.alpha_protuberance))
+        if given < least:
+            raise ValueError(
+                f"protuberance = {given:g}: must be at least {least:.4f} modules beside a tip radius of {radius:g}"
+            )
+        return self
+
+    @property
+    def alpha_protuberance(self) -> float:
+        """Pressure angle of the protruding flank [rad]."""
+        given = self.protuberance_angle
+        return math.radians(max(0.0, self.pressure_angle - USUAL_PROTRUDING) if given is None else given)
 
     @property
     def _size(self) -> float:

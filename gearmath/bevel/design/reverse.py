@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -71,6 +72,24 @@ class ReversedFlank:
     def largest(self) -> int:
         """The point that is reproduced least."""
         return int(np.argmax(np.abs(self.after)))
+
+    def as_dict(self) -> dict[str, Any]:
+        """In plain numbers by name, deviations in um."""
+        worst = self.largest
+        return {
+            "points": len(self.after),
+            "rms_before_um": 1000 * self.rms_before,
+            "rms_um": 1000 * self.rms,
+            "scatter_um": 1000 * self.scatter,
+            "not_reproduced_um": 1000 * self.not_reproduced,
+            "largest": {
+                "deviation_um": 1000 * float(self.after[worst]),
+                "row": int(self.given.row[worst]),
+                "col": int(self.given.col[worst]),
+            },
+            "fitted": list(self.free),
+            "bounds_reached": list(self.active),
+        }
 
 
 @dataclass(frozen=True)

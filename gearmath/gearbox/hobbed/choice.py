@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
+from typing import Any
 
 from gearmath.errors import ComputationError, InputError
 from gearmath.gearbox.helix import Helix
-from gearmath.gearbox.hobbed.classes import COARSEST, FINEST, outside
+from gearmath.gearbox.hobbed.classes import COARSEST, FINEST, NOT_CONFIRMED, outside
 from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear, blame, cut_and_inspect, ridges, setup
 from gearmath.specs.cutting_errors import CuttingErrors
 from gearmath.specs.hob import Hob
@@ -46,6 +47,18 @@ class Choice:
     gear: VirtualGear
     rpm: float
     tried: int
+
+    def as_dict(self) -> dict[str, Any]:
+        """In plain numbers by name, as ``gearmath gearbox choose --json`` prints it; figures in µm."""
+        return {
+            "class": self.wanted,
+            **asdict(self.parts),
+            "rpm": self.rpm,
+            "cuts": self.tried,
+            "reached": self.gear.accuracy_class,
+            "figures": [asdict(row) for row in self.gear.classes],
+            "tolerances": NOT_CONFIRMED,
+        }
 
 
 @dataclass(frozen=True)

@@ -133,8 +133,10 @@ class Cut:
         job = self.job
         on_gear, edge, tau, thread = job.contact(side, length)
         hob, teeth, travel = job.hob, job.gear.teeth, job.travel_per_rad
+        # of the gash that cuts there, in the middle of the hob
+        middle = job.gash_at(side, edge, thread)
         form, slope = ridge_form()(
-            np.column_stack([edge, tau, thread]), np.array([travel]), np.array(job.pair(side), float)
+            np.column_stack([edge, tau, middle]), np.array([travel, job.gash_twist]), np.array(job.pair(side), float)
         )
         # the turn of the hob, and of the table, at which an ideal hob touches there
         psi = (height - on_gear - job.start_height) / travel
@@ -142,15 +144,16 @@ class Cut:
         turned = np.rint(((psi - tau + thread) / TURN * hob.starts - first) / teeth)
         nearby = turned[:, None] + np.arange(-turns, turns + 1)
         ridge = (first[:, None] + teeth * nearby).astype(np.int64)  # R of (30.2)
-        nominal = TURN / hob.starts * ridge - thread[:, None]  # turn of a gash that would touch at this length
+        nominal = TURN / hob.starts * ridge - thread[:, None]  # turn of a hob that would touch at this length
         too_high = travel * (nominal + tau[:, None] - psi[:, None])
-        best = nominal + _least_along(form, travel)[:, None] * too_high
+        best = nominal + (thread - middle - job.gash_phase)[:, None] + _least_along(form, travel)[:, None] * too_high
         gash = np.rint(hob.gashes / TURN * best)
         gash = (gash[:, :, None] + np.arange(-gashes, gashes + 1)).astype(np.int64)
-        at = (ridge[:, :, None] * hob.gashes - gash * hob.starts) * (TURN / (hob.gashes * hob.starts))
+        at = (ridge[:, :, None] * hob.gashes - gash * hob.starts) * (TURN / (hob.gashes * hob.starts)) - job.gash_phase
         shape = at.shape
-        turn = gash * (TURN / hob.gashes)
-        moved = np.stack([at - thread[:, None, None], travel * (turn + tau[:, None, None] - psi[:, None, None])])
+        turn = gash * (TURN / hob.gashes) + job.gash_phase
+        too_high = turn + (tau + middle - thread - psi)[:, None, None]
+        moved = np.stack([at - middle[:, None, None], travel * too_high])
         begin = np.stack([edge, tau])[:, :, None, None] + np.einsum("nij,jnrg->inrg", slope, moved)
         passes = _Passes(
             side,
@@ -170,7 +173,10 @@ def _least_along(form: np.ndarray, travel: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _Passes:
-    """Gashes that may cut points of flanks: hob turn ψ_c and thread of each, foot of its point, start of the search."""
+    """Gashes that may cut points of flanks: hob turn and thread of each, foot of its point, start of the search.
+
+    Turn and thread are those of its middle, ϑ_0 of (30.21).
+    """
 
     side: int
     psi: np.ndarray
@@ -186,7 +192,7 @@ class _Passes:
         ``together`` passes in a row belong to one point: those that cannot be its least are left where they are seen to
         be too high, with a bound of what a root not found yet may still change.
         """
-        pair, shared = np.array(job.pair(self.side)), np.array([job.travel_per_rad])
+        pair, shared = np.array(job.pair(self.side)), np.array([job.travel_per_rad, job.gash_twist])
         target = np.column_stack([self.length, self.height - job.hob_height(self.psi)])
         given = np.column_stack([self.thread, np.zeros((len(self.psi), 4))])
         limits = 0.9 * np.array([job.hob.diameter / 2, math.pi])
@@ -196,7 +202,7 @@ class _Passes:
         open_ = np.arange(len(self.psi))
         for k in range(STEPS):
             if k in ASKED:
-                given[open_, 1:] = self._errors(job, errors, open_, self.psi[open_] + unknown[open_, 1])
+                given[open_, 1:] = self._errors(job, errors, open_, unknown[open_])
             step, delta, miss = newton_step()(unknown[open_], target[open_], given[open_], shared, pair)
             left[open_], off[open_] = delta[:, 0, 0], np.abs(miss[:, :, 0]).max(axis=1)
             if k > max(ASKED) and not (off[open_] > FOUND).any():
@@ -223,9 +229,12 @@ class _Passes:
         sure = highest.reshape(-1, together).min(axis=1)
         return np.flatnonzero(low <= np.repeat(sure, together))
 
-    def _errors(self, job: HobbingJob, errors: CuttingErrorModel, which: np.ndarray, psi: np.ndarray) -> np.ndarray:
-        """Δφ and D (n, 4) of some passes."""
-        moved = errors.displacement(psi, self.thread[which], self._place(job, which))
+    def _errors(self, job: HobbingJob, errors: CuttingErrorModel, which: np.ndarray, at: np.ndarray) -> np.ndarray:
+        """Δφ and D (n, 4) of some passes whose edge is at h and τ (n, 2)."""
+        middle = self.thread[which]
+        thread = job.thread_at(self.side, at[:, 0], middle) if job.gash_twist else middle
+        psi = self.psi[which] + middle - thread + at[:, 1]
+        moved = errors.displacement(psi, thread, self._place(job, which))
         return np.column_stack([errors.table(psi, self.side), moved])
 
     def _place(self, job: HobbingJob, which: np.ndarray) -> np.ndarray:
@@ -234,41 +243,48 @@ class _Passes:
         return np.column_stack([radius, np.zeros_like(radius), self.height[which]])
 
 
+def _of_gash(
+    unknown: ca.SX, middle: ca.SX, shared: ca.SX, table: ca.SX, moved: ca.SX, pair: ca.SX
+) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """L_0, z_0 and δ (30.6, 30.21) where a gash is at h and τ; ``shared`` is v and κ. z_0 is from the gash's middle."""
+    travel, twist = shared[0], shared[1]
+    arguments = ca.vertsplit(pair)
+    thread = kernel("thread_of_gash").function(unknown[0], 0, middle, twist, *arguments)
+    place = (unknown[0], 0, unknown[1], thread, travel, table, moved)
+    foot, height, delta = kernel("hobbed_deviation").function(*place, *arguments)
+    return foot, height + travel * (middle - thread), delta
+
+
 @cache
 def newton_step() -> Points:
-    """One step of Newton's method for h and τ of a pass: arguments unknown, foot wanted, thread with Δφ and D, v, PAIR.
+    """One step of Newton's method for h and τ of a pass: arguments unknown, foot wanted, ϑ_0, Δφ and D, (v, κ), PAIR.
 
     Results: the step, δ, and how far the foot is off.
     """
-    rule = kernel("hobbed_deviation")
     unknown, target, given = ca.SX.sym("unknown", 2), ca.SX.sym("target", 2), ca.SX.sym("given", 5)
-    travel, pair = ca.SX.sym("travel"), ca.SX.sym("pair", 10)
-    place = (unknown[0], 0, unknown[1], given[0], travel, given[1], given[2:])
-    foot, height, delta = rule.function(*place, *ca.vertsplit(pair))
+    shared, pair = ca.SX.sym("shared", 2), ca.SX.sym("pair", 10)
+    foot, height, delta = _of_gash(unknown, given[0], shared, given[1], given[2:], pair)
     miss = ca.vertcat(foot, height) - target
     slope = ca.jacobian(miss, unknown)
     step = -ca.solve(slope, miss)
     return Points(
-        ca.Function("hobbing_newton", [unknown, target, given, travel, pair], [step, delta, miss]), shared=(3, 4)
+        ca.Function("hobbing_newton", [unknown, target, given, shared, pair], [step, delta, miss]), shared=(3, 4)
     )
 
 
 @cache
 def ridge_form() -> Points:
-    """What a pass leaves next to where it touches: arguments h, τ and ϑ of the contact, v, PAIR.
+    """What a pass leaves next to where it touches: arguments h, τ and ϑ_0 of the contact, (v, κ), PAIR.
 
-    Results: H (2, 2), by which it leaves xᵀ H x/2 at a foot that it passes turned by ϑ and too high by Z, x = (ϑ, Z),
-    and by how much h and τ of the edge that crosses the foot change with x.
+    Results: H (2, 2), by which it leaves xᵀ H x/2 at a foot that it passes turned by ϑ_0 and too high by Z,
+    x = (ϑ_0, Z), and by how much h and τ of the edge that crosses the foot change with x.
     """
-    rule = kernel("hobbed_deviation")
-    contact, high, travel, pair = (ca.SX.sym(name, size) for name, size in zip("chvp", (3, 1, 1, 10), strict=True))
-    none = ca.SX.zeros(3)
-    place = (contact[0], 0, contact[1], contact[2], travel, 0, none)
-    foot, height, delta = rule.function(*place, *ca.vertsplit(pair))
+    contact, high, shared, pair = (ca.SX.sym(name, size) for name, size in zip("chvp", (3, 1, 2, 10), strict=True))
+    foot, height, delta = _of_gash(contact[:2], contact[2], shared, ca.SX(0), ca.SX.zeros(3), pair)
     moves = ca.vertcat(contact, high)
     slope = ca.jacobian(ca.vertcat(foot, height + high), moves)
     follow = -ca.solve(slope[:, :2], slope[:, 2:])
     along = ca.vertcat(follow, ca.SX.eye(2))
     # without derivatives of the foot: δ has none of the first order where it touches
     form = along.T @ ca.hessian(delta, moves)[0] @ along
-    return Points(ca.Function("hobbing_ridge", [contact, travel, pair], [form, follow]), shared=(1, 2))
+    return Points(ca.Function("hobbing_ridge", [contact, shared, pair], [form, follow]), shared=(1, 2))

@@ -19,6 +19,7 @@ from gearmath.gearbox.dimensions import PIN, PinContact, Span, blank_diameter, p
 from gearmath.gearbox.hobbed.envelope import Cut
 from gearmath.gearbox.hobbed.job import HobbingJob
 from gearmath.gearbox.hobbed.root import undercut_radius
+from gearmath.gearbox.hobbed.topping import topped_radii
 from gearmath.gearbox.kernels import evaluate, kernel
 
 Side = Literal["right", "left"]
@@ -194,9 +195,10 @@ def form_length(job: HobbingJob, tip: float) -> float:
     ((flat,),) = (evaluate("generating_flat", tip, job.hob.starts, job.gear.teeth, job.hob.gashes),)
     per_gash = 2 * math.sqrt(2 * flat / tip) * job.base_radius  # length of roll from gash to gash
     lowest = float(lengths[cut[0]] + per_gash)
-    if cut[0]:
+    if cut[0] and not job.hob.protuberance:
         return lowest
-    # the straight edges reach down to the base cylinder: the tips of the hob may cut the involute away again
+    # the tips of the hob cut involute away again: where the straight edges reach down to the base cylinder, or where a
+    # protuberance is meant to
     undercut = undercut_radius(job, math.hypot(tip, job.base_radius))
     return lowest if undercut is None else max(lowest, math.sqrt(undercut**2 - job.base_radius**2) + per_gash)
 
@@ -289,6 +291,8 @@ def _thicknesses(cut: Cut, where: Layout) -> list[Thickness]:
         half = math.cos(math.pi / 2 / teeth) if teeth % 2 else 1.0
         measured = where.pin.over_pins + half * (ball + np.roll(ball, -(teeth // 2)))
         found.append(_thickness(f"over pins of {PIN * job.gear.module:.4g} mm", where.pin.over_pins, measured))
+    if job.hob.dedendum is not None:
+        found.append(_thickness("tip radius", job.topped_tip[0], topped_radii(cut, where.middle_height)))
     return found
 
 

@@ -17,7 +17,12 @@ TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class HobTool:
-    """A hob: starts, hand (+1 right), gashes, reference diameter, addendum and tip radius [mm]."""
+    """A hob: starts, hand (+1 right), gashes, reference diameter, addendum and tip radius [mm].
+
+    ``protuberance`` [mm] along the normal of the flank, at ``protuberance_angle`` [rad]. A topping hob turns the tip of
+    the gear with its root, ``dedendum`` [mm] deep; None: it does not. ``gash_lead`` [mm] of gashes of the other hand
+    than the threads; None: they are straight.
+    """
 
     starts: int
     sign: int
@@ -25,13 +30,18 @@ class HobTool:
     diameter: float
     addendum: float
     tip_radius: float
+    protuberance: float = 0.0
+    protuberance_angle: float = 0.0
+    dedendum: float | None = None
+    gash_lead: float | None = None
 
 
 @dataclass(frozen=True)
 class HobbingJob:
     """Gear, hob and feed: ``helix_sign`` +1 right-hand, ``feed`` [mm per turn of the table], ``climb`` or not.
 
-    ``face_width`` [mm]: the gear stands from height 0 to it.
+    ``face_width`` [mm]: the gear stands from height 0 to it. ``hob_offset`` [mm]: how far the middle of the hob stands
+    from the pitch point along its axis, to the right as seen from the hob towards the gear.
     """
 
     gear: Gear
@@ -40,6 +50,7 @@ class HobbingJob:
     face_width: float
     feed: float
     climb: bool = True
+    hob_offset: float = 0.0
 
     def __post_init__(self) -> None:
         if math.cos(self.swivel) < 0.1:
@@ -108,7 +119,29 @@ class HobbingJob:
     def form_height(self) -> float:
         """How far above its reference cylinder the hob's edge is straight [mm]."""
         hob, gear = self.hob, self.gear
-        return evaluate("hob_form", gear.module, hob.addendum, hob.tip_radius, gear.alpha)[0]
+        if not hob.protuberance:
+            return evaluate("hob_form", gear.module, hob.addendum, hob.tip_radius, 0.0, gear.alpha)[0]
+        tip = (hob.addendum, hob.tip_radius, hob.protuberance)
+        return evaluate("protuberance_form", *tip, gear.alpha, hob.protuberance_angle)[0]
+
+    @property
+    def gash_twist(self) -> float:
+        """κ of (30.21) [rad/mm]: turn of a gash per length along the hob."""
+        return 0.0 if self.hob.gash_lead is None else self.hob.sign * TURN / self.hob.gash_lead
+
+    @cached_property
+    def axial_pitch(self) -> float:
+        """Of the hob's teeth [mm] (30.19)."""
+        return evaluate("hob_pitch", self.hob.starts, self.gear.module, self.hob.diameter)[0]
+
+    @property
+    def gash_phase(self) -> float:
+        """Turn of the hob [rad] at which gash 0 passes the common perpendicular, in the hob's middle.
+
+        A hob that is moved along its axis meshes again when it is turned by as much of its thread.
+        """
+        by_thread = TURN * self.hob.sign / (self.axial_pitch * self.hob.starts)
+        return -(by_thread + self.gash_twist) * self.hob_offset
 
     @cached_property
     def travel_per_rad(self) -> float:
@@ -141,15 +174,30 @@ class HobbingJob:
         """Where hob and flank touch at lengths of roll (n,): height, edge, turn, thread (30.8)."""
         return kernel("line_of_action")(length, *self.pair(side))
 
-    def generating_length(self, shortest: float, longest: float) -> float:
-        """How much of the hob's length cuts the flanks [mm], both of them, between two lengths of roll: (30.8, 30.19).
+    def gash_at(self, side: int, edge: np.ndarray, thread: np.ndarray) -> np.ndarray:
+        """Thread angle (n,), in the middle of the hob, of a gash that cuts there (30.21)."""
+        return kernel("gash_of_thread")(edge, 0.0, thread, self.gash_twist, *self.pair(side))[1]
 
-        And a tooth: the edges of one pitch cut both flanks of a space.
+    def thread_at(self, side: int, edge: np.ndarray, gash_thread: np.ndarray) -> np.ndarray:
+        """Thread angle (n,) where such a gash cuts at a height of its edge (30.21)."""
+        return kernel("thread_of_gash")(edge, 0.0, gash_thread, self.gash_twist, *self.pair(side))[0]
+
+    def generating_zone(self, shortest: float, longest: float) -> tuple[float, float]:
+        """Between which places along the hob [mm], from the pitch point, it cuts the flanks (30.8, 30.19).
+
+        Both flanks, between two lengths of roll; half a tooth to either side is in it, as the edges of one pitch cut
+        both flanks of a space.
         """
         length = np.linspace(shortest, longest, 50)
         threads = np.concatenate([self.contact(side, length)[3] for side in (1, -1)])
-        (pitch,) = evaluate("hob_pitch", self.hob.starts, self.gear.module, self.hob.diameter)
-        return (float(np.ptp(threads)) / TURN * self.hob.starts + 1.0) * pitch
+        teeth = self.hob.sign * threads / TURN * self.hob.starts
+        return (float(teeth.min()) - 0.5) * self.axial_pitch, (float(teeth.max()) + 0.5) * self.axial_pitch
+
+    @property
+    def topped_tip(self) -> tuple[float, ...]:
+        """Radius of the tip that a topping hob leaves, ridges between its gashes and between feeds [mm] (30.22)."""
+        assert self.hob.dedendum is not None
+        return evaluate("topped_tip", self.hob.dedendum, self.hob.gashes, self.travel_per_rad, *self.pair(1))
 
     def feed_mark(self, length: float) -> float:
         """Height of the ridges between feed marks [mm] at a length of roll, by a hob of many gashes (30.10)."""

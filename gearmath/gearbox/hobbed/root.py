@@ -14,8 +14,8 @@ import numpy as np
 from gearmath.gearbox.hobbed.job import TURN, HobbingJob
 from gearmath.gearbox.kernels import evaluate, kernel
 
-#: Points of an edge: straight part, rounding, half of the land.
-STRAIGHT, ROUND, LAND = 60, 60, 12
+#: Points of an edge: straight part, flank of a protuberance, rounding, half of the land.
+STRAIGHT, PROTRUDING, ROUND, LAND = 60, 12, 60, 12
 #: Threads of the hob to either side that can cut a space, as turns of a single start.
 REACH = 3.0
 #: The root is that of a hob of at least so many gashes: a few flats in a fillet are no undercut.
@@ -77,13 +77,21 @@ def _involute(job: HobbingJob, radii: np.ndarray) -> np.ndarray:
 def _edge(job: HobbingJob) -> tuple[np.ndarray, np.ndarray]:
     """Height above the hob's reference cylinder, and relief against its flank, of points from the root to the land."""
     hob, gear = job.hob, job.gear
-    form, land = evaluate("hob_form", gear.module, hob.addendum, hob.tip_radius, gear.alpha)
-    straight = np.linspace(-1.5 * gear.module, form, STRAIGHT)
-    turn = np.linspace(gear.alpha, math.pi / 2, ROUND)[1:]
-    rounded = kernel("hob_tip")(turn, hob.addendum, hob.tip_radius, gear.alpha, job.lead_angle)
+    _, land = evaluate("hob_form", gear.module, hob.addendum, hob.tip_radius, hob.protuberance, gear.alpha)
+    straight = np.linspace(-1.5 * gear.module, job.form_height, STRAIGHT)
+    # without a protuberance the rounding begins on the flank, else at the end of a flank of its own
+    begin = hob.protuberance_angle if hob.protuberance else gear.alpha
+    turn = np.linspace(begin, math.pi / 2, ROUND)
+    rounded = kernel("hob_tip")(turn, hob.addendum, hob.tip_radius, hob.protuberance, gear.alpha, job.lead_angle)
+    part = np.linspace(0.0, 1.0, PROTRUDING if hob.protuberance else 2)[1:-1]
     flat = rounded[1][-1] + np.linspace(0.0, max(land, 0.0) / math.cos(job.lead_angle), LAND)[1:]
-    height = np.concatenate([straight, rounded[0], np.full(LAND - 1, hob.addendum)])
-    return height, np.concatenate([np.zeros(STRAIGHT), rounded[1], flat])
+    height = [
+        straight,
+        straight[-1] + part * (rounded[0][0] - straight[-1]),
+        rounded[0],
+        np.full(LAND - 1, hob.addendum),
+    ]
+    return np.concatenate(height), np.concatenate([np.zeros(STRAIGHT), part * rounded[1][0], rounded[1], flat])
 
 
 def _section(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 from gearmath.errors import InputError
 from gearmath.gearbox.dimensions import Gear
@@ -24,6 +25,8 @@ ASSUMED_DIAMETER, ASSUMED_MODULES = 25.4, 16.0
 #: Face width where none is given, in modules.
 FACE_WIDTH = 10.0
 LEAST_FEED, MOST_FEED = 0.01, 10.0
+#: Shift of the hob along its axis [mm], and lead of its gashes in its diameters.
+MOST_SHIFT, LEAST_GASH_LEAD = 500.0, 5.0
 LONGEST_SECONDS = 86_400.0
 
 
@@ -55,10 +58,25 @@ class CutSetup:
         """Gear, hob and feed."""
         return self.train.job
 
+    hob_ends: float | None = None
+    """Length of the hob's toothed part [mm], None where the file does not say it."""
+
+    @cached_property
+    def zone(self) -> tuple[float, float]:
+        """Between which places along the hob [mm], from the pitch point, it cuts the flanks that are measured."""
+        return self.job.generating_zone(float(self.where.profile[0]), float(self.where.profile[-1]))
+
     @property
     def hob_length(self) -> float:
         """How much of the hob's length cuts the flanks that are measured [mm]."""
-        return self.job.generating_length(float(self.where.profile[0]), float(self.where.profile[-1]))
+        return self.zone[1] - self.zone[0]
+
+    @property
+    def offsets(self) -> tuple[float, float] | None:
+        """Between which offsets [mm] the whole zone lies on the hob; None where its length is not known."""
+        if self.hob_ends is None:
+            return None
+        return self.zone[1] - self.hob_ends / 2, self.zone[0] + self.hob_ends / 2
 
 
 def setup(
@@ -74,11 +92,13 @@ def setup(
     seconds: float = 0.0,
     climb: bool = True,
     rule: Rule = "exact",
+    hob_shift: float = 0.0,
 ) -> CutSetup:
     """Everything that a job of this machine needs to be cut.
 
     If not given, ``hob`` is the first of the file, ``face_width`` ten modules, and ``rpm`` the highest within the
-    limits; ``feed`` [mm per turn of the table]; ``seconds`` that the hob has run before.
+    limits; ``feed`` [mm per turn of the table]; ``seconds`` that the hob has run before;
+    ``hob_shift`` [mm] of the hob's middle from the pitch point along its axis.
     Raises InputError where the machine cannot carry the job, or the hob cannot cut it.
     """
     if not LEAST_FEED <= feed <= MOST_FEED:
@@ -93,18 +113,26 @@ def setup(
         raise InputError(f"width = {width:g}: must lie between 1 and 1000 mm")
     gear = Gear(teeth, chosen.module_mm, chosen.alpha, 0.0 if helix is None else helix.beta, shift)
     tool = hob_tool(chosen, planned.hob_starts, SIGNS[machine.hob_hand])
-    job = HobbingJob(gear, 1 if helix is None else helix.sign, tool, width, feed, climb)
+    if not abs(hob_shift) <= MOST_SHIFT:
+        raise InputError(f"hob shift = {hob_shift:g}: must lie between {-MOST_SHIFT:g} and {MOST_SHIFT:g} mm")
+    job = HobbingJob(gear, 1 if helix is None else helix.sign, tool, width, feed, climb, hob_shift)
     if len(machine.errors.hob_starts_um) not in (0, tool.starts):
         raise InputError(
             f"{machine.name}: errors.hob_starts_um has {len(machine.errors.hob_starts_um)} values, the hob has "
             f"{tool.starts} start{'s' * (tool.starts > 1)}"
         )
     train = DriveTrain(machine, job, planned.ratio, rule, planned.rpm, seconds)
-    found = CutSetup(train, layout(job), chosen.name, chosen.diameter is None)
+    found = CutSetup(train, layout(job), chosen.name, chosen.diameter is None, chosen.length)
     if chosen.length is not None and chosen.length < found.hob_length:
         raise InputError(
             f"{machine.name}: hob {chosen.name}: length = {chosen.length:g}: the flanks of this gear need "
             f"{found.hob_length:.1f} mm of it"
+        )
+    if found.offsets is not None and not found.offsets[0] <= hob_shift <= found.offsets[1]:
+        low, high = found.offsets
+        raise InputError(
+            f"{machine.name}: hob {chosen.name}: hob shift = {hob_shift:g}: must lie between {low:.1f} and {high:.1f} "
+            f"mm, or the hob of {chosen.length:g} mm does not reach the whole flanks"
         )
     return found
 
@@ -115,11 +143,30 @@ def hob_tool(hob: Hob, starts: int, sign: int) -> HobTool:
     diameter = hob.diameter or max(ASSUMED_DIAMETER, ASSUMED_MODULES * module)
     if diameter <= 5.0 * module * starts:
         raise InputError(f"starts = {starts}: hob {hob.name} of {diameter:g} mm is too small for them")
-    land = math.pi * module / 4 - hob.addendum * math.tan(alpha)
-    roundest = land * math.cos(alpha) / (1.0 - math.sin(alpha))  # w_a of (30.12) is 0
-    if roundest <= 0.0:
+    protruding = hob.protuberance * module
+    # the land w_a of (30.12) grows evenly smaller with the tip radius
+    sharp, rounded = (evaluate("hob_form", module, hob.addendum, radius, protruding, alpha)[1] for radius in (0.0, 1.0))
+    if sharp <= 0.0:
         raise InputError(f"hob {hob.name}: teeth of {hob.addendum:g} mm at {hob.pressure_angle:g} degrees have no tip")
-    return HobTool(starts, sign, hob.gashes, diameter, hob.addendum, min(hob.tip_rounding, 0.999 * roundest))
+    roundest = sharp / (sharp - rounded)
+    tool = HobTool(
+        starts,
+        sign,
+        hob.gashes,
+        diameter,
+        hob.addendum,
+        min(hob.tip_rounding, 0.999 * roundest),
+        protruding,
+        hob.alpha_protuberance if protruding else 0.0,
+        module if hob.topping else None,
+        hob.gash_lead,
+    )
+    if hob.gash_lead is not None and hob.gash_lead < LEAST_GASH_LEAD * diameter:
+        raise InputError(
+            f"hob {hob.name}: gash_lead = {hob.gash_lead:g}: must be at least {LEAST_GASH_LEAD:g} diameters, "
+            f"{LEAST_GASH_LEAD * diameter:g} mm"
+        )
+    return tool
 
 
 def cut_and_inspect(cut: CutSetup, rule: Rule, progress: Callable[[int], object] = lambda done: None) -> VirtualGear:

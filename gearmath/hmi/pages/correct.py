@@ -123,7 +123,7 @@ class _CorrectPage:
             self._limits(proposal)
             self._changes(proposal)
             for sentence in proposal.correction.remarks:
-                widgets.note(sentence)
+                widgets.note(text.quoted(sentence))
 
     def _limits(self, proposal: Proposal) -> None:
         """RMS measured, expected and at best, and what binds."""

@@ -43,7 +43,7 @@ def _list(text: Text, runs: list[PastRun]) -> None:
     for one in runs:
         run = one.summary
         known = text.has(f"history.{run.state}")
-        state = [text(f"history.{run.state}") if known else run.state]
+        state = [text(f"history.{run.state}") if known else text.quoted(run.state)]
         state += [] if run.refers_to is None else [text("history.again", run=run.refers_to)]
         decided = [text(f"history.{one.decision}")] if one.decision else []
         rows.append(

@@ -164,7 +164,7 @@ def _unfinished(shared: Shared, text: Text, task: MeasuringTask) -> None:
                     f"{text('measure.run_number', run=one.run, program=one.program)}, "
                     f"{text('measure.points', kept=one.kept, total=one.total)}, "
                     f"{text('measure.begun')} {one.begun[:16].replace('T', ' ')} UTC. "
-                    f"{text('measure.why')}: {one.why or text('measure.open')}"
+                    f"{text('measure.why')}: {text.quoted(one.why) or text('measure.open')}"
                 )
                 widgets.button(text("measure.resume", run=one.run), partial(ask_to_resume, one), "replay")
 

@@ -110,7 +110,7 @@ def _outcome(text: Text, work: Any) -> None:
             values["time"] = duration(text, found.seconds or 0.0)
             said.show(text("programs.written_cut", **values), "good")
         else:
-            values |= {"touches": found.touches, "clearance": found.verdict}
+            values |= {"touches": found.touches, "clearance": text.quoted(found.verdict)}
             said.show(text("programs.written_probe", **values), "good")
 
     widgets.progress(text, work, ended)
@@ -234,7 +234,7 @@ def _milled(text: Text, shared: Shared) -> None:
             return
         words = text("programs.milled", name=found.name, um=f"{1000 * found.largest:z.3f}")
         if found.faults:
-            words += " " + text("programs.faults", faults="; ".join(found.faults))
+            words += " " + text("programs.faults", faults="; ".join(map(text.quoted, found.faults)))
         said.show(words, "error" if found.faults else "good")
 
     widgets.progress(text, work, ended)

@@ -41,9 +41,9 @@ def _show(shared: Shared, text: Text, found: ResultView) -> None:
     names = blocks.flank_names(text)
     with widgets.panel(text("result.first"), wide=True):
         for sentence in found.first:
-            widgets.Message(sentence, "warning")
+            widgets.Message(text.quoted(sentence), "warning")
         for sentence in found.others:
-            widgets.note(sentence)
+            widgets.note(text.quoted(sentence))
         if not (found.first or found.others):
             widgets.note(text("result.nothing"))
         _sheet(shared, text, found.run)
@@ -68,7 +68,7 @@ def _show(shared: Shared, text: Text, found: ResultView) -> None:
             _spacing(text, found.spacing, names)
         if found.caveat:
             known = found.caveat == CAVEAT
-            widgets.Message(text("result.caveat") if known else found.caveat, "warning")
+            widgets.Message(text("result.caveat") if known else text.quoted(found.caveat), "warning")
         _thickness(text, found)
     with widgets.panel(text("result.uncertainty"), wide=True):
 
@@ -145,7 +145,7 @@ def _uncertainty(text: Text, found: SureView, names: dict[str, str]) -> None:
     if not found.figures:
         widgets.note(text("result.not_known"))
         return
-    widgets.note(f"{text('result.how_sure')}: {found.source}")
+    widgets.note(f"{text('result.how_sure')}: {text.quoted(found.source)}")
     head = [text(f"result.{key}") for key in ("figure", "value", "u", "from", "to", "unit", "method")]
     rows = [[f"{blocks.figure_name(text, row.name)}, {names[row.flank]}", *row.cells] for row in found.figures]
     blocks.plain_table(text("result.uncertainty"), head, rows)

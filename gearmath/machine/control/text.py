@@ -6,7 +6,7 @@ The control tells no capitals from small letters outside texts: code is handed o
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from gearmath.errors import InputError
@@ -25,7 +25,11 @@ _AROUND = re.compile(r"^_N_|(?:_|\.)(?:MPF|SPF)$")
 _RESERVED = re.compile(r"CON|PRN|AUX|NUL|COM[1-9]|LPT[1-9]")
 _HEADER = re.compile(r"%_N_([A-Z0-9_]+)_(?:MPF|SPF)[ \t]*")
 _NO_TEXT = re.compile(r"\r(?!\n)|[^\t\n\r\x20-\x7e\x80-\U0010ffff]")
-_FOR_LINUXCNC = re.compile(r"^; control: LinuxCNC[ \t]*$", re.MULTILINE)
+#: The line of the head by which a program says that it is for LinuxCNC.
+LINUXCNC_MARK = "; control: LinuxCNC"
+_FOR_LINUXCNC = re.compile(rf"^{LINUXCNC_MARK}[ \t]*$", re.MULTILINE)
+#: What only programs of another dialect have in them, and how such a one is read: line for line in words known here.
+_TRANSLATIONS: dict[str, Callable[[str], str]] = {}
 _SKIP = re.compile(r"^[ \t]*/", re.MULTILINE)
 
 
@@ -34,15 +38,27 @@ def is_for_linuxcnc(text: str) -> bool:
     return "LinuxCNC" in text and _FOR_LINUXCNC.search(text) is not None
 
 
+def translate(mark: str, as_read: Callable[[str], str]) -> None:
+    """Have programs that hold ``mark`` read as ``as_read`` makes them."""
+    _TRANSLATIONS[mark] = as_read
+
+
+def readable(text: str) -> str:
+    """A program in words that are known here: itself, but for those of a registered dialect."""
+    return next((as_read(text) for mark, as_read in _TRANSLATIONS.items() if mark in text), text)
+
+
 def program_text(path: Path) -> str:
     """The text of a program file: UTF-8, or Windows-1252 as shops have it in comments; lines end with LF.
+
+    A program of a registered dialect is given in words that the reader knows, line for line.
 
     Raises InputError if it cannot be read, is UTF-16, or holds control characters; what else is wrong in it,
     ``read_program`` says.
     """
     text = decoded(read_bytes(path), str(path))
     _check_characters(text, str(path))
-    return text.replace("\r\n", "\n")
+    return readable(text.replace("\r\n", "\n"))
 
 
 def decoded(content: bytes, name: str) -> str:

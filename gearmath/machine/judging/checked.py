@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import MachinePath, execute
 from gearmath.machine.control.state import Setup
+from gearmath.machine.judging.dialects import SINUMERIK, ControlDialect
 from gearmath.machine.judging.program import written_faults
 from gearmath.machine.planning.cut_plan import CuttingJob, CuttingPlan, cutting_plan, pass_count
-from gearmath.machine.writing.cutting import program_of
 from gearmath.specs.bevel_set import BevelSet
 from gearmath.specs.milling_machine import MillingMachine
 
@@ -32,9 +32,9 @@ def checked_cut(
     name: str,
     file: str,
     begin: Callable[[int, str], Callable[[int], object]] = lambda steps, unit: lambda done: None,
-    write: Callable[[CuttingPlan, str], str] = program_of,
+    dialect: ControlDialect = SINUMERIK,
 ) -> CheckedCut:
-    """The program ``name`` of a member, for a ``file`` that sentences name; ``write`` is the writer of its dialect.
+    """The program ``name`` of a member, for a ``file`` that sentences name; ``dialect`` is that of its control.
 
     ``begin`` gets the number and the unit of steps, and gives what hears of those that are done; it is called for the
     passes, and for the spaces that are looked at after them. Raises InputError where the machine cannot make the
@@ -42,9 +42,9 @@ def checked_cut(
     """
     spec = bevel_set.member(member)
     plan = cutting_plan(bevel_set, member, machine, job, begin(pass_count(spec, member, job), "pass"))
-    text = write(plan, name)
-    path = execute(text, file, Setup.of(machine))
-    faults = written_faults(text, path, spec, member, machine, begin(spec.teeth, "space"))
+    text = dialect.cutting(plan, name)
+    path = execute(dialect.read(text), file, Setup.of(machine))
+    faults = written_faults(dialect.read(text), path, spec, member, machine, begin(spec.teeth, "space"))
     if faults:
         raise InputError(f"{file}: {'; '.join(map(str, faults))}: the program is not written")
     return CheckedCut(plan, text, path)

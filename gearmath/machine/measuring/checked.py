@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from gearmath.errors import InputError
 from gearmath.machine.bodies.profiles import obstacles
+from gearmath.machine.judging.dialects import SINUMERIK, ControlDialect
 from gearmath.machine.judging.faults import Fault
 from gearmath.machine.measuring.collision_check import Approach, approaches
 from gearmath.machine.measuring.judge import judge_probing
 from gearmath.machine.planning.targets import teeth_around
-from gearmath.machine.writing.probing import SINUMERIK, TouchWriter, probing_program
+from gearmath.machine.writing.probing import probing_program
 from gearmath.specs.bevel_set import BevelSet
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
@@ -51,9 +52,9 @@ def checked_probing(
     file: str,
     shop: SimulatedMachine | None = None,
     begin: Callable[[int, str], Callable[[int], object]] = lambda steps, unit: lambda done: None,
-    writer: TouchWriter = SINUMERIK,
+    dialect: ControlDialect = SINUMERIK,
 ) -> CheckedProbing:
-    """The program ``name`` that probes a member, for a ``file`` that sentences name and the control of ``writer``.
+    """The program ``name`` that probes a member, for a ``file`` that sentences name and the control of its ``dialect``.
 
     ``begin`` gets the number and the unit of steps, and gives what hears of those that are done. Raises InputError
     for the deepest collision, and where the machine must not run the program.
@@ -62,12 +63,13 @@ def checked_probing(
     around = teeth_around(spec.teeth) if choice.registration else ()
     head, fixture = obstacles(machine, shop)
     asked = choice.topography, choice.pitch, choice.repeat, around
-    text = probing_program(bevel_set, member, machine, calibration, name, *asked, writer)
-    touches = planned_touches(text)
-    progress = begin(touches // choice.repeat * (2 + choice.repeat) + text.count("\n"), "step")
-    found = approaches(text, file, spec, member, machine, calibration, fixture, head.spindle_radius, progress)
+    text = probing_program(bevel_set, member, machine, calibration, name, *asked, dialect.probing)
+    read = dialect.read(text)
+    touches = planned_touches(read)
+    progress = begin(touches // choice.repeat * (2 + choice.repeat) + read.count("\n"), "step")
+    found = approaches(read, file, spec, member, machine, calibration, fixture, head.spindle_radius, progress)
     clear = clearances(found, file, _NOT_WRITTEN)
-    refuse_faults(judge_probing(text, file, spec, member, machine, calibration), file, _NOT_WRITTEN)
+    refuse_faults(judge_probing(read, file, spec, member, machine, calibration), file, _NOT_WRITTEN)
     return CheckedProbing(text, touches, clear)
 
 

@@ -160,7 +160,7 @@ def _passes(member: Member, name: str, machine: MillingMachine, job: CuttingJob,
     for cut in Cut.of(member, name):
         _check_motions(member, name, cut)
         for stage, stock, tolerance in job.stages:
-            theta, first = _first_pass(member, cut, machine, replace(job, tolerance=tolerance), share)
+            theta, first = first_pass(member, cut, machine, replace(job, tolerance=tolerance), share)
             first.axes[:, 2] += lift(member, cut, stock, job.dry_run)
             for space in job.spaces:
                 label = f"space {space} {' and '.join(cut.flanks)}" + (f" {stage}" if len(job.stages) > 1 else "")
@@ -192,10 +192,10 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Cut
         yield Pass(cut.tool, label, 0, axes, one.seconds, theta=one.theta)
 
 
-def _first_pass(
+def first_pass(
     member: Member, cut: Cut, machine: MillingMachine, job: CuttingJob, share: ControlShare
 ) -> tuple[np.ndarray, Pass]:
-    """Cradle rotations and the pass through space 0: rolled, or for Formate plunged at cradle rotation zero."""
+    """Cradle rotations and the pass through space 0, without stock: rolled, or for Formate plunged at rotation zero."""
     flank = member.flank(cut.flanks[0])
     tooth = middle_of_tooth(member, cut)
     if member.generation == "formate":

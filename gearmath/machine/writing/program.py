@@ -140,7 +140,7 @@ def _section(job: _Job, one: Pass, number: int, count: int) -> Iterator[str]:
     The last block leaves G93 and renews F for G94.
     """
     machine = job.machine
-    (x, y, z, *turned), *points = _words(one, job.positions)
+    (x, y, z, *turned), *points = pass_words(one, job.positions)
     mode = "G1" if one.bends is None else "POLY"
     yield comment(job.name, f"section {number}: {one.label}, tooth {one.tooth}")
     yield f"SECTION_{number}:"
@@ -158,7 +158,8 @@ def _section(job: _Job, one: Pass, number: int, count: int) -> Iterator[str]:
     yield "ENDIF"
 
 
-def _words(one: Pass, positions: Positions) -> list[tuple[str, ...]]:
+def pass_words(one: Pass, positions: Positions) -> list[tuple[str, ...]]:
+    """The words of the positions of a pass: its first, and the ends of its blocks."""
     if one.bends is not None:
         return [*positions.words(one.axes[:1]), *positions.polynomial_words(one.axes, one.bends)]
     points = positions.words(one.axes[:, :5])

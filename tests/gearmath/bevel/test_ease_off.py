@@ -21,7 +21,7 @@ from gearmath.specs.toml import bundled, checked
 
 SETS = (
     "nasa_tp3096_12x36",
-    "crown_gear_7x43",
+    "spiral_7x43",
     "crown_gear_formate_14x39",
     "crown_gear_universal_14x39",
     "crown_gear_hobbed_14x39",

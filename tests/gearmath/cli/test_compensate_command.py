@@ -21,7 +21,7 @@ from gearmath.specs.toml import bundled
 
 ERRORS = {"radial_distance": 0.03, "sliding_base": 0.01, "machine_root_angle": 2e-4}
 UNIVERSAL, HOBBED = "crown_gear_universal_14x39.toml", "crown_gear_hobbed_14x39.toml"
-STEEP = "crown_gear_7x43.toml"
+STEEP = "spiral_7x43.toml"
 
 
 def left_by(member, name, flank, **errors):
@@ -68,7 +68,7 @@ def worst_after(path, name, **errors):
 
 
 @pytest.mark.parametrize("name", ["pinion", "gear"])
-@pytest.mark.parametrize("source", ["crown_gear_7x43.toml", "crown_gear_formate_14x39.toml", UNIVERSAL, HOBBED])
+@pytest.mark.parametrize("source", ["spiral_7x43.toml", "crown_gear_formate_14x39.toml", UNIVERSAL, HOBBED])
 def test_corrected_set_cuts_the_nominal_flank_on_the_machine_that_errs(command, measured, tmp_path, source, name):
     csv, new = measured(bundled(source), name, **ERRORS), tmp_path / "new.toml"
     status, out, err = command("compensate", source, "--member", name, "--measured", csv, "-o", new)
@@ -105,7 +105,7 @@ def test_corrected_set_says_what_it_was_corrected_from_and_when(command, measure
 
 
 def test_tables_are_shown_when_asked_and_standard_settings_leave_nothing(command, measured, tmp_path):
-    source, new = "crown_gear_7x43.toml", tmp_path / "new.toml"
+    source, new = "spiral_7x43.toml", tmp_path / "new.toml"
     csv = measured(bundled(source), "pinion", **ERRORS)
     base = ("compensate", source, "--member", "pinion", "--measured", csv, "-o", new, "--settings", "standard")
     short, full = command(*base)[1], command(*base, "--verbose")[1]

@@ -101,9 +101,7 @@ def test_what_cannot_be_is_refused_with_what_binds(refused, written, tmp_path, m
 
 
 def test_gear_of_another_pair_is_refused(refused, written, tmp_path):
-    refused(
-        r"pinion_teeth = 12: must be 7", "design", written(), "--from", "crown_gear_7x43.toml", "-o", tmp_path / "s"
-    )
+    refused(r"pinion_teeth = 12: must be 7", "design", written(), "--from", "spiral_7x43.toml", "-o", tmp_path / "s")
 
 
 def test_cutter_nearest_to_the_mean_cone_distance_is_chosen_from_the_list(command, written, tmp_path):

@@ -59,7 +59,7 @@ def test_points_of_another_machine_laid_on_another_set_give_the_flank_that_they_
         np.savetxt(texts[-1], np.hstack([points.point, points.normal]), "%.9f")
         options += ["--flank", flank]
     laid, target = tmp_path / "laid.csv", tmp_path / "set.toml"
-    setting = ("--set", "crown_gear_7x43.toml", "--member", "pinion", "--phase", "kept")
+    setting = ("--set", "spiral_7x43.toml", "--member", "pinion", "--phase", "kept")
     assert command("points", *texts, *setting, *options, "-o", laid)[0] == 0
     status, out, _ = command("design", "--reverse", laid, "design_7x43.toml", "-o", target, "--json")
     assert status == 0

@@ -68,7 +68,6 @@ def test_the_example_has_the_axes_and_tools_of_the_program(command: Command, mac
     ("options", "sentence"),
     [
         (("--configuration",), "--configuration goes with --control linuxcnc"),
-        (("--control", "linuxcnc", "--sheet", "sheet.html"), "set-up sheets describe programs for a SINUMERIK"),
         (("--control", "linuxcnc", "--blocks", "poly"), "LinuxCNC has no polynomials"),
     ],
 )

@@ -52,7 +52,7 @@ def test_tolerance_feed_and_speed_reach_the_program(command, tmp_path):
 
 
 @pytest.mark.parametrize("member", ["pinion", "gear"])
-@pytest.mark.parametrize("name", ["crown_gear_7x43", "crown_gear_formate_14x39", "crown_gear_hobbed_14x39"])
+@pytest.mark.parametrize("name", ["spiral_7x43", "crown_gear_formate_14x39", "crown_gear_hobbed_14x39"])
 def test_program_with_roughing_and_finishing_stock_passes_its_own_check_and_that_of_mill(
     command, tmp_path, name, member
 ):
@@ -235,7 +235,7 @@ def test_bad_milling_is_one_line_and_writes_nothing(refused, tmp_path, pinion_pr
 @pytest.mark.slow
 def test_measured_member_is_evaluated_as_its_clamping_says(command, refused, tmp_path):
     """nc cut, mill --measured, evaluate: 15 um and 10 um per 100 mm come back."""
-    gear_set, program, target = "crown_gear_7x43.toml", tmp_path / "PINION.MPF", tmp_path / "M.csv"
+    gear_set, program, target = "spiral_7x43.toml", tmp_path / "PINION.MPF", tmp_path / "M.csv"
     assert command("nc", "cut", gear_set, "--member", "pinion", "-o", program)[0] == 0
     milling = ["mill", gear_set, "--member", "pinion", "--program", program, "--measured", "-o", target]
     refused("--measured needs --errors", *milling)

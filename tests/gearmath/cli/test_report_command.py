@@ -377,7 +377,7 @@ def test_a_member_that_cannot_be_corrected_has_a_report_that_says_why(command, g
 
 def test_another_member_s_file_is_refused_and_nothing_is_written(command, measured, tmp_path):
     target = tmp_path / "report.html"
-    status, _, err = command("report", measured, "--set", "crown_gear_7x43.toml", "-o", target)
+    status, _, err = command("report", measured, "--set", "spiral_7x43.toml", "-o", target)
     assert status == 2
     assert "member_teeth = 12: the pinion of the set has 7" in err
     assert list(tmp_path.iterdir()) == []

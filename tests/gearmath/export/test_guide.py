@@ -10,6 +10,7 @@ import pytest
 
 from gearmath.export.guide import guide
 from gearmath.export.markdown import escaped
+from gearmath.export.netlist import netlist
 from gearmath.export.teensy import teensy_files
 from gearmath.export.wiring import wiring_svg
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
@@ -122,3 +123,55 @@ def test_list_of_parts_has_motor_supplies_fuses_and_sockets(name: str) -> None:
     assert milliamps < int(re.search(r"fuse (\d+) mA", rows["F2"])[1]) <= 2 * milliamps
     dips = {part for part, what in rows.items() if "DIP-" in what and not what.startswith(" socket")}
     assert {f"X{part}" for part in dips} <= set(rows)
+
+
+def chapter(text: str, title: str) -> str:
+    """A chapter of the README on one line."""
+    return " ".join(text.split(f"## {title}\n")[1].split("\n## ")[0].split())
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_what_stops_the_machine_is_tried_before_anything_has_power(name: str) -> None:
+    given = machine(name)
+    steps = chapter(guide(given, "gearbox"), "Commissioning")
+    powered = steps.index("Motor power on")
+    assert ("`EMERGENCY STOP`" in steps[:powered]) == (given.pins.estop is not None)
+    assert ("K1 must have let go" in steps[:powered]) == (given.pins.healthy is not None)
+    assert "K1" not in steps[powered:]
+
+
+def test_mean_voltage_at_the_decoder_is_that_of_pulses_of_one_and_two_microseconds() -> None:
+    # 800 rpm x 4096 counts = 54 614 low pulses a second: 5 V x (1 - 0.0546) and 5 V x (1 - 0.1092)
+    text = chapter(guide(machine("hobbing_plewes"), "gearbox"), "Encoder and decoder")
+    assert "4.73 V for pulses of 1 us and 4.45 V for 2 us" in text
+    assert "RBIAS" not in guide(machine("lathe_example"), "gearbox")
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_heat_sink_is_on_the_list_where_the_regulator_needs_one_at_nine_volts(name: str) -> None:
+    """4 V times the current; 85 K of 125 - 40 degrees C, 65 K/W bare, 6 K/W of the junction and its pad."""
+    parts = chapter(guide(machine(name), "gearbox"), "Parts")
+    watts = 4 * int(re.search(r"The parts take (\d+) mA", parts)[1]) / 1000
+    sink = re.search(r"\| HS2 \| heat sink for TO-220 of at most (\d+) K/W", parts)
+    assert (sink is not None) == (65 * watts > 85)
+    if sink:
+        assert 85 - watts < watts * (6 + int(sink[1])) <= 85
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_every_part_with_a_right_way_round_is_told_which(name: str) -> None:
+    given = machine(name)
+    text = guide(given, "gearbox")
+    ways = chapter(text, "Wiring").split("### Which way round")[1].split("###")[0]
+    for part in netlist(given).parts.values():
+        kinds = {"DIP": "Chips:", "electrolytic": "Electrolytic", "1N": "the ring", "2N2222": "E B C", "LM7805": "U2:"}
+        for sign, words in kinds.items():
+            if sign in part.what:
+                assert words in ways, part.name
+
+
+def test_readme_of_a_lathe_speaks_of_no_hob_but_in_the_words_of_the_display() -> None:
+    text = guide(machine("lathe_example"), "gearbox")
+    assert "hob" not in re.sub(r"`[^`]*`", "", chapter(text, "Pins") + chapter(text, "Commissioning"))
+    assert "FAULT hob turned" not in text  # its spindle may turn in a jog
+    assert "MODE jumper" not in text

@@ -135,6 +135,8 @@ int main(int count, char **arguments)
     free(job.rolls[k].theta);
     free(job.rolls[k].axes);
     free(job.rolls[k].seconds);
+    free(job.rolls[k].cutter);
+    free(job.rolls[k].bends);
   }
   free(job.rolls);
   free(job.passes);

@@ -217,6 +217,7 @@ void plan_passes(Job *job)
   int64_t k, node;
   for (k = 0; k < job->roll_count; ++k) {
     Roll *roll = job->rolls + k;
+    if (roll->planned) continue;
     roll->axes = grown(NULL, AXES * roll->nodes, sizeof *roll->axes);
     roll->seconds = grown(NULL, roll->nodes, sizeof *roll->seconds);
     positions(job, k);

@@ -6,9 +6,12 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { AXES = 5, SETTINGS = 12, MOTION = 70 };
+enum { AXES = 5, SETTINGS = 12, MOTION = 70, MOST_BENDS = 4 };
 
-/* A path of the cutter through tooth space 0: what the settings file says of it, and what comes of that. */
+/*
+ * A path of the cutter through tooth space 0: what the settings file says of it, and what comes of that. A planned one
+ * stands there as it was planned: positions, times, and where it has them the cutter's axis C, or what bends its blocks.
+ */
 typedef struct {
   double settings[SETTINGS], motion[MOTION], tooth[3], plunge;
   int motion_rows; /* 0: the settings stand still */
@@ -16,6 +19,9 @@ typedef struct {
   int64_t nodes, room;
   double *axes;    /* X Y Z A B of each node, A counting on */
   double *seconds; /* of the block that ends at each node but the first */
+  int planned, turns_cutter, powers; /* powers: coefficients a_2, a_3 .. of each axis in a block, 0 for straight ones */
+  double *cutter; /* C of each node */
+  double *bends;  /* AXES * powers of each block */
 } Roll;
 
 /* One tooth space: a path, raised and turned. turns: whole turns that keep a counting A in its travel. */
@@ -34,7 +40,7 @@ typedef struct {
 typedef struct {
   const char *file;
   int edited;
-  int decimals[2], modulo;
+  int decimals[2], modulo, cutter_modulo;
   double length, pivot_height, pivot_offset[3], travel[AXES][2], speed[AXES], acceleration[AXES], feed, clearance;
   Roll *rolls;
   int64_t roll_count;

@@ -71,9 +71,10 @@ static int machine_key(Job *job, int64_t line, const char *key, const char *text
     for (k = 0; k < 2; ++k) job->decimals[k] = (int)values[k];
     break;
   case MODULO:
-    numbers(job, line, key, text, values, 1);
-    whole(job, line, key, values, 1, 0, 1);
+    numbers(job, line, key, text, values, 2);
+    whole(job, line, key, values, 2, 0, 1);
     job->modulo = values[0] != 0.0;
+    job->cutter_modulo = values[1] != 0.0;
     break;
   case LENGTH: job->length = one_within(job, line, key, text, 0.0, 10000.0); break;
   case PIVOT:
@@ -107,13 +108,64 @@ static void travel(Job *job, int64_t line, const char *text)
   memcpy(job->travel[axis - names], ends, sizeof ends);
 }
 
+/* A roll that was planned: whether it turns the cutter, the powers of its blocks, and where it begins. */
+static void begin_planned(const Job *job, int64_t line, Roll *roll, const char *text, int seen)
+{
+  double values[2];
+  if (roll->planned) refuse(job, line, "planned: stands twice in one roll");
+  if (seen || roll->motion_rows || roll->nodes) refuse(job, line, "planned: must stand first in its roll");
+  numbers(job, line, "planned", text, values, 2);
+  whole(job, line, "planned", values, 2, 0, MOST_BENDS);
+  if (values[0] > 1.0) refuse(job, line, "planned: number 1 = %g: must be 0 or 1", values[0]);
+  if (values[0] == 1.0 && values[1] > 0.0) refuse(job, line, "planned: the cutter turns along straight blocks only");
+  roll->planned = 1;
+  roll->turns_cutter = (int)values[0];
+  roll->powers = (int)values[1];
+}
+
+/* The end of a block: X Y Z A B, C where the cutter turns, the coefficients of each axis, and seconds. */
+static void add_planned(const Job *job, int64_t line, Roll *roll, const char *text)
+{
+  double values[AXES + 1 + AXES * MOST_BENDS + 1];
+  const int bends = AXES * roll->powers, count = AXES + roll->turns_cutter + bends + 1;
+  int k;
+  if (!roll->planned) refuse(job, line, "to: stands in a roll that is not planned");
+  if (roll->nodes == MOST_NODES) refuse(job, line, "to: more than %d in one roll", MOST_NODES);
+  if (roll->nodes == roll->room) {
+    roll->room = roll->room ? 2 * roll->room : 256;
+    roll->axes = grown(roll->axes, AXES * roll->room, sizeof *roll->axes);
+    roll->seconds = grown(roll->seconds, roll->room, sizeof *roll->seconds);
+    if (roll->turns_cutter) roll->cutter = grown(roll->cutter, roll->room, sizeof *roll->cutter);
+    if (bends) roll->bends = grown(roll->bends, bends * roll->room, sizeof *roll->bends);
+  }
+  numbers(job, line, "to", text, values, count);
+  for (k = 0; k < count - 1; ++k)
+    if (!(fabs(values[k]) <= 1e5)) refuse(job, line, "to: number %d = %g: must be -1e5 to 1e5", k + 1, values[k]);
+  if (roll->nodes && !(values[count - 1] >= 1e-4 && values[count - 1] <= 1e5))
+    refuse(job, line, "to: time = %g s: must be 1e-4 to 1e5", values[count - 1]);
+  memcpy(roll->axes + AXES * roll->nodes, values, AXES * sizeof *values);
+  if (roll->turns_cutter) roll->cutter[roll->nodes] = values[AXES];
+  if (roll->nodes) {
+    if (bends) memcpy(roll->bends + bends * (roll->nodes - 1), values + AXES, (size_t)bends * sizeof *values);
+    roll->seconds[roll->nodes - 1] = values[count - 1];
+  }
+  ++roll->nodes;
+}
+
 /* Keys of a path; whether it was one of these. */
 static int roll_key(Job *job, int64_t line, const char *key, const char *text, int *seen)
 {
   Roll *roll = job->roll_count ? job->rolls + job->roll_count - 1 : NULL;
   const int which = strcmp(key, "settings") == 0 ? 1 : strcmp(key, "tooth") == 0 ? 2 : strcmp(key, "plunge") == 0 ? 4 : 0;
+  if (strcmp(key, "planned") == 0 || strcmp(key, "to") == 0) {
+    if (!roll) refuse(job, line, "%s: stands before the first roll", key);
+    if (key[0] == 'p') begin_planned(job, line, roll, text, *seen);
+    else add_planned(job, line, roll, text);
+    return 1;
+  }
   if (!which && strcmp(key, "motion") != 0 && strcmp(key, "node") != 0) return 0;
   if (!roll) refuse(job, line, "%s: stands before the first roll", key);
+  if (roll->planned) refuse(job, line, "%s: stands in a planned roll", key);
   if (which && *seen & which) refuse(job, line, "%s: stands twice in one roll", key);
   *seen |= which;
   if (which == 1) numbers(job, line, key, text, roll->settings, SETTINGS);
@@ -136,7 +188,7 @@ static int roll_key(Job *job, int64_t line, const char *key, const char *text, i
 static void whole_roll(const Job *job, int64_t line, int seen)
 {
   const Roll *roll = job->rolls + job->roll_count - 1;
-  if (seen != 7) refuse(job, line, "roll %d: settings, tooth or plunge is missing", (int)job->roll_count - 1);
+  if (!roll->planned && seen != 7) refuse(job, line, "roll %d: settings, tooth or plunge is missing", (int)job->roll_count - 1);
   if (roll->motion_rows != 0 && roll->motion_rows != MOTION / 7)
     refuse(job, line, "roll %d: motion has %d lines, must have %d, or none", (int)job->roll_count - 1, roll->motion_rows,
         MOTION / 7);
@@ -209,7 +261,7 @@ void read_settings(Job *job, char *text, size_t length)
     job->travel[k][1] = HUGE_VAL;
   }
   line = next_line(&rest, end);
-  if (!line || strcmp(line, "gm-post 1") != 0) refuse(job, 1, "must read 'gm-post 1': this is no settings file");
+  if (!line || strcmp(line, "gm-post 2") != 0) refuse(job, 1, "must read 'gm-post 2': this is no settings file");
   line = next_line(&rest, end);
   if (!line || strncmp(line, "sum ", 4) != 0) refuse(job, 2, "must begin with 'sum'");
   snprintf(sum, sizeof sum, "sum %016llx", (unsigned long long)fnv(rest, (size_t)(end - rest)));

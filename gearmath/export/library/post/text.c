@@ -5,7 +5,9 @@
 
 #include "post.h"
 
-enum { MOST_DECIMALS = 15, FEED_DIGITS = 9 };
+enum { MOST_DECIMALS = 15, FEED_DIGITS = 9, MORE_DECIMALS = 2 };
+
+static const double degrees = 180.0 / 3.141592653589793;
 
 /* A number of 10^-decimals, printed: digits of a whole number with a point in them. */
 static void print_scaled(FILE *stream, int64_t value, int decimals)
@@ -49,10 +51,22 @@ static void print_feed(FILE *stream, double value)
   print_scaled(stream, scaled(value, decimals), decimals);
 }
 
+/* An angle in degrees in increments, of a modulo axis within a turn. */
+static int64_t turned(double value, int modulo, double power)
+{
+  const int64_t turn = (int64_t)(360.0 * power);
+  int64_t rounded;
+  if (!modulo) return (int64_t)rint(value * power);
+  value = fmod(value, 360.0);
+  if (value < 0.0) value += 360.0;
+  rounded = (int64_t)rint(value * power);
+  return rounded >= turn ? rounded - turn : rounded;
+}
+
 /* Position of axis j at a node, in mm or degrees, in increments of the text. */
 static int64_t position(const Job *job, const Pass *pass, int64_t node, int j)
 {
-  const double degrees = 180.0 / 3.141592653589793, power = power_of_ten(job->decimals[j > 2]);
+  const double power = power_of_ten(job->decimals[j > 2]);
   const Roll *roll = job->rolls + pass->roll;
   double value = roll->axes[AXES * node + j];
   if (j < 3) {
@@ -61,14 +75,35 @@ static int64_t position(const Job *job, const Pass *pass, int64_t node, int j)
   }
   if (j == 3) value = value + pass->angle + pass->turns;
   value *= degrees;
-  if (j == 3 && job->modulo) {
-    int64_t turn = (int64_t)(360.0 * power), rounded;
-    value = fmod(value, 360.0);
-    if (value < 0.0) value += 360.0;
-    rounded = (int64_t)rint(value * power);
-    return rounded >= turn ? rounded - turn : rounded;
+  return j == 3 ? turned(value, job->modulo, power) : (int64_t)rint(value * power);
+}
+
+/* What stands for an axis in a polynomial block: its end, and the coefficients up to the last that is not zero. */
+static void print_polynomial(const Job *job, const Pass *pass, int64_t node, int j, FILE *stream)
+{
+  const Roll *roll = job->rolls + pass->roll;
+  const int decimals = job->decimals[j > 2], powers = roll->powers;
+  const double *bends = roll->bends + AXES * powers * (node - 1) + powers * j;
+  int64_t rounded[MOST_BENDS];
+  double value = roll->axes[AXES * node + j];
+  int k, kept = 0;
+  if (j == 2) value = value + pass->lift - job->length;
+  if (j == 3) value = value + pass->angle + pass->turns;
+  if (j > 2) value *= degrees;
+  if (j == 3) { /* a modulo A counts on from what stands at the first position */
+    const double first = (roll->axes[j] + pass->angle + pass->turns) * degrees;
+    const double shown = (double)position(job, pass, 0, j) / power_of_ten(decimals);
+    value -= 360.0 * rint((first - shown) / 360.0);
   }
-  return (int64_t)rint(value * power);
+  for (k = 0; k < powers; ++k) {
+    rounded[k] = scaled(j > 2 ? bends[k] * degrees : bends[k], decimals + MORE_DECIMALS);
+    if (rounded[k]) kept = k + 1;
+  }
+  print_scaled(stream, scaled(value, decimals), decimals);
+  for (k = 0; k < kept; ++k) {
+    fputc(',', stream);
+    print_scaled(stream, rounded[k], decimals + MORE_DECIMALS);
+  }
 }
 
 /* Fills the slot that begins at text, and returns what follows it. */
@@ -85,6 +120,12 @@ static const char *fill(const Job *job, const Line *line, const Pass *pass, int6
     print_scaled(stream, scaled(job->up - job->length, job->decimals[0]), job->decimals[0]);
   else if (length == 1 && pass && (axis = strchr(axes, *text)) != NULL)
     print_scaled(stream, position(job, pass, node, (int)(axis - axes)), job->decimals[axis - axes > 2]);
+  else if (length == 1 && pass && *text == 'C' && job->rolls[pass->roll].turns_cutter)
+    print_scaled(stream, turned(job->rolls[pass->roll].cutter[node] * degrees, job->cutter_modulo,
+        power_of_ten(job->decimals[1])), job->decimals[1]);
+  else if (length == 2 && pass && node > 0 && *text == 'P' && job->rolls[pass->roll].powers
+      && (axis = strchr(axes, text[1])) != NULL)
+    print_polynomial(job, pass, node, (int)(axis - axes), stream);
   else if (length == 1 && pass && node > 0 && *text == 'F')
     print_feed(stream, 60.0 / job->rolls[pass->roll].seconds[node - 1]);
   else

@@ -25,13 +25,19 @@ from gearmath.specs.bevel_set import settings_sha256
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.version import __version__
 
+#: What nobody has confirmed of a cutter that turns as an axis.
+C_SENSE = "whether the sense of C is that of M3, and where it is 0"
 
-def program_of(plan: CuttingPlan, program_name: str) -> str:
-    """The text of a planned program. Raises InputError where the machine cannot do it."""
+
+def program_of(plan: CuttingPlan, program_name: str, words: type[Dialect] = Dialect) -> str:
+    """The text of a planned program, in LinuxCNC's ``words`` or those of a relative.
+
+    Raises InputError where the machine cannot do it.
+    """
     machine, job = plan.machine, plan.job
     if job.blocks == "poly":
         raise InputError(f"{program_name}: blocks = poly: LinuxCNC has no polynomials, write straight blocks")
-    dialect = Dialect(program_name, machine, machine.tool_length)
+    dialect = words(program_name, machine, machine.tool_length)
     check_process(program_name, machine, job.spindle_rpm, CLEARANCE, PLUNGE_FEED)
     check_home(plan.room, machine, machine.tool_length, program_name)
     highest = max(float(one.axes[:, 2].max()) for one in plan.passes) + CLEARANCE
@@ -107,9 +113,14 @@ def _path_note(plan: CuttingPlan) -> str:
     linear, _ = plan.machine.control.path_tolerance
     if linear == 0.0:
         return "path mode G61: exact path"
+    return f"path mode G64 P{linear:.6f} adds up to {upwards(path_share_of(plan) * 1000)} um"
+
+
+def path_share_of(plan: CuttingPlan) -> float:
+    """Most that the path mode adds to the flanks [mm], along their normals."""
+    linear, _ = plan.machine.control.path_tolerance
     turning = turned_at_corners(plan.passes, linear)
-    adds = path_share(plan.member, plan.name, plan.machine, linear, turning)
-    return f"path mode G64 P{linear:.6f} adds up to {upwards(adds * 1000)} um"
+    return path_share(plan.member, plan.name, plan.machine, linear, turning)
 
 
 def _body(dialect: Dialect, plan: CuttingPlan, numbers: dict[str, int], highest: float) -> Iterator[str]:

@@ -152,8 +152,8 @@ class Dialect:
 
 
 def block_count(text: str) -> int:
-    """How many blocks a program has: lines that are no comments."""
-    return sum(not line.startswith((";", "(")) for line in text.splitlines())
+    """How many blocks a program has: lines that are no comments, and not the % of a tape."""
+    return sum(not line.startswith((";", "(", "%")) for line in text.splitlines())
 
 
 def message(text: str) -> str:

@@ -11,6 +11,7 @@ that it has kept. The program asks for the host once, at its start, by a digital
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import ClassVar
 
 from gearmath.machine.planning.clear_space import Room
 from gearmath.machine.planning.targets import POSITIONING_FEED
@@ -36,12 +37,20 @@ _FORMAT = "%.7f"
 RESULT = ".csv"
 
 
+def probe_number(machine: MillingMachine) -> int:
+    """Number of the probe in the tool table."""
+    return machine.control.tool_numbers.get(PROBE, PROBE_NUMBER)
+
+
 class LinuxCncBlocks(Blocks):
     """Writes the blocks of one program, in words of LinuxCNC: a word that ends in =IC(0) is left out."""
 
+    words: ClassVar[type[Dialect]] = Dialect
+    """Other words in a relative of LinuxCNC."""
+
     def __init__(self, name: str, machine: MillingMachine, length: float) -> None:
         super().__init__(name, machine, length)
-        self.dialect = Dialect(name, machine, length)
+        self.dialect = self.words(name, machine, length)
         self.positions = self.dialect.positions
         self.point = 0
         """The touch that was written last."""
@@ -49,7 +58,7 @@ class LinuxCncBlocks(Blocks):
     @property
     def tool(self) -> int:
         """Number of the probe in the tool table."""
-        return self.machine.control.tool_numbers.get(PROBE, PROBE_NUMBER)
+        return probe_number(self.machine)
 
     def text(self, header: Sequence[str], body: Iterable[str]) -> str:
         """The program: a header of comments, the subroutine that offers a touch, and the body."""

@@ -6,6 +6,7 @@ Every point is complete in itself, so that a run can begin at any of them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -33,18 +34,24 @@ def write_touches(
     level: float,
     room: Room,
     repeat: int = 1,
+    kind: type[LinuxCncBlocks] = LinuxCncBlocks,
 ) -> str:
-    """The text of a probing program, sideways at the ``level``; the probe comes from the home of Z.
+    """The text of a probing program of a ``kind`` of blocks, sideways at the ``level``; the probe comes from home.
 
     Raises InputError for a name that the control refuses.
     """
     pattern = TouchPattern.of(targets, teeth, machine)
-    blocks = LinuxCncBlocks(program_name, machine, calibration.length)
+    blocks = kind(program_name, machine, calibration.length)
     return blocks.text(header, _points(blocks, pattern, name, plan_of(targets, repeat), level, room))
 
 
+def touch_writer(kind: type[LinuxCncBlocks]) -> TouchWriter:
+    """The writer of probing programs in blocks of LinuxCNC or of a relative."""
+    return TouchWriter((f"unconfirmed: {NOT_ON_METAL}",), partial(write_touches, kind=kind))
+
+
 #: Programs for LinuxCNC.
-LINUXCNC = TouchWriter((f"unconfirmed: {NOT_ON_METAL}",), write_touches)
+LINUXCNC = touch_writer(LinuxCncBlocks)
 
 
 def _points(

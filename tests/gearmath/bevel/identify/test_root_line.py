@@ -23,7 +23,7 @@ def deepest(name: str, member_name: str, flank: str):
     return member, replace(line, deepest=True), whole(how.settings, how.motion)
 
 
-@pytest.mark.parametrize("name", ["crown_gear_7x43.toml", "crown_gear_universal_14x39.toml"])
+@pytest.mark.parametrize("name", ["spiral_7x43.toml", "crown_gear_universal_14x39.toml"])
 @pytest.mark.parametrize("flank", ["concave", "convex"])
 def test_deepest_line_of_a_crown_gear_cut_is_the_root_cone_of_the_blank(name, flank):
     """A generated one: the root of a Formate space is flat, and rises above the cone towards toe and heel."""

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """The screen of a LinuxCNC without a display: homes the machine, and starts a program when the file ``start`` appears.
 
-It is the operator: it says in ``state`` how the program stands, and goes when the file ``leave`` appears.
+It is the operator: it says in ``state`` how the program stands, aborts it when the file ``abort`` appears and raises Z
+by hand to what stands in that file, and goes when the file ``leave`` appears.
 """
 
 from __future__ import annotations
@@ -20,6 +21,24 @@ def say(state: str, **more: object) -> None:
     with open("state.part", "w") as file:
         json.dump({"state": state, "line": stat.motion_line, **more}, file)
     os.replace("state.part", "state")
+
+
+def aborted() -> bool:
+    """Whether the program was to be aborted: then Z is where it was wanted, and a program can be started."""
+    if not os.path.exists("abort"):
+        return False
+    with open("abort") as file:
+        height = file.read()
+    command.abort()
+    command.wait_complete()
+    os.unlink("abort")
+    command.mode(linuxcnc.MODE_MDI)
+    command.wait_complete()
+    command.mdi(f"G49 G53 G0 Z{height}")
+    command.wait_complete(20)
+    command.mode(linuxcnc.MODE_AUTO)
+    command.wait_complete()
+    return True
 
 
 def until(test, seconds: float) -> None:
@@ -53,7 +72,7 @@ while not os.path.exists("leave"):
         command.auto(linuxcnc.AUTO_RUN, 0)
         until(lambda: stat.interp_state != linuxcnc.INTERP_IDLE, 10)
         say("running")
-        until(lambda: stat.interp_state == linuxcnc.INTERP_IDLE, 600)
+        until(lambda: aborted() or stat.interp_state == linuxcnc.INTERP_IDLE, 600)
         heard = []
         while not os.path.exists("host") and (one := errors.poll()) is not None:
             heard.append(one[1].strip())

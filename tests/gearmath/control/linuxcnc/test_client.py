@@ -10,13 +10,13 @@ from typing import Any
 
 import pytest
 
-from gearmath.control.file_names import linuxcnc_name
 from gearmath.control.interface import ChannelState, ConnectionLost, Handshake, RunStart, Touch
 from gearmath.control.linuxcnc_client import LinuxCncControl
 from gearmath.control.measuring import Measuring
 from gearmath.control.plan import planned
 from gearmath.control.store import MeasurementStore
 from gearmath.errors import ComputationError, InputError
+from gearmath.machine.control.file_names import linuxcnc_name
 from gearmath.machine.control.state import Setup
 from gearmath.specs.touch_csv import COLUMNS
 

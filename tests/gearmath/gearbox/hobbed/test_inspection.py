@@ -115,7 +115,7 @@ def test_hob_is_as_long_as_the_rack_that_generates_both_flanks(teeth):
     of = HobbingJob(Gear(teeth, 1.0, math.radians(20), 0.0, 0.0), 1, HobTool(1, 1, 12, 4000.0, 1.25, 0.38), 20.0, 1.0)
     middle = teeth / 2 * math.sin(math.radians(20))
     expected = 2 * (math.pi / 4 + 2.3 / math.cos(math.radians(20))) + math.pi
-    assert of.generating_length(middle - 2.0, middle + 2.3) == pytest.approx(expected, rel=2e-3)
+    assert np.ptp(of.generating_zone(middle - 2.0, middle + 2.3)) == pytest.approx(expected, rel=2e-3)
 
 
 def test_hob_that_is_too_short_is_refused():

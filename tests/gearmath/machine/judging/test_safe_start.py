@@ -39,7 +39,6 @@ SHIFTED = MACHINE.model_copy(update={"z_reference": "tip", "work_offset_values":
 PROBE = load_calibration(bundled("probe.toml"))
 SETS = (
     "nasa_tp3096_12x36",
-    "crown_gear_7x43",
     "spiral_7x43",
     "crown_gear_universal_14x39",
     "crown_gear_formate_14x39",

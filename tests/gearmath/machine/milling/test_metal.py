@@ -12,7 +12,7 @@ from gearmath.specs.bevel_set import FLANKS, load_bevel_set
 from gearmath.specs.simulated_machine import AxisErrors, Probe, load_simulated_machine
 from gearmath.specs.toml import bundled
 
-SET = load_bevel_set(bundled("crown_gear_7x43.toml"))
+SET = load_bevel_set(bundled("spiral_7x43.toml"))
 #: Errors of settings and index; without the ball screw, which would divide the blocks into many.
 SHOP = load_simulated_machine(bundled("source_experiment.toml")).model_copy(
     update={"probe": Probe(), "axes": AxisErrors()}

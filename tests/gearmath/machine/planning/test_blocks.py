@@ -183,9 +183,9 @@ def test_blocks_are_near_the_fewest_that_dynamic_programming_finds(gear_set, dev
 @pytest.mark.parametrize(
     ("name", "member", "number", "tolerances"),
     [
-        ("crown_gear_7x43", "pinion", 0, (1e-4, 5e-4, 2.5e-3)),
-        ("crown_gear_7x43", "pinion", 1, (5e-4, 2.5e-3)),
-        ("crown_gear_7x43", "gear", 0, (5e-4,)),
+        ("spiral_7x43", "pinion", 0, (1e-4, 5e-4, 2.5e-3)),
+        ("spiral_7x43", "pinion", 1, (5e-4, 2.5e-3)),
+        ("spiral_7x43", "gear", 0, (5e-4,)),
         ("crown_gear_formate_14x39", "pinion", 0, (1e-4, 5e-4, 2.5e-3)),
         ("crown_gear_formate_14x39", "pinion", 1, (5e-4,)),
         ("crown_gear_universal_14x39", "pinion", 0, (5e-4, 2.5e-3)),
@@ -203,7 +203,7 @@ def test_blocks_of_other_sets_are_near_the_fewest(deviations, name, member, numb
 @pytest.mark.parametrize("tolerance", [5e-4, 2.5e-3, 5e-2])
 def test_what_the_exact_path_cuts_beyond_the_flank_does_not_stop_the_blocks(tolerance):
     """The pinion of 7 teeth: past the heel its tool comes back into points that lie beyond the flank."""
-    spec = load_bevel_set(bundled("crown_gear_7x43.toml")).pinion
+    spec = load_bevel_set(bundled("spiral_7x43.toml")).pinion
     assert 5 < len(roll_nodes(spec, Cut.of(spec, "pinion")[0], tolerance, HEIGHT)) < 80
 
 

@@ -34,7 +34,7 @@ from gearmath.specs.toml import bundled
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 QUINTIC = MACHINE.model_copy(update={"control": MACHINE.control.model_copy(update={"polynomial_values": 25})})
 MACHINES = {3: MACHINE, 5: QUINTIC}
-SETS = ("nasa_tp3096_12x36", "crown_gear_7x43", "crown_gear_universal_14x39", "spiral_7x43")
+SETS = ("nasa_tp3096_12x36", "spiral_7x43", "crown_gear_universal_14x39")
 ROLLING = [(name, member) for name in SETS for member in ("pinion", "gear")]
 WORD = re.compile(r"(?:PO\[([XYZAB])\]=\(|([XYZAB])=PO\()([-0-9.,]+)\)")
 

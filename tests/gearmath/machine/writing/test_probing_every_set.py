@@ -22,7 +22,7 @@ MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 PROBE = load_calibration(bundled("probe.toml"))
 SETS = (
     "nasa_tp3096_12x36",
-    "crown_gear_7x43",
+    "spiral_7x43",
     "crown_gear_formate_14x39",
     "crown_gear_universal_14x39",
     "crown_gear_hobbed_14x39",

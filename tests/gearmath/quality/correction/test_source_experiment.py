@@ -21,7 +21,7 @@ from gearmath.specs.set_text import save_corrected
 from gearmath.specs.simulated_machine import Probe, load_simulated_machine
 from gearmath.specs.toml import bundled
 
-SET = load_bevel_set(bundled("crown_gear_7x43.toml"))
+SET = load_bevel_set(bundled("spiral_7x43.toml"))
 SHOP = load_simulated_machine(bundled("source_experiment.toml"))
 QUIET = SHOP.model_copy(update={"probe": Probe()})
 #: Standard deviation of the average of four touches [mm].
@@ -125,7 +125,7 @@ def test_loop_goes_down_to_what_settings_cannot_express_and_the_noise(first_cut,
     deviations of one averaged touch of that residual, and F_p of what noise alone leaves.
     """
     name, state = first_cut
-    member, source = SET.member(name), bundled("crown_gear_7x43.toml")
+    member, source = SET.member(name), bundled("spiral_7x43.toml")
     floor = correct(member, name, state)
     residual = np.concatenate([found.residual for found in floor.identified.values()])
     states = []
@@ -139,7 +139,7 @@ def test_loop_goes_down_to_what_settings_cannot_express_and_the_noise(first_cut,
         assert judged.registration.eccentricity == pytest.approx(clamp.eccentricity, abs=2e-3)
         found = correct(gear_set.member(name), name, judged.file, few=True, noise=SIGMA)
         source = tmp_path / f"{k}.toml"
-        save_corrected(bundled("crown_gear_7x43.toml"), source, name, found.settings, found.index, found.motions)
+        save_corrected(bundled("spiral_7x43.toml"), source, name, found.settings, found.index, found.motions)
         state = cut(load_bevel_set(source), name, vertical)
         states.append(state)
     once, twice = (np.abs(standing_free(member, name, each)).max() for each in states)

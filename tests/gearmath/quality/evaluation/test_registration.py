@@ -24,7 +24,7 @@ from gearmath.specs.toml import bundled
 
 SETS = (
     "nasa_tp3096_12x36",
-    "crown_gear_7x43",
+    "spiral_7x43",
     "crown_gear_hobbed_14x39",
     "crown_gear_formate_14x39",
     "crown_gear_universal_14x39",
@@ -66,8 +66,8 @@ def off_by(found, seat, member):
     [
         ("nasa_tp3096_12x36", "pinion", None),
         ("nasa_tp3096_12x36", "gear", FIVE),
-        ("crown_gear_7x43", "pinion", FIVE),
-        ("crown_gear_7x43", "gear", None),
+        ("spiral_7x43", "pinion", FIVE),
+        ("spiral_7x43", "gear", None),
     ],
 )
 def test_seat_is_found_and_taken_out_whatever_form_and_pitch_are(clamped, title, name, places):
@@ -97,7 +97,7 @@ def test_a_seat_beyond_first_order_is_found_by_the_exact_transform(clamped, gear
     assert np.abs(found.file.deviation).max() < TENTH
 
 
-@pytest.mark.parametrize("title", ["nasa_tp3096_12x36", "crown_gear_7x43"])
+@pytest.mark.parametrize("title", ["nasa_tp3096_12x36", "spiral_7x43"])
 def test_first_harmonic_of_the_index_stays_in_the_pitch(clamped, title):
     """10 arcsec of the A axis on every tooth: eccentricity does the same to one flank, but not at every place."""
     name, member = "pinion", load_bevel_set(bundled(f"{title}.toml")).pinion

@@ -88,7 +88,7 @@ ONE_ERROR = [
     ("crown_gear_formate_14x39", "gear", "sliding_base", -0.05),
     ("crown_gear_universal_14x39", "pinion", "ratio_of_roll", -0.0015),
     ("crown_gear_hobbed_14x39", "pinion", "blank_offset", -0.15),
-    ("crown_gear_7x43", "pinion", "ratio_of_roll", 0.0015),
+    ("spiral_7x43", "pinion", "ratio_of_roll", 0.0015),
     ("spiral_7x43", "gear", "machine_root_angle", 0.03),
 ]
 

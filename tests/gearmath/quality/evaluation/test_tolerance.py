@@ -95,7 +95,7 @@ def test_no_grade_outside_of_the_scope(gear_set):
     assert verdict.remark.startswith("no grade: teeth = 4")
 
 
-@pytest.mark.parametrize("title", ["crown_gear_7x43", "crown_gear_hobbed_14x39", "crown_gear_formate_14x39"])
+@pytest.mark.parametrize("title", ["spiral_7x43", "crown_gear_hobbed_14x39", "crown_gear_formate_14x39"])
 def test_every_bundled_set_has_a_module(title):
     """The crown gear gives 35° at the mean point; m_mn is the same for both members of a pair."""
     pair = load_bevel_set(bundled(f"{title}.toml"))

@@ -26,7 +26,7 @@ from gearmath.specs.toml import bundled
 
 SETS = (
     "nasa_tp3096_12x36.toml",
-    "crown_gear_7x43.toml",
+    "spiral_7x43.toml",
     "crown_gear_formate_14x39.toml",
     "crown_gear_hobbed_14x39.toml",
     "crown_gear_universal_14x39.toml",

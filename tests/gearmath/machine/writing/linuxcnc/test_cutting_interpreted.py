@@ -27,7 +27,6 @@ SETS = [
     for gear_set in (
         "nasa_tp3096_12x36",
         "spiral_7x43",
-        "crown_gear_7x43",
         "crown_gear_formate_14x39",
         "crown_gear_hobbed_14x39",
         "crown_gear_universal_14x39",

@@ -1,0 +1,91 @@
+"""Flanks and whole teeth of a member: look at them, and write them for other programs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearmath.front.tables import html_table
+from gearmath.specs.flank_csv import FlankFile, write_flank_csv
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from gearmath.bevel.tooth import ToothSpace
+    from gearmath.front.sets import Member
+
+
+@dataclass(frozen=True)
+class FlankSurface:
+    """Points (rows, columns, 3) [mm] and outward unit normals of one flank, in the work frame; ``file`` is its CSV."""
+
+    member: Member
+    flank: str
+    point: np.ndarray
+    normal: np.ndarray
+    file: FlankFile
+
+    @classmethod
+    def of(cls, member: Member, flank: str, file: FlankFile) -> FlankSurface:
+        """The nominal points of a flank file as a grid."""
+        rows, columns = (int(part) for part in file.header["grid"].split("x"))
+        point, normal = (values.reshape(rows, columns, 3) for values in (file.point, file.normal))
+        return cls(member, flank, point, normal, file)
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the flank CSV of docs/files.md."""
+        write_flank_csv(Path(path), self.file)
+        return Path(path)
+
+    def to_text(self, path: str | Path) -> Path:
+        """Write points and normals as plain text for other programs, a row ``x y z i j k`` each [mm]."""
+        from gearmath.exchange.point_lines import write_points
+
+        write_points(Path(path), self.member.name, self.flank, self.file.point, self.file.normal)
+        return Path(path)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Points and normals as nested lists."""
+        return {"flank": self.flank, "point": self.point.tolist(), "normal": self.normal.tolist()}
+
+    def plot(self) -> Figure:
+        """The flank in space, seen along the normal of its middle."""
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(6, 5), layout="constrained")
+        axes: Any = figure.add_subplot(projection="3d")
+        axes.plot_surface(*np.moveaxis(self.point, -1, 0), edgecolor="0.4", linewidth=0.5, alpha=0.6)
+        middle = self.normal[self.normal.shape[0] // 2, self.normal.shape[1] // 2]
+        azimuth, elevation = math.atan2(middle[1], middle[0]), math.asin(middle[2])
+        axes.view_init(math.degrees(elevation), math.degrees(azimuth))
+        axes.set(xlabel="x / mm", ylabel="y / mm", zlabel="z / mm", aspect="equal")
+        axes.set_title(f"{self.member.name}, {self.flank} flank")
+        return figure
+
+
+@dataclass(frozen=True)
+class Tooth:
+    """A whole tooth space; ``figures`` are thickness, top land and so on [mm] by name."""
+
+    member: Member
+    space: ToothSpace
+    figures: dict[str, float]
+
+    def to_stl(self, path: str | Path, whole_member: bool = True) -> int:
+        """Write the closed solid of the member, or the surface of one space, as binary STL in mm; its triangles."""
+        from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
+
+        triangles = member_triangles(self.member.spec, self.space) if whole_member else space_triangles(self.space)
+        write_stl(Path(path), triangles, f"{self.member.name} {'member' if whole_member else 'space'}")
+        return len(triangles)
+
+    def to_dict(self) -> dict[str, float]:
+        """The figures [mm] by name."""
+        return dict(self.figures)
+
+    def _repr_html_(self) -> str:
+        return html_table(f"tooth of the {self.member.name}", ["figure", "mm"], list(self.figures.items()))

@@ -1,0 +1,129 @@
+"""Dialects: a control that nobody knew writes every kind of program in the twenty lines of the page, and is judged."""
+
+from __future__ import annotations
+
+import json
+import re
+import textwrap
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gearmath.export.post import post_file
+from gearmath.machine.control import text as program_texts
+from gearmath.machine.control.executor import execute
+from gearmath.machine.control.state import Setup
+from gearmath.machine.control.text import program_text
+from gearmath.machine.judging import dialects
+from gearmath.machine.judging.dialects import LINUXCNC, SINUMERIK, ControlDialect, known, of_text, register
+from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
+from gearmath.specs import control as known_controls
+from gearmath.specs.bevel_set import BevelSet
+from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
+from gearmath.specs.toml import bundled
+
+PAGE = Path(__file__).parents[4] / "docs" / "how_to" / "another_machine.md"
+SET = "nasa_tp3096_12x36.toml"
+#: Of every program that these tests write; another member and another machine write the same words.
+CUT = ("nc", "cut", SET, "--member", "pinion", "--spaces", "0", "--tolerance-um", "2")
+
+
+@pytest.fixture
+def mill5() -> Iterator[ControlDialect]:
+    """The dialect of the page, known during one test."""
+    source = textwrap.dedent(re.search(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)[1])
+    keep = dict(dialects._KNOWN), list(known_controls.KINDS), dict(program_texts._TRANSLATIONS)
+    exec(source, {"__name__": "mill5"})
+    yield dialects.named("mill5")
+    for kept, there in zip(keep, (dialects._KNOWN, known_controls.KINDS, program_texts._TRANSLATIONS), strict=True):
+        there.clear()
+        there.extend(kept) if isinstance(there, list) else there.update(kept)
+
+
+def unlike(text: str, other: str) -> list[tuple[str, str]]:
+    """Lines of two programs that are not the same, without numbers of blocks and the % around."""
+    lines = [re.sub(r"^N\d+ ", "", line) for line in text.splitlines() if line != "%"]
+    return [pair for pair in zip(lines, other.splitlines(), strict=True) if pair[0] != pair[1]]
+
+
+def test_dialect_of_the_page_has_about_twenty_lines() -> None:
+    source = re.search(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)[1]
+    code = [line for line in source.splitlines() if line.strip() and "import" not in line and "main" not in line]
+    assert len(code) <= 20
+
+
+def test_every_kind_of_program_is_written_in_the_words_of_a_new_dialect_with_its_sheet(
+    command: Callable, mill5: ControlDialect, tmp_path: Path
+) -> None:
+    kinds = {
+        "CUT": CUT,
+        "TOUCH": ("nc", "probe", SET, "--member", "pinion", "--topography", "none", "--no-registration"),
+        "TIP": ("nc", "calibrate"),
+        "AXES": ("nc", "calibrate", "--cycle", "axes"),
+    }
+    for name, arguments in kinds.items():
+        mine, theirs, sheet = tmp_path / f"{name}.nc", tmp_path / f"{name}.ngc", tmp_path / f"{name}.html"
+        status, out, err = command(*arguments, "--control", "mill5", "-o", mine, "--sheet", sheet)
+        assert (status, err.strip().count("\n")) == (0, 0), err
+        assert f"{mine}: " in out
+        assert f"{name}.nc" in sheet.read_text("utf-8")
+        assert command(*arguments, "--control", "linuxcnc", "-o", theirs)[0] == 0
+        text = mine.read_text("ascii")
+        assert of_text(text) is mill5
+        assert mill5.block_count(text) == LINUXCNC.block_count(theirs.read_text("ascii"))
+        assert text.startswith("%\n")
+        assert text.endswith(" M30\n%\n")
+        changed = unlike(text, theirs.read_text("ascii"))
+        assert {one for one, _ in changed} <= {"; control: Mill 5", "M30", *(f"G43 H{k}" for k in (1, 2, 99))}
+        assert ("; control: Mill 5", "; control: LinuxCNC") in changed
+
+
+def test_program_of_a_new_dialect_is_read_as_the_same_motion(
+    command: Callable, mill5: ControlDialect, tmp_path: Path
+) -> None:
+    """In its own lines: one of % before them, as many as in the file."""
+    machine, paths = load_milling_machine(bundled("vertical_5axis.toml")), []
+    for control, file in (("mill5", tmp_path / "CUT.nc"), ("linuxcnc", tmp_path / "CUT.ngc")):
+        assert command(*CUT, "--control", control, "-o", file)[0] == 0
+        paths.append(execute(program_text(file), file.name, Setup.of(machine)))
+    mine, theirs = paths
+    np.testing.assert_array_equal(mine.axes, theirs.axes)
+    np.testing.assert_array_equal(mine.seconds, theirs.seconds)
+    np.testing.assert_array_equal(mine.line, theirs.line + 1)
+    status, out, _ = command("nc", "time", tmp_path / "CUT.nc", "--json")
+    assert (status, json.loads(out)["control"]) == (0, "linuxcnc")
+
+
+def test_settings_file_of_gm_post_has_the_words_of_a_new_dialect(
+    gear_set: BevelSet, vertical: MillingMachine, mill5: ControlDialect
+) -> None:
+    plan = cutting_plan(gear_set, "pinion", vertical, CuttingJob((0,), tolerance=2e-3))
+    lines = post_file(plan, mill5).splitlines()
+    assert lines.count("c %") == 2
+    assert "n G43 H1" in lines
+    assert any(re.fullmatch(r"b G1 X\{X\} Y\{Y\} Z\{Z\} A\{A\} B\{B\} F\{F\}", line) for line in lines)
+
+
+def test_control_that_nobody_registered_is_refused_with_those_that_are_known(refused: Callable, tmp_path: Path) -> None:
+    refused("'mill5' is not one of 'sinumerik', 'linuxcnc'", *CUT, "--control", "mill5", "-o", tmp_path / "CUT.nc")
+
+
+def test_machine_file_names_a_registered_control(command: Callable, mill5: ControlDialect, tmp_path: Path) -> None:
+    machine = tmp_path / "machine.toml"
+    text = bundled("vertical_5axis.toml").read_text("utf-8")
+    machine.write_text(re.sub(r"^\[control\]", '[control]\nkind = "mill5"', text, flags=re.MULTILINE), "utf-8")
+    assert command(*CUT, "--machine", machine, "-o", tmp_path / "CUT.nc")[0] == 0
+    assert "; control: Mill 5\n" in (tmp_path / "CUT.nc").read_text("ascii")
+
+
+def test_dialect_that_cannot_be_read_back_or_has_the_name_of_another_is_not_registered() -> None:
+    for wrong, words in (
+        (replace(SINUMERIK, name="other"), "so that they are judged"),
+        (replace(LINUXCNC, mark="; x", as_read=str), "is registered already"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            register(wrong)
+    assert [one.name for one in known()] == ["sinumerik", "linuxcnc"]
