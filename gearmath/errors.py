@@ -1,4 +1,4 @@
-"""Exceptions: input that a person can correct, and work that failed."""
+"""Exceptions: input that a person can correct, and work that failed; counts in their sentences."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,3 +21,13 @@ def about(file: Path) -> Iterator[None]:
     except InputError as error:
         words = str(error)
         raise InputError(words if words.startswith((f"{file}: ", f"{file}, ")) else f"{file}: {words}") from error
+
+
+def counted(count: int, noun: str) -> str:
+    """A count with its noun, as sentences have it.
+
+    >>> counted(1, "touch"), counted(3, "touch"), counted(2, "tooth")
+    ('1 touch', '3 touches', '2 teeth')
+    """
+    plural = "teeth" if noun == "tooth" else noun + ("es" if noun.endswith("ch") else "s")
+    return f"{count} {noun if count == 1 else plural}"

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from gearmath.bevel.flank import Grid, blank_grid
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
@@ -30,7 +30,7 @@ def listed_grid(member: Member, axial: np.ndarray, radial: np.ndarray, shape: tu
     """
     rows, columns = shape
     if len(axial) != rows * columns:
-        raise InputError(f"holds {len(axial)} places, a grid of {rows}x{columns} has {rows * columns}")
+        raise InputError(f"holds {counted(len(axial), 'place')}, a grid of {rows}x{columns} has {rows * columns}")
     along, down = _on_cone(member, axial, radial)
     blank = member.blank
     beyond = np.abs(along - blank.mean_cone_distance) - blank.face_width / 2

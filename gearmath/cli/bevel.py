@@ -20,7 +20,7 @@ from gearmath.cli.common import (
     output,
     table,
 )
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.specs.margins import Margins
@@ -74,7 +74,9 @@ def flank(
     with about(find(gear_set)):
         found = one.flank(side, shape, margins, places)
     found.to_csv(target)
-    click.echo(f"{target}: {len(found.file)} points of the {one.name}'s {side} flank{nominal_words(one, side)}")
+    click.echo(
+        f"{target}: {counted(len(found.file), 'point')} of the {one.name}'s {side} flank{nominal_words(one, side)}"
+    )
 
 
 @click.command()
@@ -83,7 +85,7 @@ def flank(
 @click.option("--columns", type=click.IntRange(3, 400), default=25, show_default=True, help="Columns toe to heel.")
 @click.option("--space", is_flag=True, help="Write the surface of one tooth space, not the closed solid of the member.")
 @JSON
-@output("STL")
+@output("STL", ".stl")
 def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; backlash and ease-off of the pair; and an STL."""
     from gearmath.front.sets import load_set

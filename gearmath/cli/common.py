@@ -70,15 +70,22 @@ class Number(click.FloatRange):
 
 
 class NewFile(click.Path):
-    """A file to write: that it can be written there, by no other option too, is checked before any work is done."""
+    """A file to write: that it can be written there, by no other option too, is checked before any work is done.
 
-    def __init__(self) -> None:
+    ``suffixes``: how its name must end, where other programs know the file by that.
+    """
+
+    def __init__(self, *suffixes: str) -> None:
         super().__init__(path_type=Path, dir_okay=False)
+        self.suffixes = suffixes
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         from gearmath.files import check_place
 
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        if self.suffixes and path.suffix.lower() not in self.suffixes:
+            option = f"{param.opts[0]} " if param is not None else ""
+            raise InputError(f"{option}{path}: the name must end in {' or '.join(self.suffixes)}")
         check_place(path)
         if ctx is not None and param is not None:
             taken = ctx.meta.setdefault(f"{__name__}.written", {})
@@ -128,7 +135,7 @@ def plot(what: str) -> Any:
     return click.option(
         "--plot",
         "picture",
-        type=NewFile(),
+        type=NewFile(".png"),
         metavar="PICTURE.png",
         help=f"Picture to write (PNG): {what}.",
     )
@@ -142,24 +149,26 @@ def save_plot(figure: Figure, path: Path, as_json: bool) -> None:
     click.echo(f"picture: {path}", err=as_json)
 
 
+#: How names of pages end.
+HTML = (".html", ".htm")
 #: The option --sheet of programs.
 SHEET = click.option(
     "--sheet",
-    type=NewFile(),
+    type=NewFile(*HTML),
     metavar="SETUP.html",
     help="Also write the set-up sheet of the program: a page that prints on A4.",
 )
 
 
-def output(suffix: str) -> Any:
-    """The option -o for one output file."""
+def output(kind: str, *suffixes: str) -> Any:
+    """The option -o for one output file, its kind as the help has it, and how its name must end (default: any)."""
     return click.option(
         "-o",
         "--output",
         "target",
-        type=NewFile(),
+        type=NewFile(*suffixes),
         required=True,
-        help=f"File to write ({suffix}).",
+        help=f"File to write ({kind}).",
     )
 
 

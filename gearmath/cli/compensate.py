@@ -23,7 +23,7 @@ from gearmath.cli.common import (
     output,
     table,
 )
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import ComputationError, InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.bevel.identify.variables import Bounds
@@ -184,7 +184,7 @@ def compensate(
         click.echo(f"no index corrections: {evaluation.closing.withheld}")
     for flank, count in correction.left_out.items():
         if count:
-            click.echo(f"{flank}: {count} points of the grid were left out")
+            click.echo(f"{flank}: {counted(count, 'point')} of the grid {'was' if count == 1 else 'were'} left out")
     for line in verdict(spec, correction):
         click.echo(line)
     if verbose:

@@ -8,6 +8,7 @@ from typing import Any
 from gearmath.bevel.identify.variables import reading
 from gearmath.cli.common import table
 from gearmath.cli.uncertainty import effects_text
+from gearmath.errors import counted
 from gearmath.quality.correction.analysis import Analysis, weak_words
 from gearmath.quality.correction.member import MemberCorrection, setting_changes
 from gearmath.specs.bevel_set import Member
@@ -24,7 +25,11 @@ def verdict(member: Member, correction: MemberCorrection) -> tuple[str, str]:
             if where == flank
         ]
         (found,) = (one for group, one in correction.identified.items() if flank in group)
-        kept = "expected to remain" if found.converged else f"left where the fit stopped after {found.iterations} steps"
+        kept = (
+            "expected to remain"
+            if found.converged
+            else f"left where the fit stopped after {counted(found.iterations, 'step')}"
+        )
         remains.append(
             f"{flank} {after * 1000:.2f} um {kept} of {before * 1000:.2f} um "
             f"({', '.join(changes) or 'nothing is changed'})"

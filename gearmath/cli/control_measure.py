@@ -10,6 +10,7 @@ import click
 from gearmath.cli.common import bar
 from gearmath.cli.control_connect import CONNECTION, INSECURE, connector, name_of
 from gearmath.cli.runs import store_option
+from gearmath.errors import counted
 
 
 @click.command()
@@ -18,8 +19,8 @@ from gearmath.cli.runs import store_option
 @click.argument("program", type=click.Path(path_type=Path), metavar="PROGRAM.MPF", required=False)
 @store_option("The measurement store; made where there is none.")
 @click.option("--set", "gear_set", metavar="SET.toml", help="Gear set of the member, to be kept with the run.")
-@click.option("--machine", default="vertical_5axis.toml", show_default=True, help="Milling machine, to be kept too.")
-@click.option("--calibration", default="probe.toml", show_default=True, help="Calibrated probe, to be kept too.")
+@click.option("--machine", show_default="vertical_5axis.toml", help="Milling machine, to be kept too.")
+@click.option("--calibration", show_default="probe.toml", help="Calibrated probe, to be kept too.")
 @click.option(
     "--acknowledge",
     is_flag=True,
@@ -32,15 +33,21 @@ from gearmath.cli.runs import store_option
     help="Touch these points only, as a new run: numbers and stretches, 3,17-20. Where they do not follow each other, "
     "the program is started once for each stretch.",
 )
-@click.option("--again-of", type=click.IntRange(1), metavar="RUN", help="With --points: the run that they belong to.")
+@click.option(
+    "--again-of",
+    type=click.IntRange(1),
+    metavar="RUN",
+    help="With --points: the run that they belong to. Set, machine and "
+    "calibration that are not given are those of this run.",
+)
 def measure(
     connection: Path,
     insecure: bool,
     program: Path | None,
     store_file: Path,
     gear_set: str | None,
-    machine: str,
-    calibration: str,
+    machine: str | None,
+    calibration: str | None,
     acknowledge: bool,
     resume: int | None,
     points: str | None,
@@ -54,7 +61,7 @@ def measure(
     """
     from gearmath.control import sinumerik
     from gearmath.control.measuring import Measuring, check_ready
-    from gearmath.control.run_start import begun, resumed
+    from gearmath.control.run_start import begun, files_of, resumed
     from gearmath.control.store import MeasurementStore
 
     if not acknowledge:
@@ -74,14 +81,14 @@ def measure(
             stretches = resumed(run)
         else:
             assert program is not None
-            start, stretches = begun(
-                name_of(connection, insecure), program, gear_set, machine, calibration, points, again_of
-            )
+            old = store.run(again_of).start if again_of is not None else None
+            with files_of(old, gear_set, machine, calibration) as files:
+                start, stretches = begun(name_of(connection, insecure), program, *files, points, again_of)
             asyncio.run(check_ready(connect, start))
             run = store.begin_run(start)
         with bar(len(run.missing()), "touch") as progress:
             asyncio.run(Measuring(connect, run, progress=progress, say=_say).to_the_end(*stretches))
-        click.echo(f"{store_file}: run {run.id} is complete: {len(run.start.points)} touches")
+        click.echo(f"{store_file}: run {run.id} is complete: {counted(len(run.start.points), 'touch')}")
 
 
 def _say(sentence: str) -> None:

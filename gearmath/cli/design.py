@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from gearmath.cli.common import JSON, NewFile, bars, echo_json, output, plot, save_plot, table
+from gearmath.cli.common import HTML, JSON, NewFile, bars, echo_json, output, plot, save_plot, table
 from gearmath.cli.design_reverse import reverse_design
 
 
@@ -26,7 +26,10 @@ from gearmath.cli.design_reverse import reverse_design
     help="Find the settings of the member with these flanks (flank CSV), from its blank and method alone.",
 )
 @click.option(
-    "--sheet", type=NewFile(), metavar="SUMMARY.html", help="Also write the summary sheet of the set: prints on A4."
+    "--sheet",
+    type=NewFile(*HTML),
+    metavar="SUMMARY.html",
+    help="Also write the summary sheet: it prints on A4.",
 )
 @JSON
 @plot("transmission error, path and pattern of both sides")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gearmath.cli.common import bars, echo_json, table
+from gearmath.errors import counted
 
 if TYPE_CHECKING:
     from gearmath.bevel.design.reverse import ReversedFlank
@@ -49,4 +50,4 @@ def _text(name: str, found: dict[str, Any], flank: ReversedFlank) -> str:
     left = "all but the scatter of its points is reproduced"
     if flank.not_reproduced > flank.scatter:
         left = f"{found['not_reproduced_um']:.3g} um RMS of its form are not reproduced"
-    return f"{name} flank, {found['points']} points: {left}\n" + table(["figure", "value"], rows)
+    return f"{name} flank, {counted(found['points'], 'point')}: {left}\n" + table(["figure", "value"], rows)

@@ -8,6 +8,7 @@ from typing import Literal
 import click
 
 from gearmath.cli.common import (
+    HTML,
     JSON,
     MACHINE,
     MEMBER,
@@ -20,7 +21,7 @@ from gearmath.cli.common import (
     output,
 )
 from gearmath.cli.dialect import CONTROL, dialect_of
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 _FOLDER = click.option(
     "-o", "--output", "folder", type=click.Path(path_type=Path), required=True, help="Folder to write or to replace."
@@ -100,7 +101,7 @@ def _settings(gear_set: str, machine: str, control: str | None, blocks: Literal[
 @SET
 @MEMBER
 @JSON
-@output("STEP, mm")
+@output("STEP, mm", ".step", ".stp")
 def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None:
     """Closed solids for CAD: a member in its work frame, or, without --member, the pair in mesh.
 
@@ -123,7 +124,7 @@ def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None
 
 @export.command()
 @SET
-@output("binary STL, mm")
+@output("binary STL, mm", ".stl")
 def stl(gear_set: str, target: Path) -> None:
     """Triangles of the pair in mesh, both members whole, touching on the drive side; of one: 'gearmath tooth'."""
     from gearmath.front.sets import load_set
@@ -159,12 +160,12 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
     with about(find(gear_set)):
         found = one.flank(flank, shape, margin)
     found.to_text(target)
-    click.echo(f"{target}: {len(found.file)} points{nominal_words(one, flank)}")
+    click.echo(f"{target}: {counted(len(found.file), 'point')}{nominal_words(one, flank)}")
 
 
 @export.command()
 @SET
-@output("REXS 2.0.0: .rexs XML")
+@output("REXS 2.0.0: XML", ".rexs", ".xml")
 def rexs(gear_set: str, target: Path) -> None:
     """The set as REXS 2.0.0; what REXS has no name for stays in attributes of its own (docs/exchange.md)."""
     from gearmath.front.sets import load_set
@@ -178,7 +179,7 @@ def rexs(gear_set: str, target: Path) -> None:
 
 @export.command()
 @SET
-@output("HTML that prints on A4")
+@output("HTML that prints on A4", *HTML)
 def summary(gear_set: str, target: Path) -> None:
     """The summary sheet of a set: blank, machine settings and cutter build of its members, in mm and in inches."""
     from gearmath.front.sets import load_set

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from gearmath.errors import counted
 from gearmath.gearbox.job import PROPOSED, GearboxJob, ThreadPlan
 from gearmath.gearbox.simulation import Simulation
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
@@ -82,7 +83,7 @@ def _thread(job: ThreadPlan) -> Iterator[str]:
 
 def _gear(job: GearboxPlan) -> Iterator[str]:
     shift = f", profile shift {job.profile_shift:g}" if job.profile_shift else ""
-    yield f"{job.machine}: {job.teeth} teeth{shift}, {job.hob_starts}-start {job.hob_hand}-hand hob"
+    yield f"{job.machine}: {counted(job.teeth, 'tooth')}{shift}, {job.hob_starts}-start {job.hob_hand}-hand hob"
     yield f"  R = {job.exact_pulse_ratio} = {job.pulse_ratio:.9g} encoder counts per motor step"
     if job.helix is None:
         return
@@ -110,7 +111,7 @@ def _blank(blank: HobbedBlank) -> Iterator[str]:
         )
     if blank.span is not None:
         needs = f", face width over {blank.span.face_width:.2f} mm" if blank.span.face_width else ""
-        yield f"    span           {_length(blank.span.length)}  over {blank.span.teeth} teeth{needs}"
+        yield f"    span           {_length(blank.span.length)}  over {counted(blank.span.teeth, 'tooth')}{needs}"
     yield f"    chord          {_length(blank.chord.thickness)}  at {blank.chord.height:.4f} mm below the tip"
     if blank.over_pins is not None:
         yield f"    over pins      {_length(blank.over_pins.length)}  of {blank.over_pins.pin:.4g} mm"

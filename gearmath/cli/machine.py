@@ -25,7 +25,7 @@ from gearmath.cli.common import (
 from gearmath.cli.dialect import TARGET, dialect_of, write_configuration
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.cli.program_time import program_time
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import ComputationError, InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.bevel.tooth import ToothSpace
@@ -215,7 +215,7 @@ def mill(
     simulated = load_simulated_machine(find(errors)) if errors else None
     path = execute(text, str(program), Setup.of(milling_machine))
     if skipped := skip_blocks(text):
-        click.echo(f"{program}: {skipped} blocks begin with / and are judged as not skipped")
+        click.echo(f"{program}: {counted(skipped, 'block')} with / in front, judged as not skipped")
     if measured and simulated is None:
         raise InputError("--measured needs --errors: the file that says how the member sits and what the probe does")
     with about(program):
@@ -224,7 +224,7 @@ def mill(
         file = _milled(path, runs, spec, member, milling_machine, simulated, space, run if measured else None)
     write_flank_csv(target, file)
     worst = float(abs(file.deviation).max())
-    click.echo(f"{target}: {len(file)} points, largest deviation {worst * 1000:.3f} um")
+    click.echo(f"{target}: {counted(len(file), 'point')}, largest deviation {worst * 1000:.3f} um")
     with about(program):
         right = file if simulated is None else None
         left = _judge_metal(text, path, runs, spec, member, milling_machine, space, right)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET_OPTION, about, bar, echo_json, member_of, output
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.specs.point_text import PointText
@@ -157,7 +157,7 @@ def points(
     if phase == "kept":
         zeroed = "kept as in the files"
     click.echo(f"grid {header['grid']}, margins {header['margins']}; rotation {zeroed}")
-    click.echo(f"{target}: {len(found.file)} points of the {member}")
+    click.echo(f"{target}: {counted(len(found.file), 'point')} of the {member}")
 
 
 def _for_each(texts: Sequence[Path], given: Sequence[_T], option: str) -> Sequence[_T]:

@@ -25,14 +25,13 @@ from gearmath.cli.common import (
     output,
 )
 from gearmath.cli.dialect import TARGET, dialect_of, write_configuration
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.quality.calibration.axes import AxisCalibration
     from gearmath.quality.calibration.tip import Fit, Tip
     from gearmath.specs.calibration import Calibration
     from gearmath.specs.milling_machine import MillingMachine
-    from gearmath.specs.touch_csv import CalibrationTouches
 
 _PROGRAM = ".MPF, or .ngc for LinuxCNC; its name becomes the program name"
 CALIBRATION = click.option(
@@ -132,7 +131,9 @@ def probe(
         )
         page = probing_sheet(job, target.name, dialect.sheet)
     write_text(target, made.text)
-    click.echo(f"{target}: {made.touches} touches, {dialect.block_count(made.text)} blocks; {made.clearance}")
+    click.echo(
+        f"{target}: {counted(made.touches, 'touch')}, {counted(dialect.block_count(made.text), 'block')}; {made.clearance}"
+    )
     if configuration:
         write_configuration(target, dialect, milling_machine, probe_in_table(milling_machine, known))
     if sheet is not None and page is not None:
@@ -203,7 +204,7 @@ def nc_calibrate(
 
         page = calibration_sheet(at, known, cycle == "axes", target.name, dialect.sheet)
     write_text(target, text)
-    click.echo(f"{target}: {planned_touches(read)} touches, {dialect.block_count(text)} blocks")
+    click.echo(f"{target}: {counted(planned_touches(read), 'touch')}, {counted(dialect.block_count(text), 'block')}")
     if configuration:
         write_configuration(target, dialect, at, probe_in_table(at, known))
     if sheet is not None and page is not None:
@@ -240,7 +241,7 @@ def touches(raw: Path, gear_set: str, machine: str, calibration: str, run: int |
         click.echo(one)
     known = measured.deviation[np.isfinite(measured.deviation)]
     largest = f"{float(abs(known).max()) * 1000:.3f} um" + (" of those that were met" if missed else "")
-    click.echo(f"{target}: {len(measured)} points of run {found.run}, largest deviation {largest}")
+    click.echo(f"{target}: {counted(len(measured), 'point')} of run {found.run}, largest deviation {largest}")
     if found.joined:
         click.echo(f"run {found.run}: {found.joined}")
     for one in missing:
@@ -261,56 +262,29 @@ def calibrate(raw: Path, calibration: str, machine: str, lobing: bool, run: int 
 
     Touches of ``nc calibrate --cycle axes`` make a new machine file of that of --machine.
     """
-    from gearmath.quality.evaluation.completeness import missing_calibration
-    from gearmath.specs.calibration import load_calibration
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import WORK_SPHERE, check_whole, read_calibration_csv
-
-    found = read_calibration_csv(raw, run)
-    known, spindle = load_calibration(find(calibration)), load_milling_machine(find(machine))
-    parts, untouched = missing_calibration(found, known, spindle)
-    check_whole(raw, run, found, parts)
-    if (found.target == WORK_SPHERE).any():
-        if lobing:
-            raise InputError("--lobing needs touches on the sphere of the table; these are on that of the work")
-        lines = _calibrate_axes(raw, found, calibration, machine, target)
-    else:
-        lines = _calibrate_tip(raw, found, calibration, lobing, target)
-    if found.joined:
-        click.echo(f"run {found.run}: {found.joined}")
-    for line in lines:
-        click.echo(line)
-    for one in (*parts, *untouched):
-        click.echo(f"run {found.run} is not whole: {one}")
-    click.echo(f"{target}: written")
-
-
-def _calibrate_tip(raw: Path, found: CalibrationTouches, calibration: str, lobing: bool, target: Path) -> Iterator[str]:
-    from gearmath.quality.calibration.tip import calibrate_tip
+    from gearmath.quality.calibration.axes import AxisCalibration
+    from gearmath.quality.evaluation.calibrated_run import calibrated_run
     from gearmath.specs.calibration import load_calibration, save_calibration
-    from gearmath.specs.toml import find
-
-    source = find(calibration)
-    with about(raw):
-        tip = calibrate_tip(found, load_calibration(source), lobing, str(source))
-    save_calibration(source, target, tip.radius, tip.offset, tip.lobes)
-    return tip_lines(tip)
-
-
-def _calibrate_axes(
-    raw: Path, found: CalibrationTouches, calibration: str, machine: str, target: Path
-) -> Iterator[str]:
-    from gearmath.quality.calibration.axes import calibrate_axes
-    from gearmath.specs.calibration import load_calibration
     from gearmath.specs.milling_machine import load_milling_machine, save_axes
     from gearmath.specs.toml import find
 
-    source, probe = find(machine), load_calibration(find(calibration))
-    with about(raw):
-        axes = calibrate_axes(found, load_milling_machine(source), probe)
-    save_axes(source, target, axes.pivot_offset, axes.gauge_line_height)
-    return axis_lines(axes, probe)
+    source, of_axes = find(calibration), find(machine)
+    known = load_calibration(source)
+    made = calibrated_run(raw, load_milling_machine(of_axes), known, run, lobing, str(source))
+    found = made.found
+    if isinstance(found, AxisCalibration):
+        save_axes(of_axes, target, found.pivot_offset, found.gauge_line_height)
+        lines = axis_lines(found, known)
+    else:
+        save_calibration(source, target, found.radius, found.offset, found.lobes)
+        lines = tip_lines(found)
+    if made.touches.joined:
+        click.echo(f"run {made.touches.run}: {made.touches.joined}")
+    for line in lines:
+        click.echo(line)
+    for one in made.missing:
+        click.echo(f"run {made.touches.run} is not whole: {one}")
+    click.echo(f"{target}: written")
 
 
 def axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
@@ -325,7 +299,7 @@ def axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
         ahead = math.remainder(math.radians(probe.work_sphere.azimuth) - axes.azimuth, 2 * math.pi)
         sure = math.degrees(axes.azimuth_uncertainty)
         yield f"A stands {math.degrees(ahead):.6f} degrees beyond its reading if azimuth is exact, u {sure:.6f}"
-    yield f"{len(axes.fit.residuals)} touches: {_residual_words(axes.fit)}"
+    yield f"{counted(len(axes.fit.residuals), 'touch')}: {_residual_words(axes.fit)}"
 
 
 def _residual_words(fit: Fit) -> str:
@@ -340,7 +314,7 @@ def tip_lines(tip: Tip) -> Iterator[str]:
     if tip.lobes[0] > 0.0:
         known = "kept" if math.isnan(tip.amplitude_uncertainty) else f"u {_um(tip.amplitude_uncertainty)}"
         yield f"lobes {tip.lobes[0] * 1000:.3f} um at {math.degrees(tip.lobes[1]):.2f} degrees, {known}"
-    yield f"{len(tip.fit.residuals)} touches: {_residual_words(tip.fit)}"
+    yield f"{counted(len(tip.fit.residuals), 'touch')}: {_residual_words(tip.fit)}"
 
 
 def _um(value: float) -> str:

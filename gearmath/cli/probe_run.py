@@ -9,7 +9,7 @@ import click
 
 from gearmath.cli.common import MACHINE, MEMBER, about, bar, member_of, output
 from gearmath.cli.probe import CALIBRATION
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.machine.control.state import Probe
@@ -120,7 +120,7 @@ def probe(
         raw = run_touches(text, str(program), there, shop, count, run, progress, setup)
     write_text(target, raw)
     rows = [line for line in raw.splitlines() if line[:1].isdigit()]
-    click.echo(f"{target}: {len(rows)} touches of run {run}")
+    click.echo(f"{target}: {counted(len(rows), 'touch')} of run {run}")
 
 
 def _check_clear(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, MACHINE, SET_OPTION, about, bar, output
+from gearmath.cli.common import FLANK_CSV, HTML, MACHINE, SET_OPTION, about, bar, output
 from gearmath.cli.probe import CALIBRATION
 from gearmath.cli.uncertainty import MODEL, SIGMA, check_one_source
 from gearmath.errors import InputError
@@ -52,7 +52,7 @@ Progress = Callable[[int], object]
 @MODEL
 @MACHINE
 @CALIBRATION
-@output("HTML; two pictures are written beside it as PNG")
+@output("HTML; two pictures are written beside it as PNG", *HTML)
 def report(
     measured: Path,
     gear_set: str,

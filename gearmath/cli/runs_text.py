@@ -11,6 +11,7 @@ from gearmath.cli.common import table
 from gearmath.control.store_compare import COVERAGE, Comparison, FigureRow
 from gearmath.control.store_run import StoredRun
 from gearmath.control.store_summary import RunSummary, parts, summary
+from gearmath.errors import counted
 
 #: Longer sentences on how a run stands are cut in a table.
 _LONGEST_STATE = 60
@@ -64,7 +65,7 @@ def _show_lines(values: dict[str, Any]) -> Iterator[str]:
     yield f"run {values['run']}: {values['program']} of {what} on {values['control']}, {values['state']}"
     if values["refers_to"] is not None:
         yield f"points of run {values['refers_to']} probed again"
-    yield f"{values['touches']} of {values['points']} points touched" + _missing_words(values["missing"])
+    yield f"{values['touches']} of {counted(values['points'], 'point')} touched" + _missing_words(values["missing"])
     for session, how in zip(values["sessions"], ["begun", *["gone on with"] * len(values["sessions"])], strict=False):
         by = session["operator"] or "not known"
         yield f"{_local(session['at'])} {how} by {by} on {session['host']}, gearmath {session['gearmath']}"
@@ -141,9 +142,9 @@ def resume_text(values: dict[str, Any]) -> str:
     """The same for people."""
     run, missing = values["run"], values["missing"]
     kept = values["points"] - len(missing)
-    lines = [f"run {run}: {kept} of {values['points']} points touched{_missing_words(missing)}"]
+    lines = [f"run {run}: {kept} of {counted(values['points'], 'point')} touched{_missing_words(missing)}"]
     if values["refers_to"] is not None:
-        lines[0] = f"run {run}: begun, to probe {len(missing)} points of run {values['refers_to']} again"
+        lines[0] = f"run {run}: begun, to probe {counted(len(missing), 'point')} of run {values['refers_to']} again"
     if not missing:
         return f"{lines[0]}; every point has its touch, and the run is not closed"
     for first, last in values["stretches"]:

@@ -25,7 +25,7 @@ from gearmath.control.interface import (
     Status,
 )
 from gearmath.control.parts import last_in_a_row
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import ComputationError, InputError, counted
 
 Connect = Callable[[], Awaitable[Control]]
 Say = Callable[[str], object]
@@ -163,7 +163,10 @@ class Measuring:
             touches = sum(point <= self._last for point in self._missing)
             more = len(self._missing) - touches
             later = f", {more} in later starts" if more else ""
-            self._say(f"{control.name}: ready for {start.program}, {touches} touches{later}: start it on the control")
+            self._say(
+                f"{control.name}: ready for {start.program}, {counted(touches, 'touch')}{later}: "
+                "start it on the control"
+            )
         elif self._baseline is not None:
             pass  # started while the connection was lost
         elif not self._resumed(handshake):

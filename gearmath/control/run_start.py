@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from gearmath.control.interface import RunStart
 from gearmath.control.parts import chosen_points
@@ -22,6 +25,8 @@ from gearmath.specs.toml import find
 
 #: Names under which the store keeps the files.
 SET, MACHINE, CALIBRATION = "set.toml", "machine.toml", "calibration.toml"
+#: Bundled files that a run takes where none is named.
+BUNDLED = {MACHINE: "vertical_5axis.toml", CALIBRATION: "probe.toml"}
 
 
 def begun(
@@ -56,6 +61,29 @@ def begun(
     files = {key: read_bytes(path) for key, path in paths.items()}
     settings = {key: path.name for key, path in paths.items()}
     return RunStart(control, name, content, plan.columns, plan.points, files, settings, refers_to=refers_to), stretches
+
+
+@contextmanager
+def files_of(
+    old: RunStart | None, gear_set: str | None, machine: str | None, calibration: str | None
+) -> Iterator[tuple[str | None, str, str]]:
+    """Set, machine and calibration of a new run: as given, else those of the run whose points it touches again, which
+    lie in a folder for the time of this context, else the bundled ones."""
+    with TemporaryDirectory() as folder:
+
+        def of(role: str, given: str | None) -> str | None:
+            if given is not None or old is None or role not in old.files:
+                return given
+            path = Path(folder, role, Path(old.settings.get(role, role)).name)
+            path.parent.mkdir()
+            path.write_bytes(old.files[role])
+            return str(path)
+
+        yield (
+            of(SET, gear_set),
+            of(MACHINE, machine) or BUNDLED[MACHINE],
+            of(CALIBRATION, calibration) or BUNDLED[CALIBRATION],
+        )
 
 
 def resumed(run: StoredRun) -> list[tuple[int, int]]:

@@ -9,16 +9,15 @@ from gearmath.control.run_start import CALIBRATION, MACHINE
 from gearmath.control.store_evaluation import of_run, stored_files
 from gearmath.control.store_run import StoredRun
 from gearmath.errors import InputError
-from gearmath.quality.calibration.axes import AxisCalibration, calibrate_axes
-from gearmath.quality.calibration.tip import Tip, calibrate_tip
-from gearmath.quality.evaluation.completeness import missing_calibration
+from gearmath.quality.calibration.axes import AxisCalibration
+from gearmath.quality.calibration.tip import Tip
+from gearmath.quality.evaluation.calibrated_run import calibrated_run
 from gearmath.specs.calibration import Calibration, load_calibration, save_calibration
 from gearmath.specs.milling_machine import load_milling_machine, save_axes
-from gearmath.specs.touch_csv import WORK_SPHERE, read_calibration_csv
 
 
 @dataclass(frozen=True)
-class CalibratedRun:
+class StoredCalibration:
     """A calibration run and what it found; ``file`` is the new calibration or machine file, kept as ``role``."""
 
     run: StoredRun
@@ -28,22 +27,20 @@ class CalibratedRun:
     file: bytes
 
 
-def calibrate_run(run: StoredRun) -> CalibratedRun:
+def calibrate_run(run: StoredRun) -> StoredCalibration:
     """As ``gearmath calibrate`` would. Raises InputError for a run that is not whole, and for one without its files."""
     where = f"{run.store.path}: run {run.id}"
     with stored_files(run, (MACHINE, CALIBRATION)) as folder, of_run(where, folder):
-        touches = read_calibration_csv(folder / "touches.csv")
         known, machine = load_calibration(folder / CALIBRATION), load_milling_machine(folder / MACHINE)
-        parts, untouched = missing_calibration(touches, known, machine)
-        lacking = [*parts, *untouched, *(f"point {point} has no touch" for point in run.missing())]
+        made = calibrated_run(folder / "touches.csv", machine, known, run.id, source=CALIBRATION)
+        lacking = [*made.missing, *(f"point {point} has no touch" for point in run.missing())]
         if lacking:
             raise InputError(f"is not whole: {lacking[0]}")
-        target = folder / "found.toml"
-        found: Tip | AxisCalibration
-        if (touches.target == WORK_SPHERE).any():
-            role, found = MACHINE, calibrate_axes(touches, machine, known)
+        target, found = folder / "found.toml", made.found
+        if isinstance(found, AxisCalibration):
+            role = MACHINE
             save_axes(folder / MACHINE, target, found.pivot_offset, found.gauge_line_height)
         else:
-            role, found = CALIBRATION, calibrate_tip(touches, known, source=CALIBRATION)
+            role = CALIBRATION
             save_calibration(folder / CALIBRATION, target, found.radius, found.offset, found.lobes)
-        return CalibratedRun(run, known, found, role, Path(target).read_bytes())
+        return StoredCalibration(run, known, found, role, Path(target).read_bytes())

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from gearmath.errors import InputError, about
+from gearmath.errors import InputError
 from gearmath.files import write_text
 from gearmath.front.machines import Machine, load_machine, load_probe
 from gearmath.front.measured import Measurement
@@ -23,12 +23,12 @@ from gearmath.machine.measuring.probe_run import run_touches, touch_count
 from gearmath.machine.milling.milled_surface import MilledSurface
 from gearmath.machine.writing.axis_cycle import axis_program
 from gearmath.machine.writing.calibrating import calibration_program
-from gearmath.quality.calibration.axes import AxisCalibration, calibrate_axes
-from gearmath.quality.calibration.tip import Tip, calibrate_tip
+from gearmath.quality.calibration.axes import AxisCalibration
+from gearmath.quality.calibration.tip import Tip
+from gearmath.quality.evaluation.calibrated_run import calibrated_run
 from gearmath.quality.evaluation.measured_run import measured_run
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.simulated_machine import SimulatedMachine
-from gearmath.specs.touch_csv import WORK_SPHERE, check_whole, read_calibration_csv
 
 #: Touches of one point at most, as of ``gearmath nc probe``.
 MOST_TOUCHES = 100
@@ -143,18 +143,11 @@ def calibrate(
 ) -> Tip | AxisCalibration:
     """The tip of the probe from touches on sphere or ring, or the rotary axes from those on the work side's sphere.
 
-    Both have standard uncertainties [mm, rad]. Raises InputError naming file and touch.
+    Both have standard uncertainties [mm, rad]. By default those of the last run, which must be whole. Raises InputError
+    naming file and touch.
     """
-    machine, probe, path = machine or load_machine(), probe or load_probe(), Path(path)
-    found = read_calibration_csv(path, run)
-    check_whole(path, run, found, ())
-    on_work = bool((found.target == WORK_SPHERE).any())
-    if on_work and lobing:
-        raise InputError("lobing needs touches on the sphere of the table; these are on that of the work")
-    with about(path):
-        if on_work:
-            return calibrate_axes(found, machine.spec, probe)
-        return calibrate_tip(found, probe, lobing, "the calibration")
+    machine, probe = machine or load_machine(), probe or load_probe()
+    return calibrated_run(Path(path), machine.spec, probe, run, lobing).found
 
 
 def _on_machine(

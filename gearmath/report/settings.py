@@ -9,6 +9,7 @@ import numpy as np
 
 from gearmath.bevel.identify.identification import Identification
 from gearmath.bevel.identify.variables import reading
+from gearmath.errors import counted
 from gearmath.page import Page
 from gearmath.quality.correction.analysis import Analysis, weak_words
 from gearmath.quality.correction.member import MemberCorrection, setting_changes
@@ -63,7 +64,9 @@ def _limits_section(page: Page, measurement: ReportedMeasurement, correction: Me
             page.paragraph(sentence)
     for flank, count in correction.left_out.items():
         if count:
-            page.paragraph(f"{flank} flank: {count} points of the grid took no part in the correction.", warning=True)
+            page.paragraph(
+                f"{flank} flank: {counted(count, 'point')} of the grid took no part in the correction.", warning=True
+            )
     for flank, rms in measurement.caused.items():
         page.paragraph(f"{flank} flank: errors of the measurement itself will leave {rms * 1000:.2f} µm RMS.")
     for flank, moved in correction.root.items():
@@ -81,7 +84,8 @@ def _limits(
         f"{measured * 1000:.2f} µm."
     )
     if not found.converged:
-        yield f"{flanks}: the fit stopped after {found.iterations} steps without converging: less may remain."
+        steps = counted(found.iterations, "step")
+        yield f"{flanks}: the fit stopped after {steps} without converging: less may remain."
     for first, second, cosine in analysis.alike:
         how = "alike" if cosine > 0 else "opposite ways"
         yield (

@@ -17,7 +17,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from derivations import notation
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.kernels import kernel
 from gearmath.specs.cut import (
     CRADLE_PER_WORK,
@@ -156,7 +156,10 @@ class Member(Sheet):
     @model_validator(mode="after")
     def _consistent(self) -> Member:
         if self.index_correction and len(self.index_correction) != self.teeth:
-            raise ValueError(f"index_correction has {len(self.index_correction)} values, the member {self.teeth} teeth")
+            raise ValueError(
+                f"index_correction has {counted(len(self.index_correction), 'value')}, the member "
+                f"{counted(self.teeth, 'tooth')}"
+            )
         if any(not abs(value) <= 1 for value in self.index_correction):
             raise ValueError("index_correction must lie between -1 and 1 degree")
         for tooth, value in enumerate(self.index_correction):

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.files import read_text
 
 #: Decimals with or without a digit before the point, a plus sign, and the exponent of a control: 1.5EX-05.
@@ -64,7 +64,7 @@ class Line:
             why = "; columns stand between commas, and numbers have a decimal point"
         elif len(self.cells) > columns:
             why = "; numbers have a decimal point and not a comma"
-        raise self.refuse(f"has {len(self.cells)} columns, must have {columns}{why}")
+        raise self.refuse(f"has {counted(len(self.cells), 'column')}, must have {columns}{why}")
 
 
 def read_lines(path: Path, keys: tuple[str, ...] = ()) -> tuple[dict[str, str], list[Line]]:

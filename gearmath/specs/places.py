@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.files import read_text
 
 #: More than anybody measures on one flank.
@@ -32,7 +32,7 @@ def read_places(path: Path) -> tuple[np.ndarray, np.ndarray]:
             raise InputError(f"{path}, line {number}: {line.strip()!r}: must be finite, with a radius above 0")
         places.append((z, radius))
     if not 0 < len(places) <= MOST_PLACES:
-        raise InputError(f"{path}: holds {len(places)} places, must hold 1 to {MOST_PLACES}")
+        raise InputError(f"{path}: holds {counted(len(places), 'place')}, must hold 1 to {MOST_PLACES}")
     axial, radial = np.array(places).T
     return axial, radial
 

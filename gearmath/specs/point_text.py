@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.specs.sheet import UNITS
 
 #: More points than any flank is measured at, and a larger coordinate than any machine has. [in the file's unit]
@@ -83,7 +83,7 @@ def read_point_text(path: Path, unit: str = "mm") -> PointText:
     remarks += [f"columns that are not used: {left + texts}"] if left + texts else []
     same = _first_of_same(point)
     if not same.all():
-        remarks.append(f"{int((~same).sum())} points are there twice and count once")
+        remarks.append(f"{counted(int((~same).sum()), 'point')} there twice, counted once")
         point, normal = point[same], None if normal is None else normal[same]
     stated = _stated(lines[: next(iter(rows)) - 1])
     return PointText(path, point * UNITS[unit], normal, np.array(list(rows))[same], tuple(remarks), stated)
@@ -201,14 +201,16 @@ def _rows(
         elif one == columns or (begins_with_text and len(one) < 3):
             continue
         raise InputError(
-            f"{path}, line {number}: has {len(one)} numbers, the rows {'below' if number < first else 'above'} have "
-            f"{len(columns)}: "
+            f"{path}, line {number}: has {counted(len(one), 'number')}, the rows "
+            f"{'below' if number < first else 'above'} have {len(columns)}: "
             f"{lines[number - 1][:40]!r}"
         )
     for line in lines[: first - 1]:
         announced = _ANNOUNCED.fullmatch(line)
         if announced and len(rows) < int(announced[1] or announced[2]):
-            raise InputError(f"{path}: holds {len(rows)} points, and says {line.strip()[:60]!r}: is it whole?")
+            raise InputError(
+                f"{path}: holds {counted(len(rows), 'point')}, and says {line.strip()[:60]!r}: is it whole?"
+            )
     if len(rows) > MOST_POINTS:
         raise InputError(f"{path}: holds {len(rows)} points, the limit is {MOST_POINTS}")
     return rows, _names(lines[: first - 1], split, columns, len(cells[first])), remarks

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
 from gearmath.specs.lines import Line, comments, read_lines
 
@@ -84,7 +84,9 @@ def read_touch_csv(path: Path, run: int | None = None) -> Touches:
     """
     wanted, records, planned, joined = _whole(path, COLUMNS, run)
     if not any(record["triggered"] for record in records):
-        raise InputError(f"{path}: run {wanted}: triggered = 0 in all of its {len(records)} touches: it met no flank")
+        raise InputError(
+            f"{path}: run {wanted}: triggered = 0 in all of its {counted(len(records), 'touch')}: it met no flank"
+        )
     return _collected(wanted, records, planned, joined)
 
 
@@ -121,7 +123,7 @@ def check_whole(path: Path, wanted: int | None, found: Touches | CalibrationTouc
     run, lengths = found.run, run_lengths(path)
     longest = max(lengths, key=lambda number: lengths[number])
     if not missing and not found.joined and lengths[run] < lengths[longest]:  # runs of one file are runs of one program
-        missing = (f"it has {lengths[run]} touches, run {longest} has {lengths[longest]}",)
+        missing = (f"it has {counted(lengths[run], 'touch')}, run {longest} has {lengths[longest]}",)
     if missing:
         choice = f"--run {run} takes it as it is" + (f", --run {longest} another one" if longest != run else "")
         more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NoReturn
 
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 
 Value = float | str | bool
 
@@ -154,7 +154,7 @@ class Scanner:
     def check_decimals(self, mantissa: str, at: int, most: int) -> None:
         decimals = len(mantissa.partition(".")[2])
         if decimals > most:
-            self.refuse(f"the number {shown(mantissa)} has {decimals} decimals; the most here is {most}", at)
+            self.refuse(f"the number {shown(mantissa)} has {counted(decimals, 'decimal')}; the most here is {most}", at)
 
     def refuse_exponent(self) -> None:
         """Refuse a number with the exponent of other languages."""
@@ -216,7 +216,7 @@ class Scanner:
         operands = self.arguments(depth)
         count, _ = FUNCTIONS[name]
         if len(operands) != count:
-            self.refuse(f"{name} takes {count} numbers, not {len(operands)}", at)
+            self.refuse(f"{name} takes {counted(count, 'number')}, not {len(operands)}", at)
         return Operation(name, operands, at + 1)
 
     def arguments(self, depth: int = 0) -> tuple[Node, ...]:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gearmath.errors import counted
 from gearmath.machine.control.blocks import ControlState, PathRow
 from gearmath.machine.control.expression import AXES, NcVariable, Node, Value, refuse
 from gearmath.machine.control.state import Deflected, Follower
@@ -263,7 +264,7 @@ class StatementRunner:
 
     def _arguments(self, command: Command, *counts: int) -> list[Value]:
         if len(command.arguments) not in counts:
-            what = f"{command.name} with {len(command.arguments)} arguments is not understood"
+            what = f"{command.name} with {counted(len(command.arguments), 'argument')} is not understood"
             refuse(self.control.name, command.line, command.column, what)
         return [evaluate(node, self, self.control.name, command.line) for node in command.arguments]
 

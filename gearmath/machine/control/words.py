@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import NoReturn
 
+from gearmath.errors import counted
 from gearmath.machine.control.expression import (
     AXES,
     CUTTER_AXIS,
@@ -136,8 +137,8 @@ class WordScanner(Scanner):
         """End point and coefficients of one axis, behind the opening parenthesis."""
         values = self.arguments()
         if not 1 <= len(values) <= most + 1:
-            what = f"{shown(self.text[at : self.at])} has {len(values)} values: it takes the end point and up to {most}"
-            self.refuse(f"{what} coefficients, a2 to a{most + 1}", at)
+            what = f"{shown(self.text[at : self.at])} has {counted(len(values), 'value')}: it takes the end point and "
+            self.refuse(f"{what}up to {most} coefficients, a2 to a{most + 1}", at)
         if not self._ends():
             self.refuse(f"{shown(self._rest())} is not understood: a blank may be missing before it")
         return Word(self.text[at : self.at], values[0], at + 1, "PO", values[1:])

@@ -11,6 +11,7 @@ import numpy as np
 from gearmath.bevel.method import motion_of
 from gearmath.bevel.ridge import point_width
 from gearmath.bevel.tooth import ToothSpace
+from gearmath.errors import counted
 from gearmath.machine.judging.alike import alike
 from gearmath.machine.judging.block_check import MOST_LINES, Watch, watch
 from gearmath.machine.judging.faults import Fault
@@ -228,7 +229,7 @@ def metal_left(
         )
     uncut = sum(state.unmet for state in states)
     if uncut and not found.uncut:
-        faults.append(Fault(f"{uncut} points of fillets and roots are not cut at all"))
+        faults.append(Fault(f"leaves {counted(uncut, 'point')} of fillets and roots uncut"))
     return MetalLeft(found, tolerance, tuple(faults))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from gearmath.errors import counted
 from gearmath.machine.judging.faults import Fault
 from gearmath.machine.measuring.ways import Watched, Way
 from gearmath.specs.touch_csv import CALIBRATION_COLUMNS, COLUMNS, planned_touches
@@ -42,7 +43,7 @@ def record_faults(text: str, seen: Watched, place: Place) -> Iterator[Fault]:
     lines, touches = touch_lines(files[0]), seen.touches
     if not len(lines) == len(touches) == planned_touches(text):
         planned = planned_touches(text)
-        yield Fault(f"plans {planned} touches, makes {len(touches)} and writes {len(lines)}", kind="count")
+        yield Fault(f"plans {counted(planned, 'touch')}, makes {len(touches)} and writes {len(lines)}", kind="count")
         return
     if len(files[0].splitlines()) != len(lines) + _HEAD:
         yield Fault("writes more or less into its file than plan, columns and touches", kind="head")

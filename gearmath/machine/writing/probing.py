@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearmath.errors import counted
 from gearmath.kernels import kernel
 from gearmath.machine.planning.clear_space import Room, check_home, room_of
 from gearmath.machine.planning.pattern import Targets, TouchPattern, check_travel
@@ -65,14 +66,14 @@ def probing_notes(
     yield f"machine: {plain(machine.name)}"
     tip = f"tip radius {calibration.tip_radius:g} mm, length {calibration.length:g} mm"
     yield f"probe: {plain(calibration.name)}, {tip}"
-    yield f"{points} points" + (f", each touched {repeat} times" if repeat > 1 else "")
+    yield f"{counted(points, 'point')}" + (f", each touched {repeat} times" if repeat > 1 else "")
 
 
 def plan_of(targets: Targets, repeat: int) -> ProbingPlan:
     """What a run of all points makes, each touched ``repeat`` times."""
     flanks = " and ".join(flank for flank in FLANKS if (targets.flank == flank).any())
     touches = len(targets) * repeat
-    said = f"{touches} touches, {len(set(targets.tooth.tolist()))} teeth, {flanks}"
+    said = f"{counted(touches, 'touch')}, {counted(len(set(targets.tooth.tolist())), 'tooth')}, {flanks}"
     return ProbingPlan(touches, said, len(targets), "point", repeat)
 
 

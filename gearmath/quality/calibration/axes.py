@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from gearmath.engine.kernel import Kernel
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.probe_tip import lobing, probe_height
 from gearmath.quality.calibration.tip import Fit, least_squares, with_gradient
@@ -59,7 +59,7 @@ def calibrate_axes(touches: CalibrationTouches, machine: MillingMachine, calibra
     here = touches.target == WORK_SPHERE
     axes = touches.axes[here]
     if len(axes) < _LEAST_TOUCHES:
-        raise InputError(f"{len(axes)} touches on the work_sphere: at least {_LEAST_TOUCHES} are needed")
+        raise InputError(f"{counted(len(axes), 'touch')} on the work_sphere: at least {_LEAST_TOUCHES} are needed")
     height, known = probe_height(machine, calibration), lobing(calibration)
 
     def rows(v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from derivations import Quantity
 from gearmath.engine.kernel import Kernel
-from gearmath.errors import ComputationError, InputError
+from gearmath.errors import ComputationError, InputError, counted
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.probe_tip import lobing
 from gearmath.specs.calibration import Calibration, Face, Ring, Sphere
@@ -95,7 +95,7 @@ def calibrate_on_sphere(touches: CalibrationTouches, sphere: Sphere, start: Cali
     least = LEAST_FOR_LOBES if lobes else _LEAST_ON_SPHERE
     if len(triggers) < least:
         what = "a tip with lobes" if lobes else "a tip"
-        raise InputError(f"{len(triggers)} touches on the sphere: at least {least} are needed for {what}")
+        raise InputError(f"{counted(len(triggers), 'touch')} on the sphere: at least {least} are needed for {what}")
     known = lobing(start)
 
     def rows(v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -167,7 +167,7 @@ def calibrate_tip(touches: CalibrationTouches, before: Calibration, lobing: bool
     if before.sphere is not None and (touches.target == SPHERE).any():
         return calibrate_on_sphere(touches, before.sphere, before, lobing)
     if lobing:
-        raise InputError("--lobing needs touches on the sphere; there are none")
+        raise InputError("lobing needs touches on the sphere; there are none")
     if before.ring is not None:
         return calibrate_on_ring(touches, before.ring, before)
     raise InputError(f"{source} has neither the ring nor the sphere that was touched")

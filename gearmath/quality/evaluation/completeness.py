@@ -11,6 +11,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from gearmath.errors import counted
 from gearmath.machine.planning.artefact_targets import axis_touches, calibration_touches
 from gearmath.machine.planning.targets import landmarks
 from gearmath.quality.evaluation.nominal import MOST_MISSING
@@ -109,15 +110,15 @@ def taken_for(touches: Touches, shape: tuple[int, int]) -> str:
     places = _places(touches.flank, touches.tooth, touches.row, touches.col)
     numbers = {tooth for _, tooth in places}
     grids = {tooth for (_, tooth), here in places.items() if len(here) == shape[0] * shape[1]}
-    parts = ["the grid of 1 tooth" if len(grids) == 1 else f"the grids of {len(grids)} teeth"] if grids else []
-    parts += [f"single points of {len(numbers - grids)} teeth"] if numbers - grids else ["no pitch"]
+    parts = [f"the grid{'s' * (len(grids) > 1)} of {counted(len(grids), 'tooth')}"] if grids else []
+    parts += [f"single points of {counted(len(numbers - grids), 'tooth')}"] if numbers - grids else ["no pitch"]
     return f"its file does not say how many touches were planned: taken for a whole run of {', '.join(parts)}"
 
 
 def _unplanned(touches: Touches | CalibrationTouches) -> Iterable[str]:
     count = len(touches.axes)
     if touches.planned is not None and count != touches.planned:
-        yield f"it has {count} touches, its program makes {touches.planned}"
+        yield f"it has {counted(count, 'touch')}, its program makes {touches.planned}"
 
 
 def missing_calibration(

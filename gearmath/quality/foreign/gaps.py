@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from gearmath.bevel.grid import blank_fractions
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.quality.evaluation.outliers import flag_outliers, noticed
 from gearmath.quality.foreign.lattice import Lattice, find_lattice
 from gearmath.quality.foreign.points import LARGEST_FORM, Laid, PointPart
@@ -75,7 +75,7 @@ def lost_words(one: Laid) -> Iterator[str]:
     lost = np.setdiff1d(np.arange(len(one.part.point)), one.kept)
     if len(lost):
         lines = "" if one.part.line is None else f" (first of them line {one.part.line[lost[0]]})"
-        yield f"{one.part.name}: {len(lost)} points lie beyond the flank or far off it{lines}, left out"
+        yield f"{one.part.name}: {counted(len(lost), 'point')} beyond the flank or far off it{lines}, left out"
 
 
 def gap_words(one: Laid, lattice: Lattice | None, member: Member) -> Iterator[str]:

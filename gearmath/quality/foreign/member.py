@@ -12,7 +12,7 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.grid import blank_fractions
 from gearmath.bevel.nominal_file import flank_header
 from gearmath.bevel.turning import half_turn, turned
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.kernels import kernel
 from gearmath.quality.evaluation.digits import resolution, rounded_words
 from gearmath.quality.evaluation.file_checks import SAME_POINT
@@ -96,7 +96,9 @@ def foreign_file(
     kept: list[str] = []
     for part in parts:
         if len(part.point) < _LEAST_POINTS:
-            raise InputError(f"{part.name}: holds {len(part.point)} points, at least {_LEAST_POINTS} are needed")
+            raise InputError(
+                f"{part.name}: holds {counted(len(part.point), 'point')}, at least {_LEAST_POINTS} are needed"
+            )
     turns = []
     for part in parts:
         turns.append(turn_of(part, frame, gear_set, name))

@@ -335,7 +335,7 @@ VERBS = {
 @pytest.mark.parametrize("fault", BAD)
 def test_every_verb_refuses_a_set_that_is_no_pair_with_status_2(bases, files, refused, tmp_path, verb, fault) -> None:
     place, value = BAD[fault]
-    bad, out = tmp_path / "bad.toml", tmp_path / "OUT.MPF"
+    bad, out = tmp_path / "bad.toml", tmp_path / {"tooth": "OUT.stl", "report": "OUT.html"}.get(verb, "OUT.MPF")
     bad.write_text(tomlkit.dumps(with_values(bases[SETS[0]], (tuple(place.split(".")), value))), "utf-8")
     given = {"SET": bad, "OUT": out, **files}
     refused(r"^gearmath: .*bad\.toml: .*(pinion|gear)", *(given.get(word, word) for word in VERBS[verb]))

@@ -231,7 +231,7 @@ def test_point_that_missed_is_left_out_and_said(command, measured, tmp_path):
     status, out, _ = command(*arguments)
     assert status == 0
     assert "concave flank, tooth 0, row 1, col 6" in out
-    assert "1 points of the grid were left out" in out
+    assert "1 point of the grid was left out" in out
     assert worst_after(tmp_path / "new.toml", "pinion", **ERRORS) < 1e-4
 
 

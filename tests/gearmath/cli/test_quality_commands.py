@@ -251,7 +251,7 @@ def test_unreadable_measurement_is_one_line_with_its_file(refused, tmp_path, ver
     path = tmp_path / name
     if content is not None:
         path.write_bytes(content)
-    target = tmp_path / "out.x"
+    target = tmp_path / "out.png"
     arguments = {
         "evaluate": ("evaluate", path, "--set", SET, "--plot", target),
         "compensate": ("compensate", SET, "--member", "pinion", "--measured", path, "-o", target),

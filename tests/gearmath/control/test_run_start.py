@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from gearmath.control.interface import Touch
-from gearmath.control.run_start import begun
+from gearmath.control.interface import RunStart, Touch
+from gearmath.control.run_start import begun, files_of
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_touches import touch_csv
 
@@ -56,3 +56,17 @@ def test_points_of_a_calibration_are_made_by_the_sections_that_hold_them(command
     start, parts = begun("control", program, None, "vertical_5axis.toml", "probe.toml", points="12-17")
     assert parts == [(2, 2)]
     assert list(start.points) == list(range(10, 19))
+
+
+def test_a_run_that_touches_points_again_takes_the_files_of_the_first_unless_others_are_given(tmp_path: Path) -> None:
+    mine = {"set.toml": b"of run 1, set", "machine.toml": b"of run 1, machine"}
+    old = RunStart("control", "P", b"", ("run",), {}, mine, {"set.toml": "gears.toml", "machine.toml": "mill.toml"})
+    with files_of(old, None, None, "other.toml") as (gear_set, machine, calibration):
+        assert (Path(gear_set).name, Path(gear_set).read_bytes()) == ("gears.toml", mine["set.toml"])
+        assert (Path(machine).name, Path(machine).read_bytes()) == ("mill.toml", mine["machine.toml"])
+        assert calibration == "other.toml"
+    assert not Path(gear_set).exists()
+    with files_of(old, "gears_2.toml", "mill_2.toml", None) as files:
+        assert files == ("gears_2.toml", "mill_2.toml", "probe.toml")
+    with files_of(None, None, None, None) as files:
+        assert files == (None, "vertical_5axis.toml", "probe.toml")

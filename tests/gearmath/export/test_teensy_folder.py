@@ -684,6 +684,25 @@ def test_open_emergency_stop_ends_on_the_fault_page_and_lets_the_relay_go(power_
     assert board.board.board_position() == still
 
 
+def test_bursts_on_knob_and_button_disturb_no_job(power_up: Callable[..., Board]) -> None:
+    """1 ms on the button is no press; a knob that counts to and fro turns pages at the most."""
+    board = power_up(at_once(machine("hobbing_plewes")))
+    board.start()
+    board.board.board_turn_hob(ctypes.c_long(40))
+    board.wait(300)
+    for k in range(40):
+        board.board.board_button(1)
+        board.wait(1)
+        board.board.board_button(0)
+        board.wait(1 + k % 7)
+        board.knob(1 - 2 * (k % 2))
+    board.wait(500)
+    assert board.display()[3].startswith("In phase: lag")
+    board.board.board_turn_hob(ctypes.c_long(0))
+    board.wait(100)
+    assert board.board.board_bad_pulses() == 0
+
+
 def test_button_bounces_and_long_presses_are_told_apart(power_up: Callable[..., Board]) -> None:
     board = power_up(machine("hobbing_plewes"))
     shown = board.display()

@@ -173,6 +173,30 @@ def test_thousand_million_edges_are_never_more_than_half_a_step_off(host_compile
     assert max(worst) <= Fraction(1, 2)
 
 
+#: Steps per count of trains that people have: encoder on pulleys 20/17, 4444.44 counts, gears 120:127 with a worm of
+#: 3, belt 20/17 with a worm of 90, two and five teeth, worms of module 1.5 and of 16 DP with 355/113.
+TRAINS = [
+    Fraction(16000 * 17, 53 * 4096 * 20),
+    Fraction(16000 * 9, 127 * 40_000),
+    Fraction(800 * 127 * 3, 120 * 24 * 4096),
+    Fraction(800 * 20 * 90, 17 * 60 * 4096),
+    Fraction(16000, 2 * 4096),
+    Fraction(16000, 5 * 4096),
+    Fraction(4800 * 8 * 10, 254) * Fraction(355, 113) * Fraction(3, 2) / 4000,
+    Fraction(4800 * 8 * 10, 254) * Fraction(355, 113) * Fraction(254, 160) / 4000,
+]
+
+
+@pytest.mark.slow
+def test_hundred_million_edges_of_every_drive_train_are_never_more_than_half_a_step_off(host_compiler):
+    library = compiled("gearbox_edge int32")
+    jobs = [(library, History.start(one.numerator, 0, one.denominator, 0, 1), 100) for one in TRAINS]
+    with ThreadPoolExecutor(2) as two:
+        worst = list(two.map(lambda job: drive(*job), jobs))
+    assert max(worst) <= Fraction(1, 2)
+    assert min(worst) > Fraction(2, 5)
+
+
 def test_driver_notices_a_rule_that_steps_one_edge_late(host_compiler):
     library = compiled("gearbox_edge int32", ("(a0<=a1)", "(a0<a1)"))
     history = History.start(1, 0, 3, 2**24, 1)  # an odd D: with an even one, late is still half a step

@@ -87,6 +87,25 @@ def test_bursts_on_one_channel_of_the_encoder_cost_nothing(new_core, seed):
     holds(core, hob, record)
 
 
+def test_bursts_on_the_feed_encoder_cost_nothing(new_core):
+    """Counts to and fro about every place of the scale; the table stands where hob and feed ask in the end."""
+    core, random = engaged(new_core, GM_HAS_INDEX=0), np.random.default_rng(3)
+    hob, _ = turning(4)
+    feed = np.zeros(len(hob), np.int8)
+    feed[::80] = 1
+    counts = int(feed.sum())
+    for start in random.integers(0, len(hob) - BURST, 30).tolist():
+        level = np.cumsum(random.random(BURST) < 0.5) % 2  # of one channel, as it is counted
+        feed[start : start + BURST] += np.diff(level, prepend=0).astype(np.int8)
+        feed[start + BURST - 1] -= level[-1]
+    assert feed.sum() == counts
+    core.play(hob, feed=feed)
+    core.play(0, 2000)
+    assert (core.status.fault, core.status.has_job, core.status.in_phase) == (NO_FAULT, 1, 1)
+    exact = Fraction(N * int(hob.sum()), D)  # this job has no term of the feed: its edges must not move the table
+    assert abs(core.status.position + core.status.pending - exact) <= Fraction(1, 2)
+
+
 def test_bursts_on_emergency_stop_and_alarm_stop_nothing(new_core):
     core, random = engaged(new_core), np.random.default_rng(5)
     hob, index = turning(3)

@@ -8,10 +8,10 @@ import re
 from pathlib import Path
 
 import pytest
+from gearmath.control.file_names import control_name
 
 import gearmath
 from gearmath.bevel.pair import load_pair
-from gearmath.control.file_names import control_name
 from gearmath.control.store import MeasurementStore
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.language_files import language_file

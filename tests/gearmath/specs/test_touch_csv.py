@@ -63,7 +63,7 @@ def test_the_last_run_is_taken_unless_another_is_asked_for(tmp_path):
         ([ROWS[0].replace("-80.5", "1e9")], r"line 1: X = 1e9: must be at most 100000 in size"),
         ([ROWS[0].replace(",0,2,4", ",0,2.5,4")], r"line 1: row = 2\.5: must be a whole number from 0"),
         ([ROWS[0].replace(",0,2,4", ",-1,2,4")], r"line 1: tooth = -1: must be a whole number from 0"),
-        ([ROWS[0][:-1] + "0"], r"run 1: triggered = 0 in all of its 1 touches: it met no flank"),
+        ([ROWS[0][:-1] + "0"], r"run 1: triggered = 0 in all of its 1 touch: it met no flank"),
         ([ROWS[0], ROWS[2]], r"line 2: point = 3: must be 2, without a gap"),
         ([ROWS[1]], r"line 1: run 1 begins with point = 2: must be 0 or 1"),
         ([*ROWS[:2], ROWS[0].replace("1,1", "1,3", 1)], r"line 3: the point of line 1 is there twice; touches of one"),

@@ -145,9 +145,7 @@ def test_commands_make_a_machine_file_of_the_touches(tmp_path, command, refused)
     assert machine.gauge_line_height == pytest.approx(349.944, abs=1e-6)
     assert machine.axes == MACHINE.axes
     assert "# R_d: the reading of Z at which the gauge line is level with the B axis" in new.read_text()
-    refused(
-        "--lobing needs touches on the sphere of the table", "calibrate", raw, "--lobing", "-o", tmp_path / "x.toml"
-    )
+    refused("lobing needs touches on the sphere of the table", "calibrate", raw, "--lobing", "-o", tmp_path / "x.toml")
     bare = tmp_path / "bare.toml"
     bare.write_text("\n".join(bundled("probe.toml").read_text().split("\n[work_sphere]")[:1]))
     arguments = ["--calibration", bare, "-o", tmp_path / "AX.MPF"]

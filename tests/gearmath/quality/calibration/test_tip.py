@@ -238,7 +238,7 @@ def test_lobing_command_writes_what_it_found(tmp_path, command, refused, artefac
     lines = raw.read_text().splitlines()
     ring = [line for line in lines if "sphere" not in line and "planned" not in line]  # a run that planned no sphere
     raw.write_text("\n".join(ring) + "\n")
-    refused("--lobing needs touches on the sphere", "calibrate", raw, "--lobing", "-o", tip)
+    refused("lobing needs touches on the sphere", "calibrate", raw, "--lobing", "-o", tip)
     status, out, _ = command("calibrate", raw, "-o", tip)
     assert status == 0
     assert "10 touches" in out

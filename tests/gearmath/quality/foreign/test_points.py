@@ -146,7 +146,7 @@ def test_points_far_off_are_left_out_and_counted(gear_set):
     point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth())
     point[0] += 40 * normal[0]
     found = foreign_file([PointPart("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion")
-    assert "p.txt: 1 points lie beyond the flank or far off it, left out" in found.remarks
+    assert "p.txt: 1 point beyond the flank or far off it, left out" in found.remarks
     assert len(found.file) == 44
     judged = evaluate_member(found.file, gear_set.pinion, "pinion")
     assert any("row 0, col 0: not measured" in remark for remark in judged.remarks)
@@ -468,9 +468,7 @@ def test_text_that_contradicts_an_option_is_refused(refused, gear_set, tmp_path,
 
 def test_one_point_is_refused(gear_set):
     (part,) = both_flanks(gear_set.pinion, "pinion", flanks=("concave",))
-    assert (
-        refusal(gear_set, replace(part, point=part.point[:1])) == "concave.txt: holds 1 points, at least 6 are needed"
-    )
+    assert refusal(gear_set, replace(part, point=part.point[:1])) == "concave.txt: holds 1 point, at least 6 are needed"
 
 
 def written(tmp_path, parts):
