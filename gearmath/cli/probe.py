@@ -132,7 +132,8 @@ def probe(
         page = probing_sheet(job, target.name, dialect.sheet)
     write_text(target, made.text)
     click.echo(
-        f"{target}: {counted(made.touches, 'touch')}, {counted(dialect.block_count(made.text), 'block')}; {made.clearance}"
+        f"{target}: {counted(made.touches, 'touch')}, {counted(dialect.block_count(made.text), 'block')}; "
+        f"{made.clearance}"
     )
     if configuration:
         write_configuration(target, dialect, milling_machine, probe_in_table(milling_machine, known))
