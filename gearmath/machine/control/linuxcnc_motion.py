@@ -19,7 +19,7 @@ ABORTED = 1
 UP_AND_AWAY = 1e9
 OFFSETS = {"G54": 5221, "G55": 5241, "G56": 5261, "G57": 5281}
 #: Number of a tool that no program means.
-_ANOTHER = 99_998
+ANOTHER_TOOL = 99_998
 _ALL = AXES + CUTTER_AXIS
 #: Codes by what they decide; the last one of each is in force.
 _GROUPS = {
@@ -67,6 +67,15 @@ class LinuxCncState:
     changes: list[tuple[int, float | None]] = field(default_factory=list)
     path_modes: dict[tuple[str, float, float], int] = field(default_factory=dict)
     dynamics: dict[tuple[str, str], int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.stand(self.setup.position)
+
+    def stand(self, position: tuple[float, ...] | None) -> None:
+        """The axes at machine coordinates, or wherever they are."""
+        self.position.clear()
+        if position is not None:
+            self.position |= {a: p - z for a, p, z in zip(AXES, position, self.setup.zero, strict=True)}
 
 
 class LinuxCncMotion:
@@ -153,8 +162,8 @@ class LinuxCncMotion:
                 refuse(self.name, line.number, 1, "M6 with the spindle on")
             state.changes.append((line.number, state.position.get("Z")))
             meant = self.tools.get(state.selected, "")
-            state.fetched = state.selected if state.setup.spindle_tool(meant) == meant else _ANOTHER
-            state.position.clear()
+            state.fetched = state.selected if state.setup.spindle_tool(meant) == meant else ANOTHER_TOOL
+            state.stand(state.setup.changed_at)
 
     def _halt(self, line: Line, stop: bool, seconds: float = 0.0) -> None:
         self.halts.append(Halt(line.number, stop, len(self.rows), len(self.control.blind), seconds))

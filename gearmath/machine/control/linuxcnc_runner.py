@@ -1,7 +1,8 @@
 """Runs programs for LinuxCNC as its interpreter would, on a machine that is set up as the machine file says.
 
 ``#<_task>`` is 1: a program checks the control as it does where it moves a machine. What it asks of positions before
-its first motion is answered with axes that are up and away. ABORT is the alarm of a program. There is no host.
+its first motion is answered with axes that are up and away, unless the set-up says where they stand. ABORT is the alarm
+of a program. There is no host.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from collections.abc import Mapping
 from gearmath.machine.control.expression import AXES, refuse
 from gearmath.machine.control.linuxcnc_expression import Cursor
 from gearmath.machine.control.linuxcnc_lines import Line, lines_of, partners
-from gearmath.machine.control.linuxcnc_motion import ABORTED, OFFSETS, LinuxCncMotion
+from gearmath.machine.control.linuxcnc_motion import ABORTED, ANOTHER_TOOL, OFFSETS, LinuxCncMotion
 from gearmath.machine.control.state import Deflected, Follower, Probe, Setup
 
 #: R parameters that are handed in, and what they are here: the first and the last part that is run.
@@ -48,12 +49,18 @@ class LinuxCncRunner(LinuxCncMotion):
     def run(self, text: str) -> None:
         """The whole program, from its first line to M2."""
         self.tools = {int(number): tool for number, tool in _TOOL.findall(text)}
+        self._begin_with(self.control.setup.tool)
         self.lines = lines_of(text, self.name)
         self.ends = partners(self.lines, self.name)
         self.subs = {line.label: place for place, line in enumerate(self.lines) if line.flow == "SUB"}
         self._from(0, len(self.lines))
         if not self.control.ended:
             refuse(self.name, len(text.splitlines()), 1, "the text ends without M2: the program is not complete")
+
+    def _begin_with(self, tool: str | None) -> None:
+        """The tool that is in the spindle at the start; one that the program does not know has another number."""
+        if tool is not None:
+            self.control.fetched = next((number for number, name in self.tools.items() if name == tool), ANOTHER_TOOL)
 
     def _from(self, place: int, end: int) -> None:
         """Lines from one place to another."""

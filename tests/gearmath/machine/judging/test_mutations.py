@@ -31,7 +31,7 @@ SETS = ("nasa_tp3096_12x36", "spiral_7x43", "crown_gear_universal_14x39", "crown
 CASES = [(name, member) for name in SETS for member in ("pinion", "gear")]
 #: Spaces of the programs in CI, and mutants of each of them: blocks, wrong digits in each of them, and everything else.
 SPACES = (0, 1)
-BLOCKS, PER_BLOCK, OTHERS = 95, 30, 40
+BLOCKS, PER_BLOCK, OTHERS = 40, 75, 40
 
 
 @pytest.fixture(scope="module", params=CASES, ids=["-".join(case) for case in CASES])
