@@ -131,9 +131,8 @@ def probe(
         )
         page = probing_sheet(job, target.name, dialect.sheet)
     write_text(target, made.text)
-    click.echo(
-        f"{target}: {counted(made.touches, 'touch')}, {counted(dialect.block_count(made.text), 'block')}; {made.clearance}"
-    )
+    blocks = counted(dialect.block_count(made.text), "block")
+    click.echo(f"{target}: {counted(made.touches, 'touch')}, {blocks}; {made.clearance}")
     if configuration:
         write_configuration(target, dialect, milling_machine, probe_in_table(milling_machine, known))
     if sheet is not None and page is not None:
