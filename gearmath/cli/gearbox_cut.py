@@ -202,13 +202,6 @@ def _cut_thread(
 @click.option("--module", type=Number(0.1, 25.0, "mm"), required=True, help="Normal module in mm.")
 @click.option("--teeth", type=click.IntRange(min=1), required=True, help="Teeth of the gear.")
 @click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
-@click.option(
-    "--hob-shift",
-    type=Number(-500.0, 500.0, "mm"),
-    default=0.0,
-    show_default=True,
-    help="The hob's middle from the pitch point, in mm, to the right as seen from the hob towards the gear.",
-)
 @click.option("--helix", type=float, help="Helix angle in degrees; a spur gear if left out.")
 @click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of the helix; right if left out.")
 @JSON

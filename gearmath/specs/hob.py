@@ -27,6 +27,10 @@ TIP_RADII = {"A": 0.38, "B": 0.3, "C": 0.25, "D": 0.39}
 
 #: How much less the pressure angle of a protuberance is than that of the flank: at least, and usually [degrees].
 LEAST_PROTRUDING, USUAL_PROTRUDING = 2.0, 10.0
+#: Reference diameter of a hob whose file does not say it: the usual small one, or so many modules [mm].
+ASSUMED_DIAMETER, ASSUMED_MODULES = 25.4, 16.0
+#: Least lead of its gashes, in its diameters.
+LEAST_GASH_LEAD = 5.0
 
 
 class Hob(Spec):
@@ -92,6 +96,20 @@ class Hob(Spec):
         """Pressure angle of the protruding flank [rad]."""
         given = self.protuberance_angle
         return math.radians(max(0.0, self.pressure_angle - USUAL_PROTRUDING) if given is None else given)
+
+    @model_validator(mode="after")
+    def _gashes_are_not_threads(self) -> Hob:
+        least = LEAST_GASH_LEAD * self.reference_diameter
+        if self.gash_lead is not None and self.gash_lead < least:
+            raise ValueError(
+                f"gash_lead = {self.gash_lead:g}: must be at least {LEAST_GASH_LEAD:g} diameters, {least:g} mm"
+            )
+        return self
+
+    @property
+    def reference_diameter(self) -> float:
+        """Reference diameter [mm]: where the file does not say it, the usual small one, or so many modules."""
+        return self.diameter or max(ASSUMED_DIAMETER, ASSUMED_MODULES * self.module_mm)
 
     @property
     def _size(self) -> float:

@@ -20,13 +20,10 @@ from gearmath.gearbox.kernels import evaluate
 from gearmath.gearbox.train import plan
 from gearmath.specs.hobbing import Hob, HobbingMachine
 
-#: Reference diameter of a hob whose file does not say it: the usual small one, or so many modules [mm].
-ASSUMED_DIAMETER, ASSUMED_MODULES = 25.4, 16.0
 #: Face width where none is given, in modules.
 FACE_WIDTH = 10.0
 LEAST_FEED, MOST_FEED = 0.01, 10.0
-#: Shift of the hob along its axis [mm], and lead of its gashes in its diameters.
-MOST_SHIFT, LEAST_GASH_LEAD = 500.0, 5.0
+MOST_SHIFT = 500.0  # of the hob along its axis [mm]
 LONGEST_SECONDS = 86_400.0
 
 
@@ -140,7 +137,7 @@ def setup(
 def hob_tool(hob: Hob, starts: int, sign: int) -> HobTool:
     """The hob of a machine file, with a tip radius that fits on its teeth."""
     module, alpha = hob.module_mm, hob.alpha
-    diameter = hob.diameter or max(ASSUMED_DIAMETER, ASSUMED_MODULES * module)
+    diameter = hob.reference_diameter
     if diameter <= 5.0 * module * starts:
         raise InputError(f"starts = {starts}: hob {hob.name} of {diameter:g} mm is too small for them")
     protruding = hob.protuberance * module
@@ -149,7 +146,7 @@ def hob_tool(hob: Hob, starts: int, sign: int) -> HobTool:
     if sharp <= 0.0:
         raise InputError(f"hob {hob.name}: teeth of {hob.addendum:g} mm at {hob.pressure_angle:g} degrees have no tip")
     roundest = sharp / (sharp - rounded)
-    tool = HobTool(
+    return HobTool(
         starts,
         sign,
         hob.gashes,
@@ -161,12 +158,6 @@ def hob_tool(hob: Hob, starts: int, sign: int) -> HobTool:
         module if hob.topping else None,
         hob.gash_lead,
     )
-    if hob.gash_lead is not None and hob.gash_lead < LEAST_GASH_LEAD * diameter:
-        raise InputError(
-            f"hob {hob.name}: gash_lead = {hob.gash_lead:g}: must be at least {LEAST_GASH_LEAD:g} diameters, "
-            f"{LEAST_GASH_LEAD * diameter:g} mm"
-        )
-    return tool
 
 
 def cut_and_inspect(cut: CutSetup, rule: Rule, progress: Callable[[int], object] = lambda done: None) -> VirtualGear:

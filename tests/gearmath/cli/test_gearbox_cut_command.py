@@ -138,6 +138,8 @@ def test_cut_writes_the_gear_as_a_closed_stl(capsys, tmp_path):
         (("lathe_example.toml", "--pitch", "2mm", "--feed", "0.5"), "--feed has no meaning for a thread"),
         (("lathe_example.toml", "--pitch", "2mm", "--csv", "points.csv"), "--csv has no meaning for a thread"),
         (("lathe_example.toml", "--pitch", "2mm", "--starts", "0"), "starts = 0"),
+        (("lathe_example.toml", "--pitch", "2mm", "--hob-shift", "3"), "--hob-shift has no meaning for a thread"),
+        (("hobbing_default.toml", "--teeth", "24", "--hob-shift", "nan"), "--hob-shift = nan"),
         (("hobbing_helical.toml", "--teeth", "24", "--helix", "-20"), "--hand says which way"),
         (("hobbing_default.toml", "--teeth", "24", "--csv", "a.out", "--stl", "./a.out"), "--csv is written there"),
         (("hobbing_default.toml", "--teeth", "24", "--feed", "nan"), "--feed = nan"),
@@ -154,6 +156,63 @@ def test_cut_writes_the_gear_as_a_closed_stl(capsys, tmp_path):
 def test_what_cannot_be_cut_is_refused_in_one_sentence(capsys, arguments, words):
     status, out, err = gearmath(capsys, "gearbox", "cut", *arguments)
     assert (status, out) == (2, "")
+    assert words in err
+    assert len(err.strip().splitlines()) == 1
+
+
+HOB = """
+[[hobs]]
+module = 1.0
+depth_rule = "2.25m"
+diameter = 50.0
+length = 40.0
+tip_radius = 0.25
+protuberance = 0.05
+topping = true
+gash_lead = 2000.0
+"""
+
+
+def with_hob(folder: Path, given: str = "", instead: str = "") -> Path:
+    """The metric machine with one hob, that of HOB, changed."""
+    text = bundled("hobbing_metric.toml").read_text("utf-8")
+    assert given in HOB
+    path = folder / "machine.toml"
+    path.write_text(text[: text.index("[[hobs]]")] + HOB.replace(given, instead), "utf-8")
+    return path
+
+
+def test_cut_with_everything_that_a_hob_may_have_says_so_in_json_and_text(capsys, tmp_path):
+    path = with_hob(tmp_path)
+    arguments = ("--teeth", "24", "--width", "3", "--feed", "1", "--rule", "ideal", "--hob-shift", "5")
+    status, out, _ = gearmath(capsys, "gearbox", "cut", str(path), *arguments, "--json")
+    assert status == 0
+    found = json.loads(out)
+    hob = found["hob"]
+    assert (hob["protuberance"], hob["topping"], hob["gash_lead"], hob["shift"]) == (0.05, True, 2000.0, 5.0)
+    low, high = hob["shift_range"]
+    assert high - low == pytest.approx(40.0 - found["generating_length"])
+    tip = next(each for each in found["gears"][0]["thickness"] if each["what"] == "tip radius")
+    assert 13.0 < tip["mean"] < 13.01
+
+
+@pytest.mark.parametrize(
+    ("given", "instead", "words"),
+    [
+        ("protuberance = 0.05", "protuberance = 0.001", "protuberance = 0.001: must be at least 0.0038 modules"),
+        ("protuberance = 0.05", "protuberance = -1.0", "hobs.0.protuberance = -1.0: must be at least 0"),
+        ("protuberance = 0.05", "protuberance_angle = 9.0", "protuberance_angle has no meaning without protuberance"),
+        ("gash_lead = 2000.0", "gash_lead = 20.0", "gash_lead = 20: must be at least 5 diameters, 250 mm"),
+        ("gash_lead = 2000.0", "gash_lead = nan", "hobs.0.gash_lead = nan"),
+        ("gash_lead = 2000.0", "protuberance_angle = 19.0", "protuberance_angle = 19: must be at most 18 degrees"),
+        ("topping = true", "topping = 1", "hobs.0.topping = 1: must be true or false"),
+    ],
+)
+def test_hob_that_cannot_be_is_refused_by_file_and_key(capsys, tmp_path, given, instead, words):
+    path = with_hob(tmp_path, given, instead)
+    status, out, err = gearmath(capsys, "gearbox", "cut", str(path), "--teeth", "24")
+    assert (status, out) == (2, "")
+    assert "machine.toml: hobs.0" in err
     assert words in err
     assert len(err.strip().splitlines()) == 1
 

@@ -62,16 +62,22 @@ def test_steps_are_those_of_the_compiled_rule_at_every_edge(teeth, starts, helix
     assert np.abs(rounding(ratio, hob, feed)).max() <= 0.5
 
 
-@pytest.mark.parametrize("teeth", [6, 17, 24, 60, 127])
-def test_steps_change_a_flank_by_half_of_one_and_a_count_at_most(teeth):
-    prepared = setup(machine(gashes=12), teeth, hob="m1", feed=0.3, shift=0.5 if teeth < 18 else 0.0)
+@pytest.mark.parametrize(
+    ("teeth", "starts", "helix"),
+    [(6, 1, None), (17, 1, None), (24, 1, None), (60, 2, None), (127, 1, None), (31, 1, 20.0), (50, 3, 35.0)],
+)
+def test_steps_change_a_flank_by_half_of_one_and_a_count_at_most(teeth, starts, helix):
+    """A count of every encoder: on a helical gear that of the feed, too."""
+    inclined = None if helix is None else Helix(helix, "left")
+    shift = 0.5 if teeth < 18 else 0.0
+    prepared = setup(machine(gashes=12), teeth, hob="m1", feed=0.3, shift=shift, starts=starts, helix=inclined)
     train, where = prepared.train, prepared.where
     spaces, lengths = np.arange(60) % teeth, np.linspace(where.profile[0], where.profile[-1], 60)
     heights = np.linspace(2.0, 8.0, 60)
     for side in (1, -1):
         with_steps = Cut(train.job, train).deviation(side, spaces, lengths, heights)
         without = Cut(train.job).deviation(side, spaces, lengths, heights)
-        count = float(train.ratio.numerators[0]) / train.ratio.denominator
+        count = sum(abs(float(each)) for each in train.ratio.numerators) / train.ratio.denominator
         assert np.abs(with_steps - without).max() <= (0.5 + count) * normal_step(train) + 1e-9
 
 
@@ -164,6 +170,84 @@ def test_eccentric_hob_comes_back_in_the_profile_once_a_turn_of_the_hob():
     for trace in inspect(Cut(prepared.job, prepared.train), prepared.where).profiles:
         period = math.pi * math.cos(math.radians(20))
         assert sine(trace.place, trace.deviation, period) == pytest.approx(0.002 * math.sin(math.radians(20)), rel=0.02)
+
+
+def test_wobbling_hob_comes_back_in_the_profile_once_a_turn_of_the_hob():
+    """e cos α along the normal of a spur gear, a shift along the hob's axis being one of the rack."""
+    prepared = fine(hob_axial_runout_um=2.0)
+    for trace in inspect(Cut(prepared.job, prepared.train), prepared.where).profiles:
+        period = math.pi * math.cos(math.radians(20))
+        expected = 0.002 * math.cos(prepared.job.lead_angle) * math.cos(math.radians(20))
+        assert sine(trace.place, trace.deviation, period) == pytest.approx(expected, rel=0.02)
+
+
+def test_hob_whose_thread_is_too_long_comes_back_as_a_slope_of_the_profile():
+    """A turn of the hob is a base pitch of length of roll; e cos α along the normal for each."""
+    prepared = fine(hob_lead_um_per_turn=3.0)
+    for trace in inspect(Cut(prepared.job, prepared.train), prepared.where).profiles:
+        turns = (trace.place[-1] - trace.place[0]) / (math.pi * math.cos(math.radians(20)))
+        expected = 0.003 * math.cos(prepared.job.lead_angle) * math.cos(math.radians(20)) * turns
+        assert abs(trace.slope) == pytest.approx(expected, rel=0.02)
+
+
+def test_encoder_line_error_comes_back_in_the_profile_once_a_turn_of_the_encoder():
+    """The hob drives it 1:1, so that the table is off by 1/z of it; by so many steps and counts that they are smooth.
+
+    A sine twice a turn is in the table as it should be, too; on the flank other gashes cut its crests off.
+    """
+    for order in (1, 2):
+        seen = machine(gashes=40, encoder=[{"amplitude_arcsec": 300.0, "order": order}])
+        smooth = seen.model_copy(
+            update={
+                "table": seen.table.model_copy(update={"microsteps": 256}),
+                "encoder": seen.encoder.model_copy(update={"lines": 10_000}),
+                "limits": seen.limits.model_copy(update={"step_rate_hz": 1e6}),
+            }
+        )
+        prepared = setup(smooth, 24, hob="m1", feed=0.2, rpm=60.0)
+        psi = np.random.default_rng(order).uniform(0.0, 40 * TURN, 40_000)
+        expected = 300.0 * ARCSEC / 24
+        assert sine(psi, prepared.train.table(psi, 1), TURN / order) == pytest.approx(expected, rel=0.01)
+        if order == 1:
+            where = replace(prepared.where, helix=prepared.where.helix[:5])
+            for trace in inspect(Cut(prepared.job, prepared.train), where).profiles:
+                found = sine(trace.place, trace.deviation, math.pi * math.cos(math.radians(20)))
+                assert found == pytest.approx(expected * prepared.job.base_radius, rel=0.02)
+
+
+def test_uneven_microsteps_come_back_once_a_full_step():
+    """2 percent of a full step, once a full step: a sine that four microsteps hold keeps sin(π/4)/(π/4) of it."""
+    train = setup(machine(microstep_percent=2.0), 24, hob="m1").train
+    full = TURN / float(train.machine.motor_steps) * train.machine.drive.microsteps
+    psi = np.linspace(0.0, 40 * full * 24, 20_001)
+    plain = replace(train, machine=machine())
+    off = train.table(psi, 1) - plain.table(psi, 1)
+    assert sine(psi / 24, off, full) == pytest.approx(0.02 * full * math.sin(math.pi / 4) / (math.pi / 4), rel=0.02)
+
+
+def test_errors_of_all_parts_superpose_within_2_percent():
+    """What all of them do is the sum of what each does alone, in the mean square; beside ridges other gashes cut."""
+    given = {
+        "worm": [{"amplitude_arcsec": 30.0, "phase": 20.0}],
+        "wheel": [{"amplitude_arcsec": 40.0, "order": 2}],
+        "hob_eccentricity_um": 1.0,
+        "hob_axial_runout_um": 0.6,
+        "hob_lead_um_per_turn": 1.0,
+        "blank_eccentricity_um": 8.0,
+        "blank_tilt_um_per_100mm": 20.0,
+    }
+
+    def change(**errors: object) -> np.ndarray:
+        prepared = fine(**errors)
+        where = replace(prepared.where, profile=prepared.where.profile[::8], helix=prepared.where.helix[::8])
+        seen = inspect(Cut(prepared.job, prepared.train), where)
+        traces = [trace.deviation for trace in (*seen.profiles, *seen.helices)]
+        return np.concatenate([*traces, *(row.position for row in seen.pitches), seen.ball])
+
+    ideal = change()
+    alone = sum(change(**{key: value}) - ideal for key, value in given.items())
+    together = change(**given) - ideal
+    assert np.linalg.norm(together - alone) < 0.02 * np.linalg.norm(alone)
 
 
 def test_eccentric_blank_comes_back_in_the_runout_once_a_turn_of_the_table():
@@ -265,8 +349,12 @@ def test_stop_within_the_cut_lets_a_motor_that_lags_catch_up_as_its_equation_of_
 def test_stop_that_is_far_outside_of_the_cut_is_not_to_blame():
     """The motor's lag alone evens out the steps; that is no share of a stop that no tooth meets."""
     given = {"motor_time_constant_ms": 5.0, "run_up_seconds": 0.5}
-    prepared = setup(machine(**given, stop_in_cut_mm=500.0), 24, hob="m1", face_width=5.0)
-    without = setup(machine(**given), 24, hob="m1", face_width=5.0)
+    prepared, without = (
+        replace(made, where=replace(made.where, profile=made.where.profile[::16], helix=made.where.helix[::16]))
+        for made in (
+            setup(machine(**given, **stop), 24, hob="m1", face_width=5.0) for stop in ({"stop_in_cut_mm": 500.0}, {})
+        )
+    )
     whole = cut_and_inspect(prepared, "exact")
     assert whole.found.figures == pytest.approx(cut_and_inspect(without, "exact").found.figures, abs=1e-6)
     shares = {each.source: each for each in blame(prepared, whole)}

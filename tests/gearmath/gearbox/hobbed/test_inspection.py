@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -123,3 +124,29 @@ def test_hob_that_is_too_short_is_refused():
     short = [hob.model_copy(update={"length": 5.0}) for hob in machine.hobs]
     with pytest.raises(InputError, match=r"hob m1: length = 5: the flanks of this gear need \d+\.\d mm"):
         setup(machine.model_copy(update={"hobs": tuple(short)}), 24, hob="m1")
+
+
+def test_hob_may_be_shifted_until_its_end_reaches_the_zone_that_cuts():
+    """Of 40 mm, what the flanks need is free on both sides, as far for both hands; beyond it the shift is refused."""
+    machine = find_hobbing_machine("hobbing_default.toml")
+    long = tuple(hob.model_copy(update={"length": 40.0}) for hob in machine.hobs)
+    made = machine.model_copy(update={"hobs": long})
+    low, high = setup(made, 24, hob="m1").offsets
+    assert high - low == pytest.approx(40.0 - setup(made, 24, hob="m1").hob_length)
+    assert low == pytest.approx(-high, rel=1e-6)  # a spur gear: both flanks alike
+    setup(made, 24, hob="m1", hob_shift=high - 0.01)
+    with pytest.raises(InputError, match=r"hob m1: hob shift = -20: must lie between -\d+\.\d and \d+\.\d mm"):
+        setup(made, 24, hob="m1", hob_shift=-20.0)
+
+
+def test_shift_of_a_hob_by_what_its_threads_rise_between_gashes_leaves_the_same_flats():
+    """And by half of that the ridges lie where the flats were."""
+    rise = math.pi / math.cos(math.asin(1 / 50)) / 12
+    along = np.linspace(3.6, 4.6, 60)
+    of = job(24, 1.0)
+    flanks = [
+        Cut(replace(of, feed=0.02, hob_offset=part * rise)).deviation(1, np.zeros(60, int), along, np.full(60, 10.0))
+        for part in (0.0, 3.0, 0.5)
+    ]
+    np.testing.assert_allclose(flanks[1], flanks[0], atol=0.01 * UM)
+    assert np.corrcoef(flanks[2], flanks[0])[0, 1] < -0.8
