@@ -22,15 +22,15 @@ def memory(machine: HobbingMachine) -> Iterator[str]:
     most, fast = _HAS[machine.board]
     words = (
         f"The files of this folder take about {flash:g} kB of flash and {ram:g} kB of RAM (arm-none-eabi-gcc 12, -O2), "
-        f"of the {most} kB and {fast} kB of a {machine.hardware.title}. The core of Teensyduino and its libraries come on "
-        "top; "
+        f"of the {most} kB and {fast} kB of a {machine.hardware.title}. The core of Teensyduino and its libraries come "
+        "on top; "
     )
     if machine.board in _CORE:
         code, variables = _CORE[machine.board]
         words += (
             f"a published build of a small sketch for a Teensy 4.0 has {code:g} kB of flash and {variables:g} kB of "
-            f"RAM for the core, so that {flash + code:.0f} kB and {ram + variables:.1f} kB are to be expected, and some kB "
-            "for the libraries. They "
+            f"RAM for the core, so that {flash + code:.0f} kB and {ram + variables:.1f} kB are to be expected, and "
+            "some kB for the libraries. They "
         )
     else:
         words += "they "
