@@ -8,7 +8,6 @@ import re
 from pathlib import Path
 
 import pytest
-from gearmath.control.file_names import control_name
 
 import gearmath
 from gearmath.bevel.pair import load_pair
@@ -17,6 +16,7 @@ from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.language_files import language_file
 from gearmath.hmi.messages import Text
 from gearmath.hmi.reasons import german
+from gearmath.machine.control.file_names import control_name
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.limits import check_spindle_speed
 from gearmath.machine.writing.words import check_name
