@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from gearmath.errors import InputError as InputError
     from gearmath.front.contact import Contact as Contact
     from gearmath.front.contact import contact as contact
+    from gearmath.front.corrected import Correction as Correction
     from gearmath.front.design import Blank as Blank
     from gearmath.front.design import PairDesign as PairDesign
     from gearmath.front.design import design as design
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from gearmath.front.machines import load_machine as load_machine
     from gearmath.front.machines import load_probe as load_probe
     from gearmath.front.machines import load_shop as load_shop
-    from gearmath.front.measured import Correction as Correction
     from gearmath.front.measured import Evaluation as Evaluation
     from gearmath.front.measured import Measurement as Measurement
     from gearmath.front.measured import load_measurement as load_measurement
@@ -65,7 +65,8 @@ _HOMES = {
     "gearmath.front.flanks": ("FlankSurface", "Tooth"),
     "gearmath.front.machines": ("load_machine", "load_shop", "load_probe", "load_hobber", "Machine"),
     "gearmath.front.programs": ("Program",),
-    "gearmath.front.measured": ("load_measurement", "Measurement", "Evaluation", "Correction"),
+    "gearmath.front.measured": ("load_measurement", "Measurement", "Evaluation"),
+    "gearmath.front.corrected": ("Correction",),
     "gearmath.front.judged": ("load_points", "Uncertainty"),
     "gearmath.front.probing": ("probing", "calibrating", "ProbingProgram", "load_touches", "calibrate"),
     "gearmath.front.design": ("design", "PairDesign", "settings_of", "load_blank", "Blank", "load_rexs"),

@@ -14,11 +14,16 @@ class ComputationError(RuntimeError):
 
 
 @contextmanager
-def about(file: Path) -> Iterator[None]:
-    """Names the file that is to blame for bad input, where what computes with its content cannot know it."""
+def about(file: Path | None) -> Iterator[None]:
+    """Names the file that is to blame for bad input, where what computes with its content cannot know it.
+
+    Nothing is named where the content came out of no file.
+    """
     try:
         yield
     except InputError as error:
+        if file is None:
+            raise
         words = str(error)
         raise InputError(words if words.startswith((f"{file}: ", f"{file}, ")) else f"{file}: {words}") from error
 

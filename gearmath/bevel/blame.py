@@ -158,8 +158,8 @@ def _wanted(members: Members, found: Mapping[Where, CutFlank], where: Sequence[W
     others = [one for place, one in telling.items() if place not in where] or list(telling.values())
     spiral = median(abs(one.spiral_angle) for one in others) if others else _SPIRAL
     right = [one.pressure_angle for place, one in found.items() if place not in where]
-    blade = median(member.flank(each).nominal.blade_pressure_angle for each in FLANKS)
-    return Wanted(hand * spiral, median(right) if right else math.radians(blade))
+    blade = median(member.flank(each).nominal.alpha for each in FLANKS)
+    return Wanted(hand * spiral, median(right) if right else blade)
 
 
 def _changed(members: Members, trial: _Trial) -> Members:
@@ -227,21 +227,21 @@ def _crown_gear(
     """The settings of the crown gear by name, mm and degrees as in a file."""
     spec, blank = member.flank(flank).nominal, member.blank
     flanks = [each.flank(name).nominal for each in members.values() for name in FLANKS]
-    radius, alpha = (
-        median(getattr(one, key) for one in flanks) for key in ("blade_point_radius", "blade_pressure_angle")
+    radius, alpha, blade = (
+        median(getattr(one, key) for one in flanks) for key in ("blade_point_radius", "alpha", "blade_pressure_angle")
     )
     # blades of one cutter stand on both sides of its radius, by half the point width
     beside = spec.blade_point_radius - _own_radius(member, flank)
     hand = 1 if member.hand == "right" else -1
     # of the mirrored right-hand member, whose swivel is 180 degrees less that of the left-hand one
-    swivel = spec.cutter_swivel if hand == 1 else 180 - spec.cutter_swivel
+    swivel = spec.rad("cutter_swivel") if hand == 1 else math.pi - spec.rad("cutter_swivel")
     angles = {
         "mean_spiral_angle": spiral,
         "pitch_angle": blank.delta,
         "machine_root_angle": blank.delta_f,
-        "flank_pressure_angle": math.radians(alpha),
-        "cutter_tilt": math.radians(spec.cutter_tilt),
-        "tilt_direction": math.radians(swivel + hand * spec.cradle_angle),
+        "flank_pressure_angle": alpha,
+        "cutter_tilt": spec.rad("cutter_tilt"),
+        "tilt_direction": swivel + hand * spec.rad("cradle_angle"),
     }
     values = angles | {
         "hand_sign": hand,
@@ -261,7 +261,7 @@ def _crown_gear(
         "machine_center_to_crossing_point": 0.0,
         "machine_root_angle": blank.root_angle,
         "blade_point_radius": radius + beside,
-        "blade_pressure_angle": alpha,
+        "blade_pressure_angle": blade,
     }
     if spec.cutter_tilt and "cutter_swivel" in found:
         wanted["cutter_swivel"] = math.degrees(found["cutter_swivel"])

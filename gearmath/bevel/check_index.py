@@ -29,7 +29,7 @@ def check_index(member: Member, name: str, backlash: float | None) -> None:
     module = transverse_module(member)
     usual = BACKLASH[1] if backlash is None else _LEAST
     limit = max(backlash or 0.0, usual * module)
-    moved = mean_pitch_radius(member) * np.radians(member.index_correction)
+    moved = mean_pitch_radius(member) * member.rad("index_correction")
     beside = np.stack([np.roll(moved, -k) for k in range(min(_IN_MESH, len(moved)))])
     apart = np.ptp(beside, axis=0)
     first = int(np.argmax(apart))

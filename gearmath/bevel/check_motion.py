@@ -48,7 +48,7 @@ def _check_still_roll(member: Member, spec: Flank, table: str) -> None:
         "crown_gear_roll",
         {
             "pitch_angle": member.blank.delta,
-            "machine_root_angle": math.radians(spec.nominal.machine_root_angle),
+            "machine_root_angle": spec.nominal.rad("machine_root_angle"),
         },
     )["ratio_of_roll"]
     if not abs(given - rolling) <= _STILL_ROLL * rolling:

@@ -33,7 +33,7 @@ def generation_of(member: Member, flank: str) -> Generation:
         side=SIDES[flank],
         motion=motion_of(spec, nominal=True),
         index_ratio=member.indexing_sign * (member.blade_groups or 0) / member.teeth,
-        blade_offset_angle=math.radians(spec.blade_offset_angle),
+        blade_offset_angle=spec.rad("blade_offset_angle"),
         rolling=member.generation == "generated",
     )
 
@@ -72,7 +72,7 @@ def blade_sections(spec: Flank, side: int) -> dict[str, Section]:
     sections: dict[str, Section] = {}
     bottom = 0.0
     if spec.toprem_angle is not None:
-        bottom, angle = spec.toprem_height, math.radians(spec.toprem_angle)
+        bottom, angle = spec.toprem_height, spec.rad("toprem_angle")
         (toprem_radius,) = kernel("toprem")(radius, alpha, angle, bottom, side)
         sections["toprem"] = Section(0.0, bottom, float(toprem_radius), angle)
     sections["main"] = _main(spec, side, bottom)

@@ -62,7 +62,6 @@ def flank(
 ) -> None:
     """Nominal points and outward normals of one flank, as a flank CSV."""
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
     given = {"": margin, "-root": root, "-tip": tip, "-toe": toe, "-heel": heel}
     margins, shape = _margins(given), None if size is None else _grid(size)
@@ -70,8 +69,9 @@ def flank(
         for name, value in given.items():
             if value is not None:
                 raise InputError(f"--margin{name} {value:g}: listed places (--places) have no margins")
-    one = member_of(load_set(gear_set), member)
-    with about(find(gear_set)):
+    pair = load_set(gear_set)
+    one = member_of(pair, member)
+    with about(pair.source):
         found = one.flank(side, shape, margins, places)
     found.to_csv(target)
     click.echo(
@@ -89,11 +89,10 @@ def flank(
 def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; backlash and ease-off of the pair; and an STL."""
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
     pair = load_set(gear_set)
     one = member_of(pair, member)
-    with about(find(gear_set)):
+    with about(pair.source):
         made = one.tooth(columns)
         mates = pair.mates()
     triangles, figures = made.to_stl(target, whole_member=not space), made.figures

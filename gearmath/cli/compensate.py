@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -17,21 +17,17 @@ from gearmath.cli.common import (
     SET_OPTION,
     Number,
     about,
-    bar,
+    bars,
     echo_json,
-    member_of,
     output,
     table,
 )
-from gearmath.errors import ComputationError, InputError, counted
+from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.bevel.identify.variables import Bounds
-    from gearmath.quality.correction.member import MemberCorrection
+    from gearmath.front.sets import GearSet, Member
     from gearmath.quality.correction.thickness import By
-    from gearmath.quality.evaluation.member import MemberEvaluation
-    from gearmath.specs.bevel_set import BevelSet, Member
-    from gearmath.specs.flank_csv import FlankFile
 
 
 @click.command(epilog=FLANK_CSV)
@@ -102,7 +98,7 @@ def compensate(
     measured: Path,
     names: str,
     higher_order: bool,
-    objective: str,
+    objective: Literal["points", "surface"],
     from_mate: Path | None,
     registered: bool,
     rotated: bool,
@@ -110,7 +106,7 @@ def compensate(
     root_limit: float | None,
     noise: float | None,
     thickness: float,
-    thickness_by: str,
+    thickness_by: By,
     verbose: bool,
     as_json: bool,
     target: Path,
@@ -120,61 +116,32 @@ def compensate(
     Points that missed, drift and clamping are taken out first, as 'evaluate' does. Says in two lines what remains of
     what, and which limit binds.
     """
-    from gearmath.bevel.pair import check_pair, load_pair
     from gearmath.cli.compensate_text import say_analysis, say_changes, say_result, verdict
-    from gearmath.quality.correction import member as correcting
-    from gearmath.quality.correction.member import ROOT_LIMIT, correct
-    from gearmath.quality.correction.thickness import with_thickness
-    from gearmath.quality.correction.values import correction_values
-    from gearmath.quality.evaluation.member import STAGES, evaluate_member
-    from gearmath.quality.uncertainty.corrected import noise_of_points
-    from gearmath.specs.flank_csv import read_flank_csv
-    from gearmath.specs.set_text import save_corrected
-    from gearmath.specs.toml import find
+    from gearmath.front.measured import load_measurement, measurement_of
+    from gearmath.front.sets import load_set
+    from gearmath.quality.correction.member import ROOT_LIMIT
 
-    source = find(gear_set)
-    pair = load_pair(source)
-    file = read_flank_csv(measured)
-    from gearmath.front.sets import GearSet
-
-    one = member_of(GearSet(pair), member, file.member)
-    member, spec = one.name, one.spec
-    moved = _from_mate(pair, member, from_mate, measured, registered) if from_mate else None
-    with about(measured), bar(STAGES + correcting.STAGES, "stage", as_json) as progress:
-        evaluation = evaluate_member(file, spec, member, registered, progress, rotated)
-        evaluation.closing.check_topography()
-        level = noise_of_points(file, spec, evaluation, noise)
-        correction = correct(
-            spec,
-            member,
-            evaluation.file,
+    pair = load_set(gear_set)
+    made = measurement_of(measured, pair, member)
+    one = made.member
+    with bars(quiet=as_json) as begin:
+        found = made.compensate(
             _free(names),
+            registered=registered,
+            rotated=rotated,
             objective=objective,
             higher_order=higher_order,
-            few=names == "few",
-            root_limit=root_limit or ROOT_LIMIT,
-            noise=level,
-            added=moved,
             bounds=bounds,
-            progress=progress,
-            indexed=evaluation.closing.withheld is None,
+            root_limit=root_limit or ROOT_LIMIT,
+            noise_um=noise,
+            mate=None if from_mate is None else load_measurement(from_mate, _mate(pair, one)),
+            thickness=thickness / 1000,
+            thickness_by=thickness_by,
+            begin=begin,
         )
-    if thickness:
-        by = cast("By", thickness_by)
-        correction.settings.update(with_thickness(spec, member, correction.settings, thickness / 1000, by))
-    save_corrected(
-        source,
-        target,
-        member,
-        correction.settings,
-        correction.index,
-        correction.motions,
-        correction.curvatures,
-        check=check_pair,
-        origin=f"{measured.name} and {source.name}",
-    )
-    values = correction_values(spec, correction) | {"remarks": [*evaluation.remarks, *correction.remarks]}
-    values |= _uncertainty(spec, file, evaluation, correction, noise, root_limit or ROOT_LIMIT)
+    found.save(target)
+    spec, correction, evaluation = one.spec, found.found, found.evaluation.found
+    values = found.figures()
     if as_json:
         echo_json(values)
         return
@@ -197,57 +164,19 @@ def compensate(
     click.echo(f"{target}: written" + ("" if correction.index is None else ", with index corrections for every tooth"))
 
 
-def _uncertainty(
-    member: Member,
-    file: FlankFile,
-    found: MemberEvaluation,
-    correction: MemberCorrection,
-    noise_um: float | None,
-    root_limit: float,
-) -> dict[str, Any]:
-    """Standard uncertainties of the corrected settings, and what errors of measurement do to the flanks."""
-    from gearmath.cli.uncertainty import effects_um
-    from gearmath.quality.uncertainty.corrected import point_covariance
-    from gearmath.quality.uncertainty.judged import judged_by_measured
-    from gearmath.quality.uncertainty.settings import uncertain_settings
-
-    covariance = point_covariance(file, noise_um or None)
-    if covariance is None:
-        return {}
-    judged = covariance.carried(judged_by_measured(file, member, found))
-    try:
-        settings, effects = uncertain_settings(member, found.member, found.file, correction, judged, root_limit)
-    except ComputationError as error:
-        return {"no_uncertainties": str(error)}
-    known: dict[str, dict[str, float]] = {}
-    for one in settings:
-        known.setdefault(one.figure.flank, {})[one.figure.name] = one.uncertainty * one.figure.factor
-    return {"u": known, **effects_um(effects)}
-
-
-def _free(names: str) -> tuple[str, ...] | None:
-    from gearmath.specs.bevel_set import MACHINE_SETTINGS
-
-    if names in ("standard", "few"):
-        return None
+def _free(names: str) -> str | tuple[str, ...]:
+    if names in ("standard", "few", "all"):
+        return names
     if not names.strip(" ,"):
         raise InputError("--settings: at least one must be named")
-    return MACHINE_SETTINGS if names == "all" else tuple(name.strip() for name in names.split(","))
+    return tuple(name.strip() for name in names.split(","))
 
 
-def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, registered: bool) -> dict[str, Any]:
-    from gearmath.quality.correction.ease_off import moved_to_mate
-    from gearmath.quality.evaluation.member import evaluate_member
+def _mate(pair: GearSet, member: Member) -> Member:
     from gearmath.specs.bevel_set import MEMBERS
-    from gearmath.specs.flank_csv import read_flank_csv
 
-    mate = MEMBERS[1 - MEMBERS.index(member)]
     with about(Path("--from-mate")):
-        other = pair.member(mate)
-    with about(path):
-        judged = evaluate_member(read_flank_csv(path), other, mate, registered)
-        judged.closing.check_topography()
-        return moved_to_mate(pair, mate, judged.file, read_flank_csv(measured))
+        return pair.member(MEMBERS[1 - MEMBERS.index(member.name)])
 
 
 @click.command(epilog=FLANK_CSV)
@@ -266,19 +195,12 @@ def _from_mate(pair: BevelSet, member: str, path: Path, measured: Path, register
 @JSON
 def stock(measured: Path, gear_set: str, member: str | None, advance: bool, least: float, as_json: bool) -> None:
     """How a precut blank must stand so that both flanks share its stock: probe it, then turn it by this."""
-    from gearmath.bevel.pair import load_pair
-    from gearmath.quality.correction.stock import share_stock
+    from gearmath.front.measured import measurement_of
+    from gearmath.front.sets import load_set
     from gearmath.quality.evaluation.completeness import missing_points
-    from gearmath.specs.flank_csv import read_flank_csv
-    from gearmath.specs.toml import find
 
-    pair, file = load_pair(find(gear_set)), read_flank_csv(measured)
-    from gearmath.front.sets import GearSet
-
-    one = member_of(GearSet(pair), member, file.member)
-    member, spec = one.name, one.spec
-    with about(measured):
-        found = share_stock(spec, member, file, advance, least / 1000)
+    made = measurement_of(measured, load_set(gear_set), member)
+    found, file, spec = made.share_stock(advance, least / 1000), made.file, made.member.spec
     remarks = list(missing_points(file, spec.teeth))
     if as_json:
         echo_json(

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import JSON, SET, about, bar, echo_json, plot, save_plot, table
+from gearmath.cli.common import JSON, SET, bars, echo_json, plot, save_plot, table
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
-    from gearmath.bevel.contact.mesh import Mesh
     from gearmath.bevel.contact.system import Assembly, System
 
 _FINEST, _COARSEST = 0.01, 15.0
@@ -66,45 +65,29 @@ def contact(
     path is that of one pair of teeth over three pitches. Rotation 0: both mean points on the pitch line. With measured
     flanks, of either member or both, the pair runs on these: clamping and rotation of the work are taken out first.
     """
-    from gearmath.bevel.contact.mesh import mesh
-    from gearmath.bevel.contact.report import SIDES, figures, tolerance_figures
+    from gearmath.bevel.contact.report import SIDES
     from gearmath.bevel.contact.system import Assembly
-    from gearmath.bevel.contact.tolerance import SEARCHES, tolerance
-    from gearmath.bevel.pair import load_pair
-    from gearmath.quality.contact.pair import measured_pair
-    from gearmath.specs.toml import find
+    from gearmath.front.contact import contact as in_contact
+    from gearmath.front.measured import load_measurement
+    from gearmath.front.sets import load_set
 
     _check(v, h, j, shaft, step)
-    source = find(gear_set)
-    pair = load_pair(source)
-    for name in ("pinion", "gear"):
-        pair.member(name)
-    given = Assembly(v, h, j, math.radians(shaft))
-    results: dict[str, Any] = {}
-    runs: dict[str, Mesh] = {}
-    searches = SEARCHES if with_tolerance else 0
+    pair = load_set(gear_set)
     files = {"pinion": measured_pinion, "gear": measured_gear}
-    with bar(len(SIDES) * (1 + searches), "step", quiet=as_json) as done:
-        measured = measured_pair(pair, {name: file for name, file in files.items() if file is not None})
-        for side in SIDES:
-            with about(source):
-                system = measured.system(side)
-            runs[side] = mesh(system, given)
-            if runs[side].outcome == "contact lost" and given != Assembly():
-                raise InputError(f"{source}: {_lost(system, side, given)}")
-            results[side] = figures(runs[side], math.radians(step)) | measured.figures(side, runs[side])
-            done(1)
-            if with_tolerance:
-                results[side]["tolerance_mm"] = tolerance_figures(tolerance(runs[side], progress=done))
+    measured = [load_measurement(file, pair.member(name)) for name, file in files.items() if file is not None]
+    with bars(quiet=as_json) as begin:
+        found = in_contact(pair, *measured, v=v, h=h, j=j, shaft=shaft, tolerance=with_tolerance, begin=begin)
+    given = Assembly(v, h, j, math.radians(shaft))
+    for side, run in found.runs.items():
+        if run.outcome == "contact lost" and given != Assembly():
+            raise InputError(f"{pair.source}: {_lost(found.measured.system(side), side, given)}")
     if picture is not None:
-        from gearmath.plot.contact import contact_figure
-
-        limits = {side: result.get("tolerance_mm") for side, result in results.items()}
-        save_plot(contact_figure(runs, limits), picture, as_json)
+        save_plot(found.plot(), picture, as_json)
+    results = found.to_dict(step)
     if as_json:
         echo_json(results)
         return
-    for remark in measured.remarks:
+    for remark in found.measured.remarks:
         click.echo(remark)
     for side, result in results.items():
         click.echo(_text(side, SIDES[side], result))

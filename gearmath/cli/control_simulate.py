@@ -79,13 +79,11 @@ def simulate(
     from gearmath.control.simulated.nc import Nc
     from gearmath.control.simulated.server import Appearance, SimulatedControl
     from gearmath.control.simulated.workshop import Workshop
-    from gearmath.specs.calibration import load_calibration
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.simulated_machine import load_simulated_machine
+    from gearmath.front.machines import load_machine, load_probe, load_shop
     from gearmath.specs.toml import find
 
-    shop = load_simulated_machine(find(errors)) if errors else None
-    workshop = Workshop(load_milling_machine(find(machine)), load_calibration(find(calibration)), shop)
+    shop = load_shop(errors) if errors else None
+    workshop = Workshop(load_machine(machine).spec, load_probe(calibration), shop)
     for gear_set in gear_sets:
         workshop.load(find(gear_set))
     password = os.environ.get(PASSWORD)

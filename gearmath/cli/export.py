@@ -20,7 +20,7 @@ from gearmath.cli.common import (
     nominal_words,
     output,
 )
-from gearmath.cli.dialect import CONTROL, dialect_of
+from gearmath.cli.dialect import CONTROL
 from gearmath.errors import InputError, counted
 
 _FOLDER = click.option(
@@ -66,35 +66,16 @@ def cnc(gear_set: str | None, machine: str, control: str | None, blocks: Literal
     Of every member of SET (a TOML file, or a bundled one) the folder gets MEMBER.settings, from which gm-post, a C
     program of the folder, writes the program of 'gearmath nc cut' without Python.
     """
-    from gearmath.export.cnc import export_cnc
+    from gearmath.front.exports import export_cnc
+    from gearmath.front.machines import load_machine
+    from gearmath.front.sets import load_set
 
-    settings = _settings(gear_set, machine, control, blocks) if gear_set is not None else {}
-    names = export_cnc(folder, settings)
+    pair = None if gear_set is None else load_set(gear_set)
+    with bars() as begin:
+        names = export_cnc(folder, pair, load_machine(machine), control, blocks, begin)
     click.echo(f"{folder}: {len(names)} files")
-    for name in settings:
-        click.echo(f"{folder / name}: {name.removesuffix('.settings')}, for gm-post")
-
-
-def _settings(gear_set: str, machine: str, control: str | None, blocks: Literal["g1", "poly"]) -> dict[str, str]:
-    """Settings files of the members of a set, by name; their programs are run first."""
-    from gearmath.bevel.pair import load_pair
-    from gearmath.export.post import post_file
-    from gearmath.machine.judging.checked import checked_cut
-    from gearmath.machine.planning.cut_plan import CuttingJob
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.toml import find
-
-    milling_machine, source = load_milling_machine(find(machine)), find(gear_set)
-    dialect = dialect_of(milling_machine, control)
-    pair = load_pair(source)
-    jobs = {name: CuttingJob(tuple(range(spec.teeth)), blocks=blocks) for name, spec in pair.members.items()}
-    files = {}
-    for name, job in jobs.items():
-        file = f"{name}.settings"
-        with bars() as begin, about(source):
-            made = checked_cut(pair, name, milling_machine, job, name.upper(), file, begin, dialect)
-            files[file] = post_file(made.plan, dialect)
-    return files
+    for name in () if pair is None else pair.spec.members:
+        click.echo(f"{folder / f'{name}.settings'}: {name}, for gm-post")
 
 
 @export.command()
@@ -109,11 +90,10 @@ def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None
     leaves. Needs the extra cad: pip install '.[cad]'.
     """
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
     pair = load_set(gear_set)
     what = pair if member is None else pair.member(member)
-    with bars(quiet=as_json) as begin, about(find(gear_set)):
+    with bars(quiet=as_json) as begin, about(pair.source):
         written = what.to_step(target, begin)
     if as_json:
         echo_json({name: {"volume_mm3": one.volume} for name, one in written.items()})
@@ -128,10 +108,9 @@ def step(gear_set: str, member: str | None, as_json: bool, target: Path) -> None
 def stl(gear_set: str, target: Path) -> None:
     """Triangles of the pair in mesh, both members whole, touching on the drive side; of one: 'gearmath tooth'."""
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
     pair = load_set(gear_set)
-    with bars() as begin, about(find(gear_set)):
+    with bars() as begin, about(pair.source):
         triangles = pair.to_stl(target, begin)
     click.echo(f"{target}: {triangles} triangles, pinion axis Z, gear axis in the plane of Z and X")
 
@@ -151,13 +130,13 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
     For measuring machines that take such lists; row by row, root to tip, toe to heel. 'gearmath points' reads them.
     """
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
-    one = member_of(load_set(gear_set), member)
+    pair = load_set(gear_set)
+    one = member_of(pair, member)
     shape = _grid(grid)
     if not 0 <= margin < 0.5:
         raise InputError(f"--margin {margin:g}: must be at least 0 and less than 0.5")
-    with about(find(gear_set)):
+    with about(pair.source):
         found = one.flank(flank, shape, margin)
     found.to_text(target)
     click.echo(f"{target}: {counted(len(found.file), 'point')}{nominal_words(one, flank)}")
@@ -169,10 +148,9 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
 def rexs(gear_set: str, target: Path) -> None:
     """The set as REXS 2.0.0; what REXS has no name for stays in attributes of its own (docs/exchange.md)."""
     from gearmath.front.sets import load_set
-    from gearmath.specs.toml import find
 
     pair = load_set(gear_set)
-    with about(find(gear_set)):
+    with about(pair.source):
         count = pair.to_rexs(target)
     click.echo(f"{target}: {count} components")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -28,13 +29,8 @@ from gearmath.cli.program_time import program_time
 from gearmath.errors import ComputationError, InputError, counted
 
 if TYPE_CHECKING:
-    from gearmath.bevel.tooth import ToothSpace
-    from gearmath.machine.control.executor import MachinePath
+    from gearmath.front.programs import Program
     from gearmath.machine.judging.cut import MetalLeft
-    from gearmath.machine.milling.run import CuttingRun
-    from gearmath.specs.bevel_set import Member
-    from gearmath.specs.flank_csv import FlankFile
-    from gearmath.specs.milling_machine import MillingMachine
     from gearmath.specs.simulated_machine import SimulatedMachine
 
 
@@ -102,41 +98,28 @@ def cut(
     Before it is written it is run: it must keep the limits of the machine, collide with nothing, and leave both flanks
     within the tolerance.
     """
-    from gearmath.bevel.pair import load_pair
     from gearmath.files import write_text
-    from gearmath.machine.judging.checked import checked_cut
-    from gearmath.machine.judging.timing import timing
-    from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
+    from gearmath.front.machines import load_machine
+    from gearmath.front.programs import cutting
+    from gearmath.front.sets import load_set
+    from gearmath.machine.planning.cut_plan import CuttingJob
     from gearmath.machine.planning.limits import check_spindle_speed
-    from gearmath.machine.planning.setup_facts import SetupFacts
     from gearmath.machine.writing.linuxcnc.cutting import tools_of
     from gearmath.machine.writing.words import check_name
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.toml import find
 
     check_name(target.stem)
     job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
-    milling_machine = load_milling_machine(find(machine))
-    dialect = dialect_of(milling_machine, control, target if configuration else None)
-    check_spindle_speed(target.stem, milling_machine, rpm)
-    bevel_set = load_pair(find(gear_set))
-    from gearmath.front.sets import GearSet
-
-    one = member_of(GearSet(bevel_set), member)
-    member, spec = one.name, one.spec
-    job = replace(job, spaces=_spaces(spaces, spec.teeth))
+    on = load_machine(machine)
+    dialect = dialect_of(on.spec, control, target if configuration else None)
+    check_spindle_speed(target.stem, on.spec, rpm)
+    one = member_of(load_set(gear_set), member)
+    job = replace(job, spaces=_spaces(spaces, one.teeth))
     with bars() as begin:
-        made = checked_cut(bevel_set, member, milling_machine, job, target.stem, str(target), begin, dialect)
-    page = None
-    if sheet is not None:
-        from gearmath.setup_sheet import setup_sheet
-
-        facts = SetupFacts.of(made.plan, PLUNGE_FEED)
-        page = setup_sheet(facts, target.name, timing(made.path, milling_machine), dialect.sheet)
-    write_text(target, made.text)
-    click.echo(f"{target}: {len(job.spaces)} of {spec.teeth} spaces, {dialect.block_count(made.text)} blocks")
-    if configuration:
-        write_configuration(target, dialect, milling_machine, tools_of(made.plan))
+        made = cutting(one, on, target.stem, job, dialect.name, target, begin)
+    page = None if sheet is None else made.sheet(target.name)
+    click.echo(f"{made.save(target)}: {len(job.spaces)} of {one.teeth} spaces, {made.blocks} blocks")
+    if configuration and made.made is not None:
+        write_configuration(target, dialect, on.spec, tools_of(made.made.plan))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
@@ -194,51 +177,40 @@ def mill(
     the set cut, corrected or not; what corrected settings are off their design is said beside it. Of face hobbed
     members flanks alone are judged, fillets and root with --report only.
     """
-    from gearmath.bevel.pair import load_pair
-    from gearmath.bevel.tooth import tooth_space
-    from gearmath.machine.control.executor import execute
-    from gearmath.machine.control.state import Setup
+    from gearmath.front.machines import load_machine, load_shop
+    from gearmath.front.programs import Program
+    from gearmath.front.sets import load_set
     from gearmath.machine.control.text import program_text, skip_blocks
-    from gearmath.machine.judging.program import faults_of
     from gearmath.machine.judging.stated import Stated, stated_member
-    from gearmath.specs.flank_csv import write_flank_csv
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.simulated_machine import load_simulated_machine
-    from gearmath.specs.toml import find
 
-    pair, text = load_pair(find(gear_set)), program_text(program)
-    from gearmath.front.sets import GearSet
-
-    one = member_of(GearSet(pair), member, stated_member(text))
-    member, spec = one.name, one.spec
-    milling_machine = load_milling_machine(find(machine))
-    simulated = load_simulated_machine(find(errors)) if errors else None
-    path = execute(text, str(program), Setup.of(milling_machine))
+    pair, text = load_set(gear_set), program_text(program)
+    one, on = member_of(pair, member, stated_member(text)), load_machine(machine)
+    shop = load_shop(errors) if errors else None
+    made = Program(one, on, str(program), text)
+    _ = made.path  # what the control refuses is said first
     if skipped := skip_blocks(text):
         click.echo(f"{program}: {counted(skipped, 'block')} with / in front, judged as not skipped")
-    if measured and simulated is None:
+    if measured and shop is None:
         raise InputError("--measured needs --errors: the file that says how the member sits and what the probe does")
-    with about(program):
-        space = None if spec.process == "face_hobbing" else tooth_space(spec, member, 7)
-        runs = _right_runs(path, spec, member, milling_machine, space)
-        file = _milled(path, runs, spec, member, milling_machine, simulated, space, run if measured else None)
-    write_flank_csv(target, file)
-    worst = float(abs(file.deviation).max())
-    click.echo(f"{target}: {counted(len(file), 'point')}, largest deviation {worst * 1000:.3f} um")
-    with about(program):
-        right = file if simulated is None else None
-        left = _judge_metal(text, path, runs, spec, member, milling_machine, space, right)
-        faults = [*map(str, left.faults)]
-        faults += map(str, faults_of(text, path, runs, spec, member, milling_machine))
+    with about(program), bar(2 * one.teeth, "flank") as progress:
+        found = made.mill(shop, progress, run if measured else None)
+    found.to_csv(target)
+    worst = float(abs(found.deviation).max())
+    click.echo(f"{target}: {counted(len(found.file), 'point')}, largest deviation {worst * 1000:.3f} um")
+    with about(program), bars() as begin:
+        _say_ridge(made)
+        judged = made.judge(found if shop is None else None, begin)
+    _say_metal(judged.left)
+    faults = list(judged.faults)
     if report is not None:
-        found = _write_report(report, path, spec, member, milling_machine, simulated, report_tolerance_um / 1000, space)
-        faults += found if simulated is None else []
+        told = _write_report(report, made, shop, report_tolerance_um / 1000)
+        faults += told if shop is None else []
     if faults:
         raise ComputationError(f"{program}: {'; '.join(faults)}: refused")
-    if simulated is not None:
+    if shop is not None:
         click.echo(f"the flanks are not compared with a tolerance: the machine has the errors of {errors}")
     else:
-        cut = sorted({number for one in runs for number in one.spaces})
+        cut, left = sorted({number for each in made.runs for number in each.spaces}), judged.left
         stated = Stated.of(text)
         within = f"within {1000 * left.tolerance:.4g} um"
         if stated.tolerance is None:
@@ -248,75 +220,23 @@ def mill(
         if not stated.is_ours:
             click.echo(f"{program}: not judged: whether it looks at tool, offsets and units before it moves")
         click.echo(
-            f"{program}: passed: {len(cut)} of {spec.teeth} spaces {within}, nothing collides, {milling_machine.name} "
+            f"{program}: passed: {len(cut)} of {one.teeth} spaces {within}, nothing collides, {on.spec.name} "
             "keeps its limits; run from its start, with the control set up as the machine file says"
         )
 
 
-def _right_runs(
-    path: MachinePath, spec: Member, member: str, machine: MillingMachine, space: ToothSpace | None
-) -> list[CuttingRun]:
-    """The tools of a program on a machine without errors, with blades as sharp as there are."""
-    from gearmath.bevel.tooth import SHARP_EDGE
-    from gearmath.machine.milling.run import runs_of
-
-    return runs_of(path, spec, member, machine, None, space, SHARP_EDGE)
-
-
-def _milled(
-    path: MachinePath,
-    right: list[CuttingRun],
-    spec: Member,
-    member: str,
-    machine: MillingMachine,
-    simulated: SimulatedMachine | None,
-    space: ToothSpace | None,
-    measurement: int | None,
-) -> FlankFile:
-    """The flanks that a program leaves, or with the number of a ``measurement`` what a measuring machine says of
-    them."""
-
-    from gearmath.machine.bodies.cutter import cutter_of
-    from gearmath.machine.measuring.measurement import measure_member
-    from gearmath.machine.milling.metal import metal
-    from gearmath.machine.milling.mill import mill_member
-    from gearmath.machine.milling.run import runs_of
-    from gearmath.machine.planning.targets import teeth_around
-
-    narrowest = None if spec.cutting == "completing" else space
-    if simulated is not None or space is None:
-        runs = runs_of(path, spec, member, machine, simulated, narrowest)
-    else:  # the same, but for the rounding of the blades' edges
-        runs = [replace(run, cutter=cutter_of(spec, run.cut.flanks, narrowest)) for run in right]
-    with bar(2 * spec.teeth, "flank") as progress:
-        if measurement is None or simulated is None:
-            return mill_member(path, spec, member, machine, simulated, progress, runs)
-        around = teeth_around(spec.teeth)
-        left = metal(path, spec, member, machine, simulated, around=around, progress=progress, runs=runs)
-        return measure_member(left, spec, member, simulated, measurement)
-
-
-def _judge_metal(
-    text: str,
-    path: MachinePath,
-    runs: list[CuttingRun],
-    spec: Member,
-    member: str,
-    machine: MillingMachine,
-    space: ToothSpace | None,
-    milled: FlankFile | None,
-) -> MetalLeft:
-    """Print what the blocks leave on a machine without errors, and return it with what is wrong with that."""
-    import math
-
+def _say_ridge(made: Program) -> None:
+    """Print what of the root stays between the two sides of a space."""
     from gearmath.bevel.ridge import RIDGE, ridge, ridge_words
     from gearmath.machine.judging.cut import as_cut
-    from gearmath.machine.judging.program import metal_faults
 
-    if space is not None and (left_between := ridge(as_cut(spec, space), space)) > RIDGE:
-        click.echo(f"the root: {ridge_words(left_between)}")
-    with bar(spec.teeth, "space") as progress:
-        left = metal_faults(text, path, runs, spec, member, machine, space, progress, milled)
+    space = made.space
+    if space is not None and (between := ridge(as_cut(made.member.spec, space), space)) > RIDGE:
+        click.echo(f"the root: {ridge_words(between)}")
+
+
+def _say_metal(left: MetalLeft) -> None:
+    """Print what the blocks leave on a machine without errors."""
     if (found := left.watch) is not None and math.isfinite(found.lowest):
         _, (number, flank, line) = found.worst
         click.echo(
@@ -324,29 +244,17 @@ def _judge_metal(
             f"to {found.highest * 1000:.3f} um, the largest by line {line} of the program (space {number}, {flank} "
             "flank)"
         )
-    return left
 
 
-def _write_report(
-    target: Path,
-    path: MachinePath,
-    spec: Member,
-    member: str,
-    machine: MillingMachine,
-    errors: SimulatedMachine | None,
-    tolerance: float,
-    space: ToothSpace | None,
-) -> list[str]:
+def _write_report(target: Path, made: Program, shop: SimulatedMachine | None, tolerance: float) -> list[str]:
     """Write and print the report; a sentence for each kind of fault in it."""
     import json
 
     from gearmath.files import write_text
-    from gearmath.machine.judging.report import largest, milling_report
-    from gearmath.specs.bevel_set import FLANKS
+    from gearmath.machine.judging.report import largest
 
-    corrected = errors is None and any(spec.flank(flank).design for flank in FLANKS)
-    with bar(5 * spec.teeth * (1 + corrected), "surface") as progress:
-        found = milling_report(path, spec, member, machine, errors, tolerance, progress=progress, space=space)
+    with bars() as begin:
+        found = made.report(tolerance, shop, begin)
     write_text(target, json.dumps(found.as_dict(), indent=2) + "\n")
     seconds = found.timing.feed_seconds + found.timing.rapid_seconds
     click.echo(

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, TypeVar
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET_OPTION, about, bar, echo_json, member_of, output
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET_OPTION, about, bars, echo_json, member_of, output
 from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
+    from gearmath.quality.foreign.member import Phase
     from gearmath.specs.point_text import PointText
 
 _T = TypeVar("_T")
@@ -86,7 +87,7 @@ def points(
     axis: str,
     apex_offset: float,
     tip_radius: float,
-    phase: str,
+    phase: Phase,
     leave_out: bool,
     as_json: bool,
     target: Path,
@@ -97,37 +98,28 @@ def points(
     parted by blanks, tabs, commas or semicolons (docs/files.md). The rotation about the axis is found, and said;
     deviations are those along the normals of the nominal flank. The result is read by evaluate, compensate and report.
     """
-    from gearmath.bevel.pair import load_pair
-    from gearmath.quality.foreign.member import foreign_file
-    from gearmath.quality.foreign.points import Frame, PointPart
-    from gearmath.specs.flank_csv import write_flank_csv
+    from gearmath.front.judged import foreign_points
+    from gearmath.front.sets import load_set
+    from gearmath.quality.foreign.points import Frame
     from gearmath.specs.point_text import read_point_text
-    from gearmath.specs.toml import find
 
     sides, teeth = _for_each(texts, sides, "--flank"), _for_each(texts, teeth, "--tooth")
     _check_lengths(apex_offset, tip_radius)
-    loaded = load_pair(find(gear_set))
-    from gearmath.front.sets import GearSet
-
-    one = member_of(GearSet(loaded), member)
-    member, spec = one.name, one.spec
-    _check_parts(texts, sides, teeth, spec.teeth)
+    one = member_of(load_set(gear_set), member)
+    _check_parts(texts, sides, teeth, one.teeth)
     read = [read_point_text(path, unit) for path in texts]
     told = [
-        _check_stated(text, {"flank": side, "unit": unit, "member": member, "tooth": str(tooth)})
+        _check_stated(text, {"flank": side, "unit": unit, "member": one.name, "tooth": str(tooth)})
         for text, side, tooth in zip(read, sides, teeth, strict=True)
     ]
-    parts = [
-        PointPart(str(path), side, tooth, text.point, text.normal, text.line)
-        for path, side, tooth, text in zip(texts, sides, teeth, read, strict=True)
-    ]
-    with bar(2 * len(parts), "file") as progress:
-        frame = Frame(axis, apex_offset, tip_radius)
-        found = foreign_file(parts, frame, loaded, member, phase, progress, leave_out)  # type: ignore[arg-type]
+    parts = dict(zip(zip(sides, teeth, strict=True), read, strict=True))
+    with bars() as begin:
+        made = foreign_points(parts, one, Frame(axis, apex_offset, tip_radius), phase, leave_out, begin)
+    found = made.found
     if found.gaps and not leave_out:
         more = f" (and {len(found.gaps) - 1} more)" if len(found.gaps) > 1 else ""
         raise InputError(f"{found.gaps[0]}{more}; --leave-out takes the other points")
-    write_flank_csv(target, found.file)
+    made.measurement.to_csv(target)
     header = found.file.header
     remarks = [f"{text.path}: {remark}" for text in read for remark in text.remarks] + list(found.remarks)
     remarks[:0] = doubts = [each for each in (*told, *found.doubts) if each]
@@ -146,7 +138,7 @@ def points(
             for path, side, tooth, text, turn in zip(texts, sides, teeth, read, found.turns, strict=True)
         ]
         kept = {key: header[key] for key in ("grid", "margins", "phase_zeroed")}
-        echo_json({"member": member, **kept, "files": turned, "remarks": remarks})
+        echo_json({"member": one.name, **kept, "files": turned, "remarks": remarks})
         return
     for path, side, tooth, turn in zip(texts, sides, teeth, found.turns, strict=True):
         click.echo(f"{path}: {side} flank of tooth {tooth}, turned by {math.degrees(turn):.6f} degrees")
@@ -157,7 +149,7 @@ def points(
     if phase == "kept":
         zeroed = "kept as in the files"
     click.echo(f"grid {header['grid']}, margins {header['margins']}; rotation {zeroed}")
-    click.echo(f"{target}: {counted(len(found.file), 'point')} of the {member}")
+    click.echo(f"{target}: {counted(len(found.file), 'point')} of the {one.name}")
 
 
 def _for_each(texts: Sequence[Path], given: Sequence[_T], option: str) -> Sequence[_T]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import click
 
@@ -18,8 +18,6 @@ from gearmath.cli.common import (
     SET_OPTION,
     SHEET,
     TOUCH_CSV,
-    about,
-    bar,
     bars,
     member_of,
     output,
@@ -28,6 +26,8 @@ from gearmath.cli.dialect import TARGET, dialect_of, write_configuration
 from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
+    from gearmath.front.probing import ProbingProgram
+    from gearmath.machine.judging.dialects import ControlDialect
     from gearmath.quality.calibration.axes import AxisCalibration
     from gearmath.quality.calibration.tip import Fit, Tip
     from gearmath.specs.calibration import Calibration
@@ -82,59 +82,31 @@ def probe(
 
     Before it is written it is run: tip, stylus and spindle must stay clear of teeth, hub, shank and fixture.
     """
-    from gearmath.bevel.pair import load_pair
-    from gearmath.files import write_text
-    from gearmath.machine.bodies.profiles import obstacles
-    from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
-    from gearmath.specs.calibration import load_calibration
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.simulated_machine import load_simulated_machine
-    from gearmath.specs.toml import find
+    from gearmath.front.machines import load_machine, load_probe, load_shop
+    from gearmath.front.probing import probing
+    from gearmath.front.sets import load_set
 
-    bevel_set = load_pair(find(gear_set))
-    from gearmath.front.sets import GearSet
-
-    one = member_of(GearSet(bevel_set), member)
-    member, spec = one.name, one.spec
-    choice = ProbingChoice(_teeth(topography, spec.teeth), pitch, registration, repeat)
-    milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
-    dialect = dialect_of(milling_machine, control, target if configuration else None)
-    simulated = load_simulated_machine(find(errors)) if errors else None
+    one = member_of(load_set(gear_set), member)
+    teeth = _teeth(topography, one.teeth)
+    on, known = load_machine(machine), load_probe(calibration)
+    dialect = dialect_of(on.spec, control, target if configuration else None)
+    shop = load_shop(errors) if errors else None
+    what = teeth, pitch, registration, repeat
     with bars() as begin:
-        made = checked_probing(
-            bevel_set,
-            member,
-            milling_machine,
-            known,
-            choice,
-            target.stem,
-            str(target),
-            simulated,
-            begin,
-            dialect,
-        )
-    page = None
-    if sheet is not None:
-        from gearmath.setup_sheet import ProbingJob, probing_sheet
+        made = probing(one, on, known, target.stem, *what, shop, dialect.name, target, begin)
+    _write(made, target, dialect if configuration else None, sheet)
 
-        head, fixture = obstacles(milling_machine, simulated)
-        job = ProbingJob(
-            bevel_set.title,
-            member,
-            spec,
-            milling_machine,
-            known,
-            fixture,
-            head.spindle_radius,
-            made.touches,
-            made.clearance,
-        )
-        page = probing_sheet(job, target.name, dialect.sheet)
-    write_text(target, made.text)
-    blocks = counted(dialect.block_count(made.text), "block")
-    click.echo(f"{target}: {counted(made.touches, 'touch')}, {blocks}; {made.clearance}")
-    if configuration:
-        write_configuration(target, dialect, milling_machine, probe_in_table(milling_machine, known))
+
+def _write(made: ProbingProgram, target: Path, configured: ControlDialect | None, sheet: Path | None) -> None:
+    """Write a program of the probe with what belongs to it, and say so; ``configured`` wants examples beside it."""
+    from gearmath.files import write_text
+
+    page = None if sheet is None else made.sheet(target.name)
+    clear = f"; {made.clearance}" if made.clearance else ""
+    click.echo(f"{made.save(target)}: {counted(made.touches, 'touch')}, {counted(made.blocks, 'block')}{clear}")
+    if configured is not None:
+        machine = made.machine.spec
+        write_configuration(target, configured, machine, probe_in_table(machine, made.probe))
     if sheet is not None and page is not None:
         write_text(sheet, page)
         click.echo(f"{sheet}: set-up sheet, prints on A4")
@@ -165,7 +137,7 @@ def probe_in_table(machine: MillingMachine, calibration: Calibration) -> dict[st
 def nc_calibrate(
     machine: str,
     calibration: str,
-    cycle: str,
+    cycle: Literal["tip", "axes"],
     control: str | None,
     configuration: bool,
     sheet: Path | None,
@@ -175,40 +147,17 @@ def nc_calibrate(
 
     'gearmath probe' runs it on the machine model, 'gearmath calibrate' reads its touches.
     """
-    from gearmath.files import write_text
-    from gearmath.machine.measuring.checked import refuse_faults
-    from gearmath.machine.measuring.judge import judge_calibration
-    from gearmath.machine.writing.axis_cycle import axis_program
-    from gearmath.machine.writing.calibrating import calibration_program
+    from gearmath.front.machines import load_machine, load_probe
+    from gearmath.front.probing import calibrating
     from gearmath.machine.writing.words import check_name
-    from gearmath.specs.calibration import load_calibration
-    from gearmath.specs.milling_machine import load_milling_machine
     from gearmath.specs.toml import find
-    from gearmath.specs.touch_csv import planned_touches
 
-    source = find(calibration)
-    make = axis_program if cycle == "axes" else calibration_program
-    at, known = load_milling_machine(find(machine)), load_calibration(source)
-    dialect = dialect_of(at, control, target if configuration else None)
+    on, known = load_machine(machine), load_probe(calibration)
+    dialect = dialect_of(on.spec, control, target if configuration else None)
     check_name(target.stem)
-    with about(source):
-        text = make(at, known, target.stem, dialect.blocks)
-    read = dialect.read(text)
-    with bar(planned_touches(read), "touch") as progress:
-        found = judge_calibration(read, str(target), at, known, progress)
-    refuse_faults(found, str(target), "the program is not written")
-    page = None
-    if sheet is not None:
-        from gearmath.setup_sheet import calibration_sheet
-
-        page = calibration_sheet(at, known, cycle == "axes", target.name, dialect.sheet)
-    write_text(target, text)
-    click.echo(f"{target}: {counted(planned_touches(read), 'touch')}, {counted(dialect.block_count(text), 'block')}")
-    if configuration:
-        write_configuration(target, dialect, at, probe_in_table(at, known))
-    if sheet is not None and page is not None:
-        write_text(sheet, page)
-        click.echo(f"{sheet}: set-up sheet, prints on A4")
+    with bars() as begin:
+        made = calibrating(on, known, cycle, target.stem, dialect.name, target, find(calibration), begin)
+    _write(made, target, dialect if configuration else None, sheet)
 
 
 @click.command(epilog=f"{TOUCH_CSV} {FLANK_CSV}")
@@ -295,7 +244,7 @@ def axis_lines(axes: AxisCalibration, probe: Calibration) -> Iterator[str]:
     yield f"axis B lies at X {axes.x_zero:.5f} mm, u {_um(u[3])}: the zero offset of X should have it"
     yield f"B stands {math.degrees(axes.b_zero):.6f} degrees beyond its reading, u {math.degrees(u[5]):.6f}"
     if probe.work_sphere is not None:
-        ahead = math.remainder(math.radians(probe.work_sphere.azimuth) - axes.azimuth, 2 * math.pi)
+        ahead = math.remainder(probe.work_sphere.rad("azimuth") - axes.azimuth, 2 * math.pi)
         sure = math.degrees(axes.azimuth_uncertainty)
         yield f"A stands {math.degrees(ahead):.6f} degrees beyond its reading if azimuth is exact, u {sure:.6f}"
     yield f"{counted(len(axes.fit.residuals), 'touch')}: {_residual_words(axes.fit)}"

@@ -3,21 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import MACHINE, MEMBER, about, bar, member_of, output
+from gearmath.cli.common import MACHINE, MEMBER, bars, member_of, output
 from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import InputError, counted
-
-if TYPE_CHECKING:
-    from gearmath.machine.control.state import Probe
-    from gearmath.machine.measuring.probe import ProbeMachine
-    from gearmath.specs.bevel_set import Member
-    from gearmath.specs.calibration import Calibration
-    from gearmath.specs.milling_machine import MillingMachine
-    from gearmath.specs.simulated_machine import SimulatedMachine
 
 
 @click.command()
@@ -70,104 +61,31 @@ def probe(
     deflected or touches nothing, writes something else than it touches, or whose parts R90 and R91 do not choose.
     'gearmath touches' and 'gearmath calibrate' read what is written here.
     """
-    from gearmath.bevel.pair import load_pair
-    from gearmath.files import write_text
-    from gearmath.machine.control.state import Setup
+    from gearmath.front.machines import load_machine, load_probe, load_shop
+    from gearmath.front.measured import load_measurement
+    from gearmath.front.probing import ProbingProgram
+    from gearmath.front.sets import load_set
     from gearmath.machine.control.text import program_text
     from gearmath.machine.judging.stated import stated_member
-    from gearmath.machine.measuring.artefacts import Artefacts
-    from gearmath.machine.measuring.checked import refuse_faults
-    from gearmath.machine.measuring.judge import judge_calibration, judge_probing
-    from gearmath.machine.measuring.probe_run import run_touches, touch_count, touches_artefacts, writes_touches
-    from gearmath.specs.calibration import load_calibration
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.simulated_machine import load_simulated_machine
-    from gearmath.specs.toml import find
+    from gearmath.machine.measuring.probe_run import touches_artefacts, writes_touches
 
     text = program_text(program)
     if not writes_touches(text):
         raise InputError(f"{program}: writes no touches: it is no probing or calibration program of gearmath")
-    milling_machine, known = load_milling_machine(find(machine)), load_calibration(find(calibration))
-    shop = load_simulated_machine(find(errors)) if errors else None
-    setup = Setup.of(milling_machine, known.length)
-    there: Probe
-    count: int | None
+    on, known = load_machine(machine), load_probe(calibration)
+    shop = load_shop(errors) if errors else None
+    one = metal = None
     if touches_artefacts(text):
         if measured is not None:
             raise InputError(f"--measured {measured}: {program} touches ring and spheres, not a member")
-        count, there = None, Artefacts(milling_machine, known)
-        with bar(text.count("MEAS=1"), "block") as progress:
-            faults = judge_calibration(text, str(program), milling_machine, known, progress)
-        refuse_faults(faults, str(program))
+    elif gear_set is None:
+        raise InputError(f"--set is missing: {program} probes a member")
     else:
-        if gear_set is None:
-            raise InputError(f"--set is missing: {program} probes a member")
-        pair = load_pair(find(gear_set))
-        from gearmath.front.sets import GearSet
-
-        one = member_of(GearSet(pair), member, stated_member(text))
-        name, spec = one.name, one.spec
-        there = at_member = _member_machine(spec, name, measured, milling_machine, known, shop)
-        count = touch_count(text, str(program), setup)
-        if not count:
-            raise InputError(f"{program}: touches nothing of the member: no touch is measured before its end")
-        _check_clear(text, program, at_member, milling_machine, shop, 3 * count + text.count("\n"))
-        with bar(text.count("MEAS=1"), "block") as progress:
-            faults = judge_probing(text, str(program), spec, name, milling_machine, known, progress)
-        refuse_faults(faults, str(program))
-    blocks = 3 * count if count is not None else text.count("MEAS=1")
-    with bar(blocks, "block") as progress:
-        raw = run_touches(text, str(program), there, shop, count, run, progress, setup)
-    write_text(target, raw)
-    rows = [line for line in raw.splitlines() if line[:1].isdigit()]
+        one = member_of(load_set(gear_set), member, stated_member(text))
+        metal = None if measured is None else load_measurement(measured, one)
+    made = ProbingProgram(one, on, known, str(program), text, shop=shop)
+    with bars() as begin:
+        made.check(begin)
+        made.run(target, metal, shop, run, begin)
+    rows = [line for line in target.read_text("utf-8").splitlines() if line[:1].isdigit()]
     click.echo(f"{target}: {counted(len(rows), 'touch')} of run {run}")
-
-
-def _check_clear(
-    text: str, program: Path, there: ProbeMachine, machine: MillingMachine, shop: SimulatedMachine | None, steps: int
-) -> None:
-    """Raise InputError where the program moves the probe into a nominal member, or touches what it does not have."""
-    from gearmath.machine.bodies.profiles import obstacles
-    from gearmath.machine.measuring.checked import clearances
-    from gearmath.machine.measuring.collision_check import approaches
-
-    head, fixture = obstacles(machine, shop)
-    with bar(steps, "step") as progress:
-        found = approaches(
-            text,
-            str(program),
-            there.member,
-            there.name,
-            machine,
-            there.calibration,
-            fixture,
-            head.spindle_radius,
-            progress,
-        )
-    clearances(found, str(program), "it is not run")
-
-
-def _member_machine(
-    spec: Member,
-    member: str,
-    measured: Path | None,
-    machine: MillingMachine,
-    calibration: Calibration,
-    shop: SimulatedMachine | None,
-) -> ProbeMachine:
-    """The machine with the member on it, nominal or as ``measured`` says, clamped as the shop does."""
-    from gearmath.machine.measuring.probe import ProbeMachine
-    from gearmath.machine.milling.milled_surface import MilledSurface
-    from gearmath.quality.evaluation.file_checks import check_belongs, check_points
-    from gearmath.quality.evaluation.nominal import nominal_rows
-    from gearmath.specs.flank_csv import read_flank_csv
-
-    seat = shop.measuring_clamp(member) if shop else None
-    if measured is None:
-        return ProbeMachine(spec, member, machine, calibration, seat=seat)
-    file = read_flank_csv(measured)
-    with about(measured):
-        check_belongs(spec, member, file)
-        check_points(file, nominal_rows(file, spec, member), spec, member)
-        metal = MilledSurface(file, spec, member, str(measured))
-    return ProbeMachine(spec, member, machine, calibration, metal, metal.lowest, seat)

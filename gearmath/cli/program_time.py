@@ -30,45 +30,23 @@ def program_time(program: Path, machine: str, calibration: str, as_json: bool, p
     longest that it can be, those of ring and spheres to where they are; no host is waited for. --calibration, the
     probe, is for such programs alone.
     """
-    from gearmath.machine.control.executor import execute
-    from gearmath.machine.control.state import Setup
-    from gearmath.machine.control.text import is_for_linuxcnc, program_text
-    from gearmath.machine.judging.trajectory import trajectory
-    from gearmath.machine.measuring.probe_run import probing_path, touches_artefacts, writes_touches
-    from gearmath.specs.calibration import load_calibration
-    from gearmath.specs.milling_machine import load_milling_machine
-    from gearmath.specs.toml import find
+    from gearmath.front.machines import load_machine, load_probe
+    from gearmath.front.timing import timed
+    from gearmath.machine.control.text import program_text
+    from gearmath.machine.measuring.probe_run import writes_touches
 
-    milling_machine, text = load_milling_machine(find(machine)), program_text(program)
-    if is_for_linuxcnc(text):
-        control = milling_machine.control.model_copy(update={"kind": "linuxcnc"})
-        milling_machine = milling_machine.model_copy(update={"control": control})
+    on, text = load_machine(machine), program_text(program)
     with about(program), bar(1, "program", as_json) as progress:
-        if probes := writes_touches(text):
-            known = load_calibration(find(calibration))
-            path = probing_path(text, str(program), milling_machine, known)
-        else:
-            path = execute(text, str(program), Setup.of(milling_machine))
-        found = trajectory(path, milling_machine)
+        found = timed(text, str(program), on, load_probe(calibration) if writes_touches(text) else None)
         progress(1)
-    touches = None if not probes else "where they are met" if touches_artefacts(text) else "the end of their ways"
     if as_json:
-        kind = milling_machine.control.kind or "sinumerik"
-        said = {
-            "program": program.name,
-            "machine": milling_machine.name,
-            "control": kind,
-            "touches_counted_to": touches,
-        }
-        echo_json(said | found.as_dict())
+        echo_json(found.to_dict())
     else:
-        click.echo(_table(program, milling_machine, found))
-        if touches:
-            click.echo(f"touches counted to {touches}; no host is waited for")
+        click.echo(_table(program, on.spec, found.trajectory))
+        if found.touches:
+            click.echo(f"touches counted to {found.touches}; no host is waited for")
     if picture is not None:
-        from gearmath.plot.trajectory import speed_figure
-
-        save_plot(speed_figure(path, found, milling_machine), picture, as_json)
+        save_plot(found.plot(), picture, as_json)
 
 
 def _table(program: Path, machine: MillingMachine, found: Trajectory) -> str:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, REGISTER, SET_OPTION, about, bar, echo_json, plot, save_plot
-from gearmath.cli.uncertainty import SIGMA, quick_figures, shown
+from gearmath.cli.common import FLANK_CSV, JSON, REGISTER, SET_OPTION, bar, echo_json, plot, save_plot
+from gearmath.cli.uncertainty import SIGMA
 
 
 @click.command(epilog=FLANK_CSV)
@@ -41,23 +41,18 @@ def evaluate(
     With --sigma-um, or u_um in the file, figures have standard uncertainties; 'gearmath uncertainty' says more of them.
     Grades are by formulas that are not confirmed against ISO 17485: no conformity is claimed.
     """
-    from gearmath.bevel.pair import load_pair
-    from gearmath.quality.evaluation.member import STAGES, evaluate_member
-    from gearmath.specs.flank_csv import read_flank_csv
-    from gearmath.specs.toml import find
+    from gearmath.front.measured import load_measurement
+    from gearmath.front.sets import load_set
+    from gearmath.quality.evaluation.member import STAGES
 
-    file = read_flank_csv(measured)
-    member = load_pair(find(gear_set)).member(file.member)
-    with about(measured), bar(STAGES, "stage") as progress:
-        found = evaluate_member(file, member, file.member, registered, progress, rotated)
+    with bar(STAGES, "stage") as progress:
+        made = load_measurement(measured, load_set(gear_set)).evaluate(registered, rotated, progress)
     if picture:
-        from gearmath.plot import evaluation_figure
-
-        save_plot(evaluation_figure(f"{file.member}, {measured.name}", found), picture, as_json)
-    sure = quick_figures(file, member, found, sigma_um)
+        save_plot(made.plot(), picture, as_json)
+    sure = made.uncertainties(sigma_um)
     if as_json:
-        echo_json(found.as_dict() | ({"uncertainty": shown(sure)} if sure else {}))
+        echo_json(made.to_dict() | ({"uncertainty": [one.as_dict() for one in sure]} if sure else {}))
         return
     from gearmath.cli.quality_text import evaluation_text
 
-    click.echo(evaluation_text(found, sure))
+    click.echo(evaluation_text(made.found, sure))

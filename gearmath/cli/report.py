@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, HTML, MACHINE, SET_OPTION, about, bar, output
+from gearmath.cli.common import FLANK_CSV, HTML, MACHINE, SET_OPTION, bars, output
 from gearmath.cli.probe import CALIBRATION
 from gearmath.cli.uncertainty import MODEL, SIGMA, check_one_source
 from gearmath.errors import InputError
-
-if TYPE_CHECKING:
-    from gearmath.quality.evaluation.member import MemberEvaluation
-    from gearmath.report import ReportedMeasurement
-    from gearmath.specs.bevel_set import BevelSet
-    from gearmath.specs.flank_csv import FlankFile
-
-#: Steps of the progress bar for them and for the correction.
-_DRAWING, _CORRECTING = 8, 2
-
-Progress = Callable[[int], object]
 
 
 @click.command(epilog=FLANK_CSV)
@@ -76,89 +63,29 @@ def report(
     header comments of the file such as '# part_number: 4711'; what neither says is left blank, to be filled in by hand.
     Grades are by formulas that are not confirmed against ISO 17485: no conformity is claimed.
     """
-    from gearmath.bevel.pair import load_pair
     from gearmath.files import write_bytes, write_text
-    from gearmath.quality.evaluation.member import STAGES
-    from gearmath.report import STEPS, inspection_sheet
-    from gearmath.specs.flank_csv import read_flank_csv
-    from gearmath.specs.toml import find
+    from gearmath.front.judged import inspection
+    from gearmath.front.measured import load_measurement
+    from gearmath.front.sets import load_set
 
     check_one_source(sigma_um, model)
-    measurements = 1 if mate is None else 2
-    if len(part_number) > measurements:
-        raise InputError(f"--part-number: given {len(part_number)} times, for {measurements} measured file(s)")
-    pair = load_pair(find(gear_set))
-    files = {path: read_flank_csv(path) for path in (measured, *([mate] if mate else []))}
-    if mate is not None and files[mate].member == files[measured].member:
-        raise InputError(f"{mate}: member = {files[mate].member!r}: --mate must be of the other member than {measured}")
+    paths = (measured,) if mate is None else (measured, mate)
+    if len(part_number) > len(paths):
+        raise InputError(f"--part-number: given {len(part_number)} times, for {len(paths)} measured file(s)")
+    pair = load_set(gear_set)
+    first, *second = files = [load_measurement(path, pair) for path in paths]
+    if second and second[0].member.name == first.member.name:
+        name = first.member.name
+        raise InputError(f"{mate}: member = {name!r}: --mate must be of the other member than {measured}")
     given = {"date": date, "operator": operator, "machine": measured_on, "probe": probe}
-    sure = (sigma_um, model, machine, calibration)
-    members = []
-    with bar(len(again) * STAGES + len(files) * (STAGES + _DRAWING + _CORRECTING + STEPS), "step") as progress:
-        seconds = _again(again, pair, {file.member for file in files.values()}, progress)
-        for k, (path, file) in enumerate(files.items()):
-            known = {"part_number": part_number[k] if k < len(part_number) else "", **given}
-            head = {key: text for key, text in known.items() if text}
-            members.append(_measurement(path, file, pair, head, seconds.get(file.member), sure, progress))
-        made = inspection_sheet(members, progress)
+    numbers = (*part_number, "", "")
+    heads = [{"part_number": number, **given} for _, number in zip(files, numbers, strict=False)]
+    known = [{key: text for key, text in head.items() if text} for head in heads]
+    seconds = [load_measurement(path, pair) for path in again]
+    with bars() as begin:
+        made = inspection(files, known, seconds, sigma_um, model, machine, calibration, begin)
     for name, picture in made.pictures.items():
         write_bytes(target.with_name(f"{target.stem}_{name}.png"), picture)
     write_text(target, made.html)
     names = ", ".join(f"{target.stem}_{name}.png" for name in made.pictures)
     click.echo(f"{target}: inspection sheet, prints on A4; beside it {names}")
-
-
-def _measurement(
-    path: Path,
-    file: FlankFile,
-    pair: BevelSet,
-    head: dict[str, str],
-    again: MemberEvaluation | None,
-    sure: tuple[float | None, str | None, str, str],
-    progress: Progress,
-) -> ReportedMeasurement:
-    """One member evaluated, with its uncertainties and its correction."""
-    from gearmath.quality.evaluation.member import evaluate_member
-    from gearmath.quality.uncertainty.source import covariance_of
-    from gearmath.report.judged import DRAWS, reported
-
-    member = pair.member(file.member)
-    with about(path):
-        found = evaluate_member(file, member, file.member, progress=progress)
-        covariance, source = covariance_of(file, member, *sure)
-        share = _share(progress, DRAWS)
-        made = reported(
-            pair, path.name, file, found, covariance, source, head, sigma_um=sure[0], again=again, drawn=share
-        )
-    progress(_CORRECTING)
-    return made
-
-
-def _share(progress: Progress, draws: int) -> Progress:
-    """Progress of the draws, as their share of the steps of a bar."""
-    done = 0
-
-    def drawn(count: int) -> None:
-        nonlocal done
-        before, done = done, done + count
-        progress(done * _DRAWING // draws - before * _DRAWING // draws)
-
-    return drawn
-
-
-def _again(
-    paths: tuple[Path, ...], pair: BevelSet, wanted: set[str], progress: Progress
-) -> dict[str, MemberEvaluation]:
-    """Second measurements by member."""
-    from gearmath.quality.evaluation.member import evaluate_member
-    from gearmath.specs.flank_csv import read_flank_csv
-
-    found: dict[str, MemberEvaluation] = {}
-    for path in paths:
-        file = read_flank_csv(path)
-        if file.member not in wanted or file.member in found:
-            why = "is there twice" if file.member in found else "has no first measurement on the sheet"
-            raise InputError(f"{path}: member = {file.member!r}: {why}")
-        with about(path):
-            found[file.member] = evaluate_member(file, pair.member(file.member), file.member, progress=progress)
-    return found

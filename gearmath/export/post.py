@@ -163,7 +163,7 @@ def _lines(form: _Form, text: Sequence[str]) -> Iterator[str]:
             yield _kept(line)
     ends = [*starts[1:], len(text)]
     each = {(cut.tool, stage): k for k, (cut, stage, _, _) in enumerate(rolls)}
-    angles = tooth_angles(plan.member.teeth, plan.member.index_correction)
+    angles = tooth_angles(plan.member.teeth, plan.member.rad("index_correction"))
     hobbed, count = plan.member.process == "face_hobbing", _passes_of_a_stage(plan)
     lifts = [0.0 if hobbed else lift(plan.member, cut, stock, plan.job.dry_run) for cut, _, stock, _ in rolls]
     for number, (one, (start, end)) in enumerate(zip(plan.passes, zip(starts, ends, strict=True), strict=True)):

@@ -4,22 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearmath.bevel.contact.mesh import Mesh as Run
 from gearmath.bevel.contact.mesh import mesh
-from gearmath.bevel.contact.report import SIDES, figures
+from gearmath.bevel.contact.report import SIDES, figures, tolerance_figures
 from gearmath.bevel.contact.system import Assembly
-from gearmath.errors import InputError
+from gearmath.bevel.contact.tolerance import SEARCHES
+from gearmath.bevel.contact.tolerance import tolerance as search
+from gearmath.errors import InputError, about
 from gearmath.front.measured import Measurement
+from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet
 from gearmath.front.tables import html_table
 from gearmath.quality.contact.flank import MeasuredFlank
 from gearmath.quality.contact.pair import MeasuredPair, flanks_of
-from gearmath.specs.bevel_set import FLANKS
+from gearmath.specs.bevel_set import FLANKS, MEMBERS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,22 +30,29 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Contact:
-    """A pair in contact: ``runs`` has the exact contact of each side, ``drive`` and ``coast``, in mm and rad."""
+    """A pair in contact: ``runs`` has the exact contact of each side, ``drive`` and ``coast``, in mm and rad.
+
+    ``tolerances`` [mm] say by side how far V and H may go until the pattern reaches an edge, where that was asked for.
+    """
 
     measured: MeasuredPair
     runs: Mapping[str, Run]
+    tolerances: Mapping[str, dict[str, Any] | None] = field(default_factory=dict)
 
     def to_dict(self, step: float = 1.0) -> dict[str, Any]:
         """As ``gearmath contact --json`` prints it; positions at multiples of ``step`` [degrees of the pinion]."""
-        return {
-            side: figures(run, math.radians(step)) | self.measured.figures(side, run) for side, run in self.runs.items()
-        }
+        found = {}
+        for side, run in self.runs.items():
+            found[side] = figures(run, math.radians(step)) | self.measured.figures(side, run)
+            if side in self.tolerances:
+                found[side]["tolerance_mm"] = self.tolerances[side]
+        return found
 
     def plot(self) -> Figure:
         """Transmission error, path, pattern and V-H diagram, a row for each side."""
         from gearmath.plot.contact import contact_figure
 
-        return contact_figure(self.runs)
+        return contact_figure(self.runs, {side: self.tolerances.get(side) for side in self.runs})
 
     def _repr_html_(self) -> str:
         rows = [
@@ -61,11 +71,14 @@ def contact(
     j: float = 0.0,
     shaft: float = 0.0,
     sides: tuple[str, ...] = tuple(SIDES),
+    tolerance: bool = False,
+    begin: Begin = silent,
 ) -> Contact:
     """The contact of a pair at an assembly: V, H, J [mm], growth of the shaft angle [degrees]; docs/contact.md.
 
-    With measurements of its members, one or both, on the measured flanks. Raises InputError where the set has one
-    member only, or a measurement holds no tooth in full.
+    With measurements of its members, one or both, on the measured flanks; with ``tolerance`` also V and H at which the
+    pattern reaches an edge. Raises InputError where the set has one member only, or a measurement holds no tooth in
+    full.
 
     >>> import gearmath as gm
     >>> found = gm.contact(gm.load_set("nasa_tp3096_12x36.toml"), sides=("drive",))
@@ -75,16 +88,28 @@ def contact(
     for side in sides:
         if side not in SIDES:
             raise InputError(f"sides: {side!r}: must be of {', '.join(SIDES)}")
-    flanks: dict[tuple[str, str], MeasuredFlank | None] = {}
-    for one in measured:
-        _check_nominal(pair, one)
-        found, _ = flanks_of(one.member.gear_set.spec, one.member.name, one.file)
-        flanks |= found
-    whole = MeasuredPair(pair.spec, flanks)
-    for name in ("pinion", "gear"):
+    for name in MEMBERS:
         pair.spec.member(name)
-    given = Assembly(v, h, j, math.radians(shaft))
-    return Contact(whole, {side: mesh(whole.system(side), given) for side in sides})
+    flanks: dict[tuple[str, str], MeasuredFlank | None] = {}
+    remarks: list[str] = []
+    for one in measured:
+        with about(one.source):
+            _check_nominal(pair, one)
+            found, said = flanks_of(one.member.gear_set.spec, one.member.name, one.file)
+        flanks |= found
+        remarks += [text if one.source is None else f"{one.source}: {text}" for text in said]
+    whole = MeasuredPair(pair.spec, flanks, tuple(remarks))
+    given, searches = Assembly(v, h, j, math.radians(shaft)), SEARCHES if tolerance else 0
+    progress = begin(len(sides) * (1 + searches), "step")
+    runs, limits = {}, {}
+    for side in sides:
+        with about(pair.source):
+            system = whole.system(side)
+        runs[side] = mesh(system, given)
+        progress(1)
+        if tolerance:
+            limits[side] = tolerance_figures(search(runs[side], progress=progress))
+    return Contact(whole, runs, limits)
 
 
 def _check_nominal(pair: GearSet, measurement: Measurement) -> None:

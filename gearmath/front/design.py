@@ -148,4 +148,4 @@ def load_rexs(path: str | Path) -> GearSet:
     pair, left_aside = read_rexs(Path(path))
     with about(Path(path)):
         check_pair(pair)
-    return GearSet(pair, left_aside)
+    return GearSet(pair, remarks=left_aside)

@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Literal
 
 from derivations.expression import Expression
 from gearmath.engine.kernel import Kernel
+from gearmath.errors import about
 from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import export_cnc as _export_cnc
 from gearmath.export.folder import write_folder
+from gearmath.export.post import post_file
 from gearmath.export.teensy import export_teensy as _export_teensy
+from gearmath.front.machines import Machine, load_machine
+from gearmath.front.programs import cutting
+from gearmath.front.progress import Begin, silent
+from gearmath.front.sets import GearSet
 from gearmath.lowering import lower
+from gearmath.machine.judging.dialects import named
+from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.specs.hobbing import HobbingMachine
 
 
@@ -38,6 +47,33 @@ def export_teensy(machine: HobbingMachine, folder: str | Path) -> list[str]:
     return list(_export_teensy(machine, Path(folder)))
 
 
-def export_cnc(folder: str | Path) -> list[str]:
-    """Write the C library for a CNC post-processor; the names of its files. Raises InputError."""
-    return list(_export_cnc(Path(folder)))
+def export_cnc(
+    folder: str | Path,
+    pair: GearSet | None = None,
+    machine: Machine | None = None,
+    control: str | None = None,
+    blocks: Literal["g1", "poly"] = "g1",
+    begin: Begin = silent,
+) -> list[str]:
+    """Write the C library for a CNC post-processor; the names of its files.
+
+    With a ``pair`` also a settings file of each member, from which ``gm-post``, a C program of the folder, writes the
+    program of :meth:`Member.program`; ``control`` and ``blocks`` as there. Raises InputError.
+    """
+    settings = {} if pair is None else _settings(pair, machine or load_machine(), control, blocks, begin)
+    return list(_export_cnc(Path(folder), settings))
+
+
+def _settings(
+    pair: GearSet, machine: Machine, control: str | None, blocks: Literal["g1", "poly"], begin: Begin
+) -> dict[str, str]:
+    """Settings files of the members of a set, by name; their programs are run first."""
+    dialect, files = named(machine.spec.control.dialect(control)), {}
+    for name in pair.spec.members:
+        one, file = pair.member(name), f"{name}.settings"
+        with about(pair.source):
+            job = CuttingJob(range(one.teeth), blocks=blocks)
+            made = cutting(one, machine, name.upper(), job, dialect.name, file, begin).made
+            if made is not None:
+                files[file] = post_file(made.plan, dialect)
+    return files

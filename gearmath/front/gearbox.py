@@ -11,7 +11,6 @@ from gearmath.errors import InputError
 from gearmath.front.machines import load_hobber
 from gearmath.front.progress import Begin, Progress, silent, unheard
 from gearmath.front.tables import html_table
-from gearmath.gearbox.helix import Cut, Helix
 from gearmath.gearbox.hobbed.choice import MOST_CUTS, Choice
 from gearmath.gearbox.hobbed.choice import choose as search
 from gearmath.gearbox.hobbed.contributions import Contribution, sources
@@ -23,6 +22,7 @@ from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
 from gearmath.gearbox.train import plan as plan_gear
+from gearmath.specs.helix import Cut, Helix
 from gearmath.specs.hobbing import Hand, HobbingMachine
 from gearmath.specs.ratio import pitch_of
 

@@ -7,80 +7,194 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gearmath.errors import InputError
-from gearmath.files import write_text
-from gearmath.front.measured import Measurement
+from gearmath.errors import InputError, about
+from gearmath.front.corrected import effects_um
+from gearmath.front.measured import Evaluation, Measurement
+from gearmath.front.progress import Begin, Progress, silent
 from gearmath.front.sets import Member
 from gearmath.front.tables import html_table
-from gearmath.quality.foreign.member import Phase, foreign_file
+from gearmath.quality.evaluation.member import STAGES
+from gearmath.quality.foreign.member import Foreign, Phase, foreign_file
 from gearmath.quality.foreign.points import Frame, PointPart
 from gearmath.quality.uncertainty.corrected import uncertain_correction
 from gearmath.quality.uncertainty.figures import figures_of
 from gearmath.quality.uncertainty.propagation import Uncertain, uncertain_figures
 from gearmath.quality.uncertainty.source import covariance_of
-from gearmath.report import inspection_sheet
-from gearmath.report.judged import reported
-from gearmath.specs.point_text import read_point_text
+from gearmath.report import STEPS, inspection_sheet
+from gearmath.report.judged import DRAWS, reported
+from gearmath.specs.point_text import PointText, read_point_text
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from matplotlib.figure import Figure
+
+    from gearmath.quality.evaluation.member import MemberEvaluation
+    from gearmath.quality.uncertainty.settings import Effect
+    from gearmath.report import Report
 
 #: The bundled files that say where the probe of a model stands.
 _MACHINE, _PROBE = "vertical_5axis.toml", "probe.toml"
+#: Steps of the progress of a sheet for the draws and for the correction.
+_DRAWING, _CORRECTING = 8, 2
 
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Figures and settings with standard uncertainties, ``source`` says out of what; lengths in mm, angles in rad."""
+    """Figures and settings with standard uncertainties, ``source`` says out of what; lengths in mm, angles in rad.
 
-    measurement: Measurement
+    ``effects`` say what errors of measurement do to each flank, ``draws`` and ``seed`` how maxima were found.
+    """
+
+    evaluation: Evaluation
     source: str
     figures: tuple[Uncertain, ...]
+    effects: Mapping[str, Effect]
+    remarks: tuple[str, ...]
+    draws: int
+    seed: int
 
     def to_dict(self) -> dict[str, Any]:
-        """By flank and name: value and standard uncertainty in the unit of the figure, um, mm or degrees."""
-        found: dict[str, Any] = {}
-        for one in self.figures:
-            scale = one.figure.factor
-            sure = {"value": one.value * scale, "u": one.uncertainty * scale, "unit": one.figure.unit}
-            found.setdefault(one.figure.flank, {})[one.figure.name] = sure
-        return found
+        """As ``gearmath uncertainty --json`` prints it; every figure in its own unit."""
+        found = self.evaluation.found
+        return {
+            "member": found.member,
+            "source": self.source,
+            "draws": self.draws,
+            "seed": self.seed,
+            "figures": [one.as_dict() for one in self.figures],
+            **effects_um(self.effects),
+            "remarks": [*found.first, *self.remarks],
+        }
 
     def plot(self) -> Figure:
         """Every figure in um with its interval of 95 %."""
         from gearmath.plot import uncertainty_figure
 
-        return uncertainty_figure(self.measurement.member.name, list(self.figures))
+        return uncertainty_figure(self.evaluation.title, list(self.figures))
 
     def _repr_html_(self) -> str:
-        rows = [[flank, name, *sure.values()] for flank, by in self.to_dict().items() for name, sure in by.items()]
-        return html_table(f"uncertainties from {self.source}", ["flank", "figure", "value", "u", "unit"], rows)
+        names = ("flank", "figure", "value", "u", "unit")
+        rows = [[one.as_dict()[name] for name in names] for one in self.figures]
+        return html_table(f"uncertainties from {self.source}", names, rows)
 
 
-def uncertainty(measured: Measurement, sigma_um: float | None, model: str | None, draws: int) -> Uncertainty:
+def uncertainty(
+    measured: Measurement,
+    sigma_um: float | None = None,
+    model: str | None = None,
+    draws: int = 20_000,
+    *,
+    registered: bool = True,
+    rotated: bool = True,
+    machine: str = _MACHINE,
+    probe: str = _PROBE,
+    seed: int = 0,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    resume: Path | None = None,
+    begin: Begin = silent,
+) -> Uncertainty:
     """Standard uncertainties of everything that a measurement says; see :meth:`Measurement.uncertainty`."""
     if sigma_um is not None and model is not None:
         raise InputError("sigma_um and model: only one can say how well the points were measured")
     file, member = measured.file, measured.member.spec
-    found = measured.evaluate().found
-    covariance, source = covariance_of(file, member, sigma_um, model, _MACHINE, _PROBE)
-    sure = uncertain_figures(figures_of(file, member, found), covariance, draws, 0)
-    _, settings, _, _ = uncertain_correction(member, file, found, covariance, sigma_um)
-    return Uncertainty(measured, source, (*sure, *settings))
+    evaluation = measured.evaluate(registered, rotated)
+    with about(measured.source):
+        figures = figures_of(file, member, evaluation.found)
+        covariance, source = covariance_of(file, member, sigma_um, model, machine, probe)
+    heard = begin(draws, "draw")
+    sure = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, heard)
+    _, settings, effects, remarks = uncertain_correction(member, file, evaluation.found, covariance, sigma_um)
+    return Uncertainty(evaluation, source, (*sure, *settings), effects, tuple(remarks), draws, seed)
 
 
-def report(measured: Sequence[Measurement], path: Path, head: Mapping[str, str]) -> Path:
-    """Write the inspection sheet of one member, or of both; see :meth:`Measurement.report`."""
+def inspection(
+    measured: Sequence[Measurement],
+    heads: Sequence[Mapping[str, str]],
+    again: Sequence[Measurement] = (),
+    sigma_um: float | None = None,
+    model: str | None = None,
+    machine: str = _MACHINE,
+    probe: str = _PROBE,
+    begin: Begin = silent,
+) -> Report:
+    """The inspection sheet of one member, or of both: its page, and pictures once more for other uses.
+
+    ``heads`` have part number, date and so on of each; ``again`` are members measured again after the correction. How
+    well the points were measured as of :meth:`Measurement.uncertainty`. Raises InputError where measurements are of
+    the same member.
+    """
     names = [one.member.name for one in measured]
     if len(set(names)) < len(names):
         raise InputError(f"both measurements are of the {names[0]}: the mate of the other member is wanted")
+    progress = begin(len(again) * STAGES + len(measured) * (STAGES + _DRAWING + _CORRECTING + STEPS), "step")
+    seconds: dict[str, MemberEvaluation] = {}
+    for one in again:
+        if one.member.name not in names or one.member.name in seconds:
+            why = "is there twice" if one.member.name in seconds else "has no first measurement on the sheet"
+            where = "" if one.source is None else f"{one.source}: "
+            raise InputError(f"{where}member = {one.member.name!r}: {why}")
+        seconds[one.member.name] = one.evaluate(progress=progress).found
     members = []
-    for one in measured:
-        found = one.evaluate().found
-        covariance, source = covariance_of(one.file, one.member.spec, None, None, _MACHINE, _PROBE)
-        members.append(reported(one.member.gear_set.spec, path.name, one.file, found, covariance, source, head))
-    write_text(path, inspection_sheet(members).html)
-    return path
+    for one, head in zip(measured, heads, strict=True):
+        found, spec = one.evaluate(progress=progress).found, one.member.spec
+        with about(one.source):
+            covariance, source = covariance_of(one.file, spec, sigma_um, model, machine, probe)
+            made = reported(
+                one.member.gear_set.spec,
+                "measurement" if one.source is None else one.source.name,
+                one.file,
+                found,
+                covariance,
+                source,
+                head,
+                sigma_um=sigma_um,
+                again=seconds.get(one.member.name),
+                drawn=_share(progress, DRAWS),
+            )
+        progress(_CORRECTING)
+        members.append(made)
+    return inspection_sheet(members, progress)
+
+
+def _share(progress: Progress, draws: int) -> Progress:
+    """Progress of the draws, as their share of the steps of a bar."""
+    done = 0
+
+    def drawn(count: int) -> None:
+        nonlocal done
+        before, done = done, done + count
+        progress(done * _DRAWING // draws - before * _DRAWING // draws)
+
+    return drawn
+
+
+@dataclass(frozen=True)
+class ForeignPoints:
+    """Points of another measuring machine as a measurement; ``found`` has how they were turned [rad], and gaps."""
+
+    measurement: Measurement
+    found: Foreign
+
+
+def foreign_points(
+    texts: Mapping[tuple[str, int], PointText],
+    member: Member,
+    frame: Frame | None = None,
+    phase: Phase = "common",
+    leave_out: bool = False,
+    begin: Begin = silent,
+) -> ForeignPoints:
+    """Points that were read, by flank and tooth, laid onto the flanks of a member; see :func:`load_points`."""
+    parts = [
+        PointPart(str(text.path), flank, tooth, text.point, text.normal, text.line)
+        for (flank, tooth), text in texts.items()
+    ]
+    progress = begin(2 * len(parts), "file")
+    pair, name = member.gear_set.spec, member.name
+    found = foreign_file(parts, frame or Frame(), pair, name, phase, progress, leave_out)
+    return ForeignPoints(Measurement(member, found.file), found)
 
 
 def load_points(
@@ -97,11 +211,8 @@ def load_points(
     turned in common, each, or kept; ``leave_out`` takes files with gaps; docs/files.md. Raises InputError naming file
     and line.
     """
-    parts = []
-    for (flank, tooth), path in paths.items():
-        text = read_point_text(Path(path), unit)
-        parts.append(PointPart(str(path), flank, tooth, text.point, text.normal, text.line))
-    found = foreign_file(parts, frame or Frame(), member.gear_set.spec, member.name, phase, leave_out=leave_out)
-    if found.gaps and not leave_out:
-        raise InputError(f"{found.gaps[0]}; leave_out takes the other points")
-    return Measurement(member, found.file)
+    texts = {where: read_point_text(Path(path), unit) for where, path in paths.items()}
+    made = foreign_points(texts, member, frame, phase, leave_out)
+    if made.found.gaps and not leave_out:
+        raise InputError(f"{made.found.gaps[0]}; leave_out takes the other points")
+    return made.measurement

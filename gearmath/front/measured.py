@@ -2,73 +2,88 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearmath.bevel.pair import check_pair
-from gearmath.errors import InputError
-from gearmath.front.sets import GearSet, Member, load_set
+from gearmath.errors import InputError, about
+from gearmath.files import write_text
+from gearmath.front.progress import Progress, unheard
+from gearmath.front.sets import GearSet, Member
 from gearmath.front.tables import html_table
-from gearmath.quality.correction.member import MemberCorrection as Corrected
-from gearmath.quality.correction.member import correct, setting_changes
 from gearmath.quality.evaluation.member import MemberEvaluation as Found
 from gearmath.quality.evaluation.member import evaluate_member
+from gearmath.quality.uncertainty.corrected import point_covariance
+from gearmath.quality.uncertainty.figures import figures_of
+from gearmath.quality.uncertainty.propagation import Uncertain, uncertain_figures
 from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
-from gearmath.specs.set_text import save_corrected
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from gearmath.front.corrected import Correction
     from gearmath.front.judged import Uncertainty
     from gearmath.quality.correction.stock import Stock
+
+#: Enough for the spread of a maximum to 2 %.
+_FEW_DRAWS = 2000
 
 
 @dataclass(frozen=True)
 class Measurement:
-    """The measured flanks of a member: ``file`` has points (n,3), normals, deviations (n,) [mm]; docs/files.md."""
+    """The measured flanks of a member: ``file`` has points (n,3), normals, deviations (n,) [mm]; docs/files.md.
+
+    ``source`` is where it was read, for sentences.
+    """
 
     member: Member
     file: FlankFile
+    source: Path | None = None
 
     @property
     def deviation(self) -> np.ndarray:
         """Deviations (n,) [mm] along the outward normals, positive where metal is left on."""
         return self.file.deviation
 
-    def evaluate(self, registered: bool = True, rotated: bool = True) -> Evaluation:
+    def evaluate(self, registered: bool = True, rotated: bool = True, progress: Progress = unheard) -> Evaluation:
         """Pitch, runout, thickness and topography, clamping and rotation of the work taken out.
 
-        ``registered=False`` and ``rotated=False`` leave them in. Raises InputError where the points are not those of
-        the member.
+        ``registered=False`` and ``rotated=False`` leave them in; ``progress`` hears of every stage, of ``STAGES``.
+        Raises InputError where the points are not those of the member.
         """
-        found = evaluate_member(self.file, self.member.spec, self.member.name, registered, rotated=rotated)
+        with about(self.source):
+            found = evaluate_member(self.file, self.member.spec, self.member.name, registered, progress, rotated)
         return Evaluation(self, found)
 
-    def compensate(self, settings: str | tuple[str, ...] = "few", **options: Any) -> Correction:
-        """Corrected settings: the few that tell, "standard", or those named. Options as of :func:`correct`.
+    def compensate(self, settings: str | Sequence[str] = "few", **options: Any) -> Correction:
+        """Corrected settings: the "few" that tell, "standard", "all", or those named.
 
+        ``options``: registered and rotated as of :meth:`evaluate`; objective ("points", or "surface": cubic ones);
+        higher_order, to correct motions too; bounds ("machine" or "design"); root_limit [mm], the most that the root
+        line may move; noise_um of one deviation, else that of the file, else what is left; mate, a measurement whose
+        deviations are corrected here; thickness [mm] by which teeth become thicker, thickness_by what makes them.
         Raises InputError where the measurement does not determine them, ComputationError where no correction helps.
         """
-        found = self.evaluate().found
-        found.closing.check_topography()
-        free = None if settings in ("few", "standard") else tuple(settings)
-        corrected = correct(self.member.spec, self.member.name, found.file, free, few=settings == "few", **options)
-        return Correction(self, corrected)
+        from gearmath.front.corrected import compensate
 
-    def uncertainty(self, sigma_um: float | None = None, model: str | None = None, draws: int = 20_000) -> Uncertainty:
+        return compensate(self, settings, **options)
+
+    def uncertainty(
+        self, sigma_um: float | None = None, model: str | None = None, draws: int = 20_000, **options: Any
+    ) -> Uncertainty:
         """How sure every figure of the evaluation and every corrected setting is.
 
         ``sigma_um`` is the standard uncertainty of every point, ``model`` a file of how the machine measures; where
-        neither is given it is u_um of the file, or else the bundled model. Raises InputError where both are given.
+        neither is given it is u_um of the file, or else the bundled model. ``options``: registered and rotated as of
+        :meth:`evaluate`; machine and probe, files of the model; seed, workers, executor and resume of the draws.
+        Raises InputError where both are given.
         """
         from gearmath.front.judged import uncertainty
 
-        return uncertainty(self, sigma_um, model, draws)
+        return uncertainty(self, sigma_um, model, draws, **options)
 
     def share_stock(self, advance: bool = False, least: float = 0.0) -> Stock:
         """How the precut blank that was measured must stand so that both flanks share its stock [rad, mm].
@@ -77,16 +92,19 @@ class Measurement:
         """
         from gearmath.quality.correction.stock import share_stock
 
-        return share_stock(self.member.spec, self.member.name, self.file, advance, least)
+        with about(self.source):
+            return share_stock(self.member.spec, self.member.name, self.file, advance, least)
 
     def report(self, path: str | Path, *mate: Measurement, **head: str) -> Path:
         """Write the inspection sheet, HTML that prints on A4, of this member or with its ``mate``'s on the same sheet.
 
         ``head``: part_number, date, operator, machine, probe. Raises InputError where the mate is of the same member.
         """
-        from gearmath.front.judged import report
+        from gearmath.front.judged import inspection
 
-        return report((self, *mate), Path(path), head)
+        sheet = inspection((self, *mate), [head] * (1 + len(mate)))
+        write_text(Path(path), sheet.html)
+        return Path(path)
 
     def to_csv(self, path: str | Path) -> Path:
         """Write the flank CSV of docs/files.md."""
@@ -98,13 +116,22 @@ class Measurement:
         return self.evaluate().plot()
 
 
+def measurement_of(path: str | Path, pair: GearSet, member: str | None) -> Measurement:
+    """A measured flank CSV, of the ``member`` that was asked for or else of the one that the file names.
+
+    Whether it is of that member is told where it is evaluated. Raises InputError.
+    """
+    file = read_flank_csv(Path(path))
+    return Measurement(pair.member(member or file.member), file, Path(path))
+
+
 def load_measurement(path: str | Path, member: Member | GearSet) -> Measurement:
     """Read a measured flank CSV of a member, or of the member of a set that the file names. Raises InputError."""
     file = read_flank_csv(Path(path))
     one = member.member(file.member) if isinstance(member, GearSet) else member
     if file.member != one.name:
         raise InputError(f"{path}: member = {file.member}: the measurement of the {one.name} is wanted")
-    return Measurement(one, file)
+    return Measurement(one, file, Path(path))
 
 
 @dataclass(frozen=True)
@@ -113,6 +140,12 @@ class Evaluation:
 
     measurement: Measurement
     found: Found
+
+    @property
+    def title(self) -> str:
+        """Member and file."""
+        name, source = self.measurement.member.name, self.measurement.source
+        return name if source is None else f"{name}, {source.name}"
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -127,7 +160,18 @@ class Evaluation:
         """Topography of both flanks, pitch and runout as far as they were measured."""
         from gearmath.plot import evaluation_figure
 
-        return evaluation_figure(self.measurement.member.name, self.found)
+        return evaluation_figure(self.title, self.found)
+
+    def uncertainties(self, sigma_um: float | None = None) -> list[Uncertain]:
+        """The figures with their standard uncertainties, from few draws: of ``sigma_um``, or else by u_um of the file.
+
+        None where neither says how well the points were measured; :meth:`Measurement.uncertainty` says more.
+        """
+        covariance = point_covariance(self.measurement.file, sigma_um)
+        if covariance is None:
+            return []
+        figures = figures_of(self.measurement.file, self.measurement.member.spec, self.found)
+        return uncertain_figures(figures, covariance, _FEW_DRAWS)
 
     def _repr_html_(self) -> str:
         flanks = self.to_dict()["flanks"]
@@ -141,77 +185,6 @@ class Evaluation:
             for flank, row in flanks.items()
         ]
         return html_table(f"{self.measurement.member.name}, as measured", ["flank", *names], rows)
-
-
-@dataclass(frozen=True)
-class Correction:
-    """Corrected settings of a measured member: ``found`` has settings (12,) of each flank in mm and rad."""
-
-    measurement: Measurement
-    found: Corrected
-
-    @property
-    def changes(self) -> list[tuple[str, str, float]]:
-        """Flank, setting, and by how much it is changed [mm, degrees, 1]."""
-        from gearmath.specs.cut import ANGULAR
-
-        member = self.measurement.member.spec
-        return [
-            (flank, name, math.degrees(new - old) if name in ANGULAR else new - old)
-            for flank, name, old, new in setting_changes(member, self.found)
-        ]
-
-    @property
-    def rms(self) -> dict[str, tuple[float, float]]:
-        """By flank: RMS of the deviation [mm] as measured, and what is expected to remain."""
-        return self.found.rms
-
-    @property
-    def gear_set(self) -> GearSet:
-        """The set with corrected settings, motions, blades and index corrections; the nominal flanks stay."""
-        with TemporaryDirectory() as folder:
-            return load_set(self.save(Path(folder) / "corrected.toml"))
-
-    @property
-    def member(self) -> Member:
-        """The member with the corrected settings; its nominal flanks stay what they were."""
-        return self.gear_set.member(self.measurement.member.name)
-
-    def save(self, path: str | Path) -> Path:
-        """Write the corrected set as TOML, the nominal settings under ``design``. Raises InputError for no pair."""
-        member, found = self.measurement.member, self.found
-        with TemporaryDirectory() as folder:
-            before = member.gear_set.save(Path(folder) / "before.toml")
-            save_corrected(
-                before,
-                Path(path),
-                member.name,
-                found.settings,
-                found.index,
-                found.motions,
-                found.curvatures,
-                check=check_pair,
-                origin=f"a measurement, and {member.gear_set.title}",
-            )
-        return Path(path)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Changes by flank and setting [mm, degrees]; RMS [µm] by flank, as measured and as expected."""
-        changes: dict[str, dict[str, float]] = {}
-        for flank, name, change in self.changes:
-            changes.setdefault(flank, {})[name] = change
-        return {
-            "changes": changes,
-            "rms_um": {
-                flank: {"measured": 1000 * before, "expected": 1000 * after}
-                for flank, (before, after) in self.rms.items()
-            },
-        }
-
-    def _repr_html_(self) -> str:
-        rows = [[flank, name, change] for flank, name, change in self.changes]
-        remains = ", ".join(f"{f} {1000 * a:.2f} of {1000 * b:.2f} um" for f, (b, a) in self.rms.items())
-        return html_table(f"expected to remain: {remains}", ["flank", "setting", "change (mm, degree)"], rows)
 
 
 def deviations(member: Member, grid: tuple[int, int], margin: float) -> Measurement:

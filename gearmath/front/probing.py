@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from gearmath.errors import InputError
+from gearmath.errors import InputError, about
 from gearmath.files import write_text
 from gearmath.front.machines import Machine, load_machine, load_probe
 from gearmath.front.measured import Measurement
+from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, Member
+from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import readable
-from gearmath.machine.judging.dialects import named
+from gearmath.machine.judging.dialects import named, of_text
 from gearmath.machine.measuring.artefacts import Artefacts
-from gearmath.machine.measuring.checked import ProbingChoice, checked_probing, refuse_faults
-from gearmath.machine.measuring.judge import judge_calibration
+from gearmath.machine.measuring.checked import ProbingChoice, checked_probing, clearances, refuse_faults
+from gearmath.machine.measuring.collision_check import approaches
+from gearmath.machine.measuring.judge import judge_calibration, judge_probing
 from gearmath.machine.measuring.probe import ProbeMachine
 from gearmath.machine.measuring.probe_run import run_touches, touch_count
 from gearmath.machine.milling.milled_surface import MilledSurface
@@ -26,9 +30,15 @@ from gearmath.machine.writing.calibrating import calibration_program
 from gearmath.quality.calibration.axes import AxisCalibration
 from gearmath.quality.calibration.tip import Tip
 from gearmath.quality.evaluation.calibrated_run import calibrated_run
+from gearmath.quality.evaluation.file_checks import check_belongs, check_points
 from gearmath.quality.evaluation.measured_run import measured_run
+from gearmath.quality.evaluation.nominal import nominal_rows
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.simulated_machine import SimulatedMachine
+from gearmath.specs.touch_csv import planned_touches
+
+if TYPE_CHECKING:
+    from gearmath.machine.control.state import Probe
 
 #: Touches of one point at most, as of ``gearmath nc probe``.
 MOST_TOUCHES = 100
@@ -36,18 +46,64 @@ MOST_TOUCHES = 100
 
 @dataclass(frozen=True)
 class ProbingProgram:
-    """A program that probes ``member``, or without one ring and spheres; it was run before it was returned."""
+    """A program that probes ``member``, or without one ring and spheres.
+
+    What :func:`probing` and :func:`calibrating` write was run before it is returned; ``clearance`` says how far the
+    probe stays clear. ``shop`` is the simulated machine whose fixture and spindle it must clear, ``cycle`` what
+    ring and spheres tell: the tip, or the rotary axes.
+    """
 
     member: Member | None
     machine: Machine
     probe: Calibration
     name: str
     text: str
+    clearance: str = ""
+    shop: SimulatedMachine | None = field(default=None, repr=False)
+    cycle: Literal["tip", "axes"] = "tip"
+
+    @property
+    def touches(self) -> int:
+        """How many touches it plans."""
+        return planned_touches(self.read)
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks the control runs."""
+        return of_text(self.text).block_count(self.text)
 
     def save(self, path: str | Path) -> Path:
         """Write the program, in one step; the file should be called ``name``.MPF, which the control expects."""
         write_text(Path(path), self.text)
         return Path(path)
+
+    def sheet(self, file: str) -> str:
+        """The set-up sheet of the program in a ``file`` of this name: HTML that prints on A4."""
+        from gearmath.setup_sheet import ProbingJob, calibration_sheet, probing_sheet
+
+        machine, member, words = self.machine.spec, self.member, of_text(self.text).sheet
+        if member is None:
+            return calibration_sheet(machine, self.probe, self.cycle == "axes", file, words)
+        head, fixture = obstacles(machine, self.shop)
+        title, radius = member.gear_set.title, head.spindle_radius
+        what = title, member.name, member.spec, machine, self.probe, fixture, radius, self.touches, self.clearance
+        return probing_sheet(ProbingJob(*what), file, words)
+
+    def check(self, begin: Begin = silent) -> None:
+        """Raise InputError where the probe meets a nominal member, touches what it lacks, or does what it must not."""
+        machine, probe, name = self.machine.spec, self.probe, self.name
+        if self.member is None:
+            found = judge_calibration(self.read, name, machine, probe, begin(self._measuring, "block"))
+        else:
+            spec, own = self.member.spec, self.member.name
+            if not self._count:
+                raise InputError(f"{name}: touches nothing of the member: no touch is measured before its end")
+            head, fixture = obstacles(machine, self.shop)
+            heard = begin(3 * self._count + self.read.count("\n"), "step")
+            met = approaches(self.read, name, spec, own, machine, probe, fixture, head.spindle_radius, heard)
+            clearances(met, name, "it is not run")
+            found = judge_probing(self.read, name, spec, own, machine, probe, begin(self._measuring, "block"))
+        refuse_faults(found, name)
 
     def run(
         self,
@@ -55,21 +111,43 @@ class ProbingProgram:
         measured: Measurement | None = None,
         shop: SimulatedMachine | None = None,
         number: int = 1,
+        begin: Begin = silent,
     ) -> Path:
         """Run it on the machine model and write the raw touches, as ``gearmath probe`` does; docs/files.md.
 
         Against nominal flanks or, with ``measured``, the metal that it tells of; ``shop`` errs in axes, clamping and
         probe, and each run ``number`` has its own noise. Raises InputError where it touches what is not there.
         """
-        setup, text = Setup.of(self.machine.spec, self.probe.length), readable(self.text)
+        there: Probe
         if self.member is None:
-            raw = run_touches(text, self.name, Artefacts(self.machine.spec, self.probe), shop, run=number, setup=setup)
+            count, steps = None, self._measuring
+            there = Artefacts(self.machine.spec, self.probe)
         else:
+            count = self._count
+            steps = 3 * count
             there = _on_machine(self.member, measured, self.machine, self.probe, shop)
-            count = touch_count(text, self.name, setup)
-            raw = run_touches(text, self.name, there, shop, count, number, setup=setup)
+        progress = begin(steps, "block")
+        raw = run_touches(self.read, self.name, there, shop, count, number, progress, self._setup)
         write_text(Path(path), raw)
         return Path(path)
+
+    @cached_property
+    def read(self) -> str:
+        """The text in words that are judged, line for line: those of another control are translated."""
+        return readable(self.text)
+
+    @property
+    def _setup(self) -> Setup:
+        return Setup.of(self.machine.spec, self.probe.length)
+
+    @property
+    def _measuring(self) -> int:
+        """Blocks that measure, for a bar."""
+        return self.read.count("MEAS=1")
+
+    @cached_property
+    def _count(self) -> int:
+        return touch_count(self.read, self.name, self._setup)
 
 
 def probing(
@@ -81,11 +159,16 @@ def probing(
     pitch: bool = True,
     registration: bool = True,
     repeat: int = 1,
+    shop: SimulatedMachine | None = None,
+    control: str | None = None,
+    file: str | Path | None = None,
+    begin: Begin = silent,
 ) -> ProbingProgram:
     """The program that probes a member: a grid of both flanks of the teeth of ``topography``, the reference point of
     every tooth for ``pitch``, the corners on eight teeth around for ``registration``, each ``repeat`` times.
 
-    Raises InputError naming what the probe would meet.
+    It clears fixture and spindle of ``shop``, and is for the ``control`` "sinumerik" or "linuxcnc", by default that of
+    the machine; sentences name the ``file`` it is for. Raises InputError naming what the probe would meet.
 
     >>> import gearmath as gm
     >>> program = gm.probing(gm.load_set("nasa_tp3096_12x36.toml").pinion, topography=(), registration=False)
@@ -96,9 +179,10 @@ def probing(
         raise InputError(f"repeat = {repeat!r}: must be a whole number from 1 to {MOST_TOUCHES}")
     machine, probe = machine or load_machine(), probe or load_probe()
     choice = ProbingChoice(topography, pitch, registration, repeat)
-    dialect = named(machine.spec.control.dialect(None))
-    made = checked_probing(member.gear_set.spec, member.name, machine.spec, probe, choice, name, name, dialect=dialect)
-    return ProbingProgram(member, machine, probe, name, made.text)
+    dialect = named(machine.spec.control.dialect(control))
+    where = member.gear_set.spec, member.name, machine.spec, probe
+    made = checked_probing(*where, choice, name, str(file or name), shop, begin, dialect)
+    return ProbingProgram(member, machine, probe, name, made.text, made.clearance, shop)
 
 
 def calibrating(
@@ -106,17 +190,28 @@ def calibrating(
     probe: Calibration | None = None,
     cycle: Literal["tip", "axes"] = "tip",
     name: str = "CALIBRATE",
+    control: str | None = None,
+    file: str | Path | None = None,
+    source: str | Path | None = None,
+    begin: Begin = silent,
 ) -> ProbingProgram:
     """The program that touches ring and sphere on the table for the tip, or the sphere on the work side for the rotary
-    axes. Raises InputError naming what the machine cannot do.
+    axes; ``control`` and ``file`` as of :func:`probing`, ``source`` is the file of the probe, for sentences.
+
+    Raises InputError naming what the machine cannot do.
     """
     if cycle not in ("tip", "axes"):
         raise InputError(f"cycle = {cycle!r}: must be 'tip' or 'axes'")
     machine, probe = machine or load_machine(), probe or load_probe()
-    dialect = named(machine.spec.control.dialect(None))
-    text = (axis_program if cycle == "axes" else calibration_program)(machine.spec, probe, name, dialect.blocks)
-    refuse_faults(judge_calibration(dialect.read(text), name, machine.spec, probe), name, "the program is not written")
-    return ProbingProgram(None, machine, probe, name, text)
+    make, target = (axis_program if cycle == "axes" else calibration_program), str(file or name)
+    dialect = named(machine.spec.control.dialect(control))
+    with about(None if source is None else Path(source)):
+        text = make(machine.spec, probe, name, dialect.blocks)
+    read = dialect.read(text)
+    progress = begin(planned_touches(read), "touch")
+    found = judge_calibration(read, target, machine.spec, probe, progress)
+    refuse_faults(found, target, "the program is not written")
+    return ProbingProgram(None, machine, probe, name, text, cycle=cycle)
 
 
 def load_touches(
@@ -161,5 +256,9 @@ def _on_machine(
     clamping = shop.measuring_clamp(member.name) if shop else None
     if measured is None:
         return ProbeMachine(member.spec, member.name, machine.spec, probe, seat=clamping)
-    metal = MilledSurface(measured.file, member.spec, member.name, "measured")
+    file, source = measured.file, measured.source
+    with about(source):
+        check_belongs(member.spec, member.name, file)
+        check_points(file, nominal_rows(file, member.spec, member.name), member.spec, member.name)
+        metal = MilledSurface(file, member.spec, member.name, str(source or "measured"))
     return ProbeMachine(member.spec, member.name, machine.spec, probe, metal, metal.lowest, clamping)

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from numbers import Real
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -18,10 +15,11 @@ from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import InputError, about
 from gearmath.files import write_text
+from gearmath.front.changed import changed, check_keys, shallow
 from gearmath.front.flanks import FlankSurface, Tooth
 from gearmath.front.progress import Begin, silent
 from gearmath.front.tables import html_table
-from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet, Design, Flank
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet
 from gearmath.specs.bevel_set import Member as MemberSpec
 from gearmath.specs.cut import ANGULAR
 from gearmath.specs.margins import Margins
@@ -39,10 +37,11 @@ if TYPE_CHECKING:
 class GearSet:
     """A pinion and a gear, or one of them, that are one physical pair; ``spec`` is the checked content of the file.
 
-    ``remarks`` say what was left aside where it was read.
+    ``source`` is the file that it was read from, ``remarks`` what was left aside there.
     """
 
     spec: BevelSet
+    source: Path | None = None
     remarks: tuple[str, ...] = ()
 
     @property
@@ -161,7 +160,8 @@ def load_set(path: str | Path) -> GearSet:
     >>> gm.load_set("nasa_tp3096_12x36.toml").pinion.teeth
     12
     """
-    return GearSet(load_pair(find(str(path))))
+    source = find(str(path))
+    return GearSet(load_pair(source), source)
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,7 @@ class Member:
         """
         values = {}
         for flank, by in (("concave", concave or {}), ("convex", convex or {})):
-            _check_keys(self.name, flank, by)
+            check_keys(self.name, flank, by)
             values[flank] = {key: getattr(self.spec.flank(flank), key) + change for key, change in by.items()}
         return self.with_values(**values)
 
@@ -203,12 +203,12 @@ class Member:
         self, concave: Mapping[str, float] | None = None, convex: Mapping[str, float] | None = None
     ) -> Member:
         """The member with settings of these values [mm, degrees], as :meth:`with_settings` changes them."""
-        changed = {}
+        flanks = {}
         for flank, to in (("concave", concave or {}), ("convex", convex or {})):
-            _check_keys(self.name, flank, to)
+            check_keys(self.name, flank, to)
             if to:
-                changed[flank] = _changed(self.spec.flank(flank), to)
-        members = {**_shallow(self.gear_set.spec), self.name: {**_shallow(self.spec), **changed}}
+                flanks[flank] = changed(self.spec.flank(flank), to)
+        members = {**shallow(self.gear_set.spec), self.name: {**shallow(self.spec), **flanks}}
         found = checked(members, BevelSet, self.gear_set.title)
         check_pair(found)
         return GearSet(found).member(self.name)
@@ -250,7 +250,7 @@ class Member:
             at = blank_grid(self.spec, *(grid or (5, 9)), margin)
             return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, margin))
         axial, radial = read_places(Path(places)) if isinstance(places, str | Path) else places
-        with about(Path(places)) if isinstance(places, str | Path) else nullcontext():
+        with about(Path(places) if isinstance(places, str | Path) else None):
             at = listed_grid(self.spec, axial, radial, grid or (len(axial), 1))
         return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, None))
 
@@ -294,39 +294,27 @@ class Member:
         spindle_rpm: float = 120.0,
         roughing_stock: float = 0.0,
         finishing_stock: float = 0.0,
+        dry_run: bool = False,
+        blocks: Literal["g1", "poly"] = "g1",
+        control: str | None = None,
     ) -> Program:
         """The cutting program of the member for a machine, by default the bundled vertical one; all spaces by default.
 
-        ``tolerance`` of the flank and stocks [mm], ``feed`` past the tooth [mm/min]. The program is run before it is
-        returned. Raises InputError naming what the machine cannot do.
+        ``tolerance`` of the flank and stocks [mm], ``feed`` past the tooth [mm/min]; ``control`` "sinumerik" or
+        "linuxcnc", by default that of the machine. The program is run before it is returned. Raises InputError naming
+        what the machine cannot do.
         """
         from gearmath.front.programs import cutting
+        from gearmath.machine.planning.cut_plan import CuttingJob
 
-        job = {"feed": feed, "spindle_rpm": spindle_rpm, "roughing_stock": roughing_stock}
-        return cutting(self, machine, name, spaces, tolerance=tolerance, finishing_stock=finishing_stock, **job)
+        chosen = list(range(self.teeth) if spaces is None else spaces)
+        stocks = roughing_stock, finishing_stock
+        job = CuttingJob(chosen, tolerance, feed, spindle_rpm, *stocks, dry_run, blocks)
+        return cutting(self, machine, name, job, control)
 
     def _repr_html_(self) -> str:
         rows = [[key, *(getattr(self.spec.flank(flank), key) for flank in FLANKS)] for key in SETTINGS]
         return html_table(f"{self.name} of {self.gear_set.title}", ["setting (mm, degree)", *FLANKS], rows)
-
-
-def _check_keys(name: str, flank: str, values: Mapping[str, float]) -> None:
-    for key, value in values.items():
-        if key not in SETTINGS:
-            raise InputError(f"{name}.{flank}.{key}: is no setting; there are {', '.join(SETTINGS)}")
-        if not isinstance(value, Real) or isinstance(value, bool) or not math.isfinite(value):
-            raise InputError(f"{name}.{flank}.{key} = {value!r}: must be a finite number of mm or degrees")
-
-
-def _changed(spec: Flank, to: Mapping[str, float]) -> dict[str, Any]:
-    """The table of a flank with changed settings, the nominal ones under ``design``."""
-    design = spec.design or Design(**{key: getattr(spec, key) for key in SETTINGS})
-    return {**_shallow(spec), **to, "design": design}
-
-
-def _shallow(spec: BevelSet | MemberSpec | Flank) -> dict[str, Any]:
-    """What was given for a model, its tables as they are."""
-    return {key: getattr(spec, key) for key in type(spec).model_fields if key in spec.model_fields_set}
 
 
 def _check_flank(flank: str) -> None:

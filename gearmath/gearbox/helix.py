@@ -9,18 +9,15 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
 
 from gearmath.errors import InputError
 from gearmath.gearbox.kernels import evaluate, expression, precise
-from gearmath.specs.hobbing import Hand, HobbingMachine
+from gearmath.specs.helix import SIGNS, Helix
+from gearmath.specs.hobbing import HobbingMachine
 
 #: Travel [mm] over which the error of the rounded term stays within 1/PART step; GM_HELIX_... of the firmware.
 TRAVEL, PART = 500, 100
 STEEPEST = 60.0  # degrees
-SIGNS: dict[str, int] = {"right": 1, "left": -1, "climb": 1, "conventional": -1}
-
-Cut = Literal["climb", "conventional"]
 
 
 @dataclass(frozen=True)
@@ -51,26 +48,6 @@ class JobRatio:
     def steps_per_edge(self) -> int:
         """The most steps that one edge can give."""
         return max(-(-abs(numerator) // self.denominator) for numerator in self.numerators)
-
-
-@dataclass(frozen=True)
-class Helix:
-    """A helix to be cut: angle [degrees], hand, and how. ``feed`` [mm per table turn] only without a feed encoder."""
-
-    angle: float
-    hand: Hand = "right"
-    cut: Cut = "climb"
-    feed: Fraction | None = None
-
-    @property
-    def beta(self) -> float:
-        """Helix angle [rad]."""
-        return math.radians(self.angle)
-
-    @property
-    def sign(self) -> int:
-        """s_β: +1 right-hand."""
-        return SIGNS[self.hand]
 
 
 def one_term(ratio: Fraction, turn: int = 1) -> JobRatio:

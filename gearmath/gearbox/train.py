@@ -19,9 +19,10 @@ from gearmath.gearbox.dimensions import (
     span,
     swivel,
 )
-from gearmath.gearbox.helix import SIGNS, TRAVEL, Cut, Helix, JobRatio, Rounding, helical_ratio, hob_ratio, one_term
+from gearmath.gearbox.helix import SIGNS, TRAVEL, JobRatio, Rounding, helical_ratio, hob_ratio, one_term
 from gearmath.gearbox.job import WIDEST, GearboxJob, check_range, job_values, nearest, refusal
 from gearmath.gearbox.kernels import evaluate
+from gearmath.specs.helix import Cut, Helix
 from gearmath.specs.hobbing import Hand, Hob, HobbingMachine
 
 __all__ = ["WIDEST", "GearboxPlan", "HelixPlan", "HobbedBlank", "plan"]

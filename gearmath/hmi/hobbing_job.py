@@ -15,11 +15,12 @@ from gearmath.errors import InputError
 from gearmath.export.folder import MANIFEST, manifest
 from gearmath.export.teensy import teensy_files
 from gearmath.front.gearbox import Job, plan
-from gearmath.gearbox.helix import STEEPEST, Cut, Helix
+from gearmath.gearbox.helix import STEEPEST
 from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.hobbed.setup import cut_and_inspect, setup
 from gearmath.gearbox.job import GearboxJob, ThreadPlan
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
+from gearmath.specs.helix import Cut, Helix
 from gearmath.specs.hobbing import Hand, HobbingMachine
 
 #: Least and largest number of each field, by its key; those of the machine come with it.

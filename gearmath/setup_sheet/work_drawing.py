@@ -29,7 +29,7 @@ def work_drawing(sizes: BlankSizes, profiles: Mapping[str, np.ndarray], fixture:
     crown, front = sizes.to_crown, sizes.to_front_crown
     outside = sizes.outside_diameter / 2
     for sign in (1.0, -1.0):
-        drawing.line((0.0, 0.0), (crown, sign * crown * math.tan(math.radians(sizes.pitch_angle))), "3 2")
+        drawing.line((0.0, 0.0), (crown, sign * crown * math.tan(sizes.delta)), "3 2")
     drawing.dot("pitch apex", 0.0, 0.0)
     px, py = drawing.at(0.0, 0.0)
     drawing.words(max(px - 4, 2.0), py - 9, "pitch apex")

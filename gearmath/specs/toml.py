@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from gearmath.errors import InputError
@@ -19,6 +21,11 @@ class Spec(BaseModel):
     """Base of every file model: frozen, no unknown keys, no NaN, no silent conversion of text to numbers."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    def rad(self, key: str) -> Any:
+        """The angle of a key, or the angles (n,) of a list [rad]; files have degrees."""
+        value = getattr(self, key)
+        return np.radians(value) if isinstance(value, tuple) else math.radians(value)
 
     @classmethod
     def keys(cls) -> list[str]:

@@ -27,7 +27,7 @@ def side_system(pair: BevelSet, side: str) -> System:
     own = SIDES[side]
     mating = FLANKS[1 - FLANKS.index(own)]
     pinion, gear = (nominal_surface(pair.member(name), flank) for name, flank in (("pinion", own), ("gear", mating)))
-    return pair_system(pinion, gear, math.radians(pair.shaft_angle))
+    return pair_system(pinion, gear, pair.rad("shaft_angle"))
 
 
 def side_mesh(pair: BevelSet, side: str, assembly: Assembly) -> Mesh:

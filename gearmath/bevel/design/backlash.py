@@ -6,12 +6,12 @@ import math
 
 import numpy as np
 
-from gearmath.bevel.design.rounding import to_step
 from gearmath.bevel.generation import solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.tooth import mean_backlash, mean_pitch_radius
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 from gearmath.specs.design import Shop
+from gearmath.specs.shop_steps import to_step
 from gearmath.specs.toml import checked
 
 #: A completing pinion: trials, what may be missing at the end, and the change that shows the rate [mm].

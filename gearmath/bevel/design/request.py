@@ -23,7 +23,7 @@ _TRIED = (0.2, 0.8, 7)
 #: The middle of a flank reaches so far to either side, in parts of its width and of its height.
 _INNER = 0.3
 #: Path on the gear where none is asked for [degree]: it leans as lets one pair of teeth touch longest.
-_PATH = {"drive": 50.0, "coast": 130.0}
+_PATH = {"drive": math.radians(50), "coast": math.radians(130)}
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def request(side: str, asked: ContactRequest, gear: GearFlank, teeth: int, tip: 
     Raises InputError where no pinion touches the gear as is asked, with the limit.
     """
     blank, surface = gear.surface.blank.vector, gear.surface
-    path = math.radians(_PATH[side] if asked.path_angle is None else asked.path_angle)
+    path = _PATH[side] if asked.path_angle is None else asked.rad("path_angle")
     across = 0.5 if asked.position is None else asked.position[0]
     lowest = _reached(gear, across, tip)
     part = _middle(gear, across, lowest, path) if asked.position is None else asked.position[1]

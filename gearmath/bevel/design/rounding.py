@@ -6,7 +6,6 @@ each; the rest is rounded as it is. What the numbers then give is told by the co
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -19,14 +18,10 @@ from gearmath.bevel.design.pinion import PinionFlank, refitted, roll_rows
 from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SETTINGS, Member
 from gearmath.specs.cut import ANGULAR, RATIO
 from gearmath.specs.design import Shop
+from gearmath.specs.shop_steps import angle_to_step, to_step
 from gearmath.specs.toml import checked
 
 _BLADE = {"blade_pressure_angle": "blade_angle_step", "blade_point_radius": "blade_radius_step"}
-
-
-def to_step(value: float, step: float) -> float:
-    """The whole multiple of a step that is nearest to a value; the value itself where there is no step."""
-    return round(value / step) * step if step else value
 
 
 def step_of(name: str, shop: Shop) -> float:
@@ -93,7 +88,7 @@ def _round_roll(x: np.ndarray, names: Sequence[str], shop: Shop) -> None:
 
 def _stepped(value: float, name: str, step: float) -> float:
     angular = name.rpartition(".")[2] in ANGULAR
-    return math.radians(to_step(math.degrees(value), step)) if angular else to_step(float(value), step)
+    return angle_to_step(value, step) if angular else to_step(float(value), step)
 
 
 def _to_step(flank: PinionFlank, name: str, step: float) -> float:

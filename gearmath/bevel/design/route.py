@@ -118,7 +118,7 @@ def _tilt(data: DesignData, blank: BevelBlank) -> float:
     The gear's cutter stands square to that; a pinion cut by one that stands alike is nearly conjugate to it.
     """
     if data.pinion.cutter_tilt is not None:
-        return math.radians(data.pinion.cutter_tilt)
+        return data.pinion.rad("cutter_tilt")
     return blank.dedendum_angle_sum if data.gear.generation == "formate" else 0.0
 
 

@@ -132,7 +132,7 @@ def mean_module(made: Designed) -> float:
     gear = made.pair.member("gear")
     blank, teeth = gear.blank, gear.teeth
     transverse = 2 * blank.mean_cone_distance * math.sin(blank.delta) / teeth
-    return transverse * math.cos(math.radians(made.data.mean_spiral_angle))
+    return transverse * math.cos(made.data.rad("mean_spiral_angle"))
 
 
 def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]:

@@ -72,7 +72,7 @@ class DriveTrain:
         if self.rule != "ideal":
             total -= self.step * self.motor_error(psi)
         if errors.backlash_taken_by_cut:
-            total += side * math.radians(table.backlash) / 2
+            total += side * table.rad("backlash") / 2
         return total
 
     def motor_error(self, psi: np.ndarray) -> np.ndarray:
@@ -157,17 +157,15 @@ class DriveTrain:
         if not self._is_displaced:
             return np.zeros((len(psi), 3))
         errors, job = self.errors, self.job
-        phase = psi + math.radians(errors.hob_eccentricity_phase)
+        phase = psi + errors.rad("hob_eccentricity_phase")
         size = errors.hob_eccentricity_um * UM
-        wobble = kernel("harmonic")(
-            psi, errors.hob_axial_runout_um * UM, 1, math.radians(errors.hob_axial_runout_phase)
-        )[0]
+        wobble = kernel("harmonic")(psi, errors.hob_axial_runout_um * UM, 1, errors.rad("hob_axial_runout_phase"))[0]
         longer = job.hob.sign * errors.hob_lead_um_per_turn * UM * thread / TURN
         along = wobble + longer + self._start_error(psi, thread)
         hob_shift = np.column_stack([size * np.cos(phase), size * np.sin(phase), along])
         table = job.table_angle(psi)
-        eccentric = table + math.radians(errors.blank_eccentricity_phase)
-        tilted = table + math.radians(errors.blank_tilt_phase)
+        eccentric = table + errors.rad("blank_eccentricity_phase")
+        tilted = table + errors.rad("blank_tilt_phase")
         tilt = errors.blank_tilt_um_per_100mm * UM / 100
         off = errors.blank_eccentricity_um * UM
         return kernel("hob_displacement")(
@@ -270,7 +268,7 @@ def harmonics(
     total = np.zeros_like(turn)
     for each in series:
         (amplitude,) = (value for key, value in each if key.startswith("amplitude"))
-        total += kernel("harmonic")(turn, amplitude * unit, each.order, math.radians(each.phase))[0]
+        total += kernel("harmonic")(turn, amplitude * unit, each.order, each.rad("phase"))[0]
     return total
 
 

@@ -115,7 +115,7 @@ def blade_phase(member: Member) -> float:
     rotation offsets of the flanks differ in (10.2)."""
     if member.blade_groups is None:
         return 0.0
-    turn = math.radians(member.concave.work_rotation_offset - member.convex.work_rotation_offset)
+    turn = member.concave.rad("work_rotation_offset") - member.convex.rad("work_rotation_offset")
     return turn * member.teeth / (member.indexing_sign * member.blade_groups)
 
 
@@ -126,14 +126,14 @@ def root_width(member: Member) -> float:
 
 def _turned_width(member: Member) -> float:
     """What that turn makes of the width of a space, square to it [mm]; the spiral angle from the crown gear (12.4)."""
-    turn = abs(math.radians(member.concave.work_rotation_offset - member.convex.work_rotation_offset))
+    turn = abs(member.concave.rad("work_rotation_offset") - member.convex.rad("work_rotation_offset"))
     if member.blade_groups is None or not turn:
         return 0.0
     blank, spec = member.blank, member.concave
     radius = (spec.blade_point_radius + member.convex.blade_point_radius) / 2
     mean, distance = blank.mean_cone_distance, spec.radial_distance
     sine = (mean**2 + radius**2 - distance**2) / (2 * mean * radius)
-    spiral = math.asin(max(-1.0, min(sine, 1.0))) + abs(math.radians(spec.blade_offset_angle))
+    spiral = math.asin(max(-1.0, min(sine, 1.0))) + abs(spec.rad("blade_offset_angle"))
     return turn * mean * math.sin(blank.delta) * math.cos(spiral)
 
 
@@ -143,7 +143,7 @@ def _as_cut(spec: Flank, edge_radius: float) -> Flank:
 
 
 def _edge(spec: Flank, flank: str, part: str, section: Section) -> Edge:
-    side, offset = SIDES[flank], math.radians(spec.blade_offset_angle)
+    side, offset = SIDES[flank], spec.rad("blade_offset_angle")
     line = (section.point_radius, 0.0, side * math.tan(section.pressure_angle), 1.0)
     shape = section.arc or line
     return Edge(flank, part, section.lower, section.upper, shape, spec.blade_point_radius, offset, side)
@@ -155,7 +155,7 @@ def _tip(spec: Flank, flank: str, lowest: Section, width: float) -> Edge:
     first = lowest.point_radius if lowest.arc is None else lowest.arc[0]
     last = spec.blade_point_radius - side * (0.5 + _TIP_OVERLAP) * width
     length = max(side * (first - last), 0.0)
-    offset = math.radians(spec.blade_offset_angle)
+    offset = spec.rad("blade_offset_angle")
     return Edge(flank, "tip", 0.0, length, (first, 0.0, -float(side), 0.0), spec.blade_point_radius, offset, side)
 
 

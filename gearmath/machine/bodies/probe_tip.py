@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from gearmath.kernels import kernel
@@ -19,5 +17,5 @@ def probe_height(machine: MillingMachine, calibration: Calibration) -> float:
 
 def lobing(probe: Calibration | Probe) -> np.ndarray:
     """Lobes (2,) [mm] of equation (23.3)."""
-    (lobes,) = kernel("lobing_of")(probe.lobing_um / 1000, math.radians(probe.lobing_phase))
+    (lobes,) = kernel("lobing_of")(probe.lobing_um / 1000, probe.rad("lobing_phase"))
     return lobes

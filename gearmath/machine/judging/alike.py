@@ -30,7 +30,7 @@ def alike(runs: list[CuttingRun], member: Member, machine: MillingMachine) -> di
 
 def _passes(runs: list[CuttingRun], space: int, member: Member) -> list[np.ndarray]:
     """Positions (n,6) of the passes through a space as they are in space 0, with whether the block to them cuts."""
-    angle = tooth_angles(member.teeth, member.index_correction)[space]
+    angle = tooth_angles(member.teeth, member.rad("index_correction"))[space]
     found = []
     for run in runs:
         cut = run.cutting & (run.space == space)

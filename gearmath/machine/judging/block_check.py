@@ -138,7 +138,7 @@ def watch(
     numbers = np.concatenate([run.line for run in runs])
     rows: list[tuple[float, float, int, int, int, str, int]] = []
     usual: dict[str, float] = {}
-    turns = tooth_angles(member.teeth, member.index_correction)
+    turns = tooth_angles(member.teeth, member.rad("index_correction"))
     every = {space: [space] for space in sorted({number for run in runs for number in run.spaces})}
     exposed = every if groups is None or any(_rapid_in_metal(run).any() for run in runs) else groups
     for space, like in exposed.items():
@@ -222,7 +222,7 @@ def in_space_0(run: CuttingRun, member: Member) -> tuple[np.ndarray, np.ndarray]
     """Rows (m,) of a run that cut in a space, and their positions (m,5) as they are in space 0."""
     rows = np.flatnonzero(run.cutting & (run.space >= 0))
     axes = run.axes[rows].copy()
-    axes[:, 3] -= tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+    axes[:, 3] -= tooth_angles(member.teeth, member.rad("index_correction"))[run.space[rows]]
     return rows, axes
 
 

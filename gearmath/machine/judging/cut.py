@@ -135,7 +135,7 @@ def off_the_path(run: CuttingRun, member: Member, machine: MillingMachine) -> tu
     rows = np.flatnonzero(run.cutting & ((run.space >= 0) | (run.blades is not None)))
     axes = run.axes[rows].copy()
     if run.blades is None:
-        axes[:, 3] -= tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+        axes[:, 3] -= tooth_angles(member.teeth, member.rad("index_correction"))[run.space[rows]]
     theta = np.zeros(len(rows))
     if member.generation == "generated":
         theta, _ = roll_position()(spec.vector, axes[:, 0], axes[:, 1], machine.pivot, motion_of(spec))
@@ -178,9 +178,9 @@ def metal_left(
     """
     groups = alike(runs, member, machine)
     stock = stated.stock
-    flattest = min(member.flank(flank).blade_pressure_angle for run in runs for flank in run.cut.flanks)
+    flattest = min(member.flank(flank).alpha for run in runs for flank in run.cut.flanks)
     # the cutter is withdrawn by this along its axis, and leaves as much at the foot of the flanks
-    most = stock / math.sin(math.radians(flattest))
+    most = stock / math.sin(flattest)
     found = watch(runs, member, machine, None, progress, groups, most)
     tolerance = justified(stated, found.usual, control_share(member, name, machine).rounding)
     faults = []

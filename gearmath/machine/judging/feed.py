@@ -91,7 +91,7 @@ def past_the_tooth(
     """Speed (m,) [mm/min] of the cutter past the middle of a tooth; what C indexes in face hobbing is left out."""
     before, after = run.axes[rows - 1].copy(), run.axes[rows].copy()
     if run.blades is None:
-        indexed = tooth_angles(member.teeth, member.index_correction)[run.space[rows]]
+        indexed = tooth_angles(member.teeth, member.rad("index_correction"))[run.space[rows]]
         before[:, 3] -= indexed
         after[:, 3] -= indexed
     else:

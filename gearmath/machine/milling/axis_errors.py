@@ -29,6 +29,7 @@ _PARTS_OF_A_PERIOD = 24
 #: Index errors of a work that turns without end are followed in this many parts of a pitch.
 _PARTS_OF_A_PITCH = 4
 _AT_REST = np.zeros(notation.motion.shape)
+_ARCSEC = math.radians(1 / 3600)
 
 
 @cache
@@ -117,9 +118,9 @@ def _positions(settings: np.ndarray, motion: np.ndarray, theta: np.ndarray, pivo
 def index_errors(work_axis: WorkAxis, teeth: int, seed: int) -> np.ndarray:
     """Error (z,) [rad] of the work axis at every tooth space, seeded."""
     turn = 2 * math.pi * np.arange(teeth) / teeth
-    harmonic = work_axis.first_harmonic_arcsec * np.sin(turn + math.radians(work_axis.first_harmonic_phase))
+    harmonic = work_axis.first_harmonic_arcsec * np.sin(turn + work_axis.rad("first_harmonic_phase"))
     random = work_axis.random_arcsec * np.random.default_rng(seed).standard_normal(teeth)
-    return np.radians((harmonic + random) / 3600)
+    return (harmonic + random) * _ARCSEC
 
 
 def with_running_index_errors(
@@ -150,11 +151,11 @@ def with_axis_errors(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
     real = axes + wrong.offsets
     real[:, 0] += wrong.squareness_x_z_um_per_m * 1e-6 * axes[:, 2]
     for harmonic in wrong.A_harmonics:
-        amplitude = math.radians(harmonic.amplitude_arcsec / 3600)
-        real[:, 3] += amplitude * np.sin(harmonic.order * axes[:, 3] + math.radians(harmonic.phase))
+        amplitude = harmonic.amplitude_arcsec * _ARCSEC
+        real[:, 3] += amplitude * np.sin(harmonic.order * axes[:, 3] + harmonic.rad("phase"))
     for screw in wrong.screws:
         axis = AXES.index(screw.axis)
-        turn = 2 * math.pi * axes[:, axis] / screw.lead + math.radians(screw.phase)
+        turn = 2 * math.pi * axes[:, axis] / screw.lead + screw.rad("phase")
         real[:, axis] += screw.amplitude_um / 1000 * np.sin(turn)
     return real
 
@@ -206,5 +207,5 @@ def divisions(axes: np.ndarray, errors: SimulatedMachine) -> np.ndarray:
 
 def mounted(point: np.ndarray, normal: np.ndarray, seat: Mounting) -> tuple[np.ndarray, ...]:
     """Points and normals (n,3) of the work, in the frame that turns with A: tilted about the apex, then moved."""
-    where = (seat.eccentricity, math.radians(seat.eccentricity_direction))
-    return kernel("seated")(point, normal, *where, math.radians(seat.tilt), math.radians(seat.tilt_direction))
+    where = (seat.eccentricity, seat.rad("eccentricity_direction"))
+    return kernel("seated")(point, normal, *where, seat.rad("tilt"), seat.rad("tilt_direction"))

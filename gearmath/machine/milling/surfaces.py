@@ -116,7 +116,7 @@ def surface_states(
     if spaces is None:
         spaces = sorted({number for run in runs for number in run.spaces})
     lines = np.concatenate([run.line for run in runs])
-    angles = tooth_angles(member.teeth, member.index_correction)  # where the member is meant to have its spaces
+    angles = tooth_angles(member.teeth, member.rad("index_correction"))  # where the member is meant to have its spaces
     states = []
     for number in spaces:
         angle = float(angles[number])

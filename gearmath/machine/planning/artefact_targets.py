@@ -88,7 +88,7 @@ def sphere_positions(machine: MillingMachine, calibration: Calibration, sphere: 
     """Positions X Y Z A B (n,5) that put the tip's centre into that of the sphere."""
     low, high = machine.travel.T
     B = np.repeat(np.clip(_SWIVELS, low[4], high[4]), len(_TURNS))
-    A = math.radians(sphere.azimuth) + np.tile(_TURNS, len(_SWIVELS))
+    A = sphere.rad("azimuth") + np.tile(_TURNS, len(_SWIVELS))
     if math.isfinite(low[3]):
         A = A + 2 * math.pi * np.ceil((low[3] - A) / (2 * math.pi) - 1e-12)
     rows = [tip_positions(sphere.place[None], A[k : k + 1], float(B[k]), machine, calibration) for k in range(len(A))]

@@ -153,7 +153,7 @@ def _passes(member: Member, name: str, machine: MillingMachine, job: CuttingJob,
     if member.process == "face_hobbing":
         yield from _hobbing_passes(member, name, machine, job)
         return
-    angles = tooth_angles(member.teeth, member.index_correction)
+    angles = tooth_angles(member.teeth, member.rad("index_correction"))
     if not all(0 <= space < member.teeth for space in job.spaces):
         raise InputError(f"{name}: spaces = {list(job.spaces)}: must be numbers from 0 to {member.teeth - 1}")
     stands = None

@@ -53,6 +53,6 @@ class Pass:
         )
 
 
-def tooth_angles(teeth: int, correction: Sequence[float] = ()) -> np.ndarray:
-    """Angle (z,) [rad] of each tooth space about z_w, from its number and never summed; ``correction`` in degrees."""
-    return 2 * math.pi * np.arange(teeth) / teeth + np.radians(correction if len(correction) else np.zeros(teeth))
+def tooth_angles(teeth: int, correction: Sequence[float] | np.ndarray = ()) -> np.ndarray:
+    """Angle (z,) [rad] of each tooth space about z_w, from its number and never summed; ``correction`` (z,) or none."""
+    return 2 * math.pi * np.arange(teeth) / teeth + (correction if len(correction) else np.zeros(teeth))

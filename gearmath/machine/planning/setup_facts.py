@@ -55,6 +55,7 @@ class BlankSizes:
     face_angle: float
     root_angle: float
     pitch_angle: float
+    delta: float
     to_crown: float
     to_front_crown: float
     back: float
@@ -70,6 +71,7 @@ class BlankSizes:
             blank.face_angle,
             blank.root_angle,
             blank.pitch_angle,
+            blank.delta,
             ends["crossing_point_to_crown"],
             ends["crossing_point_to_front_crown"],
             float(shank[0, 0]),

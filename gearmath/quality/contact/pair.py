@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,7 +16,7 @@ from gearmath.quality.contact.flank import MeasuredFlank, measured_flank
 from gearmath.quality.contact.uncertainty import uncertain_contact
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet
-from gearmath.specs.flank_csv import FlankFile, read_flank_csv
+from gearmath.specs.flank_csv import FlankFile
 
 
 @dataclass(frozen=True)
@@ -41,7 +38,7 @@ class MeasuredPair:
             nominal_surface(self.pair.member(name), flank) if measured is None else measured.surface
             for (name, flank), measured in zip(_working(side), self.of(side), strict=True)
         ]
-        return pair_system(surfaces[0], surfaces[1], math.radians(self.pair.shaft_angle))
+        return pair_system(surfaces[0], surfaces[1], self.pair.rad("shaft_angle"))
 
     def figures(self, side: str, run: Mesh) -> dict[str, Any]:
         """What was measured on the flanks of a side, and how sure its contact is; nothing for a nominal pair."""
@@ -57,28 +54,6 @@ class MeasuredPair:
             },
             "uncertainty": None if sure is None else sure.as_dict(),
         }
-
-
-def measured_pair(pair: BevelSet, files: Mapping[str, Path]) -> MeasuredPair:
-    """A set with the measured flank files of its members, evaluated as ``gearmath evaluate`` does.
-
-    Raises InputError naming the file that is not of its member, or cannot be evaluated.
-    """
-    read = {}
-    for name, path in files.items():
-        read[name] = read_flank_csv(path)
-        if read[name].member != name:
-            raise InputError(f"{path}: member = {read[name].member}: the measurement of the {name} is wanted")
-    flanks: dict[tuple[str, str], MeasuredFlank | None] = {}
-    remarks: list[str] = []
-    for name, file in read.items():
-        try:
-            found, said = flanks_of(pair, name, file)
-        except InputError as error:
-            raise InputError(f"{files[name]}: {error}") from error
-        flanks |= found
-        remarks += [f"{files[name]}: {text}" for text in said]
-    return MeasuredPair(pair, flanks, tuple(remarks))
 
 
 def flanks_of(

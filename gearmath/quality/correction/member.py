@@ -188,7 +188,7 @@ def _index(member: Member, measured: FlankFile) -> np.ndarray | None:
     found = [pitch for pitch in pitches if pitch is not None and pitch.nearly_whole]
     if not found:
         return None
-    before = np.radians(member.index_correction) if member.index_correction else np.zeros(member.teeth)
+    before = member.rad("index_correction") if member.index_correction else np.zeros(member.teeth)
     turn = index_correction(found)
     full = representative_tooth(measured, found[0].flank)
     # the settings put right where the others stand, not the tooth that was measured in full

@@ -39,7 +39,7 @@ def rival_columns(file: FlankFile, member: Member, name: str) -> Iterator[tuple[
             rows = here & (file.tooth == tooth)
             found = _rates(file, member, name, flank, int(tooth))
             rates[rows] = found[file.row[rows] * grid_shape(file)[1] + file.col[rows]]
-        tilt = math.radians(member.flank(flank).nominal.machine_root_angle)
+        tilt = member.flank(flank).nominal.rad("machine_root_angle")
         along_x[here] = rates[here, _TWIN] + math.sin(tilt) * rates[here, _DEPTH]
     for k, key in enumerate(SETTINGS):
         if key in _NO_RIVALS:

@@ -16,6 +16,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -47,6 +48,21 @@ class Uncertain:
     @property
     def method(self) -> str:
         return "GUM" if self.figure.smooth else "Monte Carlo"
+
+    def as_dict(self) -> dict[str, Any]:
+        """In plain numbers by name, in the unit of the figure."""
+        factor = self.figure.factor
+        return {
+            "flank": self.figure.flank,
+            "figure": self.figure.name,
+            "value": self.value * factor,
+            "u": self.uncertainty * factor,
+            "from": self.interval[0] * factor,
+            "to": self.interval[1] * factor,
+            "u_monte_carlo": None if self.drawn is None else self.drawn * factor,
+            "unit": self.figure.unit,
+            "method": self.method,
+        }
 
 
 def contenders(extreme: Extreme, judged: np.ndarray, covariance: Covariance) -> tuple[np.ndarray, float]:

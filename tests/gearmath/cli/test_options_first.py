@@ -100,8 +100,8 @@ def test_wrong_option_is_refused_before_the_set_is_read(tmp_path: Path, refused,
     def read(*_: object) -> None:
         raise AssertionError("work was done")
 
-    monkeypatch.setattr("gearmath.bevel.pair.load_pair", read)
-    monkeypatch.setattr("gearmath.specs.flank_csv.read_flank_csv", read)
+    for name in ("sets.load_set", "measured.load_measurement", "measured.measurement_of"):
+        monkeypatch.setattr(f"gearmath.front.{name}", read)
     arguments, sentence = WRONG[case]
     refused(sentence, *(argument.format(tmp_path) for argument in arguments))
     assert list(tmp_path.iterdir()) == []

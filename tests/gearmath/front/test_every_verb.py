@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 from collections.abc import Callable, Iterator
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 
 import gearmath as gm
+from gearmath import cli
 from gearmath.cli import gearmath as command_line
 from gearmath.specs.flank_csv import read_flank_csv
 
@@ -80,6 +82,25 @@ def test_what_does_a_verb_says_what_it_does(verb: str, path: str) -> None:
     for name in path.split("."):
         one = getattr(one, name)
     assert one.__doc__
+
+
+#: What reads a file or runs one step of a verb: the command line leaves it to the front door.
+BEHIND_THE_DOOR = (
+    "load_(pair|milling_machine|calibration|simulated_machine|hobbing_machine)|checked_(cut|probing)|judge_probing|"
+    "mill_member|run_touches|trajectory|solve_flank|write_(stl|step)|evaluate_member|correct|save_corrected|blank_of|"
+    "covariance_of|uncertain_figures|inspection_sheet|foreign_file|reversed_set|plan_thread|cut_and_inspect"
+)
+#: Touches and calibrations say more of a run than a measurement does.
+SAYS_MORE = {"probe.py"}
+
+
+def test_the_command_line_is_written_on_the_front_door() -> None:
+    found = []
+    for path in sorted(Path(cli.__file__).parent.glob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom) and not (node.module or "").startswith("gearmath.front"):
+                found += [f"{path.name}: {one.name}" for one in node.names if re.fullmatch(BEHIND_THE_DOOR, one.name)]
+    assert [one for one in found if one.partition(":")[0] not in SAYS_MORE] == []
 
 
 @pytest.fixture

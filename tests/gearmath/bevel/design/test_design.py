@@ -11,7 +11,6 @@ import pytest
 from gearmath.bevel.contact.report import ARCSEC, SIDES, side_system
 from gearmath.bevel.contact.system import System, TouchPoint
 from gearmath.bevel.design.local_settings import NAMES
-from gearmath.bevel.design.rounding import to_step
 from gearmath.bevel.design.route import Designed, design
 from gearmath.bevel.design.verdict import verdict
 from gearmath.bevel.pair import check_pair
@@ -20,6 +19,7 @@ from gearmath.errors import ComputationError, InputError
 from gearmath.specs.bevel_set import SETTINGS, load_bevel_set
 from gearmath.specs.cut import ANGULAR
 from gearmath.specs.design import DesignData, load_design
+from gearmath.specs.shop_steps import to_step
 from gearmath.specs.toml import bundled, checked
 from tests.gearmath.bevel.design.family import family
 

@@ -27,7 +27,7 @@ def passes(path):
 def test_teeth_are_counted_and_never_summed():
     angles = tooth_angles(7)
     np.testing.assert_allclose(angles, [k * 2 * np.pi / 7 for k in range(7)], rtol=1e-15)
-    corrected = tooth_angles(3, (0.0, 0.5, -0.25))
+    corrected = tooth_angles(3, np.radians((0.0, 0.5, -0.25)))
     np.testing.assert_allclose(np.degrees(corrected), [0, 120.5, 239.75], rtol=1e-14)
 
 

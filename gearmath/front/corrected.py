@@ -1,0 +1,210 @@
+"""Corrected settings of a measured member: fitted, written, and how sure they are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from gearmath.bevel.identify.variables import reading
+from gearmath.bevel.pair import check_pair
+from gearmath.errors import ComputationError, about
+from gearmath.front.measured import Evaluation, Measurement
+from gearmath.front.progress import Begin, silent
+from gearmath.front.sets import GearSet, Member, load_set
+from gearmath.front.tables import html_table
+from gearmath.quality.correction import member as correcting
+from gearmath.quality.correction.ease_off import moved_to_mate
+from gearmath.quality.correction.member import ROOT_LIMIT
+from gearmath.quality.correction.member import MemberCorrection as Corrected
+from gearmath.quality.correction.thickness import with_thickness
+from gearmath.quality.correction.values import correction_values
+from gearmath.quality.evaluation.member import STAGES
+from gearmath.quality.uncertainty.corrected import noise_of_points, point_covariance
+from gearmath.quality.uncertainty.judged import judged_by_measured
+from gearmath.quality.uncertainty.settings import uncertain_settings
+from gearmath.specs.bevel_set import MACHINE_SETTINGS
+from gearmath.specs.set_text import save_corrected
+
+if TYPE_CHECKING:
+    from gearmath.bevel.identify.variables import Bounds
+    from gearmath.quality.correction.thickness import By
+    from gearmath.quality.uncertainty.settings import Effect
+
+
+@dataclass(frozen=True)
+class Correction:
+    """Corrected settings of a measured member: ``found`` has settings (12,) of each flank in mm and rad.
+
+    ``evaluation`` is what they correct; ``noise_um`` and ``root_limit`` [mm] as they were asked for.
+    """
+
+    evaluation: Evaluation
+    found: Corrected
+    noise_um: float | None = None
+    root_limit: float = ROOT_LIMIT
+
+    @property
+    def measurement(self) -> Measurement:
+        """The measurement that they correct."""
+        return self.evaluation.measurement
+
+    @property
+    def changes(self) -> list[tuple[str, str, float]]:
+        """Flank, setting, and by how much it is changed [mm, degrees, 1]."""
+        member = self.measurement.member.spec
+        return [
+            (flank, name, (new - old) * reading(name)[0])
+            for flank, name, old, new in correcting.setting_changes(member, self.found)
+        ]
+
+    @property
+    def rms(self) -> dict[str, tuple[float, float]]:
+        """By flank: RMS of the deviation [mm] as measured, and what is expected to remain."""
+        return self.found.rms
+
+    @property
+    def gear_set(self) -> GearSet:
+        """The set with corrected settings, motions, blades and index corrections; the nominal flanks stay."""
+        with TemporaryDirectory() as folder:
+            return load_set(self.save(Path(folder) / "corrected.toml"))
+
+    @property
+    def member(self) -> Member:
+        """The member with the corrected settings; its nominal flanks stay what they were."""
+        return self.gear_set.member(self.measurement.member.name)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the corrected set as TOML, the nominal settings under ``design``. Raises InputError for no pair.
+
+        The rest of the file that the set was read from stays as it is.
+        """
+        measured, found = self.measurement, self.found
+        pair = measured.member.gear_set
+        with TemporaryDirectory() as folder:
+            before = pair.save(Path(folder) / "before.toml") if pair.source is None else pair.source
+            save_corrected(
+                before,
+                Path(path),
+                measured.member.name,
+                found.settings,
+                found.index,
+                found.motions,
+                found.curvatures,
+                check=check_pair,
+                origin=f"{measured.source.name if measured.source else 'a measurement'} and "
+                f"{pair.source.name if pair.source else pair.title}",
+            )
+        return Path(path)
+
+    def figures(self) -> dict[str, Any]:
+        """As ``gearmath compensate --json`` prints it: old and new, what remains, which limit binds, how sure it is."""
+        remarks = {"remarks": [*self.evaluation.remarks, *self.found.remarks]}
+        return correction_values(self.measurement.member.spec, self.found) | remarks | self._uncertainties()
+
+    def _uncertainties(self) -> dict[str, Any]:
+        """Standard uncertainties of the corrected settings, and what errors of measurement do to the flanks."""
+        file, member, found = self.measurement.file, self.measurement.member.spec, self.evaluation.found
+        covariance = point_covariance(file, self.noise_um or None)
+        if covariance is None:
+            return {}
+        judged = covariance.carried(judged_by_measured(file, member, found))
+        try:
+            settings, effects = uncertain_settings(
+                member, found.member, found.file, self.found, judged, self.root_limit
+            )
+        except ComputationError as error:
+            return {"no_uncertainties": str(error)}
+        known: dict[str, dict[str, float]] = {}
+        for one in settings:
+            known.setdefault(one.figure.flank, {})[one.figure.name] = one.uncertainty * one.figure.factor
+        return {"u": known, **effects_um(effects)}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Changes by flank and setting [mm, degrees]; RMS [µm] by flank, as measured and as expected."""
+        changes: dict[str, dict[str, float]] = {}
+        for flank, name, change in self.changes:
+            changes.setdefault(flank, {})[name] = change
+        return {
+            "changes": changes,
+            "rms_um": {
+                flank: {"measured": 1000 * before, "expected": 1000 * after}
+                for flank, (before, after) in self.rms.items()
+            },
+        }
+
+    def _repr_html_(self) -> str:
+        rows = [[flank, name, change] for flank, name, change in self.changes]
+        remains = ", ".join(f"{f} {1000 * a:.2f} of {1000 * b:.2f} um" for f, (b, a) in self.rms.items())
+        return html_table(f"expected to remain: {remains}", ["flank", "setting", "change (mm, degree)"], rows)
+
+
+def compensate(
+    measured: Measurement,
+    settings: str | Sequence[str] = "few",
+    *,
+    registered: bool = True,
+    rotated: bool = True,
+    objective: Literal["points", "surface"] = "points",
+    higher_order: bool = False,
+    bounds: Bounds = "machine",
+    root_limit: float = ROOT_LIMIT,
+    noise_um: float | None = None,
+    mate: Measurement | None = None,
+    thickness: float = 0.0,
+    thickness_by: By = "work_rotation_offset",
+    begin: Begin = silent,
+) -> Correction:
+    """Corrected settings of what was measured; see :meth:`Measurement.compensate`."""
+    member, name = measured.member.spec, measured.member.name
+    moved = None if mate is None else _moved(measured, mate, registered)
+    progress = begin(STAGES + correcting.STAGES, "stage")
+    evaluation = measured.evaluate(registered, rotated, progress)
+    found = evaluation.found
+    with about(measured.source):
+        found.closing.check_topography()
+        corrected = correcting.correct(
+            member,
+            name,
+            found.file,
+            _free(settings),
+            objective=objective,
+            higher_order=higher_order,
+            few=settings == "few",
+            root_limit=root_limit,
+            noise=noise_of_points(measured.file, member, found, noise_um),
+            added=moved,
+            bounds=bounds,
+            progress=progress,
+            indexed=found.closing.withheld is None,
+        )
+    if thickness:
+        corrected.settings.update(with_thickness(member, name, corrected.settings, thickness, thickness_by))
+    return Correction(evaluation, corrected, noise_um, root_limit)
+
+
+def _moved(measured: Measurement, mate: Measurement, registered: bool) -> dict[str, np.ndarray]:
+    """Deviations of the mate's flanks, by flank of the measured member on its grid [mm]."""
+    found = mate.evaluate(registered).found
+    with about(mate.source):
+        found.closing.check_topography()
+        return moved_to_mate(measured.member.gear_set.spec, mate.member.name, found.file, measured.file)
+
+
+def _free(settings: str | Sequence[str]) -> tuple[str, ...] | None:
+    """The settings that may change; None for those that suit the cutting method."""
+    if isinstance(settings, str):
+        return None if settings in ("few", "standard") else MACHINE_SETTINGS if settings == "all" else (settings,)
+    return tuple(settings)
+
+
+def effects_um(effects: Mapping[str, Effect]) -> dict[str, Any]:
+    """What errors of measurement do to each flank [um], by name."""
+    return {
+        "caused_rms_um": {flank: effect.caused * 1000 for flank, effect in effects.items()},
+        "expected_u_um": {flank: effect.expected * 1000 for flank, effect in effects.items()},
+    }
