@@ -109,7 +109,8 @@ def test_member_is_asked_for_only_where_nothing_tells_it(command, refused, tmp_p
 
 
 def test_two_files_of_one_command_must_differ(refused, tmp_path):
-    """The set-up sheet would replace the program."""
-    target = tmp_path / "CUT.MPF"
-    refused("-o .*CUT.MPF: --sheet is written there already", "nc", "cut", SET, "--sheet", target, "-o", target)
+    """The report would replace the measured flanks."""
+    target = tmp_path / "m.csv"
+    rest = ("--program", tmp_path / "CUT.MPF", "--report", target, "-o", target)
+    refused("-o .*m.csv: --report is written there already", "mill", SET, *rest)
     assert not target.exists()

@@ -175,3 +175,10 @@ def test_readme_of_a_lathe_speaks_of_no_hob_but_in_the_words_of_the_display() ->
     assert "hob" not in re.sub(r"`[^`]*`", "", chapter(text, "Pins") + chapter(text, "Commissioning"))
     assert "FAULT hob turned" not in text  # its spindle may turn in a jog
     assert "MODE jumper" not in text
+
+
+def test_memory_with_the_core_is_the_sum_of_a_published_build_and_the_own_files() -> None:
+    # 9252 + 3016 bytes of code and data, 3520 of variables; 25.5 kB and 0.9 kB of the folder for a Teensy 4.0
+    text = chapter(guide(machine("lathe_example"), "gearbox"), "Flashing")
+    assert "38 kB and 4.4 kB are to be expected" in text
+    assert "to be expected" not in guide(machine("hobbing_plewes"), "gearbox")
