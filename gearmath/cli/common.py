@@ -72,8 +72,18 @@ class Number(click.FloatRange):
 class NewFile(click.Path):
     """A file to write: that it can be written there, by no other option too, is checked before any work is done.
 
-    ``suffixes``: how its name must end, where other programs know the file by that.
+    ``suffixes``: how its name ends, where other programs know the file by that; a name that ends as those of another
+    kind of file do is refused.
     """
+
+    #: How names of files end that gearmath reads or writes, and of plain text.
+    KINDS = frozenset(
+        f".{end}"
+        for end in (
+            *("csv", "dfq", "htm", "html", "json", "mpf", "ngc", "npz", "pdf", "png", "rexs", "spf"),
+            *("step", "stl", "stp", "svg", "toml", "txt", "xml", "zip"),
+        )
+    )
 
     def __init__(self, *suffixes: str) -> None:
         super().__init__(path_type=Path, dir_okay=False)
@@ -83,7 +93,7 @@ class NewFile(click.Path):
         from gearmath.files import check_place
 
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
-        if self.suffixes and path.suffix.lower() not in self.suffixes:
+        if self.suffixes and path.suffix.lower() in self.KINDS.difference(self.suffixes):
             option = f"{param.opts[0]} " if param is not None else ""
             raise InputError(f"{option}{path}: the name must end in {' or '.join(self.suffixes)}")
         check_place(path)

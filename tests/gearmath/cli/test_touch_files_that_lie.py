@@ -108,7 +108,7 @@ TOUCHES_REFUSED = {
         lambda text: text.replace(".", ","),
         r"line 2: has \d+ columns, .*; numbers have a decimal point",
     ),
-    "semicolons": (lambda text: text.replace(",", ";"), r"line 1: has 1 columns, .*; columns stand between commas"),
+    "semicolons": (lambda text: text.replace(",", ";"), r"line 1: has 1 column, .*; columns stand between commas"),
     "X nan": (cell(7, "nan", line=3), r"line 4: (X|B) = 'nan': must be a finite number"),
     "run without end": (lambda text: text.replace("\n1,", "\n1e30,"), r"run = 1e30: must be a whole number from 0"),
     "point negative": (cell(1, "-3", line=3), r"line 4: point = -3: must be a whole number from 0"),
