@@ -80,6 +80,8 @@ def core_files(wide: bool, changes: Mapping[str, int | None]) -> dict[str, str]:
 
 #: Plays a script, tick by tick: the edges, then the index pulse, then the tick; notes what the pins and the core say.
 PROBE = """\
+#include <string.h>
+
 #include "gm_core.h"
 
 static gm_core core;
@@ -129,6 +131,27 @@ void probe_get(probe_status *to)
   to->has_job = status.has_job;
 }
 
+/* From the next tick on, after each: does a reset, with the memory as it is, give the core of the first power-up? */
+static int resets;
+static long not_fresh;
+void probe_resets(void)
+{
+  resets = 1;
+  not_fresh = 0;
+}
+long probe_not_fresh(void) { return not_fresh; }
+
+static void reset_here(void)
+{
+  static gm_core first, kept;
+  memset(&first, 0, sizeof first);
+  gm_core_init(&first);
+  kept = core;
+  gm_core_init(&core);
+  not_fresh += memcmp(&core, &first, sizeof core) != 0;
+  core = kept;
+}
+
 /* per tick: hob edges and feed edges (signed number), index pulses, inputs; levels, mode, position, lag, fault */
 void probe_play(long ticks, const int8_t *hob, const int8_t *feed, const uint8_t *index, const uint8_t *inputs,
                 uint8_t *levels, uint8_t *mode, int64_t *position, int32_t *pending, uint8_t *fault)
@@ -146,6 +169,7 @@ void probe_play(long ticks, const int8_t *hob, const int8_t *feed, const uint8_t
     position[k] = core.position;
     pending[k] = core.locked ? core.pending : core.pending + core.behind;
     fault[k] = (uint8_t)core.fault;
+    if (resets) reset_here();
   }
 }
 """
