@@ -24,6 +24,7 @@ from gearmath.cli.common import (
 )
 from gearmath.cli.dialect import TARGET, dialect_of, write_configuration
 from gearmath.errors import InputError, counted
+from gearmath.specs.measurement import MOST_TOUCHES
 
 if TYPE_CHECKING:
     from gearmath.front.probing import ProbingProgram
@@ -58,7 +59,9 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
     show_default=True,
     help="With the pitch, probe the corners on eight teeth around: they tell how the work sits.",
 )
-@click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Touches of every point.")
+@click.option(
+    "--repeat", type=click.IntRange(1, MOST_TOUCHES), default=1, show_default=True, help="Touches of every point."
+)
 @click.option("--errors", help="Simulated machine whose [fixture] and spindle the probe must clear.")
 @TARGET
 @SHEET

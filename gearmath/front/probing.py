@@ -34,14 +34,12 @@ from gearmath.quality.evaluation.file_checks import check_belongs, check_points
 from gearmath.quality.evaluation.measured_run import measured_run
 from gearmath.quality.evaluation.nominal import nominal_rows
 from gearmath.specs.calibration import Calibration
+from gearmath.specs.measurement import MOST_TOUCHES
 from gearmath.specs.simulated_machine import SimulatedMachine
 from gearmath.specs.touch_csv import planned_touches
 
 if TYPE_CHECKING:
     from gearmath.machine.control.state import Probe
-
-#: Touches of one point at most, as of ``gearmath nc probe``.
-MOST_TOUCHES = 100
 
 
 @dataclass(frozen=True)

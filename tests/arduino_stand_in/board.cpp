@@ -316,6 +316,7 @@ void board_eeprom(uint8_t *copy) {
     copy[k] = stand_in.eeprom[k];
   }
 }
+int board_eeprom_log(int k, int value) { return stand_in.eeprom_log[k][value]; }
 void board_display(char *text) {
   for (int k = 0; k < 80; ++k) {
     text[k] = stand_in.lcd[k];

@@ -76,6 +76,10 @@ void TwoWire::setClock(uint32_t frequency) { stand_in.i2c_clock = frequency; }
 uint8_t EEPROMClass::read(int idx) { return stand_in.eeprom[idx]; }
 void EEPROMClass::update(int idx, uint8_t val) {
   stand_in.eeprom[idx] = val;
+  if (stand_in.eeprom_writes < 1024) {
+    stand_in.eeprom_log[stand_in.eeprom_writes][0] = (uint16_t)idx;
+    stand_in.eeprom_log[stand_in.eeprom_writes][1] = val;
+  }
   ++stand_in.eeprom_writes;
 }
 

@@ -20,6 +20,7 @@ struct stand_in_board {
   uint32_t i2c_clock;
   uint8_t eeprom[4284];
   int eeprom_writes;
+  uint16_t eeprom_log[1024][2]; /* of these writes: place and value */
   char lcd[80];
   int lcd_row;
   int lcd_column;

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeVar
 
 from nicegui import ui
 
@@ -12,11 +13,15 @@ from gearmath.errors import ComputationError, InputError
 from gearmath.hmi import blocks, programs_work, widgets
 from gearmath.hmi.messages import Text
 from gearmath.hmi.programs_work import MilledProgram, WrittenProgram
-from gearmath.hmi.state import Shared
+from gearmath.hmi.state import Choice, Shared
 from gearmath.hmi.words import duration
-from gearmath.hmi.work import Progress
+from gearmath.hmi.work import Progress, Work
 from gearmath.machine.measuring.checked import ProbingChoice
 from gearmath.machine.planning.cut_plan import CuttingJob
+from gearmath.specs.measurement import MOST_TOUCHES
+
+#: What the fields ask for: a cutting job, or what is probed.
+Asked = TypeVar("Asked", CuttingJob, ProbingChoice)
 
 #: The computations of this page.
 _CUT, _PROBE, _MILL, _SEND = "programs.cut", "programs.probe", "programs.mill", "programs.send"
@@ -51,9 +56,9 @@ def _cutting(shared: Shared, text: Text) -> None:
             }
         dry = ui.checkbox(text("programs.dry_run"))
 
-        def write() -> None:
+        def job() -> CuttingJob:
             values = widgets.numbers(fields)
-            job = CuttingJob(
+            return CuttingJob(
                 tolerance=values["tolerance"] / 1000,
                 feed=values["feed"],
                 spindle_rpm=values["spindle_rpm"],
@@ -61,12 +66,8 @@ def _cutting(shared: Shared, text: Text) -> None:
                 finishing_stock=values["finishing_stock"],
                 dry_run=bool(dry.value),
             )
-            wanted, choice = name.value or "", shared.choice
-            work.start(
-                text("programs.writing", name=wanted),
-                lambda progress: programs_work.write_cutting(shared.folder, choice, wanted, job, progress),
-            )
 
+        write = _start(shared, text, work, name, job, programs_work.write_cutting)
         widgets.button(text("programs.generate_cut"), write, "description", primary=True)
         _outcome(text, work)
 
@@ -77,26 +78,42 @@ def _probing(shared: Shared, text: Text) -> None:
         name = _head(shared, text, f"PROBE_{shared.choice.member.upper()}")
         with widgets.fields():
             teeth = widgets.NumberField(text, text("programs.topography"), 1, "", 0, 200, digits=0)
-            repeat = widgets.NumberField(text, text("programs.repeat"), 1, "", 1, 100, digits=0)
+            repeat = widgets.NumberField(text, text("programs.repeat"), 1, "", 1, MOST_TOUCHES, digits=0)
         pitch = ui.checkbox(text("programs.pitch"), value=True)
         around = ui.checkbox(text("programs.registration"), value=True)
 
-        def write() -> None:
+        def chosen() -> ProbingChoice:
             values = widgets.numbers({"teeth": teeth, "repeat": repeat})
-            chosen = ProbingChoice(
+            return ProbingChoice(
                 tuple(range(int(values["teeth"]))), bool(pitch.value), bool(around.value), int(values["repeat"])
             )
-            wanted, choice = name.value or "", shared.choice
-            work.start(
-                text("programs.writing", name=wanted),
-                lambda progress: programs_work.write_probing(shared.folder, choice, wanted, chosen, progress),
-            )
 
+        write = _start(shared, text, work, name, chosen, programs_work.write_probing)
         widgets.button(text("programs.generate_probe"), write, "my_location", primary=True)
         _outcome(text, work)
 
 
-def _outcome(text: Text, work: Any) -> None:
+def _start(
+    shared: Shared,
+    text: Text,
+    work: Work,
+    name: ui.input,
+    asked: Callable[[], Asked],
+    write: Callable[[Path, Choice, str, Asked, Progress], WrittenProgram],
+) -> Callable[[], None]:
+    """What a button does: it reads the fields, and starts to write the program that they ask for."""
+
+    def start() -> None:
+        wanted, what, choice = name.value or "", asked(), shared.choice
+        work.start(
+            text("programs.writing", name=wanted),
+            lambda progress: write(shared.folder, choice, wanted, what, progress),
+        )
+
+    return start
+
+
+def _outcome(text: Text, work: Work) -> None:
     """Progress and verdict of a program that is written."""
     said = widgets.Message()
 

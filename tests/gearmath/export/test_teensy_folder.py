@@ -321,14 +321,17 @@ def test_open_collector_inverts_the_level_at_the_pin() -> None:
 class Board:
     """One board in memory, in the hands of an operator."""
 
-    def __init__(self, library: Path, eeprom: bytes = b"", display_off: bool = False) -> None:
+    def __init__(
+        self, library: Path, eeprom: bytes = b"", display_off: bool = False, hob_every: int = 0, wait: int = 500
+    ) -> None:
         self.board = ctypes.CDLL(str(library))
         self.board.board_press_and_count.restype = ctypes.c_long
         self.board.board_display_off(int(display_off))
         self.board.board_position.restype = ctypes.c_long
         self.board.board_bad_pulses.restype = ctypes.c_long
+        self.board.board_turn_hob(ctypes.c_long(hob_every))  # ticks from edge to edge
         self.board.board_power_up(eeprom, ctypes.c_long(len(eeprom)))
-        self.wait(500)
+        self.wait(wait)
 
     def wait(self, ms: int) -> None:
         self.board.board_pass(ctypes.c_long(ms))
@@ -366,18 +369,18 @@ class Board:
 
 @pytest.fixture(scope="module")
 def power_up(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Board]:
-    """``power_up(machine, eeprom)``: a board with that machine's sketch, compiled for this computer."""
+    """``power_up(machine, eeprom, hob_every=...)``: a board with that machine's sketch, compiled for this computer."""
     if shutil.which("g++") is None or shutil.which("gcc") is None:
         pytest.skip("needs g++")
     built: dict[str, Path] = {}
 
-    def make(given: HobbingMachine, eeprom: bytes = b"", display_off: bool = False) -> Board:
+    def make(given: HobbingMachine, eeprom: bytes = b"", **situation: int) -> Board:
         key = given.model_dump_json()
         if key not in built:
             built[key] = _build(given, tmp_path_factory.mktemp("sketch"))
         fresh = tmp_path_factory.mktemp("power") / "board.so"  # another file is another memory
         shutil.copy(built[key], fresh)
-        return Board(fresh, eeprom, display_off)
+        return Board(fresh, eeprom, **situation)
 
     return make
 
@@ -641,6 +644,51 @@ def test_confirmed_job_comes_back_after_power_off_and_its_phase_does_not(power_u
     again.hob(4096)
     again.wait(10)
     assert again.board.board_position() == 0  # nothing moves before a confirmation
+
+
+def test_power_lost_at_any_moment_of_a_day_leaves_the_job_before_or_the_new_one(power_up: Callable[..., Board]) -> None:
+    """A first job, a stop, another job, an emergency stop, a third one. Only the EEPROM outlives the power, so that the
+    moments differ by its bytes: the power is lost after each one that is written, and returns with the hob turning."""
+    given = at_once(machine("hobbing_default"))
+    board = power_up(given)
+    board.press()
+    board.start()
+    board.wait(1500)
+    for stopped, teeth in ((False, 5), (True, 3)):
+        board.hob(2000)
+        if stopped:
+            board.board.board_estop(1)
+            board.wait(50)
+            board.board.board_estop(0)
+            board.wait(1500)
+            assert board.display()[0] == "EMERGENCY STOP"
+            board.press(1200)  # held: acknowledged
+        else:
+            board.press()
+            board.knob(1)
+            board.press()  # Stop? yes
+        assert board.display()[0] == "STOPPED, phase kept"
+        board.knob(3)
+        assert board.display()[3] == ">new job"
+        board.press()
+        board.knob(teeth)
+        board.start()
+        board.wait(1500)
+    image, shown = bytearray(b"\xff" * 4284), []
+    for k in range(-1, board.board.board_eeprom_writes()):
+        if k >= 0:
+            image[board.board.board_eeprom_log(k, 0)] = board.board.board_eeprom_log(k, 1)
+        again = power_up(given, bytes(image), hob_every=20, wait=120)
+        levels = {again.board.board_level(given.pins.healthy) for _ in range(3) if again.wait(1) is None}
+        assert levels == {0}
+        assert (again.board.board_position(), again.board.board_bad_pulses()) == (0, 0)
+        assert again.display()[2:] == ["PHASE IS LOST", "Press: check the job"]
+        if again.display()[:2] not in shown:
+            shown.append(again.display()[:2])
+        assert again.display()[:2] == shown[-1]  # never back to a job before
+    assert board.eeprom() == bytes(image)
+    restored = [["Last job restored", f"{teeth:3} teeth     0.5 m"] for teeth in (24, 29, 32)]
+    assert shown == [["No stored job", " 24 teeth     0.5 m"], *restored]
 
 
 def test_nothing_is_written_to_the_eeprom_while_the_hob_turns(power_up: Callable[..., Board]) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import shutil
+import struct
 import subprocess
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -26,6 +27,7 @@ from unicorn.arm_const import (
     UC_ARM_REG_R0,
     UC_ARM_REG_SP,
     UC_CPU_ARM_CORTEX_M4,
+    UC_CPU_ARM_CORTEX_M7,
 )
 
 from derivations.gearbox import encoder_hysteresis, gearbox_edge, gearbox_step
@@ -78,6 +80,8 @@ def core_files(wide: bool, changes: Mapping[str, int | None]) -> dict[str, str]:
 
 #: Plays a script, tick by tick: the edges, then the index pulse, then the tick; notes what the pins and the core say.
 PROBE = """\
+#include <string.h>
+
 #include "gm_core.h"
 
 static gm_core core;
@@ -127,6 +131,27 @@ void probe_get(probe_status *to)
   to->has_job = status.has_job;
 }
 
+/* From the next tick on, after each: does a reset, with the memory as it is, give the core of the first power-up? */
+static int resets;
+static long not_fresh;
+void probe_resets(void)
+{
+  resets = 1;
+  not_fresh = 0;
+}
+long probe_not_fresh(void) { return not_fresh; }
+
+static void reset_here(void)
+{
+  static gm_core first, kept;
+  memset(&first, 0, sizeof first);
+  gm_core_init(&first);
+  kept = core;
+  gm_core_init(&core);
+  not_fresh += memcmp(&core, &first, sizeof core) != 0;
+  core = kept;
+}
+
 /* per tick: hob edges and feed edges (signed number), index pulses, inputs; levels, mode, position, lag, fault */
 void probe_play(long ticks, const int8_t *hob, const int8_t *feed, const uint8_t *index, const uint8_t *inputs,
                 uint8_t *levels, uint8_t *mode, int64_t *position, int32_t *pending, uint8_t *fault)
@@ -144,6 +169,7 @@ void probe_play(long ticks, const int8_t *hob, const int8_t *feed, const uint8_t
     position[k] = core.position;
     pending[k] = core.locked ? core.pending : core.pending + core.behind;
     fault[k] = (uint8_t)core.fault;
+    if (resets) reset_here();
   }
 }
 """
@@ -252,8 +278,8 @@ def core_text() -> Callable[..., dict[str, str]]:
 # --- Cortex-M4 ----------------------------------------------------------------------------------------------------
 
 CODE, DATA, STACK, HALT = 0x0001_0000, 0x2000_0000, 0x3000_0000, 0x000F_0000
+PROCESSORS = {"cortex-m4": UC_CPU_ARM_CORTEX_M4, "cortex-m7": UC_CPU_ARM_CORTEX_M7}
 FLAGS = [
-    "-mcpu=cortex-m4",
     "-mthumb",
     "-mfloat-abi=soft",
     "-O2",
@@ -271,13 +297,12 @@ SECTIONS {
   /DISCARD/ : { *(.comment) *(.ARM.exidx*) *(.ARM.extab*) }
 }
 """
-TARGET = """\
+#: What the compiler calls, where there is no library.
+FREESTANDING = """\
 #include <stddef.h>
 
-#include "gm_core.h"
-
-gm_core core;
-gm_job job;
+void *memset(void *to, int value, size_t n);
+void *memcpy(void *to, const void *from, size_t n);
 
 void *memset(void *to, int value, size_t n)
 {
@@ -293,6 +318,12 @@ void *memcpy(void *to, const void *from, size_t n)
   while (n--) *byte++ = *source++;
   return to;
 }
+"""
+TARGET = """\
+#include "gm_core.h"
+
+gm_core core;
+gm_job job;
 
 void start(void)
 {
@@ -324,11 +355,11 @@ void drive(const int8_t *edges, int32_t *reached, int32_t n, int32_t ticks)
 
 
 class Target:
-    """A program on an emulated Cortex-M4: functions called by name, and the instructions that they execute."""
+    """A program on an emulated processor: functions called by name, and the instructions that they execute."""
 
-    def __init__(self, elf: Path) -> None:
+    def __init__(self, elf: Path, processor: str) -> None:
         self._core = Uc(UC_ARCH_ARM, UC_MODE_THUMB | UC_MODE_MCLASS)
-        self._core.ctl_set_cpu_model(UC_CPU_ARM_CORTEX_M4)
+        self._core.ctl_set_cpu_model(PROCESSORS[processor])
         for address, size in ((CODE, 0x10_0000), (DATA, 0x200_0000), (STACK, 0x1_0000)):
             self._core.mem_map(address, size)
         self.symbols: dict[str, int] = {}
@@ -348,8 +379,8 @@ class Target:
     def read(self, address: int, size: int) -> bytes:
         return bytes(self._core.mem_read(address, size))
 
-    def call(self, name: str, *arguments: bytes | int) -> None:
-        """Call with words by the procedure call standard: four in registers, the rest on the stack."""
+    def call(self, name: str, *arguments: bytes | int) -> int:
+        """Call with words by the procedure call standard: four in registers, the rest on the stack. What it returns."""
         words = [int(word) & 0xFFFFFFFF for word in arguments]
         top = STACK + 0x1_0000 - 512
         for k, word in enumerate(words[:4]):
@@ -359,6 +390,7 @@ class Target:
         self._core.reg_write(UC_ARM_REG_LR, HALT | 1)
         self._core.emu_start(self.symbols[name] | 1, HALT)
         assert self._core.reg_read(UC_ARM_REG_PC) == HALT
+        return int(self._core.reg_read(UC_ARM_REG_R0))
 
     def instructions(self, name: str, *arguments: int) -> int:
         """Instructions executed by one call, its return included: every basic block that runs is disassembled."""
@@ -377,15 +409,69 @@ class Target:
         return self._lengths[key]
 
 
-def _build(files: Mapping[str, str], entry: str, folder: Path) -> Target:
+class EmulatedCore:
+    """The core on an emulated processor, played like :class:`Core`."""
+
+    _ARRAYS = DATA + 0x40_0000
+
+    def __init__(self, target: Target) -> None:
+        self._target = target
+        self.init()
+
+    def init(self) -> None:
+        self._target.call("probe_init")
+
+    def job(self, N: int, D: int) -> int:
+        """Set the ratio N/D of the hob."""
+        base, increment = divmod(N, D)
+        self._target.write(self._ARRAYS, struct.pack("<2q2i", increment, 0, base, 0))
+        return self._target.call("probe_job", D, D >> 32, self._ARRAYS, self._ARRAYS + 16, 0)
+
+    def run(self) -> int:
+        return self._target.call("probe_run")
+
+    def stop(self) -> None:
+        self._target.call("probe_stop")
+
+    def move(self, steps: int) -> int:
+        return self._target.call("probe_move", steps)
+
+    def acknowledge(self) -> int:
+        return self._target.call("probe_acknowledge")
+
+    def play(self, hob: np.ndarray) -> Record:
+        """Play signed edges of the hob, one entry a tick, with the emergency stop closed."""
+        n, no = len(hob), np.zeros(len(hob), np.uint8)
+        kinds = (np.uint8, np.uint8, np.int64, np.int32, np.uint8)
+        scripts = (hob.astype(np.int8), no, no, no + 1)
+        sizes = [n] * 4 + [n * np.dtype(kind).itemsize for kind in kinds]
+        room = [-(-size // 8) * 8 for size in sizes]
+        places = [self._ARRAYS + sum(room[:k]) for k in range(len(room))]
+        for place, script in zip(places, scripts, strict=False):
+            self._target.write(place, script.tobytes())
+        self._target.call("probe_play", n, *places)
+        read = zip(places[4:], sizes[4:], kinds, strict=True)
+        return Record(*(np.frombuffer(self._target.read(place, size), kind) for place, size, kind in read))
+
+
+def _build(files: Mapping[str, str], entry: str, folder: Path, processor: str = "cortex-m4") -> Target:
+    files = {**files, "freestanding.c": FREESTANDING}
     for name, text in {**files, "link.ld": LAYOUT}.items():
         (folder / name).write_text(text, "utf-8")
     sources = sorted(name for name in files if name.endswith(".c"))
     link = ["-nostdlib", f"-Wl,-e,{entry}", "-T", "link.ld", "-lgcc", "-o", "program.elf"]
-    command = ["arm-none-eabi-gcc", *FLAGS, "-ffreestanding", "-fno-tree-loop-distribute-patterns", *sources, *link]
+    command = [
+        "arm-none-eabi-gcc",
+        f"-mcpu={processor}",
+        *FLAGS,
+        "-ffreestanding",
+        "-fno-tree-loop-distribute-patterns",
+        *sources,
+        *link,
+    ]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    return Target(folder / "program.elf")
+    return Target(folder / "program.elf", processor)
 
 
 @pytest.fixture(scope="session")
@@ -402,6 +488,17 @@ def core_on_target(arm_gcc, tmp_path_factory) -> Callable[..., Target]:
     def make(wide: bool, **changes: int | None) -> Target:
         files = core_files(wide, changes) | {"target.c": TARGET}
         return _build(files, "drive", tmp_path_factory.mktemp("core"))
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def emulated_core(arm_gcc, tmp_path_factory) -> Callable[..., EmulatedCore]:
+    """``emulated_core("cortex-m7", wide, GM_...=...)``: a core after power-up on "cortex-m4" or "cortex-m7"."""
+
+    def make(processor: str, wide: bool, **changes: int | None) -> EmulatedCore:
+        files = core_files(wide, changes) | {"probe.c": PROBE}
+        return EmulatedCore(_build(files, "probe_play", tmp_path_factory.mktemp("core"), processor))
 
     return make
 

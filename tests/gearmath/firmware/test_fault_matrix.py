@@ -1,4 +1,8 @@
-"""Every fault in every mode, as the README's table says: the motor, the outputs, and what is remembered."""
+"""Every fault in every mode, as the README's table says: the motor, the outputs, and what is remembered.
+
+Power may be lost at every tick of all these scripts: what a reset makes of the memory then is the core of the first
+power-up, byte for byte. What the EEPROM brings back is tested with the whole sketch.
+"""
 
 from __future__ import annotations
 
@@ -64,6 +68,7 @@ CASES = [
 @pytest.mark.parametrize(("row", "mode"), CASES)
 def test_fault_does_what_the_table_of_the_readme_says(new_core, row: FaultRow, mode: str) -> None:
     core = new_core(**MACHINE)
+    core.library.probe_resets()
     core.play(0, 3000)
     assert (core.job(1, 4), core.arm()) == (0, 0)
     if mode == "following":
@@ -104,18 +109,34 @@ def test_fault_does_what_the_table_of_the_readme_says(new_core, row: FaultRow, m
     assert core.status.has_job == row.kept
     assert (core.run() == 0) == row.kept
     assert not (core.play(0, 5000).levels & HEALTHY).any()  # until the operator lets it
+    assert core.library.probe_not_fresh() == 0
 
 
-@pytest.mark.parametrize("moment", [0.0, 0.1, 0.35, 0.6, 0.9, 1.4, 2.0])
-def test_power_that_fails_at_any_moment_of_a_job_leaves_everything_off(new_core, moment):
-    """Run-up, following, a stop, a move: after power-up no pulse, no healthy output and no job, whatever turns."""
+def turn(core, hob: np.ndarray) -> None:
+    """Play a hob whose index pulse comes once a turn."""
+    places = (core.status.edges + np.cumsum(hob, dtype=np.int64)) // 4096
+    core.play(hob, index=np.diff(places, prepend=places[0]) != 0)
+
+
+def test_power_that_comes_back_leaves_everything_off_whatever_turns(new_core):
+    """Run-up, following, a stop, a move, and a reset at every tick; then no pulse, no healthy output and no job."""
     core = new_core(**MACHINE)
+    core.library.probe_resets()
     core.play(0, 3000)
-    core.job(1, 4)
-    core.arm()
-    core.run()
-    script = np.concatenate([ramp(0.5, 0.0, SPEED), at_speed(0.3), ramp(0.5, SPEED, 0.0), np.zeros(200_000)])
-    core.play(script[: int(moment / TICK) + 1])
+    assert (core.job(1, 4), core.arm(), core.run()) == (0, 0, 0)
+    run_down = np.concatenate([at_speed(0.1), ramp(0.5, SPEED, 0.0), np.zeros(60_000, np.int8)])
+    turn(core, ramp(0.5, 0.0, SPEED))
+    core.stop()
+    turn(core, run_down)
+    assert core.run() == 0
+    turn(core, ramp(0.5, 0.0, SPEED))
+    assert (core.status.mode, core.status.fault) == (RUN, 0)
+    core.stop()
+    turn(core, run_down)
+    assert core.move(4000) == 0
+    core.play(0, 40_000)
+    assert core.status.mode == MOVE
+    assert core.library.probe_not_fresh() == 0
     core.library.probe_init()
     record = core.play(at_speed(0.2))
     assert len(np.unique(record.levels)) == 1

@@ -6,7 +6,9 @@ steps and the place that the table should have are computed apart from the core.
 """
 
 import subprocess
+from collections.abc import Iterator
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,210 +18,6 @@ from gearmath.gearbox.kernels import evaluate
 IDLE, RUN, MOVE, FAULT = range(4)
 NO_FAULT, ESTOP, LAG, OVERSPEED = range(4)
 TICK = 5e-6
-
-MOTOR = """\
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-
-#include "gm_core.h"
-
-static gm_core core;
-static uint32_t state = 1;
-static const double tick = GM_TICK_NS * 1e-9, most = ACCELERATION, top = GM_MAX_STEP_RATE;
-
-static uint32_t rnd(uint32_t n)
-{
-  state = state * 1664525u + 1013904223u;
-  return (state >> 8) % n;
-}
-static double between(double low, double high) { return low + (high - low) * rnd(100000) / 100000.0; }
-
-static long sequence;
-static void check(int good, const char *what, double value)
-{
-  if (good) return;
-  printf("sequence %ld: %s: %g\\n", sequence, what, value);
-  exit(1);
-}
-
-/* The rotor, in motor steps; a full step is MICROSTEPS of them. A tenth of the critical damping, as the windings give
- * it against the turning field, and a friction of a tenth of the strength at top speed. */
-static double rotor, speed, field, field_speed;
-static void turn_rotor(double wanted, double dt)
-{
-  const double full = MICROSTEPS, strength = MARGIN * most / (1.0 + fabs(speed) / top);
-  const double turn = 1.5707963267948966 / full;
-  double pull = strength * sin((wanted - rotor) * turn) - 0.1 * MARGIN * most * speed / top;
-  field_speed += ((wanted - field) / dt - field_speed) * dt / 0.001;
-  field = wanted;
-  pull += 2.0 * 0.1 * sqrt(strength * turn) * (field_speed - speed);
-  speed += pull * dt;
-  rotor += speed * dt;
-  check(fabs(wanted - rotor) < 2.0 * full, "the motor stalls", wanted - rotor);
-}
-
-/* the hob: place in counts, speed, and the speed to which it goes at a rate */
-static double hob, hob_speed, hob_target, hob_rate;
-static int64_t counted;
-static int64_t N, D;
-
-static void check_phase(void)
-{
-  /* 2 D p - 2 N e, modulo one turn of the hob: within one half step */
-  const __int128 turn = (__int128)2 * (N < 0 ? -N : N) * GM_ENCODER_COUNTS;
-  __int128 off = ((__int128)2 * D * (core.position + core.pending) - (__int128)2 * N * core.edges[GM_HOB]) % turn;
-  if (off < 0) off += turn;
-  if (off > turn / 2) off -= turn;
-  check(off <= D && off >= -D, "in phase, but off by [steps]", (double)off / (2.0 * (double)D));
-}
-
-enum { GRID = 20000, SPAN = 3 };              /* 100 ms */
-static double places[SPAN];
-static long ticks, last_step, steps_apart[2]; /* of steps out of phase in a row, in one direction */
-static int runs, waits;
-
-static void check_acceleration(void)
-{
-  int k;
-  if (ticks % GRID) return;
-  for (k = SPAN - 1; k > 0; --k) places[k] = places[k - 1];
-  places[0] = (double)core.position;
-  if (++waits >= SPAN) {
-    const double tau = GRID * tick, bend = fabs(places[0] - 2.0 * places[1] + places[2]);
-    check(bend <= most * tau * tau + 16.0, "acceleration over 100 ms", bend / (tau * tau));
-  }
-}
-
-/* From step to step: the speeds before and after differ by the acceleration in that time, and the rounding to ticks. */
-static void check_steps(int64_t before, int dir)
-{
-  static int64_t last;
-  static int last_dir;
-  const long apart = ticks - last_step;
-  (void)last;
-  if (core.position == before) return;
-  last_step = ticks;
-  if (core.locked || dir != last_dir) runs = 0;
-  last_dir = dir;
-  if (++runs > 4) {
-    const double v = 1.0 / (apart * tick), u = 1.0 / (steps_apart[0] * tick), faster = v > u ? v : u;
-    const double allowed = most * (apart + steps_apart[0]) * tick / 2.0 * 1.02 + 2.0 * faster * faster * tick * 1.05;
-    check(fabs(v - u) <= allowed, "from step to step, over what is allowed", fabs(v - u) / allowed);
-  }
-  steps_apart[0] = apart;
-}
-
-static void play(double seconds, int feasible)
-{
-  long n;
-  for (n = (long)(seconds / tick); n > 0; --n) {
-    int64_t place, before = core.position;
-    if (hob_speed < hob_target) hob_speed = fmin(hob_target, hob_speed + hob_rate * tick);
-    if (hob_speed > hob_target) hob_speed = fmax(hob_target, hob_speed - hob_rate * tick);
-    hob += hob_speed * tick;
-    place = (int64_t)floor(hob);
-    for (; counted < place; ++counted) gm_core_edge(&core, GM_HOB, 1);
-    for (; counted > place; --counted) gm_core_edge(&core, GM_HOB, -1);
-    (void)gm_core_tick(&core, GM_IN_ESTOP_OK);
-    ++ticks;
-    if (ticks % 4 == 0) turn_rotor((double)core.position, 4 * tick);
-    if (core.engaged && core.locked) check_phase();
-    check_acceleration();
-    check_steps(before, core.dir);
-    if (feasible) check(core.fault == GM_NO_FAULT, "a fault though it was feasible", core.fault);
-  }
-}
-
-static void new_job(void)
-{
-  gm_job job;
-  int64_t base;
-  D = 1 + rnd(100000);
-  N = (int64_t)(D * between(0.03, 1.2)) + 1;
-  if (rnd(2)) N = -N;
-  base = N / D - (N % D < 0);
-  job.denominator = (gm_wide)D;
-  job.base[GM_HOB] = (int32_t)base;
-  job.increment[GM_HOB] = (gm_wide)(N - base * D);
-  job.base[GM_FEED] = 0;
-  job.increment[GM_FEED] = 0;
-  job.hysteresis = 0;
-  check(gm_core_set_job(&core, &job) == 0, "job", 0);
-}
-
-static void change_job(void)
-{
-  rotor -= (double)core.position;
-  field -= (double)core.position;
-  new_job();
-  runs = waits = 0;
-}
-
-/* The hob goes to a speed whose steps the motor takes, as quickly as the table can follow, or as the lag allows. */
-static void new_speed(double part)
-{
-  const double ratio = fabs((double)N / (double)D), limit = fmin(0.9 * GM_MAX_EDGE_RATE, 0.8 * top / ratio);
-  hob_target = rnd(4) ? (rnd(2) ? 1.0 : -1.0) * between(0.0, part * limit) : 0.0;
-  hob_rate = between(0.2, 0.97) * most / ratio;
-}
-
-int main(void)
-{
-  long in_phase = 0, caught = 0, idle = 0;
-  gm_status status;
-  for (sequence = 0; sequence < SEQUENCES; ++sequence) {
-    if (sequence % 40 == 0) { /* power-up; the rotor stands where the next step will be */
-      gm_core_init(&core);
-      rotor = speed = field = field_speed = 0.0;
-      hob = hob_speed = hob_target = 0.0;
-      counted = 0;
-      runs = waits = 0;
-      hob_rate = 1.0;
-      new_job();
-    }
-    gm_core_status(&core, &status);
-    switch (status.mode) {
-      case GM_IDLE:
-        ++idle;
-        if (rnd(4) == 0) { /* another job: the counts begin anew */
-          change_job();
-        } else if (rnd(3) == 0) {
-          (void)gm_core_move(&core, (int32_t)rnd(4000) - 2000); /* a lathe: the spindle may turn */
-        }
-        if (rnd(3)) (void)gm_core_run(&core);
-        break;
-      case GM_RUN:
-        if (rnd(4) == 0) gm_core_stop(&core);
-        break;
-      default: break;
-    }
-    new_speed(1.0);
-    if (core.engaged && !core.locked) hob_target = hob_speed; /* it is catching up: a steady speed, as the plan says */
-    else if (core.engaged) caught += 1;
-    play(between(0.02, 0.4), 1);
-    gm_core_status(&core, &status);
-    in_phase += status.in_phase;
-  }
-  if (in_phase < SEQUENCES / 8 || idle < SEQUENCES / 20) {
-    printf("in phase %ld, idle %ld of %ld\\n", in_phase, idle, (long)SEQUENCES);
-    return 1;
-  }
-  (void)caught;
-  /* what no plan allows: the hob starts and stops at once, at any speed; faults are right, a stall is not */
-  for (sequence = 0; sequence < SEQUENCES / 10; ++sequence) {
-    if (core.mode == GM_FAULT) (void)gm_core_acknowledge(&core);
-    if (core.mode == GM_IDLE) {
-      change_job();
-      (void)gm_core_run(&core);
-    }
-    new_speed(1.2);
-    hob_rate = 1e9;
-    play(between(0.02, 0.3), 0);
-  }
-  return 0;
-}
-"""
 
 QUICK = {
     "GM_ACCELERATION": 100_000,
@@ -237,39 +35,97 @@ QUICK = {
 }
 
 
+@pytest.fixture
+def drive_motor(core_text, gcc, tmp_path):
+    """``drive_motor(microsteps, acceleration, given, sequences)``: status and words of the program motor.c, whose motor
+    allows ``acceleration`` and whose core is told to give ``given``; with ``seed`` it writes its trace."""
+
+    def drive(microsteps: int, acceleration: int, given: int, sequences: int, seed: int | None = None):
+        files = core_text(True, **{**QUICK, "GM_ACCELERATION": given, "GM_MOVE_ACCELERATION": given})
+        del files["probe.c"]
+        files["motor.c"] = (Path(__file__).parent / "motor.c").read_text("utf-8")
+        for name, text in files.items():
+            (tmp_path / name).write_text(text, "utf-8")
+        given_names = {"MICROSTEPS": microsteps, "MARGIN": 4.0, "ACCELERATION": float(acceleration)}
+        given_names |= {"SEQUENCES": sequences, "SEED": f"{1 if seed is None else seed}u"}
+        if seed is not None:
+            given_names["TRACE"] = '"trace"'
+        defines = [f"-D{name}={value}" for name, value in given_names.items()]
+        sources = [name for name in files if name.endswith(".c")]
+        subprocess.run([gcc, "-std=gnu99", "-O2", *defines, *sources, "-o", "motor", "-lm"], cwd=tmp_path, check=True)
+        done = subprocess.run(["./motor"], cwd=tmp_path, capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout
+
+    return drive
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("microsteps", "acceleration"), [(8, 100_000), (4, 20_000)])
-def test_motor_is_never_stalled_and_in_phase_is_true_in_ten_thousand_sequences(
-    core_text, gcc, tmp_path, microsteps, acceleration
-):
+def test_motor_is_never_stalled_and_in_phase_is_true_in_ten_thousand_sequences(drive_motor, microsteps, acceleration):
     """Jobs engaged at any speed and phase, stops, restarts, moves, feed holds; the hob as quick as it follows."""
-    assert drive_motor(core_text, gcc, tmp_path, microsteps, acceleration, acceleration, 5000) == (0, "")
+    assert drive_motor(microsteps, acceleration, acceleration, 5000) == (0, "")
 
 
-def test_that_motor_stalls_or_the_acceleration_is_noticed_where_the_core_gives_more(core_text, gcc, tmp_path):
+def test_that_motor_stalls_or_the_acceleration_is_noticed_where_the_core_gives_more(drive_motor):
     for given in (10_000_000, 300_000, 130_000):
-        status, words = drive_motor(core_text, gcc, tmp_path, 8, 100_000, given, 400)
+        status, words = drive_motor(8, 100_000, given, 400)
         assert status == 1
         assert "stalls" in words or "acceleration over" in words or "from step to step" in words
 
 
-def drive_motor(core_text, gcc, folder, microsteps, acceleration, given, sequences) -> tuple[int, str]:
-    """Status and words of the program: a motor of some acceleration, a core that is told to give ``given``."""
-    changes = {**QUICK, "GM_ACCELERATION": given, "GM_MOVE_ACCELERATION": given}
-    files = core_text(True, **changes)
-    del files["probe.c"]
-    for name, text in (files | {"motor.c": MOTOR}).items():
-        (folder / name).write_text(text, "utf-8")
-    defines = [
-        f"-DMICROSTEPS={microsteps}",
-        "-DMARGIN=4.0",
-        f"-DSEQUENCES={sequences}",
-        f"-DACCELERATION={acceleration}.0",
-    ]
-    sources = [name for name in (*files, "motor.c") if name.endswith(".c")]
-    subprocess.run([gcc, "-std=gnu99", "-O2", *defines, *sources, "-o", "motor", "-lm"], cwd=folder, check=True)
-    done = subprocess.run(["./motor"], cwd=folder, capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout
+# --- the same motor beside the core on the processors of the boards ---------------------------------------------------
+
+INIT, JOB, MOVE_BY, RUN_ON, STOP, ACKNOWLEDGE, PLAY = range(7)
+
+
+def traced(file: Path) -> Iterator[tuple[int, list[int], np.ndarray, np.ndarray]]:
+    """The entries of a trace of motor.c: what was done, its numbers; of a play its edges and steps, tick by tick."""
+    data, place = file.read_bytes(), 0
+    while place < len(data):
+        what, *numbers = np.frombuffer(data, np.int64, 4, place).tolist()
+        n, place = numbers[0] if what == PLAY else 0, place + 32
+        tapes = np.frombuffer(data, np.int8, 2 * n, place).reshape(2, n)
+        place += 2 * n
+        yield what, numbers, tapes[0], tapes[1]
+
+
+def replay(core, file: Path) -> int:
+    """Do to a core what a trace tells, and compare every step of it; the number of sequences."""
+    plays, position = 0, 0
+    for what, numbers, edges, steps in traced(file):
+        if what == INIT:
+            core.init()
+            position = 0
+        elif what == JOB:
+            assert core.job(numbers[0], numbers[1]) == 0
+            position = 0
+        elif what == MOVE_BY:
+            core.move(numbers[0])
+        elif what == RUN_ON:
+            core.run()
+        elif what == STOP:
+            core.stop()
+        elif what == ACKNOWLEDGE:
+            core.acknowledge()
+        else:
+            record = core.play(edges)
+            np.testing.assert_array_equal(np.diff(record.position, prepend=position), steps)
+            position = int(record.position[-1])
+            at_end = int(record.pending[-1]), int(record.mode[-1]) * 16 + int(record.fault[-1])
+            assert at_end == (numbers[1], numbers[2])
+            plays += 1
+    return plays
+
+
+@pytest.mark.parametrize(("processor", "seed"), [("cortex-m4", 2), ("cortex-m7", 3)])
+def test_core_on_the_processors_of_the_boards_turns_that_motor_by_the_same_steps(
+    drive_motor, emulated_core, tmp_path, processor, seed
+):
+    """The motor beside the host's core does not stall, and each step of the emulated core is at the same tick. A motor
+    gives nothing back to the core: it is the same motor, with the same margins."""
+    sequences = 20
+    assert drive_motor(8, 100_000, 100_000, sequences, seed) == (0, "")
+    assert replay(emulated_core(processor, True, **QUICK), tmp_path / "trace") == sequences + sequences // 10
 
 
 # --- what the plan says ---------------------------------------------------------------------------------------------
@@ -331,19 +187,26 @@ def test_hob_that_runs_up_in_the_shortest_time_of_the_plan_is_followed_and_a_qui
         assert core.status.position + core.status.pending == core.status.edges
 
 
-@pytest.mark.parametrize("seconds", [0.2, 0.5, 1.0, 2.0])
-def test_run_up_to_800_rpm_is_followed_or_trips_as_the_plan_says(new_core, seconds):
+@pytest.mark.parametrize(
+    ("processor", "seconds"),
+    [(None, 0.2), (None, 0.5), (None, 1.0), (None, 2.0), ("cortex-m4", 2.0), ("cortex-m7", 1.0)],
+)
+def test_run_up_to_800_rpm_is_followed_or_trips_as_the_plan_says(new_core, request, processor, seconds):
     """24 teeth, 16000 steps, 8000 steps/s^2: 8889 steps/s, so 1.09 s are needed."""
-    core = new_core(GM_ACCELERATION=8000, GM_MAX_STEP_RATE=40_000)
+    machine = {"GM_ACCELERATION": 8000, "GM_MAX_STEP_RATE": 40_000}
+    if processor is None:
+        core = new_core(**machine)
+    else:
+        core = request.getfixturevalue("emulated_core")(processor, False, **machine)
     rate = 800 / 60 * 4096
     assert (core.job(125, 768), core.run()) == (0, 0)
     _, _, shortest = evaluate("run_up", rate * 125 / 768, 8000.0, 100.0)
     clock = np.arange(int((seconds + 1.5) / TICK)) * TICK
-    record = core.play(turned(rate * np.minimum(clock / seconds, 1.0)))
-    assert (core.status.fault == NO_FAULT) == (seconds >= shortest)
-    if core.status.fault == NO_FAULT:
-        counts = np.cumsum(turned(rate * np.minimum(clock / seconds, 1.0)))
-        error = record.position + record.pending - 125 * counts / 768
+    edges = turned(rate * np.minimum(clock / seconds, 1.0))
+    record = core.play(edges)
+    assert (record.fault[-1] == NO_FAULT) == (seconds >= shortest)
+    if record.fault[-1] == NO_FAULT:
+        error = record.position + record.pending - 125 * np.cumsum(edges, dtype=np.int64) / 768
         assert np.abs(error).max() <= 0.5 + 1e-9
 
 
