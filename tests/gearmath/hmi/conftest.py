@@ -16,7 +16,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -117,6 +117,20 @@ class Served:
         """What it has in memory [MB]."""
         status = Path(f"/proc/{self.pid}/status").read_text("utf-8")
         return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1000  # type: ignore[index]
+
+    def busy(self) -> float:
+        """How long it has computed [s]."""
+        ticks = Path(f"/proc/{self.pid}/stat").read_text("utf-8").rpartition(")")[2].split()[11:13]
+        return sum(map(int, ticks)) / os.sysconf("SC_CLK_TCK")
+
+    @contextmanager
+    def timed(self, what: str, asked: float) -> Iterator[None]:
+        """Print how long something takes in the browser, and what the server computes for it [s]. Nothing is asserted:
+        how long a loaded computer takes says nothing of the page."""
+        begin, busy = time.monotonic(), self.busy()
+        yield
+        taken, computed = time.monotonic() - begin, self.busy() - busy
+        print(f"\n{what}: {taken:.2f} s, at most {asked:g} s are asked for; the server computed {computed:.2f} s")
 
 
 @pytest.fixture(scope="module")
