@@ -62,18 +62,21 @@ def file_name(name: str) -> str:
 
 
 def connector(
-    path: Path, insecure: bool, *needed: str
+    path: Path, insecure: bool, *needed: str, seconds: float | None = None
 ) -> Callable[[], Coroutine[Any, Any, OpcUaControl | LinuxCncControl]]:
-    """What connects to the control of a file, each time anew, with the rights that are needed."""
+    """What connects to the control of a file, each time anew, with the rights that are needed.
+
+    ``seconds`` is how long an answer over OPC UA may take, by default as long as a command line waits.
+    """
     if is_linuxcnc():
         from gearmath.control.linuxcnc_client import LinuxCncControl
 
         return lambda: LinuxCncControl.connect(path)
-    from gearmath.control.opcua import OpcUaControl
+    from gearmath.control.opcua import PATIENCE, OpcUaControl
 
     known = connection_of(path, insecure)
     password = _password(known)
-    return lambda: OpcUaControl.connect(known, password, needed)
+    return lambda: OpcUaControl.connect(known, password, needed, seconds or PATIENCE)
 
 
 def connection_of(path: Path, insecure: bool) -> ControlConnection:

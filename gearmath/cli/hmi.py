@@ -59,7 +59,7 @@ def _connect(shared: Shared, control: str, insecure: bool) -> None:
     """Begin to watch the control."""
     from gearmath.control import sinumerik
     from gearmath.files import read_text
-    from gearmath.hmi.link import ControlLink
+    from gearmath.hmi.link import ANSWER, ControlLink
     from gearmath.hmi.measuring_task import MeasuringTask
 
     quiet()
@@ -73,7 +73,7 @@ def _connect(shared: Shared, control: str, insecure: bool) -> None:
         choose_linuxcnc(path.suffix.lower() == ".ini")
         read_text(path)  # refuses a file that is not there at once
         needed = (sinumerik.READ_STATE, sinumerik.READ_ALARMS)
-        connect = connector(path, insecure, *needed)
+        connect = connector(path, insecure, *needed, seconds=ANSWER)
         shared.link = ControlLink(name_of(path, insecure), connect, shared.book)
     shared.link.open()
     shared.measuring = MeasuringTask(shared.link, shared.store)

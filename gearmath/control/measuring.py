@@ -142,7 +142,7 @@ class Measuring:
             await _leave(control)
 
     async def _again(self, seconds: float) -> Control:
-        return await _connected(self._connect, seconds, self._patience)
+        return await connected(self._connect, seconds, self._patience)
 
     async def _ended(self, control: Control) -> None:
         """Until the program of the stretch before has ended: after its last touch it still moves away."""
@@ -286,7 +286,7 @@ async def check_ready(connect: Connect, start: RunStart, patience: Patience | No
     The selected program must be that of the run, and the channel in reset.
     """
     patience = patience or Patience()
-    control = await _connected(connect, patience.first, patience)
+    control = await connected(connect, patience.first, patience)
     try:
         status = await _selected(control, start)
         if status.channel is not ChannelState.RESET:
@@ -295,7 +295,7 @@ async def check_ready(connect: Connect, start: RunStart, patience: Patience | No
         await _leave(control)
 
 
-async def _connected(connect: Connect, seconds: float, patience: Patience) -> Control:
+async def connected(connect: Connect, seconds: float, patience: Patience) -> Control:
     """A new connection, with growing breaks."""
     begin, pause = time.monotonic(), patience.first_retry
     while True:

@@ -17,15 +17,20 @@ from typing import Any, TypeVar
 
 from gearmath.control.delivery import deliver
 from gearmath.control.interface import Control, Status
-from gearmath.control.measuring import Connect
+from gearmath.control.measuring import Connect, Patience, connected
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.alarm_book import AlarmBook
 
 #: Times [s]: between two looks at the state, between two looks at alarms and probe, and between attempts to connect.
 LOOK, NEWS = 0.2, 0.5
 _FIRST_RETRY, _LAST_RETRY = 0.2, 5.0
+#: A session over an encrypted line takes seconds where control or server are busy: it is not given up before.
+PATIENCE = Patience(first=20.0)
 #: A value that is older [s] is called stale.
 STALE = 1.5
+#: How long an answer of the control may take [s]: the server computes as well, and a slow answer is no lost line, which
+#: would hold a measuring run. Values are stale, and nothing is acknowledged, long before.
+ANSWER = 10.0
 _Answer = TypeVar("_Answer")
 
 
@@ -81,7 +86,7 @@ class ControlLink:
 
     async def send(self, name: str, content: bytes, replace: bool) -> None:
         """Write a program to the control and read it back, in a session of its own. In this loop only."""
-        control = await self.connect()
+        control = await connected(self.connect, PATIENCE.first, PATIENCE)
         try:
             await deliver(control, name, content, replace)
         finally:

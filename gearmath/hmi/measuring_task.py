@@ -12,16 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from gearmath.control.interface import Touch
-from gearmath.control.measuring import Measuring, Patience, check_ready
+from gearmath.control.measuring import Measuring, check_ready
 from gearmath.control.run_start import begun, resumed
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_run import StoredRun
 from gearmath.errors import ComputationError, InputError
-from gearmath.hmi.link import ControlLink
+from gearmath.hmi.link import PATIENCE, ControlLink
 from gearmath.hmi.state import Choice
-
-#: A session over an encrypted line takes seconds where control or server are busy: it is not given up before. [s]
-_PATIENCE = Patience(first=20.0)
 
 
 class RunState(StrEnum):
@@ -153,7 +150,7 @@ class MeasuringTask:
         start, stretches = await asyncio.to_thread(
             begun, self._link.name, program, choice.gear_set, choice.machine, choice.calibration, points, again_of
         )
-        await check_ready(self._link.connect, start, _PATIENCE)
+        await check_ready(self._link.connect, start, PATIENCE)
         with MeasurementStore.open(self._store) as store:
             await self._measure(store.begin_run(start), stretches)
 
@@ -167,7 +164,7 @@ class MeasuringTask:
         self._measuring = Measuring(
             self._link.connect,
             run,
-            _PATIENCE,
+            PATIENCE,
             progress=self._heard,
             say=self.sentences.append,
             holds=self._holds,

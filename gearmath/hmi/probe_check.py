@@ -4,11 +4,14 @@ from __future__ import annotations
 
 
 class ProbeCheck:
-    """``state`` is ask, deflected, done, or unknown where the control does not tell the signal."""
+    """``state`` is ask, deflected, done, or unknown where the control does not tell the signal.
+
+    What was seen counts on after a silence: a busy control does not undo what the operator did.
+    """
 
     def __init__(self) -> None:
         self.state = "unknown"
-        self._was_free = False
+        self._was_free = self._came = False
 
     @property
     def is_done(self) -> bool:
@@ -20,11 +23,12 @@ class ProbeCheck:
         if self.state == "done":
             return
         if signal is None:
-            self.state, self._was_free = "unknown", False
+            self.state = "unknown"
         elif signal:
             # a probe that signals from the beginning may be one that always does
-            self.state = "deflected" if self._was_free else "ask"
-        elif self.state == "deflected":
+            self._came = self._was_free
+            self.state = "deflected" if self._came else "ask"
+        elif self._came:
             self.state = "done"
         else:
             self.state, self._was_free = "ask", True

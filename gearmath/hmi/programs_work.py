@@ -7,26 +7,23 @@ from datetime import datetime
 from itertools import islice
 from pathlib import Path
 
-from gearmath.bevel.pair import load_pair
 from gearmath.errors import InputError
-from gearmath.files import read_bytes, write_text
-from gearmath.front.machines import load_machine, load_shop
-from gearmath.front.programs import Program
+from gearmath.files import read_bytes
+from gearmath.front.machines import load_machine, load_probe, load_shop
+from gearmath.front.probing import probing
+from gearmath.front.programs import Program, cutting
 from gearmath.front.sets import load_set
 from gearmath.hmi.state import Choice
 from gearmath.hmi.work import Progress
 from gearmath.machine.control.file_names import control_name
 from gearmath.machine.control.text import decoded, readable
-from gearmath.machine.judging.checked import checked_cut
-from gearmath.machine.judging.dialects import ControlDialect, known, named
+from gearmath.machine.judging.dialects import known, named
 from gearmath.machine.judging.timing import timing
-from gearmath.machine.measuring.checked import ProbingChoice, checked_probing
+from gearmath.machine.measuring.checked import ProbingChoice
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.limits import check_spindle_speed
 from gearmath.machine.writing.words import check_name
-from gearmath.specs.calibration import load_calibration
-from gearmath.specs.milling_machine import load_milling_machine
-from gearmath.specs.toml import find
+from gearmath.specs.milling_machine import MillingMachine
 
 #: Lines of a program that the page shows from its beginning.
 SHOWN = 2000
@@ -68,15 +65,14 @@ def write_cutting(folder: Path, choice: Choice, name: str, job: CuttingJob, prog
     It is run before it is written: it keeps the limits of the machine, and collides with nothing. Raises InputError,
     ComputationError.
     """
-    machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
-    dialect = named(machine.control.dialect(None))
-    file = _file(folder, name, dialect)
-    check_spindle_speed(file.stem, machine, job.spindle_rpm)
-    whole = replace(job, spaces=range(pair.member(choice.member).teeth))
-    made = checked_cut(pair, choice.member, machine, whole, file.stem, file.name, progress.begin, dialect)
-    times = timing(made.path, machine)
-    write_text(file, made.text)
-    return WrittenProgram(file, dialect.block_count(made.text), times.feed_seconds + times.rapid_seconds, None, "")
+    machine, member = load_machine(choice.machine), load_set(choice.gear_set).member(choice.member)
+    file = _file(folder, name, machine.spec)
+    check_spindle_speed(file.stem, machine.spec, job.spindle_rpm)
+    whole = replace(job, spaces=range(member.teeth))
+    made = cutting(member, machine, file.stem, whole, file=file.name, begin=progress.begin)
+    times = timing(made.path, machine.spec)
+    made.save(file)
+    return WrittenProgram(file, made.blocks, times.feed_seconds + times.rapid_seconds, None, "")
 
 
 def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice, progress: Progress) -> WrittenProgram:
@@ -84,15 +80,13 @@ def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice
 
     It is run before it is written: the probe stays clear of everything.
     """
-    machine, pair = load_milling_machine(find(choice.machine)), load_pair(find(choice.gear_set))
-    calibration = load_calibration(find(choice.calibration))
-    dialect = named(machine.control.dialect(None))
-    file = _file(folder, name, dialect)
-    made = checked_probing(
-        pair, choice.member, machine, calibration, chosen, file.stem, file.name, None, progress.begin, dialect
-    )
-    write_text(file, made.text)
-    return WrittenProgram(file, dialect.block_count(made.text), None, made.touches, made.clearance)
+    machine, member = load_machine(choice.machine), load_set(choice.gear_set).member(choice.member)
+    file = _file(folder, name, machine.spec)
+    what = chosen.topography, chosen.pitch, chosen.registration, chosen.repeat
+    probe = load_probe(choice.calibration)
+    made = probing(member, machine, probe, file.stem, *what, file=file.name, begin=progress.begin)
+    made.save(file)
+    return WrittenProgram(file, made.blocks, None, made.touches, made.clearance)
 
 
 def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Progress) -> MilledProgram:
@@ -140,9 +134,9 @@ def _kept_name(name: str) -> str:
     return next(by_suffix, control_name)(name)
 
 
-def _file(folder: Path, name: str, dialect: ControlDialect) -> Path:
-    """The file of a program of a dialect; a name that its control or the writer refuses is an InputError."""
-    stem = name.strip().upper()
+def _file(folder: Path, name: str, machine: MillingMachine) -> Path:
+    """The file of a program for a machine; a name that its control or the writer refuses is an InputError."""
+    dialect, stem = named(machine.control.dialect(None)), name.strip().upper()
     for one in known():
         stem = stem.removesuffix(one.suffix.upper())
     check_name(stem)

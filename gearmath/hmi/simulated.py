@@ -16,6 +16,7 @@ from gearmath.control.simulated.server import SimulatedControl
 from gearmath.control.simulated.workshop import Workshop
 from gearmath.control.sinumerik import FOLDERS
 from gearmath.errors import InputError
+from gearmath.hmi.link import ANSWER
 from gearmath.hmi.state import Choice
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.control_connection import load_control_connection
@@ -52,7 +53,7 @@ class SimulatedMachine:
                 self._control = await SimulatedControl(self.nc, access, identity).__aenter__()
         known = load_control_connection(self._folder / "control.toml")
         here = known.model_copy(update={"url": self._control.url, "name": NAME})
-        return await OpcUaControl.connect(here, self._password)
+        return await OpcUaControl.connect(here, self._password, seconds=ANSWER)
 
     def programs(self) -> list[str]:
         """The programs on the control."""

@@ -77,9 +77,12 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
 
 
 def test_flanks_are_shown_in_space(served: Served, operator: Callable[..., Operator]) -> None:
-    one = operator(served, "gear")
+    one = operator(served)
     drawn = one.panel("Flanks of a tooth").locator("canvas").first
-    drawn.wait_for(timeout=PATIENCE)
+    for visit in ("first", "second"):
+        with served.timed(f"3-D view, {visit} visit", 5.0):
+            one.go("gear")
+            drawn.wait_for(timeout=PATIENCE)
     drawn.scroll_into_view_if_needed()
     one.picture("gear_space")
 
@@ -163,8 +166,9 @@ def test_a_correction_is_seen_before_and_after_then_rejected_with_a_note_and_acc
     one.press("Accept: write new set and program")
     none = one.sees("There is no correction of this run yet: compute it first.")
     one.sees("As measured")
-    one.press("Compute correction")
-    one.page.get_by_text("concave, expected after the correction").wait_for(timeout=PATIENCE)
+    with served.timed("compensation, from the button to the picture", 2.0):
+        one.press("Compute correction")
+        one.page.get_by_text("concave, expected after the correction").wait_for(timeout=PATIENCE)
     none.wait_for(state="hidden")
     shown = one.panel("Correction")
     assert shown.locator("svg").count() == 4

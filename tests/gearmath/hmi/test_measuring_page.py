@@ -315,11 +315,7 @@ def test_a_run_is_recorded_held_and_ended_by_keyboard_alone(
     """Tab, arrows, Enter and Space from the first picture of the page to the end of the run."""
     one, begin = operator(page, "measure"), len(machine.nc.log)
     _check_probe(one, machine)
-    one.strike("Probing program", "Enter")
-    one.page.get_by_role("option", name=Live.NAME, exact=True).wait_for()
-    one.page.keyboard.press("ArrowDown")
-    one.page.keyboard.press("Enter")
-    one.page.get_by_role("option").first.wait_for(state="hidden")
+    one.choose_by_keys("Probing program", Live.NAME)
     for label in ("Start recording", "Yes, do it"):
         one.strike(label, "Enter")
     one.sees("Ready: start TEN.MPF at the machine")

@@ -91,6 +91,20 @@ def test_a_probe_passes_only_when_its_signal_comes_and_goes() -> None:
     assert check.is_done
 
 
+def test_a_silent_control_does_not_undo_the_check_of_the_probe() -> None:
+    """Free, then deflected, then free was seen, whatever was not seen between them."""
+    check = ProbeCheck()
+    for signal in (None, False, None, True, None, None):
+        check.look(signal)
+    assert check.state == "unknown"
+    check.look(False)
+    assert check.is_done
+    stuck = ProbeCheck()
+    for signal in (True, None, True, None, True):
+        stuck.look(signal)
+    assert stuck.state == "ask"
+
+
 def test_a_computation_tells_how_far_it_is_and_ends_when_it_is_cancelled() -> None:
     work, go_on = Work(), threading.Event()
 
