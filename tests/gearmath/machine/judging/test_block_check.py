@@ -92,7 +92,7 @@ def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_
     nodes = np.vstack([run.axes[run.line == k] for k in [cutting[0] - 1, *cutting]])
     assert len(nodes) == len(theta)
 
-    flanks = [one for one in watched_flanks(spec, runs) if one.flank in cut.flanks]
+    flanks = [one for one in watched_flanks(spec, runs, vertical) if one.flank in cut.flanks]
     point, normal, start, at = (
         np.concatenate([getattr(one, part) for one in flanks]) for part in ("point", "normal", "start", "theta")
     )
