@@ -1,6 +1,6 @@
 """Every block of a program watched where it generates: lines on the flanks so close together that none cuts unseen.
 
-The lines lie along tip and foot of the flanks and along toe and heel, some for every block that the pass has.
+The lines lie along tip and foot of the flanks and along toe and heel, evenly, and some for every block of a pass.
 Every line of contact crosses these curves at both of its ends, and a tool that is moved anywhere on it is moved most at
 one of them, as a rigid body. :func:`watch` says what metal is left; :func:`off_the_way` where a tool stands beside its
 way although its neighbours cut the flank clean.
@@ -24,7 +24,7 @@ from gearmath.machine.milling.removal import REACH, annulus_entry
 from gearmath.machine.milling.run import CuttingRun
 from gearmath.machine.planning.blocks import flank_curve, foot_curves, on_one_machine
 from gearmath.machine.planning.passes import tooth_angles
-from gearmath.machine.planning.path import axis_positions, flank_points, roll_range
+from gearmath.machine.planning.path import axis_positions, flank_points
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
@@ -32,8 +32,8 @@ from gearmath.specs.simulated_machine import SimulatedMachine
 #: Where along a block each curve has lines. A straight block leaves a parabola between its ends, and where one end is
 #: wrong, a line besides: what lies between these places is at most 3 % more than at one of them.
 _STRAIGHT = (0.0, 0.3, 0.5, 0.7)
-#: The same for a block of POLY, which leaves a smooth flank; and lines that lie evenly on each curve, for one of these.
-_CURVED, _EVENLY = tuple(np.linspace(0.0, 1.0, 60, endpoint=False).tolist()), 0.5
+#: The same for a block of POLY, which leaves a smooth flank.
+_CURVED = tuple(np.linspace(0.0, 1.0, 60, endpoint=False).tolist())
 #: Where curves lie along the tooth, as parts of the working depth, and up the tooth, as parts of the face width.
 _UP, _ACROSS = (1.0,), (0.0, 1.0)
 #: The part of the lines on a flank that says what its blocks are made for.
@@ -90,10 +90,7 @@ def watched_flanks(member: Member, runs: list[CuttingRun], machine: MillingMachi
 
 
 def _watched_rolls(member: Member, run: CuttingRun, machine: MillingMachine) -> np.ndarray:
-    """Cradle rotations (n,) [rad] that the blocks of a pass are watched at: of the pass that has most of them.
-
-    Others lie evenly over the whole roll, which that pass need not cover.
-    """
+    """Cradle rotations (n,) [rad] that the blocks of a pass are watched at: of the pass that has most of them."""
     number, begins = np.cumsum(~run.cutting), np.append(True, run.at_ends[:-1])
     lines = np.where(run.at_ends, len(_STRAIGHT), len(_CURVED)) * (run.cutting & begins)
     rows = np.flatnonzero((number == np.bincount(number, lines).argmax()) & run.at_ends)
@@ -101,8 +98,7 @@ def _watched_rolls(member: Member, run: CuttingRun, machine: MillingMachine) -> 
     ends, _ = roll_position()(spec.vector, run.axes[rows, 0], run.axes[rows, 1], machine.pivot, motion_of(spec))
     shares = [np.array(_STRAIGHT if step == 1 else _CURVED) for step in np.diff(rows)]
     blocks = zip(ends, np.diff(ends), shares, strict=False)
-    own = np.concatenate([*(start + share * roll for start, roll, share in blocks), ends[-1:]])
-    return np.append(own, np.linspace(*roll_range(on_one_machine(member, run.cut), run.cut), int(_EVENLY * len(own))))
+    return np.concatenate([*(start + share * roll for start, roll, share in blocks), ends[-1:]])
 
 
 def _lines(member: Member, run: CuttingRun, flank: str, rolls: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -110,15 +106,10 @@ def _lines(member: Member, run: CuttingRun, flank: str, rolls: np.ndarray) -> tu
         points = flank_points(member, flank, blank_grid(member, 5, 17, 0.0))
         return points.contact[:, 2], points.point, points.normal
     shared = on_one_machine(member, run.cut)
-    curves = [flank_curve(shared, flank, up=up) for up in _UP]
-    curves += [flank_curve(shared, flank, across=across) for across in _ACROSS]
-    chosen = []
-    for theta, lines in (*curves, *foot_curves(shared, flank)):
-        here = rolls[(rolls > theta.min()) & (rolls < theta.max())]
-        at = np.unique(np.r_[0, np.searchsorted(theta, here), len(theta) - 1])
-        chosen.append(np.column_stack([theta[at], lines[at, :6]]))
-    together = np.concatenate(chosen)
-    return together[:, 0], together[:, 1:4], together[:, 4:7]
+    curves = [flank_curve(shared, flank, rolls, up=up) for up in _UP]
+    curves += [flank_curve(shared, flank, rolls, across=across) for across in _ACROSS]
+    theta, lines = (np.concatenate(part) for part in zip(*curves, *foot_curves(shared, flank, rolls), strict=True))
+    return theta, lines[:, :3], lines[:, 3:6]
 
 
 def watch(
