@@ -39,6 +39,8 @@ ROUNDING = 0.5e-5 * math.sqrt(3) + 2 * math.radians(0.5e-6) * 100.0
 #: Tolerances that can be asked for. [mm]
 TOLERANCES = (1e-5, 0.1)
 _COLUMNS = 801
+#: Points of a curve that has others where they are asked for.
+_EVEN = 101
 #: The points go beyond the flank by this part of it: a machine that is off its settings cuts the flank's edges at
 #: other cradle rotations, and must not find a long block of the overrun there.
 _BEYOND = 0.02
@@ -234,27 +236,53 @@ def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]
 
 
 def flank_curve(
-    member: Member, flank: str, up: float | None = None, across: float | None = None
+    member: Member, flank: str, rolls: np.ndarray, up: float | None = None, across: float | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``.
 
-    Up the tooth they begin as deep as the blade reaches, where the foot of the flank ends.
+    They lie evenly, and where the curve is generated at ``rolls`` (m,). Up the tooth they begin as deep as the blade
+    reaches, where the foot of the flank ends.
     """
-    along, depth = np.linspace(0.0, 1.0, _COLUMNS), np.linspace(-_DEEP, 1.0, _COLUMNS)
-    place = (along if across is None else np.full(_COLUMNS, across), depth if up is None else np.full(_COLUMNS, up))
-    axial, radial = kernel("flank_place")(member.blank.vector, *place)
-    return flank_row(member, flank, Grid(axial[None], radial[None]))
+
+    def grid(places: np.ndarray) -> Grid:
+        given = (places if across is None else np.full(len(places), across), places if up is None else up)
+        axial, radial = kernel("flank_place")(member.blank.vector, given[0], np.broadcast_to(given[1], len(places)))
+        return Grid(axial[None], radial[None])
+
+    even = np.linspace(0.0 if across is None else -_DEEP, 1.0, _EVEN)
+    theta = flank_points(member, flank, grid(even)).contact[:, 2]
+    return flank_row(member, flank, grid(np.union1d(even, _places(rolls, theta, even))))
 
 
-def foot_curves(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """The same for the lower ends of the flank, along the tooth. What the edge cuts lies between flank and root."""
-    for part, points, blade in below_the_flank(member, flank, np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS // 2)):
+def foot_curves(member: Member, flank: str, rolls: np.ndarray | None = None) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """The same for the lower ends of the flank, along the tooth. What the edge cuts lies between flank and root.
+
+    Without ``rolls`` they lie evenly, and closer.
+    """
+    across = np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS // 2 if rolls is None else _EVEN)
+    if rolls is not None:
+        found = [_places(rolls, theta, place) for place, theta, _ in _feet(member, flank, across)]
+        across = np.unique(np.concatenate([across, *found]))
+    yield from ((theta, lines) for _, theta, lines in _feet(member, flank, across))
+
+
+def _feet(member: Member, flank: str, across: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Parts of the face width (n,), cradle rotations (n,), rising, and lines (n,9) of the lower ends of the flank."""
+    for part, points, blade in below_the_flank(member, flank, across):
         if part == "edge":
             return
         kept = np.flatnonzero(points.converged)
         order = kept[np.argsort(points.contact[kept, 2], kind="stable")]
         side = np.full((len(order), 1), float(SIDES[flank]))
-        yield points.contact[order, 2], np.hstack([points.point[order], points.normal[order], blade[order], side])
+        lines = np.hstack([points.point[order], points.normal[order], blade[order], side])
+        yield across[order], points.contact[order, 2], lines
+
+
+def _places(rolls: np.ndarray, theta: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """Where a curve is generated at the ``rolls`` that it has, from the cradle rotations at some places of it."""
+    order = np.argsort(theta)
+    here = rolls[(rolls > theta.min(initial=math.inf)) & (rolls < theta.max(initial=-math.inf))]
+    return np.interp(here, theta[order], place[order]) if len(here) else here
 
 
 def _curves(member: Member) -> Iterator[Grid]:

@@ -427,7 +427,7 @@ class Whole:
         surfaces.append(generated_root(root, self.spec, self.member, self.space))
         found = []
         for space in self.spaces:
-            for one in watched_flanks(self.spec, runs):
+            for one in watched_flanks(self.spec, runs, MACHINE):
                 whole = height_on_blade(one, self.spec, runs, MACHINE) >= 0.0
                 found.append((one, space, True, tolerance, np.where(whole, tolerance, np.inf)))
             for one in surfaces:
