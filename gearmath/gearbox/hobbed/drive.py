@@ -259,11 +259,10 @@ class DriveTrain:
         belt = float(self.machine.encoder.belt)
         seen = sum(each.amplitude_arcsec for each in errors.encoder) * ARCSEC / belt / TURN
         more += seen * per_turn
-        between = [numerator / ratio.denominator for numerator in ratio.numerators]
-        low = (ratio.first_remainder - ratio.denominator + 1) / ratio.denominator + sum(
-            min(0.0, each) for each in between
-        )
-        high = ratio.first_remainder / ratio.denominator + sum(max(0.0, each) for each in between)
+        # whole counts lag behind where hob and feed really are, by less than one
+        lags = [-numerator / ratio.denominator for numerator in ratio.numerators]
+        low = (ratio.first_remainder - ratio.denominator + 1) / ratio.denominator + sum(min(0.0, lag) for lag in lags)
+        high = ratio.first_remainder / ratio.denominator + sum(max(0.0, lag) for lag in lags)
         return low - more, high + more
 
     def _swings(self) -> list[tuple[float, float]]:
