@@ -204,61 +204,86 @@ class DriveTrain:
         )
 
     # --- how much all that changes --------------------------------------------------------------------------------
-    def variation(self, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Bounds (n,) of how much the errors differ along the normal [mm], ``away`` gashes, and turns of the table."""
-        job = self.job
-        turn = TURN * job.gear.teeth / job.hob.starts
-        found = []
-        for hob_turn in (TURN / job.hob.gashes, turn):
-            ends = job.table_angle(np.array([0.0, hob_turn]))
-            table, travel = float(ends[1] - ends[0]), job.travel_per_rad * hob_turn
-            total = np.full_like(away, self._step_variation)
-            for size, turned in self._swings(hob_turn, table, travel):
-                back = abs((turned + math.pi) % TURN - math.pi)  # whole turns bring a sine back
-                total += size * np.minimum(2.0, back * away)
-            total += abs(self.errors.hob_lead_um_per_turn) * UM * abs(hob_turn) / TURN * away * (hob_turn < turn)
-            found.append(total)
-        return found[0], found[1]
+    def variation(self, psi: np.ndarray, thread: np.ndarray) -> np.ndarray:
+        """Bounds of how much the errors differ along the normal [mm] over hob turns and turns of the thread.
+
+        Without those that :meth:`sudden` bounds.
+        """
+        total = abs(self.errors.hob_lead_um_per_turn) * UM / TURN * np.abs(thread)
+        for size, rate in self._swings():
+            turned = np.abs((rate * psi + math.pi) % TURN - math.pi)  # whole turns bring a sine back
+            total += size * np.minimum(2.0, turned)
+        return total
 
     @property
-    def _step_variation(self) -> float:
-        """Of the rounding to steps and counts, of microsteps and lag, and of starts [mm]."""
-        errors, job = self.errors, self.job
-        starts = float(np.ptp(errors.hob_starts_um)) * UM if errors.hob_starts_um else 0.0
-        if self.rule == "ideal":
-            return starts
-        per_turn = abs(self._steps_per_rad) * TURN
-        steps = (1.0 if self.rule == "exact" else 12.0) + per_turn / float(self.machine.encoder_counts)
-        steps += 2 * errors.microstep_percent / 100 * (self.machine.drive.microsteps or 1)
-        ripple = sum(each.amplitude_percent / 100 for each in errors.speed_ripple) + (errors.stop_in_cut_mm is not None)
-        steps += 2 * errors.motor_time_constant_ms / 1000 * self.rpm / 60 * per_turn * ripple
-        return starts + steps * self.step * job.base_radius
+    def unsteady(self) -> float:
+        """How much rounding to steps and counts, microsteps, lag and starts differ at most along the normal [mm]."""
+        return self._start_range + self._normal_step * float(np.ptp(self._step_range))
 
-    def _swings(self, hob: float, table: float, travel: float) -> Iterable[tuple[float, float]]:
-        """Amplitude along the normal [mm] of every sine, and by how much its argument turns."""
+    def sudden(self, psi: np.ndarray, side: int) -> tuple[np.ndarray, np.ndarray]:
+        """What they leave along the normal (n,) [mm] at hob turns, and the least (n,) that they leave near there.
+
+        Without starts, whose error is a displacement; the floating rule drifts, so that its least is from where it is.
+        """
+        if self.rule == "ideal":
+            return np.zeros_like(psi), np.full_like(psi, -self._start_range)
+        now = self.motor_error(psi)
+        ends = np.array(self._step_range) if self.rule == "exact" else now + np.array(self._step_range)[:, None]
+        least = (-side * ends).min(axis=0)
+        return -side * now * self._normal_step, least * self._normal_step - self._start_range
+
+    @property
+    def _start_range(self) -> float:
+        """How much the starts of the hob differ [mm]."""
+        return float(np.ptp(self.errors.hob_starts_um)) * UM if self.errors.hob_starts_um else 0.0
+
+    @property
+    def _normal_step(self) -> float:
+        """A motor step along the normal [mm]; a hundredth more, as where it cuts moves with it."""
+        return 1.01 * self.step * self.job.base_radius * math.cos(self.job.base_helix)
+
+    @property
+    def _step_range(self) -> tuple[float, float]:
+        """Least and largest error of the motor in steps; of the floating rule least and largest change of it."""
+        errors = self.errors
+        if self.rule == "ideal":
+            return 0.0, 0.0
+        per_turn = abs(self._steps_per_rad) * TURN
+        more = errors.microstep_percent / 100 * (self.machine.drive.microsteps or 1)
+        ripple = sum(each.amplitude_percent / 100 for each in errors.speed_ripple) + (errors.stop_in_cut_mm is not None)
+        more += errors.motor_time_constant_ms / 1000 * self.rpm / 60 * per_turn * ripple
+        if self.rule == "float":
+            most = 12.0 + per_turn / float(self.machine.encoder_counts) + 2 * more
+            return -most, most
+        ratio = self.ratio
+        belt = float(self.machine.encoder.belt)
+        seen = sum(each.amplitude_arcsec for each in errors.encoder) * ARCSEC / belt / TURN
+        more += seen * per_turn
+        # whole counts lag behind where hob and feed really are, by less than one
+        lags = [-numerator / ratio.denominator for numerator in ratio.numerators]
+        low = (ratio.first_remainder - ratio.denominator + 1) / ratio.denominator + sum(min(0.0, lag) for lag in lags)
+        high = ratio.first_remainder / ratio.denominator + sum(max(0.0, lag) for lag in lags)
+        return low - more, high + more
+
+    def _swings(self) -> list[tuple[float, float]]:
+        """Amplitude along the normal [mm] of every sine, and by how much its argument turns per turn of the hob."""
         errors, job, wheel = self.errors, self.job, self.machine.table
         assert wheel is not None
         radius = job.base_radius
-        for series, turned in ((errors.worm, table * float(wheel.worm)), (errors.wheel, table)):
-            for each in series:
-                yield each.amplitude_arcsec * ARCSEC * radius, each.order * turned
+        table, travel = float(np.diff(job.table_angle(np.array([0.0, 1.0])))[0]), job.travel_per_rad
+        belt, feed = float(self.machine.encoder.belt), TURN * travel / errors.feed_screw_pitch
+        by_table, by_encoder = ARCSEC * radius, ARCSEC / belt * job.hob.starts / job.gear.teeth * radius
+        found = [(each.amplitude_arcsec * by_table, each.order * table * float(wheel.worm)) for each in errors.worm]
+        found += [(each.amplitude_arcsec * by_table, each.order * table) for each in errors.wheel]
         if self.rule != "ideal":
-            belt = float(self.machine.encoder.belt)
-            for each in errors.encoder:
-                yield (
-                    each.amplitude_arcsec * ARCSEC / belt * job.hob.starts / job.gear.teeth * radius,
-                    each.order * hob * belt,
-                )
+            found += [(each.amplitude_arcsec * by_encoder, each.order * belt) for each in errors.encoder]
+        found += [(wave.amplitude_um * UM * math.sin(job.base_helix), wave.order * feed) for wave in errors.feed]
         # what it does along the tooth does not matter; a tenth more, as a shift across the axis is not quite that
-        yield 1.1 * math.sin(job.gear.alpha) * errors.hob_eccentricity_um * UM, hob
-        yield errors.hob_axial_runout_um * UM, hob
-        for wave in errors.feed:
-            yield (
-                wave.amplitude_um * UM * math.sin(job.base_helix),
-                wave.order * TURN * travel / errors.feed_screw_pitch,
-            )
-        yield errors.blank_eccentricity_um * UM, table
-        yield errors.blank_tilt_um_per_100mm * UM * (job.face_width + radius) / 100, table
+        found.append((1.1 * math.sin(job.gear.alpha) * errors.hob_eccentricity_um * UM, 1.0))
+        found.append((errors.hob_axial_runout_um * UM, 1.0))
+        found.append((errors.blank_eccentricity_um * UM, table))
+        found.append((errors.blank_tilt_um_per_100mm * UM * (job.face_width + radius) / 100, table))
+        return [(size, rate) for size, rate in found if size]
 
 
 def harmonics(

@@ -2,59 +2,30 @@
 
 Which gash, which turn of the table: the line of action says when an ideal hob touches there, and the second derivatives
 of δ say which gash leaves the least at the turns of the table next to that: on a helical gear one that touches at
-another height of the profile. So many gashes and turns are tried that a further one could only cut if the errors were
-larger than they are. Where the edge of such a pass crosses the foot of the point is a root of (30.6) in h and τ, found
-by Newton's method for all points and passes in one call.
+another height of the profile. A gash further off could only cut if the errors were larger than they are. Those within
+are tried nearest first: as soon as the least that the errors could leave of all others, on top of their ridges, is more
+than what is left already, a point is done. So coarse steps, under which many gashes compete, cost little more.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
-from typing import Protocol
 
-import casadi as ca
 import numpy as np
 
-from gearmath.engine.points import Points
 from gearmath.gearbox.hobbed.job import TURN, HobbingJob
-from gearmath.gearbox.kernels import evaluate, kernel
+from gearmath.gearbox.hobbed.passes import CuttingErrorModel, Passes, ridge_form
+from gearmath.gearbox.kernels import evaluate
 
-#: Newton steps, and the distance [mm] from the foot at which a root counts as found.
-STEPS, FOUND = 10, 1e-9
-#: Steps at which the errors of the machine are asked for: where a pass is, is known well enough by then.
-ASKED = (1, 3)
-#: How much of the distance from the foot can be missing from δ at most, and a distance that counts as none [mm].
-STEEPEST, CERTAIN = 0.5, 1e-6
-#: Distance from the foot [mm] from which that bound is trusted.
-NEAR = 0.1
 #: Passes of one block.
 BLOCK = 200_000
 #: Most passes to either side that are tried.
 MOST = 60
-
-
-class CuttingErrorModel(Protocol):
-    """What the machine does other than ideally, at hob turns ψ."""
-
-    def variation(self, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Bounds (n,) of how much the errors differ along the normal [mm], ``away`` gashes, and turns of the table."""
-        ...
-
-    @property
-    def jump(self) -> float:
-        """How much that changes at once, along the normal [mm]: a motor step."""
-        ...
-
-    def table(self, psi: np.ndarray, side: int) -> np.ndarray:
-        """Δφ (n,) [rad] while the flank ``side`` is cut."""
-        ...
-
-    def displacement(self, psi: np.ndarray, thread: np.ndarray, place: np.ndarray) -> np.ndarray:
-        """D (n, 3) [mm] at thread angles (n,) and places of the cut (n, 3)."""
-        ...
+#: Passes of a point that are tried first; every further time as many as all before.
+FIRST = 8
+#: Part of its ridge that a pass leaves at least, as the second derivatives say it.
+CERTAIN_PART = 0.7
 
 
 @dataclass(frozen=True)
@@ -62,10 +33,15 @@ class NoErrors:
     """An ideal machine."""
 
     jump: float = 0.0
+    unsteady: float = 0.0
 
-    def variation(self, away: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def sudden(self, psi: np.ndarray, side: int) -> tuple[np.ndarray, np.ndarray]:
         """Nothing."""
-        return np.zeros_like(away), np.zeros_like(away)
+        return np.zeros(len(psi)), np.zeros(len(psi))
+
+    def variation(self, psi: np.ndarray, thread: np.ndarray) -> np.ndarray:
+        """Nothing."""
+        return np.zeros_like(psi)
 
     def table(self, psi: np.ndarray, side: int) -> np.ndarray:
         """Nothing."""
@@ -116,16 +92,18 @@ class Cut:
         (flat,) = evaluate("generating_flat", 0.5 * longest, job.hob.starts, gear.teeth, job.hob.gashes)
         mark = job.feed_mark(0.5 * longest)
         away = np.arange(MOST + 1.0)
+        by_gash, by_turn = TURN / job.hob.gashes * away, TURN * gear.teeth / job.hob.starts * away
+        changes = self.errors.variation(by_gash, by_gash), self.errors.variation(by_turn, np.zeros_like(away))
         gains = [
             change - 4 * ridge * np.maximum(away - 0.5, 0.0) ** 2
-            for change, ridge in zip(self.errors.variation(away), (flat, mark), strict=True)
+            for change, ridge in zip(changes, (flat, mark), strict=True)
         ]
         gains[1] += flat
-        by_gash, by_turn = (
-            1 + int(np.flatnonzero(own + other >= 0).max(initial=0))
+        gashes, turns = (
+            1 + int(np.flatnonzero(own + other + self.errors.unsteady >= 0).max(initial=0))
             for own, other in ((gains[0], gains[1].max() - flat), (gains[1], gains[0].max()))
         )
-        return min(by_gash, MOST), min(by_turn, MOST)
+        return min(gashes, MOST), min(turns, MOST)
 
     def _least(
         self, side: int, space: np.ndarray, length: np.ndarray, height: np.ndarray, gashes: int, turns: int
@@ -150,19 +128,20 @@ class Cut:
         gash = np.rint(hob.gashes / TURN * best)
         gash = (gash[:, :, None] + np.arange(-gashes, gashes + 1)).astype(np.int64)
         at = (ridge[:, :, None] * hob.gashes - gash * hob.starts) * (TURN / (hob.gashes * hob.starts)) - job.gash_phase
-        shape = at.shape
         turn = gash * (TURN / hob.gashes) + job.gash_phase
-        too_high = turn + (tau + middle - thread - psi)[:, None, None]
-        moved = np.stack([at - middle[:, None, None], travel * too_high])
-        begin = np.stack([edge, tau])[:, :, None, None] + np.einsum("nij,jnrg->inrg", slope, moved)
-        passes = _Passes(
-            side,
-            turn.ravel(),
-            at.ravel(),
-            *(np.broadcast_to(value[:, None, None], shape).ravel() for value in (length, height)),
-            *(start.ravel() for start in begin),
+        moved = np.stack(
+            [at - middle[:, None, None], travel * (turn + (tau + middle - thread - psi)[:, None, None])], axis=-1
         )
-        return passes.solve(job, self.errors, shape[1] * shape[2]).reshape(len(space), -1).min(axis=1)
+        candidates = _Candidates(
+            side,
+            length,
+            height,
+            np.column_stack([edge, tau]),
+            form,
+            slope,
+            *(each.reshape(len(space), -1, *each.shape[3:]) for each in (turn, at, moved)),
+        )
+        return candidates.least(job, self.errors)
 
 
 def _least_along(form: np.ndarray, travel: float) -> np.ndarray:
@@ -172,119 +151,76 @@ def _least_along(form: np.ndarray, travel: float) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class _Passes:
-    """Gashes that may cut points of flanks: hob turn and thread of each, foot of its point, start of the search.
+class _Candidates:
+    """Passes (n, m) that may leave the least at points (n,), and what an ideal hob does there.
 
-    Turn and thread are those of its middle, ϑ_0 of (30.21).
+    ``contact`` (n, 2): h and τ where it touches; ``form`` and ``slope`` (n, 2, 2) of :func:`ridge_form`. ``turn`` and
+    ``thread`` of the passes, and by how much they are off (n, m, 2): turned, and too high.
     """
 
     side: int
-    psi: np.ndarray
-    thread: np.ndarray
     length: np.ndarray
     height: np.ndarray
-    edge: np.ndarray
-    tau: np.ndarray
+    contact: np.ndarray
+    form: np.ndarray
+    slope: np.ndarray
+    turn: np.ndarray
+    thread: np.ndarray
+    moved: np.ndarray
 
-    def solve(self, job: HobbingJob, errors: CuttingErrorModel, together: int) -> np.ndarray:
-        """δ (n,) [mm], infinite for passes that do not reach the foot with their straight edge.
+    def least(self, job: HobbingJob, errors: CuttingErrorModel) -> np.ndarray:
+        """δ (n,) [mm]: of all passes, of which only those are followed that can be it."""
+        ridge = self._ridge()
+        open_, count = np.arange(len(ridge)), ridge.shape[1]
+        done = min(FIRST, count)
+        tried = np.argpartition(ridge, done - 1, axis=1)[:, :done]
+        found, turned = self._solve(job, errors, open_, tried, np.full(len(ridge), np.inf))
+        best = found.argmin(axis=1)
+        known = found[open_, best]
+        if done == count:
+            return known
+        lowest = self._lowest(errors, ridge, tried[open_, best], known, turned[open_, best])
+        np.put_along_axis(lowest, tried, np.inf, axis=1)
+        while done < count and len(open_ := open_[(lowest[open_].min(axis=1) <= known[open_])]):
+            size = min(done, count - done)
+            tried = np.argpartition(lowest[open_], size - 1, axis=1)[:, :size]
+            found, _ = self._solve(job, errors, open_, tried, known[open_])
+            known[open_] = np.minimum(known[open_], found.min(axis=1))
+            lowest[open_[:, None], tried] = np.inf
+            done += size
+        return known
 
-        ``together`` passes in a row belong to one point: those that cannot be its least are left where they are seen to
-        be too high, with a bound of what a root not found yet may still change.
+    def _ridge(self) -> np.ndarray:
+        """What an ideal hob leaves (n, m) [mm], by the second derivatives."""
+        turned, high = self.moved[..., 0], self.moved[..., 1]
+        of_thread, both, of_height = (self.form[:, i, j, None] for i, j in ((0, 0), (0, 1), (1, 1)))
+        ridge: np.ndarray = (0.5 * of_thread * turned + both * high) * turned + 0.5 * of_height * high**2
+        return ridge
+
+    def _lowest(
+        self, errors: CuttingErrorModel, ridge: np.ndarray, best: np.ndarray, known: np.ndarray, turned: np.ndarray
+    ) -> np.ndarray:
+        """The least δ (n, m) [mm] that passes can leave, by what the pass ``best`` (n,) leaves at hob turns ``turned``.
+
+        What it leaves more than its ridge and the steps, errors that change evenly leave elsewhere but for their bound.
         """
-        pair, shared = np.array(job.pair(self.side)), np.array([job.travel_per_rad, job.gash_twist])
-        target = np.column_stack([self.length, self.height - job.hob_height(self.psi)])
-        given = np.column_stack([self.thread, np.zeros((len(self.psi), 4))])
-        limits = 0.9 * np.array([job.hob.diameter / 2, math.pi])
-        unknown = np.column_stack([self.edge, self.tau])
-        last = unknown.copy()
-        left, off = (np.full(len(self.psi), np.inf) for _ in range(2))
-        open_ = np.arange(len(self.psi))
-        for k in range(STEPS):
-            if k in ASKED:
-                given[open_, 1:] = self._errors(job, errors, open_, unknown[open_])
-            step, delta, miss = newton_step()(unknown[open_], target[open_], given[open_], shared, pair)
-            left[open_], off[open_] = delta[:, 0, 0], np.abs(miss[:, :, 0]).max(axis=1)
-            if k > max(ASKED) and not (off[open_] > FOUND).any():
-                break
-            # nan where the edge is inside the base cylinder: half of the last step is taken back
-            fine = np.isfinite(step[:, :, 0]).all(axis=1)[:, None]
-            ahead = np.where(fine, unknown[open_] + np.nan_to_num(step[:, :, 0]), 0.5 * (unknown[open_] + last[open_]))
-            last[open_] = np.where(fine, unknown[open_], last[open_])
-            unknown[open_] = np.clip(ahead, -limits, limits)
-            if k in ASKED:
-                jump = errors.jump if k < max(ASKED) else 0.0
-                straight = unknown[:, 0] <= job.form_height
-                open_ = self._in_question(left, off, straight, together, jump)
-        off[np.isnan(left)] = np.inf
-        reached = (off < FOUND) & (unknown[:, 0] <= job.form_height + FOUND)
-        return np.where(reached, left, np.inf)
+        own = np.arange(len(best)), best
+        now, least = errors.sudden(turned, self.side)
+        steady = known - now - ridge[own] / CERTAIN_PART + least
+        tau = self.contact[:, 1, None] + (self.moved @ self.slope[:, 1, :, None])[..., 0]
+        psi, thread = self.turn + tau - turned[:, None], self.thread - self.thread[own][:, None]
+        lowest = steady[:, None] + CERTAIN_PART * ridge - errors.variation(psi, thread)
+        lowest[~np.isfinite(known)] = -np.inf
+        return lowest
 
-    @staticmethod
-    def _in_question(left: np.ndarray, off: np.ndarray, straight: np.ndarray, together: int, jump: float) -> np.ndarray:
-        """Which passes may still be the least of their point; those that are not ``straight`` there decide nothing."""
-        doubt = STEEPEST * np.nan_to_num(off, nan=0.0) + jump + CERTAIN
-        low = np.nan_to_num(left, nan=np.inf) - doubt
-        highest = np.where(straight & (off < NEAR), low + 2 * doubt, np.inf)
-        sure = highest.reshape(-1, together).min(axis=1)
-        return np.flatnonzero(low <= np.repeat(sure, together))
-
-    def _errors(self, job: HobbingJob, errors: CuttingErrorModel, which: np.ndarray, at: np.ndarray) -> np.ndarray:
-        """Δφ and D (n, 4) of some passes whose edge is at h and τ (n, 2)."""
-        middle = self.thread[which]
-        thread = job.thread_at(self.side, at[:, 0], middle) if job.gash_twist else middle
-        psi = self.psi[which] + middle - thread + at[:, 1]
-        moved = errors.displacement(psi, thread, self._place(job, which))
-        return np.column_stack([errors.table(psi, self.side), moved])
-
-    def _place(self, job: HobbingJob, which: np.ndarray) -> np.ndarray:
-        """About where the flank is cut, in space from the middle of the gear's lower face."""
-        radius = np.hypot(job.base_radius, self.length[which])
-        return np.column_stack([radius, np.zeros_like(radius), self.height[which]])
-
-
-def _of_gash(
-    unknown: ca.SX, middle: ca.SX, shared: ca.SX, table: ca.SX, moved: ca.SX, pair: ca.SX
-) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """L_0, z_0 and δ (30.6, 30.21) where a gash is at h and τ; ``shared`` is v and κ. z_0 is from the gash's middle."""
-    travel, twist = shared[0], shared[1]
-    arguments = ca.vertsplit(pair)
-    thread = kernel("thread_of_gash").function(unknown[0], 0, middle, twist, *arguments)
-    place = (unknown[0], 0, unknown[1], thread, travel, table, moved)
-    foot, height, delta = kernel("hobbed_deviation").function(*place, *arguments)
-    return foot, height + travel * (middle - thread), delta
-
-
-@cache
-def newton_step() -> Points:
-    """One step of Newton's method for h and τ of a pass: arguments unknown, foot wanted, ϑ_0, Δφ and D, (v, κ), PAIR.
-
-    Results: the step, δ, and how far the foot is off.
-    """
-    unknown, target, given = ca.SX.sym("unknown", 2), ca.SX.sym("target", 2), ca.SX.sym("given", 5)
-    shared, pair = ca.SX.sym("shared", 2), ca.SX.sym("pair", 10)
-    foot, height, delta = _of_gash(unknown, given[0], shared, given[1], given[2:], pair)
-    miss = ca.vertcat(foot, height) - target
-    slope = ca.jacobian(miss, unknown)
-    step = -ca.solve(slope, miss)
-    return Points(
-        ca.Function("hobbing_newton", [unknown, target, given, shared, pair], [step, delta, miss]), shared=(3, 4)
-    )
-
-
-@cache
-def ridge_form() -> Points:
-    """What a pass leaves next to where it touches: arguments h, τ and ϑ_0 of the contact, (v, κ), PAIR.
-
-    Results: H (2, 2), by which it leaves xᵀ H x/2 at a foot that it passes turned by ϑ_0 and too high by Z,
-    x = (ϑ_0, Z), and by how much h and τ of the edge that crosses the foot change with x.
-    """
-    contact, high, shared, pair = (ca.SX.sym(name, size) for name, size in zip("chvp", (3, 1, 2, 10), strict=True))
-    foot, height, delta = _of_gash(contact[:2], contact[2], shared, ca.SX(0), ca.SX.zeros(3), pair)
-    moves = ca.vertcat(contact, high)
-    slope = ca.jacobian(ca.vertcat(foot, height + high), moves)
-    follow = -ca.solve(slope[:, :2], slope[:, 2:])
-    along = ca.vertcat(follow, ca.SX.eye(2))
-    # without derivatives of the foot: δ has none of the first order where it touches
-    form = along.T @ ca.hessian(delta, moves)[0] @ along
-    return Points(ca.Function("hobbing_ridge", [contact, shared, pair], [form, follow]), shared=(1, 2))
+    def _solve(
+        self, job: HobbingJob, errors: CuttingErrorModel, points: np.ndarray, tried: np.ndarray, known: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """δ and ψ (k, j) of passes ``tried`` (k, j) of some points (k,)."""
+        own = points[:, None]
+        begin = self.contact[own] + np.einsum("nij,nmj->nmi", self.slope[points], self.moved[own, tried])
+        length, height = (np.broadcast_to(value[own], tried.shape) for value in (self.length, self.height))
+        given = (self.turn[own, tried], self.thread[own, tried], length, height, begin[..., 0], begin[..., 1])
+        passes = Passes(self.side, *(each.ravel() for each in given))
+        delta, turned = passes.solve(job, errors, known)
+        return delta.reshape(tried.shape), turned.reshape(tried.shape)

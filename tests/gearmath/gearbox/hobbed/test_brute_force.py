@@ -22,13 +22,16 @@ UM = 1e-3
 class Sines:
     """Smooth errors of every kind, written here again: table three times a turn of it, hob and blank eccentric."""
 
-    jump = 0.0
+    jump = unsteady = 0.0
 
     def __init__(self, of: HobbingJob, size: float) -> None:
         self.job, self.size = of, size
 
-    def variation(self, away):
-        return np.full_like(away, 0.04 * self.size), np.full_like(away, 0.04 * self.size)
+    def variation(self, psi, thread):
+        return np.full_like(psi, 0.04 * self.size)
+
+    def sudden(self, psi, side):
+        return np.zeros_like(psi), np.zeros_like(psi)
 
     def table(self, psi, side):
         turned = psi * self.job.hob.starts / self.job.gear.teeth

@@ -11,10 +11,12 @@ import pytest
 
 from gearmath.export.host import run_axes
 from gearmath.gearbox.helix import Helix, JobRatio
+from gearmath.gearbox.hobbed import envelope
 from gearmath.gearbox.hobbed.drive import DriveTrain, rounding
 from gearmath.gearbox.hobbed.envelope import Cut
 from gearmath.gearbox.hobbed.inspection import inspect
 from gearmath.gearbox.hobbed.job import TURN
+from gearmath.gearbox.hobbed.passes import Passes
 from gearmath.gearbox.hobbed.setup import CutSetup, blame, cut_and_inspect, setup
 from gearmath.gearbox.simulation import FloatRule
 from gearmath.specs.cutting_errors import CuttingErrors
@@ -360,3 +362,69 @@ def test_stop_that_is_far_outside_of_the_cut_is_not_to_blame():
     shares = {each.source: each for each in blame(prepared, whole)}
     assert shares["stop_in_cut_mm"].pitch_percent == pytest.approx(0.0, abs=0.01)
     assert shares["stop_in_cut_mm"].profile_percent == pytest.approx(0.0, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "errors", [{}, {"encoder": [{"amplitude_arcsec": 300.0, "order": 2}]}, {"microstep_percent": 20}]
+)
+def test_steps_never_leave_less_than_the_bound_under_which_gashes_are_left_out(errors):
+    """At hob turns all over the cut, on both flanks, within the range that is said."""
+    train = setup(machine(**errors), 31, hob="m1", starts=2).train
+    psi = np.random.default_rng(18).uniform(0.0, TURN * train.job.hob_turns, 20_000)
+    for side in (1, -1):
+        now, least = train.sudden(psi, side)
+        assert (now >= least).all()
+        assert np.ptp(now) <= train.unsteady
+        assert (now - least).min() < 0.1 * train.unsteady  # not far below what occurs
+
+
+def _found(cut: Cut) -> np.ndarray:
+    """δ at some points of both flanks of a gear of module 1, 10 mm wide, near its reference circle."""
+    length = cut.job.base_radius * math.tan(cut.job.transverse[1])
+    lengths, heights = np.meshgrid(length + np.linspace(0.0, 0.7, 7), np.linspace(4.0, 6.1, 8))
+    spaces = np.arange(lengths.size) % cut.job.gear.teeth
+    return np.concatenate([cut.deviation(side, spaces, lengths.ravel(), heights.ravel()) for side in (1, -1)])
+
+
+@pytest.mark.parametrize(
+    ("teeth", "starts", "helix", "rule", "errors"),
+    [
+        (97, 3, 12.0, "exact", {}),
+        (96, 1, None, "exact", {}),
+        (24, 1, None, "float", {}),
+        (31, 2, None, "exact", {"hob_eccentricity_um": 10.0, "hob_starts_um": [5.0, -8.0]}),
+        (30, 1, 20.0, "exact", {"worm": [{"amplitude_arcsec": 60.0}], "blank_eccentricity_um": 30.0}),
+        (6, 1, None, "ideal", {"hob_lead_um_per_turn": 10.0, "feed": [{"amplitude_um": 20.0}]}),
+    ],
+)
+def test_gashes_that_are_left_out_would_not_have_cut(monkeypatch, teeth, starts, helix, rule, errors):
+    """All passes of the window, one by one, leave the same."""
+    of = setup(
+        machine(**errors), teeth, hob="m1", starts=starts, helix=None if helix is None else Helix(helix), feed=1.0
+    )
+    cut = Cut(of.job, DriveTrain(of.train.machine, of.job, of.train.ratio, rule, of.train.rpm, 3600.0))
+    found = _found(cut)
+    monkeypatch.setattr(envelope, "FIRST", 100_000)
+    np.testing.assert_allclose(found, _found(cut), rtol=0, atol=1e-9)
+
+
+def test_passes_that_are_followed_at_a_point_grow_no_faster_than_teeth_and_feed_positions(monkeypatch):
+    """Coarse steps let ever more gashes compete, in proportion to teeth and feed positions each; few are followed."""
+    followed = []
+    solve = Passes.solve
+
+    def count(self, *given):
+        followed.append(len(self.psi))
+        return solve(self, *given)
+
+    monkeypatch.setattr(Passes, "solve", count)
+
+    def per_point(teeth: int, feed: float) -> float:
+        of = setup(machine("hobbing_default.toml"), teeth, hob="m1", feed=feed)
+        followed.clear()
+        points = len(_found(Cut(of.job, of.train)))
+        return sum(followed) / points
+
+    few = per_point(24, 1.0)
+    assert per_point(192, 1.0) < 8 * few
+    assert per_point(24, 0.25) < 2 * few
