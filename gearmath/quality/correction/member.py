@@ -36,6 +36,8 @@ from gearmath.specs.flank_csv import FlankFile
 #: How far a correction may move the root line at toe and heel [mm]. Peers hold 0.025 mm when they design; a machine
 #: whose root angle or base is off by as much as the bundled shop's needs more.
 ROOT_LIMIT = 0.15
+#: What is said of the pitch of a hobbed member; a set with index corrections of one is refused.
+_ENDLESS = "no index corrections: face hobbing indexes without end, and no space can be turned by itself"
 #: How often ``correct`` tells its progress.
 STAGES = 2
 
@@ -52,7 +54,7 @@ class MemberCorrection:
     never above what is expected to remain. ``identified`` has the change of each group, and as its residual what is
     expected to remain, (A). ``rotation`` is what was left open of how the work stood, taken off before.
     ``left_out`` says per flank how many points of the grid were not used. ``index`` (z,) [rad] is None where pitch was
-    not measured. ``remarks`` say what the measurement does not tell.
+    not measured, and in face hobbing. ``remarks`` say what the measurement does not tell.
     """
 
     settings: dict[str, np.ndarray]
@@ -99,7 +101,7 @@ def correct(
     all of the settings leave: weak directions are not moved for its sake. ``excluded`` (points of the file,) marks
     points that are not to be used; ``added`` gives for each flank deviations [mm] on the grid that are corrected
     besides, such as those of the mate. ``bounds`` are those of errors of a machine, or of a design. There are no index
-    corrections where the pitch is not known: not ``indexed``.
+    corrections where the pitch is not known, not ``indexed``, and none in face hobbing, which turns no space by itself.
 
     A tooth that is indexed otherwise than the others is moved to where they are on average: see
     :mod:`gearmath.quality.correction.own_index`.
@@ -128,6 +130,8 @@ def correct(
     judged, as_measured = without_shift(targets, of_work.shift), _turned_best(targets, columns)
     progress(1)
     index = _index(member, measured) if indexed else None
+    if index is not None and member.process == "face_hobbing":
+        index, remarks = None, (*remarks, _ENDLESS)
     found = MemberCorrection({}, identified, {}, index, {}, {}, {}, {}, {}, of_work, {}, {}, remarks)
     for group, analysis in zip(groups, fit.analysis, strict=True):
         mine, before = [wanted[flank] for flank in group], [as_measured[flank].deviation for flank in group]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -16,7 +17,7 @@ from gearmath.bevel.method import cut_generation_of
 from gearmath.bevel.nominal_file import flank_header
 from gearmath.quality.correction.target import target_of
 from gearmath.specs.bevel_set import FLANKS, design_sha256, load_bevel_set, settings_sha256
-from gearmath.specs.flank_csv import flank_file, join, write_flank_csv
+from gearmath.specs.flank_csv import flank_file, join, read_flank_csv, write_flank_csv
 from gearmath.specs.toml import bundled
 
 ERRORS = {"radial_distance": 0.03, "sliding_base": 0.01, "machine_root_angle": 2e-4}
@@ -84,6 +85,31 @@ def test_corrected_set_cuts_the_nominal_flank_on_the_machine_that_errs(command, 
     pair, old = load_bevel_set(new), load_bevel_set(bundled(source))
     assert design_sha256(pair.member(name)) == design_sha256(old.member(name))
     assert settings_sha256(pair.member(name)) != settings_sha256(old.member(name))
+
+
+def test_hobbed_member_measured_with_its_pitch_is_corrected_without_index_corrections(command, measured, tmp_path):
+    """A set with index corrections of a hobbed member is refused: its spaces are cut together."""
+    csv, new = measured(bundled(HOBBED), "pinion", **ERRORS), tmp_path / "new.toml"
+    tooth_0 = read_flank_csv(csv)
+    reference = tooth_0.pick((tooth_0.row == 2) & (tooth_0.col == 4))
+    teeth = [tooth_0]
+    for tooth in range(1, 14):
+        angle = 2 * np.pi * tooth / 14
+        turn = np.array([[np.cos(angle), np.sin(angle), 0], [-np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+        pitch = 0.002 * np.sin(angle) * np.where(reference.flank == "concave", -1.0, 1.0)  # both flanks the same way
+        moved = (reference.point + pitch[:, None] * reference.normal) @ turn
+        place = {"tooth": 0 * reference.tooth + tooth, "point": moved, "normal": reference.normal @ turn}
+        teeth.append(replace(reference, deviation=reference.deviation + pitch, **place))
+    write_flank_csv(csv, join(teeth))
+    assert json.loads(command("evaluate", csv, "--set", HOBBED, "--json")[1])["flanks"]["concave"]["F_p_um"] > 3
+    base = ("compensate", HOBBED, "--measured", csv, "-o", new)
+    status, out, err = command(*base)
+    assert (status, err) == (0, "")
+    assert "no index corrections: face hobbing indexes without end, and no space can be turned by itself" in out
+    assert out.splitlines()[-1] == f"{new}: written"
+    assert load_bevel_set(new).pinion.index_correction == ()
+    assert worst_after(new, "pinion", **ERRORS) < 4e-4
+    assert json.loads(command(*base, "--json")[1])["index_correction_deg"] == []
 
 
 def test_corrected_set_says_what_it_was_corrected_from_and_when(command, measured, tmp_path):
