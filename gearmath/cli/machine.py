@@ -118,9 +118,9 @@ def cut(
     with bars() as begin:
         made = cutting(one, on, target.stem, job, dialect.name, target, begin)
     page = None if sheet is None else made.sheet(target.name)
-    click.echo(f"{made.save(target)}: {len(job.spaces)} of {one.teeth} spaces, {made.blocks} blocks")
     if note := edge_note(one.gear_set.spec):
         click.echo(f"note: {note}")
+    click.echo(f"{made.save(target)}: {len(job.spaces)} of {one.teeth} spaces, {made.blocks} blocks")
     if configuration and made.made is not None:
         write_configuration(target, dialect, on.spec, tools_of(made.made.plan))
     if sheet is not None and page is not None:

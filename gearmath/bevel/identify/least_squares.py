@@ -22,12 +22,12 @@ from gearmath.bevel.identify.bounded_step import FLOOR, bounded_step
 
 #: The first step trusts the model this far. Until a step has not kept its promise λ falls fast, afterwards at most by
 #: the slow factor; where nothing is gained it grows.
-_FIRST, _FAST, _SLOW, _REFUSED = 1e-9, 100, 5, 8
+_FIRST, _FAST, _SLOW, _REFUSED = 1e-9, 100, 3, 8
 _LARGEST = 1e8
 _MOST_ITERATIONS = 120
 #: A step that keeps less of its promise says that the valley is curved: at most so many steps lead it back to the
 #: floor, each damped so many times more, a further one only if the one before left less than this part.
-_KEPT, _BACK, _STIFFER, _FALLS = 0.75, 3, 100.0, 0.25
+_KEPT, _BACK, _STIFFER, _FALLS = 0.75, 2, 100.0, 0.25
 #: So many steps one after the other that gain next to nothing each: less than this in the RMS [mm], which no probe
 #: shows; but never less than the first part of the RMS, nor more than the second. More is not worth larger changes.
 _STALLED, _UNSEEN, _IDLE_PARTS = 3, 2.5e-6, (5e-4, 1.5e-3)

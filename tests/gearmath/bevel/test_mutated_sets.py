@@ -24,7 +24,6 @@ from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.tooth import tooth_space
 from gearmath.errors import InputError
-from gearmath.front.programs import cutting
 from gearmath.front.sets import GearSet
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member
 from gearmath.specs.toml import bundled, checked
@@ -252,7 +251,7 @@ def test_mutated_set_is_refused_in_one_sentence_or_is_a_pair(bases, mill, monkey
     refused = []
     for name, what, pair, member in sorted(rolled, key=by_name)[:CUT]:
         try:  # a cutter that gouges the opposite flank of its own space shows only where the program is run
-            cutting(GearSet(pair).member(member), name="CUT", spaces=(0,), tolerance=TOLERANCE)
+            GearSet(pair).member(member).program(name="CUT", spaces=(0,), tolerance=TOLERANCE)
         except InputError as error:
             refused.append(str(error))
             continue

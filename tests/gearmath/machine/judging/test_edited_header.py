@@ -24,6 +24,7 @@ COARSE = MACHINE.model_copy(
     update={"name": "coarse", "control": MACHINE.control.model_copy(update={"increments_per_mm": 1000})}
 )
 #: A machine whose file says nothing of feeds.
+LIMITED = MACHINE.model_copy(update={"max_feed_per_min": 2000.0, "max_feed_per_turn": 10.0, "max_cutting_speed": 300.0})
 FREE = MACHINE.model_copy(update=dict.fromkeys(("max_feed_per_min", "max_feed_per_turn", "max_cutting_speed")))
 NASA = "nasa_tp3096_12x36", "gear"
 FORMATE = "crown_gear_formate_14x39", "gear"
@@ -150,10 +151,16 @@ def test_feeds_and_speeds_raised_in_header_and_blocks_meet_the_limits_of_the_mac
     """By hand: 300 mm/min times 10; 300 / (120 / 5) = 12.5 mm; 2 pi 76 mm 720 rpm = 344 m/min."""
     right = written(case, **job)
     wrong = faster(right, feeds, speeds)
-    assert judged(case, right)[0] == []
-    assert any(re.search(what, one) for one in judged(case, wrong)[0])
+    assert judged(case, right, LIMITED)[0] == []
+    assert any(re.search(what, one) for one in judged(case, wrong, LIMITED)[0])
     # and nothing else tells: so it was before the machine file had limits
     assert not any("past the tooth" in one or "speed" in one for one in judged(case, wrong, FREE)[0])
+
+
+def test_bundled_machine_cuts_at_the_feed_of_dry_cutting_and_not_at_ten_times_that():
+    fast = written(NASA, feed=3000.0)
+    assert judged(NASA, fast)[0] == []
+    assert any("has max_feed_per_min 4000" in one for one in judged(NASA, faster(fast, 10.0, 1.0))[0])
 
 
 def test_dry_run_that_cuts_is_seen():

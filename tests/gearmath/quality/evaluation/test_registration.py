@@ -17,7 +17,7 @@ from gearmath.quality.evaluation.axial import TWIN
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.quality.evaluation.pitch import evaluate_pitch
 from gearmath.quality.evaluation.registration import register
-from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.bevel_set import Motion, load_bevel_set
 from gearmath.specs.flank_csv import flank_file, join
 from gearmath.specs.simulated_machine import Mounting, SimulatedMachine, SimulatedMeasuring
 from gearmath.specs.toml import bundled
@@ -55,6 +55,13 @@ def uneven(member, scale=5e-6, harmonic=0.0):
     return {flank: np.cumsum(rng.normal(0, scale, member.teeth)) + first for flank in ("concave", "convex")}
 
 
+def witnessed(title, name):
+    """A member of a bundled set, rolled evenly: the witness knows no modified roll."""
+    member = load_bevel_set(bundled(f"{title}.toml")).member(name)
+    even = {flank: member.flank(flank).model_copy(update={"motion": Motion()}) for flank in ("concave", "convex")}
+    return member.model_copy(update=even)
+
+
 def off_by(found, seat, member):
     """Errors [mm] of eccentricity, and of tilt over the face width."""
     error = np.abs(found.seat - seat)
@@ -72,7 +79,7 @@ def off_by(found, seat, member):
 )
 def test_seat_is_found_and_taken_out_whatever_form_and_pitch_are(clamped, title, name, places):
     """Both hands and both members: to 0.1 µm, tilt over the face width, and at least 99 % of the effect is gone."""
-    member = load_bevel_set(bundled(f"{title}.toml")).member(name)
+    member = witnessed(title, name)
     given = {"teeth": around(member), "places": places, "index": uneven(member), "form": form}
     measured, truth = (clamped(member, name, seat, **given) for seat in (SEAT, np.zeros(4)))
     found = register(measured, member, name)
@@ -100,7 +107,7 @@ def test_a_seat_beyond_first_order_is_found_by_the_exact_transform(clamped, gear
 @pytest.mark.parametrize("title", ["nasa_tp3096_12x36", "spiral_7x43"])
 def test_first_harmonic_of_the_index_stays_in_the_pitch(clamped, title):
     """10 arcsec of the A axis on every tooth: eccentricity does the same to one flank, but not at every place."""
-    name, member = "pinion", load_bevel_set(bundled(f"{title}.toml")).pinion
+    name, member = "pinion", witnessed(title, "pinion")
     index = uneven(member, 0.0, math.radians(10 / 3600))
     file = clamped(member, name, SEAT, range(member.teeth), FIVE, index)
     found = register(file, member, name)
