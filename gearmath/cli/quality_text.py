@@ -14,6 +14,8 @@ _FIGURES = ("max_deviation_um", "rms_um", "cubic_surface_residual_um", "F_p_um",
 
 #: Less than this is shown as this: no uncertainty is zero.
 _LEAST_SHOWN = 0.01
+#: An axial position within so many standard uncertainties is none, as with the clamping.
+_SIGNIFICANT = 3.0
 
 
 def evaluation_text(found: MemberEvaluation, sure: Sequence[Uncertain] = ()) -> str:
@@ -163,8 +165,9 @@ def _seat(seat: dict[str, Any] | None) -> Iterator[str]:
     if seat["taken_out"] and seat["tilt_um_per_100mm"] is not None:
         size, direction = _with(seat, "tilt_um_per_100mm"), seat["tilt_direction_deg"]
         yield f"clamping taken out: tilt {size} um per 100 mm about {direction:.1f} deg"
-    if seat["axial"]["axial_um"] is None:
-        return
+    shift, u = seat["axial"]["axial_um"], seat["axial"]["u_axial_um"]
+    if shift is None or (u is not None and abs(shift) <= _SIGNIFICANT * u):
+        return  # no more than the noise of the points would give
     size, twin = _with(seat["axial"], "axial_um"), seat["axial"]["confounded_with"]
     yield (
         f"axial position not corrected: {size} um along the axis would explain the mean form best, but an error of "

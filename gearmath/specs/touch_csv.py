@@ -126,7 +126,7 @@ def check_whole(path: Path, wanted: int | None, found: Touches | CalibrationTouc
         missing = (f"it has {counted(lengths[run], 'touch')}, run {longest} has {lengths[longest]}",)
     if missing:
         choice = f"--run {run} takes it as it is" + (f", --run {longest} another one" if longest != run else "")
-        more = f" (and {len(missing) - 1} more)" if len(missing) > 1 else ""
+        more = f" (and {counted(len(missing) - 1, 'further reason')})" if len(missing) > 1 else ""
         more += f" ({found.joined})" if found.joined else ""
         raise InputError(f"{path}: run {run}, the last one, is not whole: {missing[0]}{more}; {choice}")
 

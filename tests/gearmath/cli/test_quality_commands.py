@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -128,6 +129,20 @@ def test_miss_and_tooth_0_measured_again_come_through_the_file(command, measured
     out = command("evaluate", path, "--set", SET, "--no-register")[1]
     assert "concave flank: tooth 0 measured again at the end: +2.00 um, taken out evenly" in out
     assert "clamping" not in out
+
+
+@pytest.mark.parametrize(("shift", "said"), [(0.0, False), (0.02, True)])
+def test_axial_position_is_spoken_of_where_the_noise_does_not_explain_it(command, measured, tmp_path, shift, said):
+    """0.5 um of noise on a perfect pinion say nothing of the axis; 20 um along it do, n_z of them at every point."""
+    file = read_flank_csv(measured)
+    nominal = file.point - file.deviation[:, None] * file.normal
+    noise = np.random.default_rng(10).normal(0, 0.5e-3, len(file.deviation))
+    deviation = noise + shift * file.normal[:, 2]
+    path = tmp_path / "axial.csv"
+    write_flank_csv(path, replace(file, deviation=deviation, point=nominal + deviation[:, None] * file.normal))
+    status, out, err = command("evaluate", path, "--set", SET)
+    assert (status, err) == (0, "")
+    assert ("axial position not corrected" in out) == said
 
 
 def test_pitch_alone_is_evaluated(command, measured, tmp_path):
