@@ -303,6 +303,7 @@ FREESTANDING = """\
 
 void *memset(void *to, int value, size_t n);
 void *memcpy(void *to, const void *from, size_t n);
+int memcmp(const void *one, const void *other, size_t n);
 
 void *memset(void *to, int value, size_t n)
 {
@@ -317,6 +318,15 @@ void *memcpy(void *to, const void *from, size_t n)
   const unsigned char *source = (const unsigned char *)from;
   while (n--) *byte++ = *source++;
   return to;
+}
+
+int memcmp(const void *one, const void *other, size_t n)
+{
+  const volatile unsigned char *a = (const volatile unsigned char *)one, *b = (const volatile unsigned char *)other;
+  for (; n; n--, a++, b++) {
+    if (*a != *b) return *a < *b ? -1 : 1;
+  }
+  return 0;
 }
 """
 TARGET = """\
