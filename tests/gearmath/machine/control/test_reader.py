@@ -116,7 +116,7 @@ def test_unknown_words_are_refused_with_line_and_column(word):
         ("\n".join(["IF R1==1"] * 9), "line 9, column 1", "IF is nested more than 8 deep"),
         ("R1=" + "(" * 30 + "1" + ")" * 30, "line 1, column 25", "an expression is nested more than 20 deep"),
         ("R1=1+", "line 1, column 6", "'the end of the line' is no number, variable or function"),
-        ("R1=SIN(1,2)", "line 1, column 4", "SIN takes 1 numbers, not 2"),
+        ("R1=SIN(1,2)", "line 1, column 4", "SIN takes 1 number, not 2"),
         ("R1=(1", "line 1, column 6", "')' is missing"),
         ("R1=$AA_IW[X]", "line 1, column 4", "the system variable '$AA_IW' is not understood"),
         ("R1=$AA_IM[C]", "line 1, column 11", "$AA_IM of 'C]' is not understood"),
