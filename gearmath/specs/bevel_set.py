@@ -299,12 +299,14 @@ def settings_sha256(member: Member) -> str:
 def _digest(member: Member, motions: list[Motion], radii: list[float | None], *settings: list) -> str:
     """The digest of settings and motions together with the method and the blades, which no correction changes.
 
-    How many blades there are changes no flank, and no digest.
+    How many blades there are changes no flank, and no digest; tips in the plane of the point radii are as none stated.
     """
     method = member.model_dump(include={"teeth", "process", "generation", "blade_groups", "indexing_sign"})
     others = {"design", "blade_count", *SETTINGS}
+    level = {"blade_tip_height"} if not any(member.flank(flank).blade_tip_height for flank in FLANKS) else set()
     blades = [
-        member.flank(flank).model_dump(exclude=others) | {"motion": motion.model_dump(), "blade_spheric_radius": radius}
+        member.flank(flank).model_dump(exclude=others | level)
+        | {"motion": motion.model_dump(), "blade_spheric_radius": radius}
         for flank, motion, radius in zip(FLANKS, motions, radii, strict=True)
     ]
     return hashlib.sha256(repr((sorted(method.items()), blades, *settings)).encode()).hexdigest()

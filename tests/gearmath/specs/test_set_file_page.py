@@ -12,10 +12,19 @@ from typing import Any, Literal, Union, get_args, get_origin
 
 import annotated_types as at
 import pytest
-from pydantic import BaseModel
+from pydantic import AfterValidator, BaseModel
 from pydantic.fields import FieldInfo
 
-from gearmath.specs import bevel_set, blank_data, calibration, design, measurement, milling_machine, simulated_machine
+from gearmath.specs import (
+    bevel_set,
+    blank_data,
+    calibration,
+    control,
+    design,
+    measurement,
+    milling_machine,
+    simulated_machine,
+)
 from gearmath.specs.sheet import unit_of
 from gearmath.specs.toml import bundled, parse
 
@@ -44,6 +53,8 @@ def limits(field: FieldInfo) -> str:
     words = next((part for part in found if get_origin(part) is Literal), None)
     if get_origin(field.annotation) is Literal or words is not None:
         return ", ".join(f"`{value!r}`".replace("'", '"') for value in get_args(words or field.annotation))
+    if any(isinstance(part, AfterValidator) and part.func is control._known_kind for part in found):
+        return ", ".join(f'`"{kind}"`' for kind in control.KINDS)
     bounds = {
         at.Gt: ("above {}", "gt"),
         at.Ge: ("at least {}", "ge"),
