@@ -181,7 +181,7 @@ def elsewhere() -> Iterator[Elsewhere]:
 
 @pytest.fixture(scope="module")  # for a file: beside Playwright's event loop no other test could run one
 def chromium(elsewhere: Elsewhere) -> Iterator[Browser]:
-    """One browser for all tests of a process; at the end it has asked nobody else than this computer."""
+    """One browser for all tests of a file; at the end it has asked nobody else than this computer."""
     path = shutil.which("chromium") or shutil.which("chromium-browser")
     if path is None:
         pytest.skip("needs chromium")
