@@ -25,7 +25,6 @@ from gearmath.errors import InputError, counted
 if TYPE_CHECKING:
     from gearmath.specs.margins import Margins
 
-
 _MOST_POINTS = 1_000_000
 
 

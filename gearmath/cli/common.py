@@ -78,11 +78,28 @@ class NewFile(click.Path):
 
     #: How names of files end that gearmath reads or writes, and of plain text.
     KINDS = frozenset(
-        f".{end}"
-        for end in (
-            *("csv", "dfq", "htm", "html", "json", "mpf", "ngc", "npz", "pdf", "png", "rexs", "spf"),
-            *("step", "stl", "stp", "svg", "toml", "txt", "xml", "zip"),
-        )
+        {
+            ".csv",
+            ".dfq",
+            ".htm",
+            ".html",
+            ".json",
+            ".mpf",
+            ".ngc",
+            ".npz",
+            ".pdf",
+            ".png",
+            ".rexs",
+            ".spf",
+            ".step",
+            ".stl",
+            ".stp",
+            ".svg",
+            ".toml",
+            ".txt",
+            ".xml",
+            ".zip",
+        }
     )
 
     def __init__(self, *suffixes: str) -> None:
