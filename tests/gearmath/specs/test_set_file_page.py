@@ -54,7 +54,7 @@ def limits(field: FieldInfo) -> str:
     if get_origin(field.annotation) is Literal or words is not None:
         return ", ".join(f"`{value!r}`".replace("'", '"') for value in get_args(words or field.annotation))
     if any(isinstance(part, AfterValidator) and part.func is control._known_kind for part in found):
-        return ", ".join(f'`"{kind}"`' for kind in control.KINDS)
+        return ", ".join(f'`"{kind}"`' for kind in control.CONTROLS)
     bounds = {
         at.Gt: ("above {}", "gt"),
         at.Ge: ("at least {}", "ge"),
