@@ -39,6 +39,7 @@ from gearmath.machine.planning.path import Cut
 from gearmath.machine.writing.cutting import CLEARANCE
 from gearmath.machine.writing.program import pass_words
 from gearmath.machine.writing.words import Positions, feed_number
+from gearmath.specs.bevel_set import SETTINGS
 from gearmath.specs.milling_machine import AXES
 from gearmath.version import __version__
 
@@ -119,6 +120,8 @@ def _passes_of_a_stage(plan: CuttingPlan) -> int:
 
 def _roll_lines(form: _Form) -> Iterator[str]:
     plan = form.plan
+    if plan.member.process != "face_hobbing":
+        yield f"# settings: {' '.join(SETTINGS)}"
     for cut, stage, _, one in form.rolls:
         flank = plan.member.flank(cut.flanks[0])
         motion = motion_of(flank)

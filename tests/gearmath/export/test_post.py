@@ -227,12 +227,13 @@ def small(gear_set: BevelSet, vertical: MillingMachine) -> str:
 @pytest.mark.parametrize(
     ("pattern", "replacement", "words"),
     [
-        (r"\Agm-post 3", "gm-post 2", "line 1: must read 'gm-post 3'"),
+        (r"\Agm-post 3", "gm-past 3", "line 1: must read 'gm-post 3'"),
+        (r"\Agm-post 3", "gm-post 2", "line 1: is of form 2, this gm-post reads form 3: export settings"),
         (r"^feed .*", "feed -3", r"line \d+: feed = -3: must be 0.001 to 1e\+06"),
         (r"^feed .*\n", "", r"line \d+: feed: is missing"),
         (r"^(feed .*)", r"\1\n\1", "feed: stands twice"),
-        (r"^feed .*", "feed fast", "feed: number 1 is no number"),
-        (r"^feed .*", "feed 0x10", "feed: number 1 is no number"),
+        (r"^feed .*", "feed 300,0", "feed: number 1: '300,0' is no number: digits, a point"),
+        (r"^feed .*", "feed 0x10", "feed: number 1: '0x10' is no number"),
         (r"^feed .*", "speeed 1", "speeed: no such key"),
         (r"^settings (.*)", r"to 1 2 3 4 5 6 0\nsettings \1", "settings: stands in a roll that was planned"),
         (
@@ -251,8 +252,12 @@ def small(gear_set: BevelSet, vertical: MillingMachine) -> str:
         (r"^decimals .*", "decimals 5 6.5", "decimals: number 2 = 6.5: must be a whole number from 1 to 9"),
         (r"^speed .*", "speed 1 2 3", "speed: has 3 numbers, must have 5"),
         (r"^speed .*", "speed 1 2 3 0 5", "speed: number 4 = 0: must be at least 1e-9"),
-        (r"^settings \S+", "settings nan", "settings: number 1 is no number"),
-        (r"^settings \S+", "settings 5000", "roll 0: axis positions at node 0: an input is not a number, or outside"),
+        (r"^settings \S+", "settings nan", "settings: number 1: 'nan' is no number"),
+        (
+            r"^settings \S+",
+            "settings 5000",
+            r"roll 0: axis positions \(gm_axis_transform.h\) at node 0: an input is",
+        ),
         (r"^travel X .*", "travel X -1 1", r"pass 0: axis X = -\d+.\d+ mm at node 0: travel is -1 to 1"),
         (r"^travel X .*", "travel Q -1 1", "travel: must name one of the axes"),
         (r"^travel Z .*", "travel Z -100 501", r"Z = 540.00000 mm between the passes: travel is -100 to 501"),

@@ -47,7 +47,7 @@ static void coefficients(const Job *job, int64_t number, int64_t block, int j, c
     status = gm_quintic_block(here[0], here[AXES], v_0, v_1, bends[AXES * block + j] * squared,
         bends[AXES * (block + 1) + j] * squared, 1.0, powers + 2);
   }
-  computed(job, number, status, block, "polynomial block");
+  computed(job, number, status, block, roll->powers == CUBIC_POWERS ? "gm_cubic_block.h" : "gm_quintic_block.h");
   for (k = 0; k < roll->powers; ++k) sum += powers[2 + k];
   powers[0] = here[0];
   powers[1] = here[AXES] - here[0] - sum;
@@ -70,7 +70,8 @@ static double seconds(const Job *job, int64_t number, int64_t block, double powe
     status = gm_pace_in_quintic_block_batch(SAMPLES + 1, p, 0, p + AXES, 0, p + 2 * AXES, 0, p + 3 * AXES, 0,
         p + 4 * AXES, 0, p + 5 * AXES, 0, fraction, 1, roll->tooth, 0, &job->pivot_height, 0, job->pivot_offset, 0,
         job->speed, 0, job->acceleration, 0, job->jerk, 0, &feed, 0, pace, rate, &bad);
-  computed(job, number, status, block, "time of a block");
+  computed(job, number, status, block, roll->powers == CUBIC_POWERS ? "time (gm_pace_in_cubic_block.h)"
+      : "time (gm_pace_in_quintic_block.h)");
   for (k = 0; k <= SAMPLES; ++k) slowest = fmax(slowest, pace[k]);
   for (k = 0; k < SAMPLES; ++k) way[k] = (fraction[k + 1] - fraction[k]) * (rate[k + 1] + rate[k]) / 2.0;
   return fmax(pairwise(way, SAMPLES) * (slowest * between_samples), SHORTEST);
@@ -87,7 +88,7 @@ void plan_curves(Job *job, int64_t number)
   at_nodes(job, number, axes);
   status = gm_axes_by_roll_batch(n, roll->settings, 0, roll->motion, 0, roll->theta, 1, &job->pivot_height, 0,
       job->pivot_offset, 0, slopes, bends, &bad);
-  computed(job, number, status, bad, "derivatives of the axis positions");
+  computed(job, number, status, bad, "derivatives of the axis positions (gm_axes_by_roll.h)");
   roll->bends = grown(roll->bends, AXES * roll->powers * (n - 1), sizeof *roll->bends);
   for (block = 0; block < n - 1; ++block) {
     for (j = 0; j < AXES; ++j) {

@@ -72,11 +72,11 @@ void axis_positions(const Job *job, int64_t number, const double *theta, int64_t
   if (roll->motion_rows) {
     moved = grown(NULL, n * SETTINGS, sizeof *moved);
     status = gm_moved_settings_batch(n, roll->settings, 0, roll->motion, 0, theta, 1, moved, &bad);
-    computed(job, number, status, bad, "moving settings");
+    computed(job, number, status, bad, "moving settings (gm_moved_settings.h)");
   }
   status = gm_axis_transform_batch(n, moved ? moved : roll->settings, moved ? SETTINGS : 0, theta, 1, &job->pivot_height,
       0, job->pivot_offset, 0, axes, &bad);
-  computed(job, number, status, bad, "axis positions");
+  computed(job, number, status, bad, "axis positions (gm_axis_transform.h)");
   free(moved);
   unwrap(axes, n);
 }
@@ -143,7 +143,7 @@ static void times(const Job *job, int64_t number)
   int j, status;
   status = gm_seen_from_tool_batch(
       roll->nodes, roll->axes, AXES, roll->tooth, 0, &job->pivot_height, 0, job->pivot_offset, 0, seen, &bad);
-  computed(job, number, status, bad, "way past the tooth");
+  computed(job, number, status, bad, "way past the tooth (gm_seen_from_tool.h)");
   for (k = 0; k < n; ++k) {
     const double *at = seen + 3 * k;
     const double dx = at[3] - at[0], dy = at[4] - at[1], dz = at[5] - at[2];

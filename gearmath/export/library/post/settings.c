@@ -9,13 +9,22 @@
 enum { MOST_NODES = 100000, MOST_ROLLS = 64, MOST_PASSES = 100000 };
 
 /* What must have been read before the first path: a bit each. */
-enum { DECIMALS = 1, MODULO = 2, LENGTH = 4, PIVOT = 8, SPEED = 16, ACCELERATION = 32, JERK = 64, FEED = 128, CLEARANCE = 256 };
+enum {
+  DECIMALS = 1, MODULO = 2, LENGTH = 4, PIVOT = 8, SPEED = 16, ACCELERATION = 32, JERK = 64, FEED = 128, CLEARANCE = 256
+};
 static const char *const keys[] = {
     "decimals", "modulo", "length", "pivot", "speed", "acceleration", "jerk", "feed", "clearance"};
 enum { KEYS = 9, ALL_KEYS = 511 };
 
 /* What a path that is computed must have: the bits of settings, tooth and plunge, in the order of roll_key. */
 enum { ROLL_NEEDS = 7 };
+
+static void no_number(const Job *job, int64_t line, const char *key, int number, const char *text)
+{
+  const size_t length = strcspn(text, " ");
+  refuse(job, line, "%s: number %d: '%.*s' is no number: digits, a point, an exponent", key, number,
+      length < 24 ? (int)length : 24, text);
+}
 
 /* Numbers of a line: as many as wanted, all finite, nothing behind. */
 static void numbers(const Job *job, int64_t line, const char *key, const char *text, double *values, int count)
@@ -26,9 +35,9 @@ static void numbers(const Job *job, int64_t line, const char *key, const char *t
     while (*text == ' ') ++text;
     if (*text == '\0') refuse(job, line, "%s: has %d numbers, must have %d", key, k, count);
     if (strspn(text, "+-.0123456789eE") != strcspn(text, " ")) /* strtod reads 0x10, inf and nan as well */
-      refuse(job, line, "%s: number %d is no number", key, k + 1);
+      no_number(job, line, key, k + 1, text);
     values[k] = strtod(text, &end);
-    if (end == text || (*end != ' ' && *end != '\0')) refuse(job, line, "%s: number %d is no number", key, k + 1);
+    if (end == text || (*end != ' ' && *end != '\0')) no_number(job, line, key, k + 1, text);
     if (!(fabs(values[k]) <= 1e9)) refuse(job, line, "%s: number %d: must be at most 1e9", key, k + 1);
     text = end;
   }
@@ -262,7 +271,9 @@ void read_settings(Job *job, char *text, size_t length)
     job->travel[k][1] = HUGE_VAL;
   }
   line = next_line(&rest, end);
-  if (!line || strcmp(line, "gm-post 3") != 0) refuse(job, 1, "must read 'gm-post 3': this is no settings file");
+  if (!line || strncmp(line, "gm-post ", 8) != 0) refuse(job, 1, "must read 'gm-post 3': this is no settings file");
+  if (strcmp(line + 8, "3") != 0)
+    refuse(job, 1, "is of form %.20s, this gm-post reads form 3: export settings and gm-post together", line + 8);
   line = next_line(&rest, end);
   if (!line || strncmp(line, "sum ", 4) != 0) refuse(job, 2, "must begin with 'sum'");
   snprintf(sum, sizeof sum, "sum %016llx", (unsigned long long)fnv(rest, (size_t)(end - rest)));
