@@ -148,7 +148,14 @@ def pace_in_block(degree: int) -> Kernel:
     )
     fraction = Quantity("fraction", "0 at the start of the block, 1 at its end", "1", "s", (0.0, 1.0))
     limits = tuple(
-        Quantity(f"max_{what}", f"highest {what} of each axis", "mixed", rf"\hat{{{letter}}}", (1e-3, most), shape=(5,))
+        Quantity(
+            f"max_{what}",
+            f"highest {what} of each axis, by mm or rad and s",
+            "mixed",
+            rf"\hat{{{letter}}}",
+            (1e-3, most),
+            shape=(5,),
+        )
         for what, letter, most in (("speed", "v", 1e4), ("acceleration", "a", 1e6), ("jerk", "j", NO_JERK_LIMIT))
     )
     feed = Quantity("feed", "wanted speed past the tooth", "mm/s", "v_f", (2e-4, 2000.0))

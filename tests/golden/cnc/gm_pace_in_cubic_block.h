@@ -13,10 +13,12 @@
  *     level with the B axis
  * in pivot_offset[3] [mm] -100 ... 100 (taken: -1000 ... 1000): B axis to pitch apex, in the axes of the work at
  *     A = 0; zero where none is given
- * in max_speed[5] [mixed] 0.001 ... 10000 (taken: 0.0001 ... 100000): highest speed of each axis
+ * in max_speed[5] [mixed] 0.001 ... 10000 (taken: 0.0001 ... 100000): highest speed of each axis, by mm or rad
+ *     and s
  * in max_acceleration[5] [mixed] 0.001 ... 1000000 (taken: 0.0001 ... 10000000): highest acceleration of each
- *     axis
- * in max_jerk[5] [mixed] 0.001 ... 1000000000 (taken: 0.0001 ... 10000000000): highest jerk of each axis
+ *     axis, by mm or rad and s
+ * in max_jerk[5] [mixed] 0.001 ... 1000000000 (taken: 0.0001 ... 10000000000): highest jerk of each axis, by mm
+ *     or rad and s
  * in feed [mm/s] 0.0002 ... 2000 (taken: 2e-05 ... 20000): wanted speed past the tooth
  * out pace [s/mm]: least time per mm of the path
  * out path_rate [mm]: length of the path per unit of the parameter
