@@ -153,6 +153,10 @@ def chain(machine: HobbingMachine) -> Iterator[str]:
     yield from bullets(what)
 
 
+#: Of a driver that does not watch where its motor stands.
+_HOLDS = "Half current at standstill: off. The table has to hold against the hob."
+
+
 def switches(machine: HobbingMachine) -> Iterator[str]:
     """Motor, its supply, and the switches of the driver."""
     drive = machine.drive
@@ -171,7 +175,7 @@ def switches(machine: HobbingMachine) -> Iterator[str]:
             "`test one turn` below shows whether it is right.",
             "Current: what the plate of the motor says per phase. A driver that is set in peak current wants 1.4 times "
             "the RMS value.",
-            "Half current at standstill: off. The table has to hold against the hob.",
+            *(() if machine.driver.timing.closed_loop else (_HOLDS,)),
             "Supply of the motor: near the highest voltage of the driver less 10 %, since motors of deep "
             "inductance lose "
             "their torque with speed; never the supply of the logic. Its minus goes to the driver only.",

@@ -70,6 +70,18 @@ def _ways(machine: HobbingMachine, found: Netlist) -> Iterator[str]:
             "its ends is +, does not matter, since the direction is set later."
         )
     )
+    if machine.driver.timing.closed_loop and not servo:
+        yield (
+            "M1 is followed by A2 itself, through the encoder cable between the two: nothing of it goes to the board. "
+            "The windings of such a motor do have their places, by the drawing of A2."
+        )
+    if machine.pins.alarm is not None:
+        yield (
+            "A2 ALARM: the two ends of its alarm output, an opto-coupler, ALM + and - in most manuals; where it has a "
+            "common with others, that is -. What it does in an alarm, close or open, says the manual: "
+            f"`alarm_active` is {machine.driver.alarm_active!r} here, which is "
+            f"{'closed' if machine.driver.alarm_active == 'low' else 'open'} in an alarm."
+        )
 
 
 def _display(machine: HobbingMachine) -> Iterator[str]:

@@ -114,8 +114,10 @@ def _motor(found: Netlist, machine: HobbingMachine) -> None:
     drive = machine.drive
     servo = drive.pulses is not None
     kind = "servo motor of the drive A2" if servo else f"step motor, {drive.full_steps} full steps a turn"
+    if not servo and machine.driver.timing.closed_loop:
+        kind = f"closed-loop {kind}, with the encoder and the encoder cable that belong to A2"
     found.part("M1", f"{kind}; torque and current: by the machine, and within the driver", "turns what is geared")
-    for end in ("motor cable",) if servo else WINDINGS:
+    for end in motor_cables(machine):
         found.join(f"motor {end}" if not servo else end, ("A2", end), ("M1", end))
     found.part("G2", "supply of the motor: voltage and current by the data sheets of driver and motor", "A2 alone")
     found.part("F3", "fuse as the data sheet of the driver asks for, with holder", "between + of G2 and A2")
@@ -224,10 +226,22 @@ def _driver(found: Netlist, machine: HobbingMachine) -> None:
         found.part(f"RL{k}", "plain wire, or 330 Ohm: see below", f"in the collector of T{k}")
     if not opened:
         found.join(GROUND, ("A2", "common"))
-    if pins.alarm is not None:
-        found.join("alarm", ("A2", "ALARM"), _board(pins.alarm))
-    if pins.reset is not None:
-        found.join("reset", ("A2", "RESET"), _board(pins.reset))
+    for name, wired in straight(machine):
+        found.join(name.lower(), ("A2", f"{name} +"), _board(wired))
+        found.join(GROUND, ("A2", f"{name} -"))
+
+
+def straight(machine: HobbingMachine) -> list[tuple[str, int]]:
+    """Names and pins of what goes to the driver without a transistor; the other end of each is 0 V."""
+    pins = machine.pins
+    return [(name, pin) for name, pin in (("ALARM", pins.alarm), ("RESET", pins.reset)) if pin is not None]
+
+
+def motor_cables(machine: HobbingMachine) -> tuple[str, ...]:
+    """What goes from the driver to the motor."""
+    if machine.drive.pulses is not None:
+        return ("motor cable",)
+    return (*WINDINGS, "encoder") if machine.driver.timing.closed_loop else WINDINGS
 
 
 def _transistor(found: Netlist, k: int, name: str, source: End, load: End, current: int) -> None:

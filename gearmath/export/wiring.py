@@ -10,7 +10,7 @@ from schemdraw import Drawing, elements
 
 from gearmath.export.contactor import contactor
 from gearmath.export.diagram import TEXT, TITLE, Point, box, ground, line, pin_down, small, supply, text, titled
-from gearmath.export.netlist import LOGIC, PLUS, WINDINGS, netlist
+from gearmath.export.netlist import LOGIC, PLUS, WINDINGS, motor_cables, netlist, straight
 from gearmath.export.wiring_supply import regulator
 from gearmath.specs.hobbing import HobbingMachine
 
@@ -172,17 +172,19 @@ def _outputs(drawing: Drawing, machine: HobbingMachine) -> float:
     for k, (name, pin) in enumerate(signals):
         _drive(drawing, top - pitch * k, name, pin, f"T{k + 1}" if opened else "")
     last = top - pitch * (len(signals) - 1)
-    straight = [(name, pin) for name, pin in (("ALARM", pins.alarm), ("RESET", pins.reset)) if pin is not None]
-    for name, pin in straight:
+    others = straight(machine)
+    for name, pin in others:
         last -= 1.2 if last < top - pitch * (len(signals) - 1) else 2.2
-        _drive(drawing, last, name, pin, "")
+        _drive(drawing, last, f"{name} +", pin, "")
     last = min(last, _motor(drawing, machine))
     box(drawing, _DRIVER, top + 1.9, last - 0.9, "step motor driver", at=top + 1.5)
     small(drawing, (_DRIVER[0] + 0.4, top + 1.5), "A2")
     if opened:
         supply(drawing, (_DRIVER[1] - 1.2, top + 1.9), "+5 V to all + inputs")
-    else:
-        ground(drawing, (_DRIVER[1] - 0.7, last - 0.9), "")
+    if others or not opened:
+        ends = ["common"] * (not opened) + [f"{name} -" for name, _ in others]
+        text(drawing, (_DRIVER[0] + 0.2, last - 0.6), ", ".join(ends), align="left")
+        ground(drawing, (_DRIVER[0] + 0.7, last - 0.9), "")
     y = last - 3.4
     if pins.healthy is not None:
         _pump(drawing, y, pins.healthy, f"T{len(signals) + 1}")
@@ -218,10 +220,11 @@ def _drive(drawing: Drawing, y: float, name: str, pin: int, transistor: str) -> 
 def _motor(drawing: Drawing, machine: HobbingMachine) -> float:
     """Motor and supply to the right of the driver; returns the height of the lowest wire."""
     edge, near, far = _DRIVER[1], _DRIVER[1] + 3.4, _DRIVER[1] + 6.4
-    ends = ("motor cable",) if machine.drive.pulses is not None else WINDINGS
+    ends = motor_cables(machine)
     for k, end in enumerate(ends):
-        text(drawing, (edge - 0.2, 0.9 - 0.6 * k), end, align="right")
-        line(drawing, (edge, 0.9 - 0.6 * k), (near, 0.9 - 0.6 * k))
+        height = (1.1 if len(ends) > len(WINDINGS) else 0.9) - 0.6 * k
+        text(drawing, (edge - 0.2, height), end, align="right")
+        line(drawing, (edge, height), (near, height))
     box(drawing, (near, far), 1.4, -1.4, "motor M1")
     for k, end in enumerate(("power +", "power -")):
         height = -2.4 - 1.2 * k

@@ -21,7 +21,8 @@ class StepTiming:
     """Shortest times of a driver [ns]: step pulse, pause after it, DIR before the pulse and after it.
 
     ``confirmed`` says that a publication of the maker or of LinuxCNC states these figures; the others are cautious.
-    ``enable`` says what the ENABLE input does, ``enable_confirmed`` that the maker's manual was seen to say so.
+    ``enable`` says what the ENABLE input does, ``enable_confirmed`` that the maker's manual was seen to say so. A drive
+    of a ``closed_loop`` has the motor's own encoder plugged into it.
     """
 
     step_high: int
@@ -31,6 +32,7 @@ class StepTiming:
     confirmed: bool = True
     enable: EnableInput | None = None
     enable_confirmed: bool = False
+    closed_loop: bool = False
 
     def ticks(self, tick_ns: int, jitter_ns: int) -> tuple[int, int, int, int]:
         """The four times in whole ticks of the step timer, rounded up, at least one each.
@@ -47,6 +49,8 @@ class StepTiming:
         return 1_000_000_000 // ((high + low) * tick_ns)
 
 
+#: Closed-loop drives: the family's usual 2.5 us and 5 us with a reserve, since revisions differ.
+_CLOSED_LOOP = StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark", closed_loop=True)
 #: Times published in LinuxCNC's tables of step timing and stepconf, unless marked. ENABLE: Leadshine's manuals say that
 #: an input pulled low (NPN wiring) disables, and to leave it open otherwise; the chips' data sheets have a low enable.
 DRIVERS = {
@@ -61,12 +65,12 @@ DRIVERS = {
     "m542": StepTiming(1500, 1500, 5000, 8000, enable="dark", enable_confirmed=True),
     "dm556": StepTiming(2500, 2500, 5000, 10_000, enable="dark", enable_confirmed=True),
     "dm422": StepTiming(7500, 7500, 5000, 20_000, enable="dark", enable_confirmed=True),
-    # closed-loop and newer drives: the family's usual 2.5 us and 5 us with a reserve, since revisions differ
+    # a newer drive, of which revisions differ, too
     "dm542": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark", enable_confirmed=True),
-    "cl57t": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark"),
-    "cl86t": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark"),
-    "hbs57": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark"),
-    "hbs86h": StepTiming(5000, 5000, 10_000, 10_000, confirmed=False, enable="dark"),
+    "cl57t": _CLOSED_LOOP,
+    "cl86t": _CLOSED_LOOP,
+    "hbs57": _CLOSED_LOOP,
+    "hbs86h": _CLOSED_LOOP,
     "dm860t": StepTiming(5000, 5000, 5000, 5000, enable="dark"),
     "a4988": StepTiming(1000, 1000, 200, 200, enable="low", enable_confirmed=True),
     "drv8825": StepTiming(1900, 1900, 650, 650, enable="low", enable_confirmed=True),

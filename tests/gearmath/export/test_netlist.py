@@ -221,3 +221,14 @@ def test_every_chip_of_the_diagram_is_powered(name: str) -> None:
         assert set(bottoms) & set(diagram.grounds), chip
         for x, y in tops:
             assert any(abs(x - sx) < 12 and 0 < y - sy < 60 for sx, sy in supplies), chip
+
+
+def test_closed_loop_drive_has_the_encoder_of_its_motor_and_both_ends_of_its_alarm() -> None:
+    base = load_hobbing_machine(bundled("hobbing_default.toml"))
+    driver, pins = base.driver.model_copy(update={"name": "cl57t"}), base.pins.model_copy(update={"alarm": 24})
+    found = netlist(base.model_copy(update={"driver": driver, "pins": pins}))
+    assert found.nets["motor encoder"] == [("A2", "encoder"), ("M1", "encoder")]
+    assert found.parts["M1"].what.startswith("closed-loop step motor, 200 full steps a turn, with the encoder")
+    assert found.nets["alarm"] == [("A2", "ALARM +"), ("U1", "24")]
+    assert ("A2", "ALARM -") in found.nets[GROUND]
+    assert "motor encoder" not in netlist(base).nets
