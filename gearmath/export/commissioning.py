@@ -57,7 +57,8 @@ def _moving(machine: HobbingMachine) -> Iterator[str]:
         f"direction. {right}change `invert_direction` of the driver and export again."
     )
     if machine.pins.index is not None:
-        yield f"Run a job without load: `Checked` on its third page must count every turn of the {leading}."
+        turning = leading if machine.encoder.belt == 1 else "encoder, which are not those of the " + leading
+        yield f"Run a job without load: `Checked` on its third page must count every turn of the {turning}."
     if machine.feed is not None:
         up = "climb" if machine.feed_climbs else "conventional"
         yield (

@@ -129,7 +129,8 @@ def _rows(machine: HobbingMachine) -> Iterator[Row]:
         yield from _FED
     yield from _RUN_OF_A_THREAD if lathe else _RUN_OF_A_GEAR
     if machine.pins.index is not None:
-        yield ("Checked", "turns in which the index pulse has confirmed the count (third page)")
+        turns = "turns" if machine.encoder.belt == 1 else "turns of the encoder"
+        yield ("Checked", f"{turns} in which the index pulse has confirmed the count (third page)")
     yield from _CHECKS
     if not lathe and machine.feed is None:
         yield ("Table turns", "since the start of the job; times the feed per turn: the way of the pass (third page)")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from fnmatch import fnmatch
+from fractions import Fraction
 from importlib import resources
 
 import pytest
@@ -182,3 +183,12 @@ def test_memory_with_the_core_is_the_sum_of_a_published_build_and_the_own_files(
     text = chapter(guide(machine("lathe_example"), "gearbox"), "Flashing")
     assert "38 kB and 4.4 kB are to be expected" in text
     assert "to be expected" not in guide(machine("hobbing_plewes"), "gearbox")
+
+
+def test_index_of_an_encoder_behind_a_belt_counts_turns_of_the_encoder() -> None:
+    straight = machine("hobbing_default")
+    belt = straight.model_copy(update={"encoder": straight.encoder.model_copy(update={"belt": Fraction(10, 9)})})
+    counted = "must count every turn of the encoder, which are not those of the hob."
+    assert counted in " ".join(guide(belt, "gearbox").split())
+    assert "must count every turn of the hob." in " ".join(guide(straight, "gearbox").split())
+    assert "| `Checked` | turns of the encoder in which" in guide(belt, "gearbox")
