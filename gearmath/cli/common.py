@@ -19,7 +19,8 @@ from gearmath.errors import about as about
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearmath.front.sets import GearSet, Member
+    from gearmath.front.member import Member
+    from gearmath.front.sets import GearSet
 
 #: The gear set of a verb whose first argument is another file.
 SET_OPTION = click.option(

@@ -15,7 +15,7 @@ from gearmath.cli.common import JSON, echo_json, plot, save_plot
 from gearmath.cli.gearbox_cut import choose, cut
 
 if TYPE_CHECKING:
-    from gearmath.front.gearbox import Job
+    from gearmath.front.hobbing import Job
     from gearmath.gearbox.simulation import Pattern
     from gearmath.specs.hobbing import HobbingMachine
 
@@ -119,7 +119,7 @@ def simulate(
 
 def _plan(machine: HobbingMachine, options: dict[str, Any]) -> Job:
     """The plan of a gear or of a thread, by the machine's profile."""
-    from gearmath.front.gearbox import plan
+    from gearmath.front.hobbing import plan
 
     given = {key: value for key, value in options.items() if value is not None}
     needed, other = ("pitch", "teeth") if machine.profile == "lathe" else ("teeth", "pitch")

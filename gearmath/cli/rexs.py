@@ -17,9 +17,9 @@ def rexs(file: Path, target: Path) -> None:
 
     Says what of the file has no place in a set and was left aside. The names: docs/exchange.md.
     """
-    from gearmath.front.design import load_rexs
+    from gearmath.front.sets import GearSet
 
-    pair = load_rexs(file)
+    pair = GearSet.from_rexs(file)
     pair.save(target)
     for text in pair.remarks:
         click.echo(f"left aside: {text}")

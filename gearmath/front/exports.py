@@ -1,4 +1,4 @@
-"""C of kernels, of the gearbox and of the post-processor."""
+"""C of kernels and of the post-processor."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import export_cnc as _export_cnc
 from gearmath.export.folder import write_folder
 from gearmath.export.post import post_file
-from gearmath.export.teensy import export_teensy as _export_teensy
 from gearmath.front.machines import Machine, load_machine
 from gearmath.front.programs import cutting
 from gearmath.front.progress import Begin, silent
@@ -21,7 +20,6 @@ from gearmath.front.sets import GearSet
 from gearmath.lowering import lower
 from gearmath.machine.judging.dialects import named
 from gearmath.machine.planning.cut_plan import CuttingJob
-from gearmath.specs.hobbing import HobbingMachine
 
 
 def export_c(
@@ -40,11 +38,6 @@ def export_c(
         files |= (integer_kernel(one, bits) if bits else double_kernel(one)).files
     write_folder(Path(folder), files if bits else contract_files() | files)
     return [Path(folder) / name for name in files]
-
-
-def export_teensy(machine: HobbingMachine, folder: str | Path) -> list[str]:
-    """Write the whole Teensy sketch of a hobbing machine or lathe; the names of its files. Raises InputError."""
-    return list(_export_teensy(machine, Path(folder)))
 
 
 def export_cnc(
