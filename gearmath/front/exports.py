@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from derivations.expression import Expression
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import about
 from gearmath.export.c import contract_files, double_kernel, integer_kernel
@@ -17,9 +16,11 @@ from gearmath.front.machines import Machine, load_machine
 from gearmath.front.programs import cutting
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet
-from gearmath.lowering import lower
 from gearmath.machine.judging.dialects import named
 from gearmath.machine.planning.cut_plan import CuttingJob
+
+if TYPE_CHECKING:
+    from derivations.expression import Expression
 
 
 def export_c(
@@ -31,13 +32,19 @@ def export_c(
     64 in whole numbers of that size. Raises ExportError (a ComputationError) naming what cannot become such C,
     InputError where the folder holds other files.
     """
-    each = [what] if isinstance(what, Kernel | Expression) else list(what)
-    made = [lower(one) if isinstance(one, Expression) else one for one in each]
+    each = list(what) if isinstance(what, Iterable) else [what]
+    made = [one if isinstance(one, Kernel) else _lowered(one) for one in each]
     files: dict[str, str] = {}
     for one in made:
         files |= (integer_kernel(one, bits) if bits else double_kernel(one)).files
     write_folder(Path(folder), files if bits else contract_files() | files)
     return [Path(folder) / name for name in files]
+
+
+def _lowered(expression: Expression) -> Kernel:
+    from gearmath.lowering import lower  # loads SymPy
+
+    return lower(expression)
 
 
 def export_cnc(

@@ -20,8 +20,6 @@ from gearmath.quality.uncertainty.corrected import uncertain_correction
 from gearmath.quality.uncertainty.figures import figures_of
 from gearmath.quality.uncertainty.propagation import Uncertain, uncertain_figures
 from gearmath.quality.uncertainty.source import covariance_of
-from gearmath.report import STEPS, inspection_sheet
-from gearmath.report.judged import DRAWS, reported
 from gearmath.specs.point_text import PointText, read_point_text
 
 if TYPE_CHECKING:
@@ -125,6 +123,9 @@ def inspection(
     well the points were measured as of :meth:`Measurement.uncertainty`. Raises InputError where measurements are of
     the same member.
     """
+    from gearmath.report import STEPS, inspection_sheet  # loads Matplotlib
+    from gearmath.report.judged import DRAWS, reported
+
     names = [one.member.name for one in measured]
     if len(set(names)) < len(names):
         raise InputError(f"both measurements are of the {names[0]}: the mate of the other member is wanted")

@@ -116,6 +116,19 @@ def test_importing_loads_nothing_heavy() -> None:
     assert said.strip() == "[]"
 
 
+def test_what_runs_kept_kernels_needs_neither_sympy_nor_matplotlib() -> None:
+    gm.load_set("nasa_tp3096_12x36.toml").pinion.flank("concave")  # derives what no process of this user has yet
+    program = """
+import sys
+import gearmath as gm
+from gearmath.front import contact, hobbing, judged, measured, probing, programs
+gm.load_set("nasa_tp3096_12x36.toml").pinion.flank("concave")
+print([name for name in ("sympy", "matplotlib", "scipy", "tqdm") if name in sys.modules])
+"""
+    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
+    assert said.strip() == "[]"
+
+
 def test_every_name_is_there_and_says_what_it_is() -> None:
     for name in gm.__all__:
         one = getattr(gm, name)
