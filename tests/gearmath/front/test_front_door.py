@@ -101,6 +101,26 @@ def test_fifteen_lines_from_an_expression_to_a_called_c_function(tmp_path: Path,
     assert lowered == result.value
 
 
+@pytest.mark.parametrize(("page", "most"), [("README.md", 10), ("docs/how_to/own_expression.md", 15)])
+def test_the_script_of_a_page_is_short_and_runs(
+    page: str, most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, host_compiler, capsys
+) -> None:
+    text = (Path(__file__).parents[3] / page).read_text("utf-8")
+    script = re.findall(r"```python\n(.*?)```", text, re.DOTALL)[0]
+    assert len([line for line in script.splitlines() if line.strip()]) <= most
+    assert script.count("import gearmath as gm") == 1
+    assert "from gearmath" not in script
+    monkeypatch.chdir(tmp_path)
+    exec(compile(script.replace('["cc", ', f"[*{host_compiler!r}, "), page, "exec"), {})
+    said = capsys.readouterr().out.split()
+    if page == "README.md":
+        assert (tmp_path / "topography.png").stat().st_size > 1000
+        assert "'radial_distance'" in " ".join(said)
+    else:
+        chord = 2 * (10.0**2 - 9.5**2) ** 0.5  # by Pythagoras
+        assert [float(value) for value in said] == pytest.approx([chord, chord])
+
+
 def test_a_program_of_one_space_leaves_what_it_promises() -> None:
     pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion
     program = pinion.program(spaces=[0], tolerance=1e-3)
