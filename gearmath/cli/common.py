@@ -48,7 +48,7 @@ REGISTER = click.option(
     "registered",
     default=True,
     show_default=True,
-    help="Take out the clamping (eccentricity, tilt), where the points tell it.",
+    help="Take out the clamping (eccentricity, tilt), where the points determine it.",
 )
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 

@@ -15,7 +15,7 @@ from gearmath.cli.common import output
 def rexs(file: Path, target: Path) -> None:
     """The set of the bevel stage in a REXS 2.0.0 file (XML), as 'gearmath export rexs' or another program writes it.
 
-    Says what of the file has no place in a set and was left aside. The names: docs/exchange.md.
+    Lists what of the file a set cannot hold; that is not read. The names: docs/exchange.md.
     """
     from gearmath.front.sets import GearSet
 
