@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from gearmath.errors import InputError
-from gearmath.specs.control import KINDS
+from gearmath.specs.control import CONTROLS
 
 if TYPE_CHECKING:
     from gearmath.machine.judging.dialects import ControlDialect
@@ -21,11 +21,11 @@ class _KnownControl(click.ParamType):
     name = "control"
 
     def get_metavar(self, param: click.Parameter, ctx: click.Context | None = None) -> str:
-        return f"[{'|'.join(KINDS)}]"
+        return f"[{'|'.join(CONTROLS)}]"
 
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        if value not in KINDS:
-            self.fail(f"{value!r} is not one of {', '.join(map(repr, KINDS))}.", param, ctx)
+        if value not in CONTROLS:
+            self.fail(f"{value!r} is not one of {', '.join(map(repr, CONTROLS))}.", param, ctx)
         return value
 
 

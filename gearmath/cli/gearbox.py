@@ -61,7 +61,8 @@ _THREAD_KEYS = ("pitch", "starts", "hand", "run_up", "rpm")
 def gearbox() -> None:
     """Electronic gearbox of a hobbing machine or a lathe: plan a job, simulate the rule, cut a gear virtually.
 
-    MACHINE is a TOML file, or the name of one that comes with the package, such as hobbing_plewes.toml.
+    MACHINE is a TOML file, or the name of one that comes with the package, such as hobbing_plewes.toml. Every key of it
+    is in docs/gearbox_file.md.
     """
 
 

@@ -22,6 +22,7 @@ from gearmath.export.folder import write_folder
 from gearmath.export.header import comment, plain, versions
 from gearmath.export.vectors import selftest_vectors
 from gearmath.kernels import kernel
+from gearmath.machine.planning.curves import CUBIC, QUINTIC, axes_by_roll, pace_in_block
 from gearmath.specs.bevel_set import SETTINGS
 
 
@@ -43,9 +44,12 @@ def cnc_kernels() -> tuple[Kernel, ...]:
             "line_entry",
             "moved_settings",
             "seen_from_tool",
+            "cubic_block",
+            "quintic_block",
         )
     )
-    return (*lowered, flank_point(), flank_on_line(), compensation_step(len(SETTINGS)))
+    polynomials = (axes_by_roll(), pace_in_block(CUBIC), pace_in_block(QUINTIC))
+    return (*lowered, *polynomials, flank_point(), flank_on_line(), compensation_step(len(SETTINGS)))
 
 
 def cnc_files() -> dict[str, str]:

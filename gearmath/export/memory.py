@@ -9,6 +9,8 @@ from gearmath.specs.hobbing import HobbingMachine
 
 #: kB of flash and RAM of the sketch's own files, GCC 12 -O2 ("Faster"), Cortex-M4 and M7.
 OWN = {"teensy32": (25.0, 0.9), "teensy40": (25.5, 0.9), "teensy41": (26.5, 1.0)}
+#: kB of flash with -Os ("Smallest Code"); RAM is the same.
+SMALLEST = {"teensy32": 21.2, "teensy40": 21.2, "teensy41": 22.2}
 #: kB of code with data, and of variables in RAM1, that a published build of a sketch of a few lines has (Teensy 4.0,
 #: USB Serial: code 9252, data 3016, variables 3520); for a Teensy 3.2 none was found.
 _CORE = {"teensy40": (12.3, 3.5), "teensy41": (12.3, 3.5)}
@@ -21,7 +23,8 @@ def memory(machine: HobbingMachine) -> Iterator[str]:
     flash, ram = OWN[machine.board]
     most, fast = _HAS[machine.board]
     words = (
-        f"The files of this folder take about {flash:g} kB of flash and {ram:g} kB of RAM (arm-none-eabi-gcc 12, -O2), "
+        f"The files of this folder take about {flash:g} kB of flash and {ram:g} kB of RAM (arm-none-eabi-gcc 12, -O2, "
+        f'"Faster" in the IDE; {SMALLEST[machine.board]:g} kB of flash with -Os, "Smallest Code"), '
         f"of the {most} kB and {fast} kB of a {machine.hardware.title}. The core of Teensyduino and its libraries come "
         "on top; "
     )

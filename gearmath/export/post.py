@@ -3,12 +3,12 @@
 The text of the program is that of the Python writer: what it wrote, with a slot wherever a number stands that the C
 program computes. So no text of a program is kept twice, and a change of the writer needs no change here. Lines:
 
-    gm-post 2                          the format
+    gm-post 3                          the format
     sum HEX                            FNV-1a, 64 bits, of all that follows, without carriage returns
     KEY NUMBERS                        machine and job: mm, rad, s, as the planner has them
     roll NAME                          then its settings, motion, tooth, plunge and nodes: one path of the cutter
-    planned C POWERS                   or so, and the end of every block as it was planned: see below
-    to NUMBERS                         X Y Z A B, C if there is one, coefficients a_2 .. of each axis, seconds
+    degree N                           of the blocks between its nodes: 1 where the line is missing, else 3 or 5
+    to NUMBERS                         or so, of a hobbed member, the end of every planned block: X Y Z A B C, seconds
     pass ROLL LIFT ANGLE DWELL         one tooth space: where the path is raised and turned to
     c TEXT, n TEXT                     a line; a line with a number
     r TEXT, b TEXT                     the same for every node but the first
@@ -17,27 +17,29 @@ program computes. So no text of a program is kept twice, and a change of the wri
 Slots are {NAME}, {TIME}, {UP}, {X} {Y} {Z} {A} {B} {C} of a node, and of the block that ends there {F} and {PX} ..
 {PB}, the end and the coefficients of a polynomial; {{ is a brace.
 
-Straight blocks of milled members are computed from their settings. Rolls of polynomials, and those of face hobbing, are
-planned by derivatives and searches that are not in the C library: they stand there as positions and times.
+Blocks of generated flanks, straight ones and polynomials, are computed from the settings. Rolls of face hobbing are
+planned by searches that are not in the C library: they stand there as positions and times.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from gearmath.bevel.method import motion_of
 from gearmath.errors import ComputationError
 from gearmath.machine.judging.dialects import SINUMERIK, ControlDialect
-from gearmath.machine.planning.cut_plan import CuttingPlan, first_pass, lift, middle_of_tooth, plunge_lift
+from gearmath.machine.planning.curves import NO_JERK_LIMIT
+from gearmath.machine.planning.cut_plan import CuttingPlan, lift, middle_of_tooth, plunge_lift
 from gearmath.machine.planning.passes import Pass, tooth_angles
 from gearmath.machine.planning.path import Cut
 from gearmath.machine.writing.cutting import CLEARANCE
 from gearmath.machine.writing.program import pass_words
 from gearmath.machine.writing.words import Positions, feed_number
+from gearmath.specs.bevel_set import SETTINGS
 from gearmath.specs.milling_machine import AXES
 from gearmath.version import __version__
 
@@ -71,7 +73,7 @@ def post_file(plan: CuttingPlan, dialect: ControlDialect = SINUMERIK) -> str:
     form = _Form(plan, dialect.positions(plan.machine), _rolls(plan))
     text = dialect.cutting(plan, _NAME).splitlines()
     body = "".join(f"{line}\n" for line in (*_values(form), *_roll_lines(form), *_lines(form, text)))
-    return f"gm-post 2\nsum {_fnv(body.encode('ascii')):016x}\n{body}"
+    return f"gm-post 3\nsum {_fnv(body.encode('ascii')):016x}\n{body}"
 
 
 def _fnv(data: bytes) -> int:
@@ -97,6 +99,7 @@ def _values(form: _Form) -> Iterator[str]:
             yield f"travel {axis} {_numbers([low, high])}"
     yield f"speed {_numbers(machine.max_speed)}"
     yield f"acceleration {_numbers(machine.max_acceleration)}"
+    yield f"jerk {_numbers(np.minimum(machine.max_jerk, NO_JERK_LIMIT))}"
     yield f"feed {_numbers([plan.job.feed])}"
     yield f"clearance {_numbers([CLEARANCE])}"
 
@@ -115,33 +118,24 @@ def _passes_of_a_stage(plan: CuttingPlan) -> int:
     return 1 if plan.member.process == "face_hobbing" else len(plan.job.spaces)
 
 
-def _planned(form: _Form, cut: Cut, number: int, one: Pass) -> Iterator[str]:
-    """A roll as it was planned; one of polynomials through space 0 without stock: every pass raises and turns it."""
-    plan, turns = form.plan, one.axes.shape[1] - len(AXES)
-    if one.bends is not None:
-        job = replace(plan.job, tolerance=plan.job.stages[number % len(plan.job.stages)][2])
-        _, one = first_pass(plan.member, cut, plan.machine, job, plan.share)
-    bends = np.zeros((len(one.seconds), 0)) if one.bends is None else one.bends.reshape(len(one.seconds), -1)
-    yield f"planned {turns} {bends.shape[1] // len(AXES)}"
-    blocks = np.vstack([np.zeros(bends.shape[1]), bends])
-    seconds = np.append(0.0, one.seconds)
-    yield from (f"to {_numbers(row)}" for row in np.column_stack([one.axes, blocks, seconds]))
-
-
 def _roll_lines(form: _Form) -> Iterator[str]:
     plan = form.plan
-    for number, (cut, stage, _, one) in enumerate(form.rolls):
+    if plan.member.process != "face_hobbing":
+        yield f"# settings: {' '.join(SETTINGS)}"
+    for cut, stage, _, one in form.rolls:
         flank = plan.member.flank(cut.flanks[0])
         motion = motion_of(flank)
         yield f"roll {cut.tool}_{stage}"
-        if one.bends is not None or plan.member.process == "face_hobbing":
-            yield from _planned(form, cut, number, one)
+        if plan.member.process == "face_hobbing":
+            yield from (f"to {_numbers(row)}" for row in np.column_stack([one.axes, np.append(0.0, one.seconds)]))
             continue
         yield f"settings {_numbers(flank.vector)}"
         if motion.any():
             yield from (f"motion {_numbers(row)}" for row in motion)
         yield f"tooth {_numbers(middle_of_tooth(plan.member, cut))}"
         yield f"plunge {_numbers([plunge_lift(plan.member) if plan.member.generation == 'formate' else 0.0])}"
+        if one.bends is not None:
+            yield f"degree {one.bends.shape[2] + 1}"
         yield from (f"node {_numbers([theta])}" for theta in one.theta)
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
@@ -19,14 +21,27 @@ def _power_of_ten(value: int) -> int:
 
 
 def _known_kind(value: str) -> str:
-    if value not in KINDS:
-        *others, last = (repr(kind) for kind in KINDS)
+    if value not in CONTROLS:
+        *others, last = (repr(kind) for kind in CONTROLS)
         raise ValueError(f"must be {', '.join(others)} or {last}")
     return value
 
 
-#: Controls that programs are written for; a dialect that is registered adds its name.
-KINDS = ["sinumerik", "linuxcnc"]
+@dataclass(frozen=True)
+class Control:
+    """What all that reads and writes must know of a control: its name, and how a program for it is known and read."""
+
+    name: str
+    """As ``--control`` and ``[control] kind`` have it."""
+    mark: str = ""
+    """What only programs of this control have in them."""
+    as_read: Callable[[str], str] | None = None
+    """A program in words of a known control, line for line; None where the reader knows this one."""
+
+
+#: The controls that programs are written for, by name: the one table of them. ``machine.judging.dialects`` puts the
+#: records in their places by which programs of these two are written; a dialect that is registered comes behind them.
+CONTROLS: dict[str, Control] = {name: Control(name) for name in ("sinumerik", "linuxcnc")}
 #: Name of the probe as a tool, and its number where a file does not give it one.
 PROBE, PROBE_NUMBER = "PROBE", 99
 _Increments = Annotated[int, Field(ge=100, le=1_000_000), AfterValidator(_power_of_ten)]

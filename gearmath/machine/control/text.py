@@ -6,12 +6,13 @@ The control tells no capitals from small letters outside texts: code is handed o
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
 from gearmath.machine.control.expression import refuse, shown
+from gearmath.specs.control import CONTROLS
 
 #: Characters of a block with its comment and its line end [unconfirmed; 242 on old software].
 LONGEST_BLOCK = 512
@@ -28,8 +29,6 @@ _NO_TEXT = re.compile(r"\r(?!\n)|[^\t\n\r\x20-\x7e\x80-\U0010ffff]")
 #: The line of the head by which a program says that it is for LinuxCNC.
 LINUXCNC_MARK = "; control: LinuxCNC"
 _FOR_LINUXCNC = re.compile(rf"^{LINUXCNC_MARK}[ \t]*$", re.MULTILINE)
-#: What only programs of another dialect have in them, and how such a one is read: line for line in words known here.
-_TRANSLATIONS: dict[str, Callable[[str], str]] = {}
 _SKIP = re.compile(r"^[ \t]*/", re.MULTILINE)
 
 
@@ -38,14 +37,9 @@ def is_for_linuxcnc(text: str) -> bool:
     return "LinuxCNC" in text and _FOR_LINUXCNC.search(text) is not None
 
 
-def translate(mark: str, as_read: Callable[[str], str]) -> None:
-    """Have programs that hold ``mark`` read as ``as_read`` makes them."""
-    _TRANSLATIONS[mark] = as_read
-
-
 def readable(text: str) -> str:
     """A program in words that are known here: itself, but for those of a registered dialect."""
-    return next((as_read(text) for mark, as_read in _TRANSLATIONS.items() if mark in text), text)
+    return next((one.as_read(text) for one in CONTROLS.values() if one.as_read and one.mark in text), text)
 
 
 def program_text(path: Path) -> str:

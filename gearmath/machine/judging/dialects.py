@@ -12,7 +12,7 @@ from functools import partial
 
 from gearmath.errors import InputError
 from gearmath.machine.control.file_names import control_name, linuxcnc_name
-from gearmath.machine.control.text import LINUXCNC_MARK, translate
+from gearmath.machine.control.text import LINUXCNC_MARK
 from gearmath.machine.planning.cut_plan import CuttingPlan
 from gearmath.machine.writing import cutting, words
 from gearmath.machine.writing.linuxcnc import cutting as linuxcnc_cutting
@@ -26,7 +26,7 @@ from gearmath.machine.writing.probing import SINUMERIK as SINUMERIK_TOUCHES
 from gearmath.machine.writing.probing import TouchWriter
 from gearmath.machine.writing.sheet_words import SINUMERIK_WORDS, SheetWords
 from gearmath.machine.writing.words import Positions
-from gearmath.specs.control import KINDS
+from gearmath.specs.control import CONTROLS, Control
 from gearmath.specs.milling_machine import MillingMachine
 
 __all__ = ["LINUXCNC", "SINUMERIK", "ControlDialect", "known", "named", "of_text", "register", "relative_of_linuxcnc"]
@@ -43,12 +43,10 @@ class Examples:
     texts: Callable[[str, MillingMachine, dict[str, tuple[int, float]]], dict[str, str]]
 
 
-@dataclass(frozen=True)
-class ControlDialect:
+@dataclass(frozen=True, kw_only=True)
+class ControlDialect(Control):
     """How programs for one control are written, named, counted, explained and read."""
 
-    name: str
-    """As ``--control`` and ``[control] kind`` have it."""
     suffix: str
     """Of a program's file, with its dot."""
     cutting: Callable[[CuttingPlan, str], str]
@@ -63,10 +61,6 @@ class ControlDialect:
     file_name: Callable[[str], str]
     """The name of a file as the control keeps it. Raises InputError for one that it does not take."""
     examples: Examples | None = None
-    mark: str = ""
-    """What only programs of this dialect have in them."""
-    as_read: Callable[[str], str] | None = None
-    """A program in words of a known dialect, line for line; None where the reader knows this one."""
 
     def read(self, text: str) -> str:
         """A text of this dialect as it is judged."""
@@ -103,19 +97,20 @@ LINUXCNC = ControlDialect(
     examples=Examples(SUFFIXES, configuration),
     mark=LINUXCNC_MARK,
 )
-_KNOWN = {one.name: one for one in (SINUMERIK, LINUXCNC)}
+CONTROLS.update({one.name: one for one in (SINUMERIK, LINUXCNC)})
 
 
 def known() -> tuple[ControlDialect, ...]:
     """All dialects, in the order in which they were registered."""
-    return tuple(_KNOWN.values())
+    return tuple(one for one in CONTROLS.values() if isinstance(one, ControlDialect))
 
 
 def named(name: str) -> ControlDialect:
     """The dialect of a name. Raises InputError for one that nobody has registered."""
-    if name not in _KNOWN:
-        raise InputError(f"control {name}: must be {' or '.join(_KNOWN)}")
-    return _KNOWN[name]
+    found = next((one for one in known() if one.name == name), None)
+    if found is None:
+        raise InputError(f"control {name}: must be {' or '.join(CONTROLS)}")
+    return found
 
 
 def of_text(text: str) -> ControlDialect:
@@ -128,13 +123,11 @@ def register(dialect: ControlDialect) -> ControlDialect:
 
     Raises ValueError for a name that is taken, and for a dialect without mark or translation.
     """
-    if dialect.name in _KNOWN or dialect.name in KINDS:
+    if dialect.name in CONTROLS:
         raise ValueError(f"control {dialect.name}: is registered already")
     if not dialect.mark or dialect.as_read is None:
         raise ValueError(f"control {dialect.name}: needs a mark in its programs and as_read, so that they are judged")
-    _KNOWN[dialect.name] = dialect
-    KINDS.append(dialect.name)
-    translate(dialect.mark, dialect.as_read)
+    CONTROLS[dialect.name] = dialect
     return dialect
 
 

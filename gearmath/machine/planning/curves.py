@@ -107,7 +107,8 @@ class QuinticPass(CurvedPass):
 
 def powers_of(flank: Flank, nodes: np.ndarray, pivot_height: float, pivot: np.ndarray, degree: int) -> np.ndarray:
     """Coefficients (n-1, degree + 1, 5) of the powers 0 .. of the fraction of each block between nodes (n,) [rad]."""
-    dense = np.interp(np.arange(_STEPS * (len(nodes) - 1) + 1) / _STEPS, np.arange(len(nodes)), nodes)
+    between = nodes[:-1, None] + np.arange(_STEPS) / _STEPS * np.diff(nodes)[:, None]
+    dense = np.append(between.ravel(), nodes[-1])
     axes = axis_positions(flank, dense, pivot_height, pivot)[::_STEPS]
     slopes, bends = axes_by_roll()(flank.vector, motion_of(flank), nodes, pivot_height, pivot)
     width = np.diff(nodes)[:, None]
@@ -131,48 +132,52 @@ def curve_nodes(
     return fewest_nodes(exact, roll_range(member, cut), tolerance, rounding, _LONGEST)
 
 
+#: What an axis without a limit of its jerk may do. [mm/s3, rad/s3]
+NO_JERK_LIMIT = 1e9
+
+
 @cache
-def rates_along_block(degree: int) -> Kernel:
-    """Kernel: what the axes and the tooth do at one fraction of a block, at unit speed of the path (28.4)."""
-    names = [f"axes_{power}" for power in range(degree + 1)]
+def pace_in_block(degree: int) -> Kernel:
+    """Kernel: the least time per mm of the path at one fraction of a block, and the mm per fraction there (28.4)."""
+    kind = "quintic" if degree == QUINTIC else "cubic"
     powers = tuple(
-        Quantity(name, "coefficients of a power of the fraction", "mixed", name, shape=(5,)) for name in names
+        Quantity(
+            f"axes_{power}", f"coefficients of power {power} of the fraction", "mixed", "a", (-500.0, 500.0), shape=(5,)
+        )
+        for power in range(degree + 1)
     )
     fraction = Quantity("fraction", "0 at the start of the block, 1 at its end", "1", "s", (0.0, 1.0))
+    limits = tuple(
+        Quantity(f"max_{what}", f"highest {what} of each axis", "mixed", rf"\hat{{{letter}}}", (1e-3, most), shape=(5,))
+        for what, letter, most in (("speed", "v", 1e4), ("acceleration", "a", 1e6), ("jerk", "j", NO_JERK_LIMIT))
+    )
+    feed = Quantity("feed", "wanted speed past the tooth", "mm/s", "v_f", (2e-4, 2000.0))
     tooth, *pivot = kernel("seen_from_tool").inputs[1:]
-    inputs = (*powers, fraction, tooth, *pivot)
+    inputs = (*powers, fraction, tooth, *pivot, *limits, feed)
     symbols = [ca.SX.sym(q.name, max(q.size, 1)) for q in inputs]
-    coefficients, s, given = symbols[: degree + 1], symbols[degree + 1], symbols[degree + 2 :]
+    coefficients, s, given = symbols[: degree + 1], symbols[degree + 1], symbols[degree + 2 : degree + 5]
     axes = coefficients[-1]
     for coefficient in reversed(coefficients[:-1]):
         axes = coefficient + s * axes
     rate = kernel("path_rate").function(ca.jacobian(axes, s), FEED_RADIUS, FEED_RADIUS)
-    speed = ca.jacobian(axes, s) / rate
-    acceleration = ca.jacobian(speed, s) / rate
-    jerk = ca.jacobian(acceleration, s) / rate
-    seen = kernel("seen_from_tool").function(axes, *given)
-    passing = ca.norm_2(ca.jacobian(seen, s)) / rate
-    outputs = tuple(
-        Quantity(name, text, "mixed", name, shape=(5,))
-        for name, text in (
-            ("axis_speed", "speeds of the axes at unit speed of the path"),
-            ("axis_acceleration", "their accelerations, at the square of it"),
-            ("axis_jerk", "their jerks, at the cube of it"),
-        )
-    )
-    passed = Quantity("passing", "speed past the tooth at unit speed of the path", "1", r"v_t")
+    paces = [ca.norm_2(ca.jacobian(kernel("seen_from_tool").function(axes, *given), s)) / rate / symbols[-1]]
+    along = axes  # then its derivatives along the path: what n of them allow holds at the power n of the speed
+    for power, limit in enumerate(symbols[-4:-1], start=1):
+        along = ca.jacobian(along, s) / rate
+        paces.append((ca.mmax(ca.fabs(along) / limit)) ** (1.0 / power))
+    pace = Quantity("pace", "least time per mm of the path", "s/mm", r"1/\hat{v}")
     function = ca.Function(
-        f"rates_along_block_of_degree_{degree}",
+        f"pace_in_{kind}_block",
         symbols,
-        [ca.cse(value) for value in (speed, acceleration, jerk, passing, rate)],
+        ca.cse([ca.mmax(ca.vertcat(*paces)), rate]),
         [q.name for q in inputs],
-        [*(q.name for q in outputs), passed.name, notation.path_rate.name],
+        [pace.name, notation.path_rate.name],
     )
     return Kernel(
         function,
-        "Speed, acceleration and jerk of the axes along a polynomial block.",
+        f"How slow the axes, and the feed past the tooth, make the path of a {kind} block.",
         inputs,
-        (*outputs, passed, notation.path_rate),
+        (pace, notation.path_rate),
         "derivatives along the path (28.4) of a block, and of seen_from_tool (5.6)",
     )
 
@@ -187,14 +192,10 @@ def curve_seconds(powers: np.ndarray, machine: MillingMachine, feed_mm_min: floa
     count, many = len(powers), len(_SAMPLES)
     coefficients = [np.repeat(powers[:, k], many, axis=0) for k in range(powers.shape[1])]
     pose = (tooth, machine.pivot_height, machine.pivot)
-    *rates, passing, rate = rates_along_block(powers.shape[1] - 1)(*coefficients, np.tile(_SAMPLES, count), *pose)
-    fastest = feed_mm_min / 60.0 / np.maximum(passing, 1e-12)
-    for values, limit, power in zip(
-        rates, (machine.max_speed, machine.max_acceleration, machine.max_jerk), (1, 2, 3), strict=True
-    ):
-        with np.errstate(divide="ignore"):
-            bound = (limit / np.abs(values)).min(axis=1)
-        fastest = np.minimum(fastest, bound ** (1.0 / power))
-    speed = fastest.reshape(count, many).min(axis=1) / _BETWEEN_SAMPLES
+    limits = (machine.max_speed, machine.max_acceleration, np.minimum(machine.max_jerk, NO_JERK_LIMIT))
+    pace, rate = pace_in_block(powers.shape[1] - 1)(
+        *coefficients, np.tile(_SAMPLES, count), *pose, *limits, feed_mm_min / 60.0
+    )
+    slowest = pace.reshape(count, many).max(axis=1) * _BETWEEN_SAMPLES
     length = np.trapezoid(rate.reshape(count, many), _SAMPLES, axis=1)
-    return np.maximum(length / speed, SHORTEST)
+    return np.maximum(length * slowest, SHORTEST)

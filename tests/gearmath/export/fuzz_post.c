@@ -66,6 +66,7 @@ static void __attribute__((noreturn)) come_back(int status) { longjmp(ended, sta
 #undef stderr
 #define stderr said
 #include "gm_post.c"
+#include "curve.c"
 #include "path.c"
 #include "settings.c"
 #include "text.c"

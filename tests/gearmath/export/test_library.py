@@ -6,6 +6,7 @@ A compiler or emulator that is missing is named and skipped, and a failure in CI
 from __future__ import annotations
 
 import ctypes
+import os
 import re
 import shutil
 import subprocess
@@ -18,7 +19,13 @@ import numpy as np
 import pytest
 from elftools.elf.elffile import ELFFile
 
+from gearmath.bevel.pair import load_pair
 from gearmath.export.cnc import cnc_kernels, export_cnc
+from gearmath.export.post import post_file
+from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
+from gearmath.machine.writing.cutting import program_of
+from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.toml import bundled
 
 STRICT = ("-Wall", "-Wextra", "-Werror", "-pedantic", "-O1")
 PASSED = r"libgearmath [\d.]+, interface 1: (\d+) numbers, (\d+) the same bit for bit"
@@ -110,8 +117,28 @@ def test_dll_exports_our_functions_only_and_links_by_its_import_library(library:
     run(compiler, "-std=c99", "selftest.c", "-o", "selftest.exe", "-L.", "-lgearmath", cwd=library)
     imports = run("x86_64-w64-mingw32-objdump", "-p", "selftest.exe", cwd=library)
     assert "DLL Name: gearmath.dll" in imports
-    if wine := shutil.which("wine"):  # not in CI: two hundred megabytes for one run
-        assert everything_agrees(run(wine, "selftest.exe", cwd=library))
+
+
+def test_dll_and_gm_post_run_on_windows(library: Path, tmp_path: Path, vertical: MillingMachine) -> None:
+    """The self-test on the DLL; and a program of polynomials, byte for byte, though sines come from another library."""
+    compiler = tool("x86_64-w64-mingw32-gcc", "gcc-mingw-w64-x86-64")
+    started = ("env", f"WINEPREFIX={tmp_path / 'wine'}", "WINEDEBUG=-all", wine())
+    run("make", "-s", "dll", cwd=library)
+    run(compiler, "-std=c99", "selftest.c", "-o", "selftest.exe", "-L.", "-lgearmath", cwd=library)
+    assert everything_agrees(run(*started, "selftest.exe", cwd=library))
+    plan = cutting_plan(load_pair(bundled("nasa_tp3096_12x36.toml")), "pinion", vertical, CuttingJob(blocks="poly"))
+    (library / "pinion.settings").write_text(post_file(plan), "ascii")
+    run(*started, "gm-post.exe", "pinion.settings", "-o", "CUT.MPF", cwd=library)
+    assert (library / "CUT.MPF").read_bytes() == program_of(plan, "CUT").encode()
+
+
+def wine() -> str:
+    """What runs programs of Windows. CI does not install it: two hundred megabytes for one test."""
+    found = next(filter(None, map(shutil.which, ("wine", "wine64", "/usr/lib/wine/wine64"))), None)
+    if found is None:
+        missing = pytest.xfail if os.environ.get("CI") == "true" else pytest.skip
+        missing("needs wine (Debian: apt install wine64)")
+    return str(found)
 
 
 def public_names() -> set[str]:

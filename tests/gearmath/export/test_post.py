@@ -89,7 +89,8 @@ def test_face_hobbed_members_are_written_alike_for_both_controls(
     for member in gear_set.members:
         plan = planned(gear_set, member, vertical, tolerance=5e-3)
         text = post_file(plan, control)
-        assert "\nplanned 1 0\n" in text
+        assert "\nto " in text
+        assert "\nnode " not in text
         assert post(gm_post, text, tmp_path) == (control.cutting(plan, "CUT"), "")
 
 
@@ -97,14 +98,15 @@ def test_face_hobbed_members_are_written_alike_for_both_controls(
 def test_polynomial_programs_are_written_alike(
     name: str, values: int, vertical: MillingMachine, gm_post: Path, tmp_path: Path
 ) -> None:
-    """Cubic and quintic blocks, with two stages; a Formate gear has straight ones."""
+    """Cubic and quintic blocks computed from the settings, with two stages; a Formate gear has straight ones."""
     control = vertical.control.model_copy(update={"polynomial_values": values})
     machine, gear_set = vertical.model_copy(update={"control": control}), load_pair(bundled(f"{name}.toml"))
     for member in gear_set.members:
         plan = planned(gear_set, member, machine, blocks="poly", spaces=(0, 5, 3), roughing_stock=0.3)
         text = post_file(plan)
         formate = gear_set.member(member).generation == "formate"
-        assert (f"\nplanned 0 {values // 5 - 1}\n" in text) is not formate
+        assert (f"\ndegree {values // 5}\n" in text) is not formate
+        assert "\nto " not in text
         assert post(gm_post, text, tmp_path) == (program_of(plan, "CUT"), "")
 
 
@@ -156,7 +158,7 @@ def test_program_for_linuxcnc_is_that_of_its_python_writer(
 def test_command_writes_a_settings_file_for_each_member(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     main(["export", "cnc", "crown_gear_formate_14x39.toml", "-o", str(tmp_path / "lib")])
     for member in ("pinion", "gear"):
-        assert (tmp_path / "lib" / f"{member}.settings").read_text().startswith("gm-post 2\nsum ")
+        assert (tmp_path / "lib" / f"{member}.settings").read_text().startswith("gm-post 3\nsum ")
         assert f"{member}.settings: {member}, for gm-post" in capsys.readouterr().out or member == "gear"
     with pytest.raises(SystemExit) as ended:
         main(
@@ -193,6 +195,22 @@ def test_edited_settings_move_the_axes_as_the_set_would_and_the_head_says_so(
     assert np.abs(concave_cut - axis_positions(plan.member.concave, plan.passes[0].theta, 500.0)).max() > 0.01
 
 
+def test_edited_feed_of_polynomials_is_that_of_a_job_with_this_feed(
+    gear_set: BevelSet, vertical: MillingMachine, gm_post: Path, tmp_path: Path
+) -> None:
+    """All but the head of the program."""
+    slow, fast = (
+        planned(gear_set, "pinion", vertical, blocks="poly", spaces=(0,), feed=feed) for feed in (300.0, 900.0)
+    )
+    program, _ = post(gm_post, post_file(slow).replace("\nfeed 300.0\n", "\nfeed 900.0\n"), tmp_path)
+    written, wanted, before = (
+        [line for line in text.splitlines() if not line.startswith(";")]
+        for text in (program, program_of(fast, "CUT"), program_of(slow, "CUT"))
+    )
+    assert written == wanted
+    assert written != before
+
+
 def test_carriage_returns_of_a_transfer_do_not_count_as_an_edit(
     gear_set: BevelSet, vertical: MillingMachine, gm_post: Path, tmp_path: Path
 ) -> None:
@@ -209,28 +227,37 @@ def small(gear_set: BevelSet, vertical: MillingMachine) -> str:
 @pytest.mark.parametrize(
     ("pattern", "replacement", "words"),
     [
-        (r"\Agm-post 2", "gm-post 1", "line 1: must read 'gm-post 2'"),
+        (r"\Agm-post 3", "gm-past 3", "line 1: must read 'gm-post 3'"),
+        (r"\Agm-post 3", "gm-post 2", "line 1: is of form 2, this gm-post reads form 3: export settings"),
         (r"^feed .*", "feed -3", r"line \d+: feed = -3: must be 0.001 to 1e\+06"),
         (r"^feed .*\n", "", r"line \d+: feed: is missing"),
         (r"^(feed .*)", r"\1\n\1", "feed: stands twice"),
-        (r"^feed .*", "feed fast", "feed: number 1 is no number"),
-        (r"^feed .*", "feed 0x10", "feed: number 1 is no number"),
+        (r"^feed .*", "feed 300,0", "feed: number 1: '300,0' is no number: digits, a point"),
+        (r"^feed .*", "feed 0x10", "feed: number 1: '0x10' is no number"),
         (r"^feed .*", "speeed 1", "speeed: no such key"),
-        (r"^settings (.*)", r"planned 0 2\nsettings \1", "settings: stands in a planned roll"),
-        (r"^settings (.*)", r"settings \1\nplanned 0 2", "planned: must stand first in its roll"),
-        (r"^settings (.*)", r"to 1 2 3 4 5 6", "to: stands in a roll that is not planned"),
-        (r"^settings (.*)", r"planned 1 2", "planned: the cutter turns along straight blocks only"),
-        (r"^settings (.*)", r"planned 0 5", "planned: number 2 = 5: must be a whole number from 0 to 4"),
-        (r"^settings (.*)", r"planned 0 0\nto 1 2 3 4 5", "to: has 5 numbers, must have 6"),
-        (r"^settings (.*)", r"planned 0 0\nto 1 2 3 4 1e6 0", r"to: number 5 = 1e\+06: must be -1e5 to 1e5"),
-        (r"^settings (.*)", r"planned 0 0\nto 1 2 3 4 5 0\nto 1 2 3 4 5 0", "to: time = 0 s: must be 1e-4 to 1e5"),
+        (r"^settings (.*)", r"to 1 2 3 4 5 6 0\nsettings \1", "settings: stands in a roll that was planned"),
+        (
+            r"^settings (.*)",
+            r"settings \1\nto 1 2 3 4 5 6 0",
+            "to: stands in a roll that is computed",
+        ),
+        (r"^settings (.*)", r"to 1 2 3 4 5", "to: has 5 numbers, must have 7"),
+        (r"^settings (.*)", r"to 1 2 3 4 1e6 6 0", r"to: number 5 = 1e\+06: must be -1e5 to 1e5"),
+        (r"^settings (.*)", r"to 1 2 3 4 5 6 0\nto 1 2 3 4 5 6 0", r"to: time = 0 s: must be 0.0001 to 100000"),
+        (r"^tooth (.*)", r"tooth \1\ndegree 2", "degree = 2: must be 1, 3 or 5"),
+        (r"^tooth (.*)", r"tooth \1\ndegree 3\ndegree 3", "degree: stands twice in one roll"),
+        (r"^jerk .*", "jerk 1 2 3 0 5", "jerk: number 4 = 0: must be at least 1e-9"),
         (r"\{X\}", "{C}", r"\{C\}: no such slot here"),
         (r"\{X\}", "{PX}", r"\{PX\}: no such slot here"),
         (r"^decimals .*", "decimals 5 6.5", "decimals: number 2 = 6.5: must be a whole number from 1 to 9"),
         (r"^speed .*", "speed 1 2 3", "speed: has 3 numbers, must have 5"),
         (r"^speed .*", "speed 1 2 3 0 5", "speed: number 4 = 0: must be at least 1e-9"),
-        (r"^settings \S+", "settings nan", "settings: number 1 is no number"),
-        (r"^settings \S+", "settings 5000", "roll 0: axis positions at node 0: an input is not a number, or outside"),
+        (r"^settings \S+", "settings nan", "settings: number 1: 'nan' is no number"),
+        (
+            r"^settings \S+",
+            "settings 5000",
+            r"roll 0: axis positions \(gm_axis_transform.h\) at node 0: an input is",
+        ),
         (r"^travel X .*", "travel X -1 1", r"pass 0: axis X = -\d+.\d+ mm at node 0: travel is -1 to 1"),
         (r"^travel X .*", "travel Q -1 1", "travel: must name one of the axes"),
         (r"^travel Z .*", "travel Z -100 501", r"Z = 540.00000 mm between the passes: travel is -100 to 501"),

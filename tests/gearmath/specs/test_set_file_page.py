@@ -6,6 +6,7 @@ Where a model changes, the failing test prints the rows as they must read; what 
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from pathlib import Path
 from types import UnionType
 from typing import Any, Literal, Union, get_args, get_origin
@@ -18,9 +19,13 @@ from pydantic.fields import FieldInfo
 from gearmath.specs import (
     bevel_set,
     blank_data,
+    board,
     calibration,
     control,
     design,
+    drive,
+    drivers,
+    hobbing,
     measurement,
     milling_machine,
     simulated_machine,
@@ -54,7 +59,7 @@ def limits(field: FieldInfo) -> str:
     if get_origin(field.annotation) is Literal or words is not None:
         return ", ".join(f"`{value!r}`".replace("'", '"') for value in get_args(words or field.annotation))
     if any(isinstance(part, AfterValidator) and part.func is control._known_kind for part in found):
-        return ", ".join(f'`"{kind}"`' for kind in control.KINDS)
+        return ", ".join(f'`"{kind}"`' for kind in control.CONTROLS)
     bounds = {
         at.Gt: ("above {}", "gt"),
         at.Ge: ("at least {}", "ge"),
@@ -221,3 +226,47 @@ def test_machine_page_is_of_every_table_of_the_files():
 def test_examples_of_the_machine_page_are_read(heading):
     (example,) = re.findall(r"```toml\n(.*?)```", machine_section(heading), re.DOTALL)
     parse(example, MACHINE_FILES[heading], "example")
+
+
+GEARBOX_PAGE = (Path(__file__).parents[3] / "docs" / "gearbox_file.md").read_text("utf-8")
+GEARBOX_TABLES: dict[str, type[BaseModel]] = {
+    "The file of a gearbox machine": hobbing.HobbingMachine,
+    "`[encoder]`": drive.Encoder,
+    "`[table]`": drive.Table,
+    "`[lead_screw]`": drive.LeadScrew,
+    "`[feed]`": drive.Feed,
+    "`[driver]`": drivers.Driver,
+    "`[pins]`": board.Pins,
+    "`[display]`": board.Display,
+    "`[limits]`": hobbing.Limits,
+    "`[[hobs]]`": hobbing.Hob,
+}
+
+
+@pytest.mark.parametrize("heading", GEARBOX_TABLES)
+def test_gearbox_page_has_every_key_with_range_and_default(heading):
+    """Of a hob what the gearbox itself asks for; the page of virtual hobbing has the rest."""
+    section = GEARBOX_PAGE.split(f"# {heading}\n", 1)[1].split("\n## ", 1)[0]
+    cells = [line.strip("|\n").split("|") for line in section.splitlines() if line.startswith("| `")]
+    told = {key.strip(" `"): (limits.strip(), default.strip()) for key, _, limits, default, _ in cells}
+    wanted = {
+        key: (limits, re.sub(r"Fraction\((\d+), 1\)", r"\1", default))
+        for key, (_, limits, default) in rows(GEARBOX_TABLES[heading]).items()
+    }
+    if heading == "`[[hobs]]`":
+        elsewhere = Path(__file__).parents[3].joinpath("docs", "virtual_hobbing.md").read_text("utf-8")
+        assert all(f"| `{key}` |" in elsewhere for key in wanted.keys() - told.keys())
+        wanted = {key: wanted[key] for key in told}
+    assert told == wanted
+
+
+def test_gearbox_page_names_every_driver():
+    section = GEARBOX_PAGE.split("## `[driver]`\n", 1)[1].split("\n| key", 1)[0]
+    assert re.findall(r"`(\w+)`", section) == list(drivers.DRIVERS)
+
+
+def test_example_of_the_gearbox_page_is_a_machine_with_other_pulleys():
+    (example,) = re.findall(r"```toml\n(.*?)```", GEARBOX_PAGE, re.DOTALL)
+    machine = parse(example, hobbing.HobbingMachine, "example")
+    assert machine.encoder_counts == Fraction(40_000, 9)
+    assert machine.motor_steps == Fraction(200 * 8 * 90 * 120, 127)

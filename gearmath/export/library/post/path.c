@@ -9,9 +9,6 @@
 #include "post.h"
 
 static const double pi = 3.141592653589793;
-/* No block is shorter or longer. [s] */
-static const double shortest = 1e-4, longest = 1e5;
-
 /* Remainder with the sign of the divisor, which is positive. */
 static double modulo(double x, double divisor)
 {
@@ -20,8 +17,8 @@ static double modulo(double x, double divisor)
   return rest;
 }
 
-/* Sum as NumPy adds: in eight lanes, and large arrays by halves. */
-static double pairwise(const double *x, int64_t n)
+/* In eight lanes, and large arrays by halves. */
+double pairwise(const double *x, int64_t n)
 {
   double lane[8], sum;
   int64_t k;
@@ -43,7 +40,7 @@ static double pairwise(const double *x, int64_t n)
   return sum;
 }
 
-static void computed(const Job *job, int64_t number, int status, int64_t node, const char *what)
+void computed(const Job *job, int64_t number, int status, int64_t node, const char *what)
 {
   if (status != GM_OK)
     refuse(job, 0, "roll %d: %s at node %d: %s", (int)number, what, (int)node, gm_error_text(status));
@@ -66,25 +63,22 @@ static void unwrap(double *axes, int64_t n)
   for (k = 0; k < n; ++k) axes[AXES * k + 3] -= turns;
 }
 
-static void positions(const Job *job, int64_t number)
+void axis_positions(const Job *job, int64_t number, const double *theta, int64_t n, double *axes)
 {
-  Roll *roll = job->rolls + number;
-  double *settings = roll->settings;
-  int64_t stride = 0, bad;
+  const Roll *roll = job->rolls + number;
+  double *moved = NULL;
+  int64_t bad;
   int status;
   if (roll->motion_rows) {
-    settings = grown(NULL, roll->nodes * SETTINGS, sizeof *settings);
-    stride = SETTINGS;
-    status = gm_moved_settings_batch(
-        roll->nodes, roll->settings, 0, roll->motion, 0, roll->theta, 1, settings, &bad);
-    computed(job, number, status, bad, "moving settings");
+    moved = grown(NULL, n * SETTINGS, sizeof *moved);
+    status = gm_moved_settings_batch(n, roll->settings, 0, roll->motion, 0, theta, 1, moved, &bad);
+    computed(job, number, status, bad, "moving settings (gm_moved_settings.h)");
   }
-  status = gm_axis_transform_batch(
-      roll->nodes, settings, stride, roll->theta, 1, &job->pivot_height, 0, job->pivot_offset, 0, roll->axes, &bad);
-  computed(job, number, status, bad, "axis positions");
-  if (stride) free(settings);
-  unwrap(roll->axes, roll->nodes);
-  roll->axes[2] += roll->plunge;
+  status = gm_axis_transform_batch(n, moved ? moved : roll->settings, moved ? SETTINGS : 0, theta, 1, &job->pivot_height,
+      0, job->pivot_offset, 0, axes, &bad);
+  computed(job, number, status, bad, "axis positions (gm_axis_transform.h)");
+  free(moved);
+  unwrap(axes, n);
 }
 
 /* By what each block takes longer than its clock time, so that no axis accelerates too hard. */
@@ -149,7 +143,7 @@ static void times(const Job *job, int64_t number)
   int j, status;
   status = gm_seen_from_tool_batch(
       roll->nodes, roll->axes, AXES, roll->tooth, 0, &job->pivot_height, 0, job->pivot_offset, 0, seen, &bad);
-  computed(job, number, status, bad, "way past the tooth");
+  computed(job, number, status, bad, "way past the tooth (gm_seen_from_tool.h)");
   for (k = 0; k < n; ++k) {
     const double *at = seen + 3 * k;
     const double dx = at[3] - at[0], dy = at[4] - at[1], dz = at[5] - at[2];
@@ -158,16 +152,16 @@ static void times(const Job *job, int64_t number)
       steps[AXES * k + j] = roll->axes[AXES * (k + 1) + j] - roll->axes[AXES * k + j];
       fastest = fmax(fastest, fabs(steps[AXES * k + j]) / job->speed[j]);
     }
-    clock[k] = fmax(fmax(sqrt(dx * dx + dy * dy + dz * dz) * 60.0 / job->feed, fastest), shortest);
+    clock[k] = fmax(fmax(sqrt(dx * dx + dy * dy + dz * dz) * 60.0 / job->feed, fastest), SHORTEST);
   }
   slow_down(job, steps, clock, n, slower);
   for (k = 0; k < n; ++k) roll->seconds[k] = clock[k] * slower[k];
   factor = sqrt(fmax(1.0, excess(job, steps, roll->seconds, n)));
   for (k = 0; k < n; ++k) {
     roll->seconds[k] *= factor;
-    if (!(roll->seconds[k] >= shortest && roll->seconds[k] <= longest))
-      refuse(job, 0, "roll %d: time = %g s of block %d: must be %g to %g s", (int)number, roll->seconds[k], (int)k, shortest,
-          longest);
+    if (!(roll->seconds[k] >= SHORTEST && roll->seconds[k] <= LONGEST))
+      refuse(job, 0, "roll %d: time = %g s of block %d: must be %g to %g s", (int)number, roll->seconds[k], (int)k, SHORTEST,
+          LONGEST);
     if (job->modulo && fabs(steps[AXES * k + 3]) * (180.0 / pi) > 180.0 - 2e-6)
       refuse(job, 0, "roll %d: A turns half a turn or more in block %d", (int)number, (int)k);
   }
@@ -220,7 +214,12 @@ void plan_passes(Job *job)
     if (roll->planned) continue;
     roll->axes = grown(NULL, AXES * roll->nodes, sizeof *roll->axes);
     roll->seconds = grown(NULL, roll->nodes, sizeof *roll->seconds);
-    positions(job, k);
+    if (roll->powers) {
+      plan_curves(job, k);
+      continue;
+    }
+    axis_positions(job, k, roll->theta, roll->nodes, roll->axes);
+    roll->axes[2] += roll->plunge;
     times(job, k);
   }
   job->up = -HUGE_VAL;

@@ -9,9 +9,22 @@
 enum { MOST_NODES = 100000, MOST_ROLLS = 64, MOST_PASSES = 100000 };
 
 /* What must have been read before the first path: a bit each. */
-enum { DECIMALS = 1, MODULO = 2, LENGTH = 4, PIVOT = 8, SPEED = 16, ACCELERATION = 32, FEED = 64, CLEARANCE = 128 };
-static const char *const keys[] = {"decimals", "modulo", "length", "pivot", "speed", "acceleration", "feed", "clearance"};
-enum { KEYS = 8, ALL_KEYS = 255 };
+enum {
+  DECIMALS = 1, MODULO = 2, LENGTH = 4, PIVOT = 8, SPEED = 16, ACCELERATION = 32, JERK = 64, FEED = 128, CLEARANCE = 256
+};
+static const char *const keys[] = {
+    "decimals", "modulo", "length", "pivot", "speed", "acceleration", "jerk", "feed", "clearance"};
+enum { KEYS = 9, ALL_KEYS = 511 };
+
+/* What a path that is computed must have: the bits of settings, tooth and plunge, in the order of roll_key. */
+enum { ROLL_NEEDS = 7 };
+
+static void no_number(const Job *job, int64_t line, const char *key, int number, const char *text)
+{
+  const size_t length = strcspn(text, " ");
+  refuse(job, line, "%s: number %d: '%.*s' is no number: digits, a point, an exponent", key, number,
+      length < 24 ? (int)length : 24, text);
+}
 
 /* Numbers of a line: as many as wanted, all finite, nothing behind. */
 static void numbers(const Job *job, int64_t line, const char *key, const char *text, double *values, int count)
@@ -22,9 +35,9 @@ static void numbers(const Job *job, int64_t line, const char *key, const char *t
     while (*text == ' ') ++text;
     if (*text == '\0') refuse(job, line, "%s: has %d numbers, must have %d", key, k, count);
     if (strspn(text, "+-.0123456789eE") != strcspn(text, " ")) /* strtod reads 0x10, inf and nan as well */
-      refuse(job, line, "%s: number %d is no number", key, k + 1);
+      no_number(job, line, key, k + 1, text);
     values[k] = strtod(text, &end);
-    if (end == text || (*end != ' ' && *end != '\0')) refuse(job, line, "%s: number %d is no number", key, k + 1);
+    if (end == text || (*end != ' ' && *end != '\0')) no_number(job, line, key, k + 1, text);
     if (!(fabs(values[k]) <= 1e9)) refuse(job, line, "%s: number %d: must be at most 1e9", key, k + 1);
     text = end;
   }
@@ -90,6 +103,10 @@ static int machine_key(Job *job, int64_t line, const char *key, const char *text
     numbers(job, line, key, text, job->acceleration, AXES);
     positive(job, line, key, job->acceleration, AXES);
     break;
+  case JERK:
+    numbers(job, line, key, text, job->jerk, AXES);
+    positive(job, line, key, job->jerk, AXES);
+    break;
   case FEED: job->feed = one_within(job, line, key, text, 0.001, 1e6); break;
   case CLEARANCE: job->clearance = one_within(job, line, key, text, 0.001, 10000.0); break;
   default: break;
@@ -108,69 +125,61 @@ static void travel(Job *job, int64_t line, const char *text)
   memcpy(job->travel[axis - names], ends, sizeof ends);
 }
 
-/* A roll that was planned: whether it turns the cutter, the powers of its blocks, and where it begins. */
-static void begin_planned(const Job *job, int64_t line, Roll *roll, const char *text, int seen)
+/* The end of a block of a planned roll: X Y Z A B C, and seconds. */
+static void add_planned(const Job *job, int64_t line, Roll *roll, const char *text, int seen)
 {
-  double values[2];
-  if (roll->planned) refuse(job, line, "planned: stands twice in one roll");
-  if (seen || roll->motion_rows || roll->nodes) refuse(job, line, "planned: must stand first in its roll");
-  numbers(job, line, "planned", text, values, 2);
-  whole(job, line, "planned", values, 2, 0, MOST_BENDS);
-  if (values[0] > 1.0) refuse(job, line, "planned: number 1 = %g: must be 0 or 1", values[0]);
-  if (values[0] == 1.0 && values[1] > 0.0) refuse(job, line, "planned: the cutter turns along straight blocks only");
-  roll->planned = 1;
-  roll->turns_cutter = (int)values[0];
-  roll->powers = (int)values[1];
-}
-
-/* The end of a block: X Y Z A B, C where the cutter turns, the coefficients of each axis, and seconds. */
-static void add_planned(const Job *job, int64_t line, Roll *roll, const char *text)
-{
-  double values[AXES + 1 + AXES * MOST_BENDS + 1];
-  const int bends = AXES * roll->powers, count = AXES + roll->turns_cutter + bends + 1;
+  double values[AXES + 2];
   int k;
-  if (!roll->planned) refuse(job, line, "to: stands in a roll that is not planned");
+  if (seen || roll->motion_rows || (roll->nodes && !roll->planned))
+    refuse(job, line, "to: stands in a roll that is computed from its settings");
+  roll->planned = 1;
   if (roll->nodes == MOST_NODES) refuse(job, line, "to: more than %d in one roll", MOST_NODES);
   if (roll->nodes == roll->room) {
     roll->room = roll->room ? 2 * roll->room : 256;
     roll->axes = grown(roll->axes, AXES * roll->room, sizeof *roll->axes);
     roll->seconds = grown(roll->seconds, roll->room, sizeof *roll->seconds);
-    if (roll->turns_cutter) roll->cutter = grown(roll->cutter, roll->room, sizeof *roll->cutter);
-    if (bends) roll->bends = grown(roll->bends, bends * roll->room, sizeof *roll->bends);
+    roll->cutter = grown(roll->cutter, roll->room, sizeof *roll->cutter);
   }
-  numbers(job, line, "to", text, values, count);
-  for (k = 0; k < count - 1; ++k)
+  numbers(job, line, "to", text, values, AXES + 2);
+  for (k = 0; k <= AXES; ++k)
     if (!(fabs(values[k]) <= 1e5)) refuse(job, line, "to: number %d = %g: must be -1e5 to 1e5", k + 1, values[k]);
-  if (roll->nodes && !(values[count - 1] >= 1e-4 && values[count - 1] <= 1e5))
-    refuse(job, line, "to: time = %g s: must be 1e-4 to 1e5", values[count - 1]);
+  if (roll->nodes && !(values[AXES + 1] >= SHORTEST && values[AXES + 1] <= LONGEST))
+    refuse(job, line, "to: time = %g s: must be %g to %g", values[AXES + 1], SHORTEST, LONGEST);
   memcpy(roll->axes + AXES * roll->nodes, values, AXES * sizeof *values);
-  if (roll->turns_cutter) roll->cutter[roll->nodes] = values[AXES];
-  if (roll->nodes) {
-    if (bends) memcpy(roll->bends + bends * (roll->nodes - 1), values + AXES, (size_t)bends * sizeof *values);
-    roll->seconds[roll->nodes - 1] = values[count - 1];
-  }
+  roll->cutter[roll->nodes] = values[AXES];
+  if (roll->nodes) roll->seconds[roll->nodes - 1] = values[AXES + 1];
   ++roll->nodes;
+}
+
+/* Of the blocks of a roll: straight, cubic or quintic. */
+static void degree(const Job *job, int64_t line, Roll *roll, const char *text)
+{
+  double value;
+  numbers(job, line, "degree", text, &value, 1);
+  if (value != 1.0 && value != 3.0 && value != 5.0) refuse(job, line, "degree = %g: must be 1, 3 or 5", value);
+  roll->powers = (int)value - 1;
 }
 
 /* Keys of a path; whether it was one of these. */
 static int roll_key(Job *job, int64_t line, const char *key, const char *text, int *seen)
 {
+  static const char *const once[] = {"settings", "tooth", "plunge", "degree"};
   Roll *roll = job->roll_count ? job->rolls + job->roll_count - 1 : NULL;
-  const int which = strcmp(key, "settings") == 0 ? 1 : strcmp(key, "tooth") == 0 ? 2 : strcmp(key, "plunge") == 0 ? 4 : 0;
-  if (strcmp(key, "planned") == 0 || strcmp(key, "to") == 0) {
-    if (!roll) refuse(job, line, "%s: stands before the first roll", key);
-    if (key[0] == 'p') begin_planned(job, line, roll, text, *seen);
-    else add_planned(job, line, roll, text);
+  int which;
+  for (which = 0; which < 4 && strcmp(key, once[which]) != 0; ++which) {}
+  if (which == 4 && strcmp(key, "motion") != 0 && strcmp(key, "node") != 0 && strcmp(key, "to") != 0) return 0;
+  if (!roll) refuse(job, line, "%s: stands before the first roll", key);
+  if (strcmp(key, "to") == 0) {
+    add_planned(job, line, roll, text, *seen);
     return 1;
   }
-  if (!which && strcmp(key, "motion") != 0 && strcmp(key, "node") != 0) return 0;
-  if (!roll) refuse(job, line, "%s: stands before the first roll", key);
-  if (roll->planned) refuse(job, line, "%s: stands in a planned roll", key);
-  if (which && *seen & which) refuse(job, line, "%s: stands twice in one roll", key);
-  *seen |= which;
-  if (which == 1) numbers(job, line, key, text, roll->settings, SETTINGS);
-  else if (which == 2) numbers(job, line, key, text, roll->tooth, 3);
-  else if (which == 4) roll->plunge = one_within(job, line, key, text, 0.0, 10000.0);
+  if (roll->planned) refuse(job, line, "%s: stands in a roll that was planned", key);
+  if (which < 4 && *seen & (1 << which)) refuse(job, line, "%s: stands twice in one roll", key);
+  if (which < 4) *seen |= 1 << which;
+  if (which == 0) numbers(job, line, key, text, roll->settings, SETTINGS);
+  else if (which == 1) numbers(job, line, key, text, roll->tooth, 3);
+  else if (which == 2) roll->plunge = one_within(job, line, key, text, 0.0, 10000.0);
+  else if (which == 3) degree(job, line, roll, text);
   else if (key[0] == 'm') {
     if (roll->motion_rows == MOTION / 7) refuse(job, line, "motion: more than %d lines in one roll", MOTION / 7);
     numbers(job, line, key, text, roll->motion + 7 * roll->motion_rows++, 7);
@@ -188,7 +197,8 @@ static int roll_key(Job *job, int64_t line, const char *key, const char *text, i
 static void whole_roll(const Job *job, int64_t line, int seen)
 {
   const Roll *roll = job->rolls + job->roll_count - 1;
-  if (!roll->planned && seen != 7) refuse(job, line, "roll %d: settings, tooth or plunge is missing", (int)job->roll_count - 1);
+  if (!roll->planned && (seen & ROLL_NEEDS) != ROLL_NEEDS)
+    refuse(job, line, "roll %d: settings, tooth or plunge is missing", (int)job->roll_count - 1);
   if (roll->motion_rows != 0 && roll->motion_rows != MOTION / 7)
     refuse(job, line, "roll %d: motion has %d lines, must have %d, or none", (int)job->roll_count - 1, roll->motion_rows,
         MOTION / 7);
@@ -261,7 +271,9 @@ void read_settings(Job *job, char *text, size_t length)
     job->travel[k][1] = HUGE_VAL;
   }
   line = next_line(&rest, end);
-  if (!line || strcmp(line, "gm-post 2") != 0) refuse(job, 1, "must read 'gm-post 2': this is no settings file");
+  if (!line || strncmp(line, "gm-post ", 8) != 0) refuse(job, 1, "must read 'gm-post 3': this is no settings file");
+  if (strcmp(line + 8, "3") != 0)
+    refuse(job, 1, "is of form %.20s, this gm-post reads form 3: export settings and gm-post together", line + 8);
   line = next_line(&rest, end);
   if (!line || strncmp(line, "sum ", 4) != 0) refuse(job, 2, "must begin with 'sum'");
   snprintf(sum, sizeof sum, "sum %016llx", (unsigned long long)fnv(rest, (size_t)(end - rest)));

@@ -120,7 +120,7 @@ static const char *fill(const Job *job, const Line *line, const Pass *pass, int6
     print_scaled(stream, scaled(job->up - job->length, job->decimals[0]), job->decimals[0]);
   else if (length == 1 && pass && (axis = strchr(axes, *text)) != NULL)
     print_scaled(stream, position(job, pass, node, (int)(axis - axes)), job->decimals[axis - axes > 2]);
-  else if (length == 1 && pass && *text == 'C' && job->rolls[pass->roll].turns_cutter)
+  else if (length == 1 && pass && *text == 'C' && job->rolls[pass->roll].planned)
     print_scaled(stream, turned(job->rolls[pass->roll].cutter[node] * degrees, job->cutter_modulo,
         power_of_ten(job->decimals[1])), job->decimals[1]);
   else if (length == 2 && pass && node > 0 && *text == 'P' && job->rolls[pass->roll].powers

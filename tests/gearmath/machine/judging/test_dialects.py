@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from gearmath.export.post import post_file
-from gearmath.machine.control import text as program_texts
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import program_text
@@ -23,9 +22,9 @@ from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
 from gearmath.machine.writing.axis_cycle import axis_program
 from gearmath.machine.writing.calibrating import calibration_program
 from gearmath.machine.writing.probing import probing_program
-from gearmath.specs import control as known_controls
 from gearmath.specs.bevel_set import BevelSet
 from gearmath.specs.calibration import load_calibration
+from gearmath.specs.control import CONTROLS
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.toml import bundled
 
@@ -39,12 +38,11 @@ CUT = ("nc", "cut", SET, "--member", "pinion", "--spaces", "0", "--tolerance-um"
 def mill5() -> Iterator[ControlDialect]:
     """The dialect of the page, known during one test."""
     source = textwrap.dedent(re.search(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)[1])
-    keep = dict(dialects._KNOWN), list(known_controls.KINDS), dict(program_texts._TRANSLATIONS)
+    keep = dict(CONTROLS)
     exec(source, {"__name__": "mill5"})
     yield dialects.named("mill5")
-    for kept, there in zip(keep, (dialects._KNOWN, known_controls.KINDS, program_texts._TRANSLATIONS), strict=True):
-        there.clear()
-        there.extend(kept) if isinstance(there, list) else there.update(kept)
+    CONTROLS.clear()
+    CONTROLS.update(keep)
 
 
 def unlike(text: str, other: str) -> list[tuple[str, str]]:
