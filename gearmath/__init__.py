@@ -17,43 +17,22 @@ if TYPE_CHECKING:
     from gearmath.engine.kernel import Kernel as Kernel
     from gearmath.errors import ComputationError as ComputationError
     from gearmath.errors import InputError as InputError
-    from gearmath.front.contact import Contact as Contact
-    from gearmath.front.contact import contact as contact
-    from gearmath.front.corrected import Correction as Correction
-    from gearmath.front.design import Blank as Blank
-    from gearmath.front.design import PairDesign as PairDesign
+    from gearmath.front import hobbing as hobbing
+    from gearmath.front import results as results
     from gearmath.front.design import design as design
     from gearmath.front.design import load_blank as load_blank
-    from gearmath.front.design import load_rexs as load_rexs
     from gearmath.front.design import settings_of as settings_of
     from gearmath.front.exports import export_c as export_c
     from gearmath.front.exports import export_cnc as export_cnc
-    from gearmath.front.exports import export_teensy as export_teensy
-    from gearmath.front.flanks import FlankSurface as FlankSurface
-    from gearmath.front.flanks import Tooth as Tooth
-    from gearmath.front.gearbox import HobbedGear as HobbedGear
-    from gearmath.front.gearbox import Job as Job
-    from gearmath.front.gearbox import choose as choose
-    from gearmath.front.gearbox import hob as hob
-    from gearmath.front.gearbox import plan as plan
-    from gearmath.front.judged import Uncertainty as Uncertainty
-    from gearmath.front.judged import load_points as load_points
     from gearmath.front.machines import Machine as Machine
-    from gearmath.front.machines import load_hobber as load_hobber
     from gearmath.front.machines import load_machine as load_machine
     from gearmath.front.machines import load_probe as load_probe
     from gearmath.front.machines import load_shop as load_shop
-    from gearmath.front.measured import Evaluation as Evaluation
     from gearmath.front.measured import Measurement as Measurement
     from gearmath.front.measured import load_measurement as load_measurement
-    from gearmath.front.probing import ProbingProgram as ProbingProgram
-    from gearmath.front.probing import calibrate as calibrate
-    from gearmath.front.probing import calibrating as calibrating
-    from gearmath.front.probing import load_touches as load_touches
-    from gearmath.front.probing import probing as probing
+    from gearmath.front.member import Member as Member
     from gearmath.front.programs import Program as Program
     from gearmath.front.sets import GearSet as GearSet
-    from gearmath.front.sets import Member as Member
     from gearmath.front.sets import load_set as load_set
     from gearmath.kernels import kernel as kernel
     from gearmath.lowering import lower as lower
@@ -61,18 +40,13 @@ if TYPE_CHECKING:
 
 #: The names of the front door, and the modules that have them.
 _HOMES = {
-    "gearmath.front.sets": ("load_set", "GearSet", "Member"),
-    "gearmath.front.flanks": ("FlankSurface", "Tooth"),
-    "gearmath.front.machines": ("load_machine", "load_shop", "load_probe", "load_hobber", "Machine"),
+    "gearmath.front.sets": ("load_set", "GearSet"),
+    "gearmath.front.member": ("Member",),
+    "gearmath.front.machines": ("load_machine", "load_shop", "load_probe", "Machine"),
     "gearmath.front.programs": ("Program",),
-    "gearmath.front.measured": ("load_measurement", "Measurement", "Evaluation"),
-    "gearmath.front.corrected": ("Correction",),
-    "gearmath.front.judged": ("load_points", "Uncertainty"),
-    "gearmath.front.probing": ("probing", "calibrating", "ProbingProgram", "load_touches", "calibrate"),
-    "gearmath.front.design": ("design", "PairDesign", "settings_of", "load_blank", "Blank", "load_rexs"),
-    "gearmath.front.gearbox": ("plan", "Job", "hob", "HobbedGear", "choose"),
-    "gearmath.front.contact": ("contact", "Contact"),
-    "gearmath.front.exports": ("export_c", "export_teensy", "export_cnc"),
+    "gearmath.front.measured": ("load_measurement", "Measurement"),
+    "gearmath.front.design": ("design", "settings_of", "load_blank"),
+    "gearmath.front.exports": ("export_c", "export_cnc"),
     "gearmath.control.store": ("MeasurementStore",),
     "gearmath.control.store_evaluation": ("evaluate_run",),
     "gearmath.demo": ("run_demo",),
@@ -84,12 +58,16 @@ _HOMES = {
     "derivations": ("Expression", "Quantity"),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
+#: Those that are modules of names: the electronic gearbox, and the records that calls return.
+_MODULES = {name: f"gearmath.front.{name}" for name in ("hobbing", "results")}
 
-__all__ = sorted(_HOME)
+__all__ = sorted({**_HOME, **_MODULES})
 
 
 def __getattr__(name: str) -> Any:
     """A name of the front door on first use."""
+    if name in _MODULES:
+        return importlib.import_module(_MODULES[name])
     if name in _HOME:
         return getattr(importlib.import_module(_HOME[name]), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

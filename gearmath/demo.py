@@ -31,7 +31,7 @@ from gearmath.gearbox.train import GearboxPlan, plan
 from gearmath.kernels import kernel
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
-from gearmath.machine.milling.mill import mill_member
+from gearmath.machine.milling.mill import mill_member, probed
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.plot import member_figure, save
@@ -221,9 +221,8 @@ def _cut_and_measure(gear_set: Path, name: str, shop: SimulatedMachine, program:
     member = bevel_set.member(name)
     write_text(program, cutting_program(bevel_set, name, machine, program.stem, CuttingJob(range(member.teeth))))
     path = execute(program.read_text("utf-8"), program.name, Setup.of(machine))
-    perfect_probe = shop.model_copy(update={"probe": Probe()})
-    true, seen = (mill_member(path, member, name, machine, errors) for errors in (perfect_probe, shop))
-    return true, seen
+    true = mill_member(path, member, name, machine, shop.model_copy(update={"probe": Probe()}))
+    return true, probed(true, name, shop)
 
 
 def result_table(results: list[MemberResult]) -> str:

@@ -115,7 +115,18 @@ def likely(
     if trials and total > 1 and (most := _explain_most(trials, total)):
         said = [f"{one.place} = {one.repair.value:.6g}" for one in most]
         return f"; no single setting was found that puts all of it right, most of it hangs on {', or '.join(said)}"
-    return "; no single setting was found that puts it right"
+    found_apart = [one for name, flank in where for one in _from_crown_gear(members, found, where, name, flank)]
+    farthest = max(found_apart, key=lambda one: one.apart)
+    return f"; no single setting was found that puts it right, farthest from its crown gear's is {farthest}"
+
+
+def _from_crown_gear(
+    members: Members, found: Mapping[Where, CutFlank], where: Sequence[Where], name: str, flank: str
+) -> list[Suspect]:
+    """The settings of a flank, and how far each is from that of its crown gear."""
+    member, wanted = members[name], _wanted(members, found, where, name, flank)
+    expected = _crown_gear(members, member, flank, abs(wanted.spiral), member.indexing_sign)
+    return _suspects(member, f"{name}.{flank}", member.flank(flank).nominal, expected, "crown gear")
 
 
 def _explain_most(trials: Sequence[_Trial], total: float) -> list[_Trial]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -29,6 +30,21 @@ def wrong_digits(value: float) -> Iterator[float]:
             other = float(text[:place] + digit + text[place + 1 :])
             if (place != digits[0] or digit != "0") and _LEAST <= abs(other / value - 1) <= _MOST:
                 yield other
+
+
+def minutes_as_decimals(value: float) -> list[float]:
+    """The angle in degrees that 63.5631 is where it was written for 63 degrees 56 minutes 31 seconds; often none.
+
+    With two decimals these are minutes, with four or more seconds follow, and then parts of a second.
+    """
+    text = repr(abs(float(value)))
+    whole, _, parts = text.partition(".")
+    if "e" in text or len(parts) not in (2, 4, 5, 6):
+        return []
+    minutes, seconds = int(parts[:2]), float(f"{parts[2:4] or 0}.{parts[4:] or 0}")
+    if minutes >= 60 or seconds >= 60:
+        return []
+    return [math.copysign(int(whole) + minutes / 60 + seconds / 3600, value)]
 
 
 def _digits(value: float) -> tuple[str, list[int]]:

@@ -42,8 +42,8 @@ _MOST_POINTS = 1_000_000
     "--places",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Places in their stead: z_w and r_w in mm a line, from the pitch apex; row by row where --grid is given, else "
-    "one column, for other programs.",
+    help="Listed places in place of an even grid: z_w and r_w in mm a line, from the pitch apex; row by row where "
+    "--grid is given, else one column, for other programs.",
 )
 @output("flank CSV")
 def flank(

@@ -19,7 +19,8 @@ from gearmath.errors import about as about
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from gearmath.front.sets import GearSet, Member
+    from gearmath.front.member import Member
+    from gearmath.front.sets import GearSet
 
 #: The gear set of a verb whose first argument is another file.
 SET_OPTION = click.option(
@@ -47,7 +48,7 @@ REGISTER = click.option(
     "registered",
     default=True,
     show_default=True,
-    help="Take out the clamping (eccentricity, tilt), where the points tell it.",
+    help="Take out the clamping (eccentricity, tilt), where the points determine it.",
 )
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 

@@ -26,7 +26,8 @@ from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.bevel.identify.variables import Bounds
-    from gearmath.front.sets import GearSet, Member
+    from gearmath.front.member import Member
+    from gearmath.front.sets import GearSet
     from gearmath.quality.correction.thickness import By
 
 

@@ -20,7 +20,7 @@ def verdict(member: Member, correction: MemberCorrection) -> tuple[str, str]:
     remains = []
     for flank, (before, after) in correction.rms.items():
         changes = [
-            f"{name} {(new - old) * reading(name)[0]:+.4f} {reading(name)[1]}"
+            f"{name} {(new - old) * reading(name)[0]:+.4f} {reading(name)[1]}".rstrip()
             for where, name, old, new in setting_changes(member, correction)
             if where == flank
         ]

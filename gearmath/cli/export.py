@@ -41,7 +41,7 @@ def teensy(machine: str, folder: Path) -> None:
 
     Firmware, the machine's constants, wiring diagram and README. The folder's name becomes the sketch's name.
     """
-    from gearmath.front.exports import export_teensy
+    from gearmath.front.hobbing import export_teensy
     from gearmath.front.machines import load_hobber
 
     names = export_teensy(load_hobber(machine), folder)

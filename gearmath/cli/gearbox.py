@@ -15,7 +15,7 @@ from gearmath.cli.common import JSON, echo_json, plot, save_plot
 from gearmath.cli.gearbox_cut import choose, cut
 
 if TYPE_CHECKING:
-    from gearmath.front.gearbox import Job
+    from gearmath.front.hobbing import Job
     from gearmath.gearbox.simulation import Pattern
     from gearmath.specs.hobbing import HobbingMachine
 
@@ -28,7 +28,7 @@ _JOB = (
     click.option("--starts", type=int, help="Starts of the hob, instead of the machine file's; of the thread."),
     click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of helix or thread; right if left out."),
     click.option("--helix", type=float, help="Helix angle in degrees."),
-    click.option("--cut", type=click.Choice(["climb", "conventional"]), help="Way of the feed; climb if left out."),
+    click.option("--cut", type=click.Choice(["climb", "conventional"]), help="Sense of the feed; climb if left out."),
     click.option("--feed", help="Feed in mm per turn of the table, for a helix without an encoder on the feed."),
     click.option("--hob", help="One hob of the machine file, such as 32dp or m1; all of them if left out."),
     click.option("--shift", type=float, help="Profile shift in modules."),
@@ -120,7 +120,7 @@ def simulate(
 
 def _plan(machine: HobbingMachine, options: dict[str, Any]) -> Job:
     """The plan of a gear or of a thread, by the machine's profile."""
-    from gearmath.front.gearbox import plan
+    from gearmath.front.hobbing import plan
 
     given = {key: value for key, value in options.items() if value is not None}
     needed, other = ("pitch", "teeth") if machine.profile == "lathe" else ("teeth", "pitch")

@@ -125,7 +125,7 @@ def _cut_gear(
     job: dict[str, Any],
 ) -> None:
     from gearmath.cli.gearbox_cut_text import cut_text
-    from gearmath.front.gearbox import hob
+    from gearmath.front.hobbing import hob
 
     if job["teeth"] is None:
         raise click.UsageError(f"{machine.name} is a hobbing machine: give --teeth")
@@ -181,7 +181,7 @@ def _cut_thread(
     job: dict[str, Any],
 ) -> None:
     from gearmath.cli.gearbox_cut_text import thread_text
-    from gearmath.front.gearbox import plan
+    from gearmath.front.hobbing import plan
 
     if job["pitch"] is None:
         raise click.UsageError(f"{machine.name} is a lathe: give --pitch")
@@ -220,7 +220,7 @@ def choose(
     The rest is that of MACHINE, hobbing_default.toml if left out, with its section [errors].
     """
     from gearmath.cli.gearbox_cut_text import choice_text
-    from gearmath.front.gearbox import choose as search
+    from gearmath.front.hobbing import choose as search
 
     if helix is None and hand is not None:
         raise click.UsageError("--hand has no meaning without --helix")

@@ -57,7 +57,7 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
     "--registration/--no-registration",
     default=True,
     show_default=True,
-    help="With the pitch, probe the corners on eight teeth around: they tell how the work sits.",
+    help="With the pitch, probe the corners on eight teeth around: they determine the clamping.",
 )
 @click.option(
     "--repeat", type=click.IntRange(1, MOST_TOUCHES), default=1, show_default=True, help="Touches of every point."

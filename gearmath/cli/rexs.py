@@ -15,11 +15,11 @@ from gearmath.cli.common import output
 def rexs(file: Path, target: Path) -> None:
     """The set of the bevel stage in a REXS 2.0.0 file (XML), as 'gearmath export rexs' or another program writes it.
 
-    Says what of the file has no place in a set and was left aside. The names: docs/exchange.md.
+    Lists what of the file a set cannot hold; that is not read. The names: docs/exchange.md.
     """
-    from gearmath.front.design import load_rexs
+    from gearmath.front.sets import GearSet
 
-    pair = load_rexs(file)
+    pair = GearSet.from_rexs(file)
     pair.save(target)
     for text in pair.remarks:
         click.echo(f"left aside: {text}")

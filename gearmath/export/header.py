@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 import casadi as ca
 import sympy
 
-from derivations.expression import Quantity
+from derivations.quantity import Quantity
 from gearmath.engine.kernel import Kernel
 from gearmath.version import __version__
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from derivations.expression import Quantity
+from derivations.quantity import Quantity
 from gearmath.engine.kernel import Kernel
 
 _WORDS = """\

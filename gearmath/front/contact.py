@@ -74,17 +74,7 @@ def contact(
     tolerance: bool = False,
     begin: Begin = silent,
 ) -> Contact:
-    """The contact of a pair at an assembly: V, H, J [mm], growth of the shaft angle [degrees]; docs/contact.md.
-
-    With measurements of its members, one or both, on the measured flanks; with ``tolerance`` also V and H at which the
-    pattern reaches an edge. Raises InputError where the set has one member only, or a measurement holds no tooth in
-    full.
-
-    >>> import gearmath as gm
-    >>> found = gm.contact(gm.load_set("nasa_tp3096_12x36.toml"), sides=("drive",))
-    >>> found.runs["drive"].outcome
-    'reversed parabola'
-    """
+    """The contact of a pair; see :meth:`gearmath.GearSet.contact`."""
     for side in sides:
         if side not in SIDES:
             raise InputError(f"sides: {side!r}: must be of {', '.join(SIDES)}")

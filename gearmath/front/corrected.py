@@ -14,8 +14,9 @@ from gearmath.bevel.identify.variables import reading
 from gearmath.bevel.pair import check_pair
 from gearmath.errors import ComputationError, InputError, about
 from gearmath.front.measured import Evaluation, Measurement
+from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
-from gearmath.front.sets import GearSet, Member, load_set
+from gearmath.front.sets import GearSet, load_set
 from gearmath.front.tables import html_table
 from gearmath.quality.correction import member as correcting
 from gearmath.quality.correction.ease_off import moved_to_mate

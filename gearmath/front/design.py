@@ -1,4 +1,4 @@
-"""Pairs from design data, from other programs, and from measured flanks."""
+"""Pairs from design data and from measured flanks."""
 
 from __future__ import annotations
 
@@ -13,10 +13,8 @@ from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.design.reverse import ReversedMember
 from gearmath.bevel.design.reverse_route import load_known, reversed_set
-from gearmath.bevel.pair import check_pair
 from gearmath.bevel.slots import slots_of
 from gearmath.errors import about
-from gearmath.exchange.rexs import read_rexs
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet
 from gearmath.front.tables import html_table
@@ -135,14 +133,3 @@ def load_blank(path: str | Path) -> Blank:
     source = find(str(path))
     data = load_blank_data(source)
     return Blank(data.title, blank_of(data, str(source)))
-
-
-def load_rexs(path: str | Path) -> GearSet:
-    """The set of the bevel stage in a REXS 2.0.0 file; its remarks say what of the file has no place in a set.
-
-    Raises InputError naming what is missing or no pair.
-    """
-    pair, left_aside = read_rexs(Path(path))
-    with about(Path(path)):
-        check_pair(pair)
-    return GearSet(pair, remarks=left_aside)

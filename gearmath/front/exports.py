@@ -1,27 +1,26 @@
-"""C of kernels, of the gearbox and of the post-processor."""
+"""C of kernels and of the post-processor."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from derivations.expression import Expression
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import about
 from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import export_cnc as _export_cnc
 from gearmath.export.folder import write_folder
 from gearmath.export.post import post_file
-from gearmath.export.teensy import export_teensy as _export_teensy
 from gearmath.front.machines import Machine, load_machine
 from gearmath.front.programs import cutting
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet
-from gearmath.lowering import lower
 from gearmath.machine.judging.dialects import named
 from gearmath.machine.planning.cut_plan import CuttingJob
-from gearmath.specs.hobbing import HobbingMachine
+
+if TYPE_CHECKING:
+    from derivations.expression import Expression
 
 
 def export_c(
@@ -33,8 +32,8 @@ def export_c(
     64 in whole numbers of that size. Raises ExportError (a ComputationError) naming what cannot become such C,
     InputError where the folder holds other files.
     """
-    each = [what] if isinstance(what, Kernel | Expression) else list(what)
-    made = [lower(one) if isinstance(one, Expression) else one for one in each]
+    each = list(what) if isinstance(what, Iterable) else [what]
+    made = [one if isinstance(one, Kernel) else _lowered(one) for one in each]
     files: dict[str, str] = {}
     for one in made:
         files |= (integer_kernel(one, bits) if bits else double_kernel(one)).files
@@ -42,9 +41,10 @@ def export_c(
     return [Path(folder) / name for name in files]
 
 
-def export_teensy(machine: HobbingMachine, folder: str | Path) -> list[str]:
-    """Write the whole Teensy sketch of a hobbing machine or lathe; the names of its files. Raises InputError."""
-    return list(_export_teensy(machine, Path(folder)))
+def _lowered(expression: Expression) -> Kernel:
+    from gearmath.lowering import lower  # loads SymPy
+
+    return lower(expression)
 
 
 def export_cnc(

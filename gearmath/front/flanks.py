@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearmath.bevel.tooth import ToothSpace
-    from gearmath.front.sets import Member
+    from gearmath.front.member import Member
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from gearmath.errors import InputError, about
 from gearmath.front.corrected import effects_um
 from gearmath.front.measured import Evaluation, Measurement
+from gearmath.front.member import Member
 from gearmath.front.progress import Begin, Progress, silent
-from gearmath.front.sets import Member
 from gearmath.front.tables import html_table
 from gearmath.quality.evaluation.member import STAGES
 from gearmath.quality.foreign.member import Foreign, Phase, foreign_file
@@ -20,8 +20,6 @@ from gearmath.quality.uncertainty.corrected import uncertain_correction
 from gearmath.quality.uncertainty.figures import figures_of
 from gearmath.quality.uncertainty.propagation import Uncertain, uncertain_figures
 from gearmath.quality.uncertainty.source import covariance_of
-from gearmath.report import STEPS, inspection_sheet
-from gearmath.report.judged import DRAWS, reported
 from gearmath.specs.point_text import PointText, read_point_text
 
 if TYPE_CHECKING:
@@ -125,6 +123,9 @@ def inspection(
     well the points were measured as of :meth:`Measurement.uncertainty`. Raises InputError where measurements are of
     the same member.
     """
+    from gearmath.report import STEPS, inspection_sheet  # loads Matplotlib
+    from gearmath.report.judged import DRAWS, reported
+
     names = [one.member.name for one in measured]
     if len(set(names)) < len(names):
         raise InputError(f"both measurements are of the {names[0]}: the mate of the other member is wanted")
@@ -186,7 +187,7 @@ def foreign_points(
     leave_out: bool = False,
     begin: Begin = silent,
 ) -> ForeignPoints:
-    """Points that were read, by flank and tooth, laid onto the flanks of a member; see :func:`load_points`."""
+    """Points that were read, laid onto the flanks of a member; see :meth:`gearmath.Measurement.from_points`."""
     parts = [
         PointPart(str(text.path), flank, tooth, text.point, text.normal, text.line)
         for (flank, tooth), text in texts.items()
@@ -205,12 +206,7 @@ def load_points(
     phase: Phase = "common",
     leave_out: bool = False,
 ) -> Measurement:
-    """Points of another measuring machine, as plain text, by flank and tooth: ``{("concave", 0): "points.txt"}``.
-
-    ``frame`` says how the axes of the files lie, by default z from the apex to the back, ``phase`` whether they are
-    turned in common, each, or kept; ``leave_out`` takes files with gaps; docs/files.md. Raises InputError naming file
-    and line.
-    """
+    """Points of another measuring machine; see :meth:`gearmath.Measurement.from_points`."""
     texts = {where: read_point_text(Path(path), unit) for where, path in paths.items()}
     made = foreign_points(texts, member, frame, phase, leave_out)
     if made.found.gaps and not leave_out:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from gearmath.specs.calibration import Calibration, load_calibration
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.simulated_machine import SimulatedMachine, load_simulated_machine
 from gearmath.specs.toml import find
+
+if TYPE_CHECKING:
+    from gearmath.front.probing import ProbingProgram
+    from gearmath.quality.calibration.axes import AxisCalibration
+    from gearmath.quality.calibration.tip import Tip
 
 
 @dataclass(frozen=True)
@@ -22,6 +27,31 @@ class Machine:
     def to_dict(self) -> dict[str, Any]:
         """The machine with the keys of its file, mm and degrees."""
         return self.spec.model_dump(exclude_defaults=True)
+
+    def calibrating(
+        self, cycle: Literal["tip", "axes"] = "tip", name: str = "CALIBRATE", **options: Any
+    ) -> ProbingProgram:
+        """The program that touches ring and sphere on the table for the tip of the probe, or with "axes" the sphere on
+        the work side for the rotary axes.
+
+        ``options``: probe, as of :func:`gearmath.load_probe`; control, "sinumerik" or "linuxcnc", by default that of
+        the machine. Raises InputError naming what the machine cannot do.
+        """
+        from gearmath.front.probing import calibrating
+
+        return calibrating(self, cycle=cycle, name=name, **options)
+
+    def calibrate(
+        self, path: str | Path, probe: Calibration | None = None, lobing: bool = False, run: int | None = None
+    ) -> Tip | AxisCalibration:
+        """The tip of the probe from touches on sphere or ring, or the rotary axes from those on the work side's sphere.
+
+        Both have standard uncertainties [mm, rad]. By default those of the last run, which must be whole; ``lobing``
+        finds what the tip's radius does around, too. Raises InputError naming file and touch.
+        """
+        from gearmath.front.probing import calibrate
+
+        return calibrate(path, self, probe, lobing, run)
 
 
 def load_machine(path: str | Path = "vertical_5axis.toml") -> Machine:

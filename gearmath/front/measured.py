@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,8 +11,9 @@ import numpy as np
 
 from gearmath.errors import InputError, about
 from gearmath.files import write_text
+from gearmath.front.member import Member
 from gearmath.front.progress import Progress, unheard
-from gearmath.front.sets import GearSet, Member
+from gearmath.front.sets import GearSet
 from gearmath.front.tables import html_table
 from gearmath.quality.evaluation.member import MemberEvaluation as Found
 from gearmath.quality.evaluation.member import evaluate_member
@@ -26,7 +27,11 @@ if TYPE_CHECKING:
 
     from gearmath.front.corrected import Correction
     from gearmath.front.judged import Uncertainty
+    from gearmath.front.machines import Machine
     from gearmath.quality.correction.stock import Stock
+    from gearmath.quality.foreign.member import Phase
+    from gearmath.quality.foreign.points import Frame
+    from gearmath.specs.calibration import Calibration
 
 #: Enough for the spread of a maximum to 2 %.
 _FEW_DRAWS = 2000
@@ -42,6 +47,41 @@ class Measurement:
     member: Member
     file: FlankFile
     source: Path | None = None
+
+    @staticmethod
+    def from_touches(
+        path: str | Path,
+        pair: GearSet,
+        machine: Machine | None = None,
+        probe: Calibration | None = None,
+        run: int | None = None,
+    ) -> Measurement:
+        """Raw touches of a probing program as corrected contact points and deviations [mm].
+
+        By default those of the last run, which must be whole. Raises InputError naming file and point.
+        """
+        from gearmath.front.probing import load_touches
+
+        return load_touches(path, pair, machine, probe, run)
+
+    @staticmethod
+    def from_points(
+        paths: Mapping[tuple[str, int], str | Path],
+        member: Member,
+        unit: str = "mm",
+        frame: Frame | None = None,
+        phase: Phase = "common",
+        leave_out: bool = False,
+    ) -> Measurement:
+        """Points of another measuring machine, as plain text, by flank and tooth: ``{("concave", 0): "points.txt"}``.
+
+        ``frame`` says how the axes of the files lie, by default z from the apex to the back, ``phase`` whether they are
+        turned in common, each, or kept; ``leave_out`` takes files with gaps; docs/files.md. Raises InputError naming
+        file and line.
+        """
+        from gearmath.front.judged import load_points
+
+        return load_points(paths, member, unit, frame, phase, leave_out)
 
     @property
     def deviation(self) -> np.ndarray:

@@ -12,8 +12,9 @@ from gearmath.errors import InputError, about
 from gearmath.files import write_text
 from gearmath.front.machines import Machine, load_machine, load_probe
 from gearmath.front.measured import Measurement
+from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
-from gearmath.front.sets import GearSet, Member
+from gearmath.front.sets import GearSet
 from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import readable
@@ -46,9 +47,9 @@ if TYPE_CHECKING:
 class ProbingProgram:
     """A program that probes ``member``, or without one ring and spheres.
 
-    What :func:`probing` and :func:`calibrating` write was run before it is returned; ``clearance`` says how far the
-    probe stays clear. ``shop`` is the simulated machine whose fixture and spindle it must clear, ``cycle`` what
-    ring and spheres tell: the tip, or the rotary axes.
+    What :meth:`Member.probing` and :meth:`Machine.calibrating` write was run before it is returned; ``clearance`` says
+    how far the probe stays clear. ``shop`` is the simulated machine whose fixture and spindle it must clear, ``cycle``
+    what ring and spheres tell: the tip, or the rotary axes.
     """
 
     member: Member | None
@@ -162,17 +163,7 @@ def probing(
     file: str | Path | None = None,
     begin: Begin = silent,
 ) -> ProbingProgram:
-    """The program that probes a member: a grid of both flanks of the teeth of ``topography``, the reference point of
-    every tooth for ``pitch``, the corners on eight teeth around for ``registration``, each ``repeat`` times.
-
-    It clears fixture and spindle of ``shop``, and is for the ``control`` "sinumerik" or "linuxcnc", by default that of
-    the machine; sentences name the ``file`` it is for. Raises InputError naming what the probe would meet.
-
-    >>> import gearmath as gm
-    >>> program = gm.probing(gm.load_set("nasa_tp3096_12x36.toml").pinion, topography=(), registration=False)
-    >>> program.name, "MEAS=" in program.text
-    ('PROBE', True)
-    """
+    """The program that probes a member; see :meth:`gearmath.Member.probing`. Sentences name the ``file`` it is for."""
     if isinstance(repeat, bool) or not isinstance(repeat, int) or not 1 <= repeat <= MOST_TOUCHES:
         raise InputError(f"repeat = {repeat!r}: must be a whole number from 1 to {MOST_TOUCHES}")
     machine, probe = machine or load_machine(), probe or load_probe()
@@ -193,11 +184,7 @@ def calibrating(
     source: str | Path | None = None,
     begin: Begin = silent,
 ) -> ProbingProgram:
-    """The program that touches ring and sphere on the table for the tip, or the sphere on the work side for the rotary
-    axes; ``control`` and ``file`` as of :func:`probing`, ``source`` is the file of the probe, for sentences.
-
-    Raises InputError naming what the machine cannot do.
-    """
+    """The program that calibrates; see :meth:`gearmath.Machine.calibrating`. ``source`` is the file of the probe."""
     if cycle not in ("tip", "axes"):
         raise InputError(f"cycle = {cycle!r}: must be 'tip' or 'axes'")
     machine, probe = machine or load_machine(), probe or load_probe()
@@ -219,9 +206,7 @@ def load_touches(
     probe: Calibration | None = None,
     run: int | None = None,
 ) -> Measurement:
-    """Raw touches as corrected contact points and deviations [mm], by default those of the last run, which must be
-    whole. Raises InputError naming file and point.
-    """
+    """Raw touches as a measurement; see :meth:`gearmath.Measurement.from_touches`."""
     machine, probe = machine or load_machine(), probe or load_probe()
     made = measured_run(Path(path), pair.spec, machine.spec, probe, run)
     return Measurement(pair.member(made.touches.member), made.file)
@@ -234,11 +219,7 @@ def calibrate(
     lobing: bool = False,
     run: int | None = None,
 ) -> Tip | AxisCalibration:
-    """The tip of the probe from touches on sphere or ring, or the rotary axes from those on the work side's sphere.
-
-    Both have standard uncertainties [mm, rad]. By default those of the last run, which must be whole. Raises InputError
-    naming file and touch.
-    """
+    """The tip of the probe, or the rotary axes; see :meth:`gearmath.Machine.calibrate`."""
     machine, probe = machine or load_machine(), probe or load_probe()
     return calibrated_run(Path(path), machine.spec, probe, run, lobing).found
 

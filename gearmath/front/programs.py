@@ -12,8 +12,8 @@ from gearmath.errors import InputError
 from gearmath.files import write_text
 from gearmath.front.machines import Machine, load_machine
 from gearmath.front.measured import Measurement
+from gearmath.front.member import Member
 from gearmath.front.progress import Begin, Progress, silent, unheard
-from gearmath.front.sets import Member
 from gearmath.machine.bodies.cutter import cutter_of
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup

@@ -1,36 +1,25 @@
-"""Gear sets and their members: load, change a setting, look at flanks and teeth, write programs."""
+"""Gear sets: load, save, look at the pair in contact, write it for other programs."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from gearmath.bevel.flank import blank_grid
-from gearmath.bevel.grid import listed_grid
-from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.bevel.pair import check_pair, load_pair
-from gearmath.errors import InputError, about
+from gearmath.errors import about
 from gearmath.files import write_text
-from gearmath.front.changed import changed, check_keys, shallow
-from gearmath.front.flanks import FlankSurface, Tooth
+from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
 from gearmath.front.tables import html_table
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet
-from gearmath.specs.bevel_set import Member as MemberSpec
 from gearmath.specs.cut import ANGULAR
-from gearmath.specs.margins import Margins
-from gearmath.specs.places import read_places
-from gearmath.specs.toml import checked, find
+from gearmath.specs.toml import find
 
 if TYPE_CHECKING:
     from gearmath.exchange.step import WrittenSolid
-    from gearmath.front.machines import Machine
+    from gearmath.front.contact import Contact
     from gearmath.front.measured import Measurement
-    from gearmath.front.programs import Program
 
 
 @dataclass(frozen=True)
@@ -68,9 +57,41 @@ class GearSet:
 
         Raises InputError where the two are no pair any more, naming member, flank, key, value and limit.
         """
-        values = self.spec.model_copy(update={member.name: member.spec})
-        check_pair(values)
-        return GearSet(values)
+        return self.with_spec(self.spec.model_copy(update={member.name: member.spec}))
+
+    def with_spec(self, spec: BevelSet) -> GearSet:
+        """The set of other content, which no file has yet. Raises InputError where it is no pair."""
+        check_pair(spec)
+        return GearSet(spec)
+
+    def contact(self, *measured: Measurement, **options: Any) -> Contact:
+        """How the pair runs at an assembly, on its nominal flanks or on ``measured`` ones of a member or of both.
+
+        ``options``: v, h, j [mm] and shaft, by how much the shaft angle grows [degrees], docs/contact.md; sides, of
+        "drive" and "coast"; tolerance, to search V and H at which the pattern reaches an edge. Raises InputError where
+        the set has one member only, or a measurement holds no tooth in full.
+
+        >>> import gearmath as gm
+        >>> found = gm.load_set("nasa_tp3096_12x36.toml").contact(sides=("drive",))
+        >>> found.runs["drive"].outcome
+        'reversed parabola'
+        """
+        from gearmath.front.contact import contact
+
+        return contact(self, *measured, **options)
+
+    @staticmethod
+    def from_rexs(path: str | Path) -> GearSet:
+        """The set of the bevel stage in a REXS 2.0.0 file; its remarks say what of the file has no place in a set.
+
+        Raises InputError naming what is missing or no pair.
+        """
+        from gearmath.exchange.rexs import read_rexs
+
+        pair, left_aside = read_rexs(Path(path))
+        with about(Path(path)):
+            check_pair(pair)
+        return GearSet(pair, remarks=left_aside)
 
     def save(self, path: str | Path) -> Path:
         """Write the set as TOML (mm, degrees), in one step. Raises InputError where the place cannot be written."""
@@ -162,161 +183,3 @@ def load_set(path: str | Path) -> GearSet:
     """
     source = find(str(path))
     return GearSet(load_pair(source), source)
-
-
-@dataclass(frozen=True)
-class Member:
-    """One member of a set: ``name`` is "pinion" or "gear", ``spec`` its part of the file, mm and degrees."""
-
-    gear_set: GearSet
-    name: str
-    spec: MemberSpec
-
-    @property
-    def teeth(self) -> int:
-        """How many."""
-        return self.spec.teeth
-
-    def with_settings(
-        self, concave: Mapping[str, float] | None = None, convex: Mapping[str, float] | None = None
-    ) -> Member:
-        """The member with settings changed by so much [mm, degrees], by the keys of the set file.
-
-        The flanks as they were stay the nominal ones, so that :meth:`deviations` tells what the change does;
-        :meth:`flank`, and files of nominal points of a set that is saved so, are of them, until :meth:`as_nominal` is
-        asked for. Raises InputError for a key that is no setting, and where the change makes the member no part of the
-        pair.
-
-        >>> import gearmath as gm
-        >>> pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion
-        >>> changed = pinion.with_settings(concave={"radial_distance": +0.05})
-        >>> round(changed.spec.concave.radial_distance - pinion.spec.concave.radial_distance, 6)
-        0.05
-        """
-        values = {}
-        for flank, by in (("concave", concave or {}), ("convex", convex or {})):
-            check_keys(self.name, flank, by)
-            values[flank] = {key: getattr(self.spec.flank(flank), key) + change for key, change in by.items()}
-        return self.with_values(**values)
-
-    def with_values(
-        self, concave: Mapping[str, float] | None = None, convex: Mapping[str, float] | None = None
-    ) -> Member:
-        """The member with settings of these values [mm, degrees], as :meth:`with_settings` changes them."""
-        flanks = {}
-        for flank, to in (("concave", concave or {}), ("convex", convex or {})):
-            check_keys(self.name, flank, to)
-            if to:
-                flanks[flank] = changed(self.spec.flank(flank), to)
-        members = {**shallow(self.gear_set.spec), self.name: {**shallow(self.spec), **flanks}}
-        found = checked(members, BevelSet, self.gear_set.title)
-        check_pair(found)
-        return GearSet(found).member(self.name)
-
-    def as_nominal(self) -> Member:
-        """The member whose nominal flanks are those that its settings cut, as of a new design: nothing is changed then.
-
-        Raises InputError where they are no part of the pair.
-
-        >>> import gearmath as gm
-        >>> pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion.with_settings(concave={"radial_distance": +0.05})
-        >>> bool(abs(pinion.as_nominal().flank("concave").point - pinion.flank("concave").point).max() > 0.001)
-        True
-        """
-        flanks = {name: self.spec.flank(name).model_copy(update={"design": None}) for name in FLANKS}
-        spec = self.spec.model_copy(update=flanks)
-        return self.gear_set.with_member(replace(self, spec=spec)).member(self.name)
-
-    def flank(
-        self,
-        flank: str,
-        grid: tuple[int, int] | None = None,
-        margin: float | Margins = 0.1,
-        places: tuple[np.ndarray, np.ndarray] | str | Path | None = None,
-    ) -> FlankSurface:
-        """Nominal points and outward normals of a flank on a grid, rows root to tip and columns toe to heel.
-
-        ``grid`` is (5, 9) if not given; ``margin`` is the part of working depth and face width left out on each side.
-        ``places`` are listed ones in their stead: z_w and radius (n,) [mm] from the pitch apex, or a file of such
-        lines; one column where ``grid`` is not given. Raises InputError naming flank, row and column of a point that
-        the cutter does not make.
-
-        >>> import gearmath as gm
-        >>> gm.load_set("nasa_tp3096_12x36.toml").pinion.flank("concave").point.shape
-        (5, 9, 3)
-        """
-        _check_flank(flank)
-        if places is None:
-            at = blank_grid(self.spec, *(grid or (5, 9)), margin)
-            return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, margin))
-        axial, radial = read_places(Path(places)) if isinstance(places, str | Path) else places
-        with about(Path(places) if isinstance(places, str | Path) else None):
-            at = listed_grid(self.spec, axial, radial, grid or (len(axial), 1))
-        return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, None))
-
-    def tooth(self, columns: int = 25) -> Tooth:
-        """The whole tooth space, root and fillets too. Raises InputError where the cutter does not make it."""
-        from gearmath.bevel.tooth import space_figures, tooth_space
-
-        space = tooth_space(self.spec, self.name, columns)
-        return Tooth(self, space, space_figures(self.spec, space))
-
-    def to_step(self, path: str | Path, begin: Begin = silent) -> dict[str, WrittenSolid]:
-        """Write the closed solid of the member in its work frame for CAD; by its name, what was written.
-
-        Raises InputError where the kernel of CAD is not installed: pip install '.[cad]'.
-        """
-        from gearmath.exchange.body import member_patches
-        from gearmath.exchange.step import require_kernel, write_step
-
-        require_kernel()
-        progress = begin(4, "stage")
-        bodies = [(self.name, member_patches(self.spec, self.name))]
-        progress(2)
-        return write_step(Path(path), bodies, progress)
-
-    def deviations(self, grid: tuple[int, int] = (5, 9), margin: float = 0.1) -> Measurement:
-        """The flanks that the settings cut as deviations [mm] from the nominal ones, on the exact surface.
-
-        As a measurement of one tooth without noise. Raises ComputationError where a flank is too far off.
-        """
-        from gearmath.front.measured import deviations
-
-        return deviations(self, grid, margin)
-
-    def program(
-        self,
-        machine: Machine | None = None,
-        name: str = "GEAR",
-        spaces: Sequence[int] | None = None,
-        tolerance: float = 1e-4,
-        feed: float = 300.0,
-        spindle_rpm: float = 120.0,
-        roughing_stock: float = 0.0,
-        finishing_stock: float = 0.0,
-        dry_run: bool = False,
-        blocks: Literal["g1", "poly"] = "g1",
-        control: str | None = None,
-    ) -> Program:
-        """The cutting program of the member for a machine, by default the bundled vertical one; all spaces by default.
-
-        ``tolerance`` of the flank and stocks [mm], ``feed`` past the tooth [mm/min]; ``control`` "sinumerik" or
-        "linuxcnc", by default that of the machine. The program is run before it is returned. Raises InputError naming
-        what the machine cannot do.
-        """
-        from gearmath.front.programs import cutting
-        from gearmath.machine.planning.cut_plan import CuttingJob
-
-        chosen = list(range(self.teeth) if spaces is None else spaces)
-        stocks = roughing_stock, finishing_stock
-        job = CuttingJob(chosen, tolerance, feed, spindle_rpm, *stocks, dry_run, blocks)
-        return cutting(self, machine, name, job, control)
-
-    def _repr_html_(self) -> str:
-        rows = [[key, *(getattr(self.spec.flank(flank), key) for flank in FLANKS)] for key in SETTINGS]
-        return html_table(f"{self.name} of {self.gear_set.title}", ["setting (mm, degree)", *FLANKS], rows)
-
-
-def _check_flank(flank: str) -> None:
-    if flank not in FLANKS:
-        raise InputError(f"flank = {flank!r}: must be {' or '.join(FLANKS)}")

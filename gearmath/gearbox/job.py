@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from derivations import notation as q
-from derivations.expression import Quantity
+from derivations.quantity import Quantity
 from gearmath.errors import InputError
 from gearmath.gearbox.helix import SIGNS, JobRatio, one_term
 from gearmath.gearbox.kernels import evaluate, expression

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import derivations
-from derivations.expression import Expression
 from gearmath.kernels import kernel
+
+if TYPE_CHECKING:
+    from derivations.expression import Expression
 
 
 def expression(name: str) -> Expression:

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from gearmath.errors import ComputationError, InputError
-from gearmath.front.sets import GearSet, Member, load_set
+from gearmath.front.member import Member
+from gearmath.front.sets import GearSet, load_set
 from gearmath.hmi.flank_view import FlankView, view_of_run, view_of_settings
 from gearmath.hmi.gear_settings import Place, changes, with_edits
 from gearmath.hmi.hobbing_job import HobbingWish

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from gearmath.bevel.turning import turned
-from gearmath.front.sets import Member
+from gearmath.front.member import Member
 from gearmath.plot.sheet import topography_chart
 from gearmath.plot.style import LESS, MORE
 from gearmath.plot.tooth import ToothFlank, enlargement, tooth_flanks

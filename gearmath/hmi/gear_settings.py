@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gearmath.bevel.pair import check_pair
-from gearmath.front.sets import Member
+from gearmath.front.member import Member
 from gearmath.specs.bevel_set import FLANKS, SETTINGS
 from gearmath.specs.cut import Settings
 from gearmath.specs.set_text import save_corrected

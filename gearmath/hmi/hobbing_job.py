@@ -14,7 +14,7 @@ from derivations import notation
 from gearmath.errors import InputError
 from gearmath.export.folder import MANIFEST, manifest
 from gearmath.export.teensy import teensy_files
-from gearmath.front.gearbox import Job, plan
+from gearmath.front.hobbing import Job, plan
 from gearmath.gearbox.helix import STEEPEST
 from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.hobbed.setup import cut_and_inspect, setup

@@ -157,6 +157,13 @@ def test_functions_of_notebooks_have_at_most_ten_lines() -> None:
             assert long == [], path.name
 
 
+def test_cells_of_notebooks_have_at_most_25_lines() -> None:
+    for path in NOTEBOOKS:
+        cells = [cell for cell in json.loads(path.read_text("utf-8"))["cells"] if cell["cell_type"] == "code"]
+        long = ["".join(cell["source"])[:60] for cell in cells if len("".join(cell["source"]).splitlines()) > 25]
+        assert long == [], path.name
+
+
 def test_links_of_the_documents_lead_somewhere() -> None:
     for document in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"):
         targets = re.findall(r"\]\(([^)#]+)[^)]*\)", (ROOT / document).read_text("utf-8"))

@@ -170,6 +170,8 @@ def reading(name: str) -> tuple[float, str]:
     setting, _, power = name.partition(".")
     (unit,) = (component.unit for component in notation.settings.components if component.name == setting)
     per = "" if not power else "/rad" if power == "1" else f"/rad^{power}"
+    if unit == "1" and not per:
+        unit = ""  # a ratio has none
     return (math.degrees(1), f"deg{per}") if unit == "rad" else (1.0, f"{unit}{per}")
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
-from gearmath.front.gearbox import Job
+from gearmath.front.hobbing import Job
 from gearmath.front.machines import load_hobber
 from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.job import ThreadPlan

@@ -26,6 +26,8 @@ PROBE_TOOL = "PROBE"
 Number = Callable[[Node, int], float]
 
 _GROUPS = frozenset(GROUP_OF_CODE.values())
+#: Axis words are put in force by the motion.
+_MOVED = frozenset(AXES + CUTTER_AXIS)
 _VALUED = ("F", "S", "D", "SPOS", "ADIS", "ADISPOS", "MEAS", "CTOL", "OTOL", "PL")
 #: Radius [mm] at which one degree is one millimetre: what F means for a rotary axis of FGROUP.
 DEGREE_IS_MM = 180.0 / math.pi
@@ -180,6 +182,8 @@ class State:
 
     def _switch(self, key: str, word: Word, block: Block, number: Number) -> None:
         """Put one word in force."""
+        if key in _MOVED:
+            return
         value = number(word.value, word.column) if key in _VALUED else 0.0
         if key in ("F", "S") and value <= 0.0:
             self._refuse(block, key, f"{word.text}: must be greater than 0")

@@ -21,9 +21,16 @@ from gearmath.machine.control.refused import instead
 from gearmath.machine.control.tree import Assignment, Block, Word
 from gearmath.machine.control.vocabulary import ADDRESSES, GROUP_OF_CODE, LETTERS
 
+_CODE_HAS_NO_VALUE = Constant(0.0)
 _BLANK = r"(?=[ \t]|$)"
 _CODE = re.compile(rf"[GM]0{{0,2}}([0-9]{{1,3}})(?=[ \tA-Z]|$)|[A-Z]{{3,8}}{_BLANK}")
 _CONSTANT = re.compile(rf"([A-Z])[ \t]*([+-]?)({NUMBER})(?=[ \tA-Z]|$)")
+#: A code, a number or a DC of an axis with few digits, and a blank: what nearly every block of a path consists of.
+_PLAIN = re.compile(
+    rf"(?:(G[0-9]{{1,3}})|([{AXES}{CUTTER_AXIS}FSD])([+-]?)([0-9]{{1,{DECIMALS}}}(?:\.[0-9]{{0,{DECIMALS}}})?)"
+    rf"|([{AXES}{CUTTER_AXIS}])=(DC|AC|IC|ACP|ACN)\(([0-9]{{1,{DECIMALS}}}(?:\.[0-9]{{0,{DECIMALS}}})?)\))"
+    r"(?:[ \t]+(?=[A-Z])|[ \t]*$)"
+)
 _TOOL = re.compile(r'T[ \t]*=[ \t]*"([A-Za-z0-9_]{1,31})"(?=[ \tA-Z]|$)')
 _ADDRESS = re.compile(rf"([{AXES}{CUTTER_AXIS}FSD]|SPOS|MEAS|ADIS|ADISPOS|CTOL|OTOL|OVR|OVRRAP|PL)[ \t]*=(?!=)[ \t]*")
 _WAY = re.compile(r"(DC|IC|AC|ACP|ACN|PO)\(")
@@ -38,16 +45,15 @@ class WordScanner(Scanner):
 
     def block(self, words: dict[str, Word]) -> Block:
         assignments: list[Assignment] = []
-        while not self.done:
-            at = self.at
-            if (read := self.constant()) is None:
+        while (read := self._plain()) is not None or not self.done:
+            if read is None and (read := self.constant()) is None:
                 if (assignment := self._assignment()) is not None:
                     assignments.append(assignment)
                     continue
                 read = self.word()
             key, word = read
             if key in words:
-                self.refuse(f"{word.text} is a second value for {key} in one block", at)
+                self.refuse(f"{word.text} is a second value for {key} in one block", word.column - 1)
             words[key] = word
         return Block(self.line, words, tuple(assignments))
 
@@ -76,6 +82,24 @@ class WordScanner(Scanner):
             self.refuse(f"{shown(self._rest())} is not understood: a blank may be missing before it")
         return value
 
+    def _plain(self) -> tuple[str, Word] | None:
+        """What :meth:`constant` and :meth:`word` make of the words that are nearly all of a program, in one look."""
+        found = _PLAIN.match(self.text, self.at)
+        if found is None:
+            return None
+        code, letter, sign, digits, axis, way, target = found.groups()
+        column = found.start() + 1
+        if code is not None:
+            if code not in GROUP_OF_CODE:
+                return None
+            self.at = found.end()
+            return GROUP_OF_CODE[code], Word(code, _CODE_HAS_NO_VALUE, column)
+        self.at = found.end()
+        if letter is not None:
+            value = float(digits)
+            return letter, Word(f"{letter}{sign}{digits}", Constant(-value if sign == "-" else value), column)
+        return axis, Word(f"{axis}={way}({target})", Constant(float(target)), column, way)
+
     def constant(self) -> tuple[str, Word] | None:
         """Key and content of a letter with its number, the most frequent word; None for others."""
         at = self.at
@@ -98,9 +122,9 @@ class WordScanner(Scanner):
         if (code := self.match(_CODE)) is not None:
             name = f"{code[0][0]}{int(code[1])}" if code[1] else code[0]
             if name in GROUP_OF_CODE:
-                return GROUP_OF_CODE[name], Word(name, Constant(0.0), column)
+                return GROUP_OF_CODE[name], Word(name, _CODE_HAS_NO_VALUE, column)
         elif (tool := self.match(_TOOL)) is not None:
-            return "T", Word(tool[1], Constant(0.0), column)
+            return "T", Word(tool[1], _CODE_HAS_NO_VALUE, column)
         elif (polynomial := self.match(_POLYNOMIAL)) is not None:
             return polynomial[1], self._polynomial(at, CUBIC)
         elif (radius := self.match(_GROUP_RADIUS)) is not None:

@@ -60,7 +60,7 @@ def mill_member(
         raise InputError(f"the program does not cut the {missing[0]} flank of the {name}")
     whole = join(files)
     header = whole.header | {PLANNED: f"{len(whole)} points"}  # a file that is cut off later is told
-    return _probed(replace(whole, header=header), name, errors)
+    return probed(replace(whole, header=header), name, errors)
 
 
 def thickness(point: np.ndarray, opposite: np.ndarray, teeth: int) -> np.ndarray:
@@ -159,7 +159,7 @@ def _reference_only(file: FlankFile) -> FlankFile:
     )
 
 
-def _probed(file: FlankFile, name: str, errors: SimulatedMachine | None) -> FlankFile:
+def probed(file: FlankFile, name: str, errors: SimulatedMachine | None) -> FlankFile:
     """The file with seeded probe noise on every deviation, and its standard uncertainty."""
     sigma = errors.probe.sigma if errors is not None else 0.0
     if sigma == 0.0 or errors is None:

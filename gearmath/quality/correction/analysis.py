@@ -169,7 +169,7 @@ def weak_words(analysis: Analysis, k: int) -> str:
     changes = []
     for label, part in analysis.direction(k).items():
         factor, unit = reading(bounds[label].name)
-        changes.append(f"{label} {part * bounds[label].bound * factor:+.4g} {unit}")
+        changes.append(f"{label} {part * bounds[label].bound * factor:+.4g} {unit}".rstrip())
     rms = analysis.singular_values[k] / math.sqrt(len(analysis.deviation)) * 1000
     return f"{', '.join(changes)} together move the flank by only {rms:.2g} um (RMS)"
 

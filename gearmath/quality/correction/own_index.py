@@ -40,6 +40,13 @@ LEAST_OFF = 0.01
 _LEAST_SPARE, _COEFFICIENTS, _UNKNOWN = 3, 10, 1e-3
 
 
+#: What becomes of an error of the index, of a member whose spaces are indexed one by one and of a hobbed one.
+_LEFT = (
+    "it is left to the index, and taken out for the settings",
+    "it stays, as face hobbing cannot turn one tooth by itself, and is taken out for the settings",
+)
+
+
 @dataclass(frozen=True)
 class OwnIndex:
     """How far one flank of a tooth is turned against the mean of the others [rad], how sure that is, and where [mm].
@@ -86,7 +93,7 @@ def teeth_as_indexed_on_average(member: Member, name: str, file: FlankFile) -> t
             arc, u = found.angle * found.radius * 1000, found.uncertainty * found.radius * 1000
             remarks.append(
                 f"{flank} flank: tooth {tooth} is indexed by an arc of {arc:+.2f} um (u = {u:.2f}) against the mean of "
-                "the others, which is no error of a setting: it is left to the index, and taken out for the settings"
+                f"the others, which is no error of a setting: {_LEFT[member.blade_groups is not None]}"
             )
     if alone:
         remarks.append(

@@ -174,4 +174,7 @@ def _missing(
     for tooth in sorted({tooth for _, tooth in places}):
         one, other = (places.get((flank, tooth), set()) for flank in FLANKS)
         if reference in one and reference in other and max(len(one), len(other)) <= corners and one != other:
-            yield f"tooth {tooth}: {len(one)} points of the concave and {len(other)} of the convex flank were measured"
+            yield (
+                f"tooth {tooth}: {counted(len(one), 'point')} of the concave and {len(other)} of the convex flank were "
+                "measured"
+            )

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.quality.evaluation.closing import Closing, close_run
 from gearmath.quality.evaluation.completeness import cut_off, missing_points, silent_points
 from gearmath.quality.evaluation.digits import file_resolution
@@ -62,7 +62,7 @@ class FlankFigures:
         reasons = {}
         if self.topographies and self.topographies[0].left_out:
             first = self.topographies[0]
-            points = "1 point" if first.left_out == 1 else f"{first.left_out} points"
+            points = counted(first.left_out, "point")
             reasons["max_deviation"] = f"{first.flank} flank, tooth {first.tooth}: {points} without a reading"
         elif self.topographies and self.reason:
             reasons["max_deviation"] = self.reason

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.quality.evaluation.nominal import NominalRows
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
@@ -44,15 +44,17 @@ def check_teeth(file: FlankFile, rows: NominalRows, member: Member) -> None:
     for flank in FLANKS:
         teeth = np.unique(rows.tooth[(file.flank == flank) & np.isfinite(file.deviation)])
         if len(teeth) < least:
-            raise InputError(
-                f"{flank} flank: {len(teeth)} teeth were measured: registration needs {least} of both flanks"
-            )
+            raise InputError(f"{flank} flank: {_measured(len(teeth))}: registration needs {least} of both flanks")
         gap = np.diff([*teeth, teeth[0] + member.teeth]).max() * 2 * math.pi / member.teeth
         if gap > _WIDEST_GAP:
             raise InputError(
                 f"{flank} flank: the teeth that were measured leave out {math.degrees(gap):.0f} degrees of the turn: "
                 f"registration allows {math.degrees(_WIDEST_GAP):.0f}"
             )
+
+
+def _measured(teeth: int) -> str:
+    return f"{counted(teeth, 'tooth')} {'was' if teeth == 1 else 'were'} measured"
 
 
 def seat_model(

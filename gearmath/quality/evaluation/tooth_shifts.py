@@ -23,6 +23,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from gearmath.kernels import kernel
+from gearmath.quality.evaluation.indexed_together import in_words, indexed_together
 from gearmath.quality.evaluation.robust import limit_of, off_the_fit
 from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile
@@ -97,6 +98,9 @@ def tooth_shifts(file: FlankFile, teeth: int, single: np.ndarray) -> Shifts:
             what = f"{len(here)} of {of_all} single points are off the other teeth, too many to be misses"
             kept.append(f"{flank} flank: {what}; kept")
             lone = {k: off for k, off in lone.items() if k not in here}
+    together = indexed_together(file, teeth, LEAST_BETWEEN_TEETH)
+    if together is not None and not kept and not np.isin(file.tooth[[*misses, *lone]] % teeth, together[0]).any():
+        kept.append(in_words(*together))
     return Shifts(misses, lone, tuple(dict.fromkeys(kept)))
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.errors import InputError
+from gearmath.errors import InputError, counted
 from gearmath.kernels import kernel
 from gearmath.quality.evaluation.pitch import reference_point
 from gearmath.specs.flank_csv import FlankFile
@@ -121,7 +121,8 @@ def evaluate_topography(file: FlankFile, flank: str, tooth: int = 0) -> Topograp
     rows, columns = grid_shape(file)
     if len(points) != rows * columns:
         raise InputError(
-            f"{flank} flank, tooth {tooth}: {len(points)} points, the grid {rows}x{columns} needs {rows * columns}"
+            f"{flank} flank, tooth {tooth}: {counted(len(points), 'point')}, the grid {rows}x{columns} needs "
+            f"{rows * columns}"
         )
     order = np.lexsort((points.col, points.row))
     deviation = points.deviation[order]

@@ -274,7 +274,7 @@ def _on_grid(
     deviation = np.array([_smooth(across[~off], up[~off], one.deviation[~off], each) for each in place])
     row, col = (each.ravel() for each in np.indices((_ROWS, _COLUMNS)))
     words = f"{len(across)} points form no grid that all share: deviations on {_ROWS}x{_COLUMNS}, margins {margin:g}"
-    lost = [f"{int(off.sum())} points stand out from the others, left out"] if off.any() else []
+    lost = [f"{counted(int(off.sum()), 'point')} left out, off the others"] if off.any() else []
     return row, col, nominal.point, nominal.normal, deviation, [words, *lost]
 
 

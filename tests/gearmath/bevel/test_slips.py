@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import pytest
 import tomlkit
 
-from gearmath.bevel.misprints import exchanged_digits, wrong_digits
+from gearmath.bevel.misprints import exchanged_digits, minutes_as_decimals, wrong_digits
 from gearmath.bevel.pair import load_pair
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
@@ -46,12 +47,14 @@ def exchange(*tables: tuple[str, str], key: str | None = None) -> Callable[[dict
     return apply
 
 
-def inches(tables: tuple[str, ...], keys: tuple[str, ...]) -> Callable[[dict], None]:
+def divided(
+    by: float, tables: tuple[str, ...], keys: tuple[str, ...], members: tuple[str, ...] = MEMBERS
+) -> Callable[[dict], None]:
     def apply(values: dict) -> None:
-        for member in MEMBERS:
+        for member in members:
             for table in tables:
                 for key in keys:
-                    values[member][table][key] /= 25.4
+                    values[member][table][key] /= by
 
     return apply
 
@@ -95,6 +98,11 @@ def completing(key: str, value: float) -> Callable[[dict], None]:
     return apply
 
 
+def other_swivel(values: dict) -> None:
+    for flank in FLANKS:
+        values["pinion"][flank]["cutter_swivel"] = 180 - values["pinion"][flank]["cutter_swivel"]
+
+
 #: Set, what is made wrong in it, and what the sentence must end with.
 SLIPS = {
     "sign of the cradle angle": (
@@ -129,8 +137,12 @@ SLIPS = {
         one("gear", "concave", "cradle_angle", lambda v: -v),
         "gear.concave.cradle_angle = 59.2342, not -59.2342",
     ),
-    "settings in inches": (NASA, inches(FLANKS, MACHINE), "times 25.4: they are in inches"),
-    "blanks in inches": (NASA, inches(("blank",), BLANK), "the lengths of the blanks times 25.4: they are in inches"),
+    "settings in inches": (NASA, divided(25.4, FLANKS, MACHINE), "times 25.4: they are in inches"),
+    "blanks in inches": (
+        NASA,
+        divided(25.4, ("blank",), BLANK),
+        "the lengths of the blanks times 25.4: they are in inches",
+    ),
     "unit": (SPIRAL, set_to("unit", "inch"), "unit = 'mm'"),
     "a decimal place in a blank": (
         SPIRAL,
@@ -172,6 +184,47 @@ SLIPS = {
     "digits of a tooth count": (SPIRAL, set_to("teeth", 34, "gear"), "gear.teeth = 43, not 34"),
     "members": (SPIRAL, exchange(("", "pinion"), ("", "gear")), "the tables pinion and gear exchanged"),
     "teeth": (NASA, set_to("teeth", 13, "pinion"), "pinion.teeth = 12, not 13"),
+    "settings of one member in inches": (
+        NASA,
+        divided(25.4, FLANKS, MACHINE, ("gear",)),
+        "of the gear times 25.4: they are in inches",
+    ),
+    "angles of one blank in radians": (
+        NASA,
+        divided(180 / math.pi, ("blank",), ("pitch_angle", "face_angle", "root_angle"), ("gear",)),
+        "the angles of the blank of the gear times 57.2958: they are in radians",
+    ),
+    "both flanks of a fixed-setting cut in radians": (
+        NASA,
+        divided(180 / math.pi, FLANKS, ("cradle_angle",), ("pinion",)),
+        "pinion.concave.cradle_angle = -63.942, not -1.116 and pinion.convex.cradle_angle = -53.926, not -0.941186",
+    ),
+    "a phase in radians": (
+        SPIRAL,
+        set_to("work_rotation_offset", -0.39757, "pinion", "concave"),
+        "pinion.concave.work_rotation_offset = -22.7791, not -0.39757",
+    ),
+    "a diameter for the radius": (
+        NASA,
+        one("pinion", "concave", "blade_point_radius", lambda v: 2 * v),
+        "pinion.concave.blade_point_radius = 75.3268, not 150.654",
+    ),
+    "the outer cone distance": (
+        NASA,
+        blanks("mean_cone_distance", 93.7514),
+        "pinion.blank.mean_cone_distance = 81.0514 and gear.blank.mean_cone_distance = 81.0514: "
+        "what is given is the outer one",
+    ),
+    "the swivel of the other hand": (
+        UNIVERSAL,
+        other_swivel,
+        "pinion.concave.cutter_swivel = 226.727, not -46.7274 and pinion.convex.cutter_swivel = 225.153, not -45.1528",
+    ),
+    "minutes and seconds after the point": (
+        NASA,  # -63 degrees 56 minutes 31 seconds
+        set_to("cradle_angle", -63.5631, "pinion", "concave"),
+        "pinion.concave.cradle_angle = -63.9419, not -63.5631",
+    ),
     "method": (NASA, set_to("generation", "formate", "pinion"), "pinion.generation = 'generated', not 'formate'"),
 }
 
@@ -233,6 +286,20 @@ def test_decimal_comma_is_named(tmp_path: Path) -> None:
     path.write_text(bundled(f"{SPIRAL}.toml").read_text("utf-8").replace("= 94.728", "= 94,728"), "utf-8")
     with pytest.raises(InputError, match=r"94,728 has a decimal comma, TOML wants a point$"):
         load_pair(path)
+
+
+def test_minutes_are_read_where_the_digits_can_be_minutes_and_seconds() -> None:
+    """63 degrees 56 minutes, 63 56 31, 63 56 31.3; 94 minutes or 75 seconds there are none."""
+    assert minutes_as_decimals(63.56) == [pytest.approx(63 + 56 / 60, abs=1e-12)]
+    assert minutes_as_decimals(-63.5631) == [pytest.approx(-(63 + 56 / 60 + 31 / 3600), abs=1e-12)]
+    assert minutes_as_decimals(63.56313) == [pytest.approx(63 + 56 / 60 + 31.3 / 3600, abs=1e-12)]
+    assert minutes_as_decimals(63.94) == minutes_as_decimals(63.5675) == minutes_as_decimals(63.5) == []
+
+
+def test_nothing_is_looked_for_where_the_refusal_says_what_to_do(tmp_path: Path) -> None:
+    """The flanks bound a tooth: no setting is to be doubted beside the whole pitch that the sentence names."""
+    text = refusal(NASA, set_to("work_rotation_offset", 0.0, "pinion", "convex"), tmp_path)
+    assert text.endswith("the convex flank must be turned by 30 degrees, whole pitches")
 
 
 def test_misprints_are_of_the_digits_as_they_are_written() -> None:

@@ -21,24 +21,24 @@ SET = "nasa_tp3096_12x36.toml"
 #: Every verb, and the name of the front door that does it.
 DOOR = {
     "demo": "run_demo",
-    "gearbox plan": "plan",
-    "gearbox simulate": "Job.simulate",
-    "gearbox cut": "hob",
-    "gearbox choose": "choose",
+    "gearbox plan": "hobbing.plan",
+    "gearbox simulate": "hobbing.Job.simulate",
+    "gearbox cut": "hobbing.hob",
+    "gearbox choose": "hobbing.choose",
     "blank": "load_blank",
     "design": "design",
     "flank": "Member.flank",
     "tooth": "Member.tooth",
-    "contact": "contact",
+    "contact": "GearSet.contact",
     "nc cut": "Member.program",
     "nc time": "Program.time",
-    "nc probe": "probing",
-    "nc calibrate": "calibrating",
+    "nc probe": "Member.probing",
+    "nc calibrate": "Machine.calibrating",
     "mill": "Program.mill",
-    "probe": "ProbingProgram.run",
-    "touches": "load_touches",
-    "calibrate": "calibrate",
-    "points": "load_points",
+    "probe": "results.ProbingProgram.run",
+    "touches": "Measurement.from_touches",
+    "calibrate": "Machine.calibrate",
+    "points": "Measurement.from_points",
     "evaluate": "Measurement.evaluate",
     "compensate": "Measurement.compensate",
     "stock": "Measurement.share_stock",
@@ -49,13 +49,13 @@ DOOR = {
     "runs export": "MeasurementStore.run",
     "runs compare": "evaluate_run",
     "runs resume": "MeasurementStore.resume_run",
-    "rexs": "load_rexs",
+    "rexs": "GearSet.from_rexs",
     "export step": "GearSet.to_step",
     "export stl": "GearSet.to_stl",
-    "export points": "FlankSurface.to_text",
+    "export points": "results.FlankSurface.to_text",
     "export rexs": "GearSet.to_rexs",
     "export summary": "GearSet.to_summary",
-    "export teensy": "export_teensy",
+    "export teensy": "hobbing.export_teensy",
     "export cnc": "export_cnc",
 }
 #: They serve or talk to something outside of the process for as long as somebody wants: no call that returns a result.
@@ -132,10 +132,10 @@ def test_a_measurement_is_the_same_from_both(pinion: gm.Member, command: Callabl
     assert command("probe", program, "--set", SET, *shop, "--run", "3", "-o", raw)[0] == 0
     assert command("touches", raw, "--set", SET, "-o", measured)[0] == 0
 
-    made = gm.probing(pinion, name="PROBE", topography=(), registration=False)
+    made = pinion.probing(name="PROBE", topography=(), registration=False)
     assert made.text == program.read_text()
     assert made.run(ours, shop=gm.load_shop(), number=3).read_text() == raw.read_text()
-    found = gm.load_touches(ours, pinion.gear_set)
+    found = gm.Measurement.from_touches(ours, pinion.gear_set)
     np.testing.assert_allclose(found.deviation, read_flank_csv(measured).deviation, atol=1e-6)
 
 
@@ -144,9 +144,9 @@ def test_a_calibration_is_the_same_from_both(command: Callable, tmp_path: Path) 
     assert command("nc", "calibrate", "-o", program)[0] == 0
     assert command("probe", program, "--errors", "simulated_shop.toml", "-o", raw)[0] == 0
     assert command("calibrate", raw, "-o", found)[0] == 0
-    made = gm.calibrating(name="CAL")
+    made = gm.load_machine().calibrating(name="CAL")
     assert made.text == program.read_text()
-    tip = gm.calibrate(made.run(ours, shop=gm.load_shop()))
+    tip = gm.load_machine().calibrate(made.run(ours, shop=gm.load_shop()))
     assert gm.load_probe(found).tip_radius == pytest.approx(tip.radius, abs=1e-6)
 
 
@@ -166,11 +166,11 @@ def test_sets_and_points_of_other_programs_are_the_same_from_both(command: Calla
     assert command("export", "points", SET, *which, "-o", theirs)[0] == 0
     pair.gear.flank("convex").to_text(ours)
     assert ours.read_text() == theirs.read_text()
-    read = gm.load_points({("convex", 0): ours}, pair.gear)
+    read = gm.Measurement.from_points({("convex", 0): ours}, pair.gear)
     assert abs(read.deviation).max() < 1e-5  # mm: the points are nominal, with so many decimals
     pair.to_rexs(ours)
     np.testing.assert_allclose(
-        gm.load_rexs(ours).gear.flank("convex").point, pair.gear.flank("convex").point, atol=1e-6
+        gm.GearSet.from_rexs(ours).gear.flank("convex").point, pair.gear.flank("convex").point, atol=1e-6
     )
 
 

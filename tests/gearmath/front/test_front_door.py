@@ -33,12 +33,12 @@ def test_ten_lines_from_a_set_to_corrected_settings(tmp_path: Path) -> None:
 def test_contact_of_a_pair_as_it_is_and_as_it_was_measured() -> None:
     pair = gm.load_set("nasa_tp3096_12x36.toml")
     off = pair.pinion.with_settings(concave={"machine_root_angle": 0.05}).deviations()
-    nominal, measured = (gm.contact(pair, *files, sides=("drive",)) for files in ((), (off,)))
+    nominal, measured = (pair.contact(*files, sides=("drive",)) for files in ((), (off,)))
     before, after = (found.to_dict(step=15)["drive"] for found in (nominal, measured))
     assert before["peak_to_peak_arcsec"] != after["peak_to_peak_arcsec"]
     assert after["measured"]["pinion"]["rms_um"] > 1
     with pytest.raises(gm.InputError, match="sides: 'left': must be of drive, coast"):
-        gm.contact(pair, sides=("left",))
+        pair.contact(sides=("left",))
     other = pair.with_member(pair.pinion.with_settings(concave={"machine_root_angle": 0.05}))
     bare = gm.GearSet(
         other.spec.model_copy(
@@ -50,7 +50,7 @@ def test_contact_of_a_pair_as_it_is_and_as_it_was_measured() -> None:
         )
     )
     with pytest.raises(gm.InputError, match=r"pinion\.concave: was measured against other nominal settings"):
-        gm.contact(bare, off)
+        bare.contact(off)
 
 
 def test_a_change_and_its_opposite_leave_the_flank_as_it_was() -> None:
@@ -101,6 +101,26 @@ def test_fifteen_lines_from_an_expression_to_a_called_c_function(tmp_path: Path,
     assert lowered == result.value
 
 
+@pytest.mark.parametrize(("page", "most"), [("README.md", 10), ("docs/how_to/own_expression.md", 15)])
+def test_the_script_of_a_page_is_short_and_runs(
+    page: str, most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, host_compiler, capsys
+) -> None:
+    text = (Path(__file__).parents[3] / page).read_text("utf-8")
+    script = re.findall(r"```python\n(.*?)```", text, re.DOTALL)[0]
+    assert len([line for line in script.splitlines() if line.strip()]) <= most
+    assert script.count("import gearmath as gm") == 1
+    assert "from gearmath" not in script
+    monkeypatch.chdir(tmp_path)
+    exec(compile(script.replace('["cc", ', f"[*{host_compiler!r}, "), page, "exec"), {})
+    said = capsys.readouterr().out.split()
+    if page == "README.md":
+        assert (tmp_path / "topography.png").stat().st_size > 1000
+        assert "'radial_distance'" in " ".join(said)
+    else:
+        chord = 2 * (10.0**2 - 9.5**2) ** 0.5  # by Pythagoras
+        assert [float(value) for value in said] == pytest.approx([chord, chord])
+
+
 def test_a_program_of_one_space_leaves_what_it_promises() -> None:
     pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion
     program = pinion.program(spaces=[0], tolerance=1e-3)
@@ -116,10 +136,25 @@ def test_importing_loads_nothing_heavy() -> None:
     assert said.strip() == "[]"
 
 
+def test_what_runs_kept_kernels_needs_neither_sympy_nor_matplotlib() -> None:
+    gm.load_set("nasa_tp3096_12x36.toml").pinion.flank("concave")  # derives what no process of this user has yet
+    program = """
+import sys
+import gearmath as gm
+from gearmath.front import contact, hobbing, judged, measured, probing, programs
+gm.load_set("nasa_tp3096_12x36.toml").pinion.flank("concave")
+print([name for name in ("sympy", "matplotlib", "scipy", "tqdm") if name in sys.modules])
+"""
+    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
+    assert said.strip() == "[]"
+
+
 def test_every_name_is_there_and_says_what_it_is() -> None:
     for name in gm.__all__:
         one = getattr(gm, name)
         assert one.__doc__, name
+        for inner in getattr(one, "__all__", ()):
+            assert getattr(one, inner).__doc__, inner
     assert set(gm.__all__) <= set(dir(gm))
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         gm.nothing  # noqa: B018
@@ -132,7 +167,11 @@ def test_the_names_for_type_checkers_are_the_names_at_run_time() -> None:
     assert typed == set(gm.__all__)
 
 
-@pytest.mark.parametrize("module", ["sets", "machines", "gearbox", "design", "probing"])
+def test_the_front_door_is_about_thirty_names_wide() -> None:
+    assert 25 <= len(gm.__all__) <= 32
+
+
+@pytest.mark.parametrize("module", ["sets", "member", "machines", "hobbing", "design"])
 def test_the_examples_of_the_front_door_are_true(module: str) -> None:
     result = doctest.testmod(importlib.import_module(f"gearmath.front.{module}"))
     assert result.attempted > 0
@@ -147,29 +186,37 @@ def test_no_name_is_that_of_a_module_which_would_hide_it() -> None:
 
 def test_the_page_of_the_api_has_the_names_of_the_package() -> None:
     page = (Path(__file__).parents[3] / "docs" / "api.md").read_text()
-    listed = set(re.findall(r"::\s*gearmath\.(\w+)", page))
-    assert listed == set(gm.__all__) - {"__version__"}
+    listed = set(re.findall(r"::\s*gearmath\.([\w.]+)", page))
+    modules = {"hobbing": gm.hobbing, "results": gm.results}
+    inner = {f"{name}.{one}" for name, module in modules.items() for one in module.__all__}
+    assert listed == set(gm.__all__) - {"__version__", *modules} | inner
 
 
 def test_a_helix_is_its_angle_and_hand_as_on_the_command_line() -> None:
     """The lead of a left-hand helix is that of a right-hand one the other way: z m π/sin(β), by hand."""
-    right = gm.plan("hobbing_helical.toml", teeth=30, hob="m1", helix=15.0).plan
-    left = gm.plan("hobbing_helical.toml", teeth=30, hob="m1", helix=15.0, hand="left").plan
+    right = gm.hobbing.plan("hobbing_helical.toml", teeth=30, hob="m1", helix=15.0).plan
+    left = gm.hobbing.plan("hobbing_helical.toml", teeth=30, hob="m1", helix=15.0, hand="left").plan
     for each in (right, left):
         assert each.helix.lead == pytest.approx(30 * math.pi / math.sin(math.radians(15.0)))
     assert right.feed_numerator == -left.feed_numerator
-    found = gm.choose("hobbing_helical.toml", 11, 1.0, 30, helix=15.0, hand="left", face_width=5.0)
+    found = gm.hobbing.choose("hobbing_helical.toml", 11, 1.0, 30, helix=15.0, hand="left", face_width=5.0)
     assert found.gear.found
 
 
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [
-        (lambda pinion: gm.probing(pinion, repeat=0), "repeat = 0: must be a whole number from 1 to 100"),
-        (lambda pinion: gm.probing(pinion, repeat=2.5), "repeat = 2.5: must be a whole number"),
-        (lambda _: gm.calibrating(cycle="axis"), "cycle = 'axis': must be 'tip' or 'axes'"),
-        (lambda _: gm.plan("hobbing_helical.toml", teeth=30, hand="left"), "hand = 'left': has no meaning without"),
-        (lambda _: gm.plan("hobbing_helical.toml", teeth=30, helix=15, hand="links"), "must be 'right' or 'left'"),
+        (lambda pinion: pinion.probing(repeat=0), "repeat = 0: must be a whole number from 1 to 100"),
+        (lambda pinion: pinion.probing(repeat=2.5), "repeat = 2.5: must be a whole number"),
+        (lambda _: gm.load_machine().calibrating(cycle="axis"), "cycle = 'axis': must be 'tip' or 'axes'"),
+        (
+            lambda _: gm.hobbing.plan("hobbing_helical.toml", teeth=30, hand="left"),
+            "hand = 'left': has no meaning without",
+        ),
+        (
+            lambda _: gm.hobbing.plan("hobbing_helical.toml", teeth=30, helix=15, hand="links"),
+            "must be 'right' or 'left'",
+        ),
     ],
 )
 def test_an_argument_that_cannot_be_is_refused_in_a_sentence(call: Callable[..., object], sentence: str) -> None:

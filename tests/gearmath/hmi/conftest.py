@@ -40,16 +40,18 @@ OF_THE_BROWSER = {
     "www.google.com",
     "clients2.google.com",
 }
-#: What the cursor is on: the words of a button, the label of a field, nothing on the page as a whole.
+#: What the cursor is on: the words of a button, the label of a field, nothing on the page as a whole. A dialog that has
+#: just opened takes the cursor to itself, and is none of the buttons in it.
 _ON = """() => { const on = document.activeElement;
   if (on === document.body) return "";
-  const label = on.closest("label")?.querySelector(".q-field__label") ?? on.querySelector(".q-btn__content .block");
+  const words = on.matches("button") ? on.querySelector(".q-btn__content .block") : null;
+  const label = on.closest("label")?.querySelector(".q-field__label") ?? words;
   return (on.getAttribute("aria-label") ?? (label ?? on).innerText).trim(); }"""
 #: Hear whether the next key does something to what the cursor is on: a button is clicked, a field hears the key. Where
 #: the server falls silent between the key's way down and up, the cursor is away and a button is not clicked.
-_LISTEN = """() => { window.struck = false;
+_LISTEN = f"""label => {{ window.struck = false;
   const on = document.activeElement, heard = on.closest("button") ? "click" : "keydown";
-  if (on !== document.body) on.addEventListener(heard, () => { window.struck = true; }, { once: true }); }"""
+  if (({_ON})() === label) on.addEventListener(heard, () => {{ window.struck = true; }}, {{ once: true }}); }}"""
 #: What a test waits for at most [ms], on a computer that does other things too.
 PATIENCE = 180_000
 #: What it waits for before it tries again [ms].
@@ -255,10 +257,10 @@ class Operator:
 
     def strike(self, label: str, key: str) -> None:
         """Press a key on the button or field of this label, reached by Tab; once more where the page has not taken it,
-        because the server fell silent just then."""
+        because the server fell silent or a dialog took the cursor just then."""
         for _ in range(10):
             self.tab_to(label)
-            self.page.evaluate(_LISTEN)
+            self.page.evaluate(_LISTEN, label)
             self.page.keyboard.press(key)
             if self.page.evaluate("window.struck"):
                 return

@@ -88,7 +88,7 @@ def test_what_the_points_do_not_tell_is_said_and_the_rest_is_judged(pair, pinion
     found = evaluate_member(few, pinion, "pinion")
     assert found.registration is None
     assert found.remarks == (
-        "not registered: concave flank: 1 teeth were measured: registration needs 8 of both flanks",
+        "not registered: concave flank: 1 tooth was measured: registration needs 8 of both flanks",
     )
     assert (found.runout, found.verdict, found.flanks["concave"].pitch) == (None, None, None)
     assert found.thickness.deviation.shape == (1,)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -97,6 +98,30 @@ def test_tooth_indexed_wrongly_is_graded_as_that_bad(gear_set, measured, name, t
     assert grade in ((needed, needed - 1) if needed <= 11 else (None, 11))  # the tolerance is rounded
     assert found.runout.total < 6 * UM  # noise of 0.5 um, whatever the index
     assert abs(found.rotation.arc) < 1 * UM  # one tooth does not turn the others
+
+
+@pytest.mark.parametrize("places", [((2, 4),), CORNERS])
+@pytest.mark.parametrize("teeth", [(4, 5, 6), (11, 0, 1, 2)])
+def test_neighbors_indexed_by_the_same_arc_are_named(gear_set, measured, places, teeth):
+    """A quarter or a third of the 12 teeth, which first harmonics of the pitch follow half of the way."""
+    file = indexed(measured("pinion", places), dict.fromkeys(teeth, 80 * UM))
+    found = evaluate_member(file, gear_set.pinion, "pinion")
+    assert found.left_out == ()
+    (said,) = [line for line in found.remarks if "an indexing error; kept" in line]
+    names, arc = re.fullmatch(
+        r"teeth ([\d, ]+): both flanks are off .* by an arc of ([\d.]+) um, the same way: .*", said
+    ).groups()
+    assert set(map(int, names.split(", "))) == set(teeth)
+    assert float(arc) == pytest.approx(80, abs=3)
+
+
+def test_no_neighbors_are_named_of_an_uneven_pitch(gear_set, measured):
+    """Random arcs of 25 um, or a second harmonic of 60 um: no run of teeth stands off a rest that is even."""
+    rng = np.random.default_rng(3)
+    turns = 2 * math.pi * np.arange(36) / 36
+    for arcs in (25 * UM * rng.standard_normal(36), 60 * UM * np.sin(2 * turns)):
+        file = indexed(measured("gear"), dict(enumerate(arcs)))
+        assert not [line for line in evaluate_member(file, gear_set.gear, "gear").remarks if line.startswith("teeth ")]
 
 
 def test_slip_of_many_teeth_is_no_miss(gear_set, measured):

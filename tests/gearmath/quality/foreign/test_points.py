@@ -182,7 +182,7 @@ def test_scattered_points_are_brought_onto_a_grid_between_them(gear_set):
     point, _ = on_flank(member, "gear", "concave", deviation, spread)
     found = foreign_file([PointPart("p.txt", "concave", 0, around(point, 1))], Frame(), gear_set, "gear")
     assert any("300 points form no grid" in remark for remark in found.remarks)
-    assert any("3 points stand out from the others" in remark for remark in found.remarks)
+    assert any("3 points left out, off the others" in remark for remark in found.remarks)
     assert found.file.header["margins"] == "0.1,0.1"
     y, x = (each.ravel() for each in np.meshgrid(np.linspace(0.1, 0.9, 5), np.linspace(0.1, 0.9, 9), indexing="ij"))
     # a rotation of the work adds what its lever adds, nearly the same all over the flank; rest: 0.2 um

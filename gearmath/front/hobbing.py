@@ -1,4 +1,4 @@
-"""The electronic gearbox: plan a job, run its compiled rule, cut a gear or a thread virtually."""
+"""The electronic gearbox: plan a job, run its compiled rule, cut a gear or a thread virtually, write its firmware."""
 
 from __future__ import annotations
 
@@ -28,6 +28,9 @@ from gearmath.specs.ratio import pitch_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+__all__ = ("Job", "choose", "export_teensy", "hob", "load_hobber", "plan")
 
 
 @dataclass(frozen=True)
@@ -127,7 +130,7 @@ def plan(
     thread: starts, hand, rpm, run_up. Raises InputError naming the limit that the job would break.
 
     >>> import gearmath as gm
-    >>> gm.plan("hobbing_plewes.toml", teeth=17).plan.teeth
+    >>> gm.hobbing.plan("hobbing_plewes.toml", teeth=17).plan.teeth
     17
     """
     known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
@@ -261,6 +264,13 @@ def choose(
     """
     known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
     return search(known, wanted, module, teeth, **_with_helix(options), progress=begin(MOST_CUTS, "cut"))
+
+
+def export_teensy(machine: HobbingMachine | str | Path, folder: str | Path) -> list[str]:
+    """Write the whole Teensy sketch of a hobbing machine or lathe; the names of its files. Raises InputError."""
+    from gearmath.export.teensy import export_teensy as export
+
+    return list(export(machine if isinstance(machine, HobbingMachine) else load_hobber(machine), Path(folder)))
 
 
 def _with_helix(options: dict[str, Any], cut: str = "climb", feed: float | str | None = None) -> dict[str, Any]:
