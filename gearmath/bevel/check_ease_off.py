@@ -44,7 +44,7 @@ _HOLLOW = 0.003
 def check_ease_off(pinion: Member, gear: Member, shaft_angle: float, share: float = 1.0) -> None:
     """Refuse mates whose flanks do not fit each other from toe to heel and from root to tip. Raises Misfit.
 
-    ``share`` is the part of the limits that may be used.
+    ``shaft_angle`` in rad; ``share`` is the part of the limits that may be used.
     """
     where = [(name, flank) for name in ("pinion", "gear") for flank in FLANKS]
     module, found = transverse_module(gear), ease_off_parts(pinion, gear, shaft_angle)

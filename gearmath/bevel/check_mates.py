@@ -35,10 +35,10 @@ BACKLASH = (0.0, 0.12)
 #: Part of the module by which a pair without backlash may seem to clamp: rounding of its settings.
 _ROUNDED = 1e-6
 
-Cut = dict[str, CutFlank]
+CutFlanks = dict[str, CutFlank]
 
 
-def check_space(member: Member, name: str, cut: Cut) -> float:
+def check_space(member: Member, name: str, cut: CutFlanks) -> float:
     """The transverse width [mm] of space 0 at the mean point.
 
     Raises InputError where concave and convex flank bound no space, or leave no tooth between two spaces.
@@ -155,13 +155,13 @@ def _check_cutters(member: Member, name: str, slots: dict[str, Widths]) -> None:
             )
 
 
-def _seen(cut: dict[str, Cut], name: str, flank: str, key: str) -> float:
+def _seen(cut: dict[str, CutFlanks], name: str, flank: str, key: str) -> float:
     """An angle [degree] at the mean point, that of a spiral as the pinion sees it: mates are of opposite hand."""
     angle = math.degrees(getattr(cut[name][flank], key))
     return -angle if key == "spiral_angle" and name == "gear" else angle
 
 
-def _mating_angles(cut: dict[str, Cut], key: str) -> str:
+def _mating_angles(cut: dict[str, CutFlanks], key: str) -> str:
     """The angles of both pairs of mating flanks in words."""
     pairs = [
         f"{_seen(cut, 'pinion', flank, key):.4g} and {_seen(cut, 'gear', mating, key):.4g} degrees on pinion {flank} "
@@ -171,7 +171,7 @@ def _mating_angles(cut: dict[str, Cut], key: str) -> str:
     return f"{key.replace('_', ' ')} at the mean point {', '.join(pairs)}"
 
 
-def _given_by_one_cut(member: Member, cut: dict[str, Cut], name: str) -> float:
+def _given_by_one_cut(member: Member, cut: dict[str, CutFlanks], name: str) -> float:
     """What a cut of both flanks at once gives to the spiral angles [degree] of its flanks oppositely, by its point
     width: half of what that of the concave flank is larger by."""
     if member.cutting != "completing":
@@ -180,7 +180,7 @@ def _given_by_one_cut(member: Member, cut: dict[str, Cut], name: str) -> float:
     return (concave - convex) / 2
 
 
-def _apart(cut: dict[str, Cut], key: str) -> list[float]:
+def _apart(cut: dict[str, CutFlanks], key: str) -> list[float]:
     """What the mates of both pairs of flanks differ by in an angle [degree], pinion less gear."""
     pairs = zip(FLANKS, reversed(FLANKS), strict=True)
     return [_seen(cut, "pinion", flank, key) - _seen(cut, "gear", mating, key) for flank, mating in pairs]
@@ -202,7 +202,9 @@ def _width_hangs_on(members: dict[str, Member], spaces: dict[str, float], pitch:
     )
 
 
-def check_mates(members: dict[str, Member], cut: dict[str, Cut], spaces: dict[str, float], share: float = 1.0) -> None:
+def check_mates(
+    members: dict[str, Member], cut: dict[str, CutFlanks], spaces: dict[str, float], share: float = 1.0
+) -> None:
     """Refuse flanks that do not touch as mates at the mean point, and a pair with too much or too little backlash.
 
     The spiral angles of both flanks of a pair are judged together: half the sum of what mates differ by is an error of

@@ -34,13 +34,13 @@ class ConjugatePlaces:
 def conjugate_places(
     member: Member, mate: Member, shaft_angle: float, point: np.ndarray, normal: np.ndarray
 ) -> ConjugatePlaces:
-    """Where points (n,3) of a member with normals (n,3) meet its mate (20.5, 20.6); ``shaft_angle`` in degrees.
+    """Where points (n,3) of a member with normals (n,3) meet its mate (20.5, 20.6); ``shaft_angle`` in rad.
 
     Of the two places that (20.5) has for each point, that nearer to the middle of the mate's blank.
     """
     beyond, mate_beyond = (one.blank.pitch_apex_beyond_crossing_point for one in (member, mate))
     point = point - [0.0, 0.0, beyond]  # from the crossing point, which the members share
-    given = (point, normal, math.radians(shaft_angle), mate.teeth / member.teeth)
+    given = (point, normal, shaft_angle, mate.teeth / member.teeth)
     found = np.stack([np.stack(kernel("conjugate_place")(*given, side)) for side in (1, -1)])
     found[:, 1] += mate_beyond
     delta, mean = mate.blank.delta, mate.blank.mean_cone_distance
@@ -55,7 +55,7 @@ def ease_off(pinion: Member, gear: Member, shaft_angle: float, flank: str, grid:
     """The ease-off (rows, columns) [mm] of a flank of the pinion, at the points of a ``grid`` of the gear's flank.
 
     Positive = gap; zero at the middle of the grid, as the rotation of the pinion is left open. NaN where a point of the
-    gear does not meet the pinion, or meets it where its settings cut nothing. ``shaft_angle`` in degrees.
+    gear does not meet the pinion, or meets it where its settings cut nothing. ``shaft_angle`` in rad.
     """
     mating, _ = nominal_points(gear, FLANKS[1 - FLANKS.index(flank)], grid)
     at = conjugate_places(gear, pinion, shaft_angle, mating.point, mating.normal)
@@ -67,7 +67,7 @@ def ease_off(pinion: Member, gear: Member, shaft_angle: float, flank: str, grid:
     own = solve_section(how, section, at.axial[meets], at.radial[meets])
     ratio = pinion.teeth / gear.teeth
     from_crossing = mating.point[meets] - [0.0, 0.0, gear.blank.pitch_apex_beyond_crossing_point]
-    (azimuth,) = kernel("conjugate_azimuth")(from_crossing, at.turn[meets], math.radians(shaft_angle), ratio)
+    (azimuth,) = kernel("conjugate_azimuth")(from_crossing, at.turn[meets], shaft_angle, ratio)
     turn = half_turn(azimuth - np.arctan2(own.point[:, 1], own.point[:, 0]))
     turn = half_turn(turn - turn[len(turn) // 2])
     (gap,) = kernel("ease_off")(own.point, own.normal, turn)

@@ -38,7 +38,7 @@ def pair_figures(pair: BevelSet) -> dict[str, Any] | None:
         "mean_transverse_backlash_mm": transverse,
         "mean_normal_backlash_mm": _normal(pair, cut["gear"], transverse),
     }
-    found = ease_off_parts(pair.pinion, pair.gear, pair.shaft_angle)
+    found = ease_off_parts(pair.pinion, pair.gear, pair.rad("shaft_angle"))
     for flank, mating in zip(FLANKS, reversed(FLANKS), strict=True):
         own, mate = cut[MEMBERS[0]][flank], cut[MEMBERS[1]][mating]
         parts = {
@@ -66,7 +66,7 @@ def edge_note(pair: BevelSet) -> str:
     """
     if pair.pinion is None or pair.gear is None:
         return ""
-    found = ease_off_parts(pair.pinion, pair.gear, pair.shaft_angle)
+    found = ease_off_parts(pair.pinion, pair.gear, pair.rad("shaft_angle"))
     said = [_edge(flank, one) for flank, one in found.items() if not is_least_inside(one)]
     if not said:
         return ""

@@ -19,7 +19,7 @@ from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, c
 from gearmath.bevel.check_ease_off import check_ease_off
 from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
 from gearmath.bevel.check_index import check_index
-from gearmath.bevel.check_mates import Cut, check_mates, check_space
+from gearmath.bevel.check_mates import CutFlanks, check_mates, check_space
 from gearmath.bevel.check_motion import check_motions
 from gearmath.bevel.method import cut_generation_of, generation_of
 from gearmath.bevel.misfit import Misfit
@@ -67,7 +67,7 @@ def check_pair(pair: BevelSet, slip: Callable[[str], str] = lambda _: "") -> Non
 
     ``slip`` says of a refusal without which slip there would be none, where that is known.
     """
-    cut: dict[str, Cut] = {name: {} for name in pair.members}
+    cut: dict[str, CutFlanks] = {name: {} for name in pair.members}
     try:
         _check(pair.members, pair.shaft_angle, cut)
     except Misfit as misfit:
@@ -103,7 +103,7 @@ def _passes(members: dict[str, Member], shaft_angle: float) -> bool:
     return True
 
 
-def _check(members: dict[str, Member], shaft_angle: float, cut: dict[str, Cut], share: float = 1.0) -> None:
+def _check(members: dict[str, Member], shaft_angle: float, cut: dict[str, CutFlanks], share: float = 1.0) -> None:
     """Refuse what is no pair; ``cut`` is filled with the flanks that are found. Raises InputError or Misfit.
 
     ``share`` is the part of their limits that mates may use.
@@ -124,10 +124,10 @@ def _check(members: dict[str, Member], shaft_angle: float, cut: dict[str, Cut], 
         check_motions(member, name)
     _check_cut(members, cut, share)
     if pinion is not None and gear is not None:
-        check_ease_off(pinion, gear, shaft_angle, share)
+        check_ease_off(pinion, gear, math.radians(shaft_angle), share)
 
 
-def _check_cut(members: dict[str, Member], cut: dict[str, Cut], share: float) -> None:
+def _check_cut(members: dict[str, Member], cut: dict[str, CutFlanks], share: float) -> None:
     """Check what the settings cut; ``cut`` is filled with the flanks that are found."""
     spaces: dict[str, float] = {}
     for name, member in members.items():

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from gearmath.files import write_text
-from gearmath.gearbox.hobbed.inspection import SIDES, Inspection, Trace
+from gearmath.gearbox.hobbed.inspection import SIDES, Inspection, MeasuredTrace
 from gearmath.gearbox.hobbed.job import HobbingJob
 from gearmath.gearbox.kernels import kernel
 
@@ -34,7 +34,7 @@ def _rows(job: HobbingJob, found: Inspection) -> Iterator[str]:
                 yield f"{kind},{trace.side},{trace.tooth},{numbers}"
 
 
-def _points(job: HobbingJob, kind: str, trace: Trace) -> np.ndarray:
+def _points(job: HobbingJob, kind: str, trace: MeasuredTrace) -> np.ndarray:
     """Roll length, height, point, normal, deviation [µm] of every point (n, 9)."""
     size = len(trace.place)
     other = np.full(size, trace.across)

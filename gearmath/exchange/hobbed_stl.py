@@ -10,7 +10,7 @@ import numpy as np
 
 from gearmath.bevel.solid import write_stl
 from gearmath.gearbox.dimensions import blank_diameter
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import Envelope
 from gearmath.gearbox.hobbed.inspection import SIDES, Layout
 from gearmath.gearbox.hobbed.job import TURN, HobbingJob
 from gearmath.gearbox.hobbed.root import root
@@ -25,7 +25,7 @@ TIP = 0.02
 
 
 def write_gear(
-    path: Path, cut: Cut, where: Layout, progress: Callable[[int], object] = lambda done: None
+    path: Path, cut: Envelope, where: Layout, progress: Callable[[int], object] = lambda done: None
 ) -> np.ndarray:
     """Write the whole gear over its face width; the triangles (n, 3, 3) [mm] are returned.
 
@@ -43,7 +43,7 @@ def write_gear(
     return triangles
 
 
-def _rim(cut: Cut, where: Layout, progress: Callable[[int], object]) -> np.ndarray:
+def _rim(cut: Envelope, where: Layout, progress: Callable[[int], object]) -> np.ndarray:
     """Spaces (z, points, heights, 3) [mm], each from the tip of its flank at the smaller angles through the root."""
     job = cut.job
     heights = np.linspace(0.0, job.face_width, COLUMNS)
@@ -59,7 +59,7 @@ def _rim(cut: Cut, where: Layout, progress: Callable[[int], object]) -> np.ndarr
 
 
 def _flank(
-    cut: Cut, side: int, lengths: np.ndarray, heights: np.ndarray, progress: Callable[[int], object]
+    cut: Envelope, side: int, lengths: np.ndarray, heights: np.ndarray, progress: Callable[[int], object]
 ) -> np.ndarray:
     """One flank of every space (z, ROWS, COLUMNS, 3), from the form circle to the tip."""
     job, gear = cut.job, cut.job.gear

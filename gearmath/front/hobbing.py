@@ -22,7 +22,7 @@ from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
 from gearmath.gearbox.train import plan as plan_gear
-from gearmath.specs.helix import Cut, Helix
+from gearmath.specs.helix import FeedSense, Helix
 from gearmath.specs.hobbing import Hand, HobbingMachine
 from gearmath.specs.ratio import pitch_of
 
@@ -212,7 +212,7 @@ class HobbedGear:
     def to_stl(self, path: str | Path, begin: Begin = silent) -> Path:
         """Write the gear, a closed solid with its flanks as cut, as binary STL in mm."""
         from gearmath.exchange.hobbed_stl import ALL, write_gear
-        from gearmath.gearbox.hobbed.envelope import Cut as Envelope
+        from gearmath.gearbox.hobbed.envelope import Envelope
 
         setup = self.setup
         progress = begin(ALL * setup.job.gear.teeth, "point")
@@ -284,10 +284,10 @@ def _with_helix(options: dict[str, Any], cut: str = "climb", feed: float | str |
     hand = "right" if hand is None else hand
     if hand not in get_args(Hand):
         raise InputError(f"hand = {hand!r}: must be 'right' or 'left'")
-    if cut not in get_args(Cut):
+    if cut not in get_args(FeedSense):
         raise InputError(f"cut = {cut!r}: must be 'climb' or 'conventional'")
     try:
         per_turn = None if feed is None else Fraction(str(feed))
     except (ValueError, ZeroDivisionError):
         raise InputError(f"feed = {feed!r}: must be a number of mm per turn of the table") from None
-    return rest | {"helix": Helix(float(helix), cast("Hand", hand), cast("Cut", cut), per_turn)}
+    return rest | {"helix": Helix(float(helix), cast("Hand", hand), cast("FeedSense", cut), per_turn)}

@@ -22,7 +22,7 @@ from gearmath.gearbox.dimensions import (
 from gearmath.gearbox.helix import SIGNS, TRAVEL, JobRatio, Rounding, helical_ratio, hob_ratio, one_term
 from gearmath.gearbox.job import WIDEST, GearboxJob, check_range, job_values, nearest, refusal
 from gearmath.gearbox.kernels import evaluate
-from gearmath.specs.helix import Cut, Helix
+from gearmath.specs.helix import FeedSense, Helix
 from gearmath.specs.hobbing import Hand, Hob, HobbingMachine
 
 __all__ = ["WIDEST", "GearboxPlan", "HelixPlan", "HobbedBlank", "plan"]
@@ -55,7 +55,7 @@ class HelixPlan:
 
     helix_deg: float
     hand: Hand
-    cut: Cut
+    cut: FeedSense
     feed_mm: float | None
     lead: float
     travel: float

@@ -20,7 +20,7 @@ from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.hobbed.setup import cut_and_inspect, setup
 from gearmath.gearbox.job import GearboxJob, ThreadPlan
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
-from gearmath.specs.helix import Cut, Helix
+from gearmath.specs.helix import FeedSense, Helix
 from gearmath.specs.hobbing import Hand, HobbingMachine
 
 #: Least and largest number of each field, by its key; those of the machine come with it.
@@ -49,7 +49,7 @@ class HobbingWish:
     hob: str | None = None
     helix: float = 0.0
     hand: Hand = "right"
-    cut: Cut = "climb"
+    cut: FeedSense = "climb"
     feed: str = ""
     rpm: float | None = None
     shift: float = 0.0

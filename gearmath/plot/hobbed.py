@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from gearmath.gearbox.hobbed.inspection import Inspection, PitchRow, Side, Trace
+from gearmath.gearbox.hobbed.inspection import Inspection, MeasuredTrace, PitchRow, Side
 from gearmath.gearbox.hobbed.thread import ThreadTrace
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 
@@ -47,7 +47,7 @@ def thread_figure(title: str, traces: Sequence[ThreadTrace]) -> Figure:
     return figure
 
 
-def _scale(traces: Sequence[Trace]) -> float:
+def _scale(traces: Sequence[MeasuredTrace]) -> float:
     """µm between two traces."""
     widest = max(trace.total for trace in traces) * 1000
     return max(1.0, float(np.ceil(1.3 * widest)))

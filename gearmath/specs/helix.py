@@ -11,7 +11,7 @@ from gearmath.specs.hobbing import Hand
 
 SIGNS: dict[str, int] = {"right": 1, "left": -1, "climb": 1, "conventional": -1}
 
-Cut = Literal["climb", "conventional"]
+FeedSense = Literal["climb", "conventional"]
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class Helix:
 
     angle: float
     hand: Hand = "right"
-    cut: Cut = "climb"
+    cut: FeedSense = "climb"
     feed: Fraction | None = None
 
     @property

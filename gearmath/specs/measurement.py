@@ -13,7 +13,7 @@ from gearmath.specs.toml import Spec, load
 MOST_TOUCHES = 100
 
 
-class Measurement(Spec):
+class MeasuringModel(Spec):
     """Standard uncertainties (1 sigma) of what goes into a touch, and how many touches are averaged."""
 
     title: str = Field(min_length=1, max_length=200)
@@ -50,6 +50,6 @@ class Measurement(Spec):
         return self.expansion_per_K * self.temperature_K
 
 
-def load_measurement(path: Path) -> Measurement:
+def load_measurement(path: Path) -> MeasuringModel:
     """Read a file of measurement uncertainties. Raises InputError naming file, key, value and limit."""
-    return load(path, Measurement)
+    return load(path, MeasuringModel)

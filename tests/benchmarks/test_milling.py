@@ -8,12 +8,12 @@ import timeit
 import numpy as np
 import pytest
 
-from gearmath.machine.bodies.cutter import Body, Cutter, Profile
+from gearmath.machine.bodies.cutter import Body, Cutter, CutterProfile
 from gearmath.machine.milling.removal import REACH, annulus_entry, removal
 
 POSES, LINES = 3000, 40
 HEIGHT = 500.0
-CUTTER = Cutter((Body(0.0, Profile(77.0, 0.38), Profile(75.4, 0.38), 12.0),), 12.0)
+CUTTER = Cutter((Body(0.0, CutterProfile(77.0, 0.38), CutterProfile(75.4, 0.38), 12.0),), 12.0)
 
 
 def lines(n: int) -> tuple[np.ndarray, np.ndarray]:

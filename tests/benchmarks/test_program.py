@@ -20,4 +20,4 @@ def test_program_of_all_36_teeth(benchmark) -> None:
     assert text.count("; section") == 36
     if benchmark.stats is not None:  # not with --benchmark-disable
         benchmark.extra_info["blocks"] = text.count("G93")
-        print(f"\n36 teeth, {text.count('G93')} blocks in {benchmark.stats['min']:.2f} s (goal 2 s)")
+        print(f"\n36 teeth, {text.count('G93')} blocks in {benchmark.stats['min']:.2f} s (goal 0.5 s)")

@@ -107,6 +107,26 @@ def test_import_loads_nothing_heavy(package: str) -> None:
     assert done.stdout.split() == []
 
 
+#: Words of NC programs and arguments of people are in degrees; checks of a shaft angle print it as the file has it.
+DEGREES_ARE_READ = re.compile(
+    r"specs/|machine/control/|machine/judging/trajectory|(?:front|cli)/contact|bevel/(?:pair|check_blank|design/request)\."
+)
+
+
+def test_degrees_become_radians_in_specs_only() -> None:
+    found = []
+    for path in sorted((ROOT / "gearmath").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if not (isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)):
+                continue
+            if node.func.attr not in ("radians", "deg2rad"):
+                continue
+            names = [one.id for one in ast.walk(node.args[0]) if isinstance(one, ast.Name)]
+            if any(not name.isupper() for name in names):  # a constant may be written in degrees
+                found.append(path.relative_to(ROOT / "gearmath").as_posix())
+    assert [name for name in found if DEGREES_ARE_READ.match(name) is None] == []
+
+
 def test_top_level_is_what_the_architecture_says() -> None:
     assert {name.split("/")[0] for name in of_the_project()} == TOP_LEVEL
 

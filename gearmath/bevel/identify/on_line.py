@@ -35,7 +35,7 @@ INPUTS: dict[str, tuple[Quantity, ...]] = {
 
 
 @dataclass(frozen=True)
-class Family:
+class LineFamily:
     """A point of the family, what is zero where it is in mesh [mm], its height on the blade, and n·R_x / (n·d)."""
 
     point: ca.SX
@@ -49,14 +49,14 @@ def symbols(kind: Kind) -> list[ca.SX]:
     return [ca.SX.sym(quantity.name, *(quantity.shape or (1,))) for quantity in INPUTS[kind]]
 
 
-def family(kind: Kind, w: ca.SX, given: list[ca.SX], direction: ca.SX) -> Family:
+def family(kind: Kind, w: ca.SX, given: list[ca.SX], direction: ca.SX) -> LineFamily:
     """The kernels of a kind composed at u, β, θ: the derivations' points, meshing residuals and sensitivities."""
     uvw, settings = (w[0], w[1], w[2]), given[0]
     if kind == "plain":
         point, normal = kernel("flank_family").function(*uvw, *given)
         meshing = kernel("meshing").function(*uvw, *given)
         gradient = kernel("setting_sensitivity").function(*uvw, *given) / ca.dot(normal, direction)
-        return Family(point, meshing / settings[0], w[0], gradient)
+        return LineFamily(point, meshing / settings[0], w[0], gradient)
     *cut, side, rolling = given
     (settings_at,) = kernel("moved_settings").function.call([settings, cut[1], w[2]])
     if kind == "curved":
@@ -69,7 +69,7 @@ def family(kind: Kind, w: ca.SX, given: list[ca.SX], direction: ca.SX) -> Family
         gradient = kernel("straight_sensitivity").function(*uvw, settings_at, *cut[2:], side, normal, direction)
         height = w[0]
     reach = settings[0]  # a length of the size of the machine
-    return Family(point, rolling * meshing / reach + (1 - rolling) * reach * w[2], height, gradient)
+    return LineFamily(point, rolling * meshing / reach + (1 - rolling) * reach * w[2], height, gradient)
 
 
 @cache

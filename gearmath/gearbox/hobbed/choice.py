@@ -29,7 +29,7 @@ MOST_CUTS = 2 * sum(map(len, LADDERS))
 
 
 @dataclass(frozen=True)
-class Parts:
+class ChosenParts:
     """Parts and feed [mm per turn of the table]."""
 
     microsteps: int
@@ -43,7 +43,7 @@ class Choice:
     """Parts that reach a class, the gear that they cut, and the highest speed of the hob with them [1/min]."""
 
     wanted: int
-    parts: Parts
+    parts: ChosenParts
     gear: VirtualGear
     rpm: float
     tried: int
@@ -71,7 +71,7 @@ class _Wish:
     face_width: float | None
     helix: Helix | None
 
-    def with_parts(self, parts: Parts) -> CutSetup:
+    def with_parts(self, parts: ChosenParts) -> CutSetup:
         """What is cut with these parts; without an encoder on the feed, the ratio of a helical gear is that feed's."""
         machine = self.machine
         assert machine.table is not None
@@ -150,9 +150,9 @@ def _is(gear: VirtualGear, wanted: int) -> bool:
     return gear.accuracy_class is not None and gear.accuracy_class <= wanted
 
 
-def _parts(places: list[int]) -> Parts:
+def _parts(places: list[int]) -> ChosenParts:
     microsteps, lines, gashes, feed = (ladder[place] for ladder, place in zip(LADDERS, places, strict=True))
-    return Parts(int(microsteps), int(lines), int(gashes), feed)
+    return ChosenParts(int(microsteps), int(lines), int(gashes), feed)
 
 
 def _to_refine(prepared: CutSetup, gear: VirtualGear, places: list[int]) -> int | None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gearmath.gearbox.hobbed.drive import DriveTrain
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import Envelope
 from gearmath.gearbox.hobbed.inspection import Inspection, Layout, inspect
 from gearmath.specs.cutting_errors import CuttingErrors
 
@@ -85,7 +85,7 @@ def contributions(
     found = {}
     for name in names:
         single = alone(train, name)
-        found[name] = whole if single == train else inspect(Cut(train.job, single), where, progress)
+        found[name] = whole if single == train else inspect(Envelope(train.job, single), where, progress)
     ideal = found["gashes"]
     with_steps = found.get("steps", ideal)
     squares = {}

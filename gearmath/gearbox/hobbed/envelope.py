@@ -53,7 +53,7 @@ class NoErrors:
 
 
 @dataclass(frozen=True)
-class Cut:
+class Envelope:
     """A gear as a job with these errors leaves it."""
 
     job: HobbingJob

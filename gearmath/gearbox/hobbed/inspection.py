@@ -16,7 +16,7 @@ import numpy as np
 
 from gearmath.errors import InputError
 from gearmath.gearbox.dimensions import PIN, PinContact, Span, blank_diameter, pin_contact, span
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import Envelope
 from gearmath.gearbox.hobbed.job import HobbingJob
 from gearmath.gearbox.hobbed.root import undercut_radius
 from gearmath.gearbox.hobbed.topping import topped_radii
@@ -37,7 +37,7 @@ _FORM_STEPS = 400
 
 
 @dataclass(frozen=True)
-class Trace:
+class MeasuredTrace:
     """Deviations (n,) [mm] of one flank along ``place`` (n,) [mm]: length of roll, or height on the gear.
 
     ``across`` is the other of the two, the same for all points.
@@ -94,7 +94,7 @@ class PitchRow:
 
 
 @dataclass(frozen=True)
-class Thickness:
+class MeasuredThickness:
     """A measured dimension of the teeth [mm]: nominal, mean over the gear, and range."""
 
     what: str
@@ -107,12 +107,12 @@ class Thickness:
 class Inspection:
     """What the inspection found."""
 
-    profiles: tuple[Trace, ...]
-    helices: tuple[Trace, ...]
+    profiles: tuple[MeasuredTrace, ...]
+    helices: tuple[MeasuredTrace, ...]
     pitches: tuple[PitchRow, ...]
     ball: np.ndarray
     """How far a ball stands out of every space (z,) [mm]."""
-    thicknesses: tuple[Thickness, ...]
+    thicknesses: tuple[MeasuredThickness, ...]
 
     @property
     def runout(self) -> float:
@@ -218,10 +218,10 @@ def _span(job: HobbingJob, form: float, tip: float) -> Span | None:
     return measured if form < measured.length * math.cos(job.base_helix) / 2 < tip else None
 
 
-def inspect(cut: Cut, where: Layout, progress: Callable[[int], object] = lambda done: None) -> Inspection:
+def inspect(cut: Envelope, where: Layout, progress: Callable[[int], object] = lambda done: None) -> Inspection:
     """Measure a cut gear. ``progress`` is told how many points are done."""
-    profiles: list[Trace] = []
-    helices: list[Trace] = []
+    profiles: list[MeasuredTrace] = []
+    helices: list[MeasuredTrace] = []
     for name, side in SIDES.items():
         spaces = where.teeth if side == 1 else (where.teeth + 1) % cut.job.gear.teeth
         for traces, lengths, heights in (
@@ -239,7 +239,7 @@ def inspect(cut: Cut, where: Layout, progress: Callable[[int], object] = lambda 
             ).reshape(len(spaces), size)
             rows = zip(where.teeth, found, strict=True)
             across = where.middle_height if traces is profiles else where.middle
-            traces.extend(Trace(name, int(tooth), place, deviation, across) for tooth, deviation in rows)
+            traces.extend(MeasuredTrace(name, int(tooth), place, deviation, across) for tooth, deviation in rows)
     return Inspection(
         tuple(profiles),
         tuple(helices),
@@ -249,7 +249,7 @@ def inspect(cut: Cut, where: Layout, progress: Callable[[int], object] = lambda 
     )
 
 
-def _all_spaces(cut: Cut, side: int, length: float, height: float) -> np.ndarray:
+def _all_spaces(cut: Envelope, side: int, length: float, height: float) -> np.ndarray:
     """δ (z,) [mm] of every space."""
     return cut.deviation(side, np.arange(cut.job.gear.teeth), np.array([length]), np.array([height]))
 
@@ -259,7 +259,7 @@ def _circle_angle(job: HobbingJob, length: float) -> float:
     return math.atan2(length, job.base_radius)
 
 
-def _pitches(cut: Cut, where: Layout) -> tuple[PitchRow, ...]:
+def _pitches(cut: Envelope, where: Layout) -> tuple[PitchRow, ...]:
     job, gear = cut.job, cut.job.gear
     right, left = (_all_spaces(cut, side, where.middle, where.middle_height) for side in (1, -1))
     angle = _circle_angle(job, where.middle)
@@ -267,7 +267,7 @@ def _pitches(cut: Cut, where: Layout) -> tuple[PitchRow, ...]:
     return (PitchRow("right", positions[0]), PitchRow("left", np.roll(positions[1], -1)))
 
 
-def _ball(cut: Cut, where: Layout) -> np.ndarray:
+def _ball(cut: Envelope, where: Layout) -> np.ndarray:
     """Of every space (z,) [mm]."""
     gear = cut.job.gear
     length = where.middle if where.pin is None else where.pin.roll_length
@@ -276,7 +276,7 @@ def _ball(cut: Cut, where: Layout) -> np.ndarray:
     return kernel("ball_radial")(right, left, angle, gear.alpha, gear.beta)[0]
 
 
-def _thicknesses(cut: Cut, where: Layout) -> list[Thickness]:
+def _thicknesses(cut: Envelope, where: Layout) -> list[MeasuredThickness]:
     job, teeth = cut.job, cut.job.gear.teeth
     found = []
     if where.span is not None:
@@ -296,5 +296,5 @@ def _thicknesses(cut: Cut, where: Layout) -> list[Thickness]:
     return found
 
 
-def _thickness(what: str, nominal: float, measured: np.ndarray) -> Thickness:
-    return Thickness(what, nominal, float(measured.mean()), float(np.ptp(measured)))
+def _thickness(what: str, nominal: float, measured: np.ndarray) -> MeasuredThickness:
+    return MeasuredThickness(what, nominal, float(measured.mean()), float(np.ptp(measured)))

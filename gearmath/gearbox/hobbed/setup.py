@@ -13,7 +13,7 @@ from gearmath.gearbox.helix import SIGNS, Helix
 from gearmath.gearbox.hobbed.classes import FigureClass, classes, overall
 from gearmath.gearbox.hobbed.contributions import Contribution, contributions
 from gearmath.gearbox.hobbed.drive import DriveTrain, Rule
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import Envelope
 from gearmath.gearbox.hobbed.inspection import Inspection, Layout, inspect, layout
 from gearmath.gearbox.hobbed.job import HobbingJob, HobTool
 from gearmath.gearbox.kernels import evaluate
@@ -164,7 +164,7 @@ def hob_tool(hob: Hob, starts: int, sign: int) -> HobTool:
 def cut_and_inspect(cut: CutSetup, rule: Rule, progress: Callable[[int], object] = lambda done: None) -> VirtualGear:
     """The gear as one rule cuts it."""
     train = DriveTrain(cut.train.machine, cut.job, cut.train.ratio, rule, cut.train.rpm, cut.train.seconds)
-    found = inspect(Cut(cut.job, train), cut.where, progress)
+    found = inspect(Envelope(cut.job, train), cut.where, progress)
     return VirtualGear(rule, found, classes(cut.job, found))
 
 

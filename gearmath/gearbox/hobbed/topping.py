@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from gearmath.engine.points import Points
-from gearmath.gearbox.hobbed.envelope import BLOCK, Cut
+from gearmath.gearbox.hobbed.envelope import BLOCK, Envelope
 from gearmath.gearbox.hobbed.job import TURN
 from gearmath.gearbox.kernels import kernel
 
@@ -21,7 +21,7 @@ TURNS, GASHES = 2, 3
 STEPS, ASKED = 6, (0, 2)
 
 
-def topped_radii(cut: Cut, height: float) -> np.ndarray:
+def topped_radii(cut: Envelope, height: float) -> np.ndarray:
     """Radius (z,) [mm] of the tip of every tooth about a height on the gear, as a micrometer feels it: the highest.
 
     Of the points that one gash and one feed leave, in the middle of the tooth between space i and i + 1.
@@ -42,14 +42,14 @@ def topped_radii(cut: Cut, height: float) -> np.ndarray:
     return highest
 
 
-def topped_radius(cut: Cut, space: np.ndarray, angle: np.ndarray, height: np.ndarray) -> np.ndarray:
+def topped_radius(cut: Envelope, space: np.ndarray, angle: np.ndarray, height: np.ndarray) -> np.ndarray:
     """Radius (n,) [mm] at angles from the middle of spaces and at heights on the gear, of all gashes nearby."""
     size = BLOCK // ((2 * TURNS + 1) * (2 * GASHES + 1))
     blocks = [slice(start, start + size) for start in range(0, len(space), size)]
     return np.concatenate([_least(cut, space[part], angle[part], height[part]) for part in blocks])
 
 
-def _least(cut: Cut, space: np.ndarray, angle: np.ndarray, height: np.ndarray) -> np.ndarray:
+def _least(cut: Envelope, space: np.ndarray, angle: np.ndarray, height: np.ndarray) -> np.ndarray:
     """The same of one block."""
     job, hob, teeth = cut.job, cut.job.hob, cut.job.gear.teeth
     # the root stands across the tooth where the gear has turned it to the common perpendicular
@@ -76,7 +76,7 @@ def _least(cut: Cut, space: np.ndarray, angle: np.ndarray, height: np.ndarray) -
         stride //= GASHES
 
 
-def _radius(cut: Cut, turn: np.ndarray, thread: np.ndarray, angle: np.ndarray, height: np.ndarray) -> np.ndarray:
+def _radius(cut: Envelope, turn: np.ndarray, thread: np.ndarray, angle: np.ndarray, height: np.ndarray) -> np.ndarray:
     """Where the root of single gashes, a line along the hob, passes the angle at the height (n,) [mm].
 
     The line is sought by its place along the hob and the hob's turn; a helical gash is taken as straight in a tooth.

@@ -23,7 +23,7 @@ _AWAY = 1e4
 
 
 @dataclass(frozen=True)
-class Profile:
+class CutterProfile:
     """One blade: the cone at its flank, the arc that touches the cone, and the rounded edge. mm, rad.
 
     ``edge_center`` is the radius of the edge's centre, ``joint`` the angle of the normal where edge and flank join.
@@ -54,10 +54,10 @@ class Profile:
             ]
         )
 
-    def raised(self, height: float, side: int) -> Profile:
+    def raised(self, height: float, side: int) -> CutterProfile:
         """The blade from a height up: without the edge below it."""
         radius = self.point_radius + side * height * math.tan(self.pressure_angle)
-        return Profile(radius, self.pressure_angle, self.curvature, self.reference_height - height)
+        return CutterProfile(radius, self.pressure_angle, self.curvature, self.reference_height - height)
 
     def enclosing_radius(self, side: int, height: float) -> float:
         """Point radius of the parallel cone that holds all of a hollow blade up to a height above the tip."""
@@ -70,8 +70,8 @@ class Body:
     """An annulus whose tip plane stands ``base`` [mm] above that of the cutter."""
 
     base: float
-    outer: Profile
-    inner: Profile
+    outer: CutterProfile
+    inner: CutterProfile
     height: float
 
     @property
@@ -114,8 +114,8 @@ class Cutter:
 
 def one_blade(point_radius: float, pressure_angle: float, side: int, height: float = 60.0) -> Cutter:
     """A cutter that is one infinite cone: the other blade is out of reach."""
-    blade = Profile(point_radius, pressure_angle)
-    outer, inner = (blade, Profile(0.0, 0.1)) if side == 1 else (Profile(_AWAY, 0.1), blade)
+    blade = CutterProfile(point_radius, pressure_angle)
+    outer, inner = (blade, CutterProfile(0.0, 0.1)) if side == 1 else (CutterProfile(_AWAY, 0.1), blade)
     return Cutter((Body(0.0, outer, inner, height),), height)
 
 
@@ -168,7 +168,7 @@ def _edged(spec: Flank, radius: float) -> Flank:
     return spec.model_copy(update={"blade_edge_radius": radius}) if spec.blade_edge_radius == 0.0 else spec
 
 
-def _profile(sections: dict[str, Section], spec: Flank, side: int) -> Profile:
+def _profile(sections: dict[str, Section], spec: Flank, side: int) -> CutterProfile:
     """The lowest section of a blade with its edge."""
     lowest = next(section for name, section in sections.items() if name != "edge")
     edge = sections.get("edge")
@@ -176,8 +176,8 @@ def _profile(sections: dict[str, Section], spec: Flank, side: int) -> Profile:
     if edge is not None and edge.arc is not None:
         rounded = {"edge_center": edge.arc[0], "edge_radius": edge.arc[2], "joint": edge.lower}
     if lowest.arc is None:
-        return Profile(lowest.point_radius, lowest.pressure_angle, **rounded)
-    return Profile(
+        return CutterProfile(lowest.point_radius, lowest.pressure_angle, **rounded)
+    return CutterProfile(
         spec.blade_point_radius,
         spec.alpha,
         1 / lowest.arc[2],
@@ -186,5 +186,5 @@ def _profile(sections: dict[str, Section], spec: Flank, side: int) -> Profile:
     )
 
 
-def _moved(profile: Profile, by: float) -> Profile:
+def _moved(profile: CutterProfile, by: float) -> CutterProfile:
     return replace(profile, point_radius=profile.point_radius + by, edge_center=profile.edge_center + by)

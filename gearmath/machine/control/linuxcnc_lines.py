@@ -17,7 +17,7 @@ _ACTIVE = re.compile(r"\s*(MSG|DEBUG|PRINT|ABORT|LOGOPEN|LOGAPPEND|LOG|LOGCLOSE)
 
 
 @dataclass(frozen=True)
-class Line:
+class NgcLine:
     """One line: its number from 1, its code, what its comments do, and its O-word with what follows it."""
 
     number: int
@@ -27,7 +27,7 @@ class Line:
     flow: str = ""
 
 
-def lines_of(text: str, name: str) -> list[Line]:
+def lines_of(text: str, name: str) -> list[NgcLine]:
     """The lines of a program that are not empty. Raises InputError for what LinuxCNC would not read."""
     found = []
     for number, raw in enumerate(text.splitlines(), 1):
@@ -47,13 +47,13 @@ def lines_of(text: str, name: str) -> list[Line]:
         if code.startswith("O") and flow is None:
             refuse(name, number, 1, f"{code[:20]} is not understood")
         if flow is not None:
-            found.append(Line(number, flow[3], tuple(said), flow[1], flow[2]))
+            found.append(NgcLine(number, flow[3], tuple(said), flow[1], flow[2]))
         else:
-            found.append(Line(number, code, tuple(said)))
+            found.append(NgcLine(number, code, tuple(said)))
     return found
 
 
-def partners(lines: list[Line], name: str) -> dict[int, int]:
+def partners(lines: list[NgcLine], name: str) -> dict[int, int]:
     """For the place of every IF, ELSE, WHILE and SUB the place of what ends it; ENDWHILE leads back to WHILE."""
     open_: list[int] = []
     found: dict[int, int] = {}

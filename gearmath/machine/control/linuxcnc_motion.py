@@ -10,7 +10,7 @@ import numpy as np
 
 from gearmath.machine.control.blocks import PathRow
 from gearmath.machine.control.expression import AXES, CUTTER_AXIS, refuse
-from gearmath.machine.control.linuxcnc_lines import Line
+from gearmath.machine.control.linuxcnc_lines import NgcLine
 from gearmath.machine.control.runner import Halt
 from gearmath.machine.control.state import PROBE_TOOL, Blind, Deflected, Follower, Probe, Setup
 
@@ -118,7 +118,7 @@ class LinuxCncMotion:
         length = self._length() if axis == "Z" and not machine else 0.0
         return length - setup.zero[k] + (0.0 if machine else setup.offset[k])
 
-    def _act(self, line: Line, codes: list[str], words: dict[str, float]) -> None:
+    def _act(self, line: NgcLine, codes: list[str], words: dict[str, float]) -> None:
         """The words of one line, in the order in which LinuxCNC acts."""
         state = self.control
         for code in codes:
@@ -148,7 +148,7 @@ class LinuxCncMotion:
             self._halt(line, True)
         state.ended = state.ended or bool({"M2", "M30"} & set(codes))
 
-    def _machine(self, line: Line, codes: list[str]) -> None:
+    def _machine(self, line: NgcLine, codes: list[str]) -> None:
         """Spindle, coolant, tool change."""
         state = self.control
         for code, sense in (("M3", 1), ("M4", -1), ("M5", 0)):
@@ -165,10 +165,10 @@ class LinuxCncMotion:
             state.fetched = state.selected if state.setup.spindle_tool(meant) == meant else ANOTHER_TOOL
             state.stand(state.setup.changed_at)
 
-    def _halt(self, line: Line, stop: bool, seconds: float = 0.0) -> None:
+    def _halt(self, line: NgcLine, stop: bool, seconds: float = 0.0) -> None:
         self.halts.append(Halt(line.number, stop, len(self.rows), len(self.control.blind), seconds))
 
-    def _move(self, line: Line, words: dict[str, float], machine: bool) -> None:
+    def _move(self, line: NgcLine, words: dict[str, float], machine: bool) -> None:
         """One motion; nothing is kept of it while the position of an axis is unknown."""
         state = self.control
         motion = state.modal.get("motion")
@@ -208,7 +208,7 @@ class LinuxCncMotion:
         self.said.append(self.messages[-1] if self.messages else "")
         self.moved(_internal(position))
 
-    def _seconds(self, line: Line, before: Mapping[str, float]) -> float:
+    def _seconds(self, line: NgcLine, before: Mapping[str, float]) -> float:
         """How long a feed block takes: by its time, or by X Y Z, and where these stand by the axes that turn."""
         state = self.control
         if state.feed is None or state.feed <= 0.0:
@@ -221,7 +221,7 @@ class LinuxCncMotion:
         )
         return 60.0 * way / state.feed
 
-    def _probe(self, line: Line, before: Mapping[str, float], towards: bool) -> None:
+    def _probe(self, line: NgcLine, before: Mapping[str, float], towards: bool) -> None:
         """G38.3 ends where the probe triggers, and G38.5, which begins at a surface, where it is commanded to."""
         state = self.control
         if state.fetched == 0 or self._tool() != PROBE_TOOL:

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 from gearmath.machine.control.expression import AXES, refuse
 from gearmath.machine.control.linuxcnc_expression import Cursor
-from gearmath.machine.control.linuxcnc_lines import Line, lines_of, partners
+from gearmath.machine.control.linuxcnc_lines import NgcLine, lines_of, partners
 from gearmath.machine.control.linuxcnc_motion import ABORTED, ANOTHER_TOOL, OFFSETS, LinuxCncMotion
 from gearmath.machine.control.state import Deflected, Follower, Probe, Setup
 
@@ -77,7 +77,7 @@ class LinuxCncRunner(LinuxCncMotion):
                 self._block(line)
             place += 1
 
-    def _flow(self, place: int, line: Line) -> int:
+    def _flow(self, place: int, line: NgcLine) -> int:
         """Where an O-word leads."""
         if line.flow in ("IF", "WHILE"):
             holds = self._cursor(line).value() != 0.0
@@ -101,10 +101,10 @@ class LinuxCncRunner(LinuxCncMotion):
             self.local.pop()
         return place + 1
 
-    def _cursor(self, line: Line) -> Cursor:
+    def _cursor(self, line: NgcLine) -> Cursor:
         return Cursor(line.code, self.name, line.number, lambda number: self._numbered(number, line), self._named)
 
-    def _numbered(self, number: int, line: Line) -> float:
+    def _numbered(self, number: int, line: NgcLine) -> float:
         """The value of a parameter: of the control, of the subroutine, or of the program."""
         state, setup = self.control, self.control.setup
         if number <= 30:
@@ -130,7 +130,7 @@ class LinuxCncRunner(LinuxCncMotion):
     def _named(self, name: str) -> float | None:
         return 1.0 if name == "_TASK" else self.named.get(name)
 
-    def _says(self, line: Line) -> None:
+    def _says(self, line: NgcLine) -> None:
         """What the comments of a line do."""
         for what, text in line.said:
             shown = _FORMAT.sub(lambda found: self._formatted(found, line), text).strip()
@@ -149,13 +149,13 @@ class LinuxCncRunner(LinuxCncMotion):
                 self.alarm = ABORTED, line.number
                 self.control.ended = True
 
-    def _formatted(self, found: re.Match[str], line: Line) -> str:
+    def _formatted(self, found: re.Match[str], line: NgcLine) -> str:
         name = found[2] or found[3]
         value = self._named(name[1:-1].upper()) if name.startswith("<") else self._numbered(int(name), line)
         form = found[1] or ".6f"
         return f"{round(value or 0.0)}" if form == "d" else f"{value or 0.0:{form}}"
 
-    def _block(self, line: Line) -> None:
+    def _block(self, line: NgcLine) -> None:
         """Assignments, then words; assignments act when the line is over."""
         cursor = self._cursor(line)
         set_: dict[int | str, float] = {}

@@ -22,7 +22,8 @@ from gearmath.machine.milling.axis_errors import roll_position
 from gearmath.machine.milling.mill import expose, thickness
 from gearmath.machine.milling.removal import REACH, annulus_entry
 from gearmath.machine.milling.run import CuttingRun
-from gearmath.machine.planning.blocks import flank_curve, foot_curves, on_one_machine
+from gearmath.machine.planning.blocks import on_one_machine
+from gearmath.machine.planning.lines import flank_curve, foot_curves, joined
 from gearmath.machine.planning.passes import tooth_angles
 from gearmath.machine.planning.path import axis_positions, flank_points
 from gearmath.specs.bevel_set import FLANKS, Member
@@ -108,8 +109,8 @@ def _lines(member: Member, run: CuttingRun, flank: str, rolls: np.ndarray) -> tu
     shared = on_one_machine(member, run.cut)
     curves = [flank_curve(shared, flank, rolls, up=up) for up in _UP]
     curves += [flank_curve(shared, flank, rolls, across=across) for across in _ACROSS]
-    theta, lines = (np.concatenate(part) for part in zip(*curves, *foot_curves(shared, flank, rolls), strict=True))
-    return theta, lines[:, :3], lines[:, 3:6]
+    lines = joined([*curves, *foot_curves(shared, flank, rolls)])
+    return lines.theta, lines.point, lines.normal
 
 
 def watch(

@@ -24,7 +24,7 @@ _ON_RING = 8
 
 
 @dataclass(frozen=True)
-class Section:
+class ArtefactSection:
     """A part of a calibration program that R90 and R91 choose: its name, and how many touches it makes."""
 
     what: str
@@ -51,11 +51,11 @@ def calibration_touches(calibration: Calibration) -> dict[str, int]:
     return dict(Counter([*pairs, *face, *sphere]))
 
 
-def tip_sections(calibration: Calibration) -> list[Section]:
+def tip_sections(calibration: Calibration) -> list[ArtefactSection]:
     """The parts of the program that calibrates the tip, as far as the calibration file has them, in their order."""
     counts = calibration_touches(calibration)
     names = {"ring": RING, "face of the ring": (RING_FACE,), "sphere": (SPHERE,)}
-    found = [Section(what, sum(counts.get(target, 0) for target in targets)) for what, targets in names.items()]
+    found = [ArtefactSection(what, sum(counts.get(target, 0) for target in targets)) for what, targets in names.items()]
     return [one for one in found if one.touches]
 
 
@@ -74,13 +74,13 @@ def axis_touches(machine: MillingMachine, calibration: Calibration) -> int:
     return 0 if sphere is None else sum(one.touches for one in axis_sections(machine, calibration, sphere))
 
 
-def axis_sections(machine: MillingMachine, calibration: Calibration, sphere: WorkSphere) -> list[Section]:
+def axis_sections(machine: MillingMachine, calibration: Calibration, sphere: WorkSphere) -> list[ArtefactSection]:
     """The parts of the program that finds the rotary axes: one for every position of A and B, in their order."""
     found = []
     for center in sphere_positions(machine, calibration, sphere):
         a, b = np.degrees(center[3:]).round(3)
         touches = len(work_sphere_directions(center, sphere, calibration))
-        found.append(Section(f"sphere on the work, A {a:g} B {b:g}", touches))
+        found.append(ArtefactSection(f"sphere on the work, A {a:g} B {b:g}", touches))
     return found
 
 

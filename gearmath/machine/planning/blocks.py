@@ -10,7 +10,6 @@ again, gives the fewest.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import Self
@@ -19,34 +18,17 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity, notation
-from gearmath.bevel.flank import Grid
-from gearmath.bevel.method import blade_sections
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.machine.planning.path import (
-    DEFAULT_TOLERANCE,
-    Cut,
-    axis_positions,
-    below_the_flank,
-    flank_points,
-    roll_range,
-)
-from gearmath.specs.bevel_set import SIDES, Flank, Member
+from gearmath.machine.planning.lines import GeneratedLines, flank_rows, foot_curves, joined
+from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions, roll_range
+from gearmath.specs.bevel_set import Flank, Member
 
 #: What five printed decimals of X Y Z [mm] and six of A B [deg], at 100 mm from either axis, may do to the flank.
 ROUNDING = 0.5e-5 * math.sqrt(3) + 2 * math.radians(0.5e-6) * 100.0
 #: Tolerances that can be asked for. [mm]
 TOLERANCES = (1e-5, 0.1)
-_COLUMNS = 801
-#: Points of a curve that has others where they are asked for.
-_EVEN = 101
-#: The points go beyond the flank by this part of it: a machine that is off its settings cuts the flank's edges at
-#: other cradle rotations, and must not find a long block of the overrun there.
-_BEYOND = 0.02
-_UP, _ACROSS = (0.25, 0.5, 0.75, 1.0, 1 + _BEYOND), (-_BEYOND, 0.0, 1.0, 1 + _BEYOND)
-#: At toe and heel they go this part of the working depth below it, as far as the blade reaches.
-_DEEP = 0.3
 #: Where along a block each row of flank points is looked at: its middle, where most is left, among them.
 _FRACTIONS = np.array([-0.3, -0.07, *np.linspace(0.0, 1.0, 9), 1.07, 1.3])
 #: Blocks from this roll on [rad] are compared with one in so many points of the flanks, at these parts of the block.
@@ -59,8 +41,6 @@ _REFINED = 40
 _BETWEEN = 0.975
 #: A block is long enough when it uses this part of the tolerance; no block rolls further than this [rad].
 _USED, _LONGEST = 0.96, math.radians(3.0)
-#: Nearer to the end of the blade than this [mm] a point belongs to the fillet.
-_TIP = 0.05
 
 
 @cache
@@ -112,16 +92,14 @@ def _horner(powers: list[ca.SX], s: ca.SX) -> ca.SX:
 class ExactPass:
     """The exact path of one pass, and rows of flank points that it generates.
 
-    ``theta`` holds the cradle rotations of all rows, one behind the other and rising within each; ``rows`` holds where
-    each begins, and the rotations halfway between its points. ``lines`` has the same order: point, normal, point
-    radius, pressure angle and side of the blade (or of the straight blade that touches an arc blade there).
+    ``lines`` holds all rows, one behind the other, their cradle rotations rising within each; ``rows`` holds where
+    each begins, and the rotations halfway between its points.
     """
 
     flank: Flank
     pivot_height: float
     pivot_offset: np.ndarray
-    theta: np.ndarray
-    lines: np.ndarray
+    lines: GeneratedLines
     rows: tuple[tuple[int, np.ndarray], ...]
 
     @property
@@ -132,12 +110,11 @@ class ExactPass:
     @classmethod
     def of(cls, member: Member, cut: Cut, pivot_height: float, pivot_offset: np.ndarray) -> Self:
         """Points over the whole flanks of a pass, down to the root."""
-        found = [row for flank in cut.flanks for row in (*_rows(member, flank), *foot_curves(member, flank))]
-        theta, lines = [at for at, _ in found], [row for _, row in found]
-        begin = np.cumsum([0, *(len(at) for at in theta)]).tolist()
-        rows = tuple((k, (at[1:] + at[:-1]) / 2) for k, at in zip(begin, theta, strict=False) if len(at))
-        spec = member.flank(cut.flanks[0])
-        return cls(spec, pivot_height, pivot_offset, np.concatenate(theta), np.concatenate(lines), rows)
+        found = [row for flank in cut.flanks for row in (*flank_rows(member, flank), *foot_curves(member, flank))]
+        begin = np.cumsum([0, *map(len, found)]).tolist()
+        halfway = ((row.theta[1:] + row.theta[:-1]) / 2 for row in found)
+        rows = tuple((k, between) for k, between, row in zip(begin, halfway, found, strict=False) if len(row))
+        return cls(member.flank(cut.flanks[0]), pivot_height, pivot_offset, joined(found), rows)
 
     def block(self, start: float, end: float) -> np.ndarray:
         """The block that follows a part of the path, as ``entry_within_block`` takes it: (k,5), here its ends."""
@@ -157,7 +134,7 @@ class ExactPass:
         low = np.flatnonzero(left < -_UNTOUCHED)
         ends = self.along(block, np.array([0.0, 1.0]))
         left[low[self._at(ends, chosen[low]).min(axis=1) < -_UNTOUCHED]] = 0.0
-        inside = (self.theta[chosen] >= start) & (self.theta[chosen] <= end)
+        inside = (self.lines.theta[chosen] >= start) & (self.lines.theta[chosen] <= end)
         lowest = (
             float(left.min()) if end - start < _LONG else min(float(left.min()), self._elsewhere(block, start, end))
         )
@@ -169,8 +146,8 @@ class ExactPass:
         The tool may come near to a point twice, and Newton's steps from its contact see one of these times. Points that
         the exact path takes away there, beyond the ends of the flank, do not count.
         """
-        last = [*(first for first, _ in self.rows[1:]), len(self.theta)]
-        some = np.union1d(np.arange(0, len(self.theta), _SOME), np.array(last) - 1)
+        last = [*(first for first, _ in self.rows[1:]), len(self.lines)]
+        some = np.union1d(np.arange(0, len(self.lines), _SOME), np.array(last) - 1)
         theta = np.concatenate([[start], start + _INNER * (end - start), [end]])
         exact = axis_positions(self.flank, theta, self.pivot_height, self.pivot_offset)
         left, path = (self._at(axes, some) for axes in (self.along(block, _INNER), exact[1:-1]))
@@ -179,18 +156,8 @@ class ExactPass:
 
     def _at(self, axes: np.ndarray, chosen: np.ndarray) -> np.ndarray:
         """Distances (n, k) of entry of n points at k positions of the axes."""
-        lines = np.repeat(self.lines[chosen], len(axes), axis=0)
-        points, normals, radius, angle, side = np.split(lines, [3, 6, 7, 8], axis=1)
-        (distance,) = kernel("line_entry")(
-            np.tile(axes, (len(chosen), 1)),
-            self.pivot_height,
-            points,
-            normals,
-            radius[:, 0],
-            angle[:, 0],
-            side[:, 0],
-            self.pivot_offset,
-        )
+        lines, every = self.lines.at(np.repeat(chosen, len(axes))), np.tile(axes, (len(chosen), 1))
+        (distance,) = kernel("line_entry")(every, self.pivot_height, *lines.on_blade, self.pivot_offset)
         return distance.reshape(len(chosen), len(axes))
 
     def _smallest(self, block: np.ndarray, start: float, end: float, chosen: np.ndarray) -> np.ndarray:
@@ -199,7 +166,7 @@ class ExactPass:
         What is left of the slope after a step is taken off as if the curvature held: t - t'²/(2 t''). The second step
         is made only where the first one shows the extremes, until these are among those that were refined.
         """
-        s = np.clip((self.theta[chosen] - start) / (end - start), 0.0, 1.0)
+        s = np.clip((self.lines.theta[chosen] - start) / (end - start), 0.0, 1.0)
         at_contact, smallest, change = self._step(block, s, chosen)
         once = np.ones(len(chosen), dtype=bool)
         while once[(order := np.argsort(smallest))[[0, -1]]].any():
@@ -213,104 +180,11 @@ class ExactPass:
 
     def _step(self, block: np.ndarray, s: np.ndarray, chosen: np.ndarray) -> tuple[np.ndarray, ...]:
         """Distance (n,) at fractions ``s`` (n,) of the block, the smallest as seen from there, the way there."""
-        points, normals, radius, angle, side = np.split(self.lines[chosen], [3, 6, 7, 8], axis=1)
-        distance, slope, curvature = entry_within_block(self.degree)(
-            *block,
-            s,
-            self.pivot_height,
-            points,
-            normals,
-            radius[:, 0],
-            angle[:, 0],
-            side[:, 0],
-            self.pivot_offset,
-        )
+        given = (*block, s, self.pivot_height, *self.lines.at(chosen).on_blade, self.pivot_offset)
+        distance, slope, curvature = entry_within_block(self.degree)(*given)
         curved = np.where(curvature > 0, curvature, math.inf)
         change = np.clip(s - slope / curved, 0.0, 1.0) - s
         return distance, np.minimum(distance, distance + (slope + curvature * change / 2) * change), change
-
-
-def _rows(member: Member, flank: str) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    for grid in _curves(member):
-        yield flank_row(member, flank, grid)
-
-
-def flank_curve(
-    member: Member, flank: str, rolls: np.ndarray, up: float | None = None, across: float | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Cradle rotations (n,), rising, and lines (n,9) along the tooth at ``up``, or up the tooth at ``across``.
-
-    They lie evenly, and where the curve is generated at ``rolls`` (m,). Up the tooth they begin as deep as the blade
-    reaches, where the foot of the flank ends.
-    """
-
-    def grid(places: np.ndarray) -> Grid:
-        given = (places if across is None else np.full(len(places), across), places if up is None else up)
-        axial, radial = kernel("flank_place")(member.blank.vector, given[0], np.broadcast_to(given[1], len(places)))
-        return Grid(axial[None], radial[None])
-
-    even = np.linspace(0.0 if across is None else -_DEEP, 1.0, _EVEN)
-    theta = flank_points(member, flank, grid(even)).contact[:, 2]
-    return flank_row(member, flank, grid(np.union1d(even, _places(rolls, theta, even))))
-
-
-def foot_curves(member: Member, flank: str, rolls: np.ndarray | None = None) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """The same for the lower ends of the flank, along the tooth. What the edge cuts lies between flank and root.
-
-    Without ``rolls`` they lie evenly, and closer.
-    """
-    across = np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS // 2 if rolls is None else _EVEN)
-    if rolls is not None:
-        found = [_places(rolls, theta, place) for place, theta, _ in _feet(member, flank, across)]
-        across = np.unique(np.concatenate([across, *found]))
-    yield from ((theta, lines) for _, theta, lines in _feet(member, flank, across))
-
-
-def _feet(member: Member, flank: str, across: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Parts of the face width (n,), cradle rotations (n,), rising, and lines (n,9) of the lower ends of the flank."""
-    for part, points, blade in below_the_flank(member, flank, across):
-        if part == "edge":
-            return
-        kept = np.flatnonzero(points.converged)
-        order = kept[np.argsort(points.contact[kept, 2], kind="stable")]
-        side = np.full((len(order), 1), float(SIDES[flank]))
-        lines = np.hstack([points.point[order], points.normal[order], blade[order], side])
-        yield across[order], points.contact[order, 2], lines
-
-
-def _places(rolls: np.ndarray, theta: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """Where a curve is generated at the ``rolls`` that it has, from the cradle rotations at some places of it."""
-    order = np.argsort(theta)
-    here = rolls[(rolls > theta.min(initial=math.inf)) & (rolls < theta.max(initial=-math.inf))]
-    return np.interp(here, theta[order], place[order]) if len(here) else here
-
-
-def _curves(member: Member) -> Iterator[Grid]:
-    """Lines on the flank that every line of contact crosses at its ends and between: along the tooth, toe, heel."""
-    everywhere = np.linspace(-_BEYOND, 1 + _BEYOND, _COLUMNS)
-    depth = np.linspace(-_DEEP, 1 + _BEYOND, _COLUMNS)
-    along = [(everywhere, np.full(_COLUMNS, up)) for up in _UP]
-    ends = [(np.full(_COLUMNS, across), depth) for across in _ACROSS]
-    for across, up in (*along, *ends):
-        axial, radial = kernel("flank_place")(member.blank.vector, across, up)
-        yield Grid(axial[None], radial[None])
-
-
-def flank_row(member: Member, flank: str, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    """Cradle rotations (n,), rising, and lines (n,9) of the points of one row that lie on the blade."""
-    spec, side = member.flank(flank), SIDES[flank]
-    section = blade_sections(spec.model_copy(update={"design": None}), side)["main"]
-    points = flank_points(member, flank, grid)
-    u = points.contact[:, 0]
-    if section.arc is None:
-        on_blade = (u > section.lower + _TIP) & (u < section.upper)
-        blade = np.broadcast_to([spec.blade_point_radius, spec.alpha], (len(u), 2))
-    else:
-        on_blade = (u > section.lower) & (u < section.upper)
-        blade = np.column_stack(kernel("touching_blade")(u, np.array(section.arc), side))
-    lines = np.hstack([points.point, points.normal, blade, np.full((len(u), 1), float(side))])
-    order = np.flatnonzero(on_blade)[np.argsort(points.contact[on_blade, 2], kind="stable")]
-    return points.contact[order, 2], lines[order]
 
 
 def check_tolerance(tolerance: float, decimals: float = ROUNDING) -> None:

@@ -13,7 +13,8 @@ from derivations import Quantity, notation
 from gearmath.bevel.flank import blank_grid
 from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
-from gearmath.machine.planning.blocks import flank_row, on_one_machine
+from gearmath.machine.planning.blocks import on_one_machine
+from gearmath.machine.planning.lines import flank_row, joined
 from gearmath.machine.planning.path import Cut, axis_positions
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
@@ -54,13 +55,9 @@ def entry_by_axes() -> Kernel:
 def axis_effects(member: Member, cut: Cut, machine: MillingMachine) -> np.ndarray:
     """How far points of the flanks (n,) move along their normals with X Y Z A B (n,5), mm per mm and mm per rad."""
     member, grid = on_one_machine(member, cut), blank_grid(member, *_GRID, 0.0)
-    rows = [flank_row(member, flank, grid) for flank in cut.flanks]
-    theta, lines = np.concatenate([at for at, _ in rows]), np.concatenate([row for _, row in rows])
-    axes = axis_positions(member.flank(cut.flanks[0]), theta, machine.pivot_height, machine.pivot)
-    point, normal, radius, angle, side = np.split(lines, [3, 6, 7, 8], axis=1)
-    (gradient,) = entry_by_axes()(
-        axes, machine.pivot_height, point, normal, radius[:, 0], angle[:, 0], side[:, 0], machine.pivot
-    )
+    lines = joined([flank_row(member, flank, grid) for flank in cut.flanks])
+    axes = axis_positions(member.flank(cut.flanks[0]), lines.theta, machine.pivot_height, machine.pivot)
+    (gradient,) = entry_by_axes()(axes, machine.pivot_height, *lines.on_blade, machine.pivot)
     return np.abs(gradient)
 
 

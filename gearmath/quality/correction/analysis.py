@@ -41,7 +41,7 @@ _NAMED = 0.2
 
 
 @dataclass(frozen=True)
-class Choice:
+class ChosenSettings:
     """The fewest settings that lose little: names in the order in which they were taken, and RMS left [mm] after each.
 
     ``loss`` is what they leave more than all settings would, in the RMS [mm].
@@ -152,7 +152,7 @@ class Analysis:
         enough = float(np.sqrt(np.mean(left**2))) <= max(self.best_rms * (1 + LOSS_PART), self.best_rms + LOSS)
         return enough and bool((np.abs(change) <= 1).all())
 
-    def choose(self) -> Choice:
+    def choose(self) -> ChosenSettings:
         """The fewest settings that lose little, by ``fewest``."""
         columns = {
             name: self.jacobian[:, [k for k, variable in enumerate(self.variables) if variable.name == name]]
@@ -160,7 +160,7 @@ class Analysis:
         }
         names, left = fewest(columns, self.deviation)
         nothing = float(np.sqrt(np.mean(self.deviation**2)))
-        return Choice(names, left, (left[-1] if left else nothing) - self.best_rms)
+        return ChosenSettings(names, left, (left[-1] if left else nothing) - self.best_rms)
 
 
 def weak_words(analysis: Analysis, k: int) -> str:

@@ -53,7 +53,7 @@ def conjugate_places(
     Of the two places that (20.5) has for each point, that on the mate's blank. Raises ComputationError if a point has
     none.
     """
-    found = ease_off.conjugate_places(member, mate, gear_set.shaft_angle, point, normal)
+    found = ease_off.conjugate_places(member, mate, gear_set.rad("shaft_angle"), point, normal)
     delta, mean = mate.blank.delta, mate.blank.mean_cone_distance
     away = np.hypot(found.axial - mean * np.cos(delta), found.radial - mean * np.sin(delta))
     away = np.where(np.isfinite(away), away, np.inf)

@@ -21,7 +21,7 @@ def covariance_of(
 ) -> tuple[Covariance, str]:
     """The covariance of the deviations, and in words where it comes from.
 
-    ``sigma_um`` is that of every point, ``model`` the file of a :class:`~gearmath.specs.measurement.Measurement` for
+    ``sigma_um`` is that of every point, ``model`` the file of a :class:`~gearmath.specs.measurement.MeasuringModel` for
     the files of ``machine`` and ``calibration``. Raises InputError for a file that is none.
     """
     known = point_covariance(file, sigma_um)

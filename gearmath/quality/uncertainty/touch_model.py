@@ -21,7 +21,7 @@ from gearmath.quality.uncertainty.covariance import Covariance
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.flank_csv import FlankFile
-from gearmath.specs.measurement import Measurement
+from gearmath.specs.measurement import MeasuringModel
 from gearmath.specs.milling_machine import MillingMachine
 
 
@@ -63,7 +63,7 @@ def sensitivities(
 
 
 def touch_covariance(
-    file: FlankFile, member: Member, name: str, how: Measurement, machine: MillingMachine, calibration: Calibration
+    file: FlankFile, member: Member, name: str, how: MeasuringModel, machine: MillingMachine, calibration: Calibration
 ) -> Covariance:
     """Covariance of the deviations (n,) of a measured file, in its order.
 

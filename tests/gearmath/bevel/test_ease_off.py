@@ -72,14 +72,14 @@ def member(teeth: int, hand: int, radius: float = RADIUS) -> Member:
 
 
 def flank_parts(pinion: Member, gear: Member, flank: str = "concave"):
-    return parts(ease_off(pinion, gear, 90.0, flank, blank_grid(gear)))
+    return parts(ease_off(pinion, gear, math.pi / 2, flank, blank_grid(gear)))
 
 
 @pytest.mark.parametrize("flank", FLANKS)
 @pytest.mark.parametrize("hand", [1, -1])
 def test_pair_of_one_crown_gear_that_rolls_on_its_pitch_plane_is_conjugate(flank: str, hand: int) -> None:
     pinion, gear = member(PINION, hand), member(GEAR, -hand)
-    assert np.abs(ease_off(pinion, gear, 90.0, flank, blank_grid(gear))).max() < 1e-8
+    assert np.abs(ease_off(pinion, gear, math.pi / 2, flank, blank_grid(gear))).max() < 1e-8
 
 
 @pytest.mark.parametrize(("flank", "sense"), [("concave", -1), ("convex", 1)])
@@ -119,7 +119,7 @@ def test_bundled_pair_passes_with_half_of_every_limit(name: str, monkeypatch) ->
     monkeypatch.setattr(check, "_LIMITS", halved)
     monkeypatch.setattr(check, "_REST", check._REST / 2)
     monkeypatch.setattr(check, "_HOLLOW", check._HOLLOW / 2)
-    check_ease_off(pair.pinion, pair.gear, pair.shaft_angle)
+    check_ease_off(pair.pinion, pair.gear, pair.rad("shaft_angle"))
 
 
 def changed(name: str, *changes: tuple[str, object]) -> BevelSet:
@@ -152,7 +152,7 @@ def test_mates_that_fit_at_the_mean_point_alone_are_refused_with_part_value_and_
     name, *changes = WRONG[case]
     pair = changed(name, *changes)
     with pytest.raises(Misfit, match=r"(ease-off has a|they would cut) .* mm .*, which must (lie between|be at most)"):
-        check_ease_off(pair.pinion, pair.gear, pair.shaft_angle)
+        check_ease_off(pair.pinion, pair.gear, pair.rad("shaft_angle"))
     with pytest.raises(InputError):
         check_pair(pair)
 

@@ -30,7 +30,7 @@ REACHED = (
     "control/",
     "files.py",
     "front/contact",
-    "front/gearbox",
+    "front/hobbing",
     "gearbox/helix",
     "gearbox/job",
     "gearbox/motion",

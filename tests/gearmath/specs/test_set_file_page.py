@@ -170,7 +170,7 @@ MACHINE_FILES: dict[str, type[BaseModel]] = {
     "Machine": milling_machine.MillingMachine,
     "Errors of a shop": simulated_machine.SimulatedMachine,
     "Probe": calibration.Calibration,
-    "Measurement": measurement.Measurement,
+    "Measurement": measurement.MeasuringModel,
 }
 MACHINE_TABLES: dict[str, type[BaseModel]] = MACHINE_FILES | {
     "`[axes.X]`, `[axes.Y]`, `[axes.Z]`, `[axes.B]`": milling_machine.TravelAxis,

@@ -20,7 +20,7 @@ def test_ease_off_is_that_of_the_pinion_turned_onto_its_conjugate(side: str, gea
     system = side_system(gear_set, side)
     found = places(system, np.zeros(4), 5, 9)
     grid = blank_grid(gear_set.gear, 5, 9, 0.0)
-    other = ease_off(gear_set.pinion, gear_set.gear, gear_set.shaft_angle, SIDES[side], grid)
+    other = ease_off(gear_set.pinion, gear_set.gear, gear_set.rad("shaft_angle"), SIDES[side], grid)
     own = -system.sense * (found.error - found.error[2, 4]) * np.abs(found.lever)
     # normals of both flanks differ by the slope of the ease-off, and so do the levers
     assert own == pytest.approx(other, rel=0.02, abs=2e-5)

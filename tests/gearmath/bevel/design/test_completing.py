@@ -166,7 +166,7 @@ def test_crownings_that_are_asked_for_are_those_of_the_ease_off_about_the_vertex
     low, high = (float(kernel("flank_place")(gear.blank.vector, 0.5, up)[1]) for up in (0.0, 1.0))
     up, part = (radial - low) / (high - low), 0.2
     grid = blank_grid(gear, 9, 15, Margins(toe=0.4, heel=0.4, root=up - part / 2, tip=1 - up - part / 2))
-    found = parts(1000 * ease_off(pinion, gear, made.pair.shaft_angle, SIDES[side], grid))
+    found = parts(1000 * ease_off(pinion, gear, made.pair.rad("shaft_angle"), SIDES[side], grid))
     # of 30 um a fiftieth is fourth order; rows of the grid lean by the taper, which shows as bias
     assert found.crowning / part**2 == pytest.approx(30.0, abs=0.6)
     assert found.profile_crowning / part**2 == pytest.approx(4.0, abs=0.3)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -97,7 +98,7 @@ def test_fitted_pinion_has_the_ease_off_and_the_backlash_that_its_set_states(pai
     y, x = np.meshgrid(np.linspace(-1, 1, 5), np.linspace(-1, 1, 9), indexing="ij")
     wanted = entry["fitted"]["crowning"] * x**2 + entry["fitted"]["profile_crowning"] * y**2
     for flank in FLANKS:
-        assert np.abs(ease_off(pinion, gear, 90.0, flank, blank_grid(gear)) - wanted).max() < 0.006
+        assert np.abs(ease_off(pinion, gear, math.pi / 2, flank, blank_grid(gear)) - wanted).max() < 0.006
     made = pair(Method(**entry["pinion"]), Method(**entry["gear"]), **entry["data"])
     assert mean_backlash(pinion, gear) == pytest.approx(mean_backlash(made.pinion, made.gear), abs=1e-4)
 

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from gearmath.gearbox.dimensions import Gear
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import Envelope
 from gearmath.gearbox.hobbed.inspection import form_length
 from gearmath.gearbox.hobbed.job import TURN, HobbingJob, HobTool
 
@@ -178,7 +178,7 @@ def check(of: HobbingJob, errors, side: int, form: float, tip: float, random: np
     """Three points of the flank ``side``, one on the form circle."""
     spaces = random.integers(0, of.gear.teeth, 3)
     lengths, heights = np.array([form, *random.uniform(form, tip, 2)]), random.uniform(5.0, 15.0, 3)
-    found = Cut(of, errors).deviation(side, spaces, lengths, heights)
+    found = Envelope(of, errors).deviation(side, spaces, lengths, heights)
     rows = zip(spaces.tolist(), lengths.tolist(), heights.tolist(), strict=True)
     cut = [brute_force(of, errors, side, *row) for row in rows]
     np.testing.assert_allclose(found, cut, rtol=0, atol=0.1 * UM)

@@ -13,7 +13,7 @@ from gearmath.export.host import run_axes
 from gearmath.gearbox.helix import Helix, JobRatio
 from gearmath.gearbox.hobbed import envelope
 from gearmath.gearbox.hobbed.drive import DriveTrain, rounding
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import Envelope
 from gearmath.gearbox.hobbed.inspection import inspect
 from gearmath.gearbox.hobbed.job import TURN
 from gearmath.gearbox.hobbed.passes import Passes
@@ -77,8 +77,8 @@ def test_steps_change_a_flank_by_half_of_one_and_a_count_at_most(teeth, starts, 
     spaces, lengths = np.arange(60) % teeth, np.linspace(where.profile[0], where.profile[-1], 60)
     heights = np.linspace(2.0, 8.0, 60)
     for side in (1, -1):
-        with_steps = Cut(train.job, train).deviation(side, spaces, lengths, heights)
-        without = Cut(train.job).deviation(side, spaces, lengths, heights)
+        with_steps = Envelope(train.job, train).deviation(side, spaces, lengths, heights)
+        without = Envelope(train.job).deviation(side, spaces, lengths, heights)
         count = sum(abs(float(each)) for each in train.ratio.numerators) / train.ratio.denominator
         assert np.abs(with_steps - without).max() <= (0.5 + count) * normal_step(train) + 1e-9
 
@@ -100,7 +100,7 @@ def test_every_tooth_is_off_by_the_remainder_of_the_compiled_rule(teeth):
         psi = TURN * gashes[at] / 4 + tau[at]
         on_gear = float(job.hob_height(np.array([psi]))[0] + height[at])
         point = (np.array([space]), lengths[at : at + 1], np.array([on_gear]))
-        added = Cut(job, train).deviation(1, *point) - Cut(job).deviation(1, *point)
+        added = Envelope(job, train).deviation(1, *point) - Envelope(job).deviation(1, *point)
         real = psi / TURN * per_turn
         # the table's own error moves the moment of the cut by some hundredths of a count
         counts = {math.floor(real - 0.1), math.floor(real + 0.1)}
@@ -127,7 +127,7 @@ def test_floating_rule_after_an_hour_moves_the_flank_by_the_known_steps():
     """6 teeth at 600 rpm: 1.03 steps off after ten minutes, 10.4 after an hour; on the flank so many times a step."""
     base = setup(machine(), 6, hob="m1", shift=0.5, rpm=600.0, feed=0.2, rule="float")
     spaces, lengths, heights = np.arange(120) % 6, np.full(120, base.where.middle), np.linspace(2.0, 9.0, 120)
-    before = Cut(base.job).deviation(-1, spaces, lengths, heights)
+    before = Envelope(base.job).deviation(-1, spaces, lengths, heights)
     for seconds, known in ((600, 1.03), (3600, 10.4)):
         train = replace(base.train, seconds=seconds)
         counts = np.concatenate([10 * seconds * 4096 - 1_500_000 * k - np.arange(50_000) for k in range(16)])
@@ -135,7 +135,7 @@ def test_floating_rule_after_an_hour_moves_the_flank_by_the_known_steps():
         assert np.abs(off).max() == pytest.approx(known, abs=0.06)
         anywhere = np.random.default_rng(600).uniform(0.0, base.job.hob_turns * TURN, 400_000)
         worst = np.abs(train.step_error(anywhere)).max()
-        moved = (Cut(base.job, train).deviation(-1, spaces, lengths, heights) - before) / normal_step(train)
+        moved = (Envelope(base.job, train).deviation(-1, spaces, lengths, heights) - before) / normal_step(train)
         assert -worst <= moved.min() < -0.75 * worst
 
 
@@ -160,7 +160,7 @@ def test_worm_and_wheel_come_back_in_the_pitch_with_their_orders_alone_and_toget
         ({"worm": [worm], "wheel": [wheel]}, 40.0, 60.0),
     ):
         prepared = fine(**errors)
-        for row in inspect(Cut(prepared.job, prepared.train), prepared.where).pitches:
+        for row in inspect(Envelope(prepared.job, prepared.train), prepared.where).pitches:
             spectrum = np.abs(np.fft.rfft(row.position)) / 12
             assert spectrum[10] / per_arcsec == pytest.approx(tens, rel=0.02, abs=0.02 * ones)
             assert spectrum[1] / per_arcsec == pytest.approx(ones, rel=0.02, abs=0.02 * tens)
@@ -169,7 +169,7 @@ def test_worm_and_wheel_come_back_in_the_pitch_with_their_orders_alone_and_toget
 def test_eccentric_hob_comes_back_in_the_profile_once_a_turn_of_the_hob():
     """e sin α along the normal, over a base pitch of length of roll; so small that no other gash cuts it off."""
     prepared = fine(hob_eccentricity_um=2.0)
-    for trace in inspect(Cut(prepared.job, prepared.train), prepared.where).profiles:
+    for trace in inspect(Envelope(prepared.job, prepared.train), prepared.where).profiles:
         period = math.pi * math.cos(math.radians(20))
         assert sine(trace.place, trace.deviation, period) == pytest.approx(0.002 * math.sin(math.radians(20)), rel=0.02)
 
@@ -177,7 +177,7 @@ def test_eccentric_hob_comes_back_in_the_profile_once_a_turn_of_the_hob():
 def test_wobbling_hob_comes_back_in_the_profile_once_a_turn_of_the_hob():
     """e cos α along the normal of a spur gear, a shift along the hob's axis being one of the rack."""
     prepared = fine(hob_axial_runout_um=2.0)
-    for trace in inspect(Cut(prepared.job, prepared.train), prepared.where).profiles:
+    for trace in inspect(Envelope(prepared.job, prepared.train), prepared.where).profiles:
         period = math.pi * math.cos(math.radians(20))
         expected = 0.002 * math.cos(prepared.job.lead_angle) * math.cos(math.radians(20))
         assert sine(trace.place, trace.deviation, period) == pytest.approx(expected, rel=0.02)
@@ -186,7 +186,7 @@ def test_wobbling_hob_comes_back_in_the_profile_once_a_turn_of_the_hob():
 def test_hob_whose_thread_is_too_long_comes_back_as_a_slope_of_the_profile():
     """A turn of the hob is a base pitch of length of roll; e cos α along the normal for each."""
     prepared = fine(hob_lead_um_per_turn=3.0)
-    for trace in inspect(Cut(prepared.job, prepared.train), prepared.where).profiles:
+    for trace in inspect(Envelope(prepared.job, prepared.train), prepared.where).profiles:
         turns = (trace.place[-1] - trace.place[0]) / (math.pi * math.cos(math.radians(20)))
         expected = 0.003 * math.cos(prepared.job.lead_angle) * math.cos(math.radians(20)) * turns
         assert abs(trace.slope) == pytest.approx(expected, rel=0.02)
@@ -212,7 +212,7 @@ def test_encoder_line_error_comes_back_in_the_profile_once_a_turn_of_the_encoder
         assert sine(psi, prepared.train.table(psi, 1), TURN / order) == pytest.approx(expected, rel=0.01)
         if order == 1:
             where = replace(prepared.where, helix=prepared.where.helix[:5])
-            for trace in inspect(Cut(prepared.job, prepared.train), where).profiles:
+            for trace in inspect(Envelope(prepared.job, prepared.train), where).profiles:
                 found = sine(trace.place, trace.deviation, math.pi * math.cos(math.radians(20)))
                 assert found == pytest.approx(expected * prepared.job.base_radius, rel=0.02)
 
@@ -242,7 +242,7 @@ def test_errors_of_all_parts_superpose_within_2_percent():
     def change(**errors: object) -> np.ndarray:
         prepared = fine(**errors)
         where = replace(prepared.where, profile=prepared.where.profile[::8], helix=prepared.where.helix[::8])
-        seen = inspect(Cut(prepared.job, prepared.train), where)
+        seen = inspect(Envelope(prepared.job, prepared.train), where)
         traces = [trace.deviation for trace in (*seen.profiles, *seen.helices)]
         return np.concatenate([*traces, *(row.position for row in seen.pitches), seen.ball])
 
@@ -254,7 +254,7 @@ def test_errors_of_all_parts_superpose_within_2_percent():
 
 def test_eccentric_blank_comes_back_in_the_runout_once_a_turn_of_the_table():
     prepared = fine(blank_eccentricity_um=25.0)
-    found = inspect(Cut(prepared.job, prepared.train), prepared.where)
+    found = inspect(Envelope(prepared.job, prepared.train), prepared.where)
     assert np.abs(np.fft.rfft(found.ball))[1] / 12 == pytest.approx(0.025, rel=0.02)
     assert found.runout == pytest.approx(0.05, rel=0.02)
 
@@ -265,7 +265,7 @@ def test_tilted_blank_comes_back_as_a_slope_of_the_helix_once_a_turn_of_the_tabl
     job = prepared.job
     spaces = np.arange(24)
     low, high = (
-        Cut(job, prepared.train).deviation(1, spaces, np.full(24, prepared.where.middle), np.full(24, z))
+        Envelope(job, prepared.train).deviation(1, spaces, np.full(24, prepared.where.middle), np.full(24, z))
         for z in (2, 8)
     )
     assert np.abs(np.fft.rfft(high - low))[1] / 12 == pytest.approx(6e-3, rel=0.02)
@@ -275,7 +275,7 @@ def test_screw_of_the_feed_comes_back_in_the_helix_once_a_turn_of_the_screw():
     """A helical gear whose feed has no encoder: Δz sin β_b along the normal, where the hob is not too large for it."""
     bare = machine("hobbing_default.toml", 40, feed=[{"amplitude_um": 2.0}], feed_screw_pitch=3.0)
     prepared = setup(bare, 24, hob="m1", feed=0.2, rule="ideal", helix=Helix(20.0, feed=Fraction("0.2")))
-    for trace in inspect(Cut(prepared.job, prepared.train), prepared.where).helices:
+    for trace in inspect(Envelope(prepared.job, prepared.train), prepared.where).helices:
         amplitude = 0.002 * math.sin(prepared.job.base_helix)
         assert sine(trace.place, trace.deviation, 3.0) == pytest.approx(amplitude, rel=0.02)
 
@@ -285,7 +285,7 @@ def test_encoder_on_the_feed_sees_its_screw_and_corrects_it():
     good = machine(gashes=40, feed=[{"amplitude_um": 30.0}], feed_screw_pitch=3.0)
     prepared = setup(good, 24, hob="m1", feed=0.2, helix=Helix(20.0))
     heights, middle = np.linspace(1.0, 9.0, 120), np.full(120, prepared.where.middle)
-    found = Cut(prepared.job, prepared.train).deviation(1, np.zeros(120, int), middle, heights)
+    found = Envelope(prepared.job, prepared.train).deviation(1, np.zeros(120, int), middle, heights)
     assert sine(heights, found, 3.0) < 0.05 * 0.03 * math.sin(prepared.job.base_helix)
 
 
@@ -295,7 +295,7 @@ def test_wrong_spacing_of_two_starts_alternates_on_even_gears_and_hunts_on_odd_o
     for teeth in (24, 25):
         job = (prepared := setup(two, teeth, hob="m1", starts=2, feed=0.2, rule="ideal")).job
         point = (np.arange(teeth), np.array([prepared.where.middle]), np.array([5.0]))
-        right, left = (Cut(job, prepared.train).deviation(side, *point) for side in (1, -1))
+        right, left = (Envelope(job, prepared.train).deviation(side, *point) for side in (1, -1))
         if teeth == 24:
             alternating = np.array([1.0, -1.0] * 12)
             for found in (right, left):
@@ -310,7 +310,7 @@ def test_play_that_the_cut_takes_up_leaves_teeth_thicker_by_it():
     bare = machine(gashes=40, backlash_taken_by_cut=True)
     table = bare.table.model_copy(update={"backlash": 0.02})
     prepared = setup(bare.model_copy(update={"table": table}), 24, hob="m1", feed=0.2, rule="ideal")
-    found = inspect(Cut(prepared.job, prepared.train), prepared.where)
+    found = inspect(Envelope(prepared.job, prepared.train), prepared.where)
     play = math.radians(0.02) * prepared.job.base_radius
     assert found.thicknesses[0].mean - found.thicknesses[0].nominal == pytest.approx(play, rel=0.02)
     assert all(row.worst < 0.05 * UM for row in found.pitches)
@@ -378,7 +378,7 @@ def test_steps_never_leave_less_than_the_bound_under_which_gashes_are_left_out(e
         assert (now - least).min() < 0.1 * train.unsteady  # not far below what occurs
 
 
-def _found(cut: Cut) -> np.ndarray:
+def _found(cut: Envelope) -> np.ndarray:
     """δ at some points of both flanks of a gear of module 1, 10 mm wide, near its reference circle."""
     length = cut.job.base_radius * math.tan(cut.job.transverse[1])
     lengths, heights = np.meshgrid(length + np.linspace(0.0, 0.7, 7), np.linspace(4.0, 6.1, 8))
@@ -402,7 +402,7 @@ def test_gashes_that_are_left_out_would_not_have_cut(monkeypatch, teeth, starts,
     of = setup(
         machine(**errors), teeth, hob="m1", starts=starts, helix=None if helix is None else Helix(helix), feed=1.0
     )
-    cut = Cut(of.job, DriveTrain(of.train.machine, of.job, of.train.ratio, rule, of.train.rpm, 3600.0))
+    cut = Envelope(of.job, DriveTrain(of.train.machine, of.job, of.train.ratio, rule, of.train.rpm, 3600.0))
     found = _found(cut)
     monkeypatch.setattr(envelope, "FIRST", 100_000)
     np.testing.assert_allclose(found, _found(cut), rtol=0, atol=1e-9)
@@ -422,7 +422,7 @@ def test_passes_that_are_followed_at_a_point_grow_no_faster_than_teeth_and_feed_
     def per_point(teeth: int, feed: float) -> float:
         of = setup(machine("hobbing_default.toml"), teeth, hob="m1", feed=feed)
         followed.clear()
-        points = len(_found(Cut(of.job, of.train)))
+        points = len(_found(Envelope(of.job, of.train)))
         return sum(followed) / points
 
     few = per_point(24, 1.0)

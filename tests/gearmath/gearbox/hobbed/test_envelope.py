@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gearmath.gearbox.dimensions import Gear
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import Envelope
 from gearmath.gearbox.hobbed.inspection import form_length, inspect, layout
 from gearmath.gearbox.hobbed.job import TURN, HobbingJob, HobTool
 
@@ -51,7 +51,7 @@ def pitch_length(of: HobbingJob) -> float:
 )
 def test_ideal_drive_and_many_gashes_leave_the_involute_helicoid(teeth, beta, shift, hands, starts, climb):
     """Within 0.01 um, never below, on both flanks, along profile and helix, and at every tooth that is asked."""
-    cut = Cut(job(teeth, 1.0, beta, shift, hands, starts, 1500, 50.0, 0.02, climb))
+    cut = Envelope(job(teeth, 1.0, beta, shift, hands, starts, 1500, 50.0, 0.02, climb))
     gear, base = cut.job.gear, cut.job.base_radius
     tip = math.sqrt((cut.job.reference_diameter / 2 + 1 + shift) ** 2 - base**2)
     profile = np.linspace(form_length(cut.job, tip), tip, 25)
@@ -74,7 +74,7 @@ def test_ridges_between_flats_are_those_of_the_textbooks(starts, gashes, at):
     flats = TURN * starts / (80 * gashes) * of.base_radius  # length of roll from gash to gash
     near = np.linspace(length - 0.6 * flats, length + 0.6 * flats, 401)
     for side in (1, -1):
-        found = Cut(of).deviation(side, np.zeros(401, int), near, np.full(401, 10.0))
+        found = Envelope(of).deviation(side, np.zeros(401, int), near, np.full(401, 10.0))
         top = int(found.argmax())
         expected = near[top] * (math.pi * starts / (80 * gashes)) ** 2 / 2
         assert found[top] == pytest.approx(expected, rel=0.01)
@@ -93,7 +93,7 @@ def test_feed_marks_of_many_gashes_are_those_of_the_closed_form_at_every_helix_a
     length = pitch_length(of)
     heights = np.linspace(10.0, 11.1, 1001)
     for side in (1, -1):
-        found = Cut(of).deviation(side, np.zeros(1001, int), np.full(1001, length), heights).max()
+        found = Envelope(of).deviation(side, np.zeros(1001, int), np.full(1001, length), heights).max()
         assert found == pytest.approx(of.feed_mark(length), rel=0.01)
         if beta <= 2.0:
             known = (1.0 / math.cos(math.radians(beta))) ** 2 * math.sin(math.radians(20)) / (4 * diameter)
@@ -103,7 +103,7 @@ def test_feed_marks_of_many_gashes_are_those_of_the_closed_form_at_every_helix_a
 @pytest.mark.parametrize("of", [job(gashes=2000, feed=0.02), job(31, 2.0, 18.0, 0.3, gashes=2000, feed=0.02)])
 def test_span_and_pins_of_an_ideal_gear_are_those_of_the_plan(of):
     """Within 0.1 um; the plan's own figures are compared with published ones elsewhere."""
-    found = inspect(Cut(of), layout(of)).thicknesses
+    found = inspect(Envelope(of), layout(of)).thicknesses
     assert [each.what.split()[0] for each in found] == ["span", "over"]
     for each in found:
         assert each.mean == pytest.approx(each.nominal, abs=0.1 * UM)

@@ -13,8 +13,8 @@ import pytest
 from gearmath.errors import InputError
 from gearmath.gearbox.dimensions import Gear
 from gearmath.gearbox.hobbed.classes import classes, outside, overall, tolerances
-from gearmath.gearbox.hobbed.envelope import Cut
-from gearmath.gearbox.hobbed.inspection import Inspection, PitchRow, Trace, inspect, layout
+from gearmath.gearbox.hobbed.envelope import Envelope
+from gearmath.gearbox.hobbed.inspection import Inspection, MeasuredTrace, PitchRow, inspect, layout
 from gearmath.gearbox.hobbed.job import HobbingJob, HobTool
 from gearmath.gearbox.hobbed.setup import setup
 from gearmath.specs.hobbing import find_hobbing_machine
@@ -31,7 +31,7 @@ def test_slope_form_and_total_of_a_trace_are_those_of_its_line_and_its_wave():
     """4 um of slope over the length, and five whole waves of 1 um amplitude about it."""
     place = np.linspace(2.0, 6.0, 1001)
     wave = np.cos(2 * math.pi * 5 * (place - 2.0) / 4.0)
-    trace = Trace("right", 0, place, (0.004 * (place - 2.0) / 4.0) + 0.001 * wave, 5.0)
+    trace = MeasuredTrace("right", 0, place, (0.004 * (place - 2.0) / 4.0) + 0.001 * wave, 5.0)
     assert trace.slope == pytest.approx(0.004, rel=0.001)
     assert trace.form == pytest.approx(0.002, rel=0.001)
     assert 0.004 < trace.total < 0.006
@@ -51,7 +51,7 @@ def test_class_is_the_finest_that_allows_every_figure():
     assert limits["f_pt"] == pytest.approx(6.7)
     assert limits["F_p"] == pytest.approx(20.5)
     assert limits["F_r"] == pytest.approx(0.9 * 20.5)
-    flat = Trace("right", 0, np.array([0.0, 1.0, 2.0]), np.zeros(3), 1.0)
+    flat = MeasuredTrace("right", 0, np.array([0.0, 1.0, 2.0]), np.zeros(3), 1.0)
     for size, expected in ((6.69, 5), (6.71, 6), (9.4, 6), (9.5, 7)):
         row = PitchRow("right", np.array([0.0] * 24 + [size * UM]))
         rows = classes(of, Inspection((flat,), (flat,), (row,), np.zeros(25), ()))
@@ -64,7 +64,7 @@ def test_class_is_the_finest_that_allows_every_figure():
 )
 def test_gear_that_the_standard_does_not_cover_has_figures_without_classes(of, words):
     assert words in str(outside(of))
-    flat = Trace("right", 0, np.array([0.0, 1.0, 2.0]), np.zeros(3), 1.0)
+    flat = MeasuredTrace("right", 0, np.array([0.0, 1.0, 2.0]), np.zeros(3), 1.0)
     row = PitchRow("right", np.zeros(of.gear.teeth))
     rows = classes(of, Inspection((flat,), (flat,), (row,), np.zeros(of.gear.teeth), ()))
     assert {each.accuracy_class for each in rows} == {None}
@@ -75,7 +75,7 @@ def test_gear_that_the_standard_does_not_cover_has_figures_without_classes(of, w
 def test_gears_of_every_number_of_teeth_are_measured_without_a_gap(teeth):
     """Undercut ones too: all figures are finite."""
     of = job(teeth, 1.0, 5.0)
-    found = inspect(Cut(of), layout(of))
+    found = inspect(Envelope(of), layout(of))
     assert all(math.isfinite(value) for value in found.figures.values())
     assert all(len(row.position) == teeth for row in found.pitches)
     assert min(trace.deviation.min() for trace in found.profiles) > -1e-9
@@ -145,7 +145,9 @@ def test_shift_of_a_hob_by_what_its_threads_rise_between_gashes_leaves_the_same_
     along = np.linspace(3.6, 4.6, 60)
     of = job(24, 1.0)
     flanks = [
-        Cut(replace(of, feed=0.02, hob_offset=part * rise)).deviation(1, np.zeros(60, int), along, np.full(60, 10.0))
+        Envelope(replace(of, feed=0.02, hob_offset=part * rise)).deviation(
+            1, np.zeros(60, int), along, np.full(60, 10.0)
+        )
         for part in (0.0, 3.0, 0.5)
     ]
     np.testing.assert_allclose(flanks[1], flanks[0], atol=0.01 * UM)

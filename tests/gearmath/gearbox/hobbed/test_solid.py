@@ -10,7 +10,7 @@ import pytest
 from gearmath.bevel.solid import volume
 from gearmath.exchange.hobbed_stl import write_gear
 from gearmath.gearbox.dimensions import Gear
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import Envelope
 from gearmath.gearbox.hobbed.inspection import layout
 from gearmath.gearbox.hobbed.job import HobbingJob, HobTool
 
@@ -43,13 +43,13 @@ def test_solid_has_the_volume_of_the_gear_that_a_rack_leaves(teeth, shift, tmp_p
     """Within 0.1 %, undercut too: a large hob of many gashes is nearly that rack."""
     hob = HobTool(1, 1, 240, 4000.0, 1.25, 0.38)
     of = HobbingJob(Gear(teeth, 1.0, ALPHA, 0.0, shift), 1, hob, 5.0, 1.0)
-    found = write_gear(tmp_path / "gear.stl", Cut(of), layout(of))
+    found = write_gear(tmp_path / "gear.stl", Envelope(of), layout(of))
     assert volume(found) / 5.0 == pytest.approx(rolled_area(teeth, shift), rel=1e-3)
 
 
 def test_helical_solid_is_closed_and_faces_outwards(tmp_path):
     of = HobbingJob(Gear(11, 1.5, ALPHA, math.radians(30), 0.2), -1, HobTool(2, 1, 10, 40.0, 1.9, 0.5), 8.0, 1.0)
-    found = write_gear(tmp_path / "gear.stl", Cut(of), layout(of))
+    found = write_gear(tmp_path / "gear.stl", Envelope(of), layout(of))
     edges = {
         (a.tobytes(), b.tobytes()) for facet in found for a, b in zip(facet, np.roll(facet, -1, axis=0), strict=True)
     }

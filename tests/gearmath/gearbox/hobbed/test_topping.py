@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import fsolve
 
 from gearmath.gearbox.dimensions import Gear
-from gearmath.gearbox.hobbed.envelope import Cut
+from gearmath.gearbox.hobbed.envelope import Envelope
 from gearmath.gearbox.hobbed.inspection import inspect, layout
 from gearmath.gearbox.hobbed.job import TURN, HobbingJob, HobTool
 from gearmath.gearbox.hobbed.setup import setup
@@ -30,13 +30,13 @@ def job(gashes: int, feed: float, beta: float = 0.0, shift: float = 0.0, starts:
 def test_facets_of_a_topped_tip_are_those_of_a_polygon_around_its_circle(gashes, starts, shift):
     """r_a/cos(half the turn of a gash) - r_a within 1 %; r_a = r + m (1 + x)."""
     radius, half = 12.0 + 1.0 + shift, math.pi * starts / (24 * gashes)
-    found = topped_radii(Cut(job(gashes, 0.01, shift=shift, starts=starts)), 10.0) - radius
+    found = topped_radii(Envelope(job(gashes, 0.01, shift=shift, starts=starts)), 10.0) - radius
     np.testing.assert_allclose(found, radius / math.cos(half) - radius, rtol=0.01)
 
 
 def test_feed_leaves_on_a_topped_tip_what_circles_of_the_hob_s_root_leave():
     """f²/(8 (r_0 - m)) within 1 %: circles of 24 mm radius, 1 mm apart."""
-    found = topped_radii(Cut(job(3000, 1.0)), 10.0) - 13.0
+    found = topped_radii(Envelope(job(3000, 1.0)), 10.0) - 13.0
     np.testing.assert_allclose(found, 1.0 / (8 * 24.0), rtol=0.01)
 
 
@@ -83,7 +83,7 @@ def test_topped_tip_is_what_the_nearest_of_all_gashes_leaves(beta, starts, gashe
     teeth = random.integers(0, 24, 4)
     angles = math.pi / 24 + TURN * starts / (24 * gashes) * random.uniform(-0.5, 0.5, 4)
     heights = random.uniform(9.0, 11.0, 4)
-    found = topped_radius(Cut(of), teeth, angles, heights)
+    found = topped_radius(Envelope(of), teeth, angles, heights)
     cut = [by_hand(of, *row) for row in zip(teeth.tolist(), angles.tolist(), heights.tolist(), strict=True)]
     np.testing.assert_allclose(found, cut, rtol=0, atol=0.01 * UM)
 
@@ -98,7 +98,7 @@ def test_topped_tip_runs_out_with_an_eccentric_blank_and_a_turned_one_does_not()
         changed = machine.model_copy(update={"hobs": hobs, "errors": errors})
         prepared = setup(changed, 24, hob="m1", feed=0.5, rule="ideal")
         where = replace(layout(prepared.job), teeth=np.array([0]))
-        found = inspect(Cut(prepared.job, prepared.train), where).thicknesses
+        found = inspect(Envelope(prepared.job, prepared.train), where).thicknesses
         rows[topped] = {each.what: each for each in found}
     assert "tip radius" not in rows[False]
     tip = rows[True]["tip radius"]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.machine.bodies.cutter import Body, Cutter, Profile
+from gearmath.machine.bodies.cutter import Body, Cutter, CutterProfile
 from gearmath.machine.milling import removal as milling
 from gearmath.machine.milling.removal import Blade, entry_along_block, remaining
 from gearmath.specs.bevel_set import SIDES
@@ -189,7 +189,7 @@ def test_first_part_of_a_line_taken_away_by_an_annulus_is_what_sampling_finds(ed
     def blade(k, side, bend):
         r, a = radii[k], alphas[k]
         edge = edges[k]
-        return Profile(r, a, bend, 3.0, r - side * edge * (1 - math.sin(a)) / math.cos(a), edge, a)
+        return CutterProfile(r, a, bend, 3.0, r - side * edge * (1 - math.sin(a)) / math.cos(a), edge, a)
 
     body = Body(0.0, blade(0, 1, curvature), blade(1, -1, 0.0), 12.0)
     axes = np.array([0.0, 0.0, HEIGHT, 0.0, np.pi / 2])
@@ -226,7 +226,7 @@ def test_first_part_of_a_line_taken_away_by_an_annulus_is_what_sampling_finds(ed
 
 def test_cutter_is_hollow_so_that_a_tooth_in_its_middle_stays():
     """The line from the axis outwards meets the inner blade at 75 mm, not the far side's disc."""
-    cutter = Cutter((Body(0.0, Profile(77.0, 0.3), Profile(75.0, 0.3), 12.0),), 12.0)
+    cutter = Cutter((Body(0.0, CutterProfile(77.0, 0.3), CutterProfile(75.0, 0.3), 12.0),), 12.0)
     point = np.array([[60.0, 0.0, 8.0]])
     left = remaining(plunge(10.0), CUTTING, cutter, HEIGHT, point, np.array([[1.0, 0.0, 0.0]]))
     assert left[0] == pytest.approx(15.0 - 2.0 * math.tan(0.3), abs=1e-9)

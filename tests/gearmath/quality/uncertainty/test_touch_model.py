@@ -15,12 +15,12 @@ from gearmath.quality.uncertainty.touch_model import sensitivities, touch_covari
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.flank_csv import FlankFile
-from gearmath.specs.measurement import Measurement, load_measurement
+from gearmath.specs.measurement import MeasuringModel, load_measurement
 from gearmath.specs.toml import bundled
 from gearmath.specs.touch_csv import Touches
 
 PROBE = load_calibration(bundled("probe.toml")).model_copy(update={"offset": (0.031, -0.047, 0.012)})
-PERFECT = Measurement(title="perfect", repeatability_um=0.0)
+PERFECT = MeasuringModel(title="perfect", repeatability_um=0.0)
 each_member = pytest.mark.parametrize("member", MEMBERS)
 
 
