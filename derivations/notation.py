@@ -66,7 +66,7 @@ advance_from_crossing_point = _length(
 pitch_apex_beyond_crossing_point = _length(
     "pitch_apex_beyond_crossing_point", "t_z", -20.0, 20.0, "pitch apex beyond the crossing point, seen from the teeth"
 )
-machine_root_angle = _angle("machine_root_angle", r"\Gamma", 0.05, 1.45, "work axis against the machine plane")
+machine_root_angle = _angle("machine_root_angle", r"\Gamma", -0.2, 1.45, "work axis against the machine plane")
 ratio_of_roll = Quantity("ratio_of_roll", "work rotation per cradle rotation", "1", "R_a", (0.5, 8.0), scale=1.0)
 work_rotation_offset = _angle("work_rotation_offset", r"\varphi_0", -pi, pi, "work rotation at cradle rotation zero")
 

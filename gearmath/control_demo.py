@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearmath.bevel.pair import check_pair, load_pair
+from gearmath.bevel.pair import check_corrected, load_pair
 from gearmath.control.interface import Control
 from gearmath.control.measuring import Connect, Measuring
 from gearmath.control.opcua import OpcUaControl
@@ -161,5 +161,5 @@ def _corrected(first: DemoPass, folder: Path) -> Path:
     target = folder / f"{MEMBER}_corrected.toml"
     spec = load_pair(first.settings).member(MEMBER)
     result = correct(spec, MEMBER, first.evaluated.file)
-    save_corrected(first.settings, target, MEMBER, result.settings, result.index, check=check_pair)
+    save_corrected(first.settings, target, MEMBER, result.settings, result.index, check=check_corrected)
     return target

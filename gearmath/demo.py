@@ -20,7 +20,7 @@ from gearmath.bevel.contact.report import SIDES as SIDES_OF_CONTACT
 from gearmath.bevel.contact.system import Assembly
 from gearmath.bevel.design.route import design
 from gearmath.bevel.flank import blank_grid, solve_flank
-from gearmath.bevel.pair import check_pair, load_pair
+from gearmath.bevel.pair import check_corrected, load_pair
 from gearmath.export.cnc import export_cnc
 from gearmath.export.folder import new_folder
 from gearmath.export.host import compile_kernel, run_edges
@@ -203,7 +203,7 @@ def run_closed_loop(member: str, folder: Path, source: Path | None = None, prefi
         member,
         correction.settings,
         correction.index,
-        check=check_pair,
+        check=check_corrected,
         origin=f"{name}_measured.csv",
     )
     second, again = _cut_and_measure(corrected, member, shop, folder / f"{name.upper()}_2.MPF")

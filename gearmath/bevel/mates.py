@@ -21,13 +21,20 @@ from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet
 _MEAN_TRANSVERSE = 3
 
 
-def pair_figures(pair: BevelSet) -> dict[str, Any] | None:
+def ease_off_of(pair: BevelSet) -> dict[str, Parts] | None:
+    """The parts of the ease-off by the pinion's flank, None without a pair. Raises Misfit where flanks do not meet."""
+    if pair.pinion is None or pair.gear is None:
+        return None
+    return ease_off_parts(pair.pinion, pair.gear, pair.rad("shaft_angle"))
+
+
+def pair_figures(pair: BevelSet, found: dict[str, Parts] | None) -> dict[str, Any] | None:
     """Backlash [mm] at the mean point, and by the pinion's flank what it and its mate differ by, None without a pair.
 
     Angles [degree] are pinion less gear, both counted as the pinion's. The ease-off [um] is positive where there is a
-    gap, its parts those at the edges of the gear's grid. Raises Misfit where flanks do not meet.
+    gap, ``found`` are its parts, those at the edges of the gear's grid. Raises Misfit where the flanks are none.
     """
-    if pair.pinion is None or pair.gear is None:
+    if pair.pinion is None or pair.gear is None or found is None:
         return None
     cut = {
         name: {flank: cut_flank(member, name, flank, generation_of(member, flank)) for flank in FLANKS}
@@ -38,7 +45,6 @@ def pair_figures(pair: BevelSet) -> dict[str, Any] | None:
         "mean_transverse_backlash_mm": transverse,
         "mean_normal_backlash_mm": _normal(pair, cut["gear"], transverse),
     }
-    found = ease_off_parts(pair.pinion, pair.gear, pair.rad("shaft_angle"))
     for flank, mating in zip(FLANKS, reversed(FLANKS), strict=True):
         own, mate = cut[MEMBERS[0]][flank], cut[MEMBERS[1]][mating]
         parts = {
@@ -59,15 +65,12 @@ def pair_figures(pair: BevelSet) -> dict[str, Any] | None:
     return figures
 
 
-def edge_note(pair: BevelSet) -> str:
-    """What to say of a pair that the check takes, and that runs on edges of its teeth all the same; empty of others.
+def edge_note(found: dict[str, Parts] | None) -> str:
+    """What to say of a pair with such an ease-off that the check takes, and that runs on edges of its teeth.
 
     A slip that is too small to be refused shows so, a digit of a ratio of roll; so do sets that never were designed.
     """
-    if pair.pinion is None or pair.gear is None:
-        return ""
-    found = ease_off_parts(pair.pinion, pair.gear, pair.rad("shaft_angle"))
-    said = [_edge(flank, one) for flank, one in found.items() if not is_least_inside(one)]
+    said = [_edge(flank, one) for flank, one in (found or {}).items() if not is_least_inside(one)]
     if not said:
         return ""
     return (

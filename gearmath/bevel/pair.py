@@ -84,6 +84,16 @@ def check_pair(pair: BevelSet, slip: Callable[[str], str] = lambda _: "") -> Non
         raise InputError(f"{error}{slip(str(error))}") from error
 
 
+def check_corrected(pair: BevelSet) -> None:
+    """Raise ComputationError where corrected settings cut no pair: what was measured is not to blame."""
+    try:
+        check_pair(pair)
+    except InputError as error:
+        raise ComputationError(
+            f"the corrected settings cut no pair, nothing is written: {error}; name fewer settings to change"
+        ) from error
+
+
 def _file_passes(values: dict[str, Any], share: float) -> bool:
     """Whether the values of a set file are those of a pair that uses this part of what mates may differ by."""
     try:

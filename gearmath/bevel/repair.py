@@ -19,7 +19,7 @@ from gearmath.bevel.generation import Generation
 from gearmath.bevel.generation_kernels import generation_point
 from gearmath.bevel.method import generation_of
 from gearmath.bevel.newton import TOLERANCE
-from gearmath.bevel.root import FLAT_BLADE, mean_place
+from gearmath.bevel.root import CORNER, mean_place
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member, Settings
 from gearmath.specs.cut import RATIO
@@ -58,7 +58,7 @@ def misfit(member: Member, flank: str, settings: np.ndarray, index: np.ndarray, 
         contact[:, 2] / math.radians(OFF_CENTER),
         (spiral - wanted.spiral) / _SPIRAL,
         (pressure - wanted.pressure) / _PRESSURE,
-        *_root_off(member, how, settings, index, contact),
+        *_root_off(member, flank, how, settings, index, contact),
     ]
     off = np.stack(parts)
     off = np.where(np.isfinite(off), np.clip(off, -_NONE, _NONE), _NONE)
@@ -66,34 +66,43 @@ def misfit(member: Member, flank: str, settings: np.ndarray, index: np.ndarray, 
 
 
 def _solve(
-    how: Generation, settings: np.ndarray, index: np.ndarray, contact: np.ndarray, conditions: np.ndarray
+    how: Generation,
+    settings: np.ndarray,
+    index: np.ndarray,
+    contact: np.ndarray,
+    conditions: np.ndarray,
+    arc: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    blade = () if arc is None else (arc,)
     for _ in range(_CALLS):
-        contact, point, normal, residual, _ = generation_point(False)(
-            contact, settings, how.motion, index, how.blade_offset_angle, how.side, how.rolling, conditions
+        contact, point, normal, residual, _ = generation_point(arc is not None)(
+            contact, settings, how.motion, index, how.blade_offset_angle, *blade, how.side, how.rolling, conditions
         )
         contact = np.nan_to_num(contact)
     return contact, point, normal, residual <= TOLERANCE
 
 
 def _root_off(
-    member: Member, how: Generation, settings: np.ndarray, index: np.ndarray, mean: np.ndarray
+    member: Member, flank: str, how: Generation, settings: np.ndarray, index: np.ndarray, mean: np.ndarray
 ) -> list[np.ndarray]:
     """How far the tip of the blade leaves the root beside that of the blank, toe to heel, over what it may (3 of n)."""
     blank, delta = member.blank, member.blank.delta
-    flat, off = settings.copy(), []
-    flat[:, -1] = FLAT_BLADE
+    height, off = member.flank(flank).blade_tip_height, []
+    # the lowest point of a vanishing round, whose tangent is the tip plane
+    (radius,) = kernel("blade_tip")(settings[:, -2], settings[:, -1], height, how.side)
+    corner = np.full((len(settings), 3), [0.0, height + CORNER, CORNER])
+    corner[:, 0] = radius
     for across, share in zip((0.0, 0.5, 1.0), ROOT, strict=True):
         (axial,), (radial,) = kernel("flank_place")(blank.vector, np.array([across]), np.array([0.0]))
         distance = axial * math.cos(delta) + radial * math.sin(delta)
         root = radial * math.cos(delta) - axial * math.sin(delta) - blank.clearance
         conditions = np.zeros((len(settings), 2, 4))
-        conditions[:, 0, 0] = 1.0
+        conditions[:, 0, 0], conditions[:, 0, 3] = 1.0, math.pi / 2
         conditions[:, 1, 1:] = math.cos(delta), math.sin(delta), distance
-        start = np.column_stack([np.zeros(len(settings)), mean[:, 1:]])
-        _, point, _, solved = _solve(how, flat, index, start, conditions)
-        height = np.hypot(point[:, 0], point[:, 1]) * math.cos(delta) - point[:, 2] * math.sin(delta)
-        off.append(np.where(solved, (height - root) / (share * blank.clearance), np.nan))
+        start = np.column_stack([np.full(len(settings), math.pi / 2), mean[:, 1:]])
+        _, point, _, solved = _solve(how, settings, index, start, conditions, corner)
+        left = np.hypot(point[:, 0], point[:, 1]) * math.cos(delta) - point[:, 2] * math.sin(delta)
+        off.append(np.where(solved, (left - root) / (share * blank.clearance), np.nan))
     return off
 
 

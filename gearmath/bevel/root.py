@@ -19,7 +19,7 @@ from gearmath.specs.bevel_set import SIDES, Blank, Flank, Member
 #: The tip plane of the cutter as a blade: nearly square to its axis, so that it shows where the root is deepest.
 FLAT_BLADE = math.radians(89.9)
 #: Radius of a round that stands for a corner [mm].
-_POINT = 1e-3
+CORNER = 1e-3
 #: Places of a trace over the face width; a slot ends askew, so that it is as wide as its end shows only beyond it.
 ACROSS = np.linspace(-0.25, 1.25, 13)
 #: Those of them at the ends and in the middle of the face width, and what they are called.
@@ -91,7 +91,7 @@ def tip_plane(spec: Flank, side: int, narrower: float = 0.0) -> tuple[Section, f
     if spec.blade_tip_height == 0:
         return Section(0.0, 1.0, nominal.blade_point_radius - side * narrower, FLAT_BLADE), 0.0
     radius = tip_radius(spec, side) - side * narrower
-    point = (radius, spec.blade_tip_height + _POINT, _POINT)
+    point = (radius, spec.blade_tip_height + CORNER, CORNER)
     return Section(0.0, math.pi / 2, nominal.blade_point_radius, nominal.alpha, point), math.pi / 2
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,7 @@ from gearmath.cli.common import (
     SET,
     about,
     echo_json,
+    grid_of,
     member_of,
     nominal_words,
     output,
@@ -24,8 +24,6 @@ from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
     from gearmath.specs.margins import Margins
-
-_MOST_POINTS = 1_000_000
 
 
 @click.command(epilog=FLANK_CSV)
@@ -63,7 +61,7 @@ def flank(
     from gearmath.front.sets import load_set
 
     given = {"": margin, "-root": root, "-tip": tip, "-toe": toe, "-heel": heel}
-    margins, shape = _margins(given), None if size is None else _grid(size)
+    margins, shape = _margins(given), None if size is None else grid_of(size)
     if places is not None:
         for name, value in given.items():
             if value is not None:
@@ -87,14 +85,13 @@ def flank(
 @output("STL", ".stl")
 def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; backlash and ease-off of the pair; and an STL."""
-    from gearmath.bevel.mates import edge_note
     from gearmath.front.sets import load_set
 
     pair = load_set(gear_set)
     one = member_of(pair, member)
     with about(pair.source):
         made = one.tooth(columns)
-        mates, note = pair.mates(), edge_note(pair.spec)
+        mates, note = pair.mates(), pair.edge_note()
     triangles, figures = made.to_stl(target, whole_member=not space), made.figures
     if as_json:
         echo_json({"triangles": triangles, **figures} | ({} if mates is None else {"pair": mates}))
@@ -140,12 +137,3 @@ def _margins(given: dict[str, float | None]) -> Margins:
     common = 0.1 if given[""] is None else given[""]
     sides = (given[f"-{side}"] for side in ("root", "tip", "toe", "heel"))
     return Margins(*(common if value is None else value for value in sides))
-
-
-def _grid(size: str) -> tuple[int, int]:
-    """Rows and columns of the option --grid."""
-    match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", size)
-    rows, columns = (int(part) for part in match.groups()) if match else (0, 0)
-    if not (rows >= 2 and columns >= 2 and rows * columns <= _MOST_POINTS):
-        raise InputError(f"--grid {size}: must read like 5x9, two or more each way, at most {_MOST_POINTS} points")
-    return rows, columns

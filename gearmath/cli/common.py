@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import os
+import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from gearmath.front.member import Member
     from gearmath.front.sets import GearSet
 
+_MOST_POINTS = 1_000_000
 #: The gear set of a verb whose first argument is another file.
 SET_OPTION = click.option(
     "--set", "gear_set", metavar="SET.toml", required=True, help="Gear set: a file, or a bundled one."
@@ -150,6 +152,15 @@ def member_of(pair: GearSet, given: str | None, stated: str | None = None) -> Me
     if name is None:
         raise InputError("--member is missing: the set has both, so it must be pinion or gear")
     return pair.member(name)
+
+
+def grid_of(size: str) -> tuple[int, int]:
+    """Rows and columns of the option --grid. Raises InputError."""
+    match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", size)
+    rows, columns = (int(part) for part in match.groups()) if match else (0, 0)
+    if not (rows >= 2 and columns >= 2 and rows * columns <= _MOST_POINTS):
+        raise InputError(f"--grid {size}: must read like 5x9, two or more each way, at most {_MOST_POINTS} points")
+    return rows, columns
 
 
 def nominal_words(member: Member, flank: str) -> str:

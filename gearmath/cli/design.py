@@ -98,7 +98,10 @@ def _text(title: str, figures: dict[str, Any]) -> str:
             if height is None or height > 1000 * RIDGE
         ),
     ]
+    changed = ", ".join(f"{key} = {value:g}" for key, value in figures["changed"].items())
     parts = [title, table(["figure", "value"], rows)]
+    if changed:
+        parts.append(f"as the file leaves them out, and the pair does not run with what they start from: {changed}")
     for side in ("drive", "coast"):
         parts.append(_side(side, figures[side]))
     return "\n\n".join(parts)

@@ -16,6 +16,7 @@ from gearmath.cli.common import (
     about,
     bars,
     echo_json,
+    grid_of,
     member_of,
     nominal_words,
     output,
@@ -133,7 +134,7 @@ def points(gear_set: str, member: str | None, flank: str, grid: str, margin: flo
 
     pair = load_set(gear_set)
     one = member_of(pair, member)
-    shape = _grid(grid)
+    shape = grid_of(grid)
     if not 0 <= margin < 0.5:
         raise InputError(f"--margin {margin:g}: must be at least 0 and less than 0.5")
     with about(pair.source):
@@ -163,10 +164,3 @@ def summary(gear_set: str, target: Path) -> None:
     from gearmath.front.sets import load_set
 
     click.echo(f"{load_set(gear_set).to_summary(target)}: summary sheet, prints on A4")
-
-
-def _grid(text: str) -> tuple[int, int]:
-    rows, _, columns = text.partition("x")
-    if not (rows.isdecimal() and columns.isdecimal() and 2 <= int(rows) <= 200 and 2 <= int(columns) <= 200):
-        raise InputError(f"--grid {text}: must read like 5x9, each from 2 to 200")
-    return int(rows), int(columns)

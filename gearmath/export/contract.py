@@ -106,14 +106,16 @@ def taken(element: Quantity) -> tuple[float, float]:
     """The least and the greatest number that is taken for an input.
 
     Sizes, rolls and directions may be far beyond what is tested. Components of unit vectors may not, and angles that
-    are never zero go to a right one at most: beyond, they are of another unit.
+    are never zero, or a little below it at most, go to a right one: beyond, they are of another unit.
     """
     low, high = map(float, element.domain)
     if element.unit == "1" and (low, high) == (-1.0, 1.0):
         return low, high
     low = low / _BEYOND if low > 0 else low * _BEYOND
     high = high * _BEYOND if high > 0 else high / _BEYOND
-    return (low, min(high, math.pi / 2)) if element.unit == "rad" and low > 0 else (low, high)
+    right, (first, last) = math.pi / 2, map(float, element.domain)
+    acute = element.unit == "rad" and first != 0 and 2 * abs(first) < last and (first > 0 or last < right)
+    return (max(low, -right), min(high, right)) if acute else (low, high)
 
 
 def _ends(element: Quantity) -> tuple[float, float]:

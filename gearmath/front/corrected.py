@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from gearmath.bevel.identify.variables import reading
-from gearmath.bevel.pair import check_pair
-from gearmath.errors import ComputationError, InputError, about
+from gearmath.bevel.pair import check_corrected
+from gearmath.errors import ComputationError, about
 from gearmath.front.measured import Evaluation, Measurement
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
@@ -28,23 +28,13 @@ from gearmath.quality.evaluation.member import STAGES
 from gearmath.quality.uncertainty.corrected import noise_of_points, point_covariance
 from gearmath.quality.uncertainty.judged import judged_by_measured
 from gearmath.quality.uncertainty.settings import uncertain_settings
-from gearmath.specs.bevel_set import MACHINE_SETTINGS, BevelSet
+from gearmath.specs.bevel_set import MACHINE_SETTINGS
 from gearmath.specs.set_text import save_corrected
 
 if TYPE_CHECKING:
     from gearmath.bevel.identify.variables import Bounds
     from gearmath.quality.correction.thickness import By
     from gearmath.quality.uncertainty.settings import Effect
-
-
-def _check_cut(corrected: BevelSet) -> None:
-    """Raise ComputationError where corrected settings cut no pair: the measurement is not to blame."""
-    try:
-        check_pair(corrected)
-    except InputError as error:
-        raise ComputationError(
-            f"the corrected settings cut no pair, nothing is written: {error}; name fewer settings to change"
-        ) from error
 
 
 @dataclass(frozen=True)
@@ -106,7 +96,7 @@ class Correction:
                 found.index,
                 found.motions,
                 found.curvatures,
-                check=_check_cut,
+                check=check_corrected,
                 origin=f"{measured.source.name if measured.source else 'a measurement'} and "
                 f"{pair.source.name if pair.source else pair.title}",
             )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,7 @@ from gearmath.specs.cut import ANGULAR
 from gearmath.specs.toml import find
 
 if TYPE_CHECKING:
+    from gearmath.bevel.ease_off import Parts
     from gearmath.exchange.step import WrittenSolid
     from gearmath.front.contact import Contact
     from gearmath.front.measured import Measurement
@@ -111,7 +113,19 @@ class GearSet:
         """
         from gearmath.bevel.mates import pair_figures
 
-        return pair_figures(self.spec)
+        return pair_figures(self.spec, self._ease_off)
+
+    def edge_note(self) -> str:
+        """What to say of a pair that runs on edges of its teeth; empty of others, and of a single member."""
+        from gearmath.bevel.mates import edge_note
+
+        return edge_note(self._ease_off)
+
+    @cached_property
+    def _ease_off(self) -> dict[str, Parts] | None:
+        from gearmath.bevel.mates import ease_off_of
+
+        return ease_off_of(self.spec)
 
     def to_step(self, path: str | Path, begin: Begin = silent) -> dict[str, WrittenSolid]:
         """Write the pair in mesh, or the only member, as closed solids for CAD; by member, what was written.

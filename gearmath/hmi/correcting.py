@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from gearmath.bevel.pair import check_pair, load_pair
+from gearmath.bevel.pair import check_corrected, load_pair
 from gearmath.control.run_start import MACHINE, SET
 from gearmath.control.store_evaluation import EvaluatedRun
 from gearmath.control.store_run import now
@@ -125,8 +125,8 @@ class Accepted:
 def accept(runs: JudgedRuns, proposal: Proposal, folder: Path) -> Accepted:
     """Write the corrected set and its cutting program as new files of ``folder``; the run keeps the decision.
 
-    No file is written over. Raises InputError where the corrected set is no pair, or the machine of the run cannot cut
-    it: then nothing is written.
+    No file is written over. Raises ComputationError where the corrected set is no pair, InputError where the machine of
+    the run cannot cut it: then nothing is written.
     """
     evaluated = proposal.evaluated
     name, number = evaluated.name, evaluated.run.id
@@ -174,7 +174,7 @@ def _write_set(proposal: Proposal, source: Path, target: Path) -> None:
         found.index,
         found.motions,
         found.curvatures,
-        check=check_pair,
+        check=check_corrected,
         origin=f"run {run.id} of {run.store.path.name}, and {_stem(run.start.settings.get(SET, SET))}.toml",
     )
 

@@ -204,6 +204,11 @@ class Member(Sheet):
     def _check_cutter(self, name: str) -> None:
         """Whether the cutter of a flank can stand in the tooth at all: what fails here has no real contact."""
         spec, blank = self.flank(name), self.blank
+        if spec.machine_root_angle <= 0 and not abs(spec.cutter_tilt) > abs(spec.machine_root_angle):
+            raise ValueError(
+                f"{name}.machine_root_angle = {spec.machine_root_angle:g}: must be above 0, or the cutter tilted by "
+                f"more (cutter_tilt = {spec.cutter_tilt:g})"
+            )
         highest = blank.face_angle + abs(spec.cutter_tilt) + _ROOT_BEYOND
         if spec.machine_root_angle > highest:
             raise ValueError(

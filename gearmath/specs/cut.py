@@ -79,7 +79,7 @@ class Settings(Sheet):
     blank_offset: Length = Field(ge=-200, le=200)
     sliding_base: Length = Field(ge=-200, le=200)
     machine_center_to_crossing_point: Length = Field(ge=-200, le=200)
-    machine_root_angle: Angle = Field(gt=0, lt=87)
+    machine_root_angle: Angle = Field(gt=-30, lt=87)
     ratio_of_roll: float = Field(gt=0.1, le=50)
     work_rotation_offset: Angle = Field(ge=-360, le=360)
     blade_point_radius: Length = Field(gt=5, le=500)

@@ -1,19 +1,33 @@
-"""A design with its verdict; where nobody asked for a place of the contact, at one where the pair runs."""
+"""A design with its verdict; where the first one does not run, with other values for what nobody asked for."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from typing import Any
 
 from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.design.route import Designed, design
-from gearmath.bevel.design.verdict import verdict
+from gearmath.bevel.design.verdict import EdgeContact, verdict
 from gearmath.errors import ComputationError, InputError
 from gearmath.specs.bevel_set import BevelSet
-from gearmath.specs.design import DesignData
+from gearmath.specs.design import ContactRequest, DesignData
 
-#: Places of the vertex from toe (0) to heel (1) that are tried in turn, where none is asked for: with uniform depth the
-#: toe of a small pinion is undercut, and the contact must lie nearer to the heel.
-_ALONG, _ALONG_UNIFORM = (0.5,), (0.5, 0.65, 0.75)
+#: Where a pair runs on edges: a path nearer to the length of the tooth lasts longer. [degree]
+_LONGER_PATH = {"drive": 35.0, "coast": 145.0}
+#: And with uniform depth the toe of a small pinion is undercut: the vertex lies so far from toe (0) to heel (1).
+_ALONG, _NEARER_TO_THE_HEEL = 0.5, 0.65
+#: Where teeth are undercut, or no settings are found. [degree]
+_PRESSURE_ANGLE = 22.5
+
+
+@dataclass(frozen=True)
+class Changed:
+    """Design data with other values for keys that the file leaves out, and where the vertex lies, from toe to heel."""
+
+    data: DesignData
+    values: dict[str, Any] = field(default_factory=dict)
+    along: float = _ALONG
 
 
 def accepted(
@@ -21,15 +35,58 @@ def accepted(
 ) -> tuple[Designed, dict[str, Any], dict[str, Mesh]]:
     """A pair from the data of a design as :func:`design` makes it, its figures, and the contact of both sides.
 
-    Raises InputError and ComputationError as :func:`design` and :func:`verdict` do, those of the first place tried.
+    The figures tell under ``changed`` which keys that the file leaves out have other values than they start from.
+    Raises InputError and ComputationError as :func:`design` and :func:`verdict` do, those of the first trial.
     """
-    hobbed, free = data.cutter.process == "face_hobbing", data.drive.position is None or data.coast.position is None
-    first: InputError | ComputationError | None = None
-    for along in _ALONG_UNIFORM if hobbed and free else _ALONG:
+    try:
+        return _judged(Changed(data), name, given)
+    except (InputError, ComputationError) as error:
+        first = error
+    for changed in _on_edges(data) if isinstance(first, EdgeContact) else _not_cut(data, given):
         try:
-            made = design(data, name, given, along)
-            return made, *verdict(made)
-        except (InputError, ComputationError) as error:
-            first = first or error
-    assert first is not None
+            return _judged(changed, name, given)
+        except (InputError, ComputationError):
+            continue
     raise first
+
+
+def _judged(changed: Changed, name: str, given: BevelSet | None) -> tuple[Designed, dict[str, Any], dict[str, Mesh]]:
+    made = design(changed.data, name, given, changed.along)
+    figures, runs = verdict(made)
+    return made, {"changed": changed.values, **figures}, runs
+
+
+def _on_edges(data: DesignData) -> Iterator[Changed]:
+    """What may help a pair that runs on its edges."""
+    path = _with_paths(data)
+    if path.values:
+        yield path
+    free = {side: data.contact(side).position is None for side in _LONGER_PATH}
+    if data.cutter.process == "face_hobbing" and any(free.values()):
+        yield Changed(
+            data, {f"{side}.position[0]": _NEARER_TO_THE_HEEL for side in free if free[side]}, _NEARER_TO_THE_HEEL
+        )
+
+
+def _not_cut(data: DesignData, given: BevelSet | None) -> Iterator[Changed]:
+    """What may help a pair that cannot be cut."""
+    keys = [key for key in ("pressure_angle_drive", "pressure_angle_coast") if key not in data.model_fields_set]
+    if given is not None or len(keys) < 2:
+        return
+    values = dict.fromkeys(keys, _PRESSURE_ANGLE)
+    steeper = data.model_copy(update=values)
+    yield Changed(steeper, dict(values))
+    path = _with_paths(steeper)
+    if path.values:
+        yield Changed(path.data, {**values, **path.values})
+
+
+def _with_paths(data: DesignData) -> Changed:
+    """Paths nearer to the length of the tooth, where none is asked for."""
+    free = [side for side in _LONGER_PATH if _path_is_free(data.contact(side))]
+    sides = {side: data.contact(side).model_copy(update={"path_angle": _LONGER_PATH[side]}) for side in free}
+    return Changed(data.model_copy(update=sides), {f"{side}.path_angle": _LONGER_PATH[side] for side in free})
+
+
+def _path_is_free(asked: ContactRequest) -> bool:
+    return asked.path_angle is None and asked.lengthwise_crowning is None

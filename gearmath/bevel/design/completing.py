@@ -9,17 +9,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearmath.bevel.design import both_system as system
-from gearmath.bevel.design.both_flanks import BothFlanks, FittedBoth, Side, local, moved, nearest, of_flank, whole
+from gearmath.bevel.design.both_flanks import BothFlanks, FittedBoth, Side, local, moved, of_flank, whole
 from gearmath.bevel.design.both_system import NAMES, FlankPoint, index
+from gearmath.bevel.design.both_ways import LEAST_SHARE, best_way
 from gearmath.bevel.design.designed_flank import DesignedFlank, FlankFit
 from gearmath.bevel.design.local_settings import FIRST, ROOT
 from gearmath.bevel.design.pinion import roll_rows, root_of
 from gearmath.bevel.design.request import Request
 from gearmath.bevel.design.rolling import Meeting
-from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section, turning_sense
-from gearmath.bevel.identify.flank_target import FlankTarget, locate
+from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
 from gearmath.bevel.method import blade_sections, generation_of
-from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.root import FLAT_BLADE
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.bevel.turning import half_turn, turned
@@ -28,16 +27,14 @@ from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member
 
 #: Bounds of settings that the fit may move: pressure angles [rad], tilt [rad], 2C and 6D, motion of the
 #: sliding base in mean transverse modules per rad.
-_ANGLES, _TILT, _ROLL, _HELICAL = (math.radians(10), math.radians(30)), math.radians(12), (0.1, 0.7), 0.3
-#: Least machine root angle [rad]: that of a tilted cutter is flatter than the root.
-_FLATTEST = math.radians(1)
+_ANGLES, _TILT, _ROLL, _HELICAL = (math.radians(10), math.radians(30)), math.radians(25), (0.1, 0.7), 0.3
+#: Least machine root angle [rad]: that of a tilted cutter is flatter than the root, to a Formate gear about level.
+_FLATTEST = math.radians(-10)
 #: By this part of the clearance the root may lie off that of the blank; more counts.
 _ROOM = 0.15
 #: Where the root is held, in parts of the face width: the root that a tilted cutter leaves is hollow.
 _ROOT = (0.25, 0.75)
 _OFFSET = SETTINGS.index("work_rotation_offset")
-#: Least part of the places of each side that must be cut.
-_LEAST_SHARE = 0.7
 #: What is held where it is not left free.
 _OPTIONAL = {
     "cutter_tilt": ("cutter_tilt", "cutter_swivel"),
@@ -118,38 +115,26 @@ def completing_pinion(
         _ROOM * start.blank.clearance,
     )
     # the parabolas come last: met before the rest of the flank they lead far away from the crown gear
-    open_ = replace(problem, parabolas_held=False)
-    found = local(open_, x)
+    found = local(replace(problem, parabolas_held=False), x)
     if found is None:
         raise ComputationError(
             "pinion: no settings of one machine were found that give both flanks their points and parabolas; ask for "
             "paths nearer to 90 degrees, a smaller transmission error, or cutting = 'fixed_setting'"
         )
-    inner = {flank: requests[flank].inner for flank in FLANKS}
-    everywhere = {flank: np.ones_like(inner[flank]) for flank in FLANKS}
-    near, fitted, shares = found, None, dict.fromkeys(FLANKS, 0.0)
-    for stage, among in ((open_, inner), (open_, everywhere), (problem, everywhere)):
-        near = nearest(stage, near)
-        kept, contacts = _reached(start, sides, near, among)
-        if not all(one.any() for one in kept):
-            continue
-        cut = replace(stage, sides=(sides[0].among(kept[0]), sides[1].among(kept[1])))
-        fitted = whole(cut, near, contacts)
-        near = near if fitted is None else fitted.x
-    shares = {flank: float(one.mean()) for flank, one in zip(FLANKS, kept, strict=True)}
-    lost = min(shares, key=lambda flank: shares[flank])
-    if not shares[lost] >= _LEAST_SHARE:
+    best = best_way(start, problem, {flank: requests[flank].inner for flank in FLANKS}, found)
+    lost = min(best.shares, key=lambda flank: best.shares[flank])
+    if not best.shares[lost] >= LEAST_SHARE:
         raise ComputationError(
-            f"pinion {lost} flank: settings for the mean point were found, but they cut only {shares[lost]:.0%} of "
-            f"the places that its mate needs, which must be at least {_LEAST_SHARE:.0%}: the others lie below the tip "
-            "of the blade or are undercut"
+            f"pinion {lost} flank: settings for the mean point were found, but they cut only {best.shares[lost]:.0%} "
+            f"of the places that its mate needs, which must be at least {LEAST_SHARE:.0%}: the others lie below the "
+            "tip of the blade or are undercut"
         )
-    if fitted is None:
+    if best.fitted is None:
         raise ComputationError(
             "pinion: settings were found that give both flanks their points, but none with the parabolas that both "
             "sides ask for; ask for other paths, a longer pattern, or cutting = 'fixed_setting' in face milling"
         )
-    return CompletingPinion(cut, dict(requests), fitted, tuple(contacts), shares, own)
+    return CompletingPinion(best.problem, dict(requests), best.fitted, best.contacts, best.shares, own)
 
 
 def _at_zero(how: Generation) -> Generation:
@@ -234,29 +219,3 @@ def _bounds(x: np.ndarray, start: Member) -> np.ndarray:
     for name, most in zip(("modified_roll_2", "modified_roll_3"), rows, strict=True):
         bounds[index(name)] = -abs(most), abs(most)
     return bounds
-
-
-def _reached(
-    start: Member, sides: list[Side], x: np.ndarray, among: dict[str, np.ndarray]
-) -> tuple[list[np.ndarray], list[np.ndarray]]:
-    """By side which conjugate places (n,) are cut above the tip of the blade, not undercut, and where (m,3)."""
-    kept, contacts = [], []
-    for side in sides:
-        cut = system.generation(side.how, side.flank, x)
-        section = blade_sections(start.flank(side.flank), SIDES[side.flank])["main"]
-        blade = Section(section.lower, section.upper, float(cut.settings[-2]), float(cut.settings[-1]))
-        places = side.meeting.point[:, 2], np.hypot(*side.meeting.point[:, :2].T)
-        at = solve_section(cut, blade, *places)
-        own = np.array([[x[index(name, side.flank)] for name in ("u", "beta", "theta")]])
-        mean = turning_sense(cut, blade, own)
-        reached = at.converged & (at.contact[:, 0] >= section.lower) & (np.sign(at.sense) == np.sign(mean))
-        reached &= among[side.flank]
-        if reached.any():
-            # at the border of undercut a line along the normal may not cross the flank
-            points = FlankPoints(at.contact, side.meeting.point, side.meeting.normal)
-            target = FlankTarget(cut, points, np.zeros(len(reached)))
-            with np.errstate(all="ignore"):
-                reached &= ~locate(target, target.vector).failed
-        kept.append(reached)
-        contacts.append(at.contact[reached])
-    return kept, contacts

@@ -68,6 +68,11 @@ def request(
     axial, radial = (float(value) for value in kernel("flank_place")(blank, across, up))
     roll = gear.roll(axial, radial)
     w = roll.vector
+    if not math.isfinite(roll.acceleration):
+        raise InputError(
+            f"{side}: the gear's flank at {across:.0%} of the face width meets no pinion at the constant ratio, or "
+            "is not cut there; another position, pressure angle, cutter_radius or more teeth are needed"
+        )
     if asked.lengthwise_crowning is None:
         parabola = _parabola(side, asked.transmission_error / ARCSEC, teeth, roll)
         semi_axis = asked.pattern_length * surface.blank.face_width / 2
@@ -134,6 +139,8 @@ def _reached(gear: GearFlank, across: float, tip: np.ndarray) -> float:
     if first == 0:
         return 0.0
     below, above = inside[first - 1 : first + 1]
+    if not math.isfinite(below):  # the gear is not cut there, or meets no pinion
+        return float(up[first])
     return float(up[first - 1] + (up[first] - up[first - 1]) * below / (below - above))
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from gearmath.bevel.design.start import blank_for, chosen_radius
 from gearmath.bevel.pair import check_pair
 from gearmath.errors import ComputationError, InputError
 from gearmath.files import read_text
-from gearmath.specs.bevel_set import MEMBERS, BevelSet, load_bevel_set
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet, Member, load_bevel_set
 from gearmath.specs.design import DesignData, load_design
 from gearmath.specs.flank_csv import FlankFile
 
@@ -46,11 +47,28 @@ def load_known(path: Path) -> KnownPair:
 def _of_set(given: BevelSet) -> KnownPair:
     members = {
         name: KnownMember(
-            member.teeth, member.blank, member.hand, member.cutting, member.generation, member.blade_groups
+            member.teeth,
+            member.blank,
+            member.hand,
+            member.cutting,
+            member.generation,
+            member.blade_groups,
+            edges={flank: member.flank(flank).blade_edge_radius for flank in FLANKS},
+            unlike=_unlike(member),
         )
         for name, member in given.members.items()
     }
     return KnownPair(given.title, given.shaft_angle, members)
+
+
+def _unlike(member: Member) -> tuple[str, float] | None:
+    """The first key of a blade by which it is not straight, and its value."""
+    for flank in FLANKS:
+        for key in ("blade_spheric_radius", "toprem_angle"):
+            value = getattr(member.flank(flank), key)
+            if value is not None:
+                return f"{flank}.{key}", value
+    return None
 
 
 def _of_design(data: DesignData, name: str) -> KnownPair:
@@ -61,9 +79,22 @@ def _of_design(data: DesignData, name: str) -> KnownPair:
     if "hand" in data.model_fields_set:
         hands = (data.hand, "right" if data.hand == "left" else "left")
     cutting = "completing" if groups else data.pinion.cutting
-    pinion = KnownMember(data.pinion_teeth, blank.pinion.spec_blank(), hands[0], cutting, "generated", groups, radius)
+    edges = [
+        {} if asked.blade_edge_radius is None else dict.fromkeys(FLANKS, asked.blade_edge_radius)
+        for asked in (data.pinion, data.gear)
+    ]
+    pinion = KnownMember(
+        data.pinion_teeth, blank.pinion.spec_blank(), hands[0], cutting, "generated", groups, radius, edges[0]
+    )
     gear = KnownMember(
-        data.wheel_teeth, blank.wheel.spec_blank(), hands[1], "completing", data.gear.generation, groups, radius
+        data.wheel_teeth,
+        blank.wheel.spec_blank(),
+        hands[1],
+        "completing",
+        data.gear.generation,
+        groups,
+        radius,
+        edges[1],
     )
     return KnownPair(data.title, data.shaft_angle, {"pinion": pinion, "gear": gear})
 
@@ -77,7 +108,15 @@ def reversed_set(known: KnownPair, file: FlankFile, source: str) -> tuple[BevelS
     name = file.member
     if name not in known.members:
         raise InputError(f"member = {name}: the blank is that of a {' and a '.join(known.members)}")
-    found = reverse(known.members[name], given_flanks(file, known.members[name].teeth), name)
+    asked = known.members[name]
+    if asked.unlike is not None:
+        key, value = asked.unlike
+        raise InputError(
+            f"{name}.{key} = {value:g} of the set that the blank is taken from: settings are found for straight blades "
+            "only; the key must be left out, and what straight blades do not reproduce is said"
+        )
+    found = reverse(asked, given_flanks(file, asked.teeth), name)
+    found = replace(found, member=_with_edges(found.member, asked.edges))
     members: dict[str, Any] = {name: found.member}
     one = BevelSet(title=known.title, source=source, shaft_angle=known.shaft_angle, **members)
     try:
@@ -87,3 +126,11 @@ def reversed_set(known: KnownPair, file: FlankFile, source: str) -> tuple[BevelS
             f"settings were found that reproduce the points, but no set may have them: {error}"
         ) from error
     return one, found
+
+
+def _with_edges(member: Member, edges: Mapping[str, float]) -> Member:
+    """The member with edge radii [mm] on its blades, by flank."""
+    edged = {
+        flank: member.flank(flank).model_copy(update={"blade_edge_radius": radius}) for flank, radius in edges.items()
+    }
+    return member.model_copy(update=edged)

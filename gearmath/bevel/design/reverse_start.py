@@ -7,7 +7,8 @@ thickness and the radius of the cutter follow from them, and the settings in clo
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -40,7 +41,8 @@ class KnownMember:
     """What is known of a member besides its flanks: its blank, and how it is to be cut (mm, degrees).
 
     ``hand`` is None where the points have to tell it, ``cutter_radius``, the mean one of the cutter, where their
-    curvature has to.
+    curvature has to. ``edges`` are the edge radii of its blades by flank, which no point of a flank tells; ``unlike``
+    is the key of a blade that is not straight, and of its value.
     """
 
     teeth: int
@@ -50,6 +52,8 @@ class KnownMember:
     generation: Literal["generated", "formate"] = "generated"
     blade_groups: int | None = None
     cutter_radius: float | None = None
+    edges: Mapping[str, float] = field(default_factory=dict)
+    unlike: tuple[str, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -31,6 +31,10 @@ _PLACES = ("toe", "mean", "heel")
 _SOUGHT = 41
 
 
+class EdgeContact(InputError):
+    """A pair of teeth does not take over from the one before within the flanks."""
+
+
 @dataclass(frozen=True)
 class Vertex:
     """Where the gear runs furthest ahead within both flanks, and by how much it lags half a pitch on either side [rad].
@@ -159,7 +163,7 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
                 f"a shorter pattern_length (now {asked.pattern_length:g})",
             )
         ) + ("finer steps in [shop]",) * stepped
-        raise InputError(
+        raise EdgeContact(
             f"{side}: {run.outcome}: one pair of teeth does not take over from the next within the flanks, where the "
             f"contact ratio is {run.contact_ratio:.3g}: {', '.join(changes[:-1])} or {changes[-1]} is needed"
         )

@@ -17,10 +17,11 @@ import numpy as np
 
 from derivations import Quantity, notation
 from gearmath.bevel.generation import Generation
+from gearmath.bevel.generation_kernels import rolling_flag
 from gearmath.bevel.identify.on_line import INPUTS, family, symbols
 from gearmath.bevel.identify.variables import parts
 from gearmath.bevel.newton import FlankPoints, contact_guess, newton_step, residual_size
-from gearmath.bevel.root import FLAT_BLADE
+from gearmath.bevel.root import CORNER
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError
 from gearmath.kernels import kernel
@@ -32,7 +33,17 @@ _STEP_LIMITS = (2.0, 0.1, 0.1)
 _TOLERANCE = 1e-9
 #: The root line is watched at this part of the face width from either end.
 _ROOT_MARGIN = 0.1
-_ANGLE = SETTINGS.index("blade_pressure_angle")
+_RADIUS, _ANGLE = SETTINGS.index("blade_point_radius"), SETTINGS.index("blade_pressure_angle")
+#: How a flank is cut, for the line that the tip plane of its blade leaves.
+_TIP = (
+    notation.settings,
+    notation.motion,
+    notation.index_ratio,
+    notation.blade_offset_angle,
+    notation.blade_tip_height,
+    notation.side,
+    rolling_flag,
+)
 
 _depth_gradient = Quantity(
     "depth_gradient",
@@ -50,24 +61,67 @@ def root_depth() -> Kernel:
     at = family("curved", w, given, ca.SX([0, 0, 1]))
     along, depth = kernel("root_place").function(at.point, delta)
     residual = ca.vertcat(at.height, along - distance, at.meshing)
-    arguments = [w, *given, delta, distance]
+    return _depth_kernel(
+        "root_depth",
+        "Depth of the root line below the pitch cone at a cone distance, with its gradient by settings and motion.",
+        _Line([w, *given, delta, distance], given[4], depth, residual, INPUTS["curved"]),
+    )
+
+
+@cache
+def tip_depth() -> Kernel:
+    """Kernel: the same of the line that the tip plane of the blade leaves, which may stand off that of the radius."""
+    w, delta, distance = ca.SX.sym("w", 3), ca.SX.sym("delta"), ca.SX.sym("distance")
+    given = [ca.SX.sym(quantity.name, *(quantity.shape or (1,))) for quantity in _TIP]
+    settings, motion, index, offset, tip, side, rolling = given
+    radius = kernel("blade_tip").function(settings[_RADIUS], settings[_ANGLE], tip, side)
+    # the lowest point of a vanishing round: its tangent is the tip plane
+    corner = ca.vertcat(radius, tip + CORNER, CORNER)
+    generation = kernel("arc_generation").function
+    point, _, meshing = generation(ca.pi / 2, w[1], w[2], settings, motion, index, offset, corner, side)
+    along, depth = kernel("root_place").function(point, delta)
+    reach = settings[0]
+    in_mesh = rolling * meshing / reach + (1 - rolling) * reach * w[2]
+    residual = ca.vertcat(w[0], along - distance, in_mesh)
+    return _depth_kernel(
+        "tip_depth",
+        "Depth of what the tip of the blade leaves below the pitch cone at a cone distance, with its gradient.",
+        _Line([w, *given, delta, distance], ca.SX.sym("curvature"), depth, residual, _TIP),
+    )
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A depth and what is zero on its line, of arguments: the contact, what ``quantities`` are, δ and cone distance."""
+
+    arguments: list[ca.SX]
+    curvature: ca.SX
+    depth: ca.SX
+    residual: ca.SX
+    quantities: tuple[Quantity, ...]
+
+
+def _depth_kernel(name: str, description: str, line: _Line) -> Kernel:
+    """Newton steps onto a line, and the gradient of the depth there by the implicit function theorem."""
+    arguments, residual, depth = line.arguments, line.residual, line.depth
+    w, settings, motion = arguments[:3]
     step = ca.Function("root_newton_step", arguments, [newton_step(residual, w, _STEP_LIMITS)])
     multipliers = ca.SX.sym("multipliers", 3)
     lagrangian = depth - ca.dot(multipliers, residual)
-    by_motion = ca.densify(ca.gradient(lagrangian, given[1]).T)
-    by_curvature = ca.gradient(lagrangian, given[4])
-    gradient = ca.vertcat(ca.gradient(lagrangian, given[0]), ca.vec(by_motion), ca.densify(by_curvature))
+    by_motion = ca.densify(ca.gradient(lagrangian, motion).T)
+    by_curvature = ca.gradient(lagrangian, line.curvature)
+    gradient = ca.vertcat(ca.gradient(lagrangian, settings), ca.vec(by_motion), ca.densify(by_curvature))
     slope = ca.Function("root_slope", [multipliers, *arguments], [gradient])
     solved = ca.solve(ca.jacobian(residual, w).T, ca.jacobian(depth, w).T)
     final = ca.Function("root_at", arguments, [depth, solved, ca.norm_2(residual)])
-    quantities = (contact_guess, *INPUTS["curved"], notation.pitch_angle, notation.cone_distance)
+    quantities = (contact_guess, *line.quantities, notation.pitch_angle, notation.cone_distance)
     guess, *others = (ca.MX.sym(quantity.name, *(quantity.shape or (1,))) for quantity in quantities)
     solution = guess
     for _ in range(_NEWTON_STEPS):
         solution = step(solution, *others)
     found, lagrange, left = final(solution, *others)
     function = ca.Function(
-        "root_depth",
+        name,
         [guess, *others],
         [solution, found, slope(lagrange, solution, *others), left],
         [quantity.name for quantity in quantities],
@@ -75,7 +129,7 @@ def root_depth() -> Kernel:
     )
     return Kernel(
         function,
-        "Depth of the root line below the pitch cone at a cone distance, with its gradient by settings and motion.",
+        description,
         quantities,
         (notation.contact, notation.cone_depth, _depth_gradient, residual_size),
         "(20.3, 20.4) and meshing; implicit function theorem",
@@ -86,8 +140,9 @@ def root_depth() -> Kernel:
 class RootLine:
     """Where the root of a flank is watched: cone distances (2,) [mm] of toe and heel, and starts (2,3) for u, β, θ.
 
-    ``deepest`` is the line that the tip plane of the cutter leaves, in the middle of the space, in place of the end of
-    the flank: a correction is limited by it, and so is a design whose pressure angle or radius is free.
+    ``deepest`` is the line that the tip plane of the blade leaves, in the middle of the space, in place of the end of
+    the flank: a correction is limited by it, and so is a design whose pressure angle or radius is free. ``tip_height``
+    [mm] is where that plane stands over the one of the point radius.
     """
 
     how: Generation
@@ -95,6 +150,7 @@ class RootLine:
     pitch_angle: float
     distances: np.ndarray
     start: np.ndarray
+    tip_height: float = 0.0
     deepest: bool = False
 
     def depth(self, vector: np.ndarray, start: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -103,24 +159,15 @@ class RootLine:
         ``start`` (2,3) is the contact of settings nearby. Raises ComputationError if the tip of the blade does not
         reach the flank there.
         """
-        if self.deepest:
-            vector = np.concatenate([vector[:_ANGLE], [FLAT_BLADE], vector[_ANGLE + 1 : -1], [0.0]])
-        blade = (self.how.blade_offset_angle, float(vector[-1]), self.reference_height)
-        contact, depths = self.start if start is None else start, root_depth()
+        how, (settings, motion) = self.how, parts(vector)
+        blade = (self.tip_height,) if self.deepest else (float(vector[-1]), self.reference_height)
+        contact, depths = self.start if start is None else start, tip_depth() if self.deepest else root_depth()
+        cut = (how.index_ratio, how.blade_offset_angle, *blade, how.side, float(how.rolling))
         for _ in range(_ROUNDS):
             contact, depth, gradient, residual = depths(
-                contact,
-                *parts(vector),
-                self.how.index_ratio,
-                *blade,
-                self.how.side,
-                float(self.how.rolling),
-                self.pitch_angle,
-                self.distances,
+                contact, settings, motion, *cut, self.pitch_angle, self.distances
             )
             if (residual <= _TOLERANCE).all():
-                if self.deepest:
-                    gradient[:, [_ANGLE, -1]] = 0.0  # the tip plane has neither
                 return contact, depth, gradient
         raise ComputationError("the tip of the blade does not reach the root of the flank")
 
@@ -144,4 +191,5 @@ def root_line(member: Member, flank: str, how: Generation, nominal: FlankPoints)
     lowest = height[: max(2, len(height) // 5)]
     start = np.array([nominal.contact[lowest[np.argmin(np.abs(cone[lowest] - one))]] for one in distances])
     start[:, 0] = 0.0
-    return RootLine(how, member.flank(flank).blade_reference_height, blank.delta, distances, start)
+    spec = member.flank(flank)
+    return RootLine(how, spec.blade_reference_height, blank.delta, distances, start, spec.blade_tip_height)

@@ -7,7 +7,7 @@ import tomllib
 import pytest
 
 from gearmath.bevel.ease_off import Parts, is_least_inside
-from gearmath.bevel.mates import edge_note
+from gearmath.bevel.mates import ease_off_of, edge_note
 from gearmath.bevel.pair import check_pair
 from gearmath.specs.bevel_set import BevelSet
 from gearmath.specs.toml import bundled, checked
@@ -34,7 +34,7 @@ def designed(member: str = "", flank: str = "", ratio: float = 0.0) -> BevelSet:
 )
 def test_digit_of_a_ratio_that_no_limit_refuses_is_told_by_the_edge_that_carries(member, flank, ratio, said) -> None:
     """Three parts in a thousand of the roll: 24.9 arcsec where 2 were designed, and within what mates may differ by."""
-    note = edge_note(designed(member, flank, ratio))
+    note = edge_note(ease_off_of(designed(member, flank, ratio)))
     assert [f"pinion {each}: " in note for each in ("concave", "convex")] == [
         each in said for each in ("concave", "convex")
     ]
@@ -42,13 +42,14 @@ def test_digit_of_a_ratio_that_no_limit_refuses_is_told_by_the_edge_that_carries
 
 def test_nothing_is_said_of_a_designed_pair_and_of_a_member_without_its_mate() -> None:
     pair = designed()
-    assert edge_note(pair) == ""
-    assert edge_note(pair.model_copy(update={"gear": None})) == ""
+    assert edge_note(ease_off_of(pair)) == ""
+    assert edge_note(ease_off_of(pair.model_copy(update={"gear": None}))) == ""
 
 
 def test_published_pair_that_runs_on_its_edges_is_told_so() -> None:
     """NASA CR-191009, of which contact gives 105 arcsec and edges on both sides."""
-    note = edge_note(checked(tomllib.loads(bundled("nasa_tp3096_12x36.toml").read_text("utf-8")), BevelSet, "set"))
+    text = bundled("nasa_tp3096_12x36.toml").read_text("utf-8")
+    note = edge_note(ease_off_of(checked(tomllib.loads(text), BevelSet, "set")))
     assert "pinion concave: " in note
     assert "pinion convex: " in note
 

@@ -133,7 +133,7 @@ def test_header_carries_units_domain_source_versions_and_operations() -> None:
     text = double_kernel(kernel).header
     for wanted in (
         "generated, do not edit",
-        "[7] machine_root_angle [rad] 0.05 ... 1.45 (taken: 0.005 ... 1.57079632679): work axis against the machine",
+        "[7] machine_root_angle [rad] -0.2 ... 1.45 (taken: -1.57079632679 ... 1.57079632679): work axis against",
         "out axes[5] [mixed]: axis positions",
         "requires: sqrt(",
         "source: Coordinate Control Method",

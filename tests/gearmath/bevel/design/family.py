@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 import random
+from typing import Any
 
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
 
 
-def family(seed: int) -> DesignData:
-    """A pair of the family of issue 13: tooth counts, ratio, spiral angle, cutter and method drawn."""
+def mixed(seed: int) -> DesignData:
+    """A pair of the family of issue 13: tooth counts, ratio, spiral angle, cutter and the methods of both members."""
     draw = random.Random(seed)
     z_1, ratio = draw.randint(7, 20), draw.uniform(2, 7)
     z_2, spiral, cutter = round(z_1 * ratio), draw.uniform(25, 40), draw.uniform(0.8, 1.5)
     generation, module = draw.choice(["generated", "formate"]), draw.uniform(2.5, 6)
     outer = module * z_2 / 2 / math.sin(math.atan2(z_2, z_1))
     width = min(0.3 * outer, 10 * module)
-    values = {
+    values: dict[str, Any] = {
         "title": str(seed),
         "pinion_teeth": z_1,
         "wheel_teeth": z_2,
@@ -28,12 +29,7 @@ def family(seed: int) -> DesignData:
         "gear": {"generation": generation},
         "hand": draw.choice(["left", "right"]),
     }
-    return checked(values, DesignData, str(seed))
-
-
-def mixed(seed: int) -> DesignData:
-    """A pair of the whole family: the same, and the method of the pinion drawn too, milled or hobbed."""
-    values, draw = family(seed).model_dump(exclude_unset=True), random.Random(f"method {seed}")
+    draw = random.Random(f"method {seed}")
     method, groups = draw.choice(["fixed", "completing", "hobbed"]), draw.randint(7, 17)
     if method != "fixed":
         values["pinion"] = {"cutting": "completing"}

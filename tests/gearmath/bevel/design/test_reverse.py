@@ -12,6 +12,7 @@ import pytest
 from gearmath.bevel.crown_gear import Method, crown_gear_set
 from gearmath.bevel.design.reverse import LIMIT, ReversedMember, reverse
 from gearmath.bevel.design.reverse_points import GivenFlank, given_flanks
+from gearmath.bevel.design.reverse_route import load_known, reversed_set
 from gearmath.bevel.design.reverse_start import KnownMember, mean_point
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation import solve_section
@@ -217,6 +218,31 @@ def test_files_that_do_not_tell_the_flanks_are_refused(header, words):
     file = points_of(member, "pinion")
     with pytest.raises(InputError, match=words):
         given_flanks(replace(file, header={**file.header, **header}), member.teeth)
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ("blade_edge_radius = 0.4", None),
+        (
+            "toprem_angle = 2\ntoprem_height = 1",
+            r"^pinion\.concave\.toprem_angle = 2 of the set .* straight blades only",
+        ),
+        ("blade_spheric_radius = 1500", r"^pinion\.concave\.blade_spheric_radius = 1500 of the set"),
+    ],
+)
+def test_blades_of_the_set_that_the_blank_is_of_are_kept_where_straight_and_refused_where_not(keys, said, tmp_path):
+    path, member = tmp_path / "set.toml", bundled_set("nasa_tp3096_12x36").member("pinion")
+    head, table, rest = bundled("nasa_tp3096_12x36.toml").read_text("utf-8").partition("[pinion.concave]\n")
+    path.write_text(f"{head}{table}{keys}\n{rest}", "utf-8")
+    file = points_of(member, "pinion")
+    if said is not None:
+        with pytest.raises(InputError, match=said):
+            reversed_set(load_known(path), file, "test")
+        return
+    found, _ = reversed_set(load_known(path), file, "test")
+    assert found.pinion is not None
+    assert (found.pinion.concave.blade_edge_radius, found.pinion.convex.blade_edge_radius) == (0.4, 0.0)
 
 
 def test_known_cutter_and_the_curvature_of_the_flanks_lead_to_the_same_flank():
