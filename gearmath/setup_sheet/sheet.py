@@ -257,9 +257,10 @@ def _tolerances(page: Page, facts: SetupFacts, path: PathWords) -> None:
 
 
 def _restart(page: Page, facts: SetupFacts, words: SheetWords) -> None:
-    page.subheading("Start, and start again at a space")
+    hobbed = facts.plan.member.process == "face_hobbing"
+    page.subheading("Start, and start again" + ("" if hobbed else " at a space"))
     page.paragraph(
-        "Each section is one tooth space with one tool, and stands by itself. "
+        f"Each section is {'all tooth spaces' if hobbed else 'one tooth space'} with one tool, and stands by itself. "
         + chosen_parts(words, "section", "cut", "the section that was cut when it stopped")
     )
     page.table(

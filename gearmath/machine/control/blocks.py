@@ -282,6 +282,8 @@ class ControlState(State):
                 refuse(name, line, column, f"G94 with {axis} turning: write such a block with G93, or FGROUP before it")
             steps[axis] *= self.feed_radius[axis] / DEGREE_IS_MM
         length = math.hypot(*(steps[axis] for axis in AXES if axis in (self.feed_axes or AXES)))
+        if not length and any(steps.values()):
+            refuse(name, line, column, "G94 with no axis of FGROUP moving: what F means then is not known")
         return 60.0 * (float(lengths.sum()) if len(lengths) else length) / self.feed
 
     def _measure(self, block: Block, before: dict[str, float]) -> None:

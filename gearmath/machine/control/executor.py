@@ -63,6 +63,8 @@ class MachinePath:
     """Whether the row ends within a block of POLY, (n,)."""
     unset: dict[int, int] = field(default_factory=dict)
     """R parameters that are read before the program sets them, with the line: they keep what another program left."""
+    ran: frozenset[int] = frozenset()
+    """Lines whose statements have acted."""
 
     @property
     def spindle_on(self) -> np.ndarray:
@@ -194,4 +196,5 @@ def _path(runner: StatementRunner | LinuxCncRunner) -> MachinePath:
         halts=tuple(runner.halts),
         inner=np.array([row.inner for row in rows], dtype=bool),
         unset=runner.unset,
+        ran=frozenset(runner.ran),
     )

@@ -29,7 +29,8 @@ class NgcLine:
 
 def lines_of(text: str, name: str) -> list[NgcLine]:
     """The lines of a program that are not empty. Raises InputError for what LinuxCNC would not read."""
-    found = []
+    found: list[NgcLine] = []
+    last = len(text.rstrip().splitlines())
     for number, raw in enumerate(text.splitlines(), 1):
         if len(raw) > LONGEST_LINE:
             refuse(name, number, LONGEST_LINE, f"the line has {len(raw)} characters, {LONGEST_LINE} are allowed")
@@ -41,6 +42,8 @@ def lines_of(text: str, name: str) -> list[NgcLine]:
         code = re.sub(r"\s+", "", _COMMENT.sub("", code).split(";", 1)[0]).upper()
         if "(" in code or ")" in code:
             refuse(name, number, 1, "a comment is not closed")
+        if code == "%" and found and number < last:
+            refuse(name, number, 1, "% ends the program: it stands in the first and the last line only")
         if code in ("", "%") and not said:
             continue
         flow = _FLOW.fullmatch(code)
@@ -57,12 +60,16 @@ def partners(lines: list[NgcLine], name: str) -> dict[int, int]:
     """For the place of every IF, ELSE, WHILE and SUB the place of what ends it; ENDWHILE leads back to WHILE."""
     open_: list[int] = []
     found: dict[int, int] = {}
+    labels: set[str] = set()
     for place, line in enumerate(lines):
         if line.flow in ("", "CALL"):
             continue
         if line.flow == "ELSEIF":
             refuse(name, line.number, 1, "ELSEIF is not understood")
         if line.flow in ("IF", "WHILE", "SUB"):
+            if line.label in labels:
+                refuse(name, line.number, 1, f"O{line.label} begins for the second time: every label is there once")
+            labels.add(line.label)
             open_.append(place)
             continue
         begun = lines[open_[-1]] if open_ else None

@@ -45,6 +45,8 @@ _GROUPS = {
 _ONCE = ("G4", "G53")
 _STOPS = {"M0", "M2", "M30"}
 _OTHERS = {"M3", "M4", "M5", "M6", "M8", "M9", "M66", "M68"}
+#: Letters beside axes, F, S and T, and the codes that take them.
+_LETTERS = {"P": {"G4", "G64", "M66"}, "Q": {"G64", "M66", "M68"}, "L": {"M66"}, "E": {"M66", "M68"}}
 
 
 @dataclass
@@ -129,6 +131,7 @@ class LinuxCncMotion:
                 if group == "feed mode (G93 or G94)" and state.modal.get(group) != code:
                     state.feed = None
                 state.modal[group] = code
+        self._check_letters(line, codes, words)
         if "F" in words:
             state.feed = words["F"]
         if "S" in words:
@@ -136,10 +139,13 @@ class LinuxCncMotion:
         if "T" in words:
             state.selected = int(words["T"])
         if "G64" in codes:
-            state.within = words.get("P", math.inf)
+            # Q is how far blocks that are nearly in line are made one; without it, P
+            state.within = max(words.get("P", math.inf), words.get("Q", 0.0))
         self._machine(line, codes)
         if "M66" in codes:
             self.parameters[5399] = 0.0
+        if {"M66", "M68"} & set(codes):  # both wait until the axes stand
+            self._halt(line, False)
         if "G4" in codes:
             self._halt(line, False, words.get("P", 0.0))
         elif any(axis in words for axis in _ALL):
@@ -147,6 +153,17 @@ class LinuxCncMotion:
         if "M0" in codes:
             self._halt(line, True)
         state.ended = state.ended or bool({"M2", "M30"} & set(codes))
+
+    def _check_letters(self, line: NgcLine, codes: list[str], words: dict[str, float]) -> None:
+        """Refuse what LinuxCNC would refuse on its way, and letters that mean something else to another machine."""
+        for letter in words:
+            if letter not in {*_ALL, *"FST"} and not _LETTERS.get(letter, set()) & set(codes):
+                refuse(self.name, line.number, 1, f"{letter}{words[letter]:g} is not understood here")
+        if "G4" in codes and "P" not in words:
+            refuse(self.name, line.number, 1, "G4 without a time P")
+        timed = self.control.modal.get("feed mode (G93 or G94)") == "G93" and self.control.modal.get("motion") == "G1"
+        if timed and "F" not in words and any(axis in words for axis in _ALL):
+            refuse(self.name, line.number, 1, "F is missing: every G93 block needs its own")
 
     def _machine(self, line: NgcLine, codes: list[str]) -> None:
         """Spindle, coolant, tool change."""

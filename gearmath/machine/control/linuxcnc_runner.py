@@ -44,6 +44,7 @@ class LinuxCncRunner(LinuxCncMotion):
         self.files: dict[str, list[str]] = {}
         self.taken: set[int] = set()
         self.unset: dict[int, int] = {}
+        self.ran: set[int] = set()
         self._log: str | None = None
 
     def run(self, text: str) -> None:
@@ -67,6 +68,7 @@ class LinuxCncRunner(LinuxCncMotion):
         while place < end and not self.control.ended:
             line = self.lines[place]
             self.steps_left -= 1
+            self.ran.add(line.number)
             if self.steps_left < 0:
                 refuse(self.name, line.number, 1, f"the program takes more than {self._steps} steps: does it end?")
             if line.flow:

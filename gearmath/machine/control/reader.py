@@ -39,13 +39,14 @@ def read_program(text: str, name: str) -> ParsedProgram:
     labels, EXTERN and PROC are read and do nothing.
     """
     comments: dict[int, str] = {}
+    labels: dict[str, int] = {}
 
     def parts() -> Iterator[Statement | Keyword]:
         first = True
         for number, code, comment in divided(text, name):
             if comment is not None:
                 comments[number] = comment
-            scanner = _AtLine(name, number, code)
+            scanner = _AtLine(name, number, code, labels)
             if scanner.done or (first and scanner.heading()):
                 continue
             first = False
@@ -58,7 +59,11 @@ def read_program(text: str, name: str) -> ParsedProgram:
 
 
 class _AtLine(WordScanner):
-    """One line of the program."""
+    """One line of the program; ``labels`` are those of the lines before it."""
+
+    def __init__(self, name: str, line: int, text: str, labels: dict[str, int]) -> None:
+        super().__init__(name, line, text)
+        self.labels = labels
 
     def heading(self) -> bool:
         """Whether the line is a PROC with a name, which may begin a program."""
@@ -109,6 +114,10 @@ class _AtLine(WordScanner):
             self.check_length(label[1], label.start())
             if label[1] in RESERVED:
                 self.refuse(f"{label[1]} is a word of the language, and no label", label.start())
+            if label[1] in self.labels:
+                what = f"the label {label[1]} stands in line {self.labels[label[1]]} already: a search finds one only"
+                self.refuse(what, label.start())
+            self.labels[label[1]] = self.line
             self.blanks()
 
     def _program_name(self) -> None:

@@ -45,7 +45,8 @@ Watch = Callable[[Moment], object]
 
 
 class Halt(NamedTuple):
-    """A dwell or a stop, and how many rows of the path, and moves before the position was known, lie before it."""
+    """A dwell, a wait for the axes or a stop, and how many rows of the path, and moves before the position was known,
+    lie before it."""
 
     line: int
     stop: bool
@@ -73,6 +74,7 @@ class StatementRunner:
         watch: Watch | None,
     ) -> None:
         self.unset: dict[int, int] = {}
+        self.ran: set[int] = set()
         self.control, self.host, self.parameters, self.steps_left = control, host, parameters, step_limit
         self.deflected, self.moved, self.watch = deflected, moved, watch
         self.variables: dict[tuple[str, tuple[int, ...]], float] = {}
@@ -97,6 +99,7 @@ class StatementRunner:
         for statement in body:
             self._step(statement.line)
             self._watched(statement.line)
+            self.ran.add(statement.line)
             if isinstance(statement, Block):
                 self._block(statement)
             elif isinstance(statement, Command):
@@ -245,6 +248,7 @@ class StatementRunner:
     def _command(self, command: Command) -> None:
         control, line, column = self.control, command.line, command.column
         if command.name == "STOPRE":
+            self.halts.append(Halt(line, False, len(self.rows), len(control.blind)))
             if control.latch is not None:
                 control.latch.synchronised = True
             self.parameters.update(self._pending)

@@ -1,13 +1,15 @@
 """Every block of a program watched where it generates: lines on the flanks so close together that none cuts unseen.
 
-The lines lie along tip and foot of the flanks and along toe and heel, evenly, and some for every block of a pass.
-Every line of contact crosses these curves at both of its ends, and a tool that is moved anywhere on it is moved most at
-one of them, as a rigid body. :func:`watch` says what metal is left; :func:`off_the_way` where a tool stands beside its
+The lines lie along tip and foot of the flanks, along toe and heel and half way up, evenly, and some for every block of
+a pass. Every line of contact crosses the outer curves at both of its ends, and a tool that is moved anywhere on it is
+moved most at one of them, as a rigid body; where it is moved at one end and the block leaves most at the other, the sum
+may be largest between them. :func:`watch` says what metal is left; :func:`off_the_way` where a tool stands beside its
 way although its neighbours cut the flank clean.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -18,6 +20,7 @@ from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.method import motion_of
 from gearmath.bevel.turning import turned
 from gearmath.kernels import kernel
+from gearmath.machine.judging.scallops import ridges
 from gearmath.machine.milling.axis_errors import roll_position
 from gearmath.machine.milling.mill import expose, thickness
 from gearmath.machine.milling.removal import REACH, annulus_entry
@@ -31,14 +34,17 @@ from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 #: Where along a block each curve has lines. A straight block leaves a parabola between its ends, and where one end is
-#: wrong, a line besides: what lies between these places is at most 3 % more than at one of them.
+#: wrong, a line besides: what lies between these places is at most 3 % more than at one of them. Where it leaves a
+#: parabola at each of its ends, and a ridge between them, more lines stand on the highest of these ridges.
 _STRAIGHT = (0.0, 0.3, 0.5, 0.7)
 #: The same for a block of POLY, which leaves a smooth flank.
 _CURVED = tuple(np.linspace(0.0, 1.0, 60, endpoint=False).tolist())
 #: Where curves lie along the tooth, as parts of the working depth, and up the tooth, as parts of the face width.
-_UP, _ACROSS = (1.0,), (0.0, 1.0)
+_UP, _ACROSS = (0.5, 1.0), (0.0, 1.0)
 #: The part of the lines on a flank that says what its blocks are made for.
 MOST_LINES = 0.75
+#: So many of the highest ridges between lines of a flank get lines of their own.
+_RIDGES = 16
 #: X and Y so far off the path are wrong wherever the flank is. [mm]
 _FAR_ASIDE = 0.05
 
@@ -52,6 +58,10 @@ class WatchedFlank:
     normal: np.ndarray
     start: np.ndarray
     theta: np.ndarray
+    curves: tuple[int, ...]
+    """Where the curves begin, along which the lines lie."""
+    ends: np.ndarray
+    """Cradle rotations of the ends of straight blocks."""
 
 
 @dataclass(frozen=True)
@@ -82,12 +92,16 @@ def watched_flanks(member: Member, runs: list[CuttingRun], machine: MillingMachi
     for run in runs:
         rolls = _watched_rolls(member, run, machine) if member.generation == "generated" else np.zeros(0)
         for flank in run.cut.flanks:
-            theta, point, normal = _lines(member, run, flank, rolls)
-            (other,) = (each for each in FLANKS if each != flank)
-            opposite = flank_points(member, other, blank_grid(member, 5, 9)).point
-            start = -0.5 * thickness(point, opposite, member.teeth)
-            found.append(WatchedFlank(flank, point, normal, start, theta))
+            ends = np.zeros(0) if len(run.inner) and run.inner.any() else rolls[:: len(_STRAIGHT)]
+            found.append(_watched(member, run, flank, rolls, ends))
     return found
+
+
+def _watched(member: Member, run: CuttingRun, flank: str, rolls: np.ndarray, ends: np.ndarray) -> WatchedFlank:
+    theta, point, normal, curves = _lines(member, run, flank, rolls)
+    (other,) = (each for each in FLANKS if each != flank)
+    opposite = flank_points(member, other, blank_grid(member, 5, 9)).point
+    return WatchedFlank(flank, point, normal, -0.5 * thickness(point, opposite, member.teeth), theta, curves, ends)
 
 
 def _watched_rolls(member: Member, run: CuttingRun, machine: MillingMachine) -> np.ndarray:
@@ -102,15 +116,19 @@ def _watched_rolls(member: Member, run: CuttingRun, machine: MillingMachine) -> 
     return np.concatenate([*(start + share * roll for start, roll, share in blocks), ends[-1:]])
 
 
-def _lines(member: Member, run: CuttingRun, flank: str, rolls: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _lines(
+    member: Member, run: CuttingRun, flank: str, rolls: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, ...]]:
     if member.generation == "formate":
         points = flank_points(member, flank, blank_grid(member, 5, 17, 0.0))
-        return points.contact[:, 2], points.point, points.normal
+        return points.contact[:, 2], points.point, points.normal, (0,)
     shared = on_one_machine(member, run.cut)
     curves = [flank_curve(shared, flank, rolls, up=up) for up in _UP]
     curves += [flank_curve(shared, flank, rolls, across=across) for across in _ACROSS]
-    lines = joined([*curves, *foot_curves(shared, flank, rolls)])
-    return lines.theta, lines.point, lines.normal
+    curves += foot_curves(shared, flank, rolls)
+    lines = joined(curves)
+    begins = np.cumsum([0, *(len(curve.theta) for curve in curves[:-1])])
+    return lines.theta, lines.point, lines.normal, tuple(begins.tolist())
 
 
 def watch(
@@ -148,16 +166,23 @@ def watch(
             left = expose(own, machine, errors, *lines)
             met = np.isfinite(left.distance)
             low = int(np.argmin(np.where(met, left.distance, np.inf)))
-            high = int(np.argmax(np.where(met & reached[one.flank], left.distance, -np.inf)))
+            counts = np.where(met & reached[one.flank], left.distance, -np.inf)
+            high = int(np.argmax(counts))
+            most_left, left_by = float(counts[high]), int(left.block[high])
+            if (more := _on_ridges(one, counts, member, runs)) is not None:
+                again = expose(own, machine, errors, turned(more.point, angle), turned(more.normal, angle), more.start)
+                whole = np.isfinite(again.distance) & (_height(more, member, runs, machine) >= withdrawn)
+                high = int(np.argmax(np.where(whole, again.distance, -np.inf)))
+                most_left, left_by = max((most_left, left_by), (float(again.distance[high]), int(again.block[high])))
             if met.any():
                 most = float(np.quantile(np.abs(left.distance[met]), MOST_LINES))
                 usual[one.flank] = min(most, usual.get(one.flank, np.inf))
             rows.append(
                 (
                     float(left.distance[low]) if met.any() else np.inf,
-                    float(left.distance[high]) if met.any() else -np.inf,
+                    most_left,
                     int(numbers[left.block[low]]),
-                    int(numbers[left.block[high]]),
+                    int(numbers[left_by]),
                     int((~met).sum()) * len(like),
                     one.flank,
                     space,
@@ -174,6 +199,21 @@ def watch(
         uncut=sum(row[4] for row in rows),
         usual=max(usual.values(), default=0.0),
     )
+
+
+def _on_ridges(lines: WatchedFlank, left: np.ndarray, member: Member, runs: list[CuttingRun]) -> WatchedFlank | None:
+    """Lines on the highest ridges that seem to stand between ``lines``, which keep ``left`` (n,), higher than these."""
+    if len(lines.ends) < 2:
+        return None
+    parts = [slice(*ends) for ends in itertools.pairwise([*lines.curves, len(left)]) if ends[1] - ends[0] > 1]
+    found = [ridges(lines.theta[part], left[part], lines.ends) for part in parts]
+    peaks, theta = (np.concatenate(part) for part in zip(*found, strict=True))
+    chosen = np.argsort(-peaks)[:_RIDGES]
+    chosen = chosen[peaks[chosen] > left.max()]
+    if not len(chosen):
+        return None
+    (run,) = (run for run in runs if lines.flank in run.cut.flanks)
+    return _watched(member, run, lines.flank, np.unique(theta[chosen]), np.zeros(0))
 
 
 def _height(lines: WatchedFlank, member: Member, runs: list[CuttingRun], machine: MillingMachine) -> np.ndarray:

@@ -32,7 +32,8 @@ def chosen_faults(text: str, name: str, path: MachinePath, setup: Setup) -> Iter
     def run(first: int, last: int) -> ProgramRun:
         return run_program(text, name, parameters={90: float(first), 91: float(last)}, setup=setup)
 
-    whole, done = cut_rows(path), 0
+    whole, done = all_rows(path), 0
+    cuts = np.flatnonzero(~path.rapid)
     for number in range(1, _MOST):
         alone = tried(run, number, number)
         if isinstance(alone, str):
@@ -41,11 +42,11 @@ def chosen_faults(text: str, name: str, path: MachinePath, setup: Setup) -> Iter
         if not_run(alone):
             break
         yield from agreed(alone, number)
-        part = cut_rows(alone.path)
+        part = np.flatnonzero(~alone.path.rapid)
         if not len(part):
             yield Fault(f"with R90={number} R91={number} cuts nothing", kind="part")
             return
-        if not same(part, whole[done : done + len(part)]):
+        if not same_part(all_rows(alone.path), part, whole, cuts[done : done + len(part)]):
             line = int(alone.path.line[~alone.path.rapid][0])
             yield Fault(
                 f"with R90={number} R91={number} does not make section {number} of the whole run, and that alone",
@@ -54,7 +55,7 @@ def chosen_faults(text: str, name: str, path: MachinePath, setup: Setup) -> Iter
             )
             return
         done += len(part)
-    if done != len(whole):
+    if done != len(cuts):
         yield Fault(f"the {number - 1} sections that R90 and R91 choose do not make the whole program", kind="part")
         return
     yield from wrong_choices(run, number - 1)
@@ -87,15 +88,40 @@ def agreed(found: ProgramRun, number: int) -> Iterator[Fault]:
         yield Fault(f"with R90={number} moves before it has waited at M0 for the operator", kind="M0")
 
 
-def cut_rows(path: MachinePath) -> np.ndarray:
-    """The feed blocks of a path (n,10): X Y Z A B, C, seconds, spindle, tool and line, A and C within a turn."""
+def all_rows(path: MachinePath) -> np.ndarray:
+    """The blocks of a path (n,11): X Y Z A B, C, seconds, spindle, tool, line, and whether it is rapid."""
     tool = np.array([hash(path.tools[k]) % 2**31 for k in path.tool], dtype=float)
-    rows = np.column_stack([path.axes, np.nan_to_num(path.cutter), path.seconds, path.rpm, tool, path.line])
-    return rows[~path.rapid]
+    cutter = np.nan_to_num(path.cutter)
+    return np.column_stack([path.axes, cutter, path.seconds, path.rpm, tool, path.line, path.rapid])
+
+
+def same_part(alone: np.ndarray, own: np.ndarray, whole: np.ndarray, cuts: np.ndarray) -> bool:
+    """Whether rows ``alone`` of :func:`all_rows` are a part of ``whole``, the feed rows of which are ``own``, ``cuts``.
+
+    From its first cut to its last one it is; on the way there and away from there it may be higher. The spindle turns
+    as fast where the cutter is drawn out.
+    """
+    if len(own) != len(cuts):
+        return False
+    before, first, last = int(own[0]), int(cuts[0]), int(cuts[-1])
+    if not same(alone[before : own[-1] + 1], whole[first : last + 1]) or before > first:
+        return False
+    there = whole[first - before : first]
+    away = whole[last + 1] if last + 1 < len(whole) else whole[last]
+    after = alone[own[-1] + 1 :]
+    return _above(alone[:before], there) and _above(after, away[None]) and (after[:1, 7] == away[7]).all()
+
+
+def _above(rows: np.ndarray, others: np.ndarray) -> bool:
+    """Whether rows stand where others do, or above them."""
+    off = rows[:, :5] - others[:, :5]
+    off[:, 3] -= 2 * np.pi * np.round(off[:, 3] / (2 * np.pi))
+    off[:, 2] = np.minimum(off[:, 2], 0.0)
+    return bool((np.abs(off) < _SAME).all())
 
 
 def same(one: np.ndarray, other: np.ndarray) -> bool:
-    """Whether rows of :func:`cut_rows` are the same, A and C by whole turns."""
+    """Whether rows of :func:`all_rows` are the same, A and C by whole turns."""
     if one.shape != other.shape:
         return False
     off = one - other

@@ -89,6 +89,48 @@ def rapid_approaches(runs: list[CuttingRun], member: Member, machine: MillingMac
     return found
 
 
+def standing_retracts(
+    path: MachinePath, runs: list[CuttingRun], member: Member, machine: MillingMachine
+) -> list[Collision]:
+    """Rapid blocks that draw the blades out of the work with the spindle standing, or turning backwards."""
+    return [
+        one
+        for run in runs
+        if run.blades is None
+        for one in _in_the_work(run, _drawn(run) & (_turning(path, run, machine) <= 0.0), member, machine)
+    ]
+
+
+def left_in_the_work(runs: list[CuttingRun], member: Member, machine: MillingMachine) -> list[Collision]:
+    """Last blocks of tools that end with the blades in the work."""
+    last = [np.append(np.zeros(len(run.axes), dtype=bool), run.cutting[-1]) for run in runs]
+    return [one for run, end in zip(runs, last, strict=True) for one in _in_the_work(run, end, member, machine)]
+
+
+def _drawn(run: CuttingRun) -> np.ndarray:
+    """Whether each row (n+1,) is a rapid one behind one that cuts; the last stands for what follows the program."""
+    return np.append(np.append(False, run.cutting[:-1]) & ~run.cutting, False)
+
+
+def _turning(path: MachinePath, run: CuttingRun, machine: MillingMachine) -> np.ndarray:
+    """Speed of the spindle (n+1,) in the sense in which the machine cuts, in every row of a tool."""
+    sense = 1.0 if machine.cutter_direction == "M3" else -1.0
+    return np.append(path.rpm[path.tool == path.tools.index(run.cut.tool)] * sense, 0.0)
+
+
+def _in_the_work(run: CuttingRun, rows: np.ndarray, member: Member, machine: MillingMachine) -> list[Collision]:
+    """Those of ``rows`` (n+1,) before which the blades stand in the work."""
+    chosen = np.flatnonzero(rows)
+    if not len(chosen):
+        return []
+    ring, found = rings(work_profiles(member, machine.fixture)["teeth"]), []
+    for k in chosen.tolist():
+        depth = _blade_depth(run.axes[k - 1], run.axes[k - 1], run.cutter, machine, ring)
+        if depth > 0.0:
+            found.append(Collision("blades", "teeth", (int(run.line[min(k, len(run.line) - 1)]),), depth))
+    return found
+
+
 def _blade_depth(
     first: np.ndarray, last: np.ndarray, cutter: Cutter, machine: MillingMachine, ring: np.ndarray
 ) -> float:

@@ -15,16 +15,33 @@ from gearmath.machine.control.executor import MachinePath, parsed
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.judging.chosen import chosen_faults, reads_choice
-from gearmath.machine.judging.collision import RAPID_CLEARANCE, collisions, rapid_approaches
-from gearmath.machine.judging.cut import MetalLeft, as_cut, beside_the_path, hobbed, metal_left, missing, no_dry_run
+from gearmath.machine.judging.collision import (
+    RAPID_CLEARANCE,
+    collisions,
+    left_in_the_work,
+    rapid_approaches,
+    standing_retracts,
+)
+from gearmath.machine.judging.cut import (
+    MetalLeft,
+    as_cut,
+    beside_the_path,
+    hobbed,
+    metal_left,
+    missing,
+    no_dry_run,
+)
 from gearmath.machine.judging.faults import Fault, first_of_each
 from gearmath.machine.judging.header import header_faults
 from gearmath.machine.judging.motion import motion_faults
 from gearmath.machine.judging.outside import outside_faults
+from gearmath.machine.judging.plunge import plunge_ends
 from gearmath.machine.judging.start_state import start_faults
 from gearmath.machine.judging.stated import Stated
+from gearmath.machine.judging.unrun import skipped_faults, unrun_faults
 from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import CuttingRun, runs_of
+from gearmath.machine.planning.clear_space import clear_height, room_of
 from gearmath.machine.planning.rounding import control_share
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.flank_csv import FlankFile
@@ -46,13 +63,17 @@ def faults_of(
         *missing(stated, runs, member, name),
         *beside_the_path(runs, member, machine, stated),
         *no_dry_run(runs, member, machine, stated),
+        *plunge_ends(path, runs, member, stated),
+        *unrun_faults(text, _NAME, path),
+        *skipped_faults(text, _NAME),
     ]
     asked = [*header_faults(text, member, name, machine)]
     if not is_for_linuxcnc(text):
         asked = [*outside_faults(parsed(text, _NAME)), *asked]
     if reads_choice(text):
         asked += chosen_faults(text, _NAME, path, Setup.of(machine))
-    started = start_faults(text, machine) if stated.is_ours else ()
+    clear = clear_height(room_of(member, machine, machine.fixture), machine, machine.tool_length)
+    started = start_faults(text, machine, clear=clear) if stated.is_ours else ()
     return [*first_of_each([*found, *asked]), *started, *met(path, runs, member, machine)]
 
 
@@ -117,5 +138,13 @@ def met(path: MachinePath, runs: list[CuttingRun], member: Member, machine: Mill
             "rapid",
         )
         for one in rapid_approaches(runs, member, machine)
+    ]
+    found += [
+        Fault("draws the cutter out of the cut with the spindle not turning as it cuts", one.lines[0], "drawn")
+        for one in standing_retracts(path, runs, member, machine)
+    ]
+    found += [
+        Fault(f"is the last motion of its tool and leaves it {one.depth:.2f} mm in the work", one.lines[0], "left")
+        for one in left_in_the_work(runs, member, machine)
     ]
     return first_of_each(found)

@@ -22,6 +22,8 @@ from gearmath.specs.milling_machine import AXES, MillingMachine
 _FEW = 8
 #: An offset and a length that are wrong by so little must be seen. [mm, degree]
 _OFF = 0.01
+#: So far under the height from which on a tool clears the work a start must be refused. [mm]
+_UNDER = 1.0
 
 
 class _Moving(Exception):
@@ -29,17 +31,26 @@ class _Moving(Exception):
 
 
 def start_faults(
-    text: str, machine: MillingMachine, probe_length: float = 0.0, file_kB: float = 0.0
+    text: str,
+    machine: MillingMachine,
+    probe_length: float = 0.0,
+    file_kB: float = 0.0,
+    clear: float | None = None,
 ) -> Iterator[Fault]:
     """One fault with all states of the control that the program does not stop for; none where it sees them all.
 
-    ``probe_length`` [mm] is that of the probe that a program moves, ``file_kB`` what its result file takes.
+    ``probe_length`` [mm] is that of the probe that a program moves, ``file_kB`` what its result file takes; from the Z
+    ``clear`` [mm] on the tool is above the work.
     """
     asks_units = not is_for_linuxcnc(text)  # LinuxCNC tells a program nothing of units, and has no frames
     states = [*_wrong(machine, probe_length, asks_units)]
     if file_kB and asks_units:
         right = Setup.of(machine, probe_length)
         states.append(("the control allows no result file that is long enough", replace(right, result_file_kB=file_kB)))
+    if clear is not None:
+        where = np.array(machine.work_offset_values) + np.array([0.0, 0.0, clear - _UNDER, 0.0, 0.0])
+        low = replace(Setup.of(machine, probe_length), position=tuple(where.tolist()))
+        states.append((f"the tool stands lower than Z {clear:.1f} and may be under the work", low))
     unseen = [what for what, setup in states if not _stops(text, setup)]
     if unseen:
         yield Fault(f"does not stop before it cuts where {'; or where '.join(unseen)}")

@@ -27,7 +27,7 @@ from gearmath.machine.control.tree import Block, Branch, Command
 from gearmath.machine.judging.alike import alike
 from gearmath.machine.judging.block_check import _height as height_on_blade
 from gearmath.machine.judging.block_check import watched_flanks
-from gearmath.machine.judging.collision import collisions, rapid_approaches
+from gearmath.machine.judging.collision import collisions, rapid_approaches, standing_retracts
 from gearmath.machine.judging.cut import beside_limit, beside_the_path, distances_aside, metal_left, off_the_path
 from gearmath.machine.judging.feed import feed_limits, feeds
 from gearmath.machine.judging.motion import speeds, spindle, travel
@@ -184,8 +184,11 @@ class Whole:
             rows.append(control.run(self.blocks[at], number))
             at += 1
         rows = [row for row in rows if row is not None]
-        # where Z must stand at a tool change the whole program tells
-        alone = not any({"frame suppression", "tool change"} & set(one.words) for one in (self.blocks[k], *made))
+        # where Z must stand at a tool change the whole program tells, what a plunge ends with, and of labels
+        alone = not any(
+            {"frame suppression", "tool change", "dwell"} & set(one.words) for one in (self.blocks[k], *made)
+        )
+        alone &= ":" not in self.lines[line - 1]
         joined, first, last = alone and standing(control) == self.standing[at], self.behind[k], self.behind[at]
         tools = {self.path.tools.index(row.tool) for row in rows} or set(self.path.tool[first:last].tolist())
         if len(tools) > 1:
@@ -398,6 +401,7 @@ class Whole:
             both = (
                 *collisions(path, runs, self.spec, MACHINE, *obstacles(MACHINE)),
                 *rapid_approaches(runs, self.spec, MACHINE),
+                *standing_retracts(path, runs, self.spec, MACHINE),
             )
             seen |= {line - 1 for one in both for line in one.lines if line}
         return seen
