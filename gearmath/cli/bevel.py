@@ -87,14 +87,13 @@ def flank(
 @output("STL", ".stl")
 def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json: bool, target: Path) -> None:
     """Whole teeth of a member: thickness, top land, undercut; backlash and ease-off of the pair; and an STL."""
-    from gearmath.bevel.mates import edge_note
     from gearmath.front.sets import load_set
 
     pair = load_set(gear_set)
     one = member_of(pair, member)
     with about(pair.source):
         made = one.tooth(columns)
-        mates, note = pair.mates(), edge_note(pair.spec)
+        mates, note = pair.mates(), pair.edge_note()
     triangles, figures = made.to_stl(target, whole_member=not space), made.figures
     if as_json:
         echo_json({"triangles": triangles, **figures} | ({} if mates is None else {"pair": mates}))

@@ -98,7 +98,6 @@ def cut(
     Before it is written it is run: it must keep the limits of the machine, collide with nothing, and leave both flanks
     within the tolerance.
     """
-    from gearmath.bevel.mates import edge_note
     from gearmath.files import write_text
     from gearmath.front.machines import load_machine
     from gearmath.front.programs import cutting
@@ -118,7 +117,7 @@ def cut(
     with bars() as begin:
         made = cutting(one, on, target.stem, job, dialect.name, target, begin)
     page = None if sheet is None else made.sheet(target.name)
-    if note := edge_note(one.gear_set.spec):
+    if note := one.gear_set.edge_note():
         click.echo(f"note: {note}")
     click.echo(f"{made.save(target)}: {len(job.spaces)} of {one.teeth} spaces, {made.blocks} blocks")
     if configuration and made.made is not None:
