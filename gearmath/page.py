@@ -24,7 +24,7 @@ caption { text-align: left; font-size: .87rem; color: #444; padding-bottom: .25r
 th, td { padding: .12rem .7rem .12rem 0; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
 thead th { border-bottom: 1px solid #666; vertical-align: bottom }
 td.number, th.number { text-align: right }
-td.number { white-space: nowrap }
+td.number, td.short { white-space: nowrap }
 table.head { width: 100%; border: 1px solid #1a1a1a }
 table.head th, table.head td { border: 1px solid #aaa; padding: .12rem .5rem }
 table.head tbody th { width: 9rem; font-weight: normal; color: #444 }
@@ -46,12 +46,13 @@ figcaption { font-size: .87rem; color: #333; font-weight: 600 }
   div.columns { columns: 2; column-gap: 6mm; font-size: .85rem; line-height: 1.2 }
   div.columns h3:first-child { margin-top: 0 }
   div.columns table { font-size: .85rem; line-height: 1.15 } div.columns div.long table { break-inside: auto }
-  div.columns th, div.columns td { padding: .05rem .25rem .05rem 0; overflow-wrap: anywhere }
-  div.columns thead th { overflow-wrap: normal }
+  div.columns th, div.columns td { padding: .05rem .25rem .05rem 0 }
   div.columns td:nth-child(-n+2):nth-last-child(-n+5) { white-space: nowrap }
   div.columns p { margin: .3rem 0 }
   h2.new { break-before: page } h2 { margin-top: 1rem } h3 { margin-top: .7rem }
   p + div.charts { break-before: avoid } div.charts { grid-template-columns: 1fr 1fr; gap: .2rem 5mm }
+  div.small svg { max-width: 76mm }
+  .first { font-size: .88rem; line-height: 1.2; margin: .4rem 0; padding: .1rem .6rem }
   div.columns div.charts { grid-template-columns: 1fr }
   table.head { margin: .2rem 0 } table.head th, table.head td { padding: .02rem .4rem; height: auto }
   table { margin: .3rem 0 .6rem }
@@ -61,6 +62,8 @@ figcaption { font-size: .87rem; color: #333; font-weight: 600 }
 
 #: A table of more rows than this may go on in the next column or page of paper.
 _LONG = 12
+#: A cell of so many characters that begins with a number stays on one line.
+_SHORT = 18
 
 
 class Page:
@@ -118,10 +121,10 @@ class Page:
             f'<div class="{wide}"><table><caption>{escape(caption)}</caption>\n{top}\n{cells}\n</table></div>'
         )
 
-    def drawings(self, drawings: Sequence[tuple[str, str]], tall: bool = False) -> None:
+    def drawings(self, drawings: Sequence[tuple[str, str]], tall: bool = False, small: bool = False) -> None:
         """Drawings, (svg, caption) each, side by side where there is room; the caption stands above.
 
-        If ``tall``, the others stand below each other beside the first.
+        If ``tall``, the others stand below each other beside the first; if ``small``, more of them fit on paper.
         """
         figures = []
         for svg, caption in drawings:
@@ -130,7 +133,8 @@ class Page:
             figures.append(f"<figure><figcaption>{escape(caption)}</figcaption>{named}</figure>")
         if tall:
             figures = [figures[0], "<div>" + "\n".join(figures[1:]) + "</div>"]
-        self._parts.append('<div class="charts">' + "\n".join(figures) + "</div>")
+        kind = "charts small" if small else "charts"
+        self._parts.append(f'<div class="{kind}">' + "\n".join(figures) + "</div>")
 
     @property
     def html(self) -> str:
@@ -152,10 +156,18 @@ def own_names(svg: str, prefix: str) -> str:
 
 
 def _row(tag: str, cells: Sequence[str], right: Sequence[bool]) -> str:
-    marked = (f'<{tag} class="number">' if is_right else f"<{tag}>" for is_right in right)
+    marked = (
+        f'<{tag} class="number">' if is_right else f'<{tag} class="short">' if _is_short(cell) else f"<{tag}>"
+        for cell, is_right in zip(cells, right, strict=True)
+    )
     return (
         "<tr>" + "".join(f"{open_}{escape(cell)}</{tag}>" for open_, cell in zip(marked, cells, strict=True)) + "</tr>"
     )
+
+
+def _is_short(text: str) -> bool:
+    """An interval, or a grade with its range: not to be broken at its blanks."""
+    return len(text) <= _SHORT and text.lstrip("-")[:1].isdigit()
 
 
 def _is_number(text: str) -> bool:

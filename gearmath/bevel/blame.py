@@ -116,8 +116,9 @@ def likely(
         said = [f"{one.place} = {one.repair.value:.6g}" for one in most]
         return f"; no single setting was found that puts all of it right, most of it hangs on {', or '.join(said)}"
     found_apart = [one for name, flank in where for one in _from_crown_gear(members, found, where, name, flank)]
-    farthest = max(found_apart, key=lambda one: one.apart)
-    return f"; no single setting was found that puts it right, farthest from its crown gear's is {farthest}"
+    farthest = max(found_apart, key=lambda one: one.apart, default=None)
+    beside = "" if farthest is None else f", farthest from its crown gear's is {farthest}"
+    return f"; no single setting was found that puts it right{beside}"
 
 
 def _from_crown_gear(

@@ -68,7 +68,7 @@ def flank(
                 raise InputError(f"--margin{name} {value:g}: listed places (--places) have no margins")
     pair = load_set(gear_set)
     one = member_of(pair, member)
-    with about(pair.source):
+    with about(pair.source if places is None else None):  # what is wrong with places is said of their file
         found = one.flank(side, shape, margins, places)
     found.to_csv(target)
     click.echo(

@@ -127,6 +127,15 @@ class GearSet:
 
         return ease_off_of(self.spec)
 
+    def edge_note(self) -> str:
+        """What to say of a pair that runs on edges of its teeth, as a small slip in a file makes it; else empty.
+
+        Raises InputError where flanks do not meet.
+        """
+        from gearmath.bevel.mates import edge_note
+
+        return edge_note(self.spec)
+
     def to_step(self, path: str | Path, begin: Begin = silent) -> dict[str, WrittenSolid]:
         """Write the pair in mesh, or the only member, as closed solids for CAD; by member, what was written.
 

@@ -23,8 +23,8 @@ _SPACING = {
 _MOST_DIGITS = 6
 
 
-def spacing_section(page: Page, one: ReportedMeasurement) -> None:
-    """Pitch and runout with tolerance and grade beside each value, then thickness."""
+def spacing_table(page: Page, one: ReportedMeasurement) -> None:
+    """Pitch and runout with tolerance and grade beside each value."""
     found = one.evaluation
     rows = [
         [f"{_SPACING[name][1]}, {flank}", *graded, *_again(one, flank, name)]
@@ -39,6 +39,11 @@ def spacing_section(page: Page, one: ReportedMeasurement) -> None:
             [*head, *([] if one.again is None else ["measured again", "grade then"])],
             rows,
         )
+
+
+def thickness_section(page: Page, one: ReportedMeasurement) -> None:
+    """What of the runout is noise, then thickness."""
+    found = one.evaluation
     if found.runout is not None and np.isfinite(found.runout.of_noise[0]):
         mean, spread = (f"{value * 1000:.1f}" for value in found.runout.of_noise)
         so = ": F_r is mostly noise" if found.runout.mostly_noise else ""

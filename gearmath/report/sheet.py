@@ -7,7 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from gearmath.page import Page
 from gearmath.quality.evaluation.topography import Topography
 from gearmath.report import charts
-from gearmath.report.figures import clamping_section, flank_section, spacing_section, uncertainty_section
+from gearmath.report.figures import (
+    clamping_section,
+    flank_section,
+    spacing_table,
+    thickness_section,
+    uncertainty_section,
+)
 from gearmath.report.measurement import FIELDS, Report, ReportedMeasurement, counted, in_words
 from gearmath.report.settings import settings_sections
 from gearmath.specs.bevel_set import FLANKS
@@ -34,7 +40,7 @@ def inspection_sheet(
     pictures: dict[str, bytes] = {}
     for k, one in enumerate(members):
         after = charts.after_correction(one)
-        _member(page, one, after, k > 0, progress)
+        _member(page, one, after, progress)
         prefix = "" if k == 0 else f"{names[k]}_"
         pictures |= {prefix + name: picture for name, picture in charts.pictures(one, after).items()}
         progress(1)
@@ -80,15 +86,14 @@ def _member(
     page: Page,
     one: ReportedMeasurement,
     after: Mapping[str, Topography],
-    new_sheet: bool,
     progress: Callable[[int], object],
 ) -> None:
     found = one.evaluation
-    page.heading(found.member.capitalize(), new_sheet)
+    page.heading(found.member.capitalize())
     page.subheading("Topography of the flanks")
     if drawings := charts.flank_charts(one, after):
         page.paragraph(_ZERO)
-        page.drawings(drawings)
+        page.drawings(drawings, small=True)
     else:
         page.paragraph("No tooth was measured in full: there is no topography.")
     progress(1)
@@ -101,7 +106,7 @@ def _member(
             f"The part of the tooth that was measured; deviations along the normals, {times:g} times enlarged. "
             "The darker, the more metal is left on."
         )
-        page.drawings(drawings)
+        page.drawings(drawings, small=True)
     progress(1)
     with page.columns():
         flank_section(page, one)
@@ -119,10 +124,14 @@ def _spacing(page: Page, one: ReportedMeasurement) -> None:
         page.paragraph(
             f"Teeth are counted from 0; gray bars and full lines: measured{dashed}. Both flanks have the same scale."
         )
-        page.drawings(drawings)
+        page.drawings(drawings, small=True)
     else:
         page.paragraph("No two teeth were measured on a flank: there is no pitch.")
+    if one.again is not None:  # two more columns need the width of the sheet
+        spacing_table(page, one)
     with page.columns():
         if drawings and (runout := charts.space_charts(one)):
-            page.drawings(runout)
-        spacing_section(page, one)
+            page.drawings(runout, small=True)
+        if one.again is None:
+            spacing_table(page, one)
+        thickness_section(page, one)

@@ -166,7 +166,7 @@ class Member(Sheet):
             if (step := abs(value - self.index_correction[tooth - 1])) > _INDEX_STEP:
                 raise ValueError(
                     f"index_correction: teeth {(tooth - 1) % self.teeth} and {tooth} differ by {step:g} degrees; "
-                    f"neighbours may differ by {_INDEX_STEP:g}"
+                    f"neighbors may differ by {_INDEX_STEP:g}"
                 )
         if (self.process == "face_hobbing") != (self.blade_groups is not None):
             raise ValueError("blade_groups belongs to face_hobbing, and face_hobbing needs it")

@@ -83,7 +83,7 @@ def read_point_text(path: Path, unit: str = "mm") -> PointText:
     remarks += [f"columns that are not used: {left + texts}"] if left + texts else []
     same = _first_of_same(point)
     if not same.all():
-        remarks.append(f"{counted(int((~same).sum()), 'point')} there twice, counted once")
+        remarks.append(f"{counted(int((~same).sum()), 'point')} given twice, counted once")
         point, normal = point[same], None if normal is None else normal[same]
     stated = _stated(lines[: next(iter(rows)) - 1])
     return PointText(path, point * UNITS[unit], normal, np.array(list(rows))[same], tuple(remarks), stated)

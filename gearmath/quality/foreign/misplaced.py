@@ -137,6 +137,8 @@ def _fit(
             scale = np.sum((foot - origin) * normal, axis=1)
             terms.append(np.column_stack([normal, np.cross(foot, normal), np.ones(len(foot)), scale]))
             off.append(laid.deviation)
+        if not sum(map(len, off)):  # moved off the flank altogether
+            return _Fit(motion, np.inf)
         change, left = _least_absolute(np.concatenate(terms)[:, free], np.concatenate(off))
         rms.append(float(np.sqrt(np.mean(left**2))))
         step = np.zeros(_SCALE + 1)

@@ -94,7 +94,7 @@ FLANK = ("flank", "{set}", "--member", "gear", "--flank", "concave", "-o", "{tar
         ((*FLANK, "--margin", "nan"), "--margin nan: must"),
         ((*FLANK, "--margin-heel", "0.5"), "--margin-heel 0.5: must be at least 0 and less than 0.5"),
         ((*FLANK, "--margin-root", "nan"), "--margin-root nan: must"),
-        ((*FLANK, "--places", "absent.csv"), r"absent\.csv: cannot be read"),
+        ((*FLANK, "--places", "absent.csv"), r"^gearmath: absent\.csv: cannot be read"),
         ((*FLANK, "--places", "absent.csv", "--margin-tip", "0.1"), r"--margin-tip 0\.1: listed places .* no margins"),
         ((*FLANK, "--margin", "wide"), "'wide' is not a valid float"),
         (("flank", "absent.toml", *FLANK[2:]), r"absent\.toml: cannot be read: there is no such file; bundled are"),

@@ -306,7 +306,7 @@ def test_sheet_and_picture_take_the_same_off_at_the_ring(gear_set, tmp_path, sea
 
 
 @pytest.mark.slow
-def test_both_members_stand_on_one_sheet_with_what_is_known_of_each(command, measured, gear_set, tmp_path):
+def test_both_members_stand_on_one_sheet_with_what_is_known_of_each(command, browser, measured, gear_set, tmp_path):
     mate, again = tmp_path / "gear.csv", tmp_path / "again.csv"
     written(mate, gear_set, 0.5 * SEAT, member="gear")
     comments = "# Part number: 0815-G\n# operator: K. <i>Lee</i>\n# probe: 2 mm ruby\n"
@@ -347,6 +347,9 @@ def test_both_members_stand_on_one_sheet_with_what_is_known_of_each(command, mea
     assert {path.name for path in tmp_path.iterdir() if path.suffix == ".png"} == {
         f"sheet_{name}.png" for name in ("measured", "corrected", "gear_measured", "gear_corrected")
     }
+    options = ["--no-pdf-header-footer", f"--print-to-pdf={tmp_path / 'sheet.pdf'}", target.as_uri()]
+    subprocess.run([*browser, *options], check=True, capture_output=True, timeout=120)
+    assert len(re.findall(rb"/MediaBox", (tmp_path / "sheet.pdf").read_bytes())) <= 6  # three of each member
 
 
 @pytest.mark.parametrize(

@@ -77,6 +77,14 @@ def test_a_setting_that_cannot_be_is_refused(change: dict[str, float], sentence:
         gm.load_set("nasa_tp3096_12x36.toml").pinion.with_settings(concave=change)
 
 
+def test_a_set_says_that_it_runs_on_edges_as_the_command_line_does() -> None:
+    """The published pair is no good design, as its transmission error says; the designed one runs within its flanks."""
+    assert (
+        gm.load_set("nasa_tp3096_12x36.toml").edge_note().startswith("the pair runs on edges of its teeth (pinion conc")
+    )
+    assert gm.load_set("spiral_7x43.toml").edge_note() == ""
+
+
 def test_a_set_is_written_and_read_back(tmp_path: Path) -> None:
     pair = gm.load_set("nasa_tp3096_12x36.toml")
     again = gm.load_set(pair.save(tmp_path / "set.toml"))

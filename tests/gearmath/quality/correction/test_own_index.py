@@ -12,6 +12,7 @@ from gearmath.bevel.identify.flank_target import predicted
 from gearmath.bevel.nominal_file import flank_header, nominal_flank
 from gearmath.bevel.turning import turned
 from gearmath.quality.correction.member import correct
+from gearmath.quality.correction.own_index import teeth_as_indexed_on_average
 from gearmath.quality.correction.representative import passed_over, representative_tooth
 from gearmath.quality.correction.target import target_of
 from gearmath.specs.bevel_set import FLANKS, SETTINGS
@@ -60,6 +61,15 @@ def test_indexing_error_of_the_measured_tooth_changes_no_setting(gear_set, arc, 
     assert all(
         f"an arc of {arc:+d}" in line or abs(float(line.split("arc of ")[1].split()[0]) - arc) < 0.5 for line in said
     )
+
+
+def test_hobbed_member_is_not_told_to_leave_it_to_an_index_that_it_has_not(gear_set):
+    """The words alone: the file is that of a milled pinion."""
+    file = pinion_with_one_tooth_indexed(gear_set, dict.fromkeys(FLANKS, 20 * UM))
+    hobbed = gear_set.pinion.model_copy(update={"blade_groups": 13})
+    for member, words in ((gear_set.pinion, "it is left to the index"), (hobbed, "face hobbing cannot turn one tooth")):
+        _, remarks = teeth_as_indexed_on_average(member, "pinion", file)
+        assert [words in line for line in remarks] == [True, True]
 
 
 def test_error_of_a_setting_is_found_under_an_indexing_error_and_noise(gear_set):

@@ -312,10 +312,13 @@ def test_half_a_file_is_told_from_a_whole_one(gear_set):
     assert not any("is the file whole?" in each for each in whole.remarks)
 
 
-def test_too_few_points_for_a_grid_are_refused(gear_set):
+@pytest.mark.parametrize("row", [2, 0])
+def test_too_few_points_for_a_grid_are_refused(gear_set, row):
+    """The lowest row, too, which a trial of another cause may move off the flank altogether."""
     point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point = point[9 * row : 9 * row + 9] + np.array([0.05, 0.0, 0.0])
     assert "its 9 points form no grid, and cover too little" in refusal(
-        gear_set, PointPart("p.txt", "concave", 0, point[18:27])
+        gear_set, PointPart("p.txt", "concave", 0, point)
     )
 
 
