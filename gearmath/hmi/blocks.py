@@ -126,7 +126,8 @@ def run_choice(shared: Shared, text: Text) -> None:
         def choose(run: str) -> None:
             desk.run = int(run)
 
-        widgets.choice(text("blocks.run"), names, shown if shown in names else next(iter(names)), choose)
+        found = widgets.choice(text("blocks.run"), names, shown if shown in names else next(iter(names)), choose)
+        found.classes("gm-long")
 
     follow(lambda: (desk.shown_run(), tuple(one.run for one in desk.runs.of_members())), draw)
 
