@@ -21,4 +21,4 @@ def draw_gearbox_error(axes: Axes, seconds: np.ndarray, exact: np.ndarray, float
     axes.set_ylim(0, 1.15 * max(0.5, floating.max(), exact.max()))
     axes.set_xlabel("time / s")
     axes.set_ylabel("error / motor steps")
-    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncol=3, frameon=False)
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncol=3, frameon=False, columnspacing=6)
