@@ -35,6 +35,7 @@ p.warning { border-left: 4px solid #b3301a; padding-left: .8rem }
 div.charts { display: grid; grid-template-columns: 1fr; gap: .6rem 1.2rem }
 figure { margin: .3rem 0; break-inside: avoid }
 figure svg { display: block; width: 100%; height: auto; max-width: 34rem }
+figure.whole { overflow-x: auto } figure.whole svg { min-width: 44rem; max-width: none }
 figcaption { font-size: .87rem; color: #333; font-weight: 600 }
 @media (min-width: 44rem) { div.charts { grid-template-columns: 1fr 1fr } }
 @media (max-width: 32rem) { body { padding: 0 .6rem } table { font-size: .82rem } th, td { padding-right: .45rem } }
@@ -50,6 +51,7 @@ figcaption { font-size: .87rem; color: #333; font-weight: 600 }
   div.columns td:nth-child(-n+2):nth-last-child(-n+5) { white-space: nowrap }
   div.columns p { margin: .3rem 0 }
   h2.new { break-before: page } h2 { margin-top: 1rem } h3 { margin-top: .7rem }
+  figure.whole svg { min-width: 0; max-width: 100%; max-height: 260mm }
   p + div.charts { break-before: avoid } div.charts { grid-template-columns: 1fr 1fr; gap: .2rem 5mm }
   div.small svg { max-width: 76mm }
   .first { font-size: .88rem; line-height: 1.2; margin: .4rem 0; padding: .1rem .6rem }
@@ -126,15 +128,20 @@ class Page:
 
         If ``tall``, the others stand below each other beside the first; if ``small``, more of them fit on paper.
         """
-        figures = []
-        for svg, caption in drawings:
-            self._drawings += 1
-            named = f'<svg role="img" aria-label="{escape(caption)}"' + own_names(svg, f"d{self._drawings}-")[4:]
-            figures.append(f"<figure><figcaption>{escape(caption)}</figcaption>{named}</figure>")
+        figures = [self._figure(svg, caption, "<figure>") for svg, caption in drawings]
         if tall:
             figures = [figures[0], "<div>" + "\n".join(figures[1:]) + "</div>"]
         kind = "charts small" if small else "charts"
         self._parts.append(f'<div class="{kind}">' + "\n".join(figures) + "</div>")
+
+    def chart(self, svg: str, caption: str) -> None:
+        """A drawing of many parts, as wide as the page; on a narrow screen it is moved across to stay legible."""
+        self._parts.append(self._figure(svg, caption, '<figure class="whole" tabindex="0">'))
+
+    def _figure(self, svg: str, caption: str, opening: str) -> str:
+        self._drawings += 1
+        named = f'<svg role="img" aria-label="{escape(caption)}"' + own_names(svg, f"d{self._drawings}-")[4:]
+        return f"{opening}<figcaption>{escape(caption)}</figcaption>{named}</figure>"
 
     @property
     def html(self) -> str:

@@ -11,8 +11,11 @@ from click.core import ParameterSource
 from gearmath.cli.common import JSON, NewFile, Number, bars, echo_json
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.figure import Figure
 
+    from gearmath.cli.gearbox_cut_text import Part
     from gearmath.gearbox.hobbed.drive import Rule
     from gearmath.specs.hobbing import HobbingMachine
 
@@ -124,7 +127,7 @@ def _cut_gear(
     compare: Rule | None,
     job: dict[str, Any],
 ) -> None:
-    from gearmath.cli.gearbox_cut_text import cut_text
+    from gearmath.cli.gearbox_cut_text import as_text, cut_parts
     from gearmath.front.hobbing import hob
 
     if job["teeth"] is None:
@@ -139,9 +142,9 @@ def _cut_gear(
         made = hob(
             machine, job["teeth"], compare, begin, face_width=job["width"], climb=job["way"] == "climb", **options
         )
-    text = cut_text(made.setup, made.gears, made.shares)
+    parts = cut_parts(made.setup, made.gears, made.shares)
     if chart is not None:
-        _save(chart, made.plot(), made.title, text, as_json)
+        _save(chart, made.plot(), made.title, parts, as_json)
     if points is not None:
         click.echo(f"points: {made.to_csv(points)}", err=as_json)
     if job["flanks"] is not None:
@@ -151,20 +154,24 @@ def _cut_gear(
     if as_json:
         echo_json(made.to_dict())
     else:
-        click.echo(text)
+        click.echo(as_text(parts))
 
 
-def _save(path: Path, figure: Figure, title: str, text: str, as_json: bool) -> None:
+def _save(path: Path, figure: Figure, title: str, parts: Sequence[Part], as_json: bool) -> None:
     """A chart by the suffix of its name; HTML has the text above it."""
+    from gearmath.cli.gearbox_cut_text import Columns
     from gearmath.files import write_text
     from gearmath.page import Page
     from gearmath.plot.saving import save, save_svg, svg
 
     if path.suffix.lower() == ".html":
         page = Page(title)
-        for line in text.splitlines():
-            page.paragraph(line)
-        page.drawings([(svg(figure), "Inspection chart")])
+        for part in parts:
+            if isinstance(part, Columns):
+                page.table("", part.head, part.rows)
+            elif part:
+                page.paragraph(part)
+        page.chart(svg(figure), "Inspection chart")
         write_text(path, page.html)
     elif path.suffix.lower() == ".svg":
         save_svg(figure, path)
@@ -180,20 +187,20 @@ def _cut_thread(
     compare: Rule | None,
     job: dict[str, Any],
 ) -> None:
-    from gearmath.cli.gearbox_cut_text import thread_text
+    from gearmath.cli.gearbox_cut_text import as_text, thread_parts
     from gearmath.front.hobbing import plan
 
     if job["pitch"] is None:
         raise click.UsageError(f"{machine.name} is a lathe: give --pitch")
     given = {key: job[key] for key in ("starts", "hand", "rpm") if job[key] is not None}
     made = plan(machine, pitch=job["pitch"], **given).thread(job["length"], job["rule"], job["seconds"], compare)
-    text = thread_text(made.plan, made.traces)
+    parts = thread_parts(made.plan, made.traces)
     if chart is not None:
-        _save(chart, made.plot(), machine.name, text, as_json)
+        _save(chart, made.plot(), machine.name, parts, as_json)
     if as_json:
         echo_json(made.to_dict())
     else:
-        click.echo(text)
+        click.echo(as_text(parts))
 
 
 @click.command()

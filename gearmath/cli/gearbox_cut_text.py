@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 from gearmath.cli.common import table
 from gearmath.gearbox.hobbed.choice import Choice
@@ -16,9 +17,25 @@ from gearmath.gearbox.job import ThreadPlan
 _LEAST_SHARE = 0.5
 
 
-def cut_text(cut: CutSetup, gears: Sequence[VirtualGear], shares: Sequence[Contribution]) -> str:
+@dataclass(frozen=True)
+class Columns:
+    """A table between the lines."""
+
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+
+Part = str | Columns
+
+
+def as_text(parts: Iterable[Part]) -> str:
+    """Lines and tables as a terminal shows them."""
+    return "\n".join(part if isinstance(part, str) else table(part.head, part.rows) for part in parts)
+
+
+def cut_parts(cut: CutSetup, gears: Sequence[VirtualGear], shares: Sequence[Contribution]) -> list[Part]:
     """What was cut, the figures with their classes, and which part is to blame."""
-    return "\n".join([*_head(cut), *_figures(cut, gears), *_thickness(gears), *_shares(shares)])
+    return [*_head(cut), *_figures(cut, gears), *_thickness(gears), *_shares(shares)]
 
 
 def _head(cut: CutSetup) -> Iterator[str]:
@@ -41,19 +58,19 @@ def _head(cut: CutSetup) -> Iterator[str]:
     yield f"  ridges by themselves: generating flats {flat * 1000:.2f} um, feed marks {mark * 1000:.2f} um"
 
 
-def _figures(cut: CutSetup, gears: Sequence[VirtualGear]) -> Iterator[str]:
+def _figures(cut: CutSetup, gears: Sequence[VirtualGear]) -> Iterator[Part]:
     yield ""
     head = ["figure"]
     for gear in gears:
         head += [f"{gear.rule} / um", "class"]
     rows = []
     for k, row in enumerate(gears[0].classes):
-        cells: list[object] = [row.figure]
+        cells = [row.figure]
         for gear in gears:
             one = gear.classes[k]
             cells += [f"{one.value_um:.2f}", "-" if one.accuracy_class is None else str(one.accuracy_class)]
         rows.append(cells)
-    yield table(head, rows)
+    yield Columns(head, rows)
     why = outside(cut.job)
     for gear in gears:
         reached = gear.accuracy_class
@@ -74,7 +91,7 @@ def _thickness(gears: Sequence[VirtualGear]) -> Iterator[str]:
             )
 
 
-def _shares(shares: Sequence[Contribution]) -> Iterator[str]:
+def _shares(shares: Sequence[Contribution]) -> Iterator[Part]:
     if not shares:
         return
     yield ""
@@ -84,11 +101,11 @@ def _shares(shares: Sequence[Contribution]) -> Iterator[str]:
         for share in shares
         if max(share.profile_percent, share.helix_percent, share.pitch_percent) >= _LEAST_SHARE
     ]
-    yield table(["source", "profile", "helix", "pitch"], rows)
+    yield Columns(["source", "profile", "helix", "pitch"], rows)
     yield f"change first: {shares[0].change}"
 
 
-def thread_text(planned: ThreadPlan, traces: Sequence[ThreadTrace]) -> str:
+def thread_parts(planned: ThreadPlan, traces: Sequence[ThreadTrace]) -> list[Part]:
     """Pitch error of a thread over its length, by rule."""
     rows = [
         [trace.rule, *(f"{value * 1000:.2f}" for value in (trace.single_lead, trace.total, trace.drift))]
@@ -96,7 +113,7 @@ def thread_text(planned: ThreadPlan, traces: Sequence[ThreadTrace]) -> str:
     ]
     length = traces[0].place[-1]
     head = f"{planned.machine}: pitch {float(planned.pitch):.6g} mm, {length:g} mm long, {planned.rpm:.0f} rpm"
-    return "\n".join([head, table(["rule", "one lead / um", "whole length / um", "drift / um"], rows)])
+    return [head, Columns(["rule", "one lead / um", "whole length / um", "drift / um"], rows)]
 
 
 def choice_text(found: Choice) -> str:

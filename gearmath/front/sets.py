@@ -116,7 +116,10 @@ class GearSet:
         return pair_figures(self.spec, self._ease_off)
 
     def edge_note(self) -> str:
-        """What to say of a pair that runs on edges of its teeth; empty of others, and of a single member."""
+        """What to say of a pair that runs on edges of its teeth, as a small slip in a file makes it; else empty.
+
+        Raises InputError where flanks do not meet.
+        """
         from gearmath.bevel.mates import edge_note
 
         return edge_note(self._ease_off)
@@ -126,15 +129,6 @@ class GearSet:
         from gearmath.bevel.mates import ease_off_of
 
         return ease_off_of(self.spec)
-
-    def edge_note(self) -> str:
-        """What to say of a pair that runs on edges of its teeth, as a small slip in a file makes it; else empty.
-
-        Raises InputError where flanks do not meet.
-        """
-        from gearmath.bevel.mates import edge_note
-
-        return edge_note(self.spec)
 
     def to_step(self, path: str | Path, begin: Begin = silent) -> dict[str, WrittenSolid]:
         """Write the pair in mesh, or the only member, as closed solids for CAD; by member, what was written.

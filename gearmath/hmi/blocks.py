@@ -75,9 +75,12 @@ def facts(rows: Iterable[tuple[str, str, str]]) -> None:
         widgets.fact(label, value, unit)
 
 
-def chart(text: Text, svg: str, label: str) -> None:
-    """A drawing of the package under its label, its words in the language of the page, on white."""
-    with ui.element("figure").classes("gm-chart"):
+def chart(text: Text, svg: str, label: str, across: bool = False) -> None:
+    """A drawing of the package under its label, its words in the language of the page, on white.
+
+    One of many parts is moved ``across`` where the screen is narrow, and stays legible.
+    """
+    with ui.element("figure").classes("gm-chart gm-across" if across else "gm-chart"):
         with ui.element("figcaption"):
             ui.label(label).classes("gm-inline gm-note")
         widgets.picture(translated(svg, words_of_charts(text)), label).classes("gm-paper")
@@ -126,7 +129,8 @@ def run_choice(shared: Shared, text: Text) -> None:
         def choose(run: str) -> None:
             desk.run = int(run)
 
-        widgets.choice(text("blocks.run"), names, shown if shown in names else next(iter(names)), choose)
+        found = widgets.choice(text("blocks.run"), names, shown if shown in names else next(iter(names)), choose)
+        found.classes("gm-long")
 
     follow(lambda: (desk.shown_run(), tuple(one.run for one in desk.runs.of_members())), draw)
 

@@ -10,7 +10,7 @@ import hmac
 from collections.abc import Awaitable, Callable, Iterable, MutableMapping
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
-from urllib.parse import parse_qs
+from urllib.parse import parse_qs, unquote
 
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
@@ -54,10 +54,15 @@ class Gate:
         why = self._refusal(scope, headers)
         if why is None and scope["type"] == "http" and scope["path"] == LOGIN:
             await self._log_in(scope, send)
-        elif why is None and self._is_known(headers):
+            return
+        if why is None and not self._is_known(headers):
+            why = "no token"
+        if why is None and self._names_token(scope):
+            why = "the token has no place in this address"
+        if why is None:
             await self.app(scope, receive, _guarded(send) if scope["type"] == "http" else send)
         else:
-            await _refuse(scope, receive, send, why or "no token")
+            await _refuse(scope, receive, send, why)
 
     def _refusal(self, scope: Scope, headers: list[tuple[bytes, bytes]]) -> str | None:
         if scope["type"] not in ("http", "websocket"):
@@ -68,7 +73,13 @@ class Gate:
         origins = [value.decode("latin-1").lower() for name, value in headers if name == b"origin"]
         if any(origin not in self._origins for origin in origins):
             return "foreign origin"
+        if any(ord(letter) < 0x20 or ord(letter) == 0x7F for letter in scope["path"]):
+            return "control characters in the address"
         return None
+
+    def _names_token(self, scope: Scope) -> bool:
+        """Whether an address has the token, of which a log would tell."""
+        return self._token in scope["path"] + unquote(scope["query_string"].decode("latin-1"))
 
     def _is_known(self, headers: list[tuple[bytes, bytes]]) -> bool:
         for name, value in headers:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 from gearmath.hmi.link import ControlLink, View
 from gearmath.hmi.measuring_task import MeasuringTask, RunState
 from gearmath.hmi.messages import Text
+from gearmath.hmi.state import Shared
 
+_WORD = re.compile("[a-z]+")
 _GOING_ON = {
     RunState.PREPARING,
     RunState.READY,
@@ -14,6 +18,17 @@ _GOING_ON = {
     RunState.HELD,
     RunState.LOST,
 }
+
+
+def control_name(text: Text, shared: Shared) -> str:
+    """What the control is called."""
+    assert shared.link is not None
+    return shared.link.name if shared.simulated is None else text("machine.simulated_name")
+
+
+def unit(text: Text, written: str) -> str:
+    """A unit whose words are those of the page."""
+    return _WORD.sub(lambda word: text(f"units.{word[0]}") if text.has(f"units.{word[0]}") else word[0], written)
 
 
 def duration(text: Text, seconds: float) -> str:

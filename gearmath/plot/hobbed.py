@@ -14,6 +14,8 @@ from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 
 #: Rules with their colors: the gear itself, and the one beside it.
 _COLORS = (INK, BEFORE)
+#: Part of a chart that a row of its legend takes above the lines.
+_A_ROW = 0.12
 _SIDES: tuple[Side, Side] = ("left", "right")
 
 
@@ -43,7 +45,7 @@ def thread_figure(title: str, traces: Sequence[ThreadTrace]) -> Figure:
         label = f"{trace.rule}: {trace.total * 1000:.1f} µm over the length"
         axes.plot(trace.place, trace.deviation * 1000, color=color, linewidth=0.7, label=label)
     axes.set_title(f"{title}: pitch error", fontsize=9)
-    _finish(axes, "along the thread / mm", "µm")
+    _finish(axes, "along the thread / mm", "deviation / µm")
     return figure
 
 
@@ -62,14 +64,14 @@ def _traces(axes: Axes, kind: str, side: Side, gears: Sequence[tuple[str, Inspec
             axes.plot((trace.line - middle) * 1000 + place * scale, trace.place, "--", color=color, linewidth=0.5)
             if color == INK:
                 axes.annotate(
-                    f"tooth {trace.tooth}\nF {trace.total * 1000:.1f}",
+                    f"tooth {trace.tooth}\nF {trace.total * 1000:.1f} µm",
                     (place * scale, trace.place[-1]),
                     xytext=(0, 3),
                     textcoords="offset points",
                     fontsize=6,
                     ha="center",
                 )
-    axes.set_xlabel(f"deviation / µm, {scale:.0f} from trace to trace", fontsize=7)
+    axes.set_xlabel(f"deviation / µm, {scale:.0f} µm from trace to trace", fontsize=7)
     axes.set_ylabel("length of roll / mm" if kind == "profiles" else "height on the gear / mm", fontsize=7)
     axes.margins(y=0.12)
     axes.tick_params(labelsize=7)
@@ -84,18 +86,18 @@ def _pitch(axes: Axes, side: Side, gears: Sequence[tuple[str, Inspection]]) -> N
             teeth, (row.position - row.position.mean()) * 1000, color=color, linewidth=0.9, label=_figures(name, row)
         )
     axes.set_title(f"pitch, {side} flank: bars single, line cumulative", fontsize=9)
-    _finish(axes, "tooth", "µm")
+    _finish(axes, "tooth", "deviation / µm")
 
 
 def _figures(name: str, row: PitchRow) -> str:
-    return f"{name}: f_pt {row.worst * 1000:.1f}, F_p {row.total * 1000:.1f}"
+    return f"{name}: f_pt {row.worst * 1000:.1f}, F_p {row.total * 1000:.1f} µm"
 
 
 def _runout(axes: Axes, gears: Sequence[tuple[str, Inspection]]) -> None:
     for (name, found), color in zip(gears, _COLORS, strict=False):
-        axes.plot(found.ball * 1000, color=color, linewidth=0.9, label=f"{name}: F_r {found.runout * 1000:.1f}")
+        axes.plot(found.ball * 1000, color=color, linewidth=0.9, label=f"{name}: F_r {found.runout * 1000:.1f} µm")
     axes.set_title("runout: ball in every space", fontsize=9)
-    _finish(axes, "space", "µm")
+    _finish(axes, "space", "deviation / µm")
 
 
 def _finish(axes: Axes, across: str, up: str) -> None:
@@ -103,4 +105,6 @@ def _finish(axes: Axes, across: str, up: str) -> None:
     axes.set_xlabel(across, fontsize=7)
     axes.set_ylabel(up, fontsize=7)
     axes.tick_params(labelsize=7)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + _A_ROW * (high - low) * len(axes.get_legend_handles_labels()[1]))
     axes.legend(fontsize=7, frameon=False, loc="upper right")

@@ -7,7 +7,7 @@ test compares with the compiled kernel edge by edge.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -17,17 +17,17 @@ import numpy as np
 from gearmath.errors import InputError
 from gearmath.gearbox.helix import JobRatio
 from gearmath.gearbox.hobbed.job import TURN, HobbingJob
+from gearmath.gearbox.hobbed.lag import TIMES, Lag
+from gearmath.gearbox.hobbed.sines import ARCSEC, UM, harmonics
 from gearmath.gearbox.kernels import kernel
 from gearmath.gearbox.simulation import FloatRule
-from gearmath.specs.cutting_errors import CuttingErrors, LengthHarmonic, RatioHarmonic, TableHarmonic
+from gearmath.specs.cutting_errors import CuttingErrors
 from gearmath.specs.hobbing import HobbingMachine
 
 Rule = Literal["ideal", "exact", "float"]
 
-ARCSEC = math.pi / 648_000
-UM = 1e-3
-#: Times of a first-order lag that stand for all of them, each as likely as the others.
-_LAGS = -np.log(1.0 - (np.arange(32) + 0.5) / 32)
+#: Positions of the motor that are asked for at once.
+AT_ONCE = 200_000
 
 
 @dataclass(frozen=True)
@@ -77,30 +77,32 @@ class DriveTrain:
 
     def motor_error(self, psi: np.ndarray) -> np.ndarray:
         """How far the motor stands beyond ideal meshing (n,), in steps, positive with a right-hand hob."""
-        errors = self.errors
-        lag = errors.motor_time_constant_ms / 1000
-        if not lag:
-            return self.step_error(psi) + self._within_step(psi)
-        speed = self.rpm / 60 * TURN
-        ripple = 1.0 + harmonics(errors.speed_ripple, psi, 0.01)
-        earlier = speed * self._part_of_speed(psi) * ripple * lag
-        per_turn = self._steps_per_rad
-        mean = sum(self._delayed(psi - earlier * k) for k in _LAGS) / len(_LAGS)
-        return mean - per_turn * (earlier - speed * lag) * _LAGS.mean()
+        return self._unsteady_error(psi) + self._ahead(psi)
 
-    def _part_of_speed(self, psi: np.ndarray) -> np.ndarray:
-        """The hob's speed (n,) as part of that of the job: less on both sides of a stop, evenly slower and faster."""
-        height = self.errors.stop_in_cut_mm
-        if height is None:
-            return np.ones_like(psi)
-        stands = (height - self.job.start_height) / self.job.travel_per_rad
-        run_up = self.rpm / 60 * TURN * self.errors.run_up_seconds / 2
-        return np.sqrt(np.minimum(np.abs(psi - stands) / run_up, 1.0))
+    def _unsteady_error(self, psi: np.ndarray) -> np.ndarray:
+        """That of rounding to steps and counts, and within a step (n,), in steps; of a motor that lags its mean."""
+        if self._lag is None:
+            return self._given(psi)
+        delay = self._lag.delay(psi)
+        earlier = psi - delay * TIMES[:, None]
+        at_once = max(1, AT_ONCE // max(1, len(psi)))
+        parts = (earlier[low : low + at_once] for low in range(0, len(TIMES), at_once))
+        found: np.ndarray = sum(self._given(part.ravel()).reshape(part.shape).sum(axis=0) for part in parts)
+        return found / len(TIMES)
 
-    def _delayed(self, psi: np.ndarray) -> np.ndarray:
-        return self.step_error(psi) + self._within_step(psi)
+    def _given(self, psi: np.ndarray) -> np.ndarray:
+        found = self.step_error(psi)
+        return found + self._within_step(psi, found)
 
-    @property
+    def _ahead(self, psi: np.ndarray) -> np.ndarray:
+        """By how many steps a motor that lags is ahead (n,) of its lag at the speed of the job."""
+        return np.zeros_like(psi) if self._lag is None else self._steps_per_rad * self._lag.ahead(psi)
+
+    @cached_property
+    def _lag(self) -> Lag | None:
+        return Lag(self.errors, self.job, self.rpm) if self.errors.motor_time_constant_ms else None
+
+    @cached_property
     def _steps_per_rad(self) -> float:
         """Motor steps per radian of the hob."""
         turn = self.job.table_angle(np.array([0.0, 1.0]))
@@ -136,13 +138,13 @@ class DriveTrain:
         ideal = job.travel_per_rad * psi
         return np.floor(per_mm * (ideal + self.feed_error(psi))), per_mm * ideal
 
-    def _within_step(self, psi: np.ndarray) -> np.ndarray:
+    def _within_step(self, psi: np.ndarray, step_error: np.ndarray) -> np.ndarray:
         """Error of the microsteps (n,), in steps: a sine of the place within a full step."""
         microsteps = self.machine.drive.microsteps or 1
         percent = self.errors.microstep_percent
         if not percent:
             return np.zeros_like(psi)
-        steps = -self.job.table_angle(psi) / self.step + self.step_error(psi)
+        steps = -self.job.table_angle(psi) / self.step + step_error
         turned = TURN * (steps / microsteps)
         return kernel("harmonic")(turned, percent / 100 * microsteps, 1, 0.0)[0]
 
@@ -207,7 +209,7 @@ class DriveTrain:
     def variation(self, psi: np.ndarray, thread: np.ndarray) -> np.ndarray:
         """Bounds of how much the errors differ along the normal [mm] over hob turns and turns of the thread.
 
-        Without those that :meth:`sudden` bounds.
+        Without those that :meth:`sudden` bounds, and :meth:`lag_range`.
         """
         total = abs(self.errors.hob_lead_um_per_turn) * UM / TURN * np.abs(thread)
         for size, rate in self._swings():
@@ -215,9 +217,20 @@ class DriveTrain:
             total += size * np.minimum(2.0, turned)
         return total
 
+    def lag_range(self, psi: np.ndarray, side: int, unsure: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Least and most that uneven speed leaves along the normal [mm] at hob turns known but for ``unsure`` [rad].
+
+        None where the speed is even, or the motor does not lag.
+        """
+        if self.rule == "ideal" or self._lag is None or self._lag.is_even:
+            return None
+        along = -side * self._steps_per_rad * self._normal_step
+        ends = [along * each for each in self._lag.ahead_range(psi, unsure)]
+        return (ends[0], ends[1]) if along > 0 else (ends[1], ends[0])
+
     @property
     def unsteady(self) -> float:
-        """How much rounding to steps and counts, microsteps, lag and starts differ at most along the normal [mm]."""
+        """How much rounding to steps and counts, microsteps and starts differ at most along the normal [mm]."""
         return self._start_range + self._normal_step * float(np.ptp(self._step_range))
 
     def sudden(self, psi: np.ndarray, side: int) -> tuple[np.ndarray, np.ndarray]:
@@ -227,7 +240,7 @@ class DriveTrain:
         """
         if self.rule == "ideal":
             return np.zeros_like(psi), np.full_like(psi, -self._start_range)
-        now = self.motor_error(psi)
+        now = self._unsteady_error(psi)
         ends = np.array(self._step_range) if self.rule == "exact" else now + np.array(self._step_range)[:, None]
         least = (-side * ends).min(axis=0)
         return -side * now * self._normal_step, least * self._normal_step - self._start_range
@@ -250,8 +263,6 @@ class DriveTrain:
             return 0.0, 0.0
         per_turn = abs(self._steps_per_rad) * TURN
         more = errors.microstep_percent / 100 * (self.machine.drive.microsteps or 1)
-        ripple = sum(each.amplitude_percent / 100 for each in errors.speed_ripple) + (errors.stop_in_cut_mm is not None)
-        more += errors.motor_time_constant_ms / 1000 * self.rpm / 60 * per_turn * ripple
         if self.rule == "float":
             most = 12.0 + per_turn / float(self.machine.encoder_counts) + 2 * more
             return -most, most
@@ -284,17 +295,6 @@ class DriveTrain:
         found.append((errors.blank_eccentricity_um * UM, table))
         found.append((errors.blank_tilt_um_per_100mm * UM * (job.face_width + radius) / 100, table))
         return [(size, rate) for size, rate in found if size]
-
-
-def harmonics(
-    series: Iterable[TableHarmonic | LengthHarmonic | RatioHarmonic], turn: np.ndarray, unit: float
-) -> np.ndarray:
-    """The sum of sines (30.17) at turns (n,) [rad], amplitudes in ``unit``."""
-    total = np.zeros_like(turn)
-    for each in series:
-        (amplitude,) = (value for key, value in each if key.startswith("amplitude"))
-        total += kernel("harmonic")(turn, amplitude * unit, each.order, each.rad("phase"))[0]
-    return total
 
 
 def rounding(ratio: JobRatio, hob: np.ndarray, feed: np.ndarray) -> np.ndarray:

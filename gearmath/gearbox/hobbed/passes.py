@@ -34,7 +34,14 @@ class CuttingErrorModel(Protocol):
     def variation(self, psi: np.ndarray, thread: np.ndarray) -> np.ndarray:
         """Bounds of how much the errors differ along the normal [mm] over hob turns and turns of the thread.
 
-        Without those that :meth:`sudden` bounds.
+        Without those that :meth:`sudden` bounds, and :meth:`lag_range`.
+        """
+        ...
+
+    def lag_range(self, psi: np.ndarray, side: int, unsure: float) -> tuple[np.ndarray, np.ndarray] | None:
+        """Least and most that uneven speed leaves along the normal [mm] at hob turns known but for ``unsure`` [rad].
+
+        None where it leaves nothing anywhere.
         """
         ...
 

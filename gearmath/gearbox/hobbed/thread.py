@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.gearbox.hobbed.drive import ARCSEC, UM, Rule, harmonics, rounding
+from gearmath.gearbox.hobbed.drive import Rule, rounding
 from gearmath.gearbox.hobbed.job import TURN
+from gearmath.gearbox.hobbed.sines import ARCSEC, UM, harmonics
 from gearmath.gearbox.job import ThreadPlan
 from gearmath.gearbox.simulation import FloatRule
 from gearmath.specs.hobbing import HobbingMachine

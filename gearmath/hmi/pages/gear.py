@@ -346,7 +346,7 @@ class _GearPage:
         head = [text("gear.side"), f"{text('gear.ratio')} / 1", f"{text('gear.error')} / arcsec"]
         at = "V {:z.10g}, H {:z.10g}, J {:z.10g} mm".format(*self.desk.assembly)  # a field may hold what is refused
         blocks.plain_table(at, [*head, f"{text('gear.share')} / %", text("gear.outcome")], rows)
-        blocks.chart(text, svg, text("gear.contact"))
+        blocks.chart(text, svg, text("gear.contact"), across=True)
 
 
 def _run(found: Draft, desk: Desk, run: int | None, assembly: tuple[float, float, float]) -> tuple[Contact, str]:

@@ -12,7 +12,7 @@ from gearmath.front.hobbing import Job
 from gearmath.front.machines import load_hobber
 from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.job import ThreadPlan
-from gearmath.hmi import blocks, widgets
+from gearmath.hmi import blocks, widgets, words
 from gearmath.hmi.catalog import files_of
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.hobbing_job import (
@@ -169,7 +169,7 @@ class _GearboxPage:
             for key in dict.fromkeys(line.key for each in lines for line in each):
                 unit = next(each[key].unit for each in by_hob if key in each)
                 cells = [each[key].value if key in each else "–" for each in by_hob]
-                rows.append([f"{self.text(f'gearbox.{key}')} / {unit}", *cells])
+                rows.append([f"{self.text(f'gearbox.{key}')} / {words.unit(self.text, unit)}", *cells])
             blocks.plain_table("", [self.text("gearbox.hob"), *head], rows)
             rules = dict.fromkeys(blank.depth_rule for blank in job.plan.blanks)
             widgets.note(f"{self.text('gearbox.depth_rule')}: {', '.join(rules)}")
@@ -179,7 +179,9 @@ class _GearboxPage:
     def _lines(self, lines: list[PlanLine]) -> None:
         for line in lines:
             share = "" if line.percent is None else self.text("gearbox.of_limit", percent=f"{line.percent:z.1f}")
-            widgets.fact(self.text(f"gearbox.{line.key}"), f"{line.value} {share}".rstrip(), line.unit)
+            widgets.fact(
+                self.text(f"gearbox.{line.key}"), line.value, f"{words.unit(self.text, line.unit)} {share}".rstrip()
+            )
 
     def quality(self) -> None:
         """Figures and classes of the gear that would be cut, when somebody asks."""

@@ -15,7 +15,7 @@ from gearmath.hmi.messages import Text
 from gearmath.hmi.probe_check import ProbeCheck
 from gearmath.hmi.runs_work import UnfinishedRun, complete_runs, unfinished_runs
 from gearmath.hmi.state import Shared
-from gearmath.hmi.words import duration, run_state
+from gearmath.hmi.words import control_name, duration, run_state
 from gearmath.specs.bevel_set import MEMBERS
 
 #: Touches that are shown, the newest first.
@@ -131,7 +131,7 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
             raise widgets.Refusal(text("measure.program_needed"))
         checked()
         choice = shared.choice
-        values = {"program": name, "control": link.name, "gear_set": choice.gear_set}
+        values = {"program": name, "control": control_name(text, shared), "gear_set": choice.gear_set}
         widgets.ask(
             shared,
             text,

@@ -14,7 +14,7 @@ from gearmath.hmi import blocks, programs_work, widgets
 from gearmath.hmi.messages import Text
 from gearmath.hmi.programs_work import MilledProgram, WrittenProgram
 from gearmath.hmi.state import Choice, Shared
-from gearmath.hmi.words import duration
+from gearmath.hmi.words import control_name, duration
 from gearmath.hmi.work import Progress, Work
 from gearmath.machine.measuring.checked import ProbingChoice
 from gearmath.machine.planning.cut_plan import CuttingJob
@@ -187,7 +187,7 @@ def _written(shared: Shared, text: Text) -> None:
         name = needed()
         assert shared.link is not None
         size = f"{len(programs_work.read(shared.folder, name)) / 1000:z.0f}"
-        question = text("programs.send_question", name=name, size=size, control=shared.link.name)
+        question = text("programs.send_question", name=name, size=size, control=control_name(text, shared))
         over = bool(replace.value)
         widgets.ask(shared, text, question, lambda: _send(shared, text, name, over))
 
@@ -213,7 +213,9 @@ def _send(shared: Shared, text: Text, name: str, replace: bool) -> None:
         sending.result(120.0)
         return name, len(content)
 
-    shared.works[_SEND].start(text("programs.sending", name=name, control=link.name), _plain(wait, link.name))
+    shared.works[_SEND].start(
+        text("programs.sending", name=name, control=control_name(text, shared)), _plain(wait, link.name)
+    )
 
 
 def _plain(wait: Callable[[Progress], tuple[str, int]], control: str) -> Callable[[Progress], tuple[str, int]]:
@@ -235,7 +237,7 @@ def _sent(text: Text, shared: Shared) -> None:
             said.show("")
             return
         name, size = work.result
-        said.show(text("programs.sent", control=shared.link.name, name=name, size=size), "good")
+        said.show(text("programs.sent", control=control_name(text, shared), name=name, size=size), "good")
 
     widgets.progress(text, work, ended)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +92,12 @@ def test_cut_draws_the_chart_of_an_inspection(capsys, tmp_path, suffix):
     else:
         for words in (b"profile, left flank", b"helix, right flank", b"pitch, left flank", b"runout"):
             assert words in content
+    if suffix == "html":  # columns of the tables stay columns
+        heads = re.findall(r"<thead><tr>(.*?)</tr></thead>", content.decode("utf-8"))
+        assert [re.findall(r">([^<]+)</th>", head) for head in heads] == [
+            ["figure", "exact / um", "class"],
+            ["source", "profile", "helix", "pitch"],
+        ]
 
 
 def test_cut_writes_points_that_lie_on_the_involute(capsys, tmp_path):

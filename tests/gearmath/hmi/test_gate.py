@@ -167,6 +167,12 @@ def test_no_path_leads_out_of_what_is_served(served: Served, path: str) -> None:
     assert status in (400, 403, 404)
 
 
+@pytest.mark.parametrize("path", ["/a%0aforged%20line", "/%00", "/%1b[31m", "/%7f"])
+def test_no_path_writes_control_characters_into_the_log(served: Served, path: str) -> None:
+    status, body, _ = _ask(served, "GET", path, Cookie=_cookie(served))
+    assert (status, "control characters" in body) == (403, True)
+
+
 def _files_but_store(served: Served) -> set[Path]:
     """What lies in the folder of the server and beside it; SQLite makes and removes files of its own at any time."""
     return {path for path in served.folder.parent.rglob("*") if not path.name.startswith("runs.db")}
@@ -237,6 +243,12 @@ def test_the_token_is_printed_once_and_nowhere_else(served: Served) -> None:
     _ask(served, "GET", f"/login?token={served.token}")
     _ask(served, "GET", f"/login?token={served.token}&other=1", Host="evil.example")
     _ask(served, "GET", "/nothing", Cookie=cookie)
+    for path in (
+        f"/nothing?token={served.token}",
+        f"/{served.token}",
+        f"/nothing?a=%{ord(served.token[0]):02x}{served.token[1:]}",
+    ):
+        assert _ask(served, "GET", path, Cookie=cookie)[0] == 403
     _ask(served, "GET", "/machine", Cookie=cookie)
     said = served.stop()
     assert said.count(served.token) == 1

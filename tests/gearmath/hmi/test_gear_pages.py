@@ -150,6 +150,9 @@ def test_the_pair_is_brought_into_contact_at_the_assembly_that_is_typed(
     assert other.page.get_by_label("J: Tellerrad zurückgezogen", exact=True).input_value() == "10"
     one.press("Tragbild berechnen")
     one.page.get_by_text("Berührung verloren").first.wait_for(timeout=PATIENCE)
+    drawn = " ".join(panel.locator(".gm-picture text").all_text_contents())
+    assert "Berührung verloren" in drawn
+    assert re.findall(r"\b(path|pattern|gear|pinion|teeth|contact|ellipses|dashed|tip|toe|bring)\b", drawn) == []
     assert panel.get_by_role("table").get_by_text("V 0, H 10, J 10 mm").count() == 1
     assert one.page.get_by_text("muss zwischen -50 und 50 mm liegen").count() == 0
     other.fill("H: Ritzel zurückgezogen", "0")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import tomllib
 import zipfile
 from collections.abc import Callable
@@ -14,7 +15,11 @@ import pytest
 
 from gearmath.errors import InputError
 from gearmath.hmi import hobbing_job
+from gearmath.hmi.blocks import words_of_charts
+from gearmath.hmi.drawing import drawn, translated
 from gearmath.hmi.hobbing_job import HobbingWish, blank_lines, firmware_zip, plan_lines, planned, predicted, sketch_name
+from gearmath.hmi.messages import Text
+from gearmath.hmi.words import unit
 from gearmath.specs.hobbing import load_hobbing_machine
 from gearmath.specs.toml import bundled
 
@@ -97,3 +102,15 @@ def test_the_quality_that_is_predicted_is_that_of_the_command(command: Command) 
     assert [row.value_um for row in rows] == pytest.approx([each["value_um"] for each in gear["figures"]])
     with pytest.raises(InputError, match="only a gear has a class"):
         predicted(load_hobbing_machine(bundled("lathe_example.toml")), HobbingWish(pitch="8tpi"))
+
+
+def test_units_and_the_chart_of_the_error_have_german_words_on_a_german_page() -> None:
+    german = Text("de")
+    assert unit(german, "counts/step") == "Geberschritte/Schritt"
+    assert unit(german, "steps / 100 mm") == "Schritte / 100 mm"
+    assert unit(german, "1/min") == "1/min"
+    machine = load_hobbing_machine(bundled("hobbing_plewes.toml"))
+    figure = planned(machine, HobbingWish(teeth=17)).plot(edges=2000)
+    words = re.findall(r">([^<>]+)</text>", translated(drawn(lambda: figure), words_of_charts(german)))
+    shown = " ".join(words).replace(machine.name, "")
+    assert not re.search(r"\b(steps?|count|rpm|rule|most|time|error)\b", shown), shown

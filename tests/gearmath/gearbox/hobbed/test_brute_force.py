@@ -33,6 +33,9 @@ class Sines:
     def sudden(self, psi, side):
         return np.zeros_like(psi), np.zeros_like(psi)
 
+    def lag_range(self, psi, side, unsure):
+        return None
+
     def table(self, psi, side):
         turned = psi * self.job.hob.starts / self.job.gear.teeth
         return self.size * 4e-3 / self.job.base_radius * np.sin(3 * turned + 0.3)

@@ -364,6 +364,25 @@ def test_stop_that_is_far_outside_of_the_cut_is_not_to_blame():
     assert shares["stop_in_cut_mm"].profile_percent == pytest.approx(0.0, abs=0.01)
 
 
+def test_what_uneven_speed_leaves_lies_within_the_range_that_is_said():
+    """Beside the stop and in it, where the hob turn is known but for a part of its run-up."""
+    uneven = {"speed_ripple": [{"amplitude_percent": 10.0, "order": 2}, {"amplitude_percent": 5.0, "phase": 40.0}]}
+    stopped = machine(motor_time_constant_ms=5.0, stop_in_cut_mm=5.0, run_up_seconds=0.3, **uneven)
+    train = setup(stopped, 24, hob="m1", rpm=120.0).train
+    stands = (5.0 - train.job.start_height) / train.job.travel_per_rad
+    psi = stands + np.linspace(-6.0, 6.0, 4001)
+    for side in (1, -1):
+        now, now_too = train.lag_range(psi, side, 0.0)
+        np.testing.assert_allclose(now, now_too, rtol=0, atol=1e-15)
+        assert np.ptp(now) == pytest.approx(0.005 * 2 * 16000 / 24 * normal_step(train), rel=0.2)
+        for unsure in (0.05, 0.8):
+            least, most = train.lag_range(psi, side, unsure)
+            for moved in np.linspace(-unsure, unsure, 9):
+                there, _ = train.lag_range(psi + moved, side, 0.0)
+                assert (least <= there + 1e-15).all()
+                assert (there <= most + 1e-15).all()
+
+
 @pytest.mark.parametrize(
     "errors", [{}, {"encoder": [{"amplitude_arcsec": 300.0, "order": 2}]}, {"microstep_percent": 20}]
 )
@@ -395,6 +414,14 @@ def _found(cut: Envelope) -> np.ndarray:
         (31, 2, None, "exact", {"hob_eccentricity_um": 10.0, "hob_starts_um": [5.0, -8.0]}),
         (30, 1, 20.0, "exact", {"worm": [{"amplitude_arcsec": 60.0}], "blank_eccentricity_um": 30.0}),
         (6, 1, None, "ideal", {"hob_lead_um_per_turn": 10.0, "feed": [{"amplitude_um": 20.0}]}),
+        (24, 1, None, "exact", {"motor_time_constant_ms": 5.0, "stop_in_cut_mm": 5.0, "run_up_seconds": 0.1}),
+        (
+            7,
+            1,
+            None,
+            "exact",
+            {"motor_time_constant_ms": 20.0, "speed_ripple": [{"amplitude_percent": 20.0, "order": 3}]},
+        ),
     ],
 )
 def test_gashes_that_are_left_out_would_not_have_cut(monkeypatch, teeth, starts, helix, rule, errors):
@@ -419,8 +446,8 @@ def test_passes_that_are_followed_at_a_point_grow_no_faster_than_teeth_and_feed_
 
     monkeypatch.setattr(Passes, "solve", count)
 
-    def per_point(teeth: int, feed: float) -> float:
-        of = setup(machine("hobbing_default.toml"), teeth, hob="m1", feed=feed)
+    def per_point(teeth: int, feed: float, **errors: object) -> float:
+        of = setup(machine("hobbing_default.toml", **errors), teeth, hob="m1", feed=feed)
         followed.clear()
         points = len(_found(Envelope(of.job, of.train)))
         return sum(followed) / points
@@ -428,3 +455,6 @@ def test_passes_that_are_followed_at_a_point_grow_no_faster_than_teeth_and_feed_
     few = per_point(24, 1.0)
     assert per_point(192, 1.0) < 8 * few
     assert per_point(24, 0.25) < 2 * few
+    # where the hob stood, the table is 40 steps ahead: that lets gashes compete beside it, not everywhere
+    stopped = {"motor_time_constant_ms": 5.0, "stop_in_cut_mm": 8.0, "run_up_seconds": 0.5}
+    assert per_point(24, 1.0, **stopped) < 1.5 * few
