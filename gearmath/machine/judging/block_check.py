@@ -41,10 +41,12 @@ _STRAIGHT = (0.0, 0.3, 0.5, 0.7)
 _CURVED = tuple(np.linspace(0.0, 1.0, 60, endpoint=False).tolist())
 #: Where curves lie along the tooth, as parts of the working depth, and up the tooth, as parts of the face width.
 _UP, _ACROSS = (0.5, 1.0), (0.0, 1.0)
+#: The same for lines on ridges, of which a line of contact that ends at toe or heel crosses some besides.
+_UP_RIDGES = (*np.linspace(0.125, 0.875, 7).tolist(), 1.0)
 #: The part of the lines on a flank that says what its blocks are made for.
 MOST_LINES = 0.75
-#: So many of the highest ridges between lines of a flank get lines of their own.
-_RIDGES = 16
+#: So many of the highest ridges between lines of a flank get lines of their own, around them by parts of a block.
+_RIDGES, _AROUND = 8, np.linspace(-0.2, 0.2, 21)
 #: X and Y so far off the path are wrong wherever the flank is. [mm]
 _FAR_ASIDE = 0.05
 
@@ -97,8 +99,15 @@ def watched_flanks(member: Member, runs: list[CuttingRun], machine: MillingMachi
     return found
 
 
-def _watched(member: Member, run: CuttingRun, flank: str, rolls: np.ndarray, ends: np.ndarray) -> WatchedFlank:
-    theta, point, normal, curves = _lines(member, run, flank, rolls)
+def _watched(
+    member: Member,
+    run: CuttingRun,
+    flank: str,
+    rolls: np.ndarray,
+    ends: np.ndarray,
+    heights: tuple[float, ...] = _UP,
+) -> WatchedFlank:
+    theta, point, normal, curves = _lines(member, run, flank, rolls, heights)
     (other,) = (each for each in FLANKS if each != flank)
     opposite = flank_points(member, other, blank_grid(member, 5, 9)).point
     return WatchedFlank(flank, point, normal, -0.5 * thickness(point, opposite, member.teeth), theta, curves, ends)
@@ -117,13 +126,13 @@ def _watched_rolls(member: Member, run: CuttingRun, machine: MillingMachine) -> 
 
 
 def _lines(
-    member: Member, run: CuttingRun, flank: str, rolls: np.ndarray
+    member: Member, run: CuttingRun, flank: str, rolls: np.ndarray, heights: tuple[float, ...]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, ...]]:
     if member.generation == "formate":
         points = flank_points(member, flank, blank_grid(member, 5, 17, 0.0))
         return points.contact[:, 2], points.point, points.normal, (0,)
     shared = on_one_machine(member, run.cut)
-    curves = [flank_curve(shared, flank, rolls, up=up) for up in _UP]
+    curves = [flank_curve(shared, flank, rolls, up=up) for up in heights]
     curves += [flank_curve(shared, flank, rolls, across=across) for across in _ACROSS]
     curves += foot_curves(shared, flank, rolls)
     lines = joined(curves)
@@ -213,7 +222,9 @@ def _on_ridges(lines: WatchedFlank, left: np.ndarray, member: Member, runs: list
     if not len(chosen):
         return None
     (run,) = (run for run in runs if lines.flank in run.cut.flanks)
-    return _watched(member, run, lines.flank, np.unique(theta[chosen]), np.zeros(0))
+    # where a curve is generated is known to a part of a block: lines stand all around
+    around = theta[chosen, None] + _AROUND * float(np.median(np.abs(np.diff(lines.ends))))
+    return _watched(member, run, lines.flank, np.unique(around), np.zeros(0), _UP_RIDGES)
 
 
 def _height(lines: WatchedFlank, member: Member, runs: list[CuttingRun], machine: MillingMachine) -> np.ndarray:

@@ -109,7 +109,7 @@ def same_part(alone: np.ndarray, own: np.ndarray, whole: np.ndarray, cuts: np.nd
     there = whole[first - before : first]
     away = whole[last + 1] if last + 1 < len(whole) else whole[last]
     after = alone[own[-1] + 1 :]
-    return _above(alone[:before], there) and _above(after, away[None]) and (after[:1, 7] == away[7]).all()
+    return _above(alone[:before], there) and _above(after, away[None]) and bool((after[:1, 7] == away[7]).all())
 
 
 def _above(rows: np.ndarray, others: np.ndarray) -> bool:

@@ -9,9 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 #: Lines of a block from its start to its end, as parts of it, and how far a line may stand from there.
-_SHARES, _NEAR = np.array([0.0, 0.3, 0.5, 0.7, 1.0]), 0.08
+_SHARES, _NEAR = np.array([0.0, 0.3, 0.5, 0.7, 1.0]), 0.2
 #: Parabolas of the same block are alike by this part; a block that leaves most in its middle has others.
 _ALIKE = 0.35
+#: How often the parabolas are worked out from what they leave at the ends, and that from them.
+_TIMES = 4
 #: A ridge so near to the middle of a block has a line already.
 _MIDDLE = 0.02
 
@@ -30,13 +32,17 @@ def ridges(theta: np.ndarray, left: np.ndarray, ends: np.ndarray) -> tuple[np.nd
     with np.errstate(all="ignore"):  # of blocks that roll on by nothing, and of lines that nothing cuts
         share = (theta[line] - ends[:-1, None]) / rolls[:, None]
         known = (np.abs(share - _SHARES) < _NEAR).all(axis=1) & np.isfinite(high).all(axis=1)
-        first = (high - high[:, :1]) / share**2  # what the parabola of either end would have to be
-        last = (high - high[:, 4:]) / (1.0 - share) ** 2
-        bend = (first[:, 1] + last[:, 3]) / 2
+        start, end, bend = high[:, 0], high[:, 4], np.zeros(len(rolls))
+        for _ in range(_TIMES):
+            first = (high - start[:, None]) / share**2  # what the parabola of either end would have to be
+            last = (high - end[:, None]) / (1.0 - share) ** 2
+            bend = (first[:, 1] + last[:, 3]) / 2
+            # the lines nearest to the ends stand beside them
+            start, end = high[:, 0] - bend * share[:, 0] ** 2, high[:, 4] - bend * (1.0 - share[:, 4]) ** 2
         middle = np.maximum(first[:, 2], last[:, 2])
         known &= (bend > 0.0) & (np.abs(first[:, 1] - last[:, 3]) < _ALIKE * bend)
         known &= np.abs(middle - bend) < _ALIKE * bend
-        at = (1.0 + (high[:, 4] - high[:, 0]) / bend) / 2
-        peak = high[:, 0] + bend * at**2
+        at = (1.0 + (end - start) / bend) / 2
+        peak = start + bend * at**2
         known &= (at > 0.0) & (at < 1.0) & (np.abs(at - 0.5) > _MIDDLE)
     return np.where(known, peak, -np.inf), np.where(known, ends[:-1] + at * rolls, 0.0)

@@ -259,6 +259,7 @@ def test_no_corner_of_the_flank_is_left_out(gear_set, vertical, host_compiler):
     assert (lowest < deepest + 0.05 * TOLERANCE).all(), lowest - deepest
 
 
+@pytest.mark.slow
 def test_peak_that_a_wrong_end_leaves_between_two_blocks_is_not_missed(vertical, host_compiler):
     """Y off by 0.05 um, as one wrong digit, adds to what the straight blocks leave beside their middles: where a fine
     row along the tip or half way up finds metal, which shares no line with the watch, the watch finds it to 3 %."""
