@@ -101,7 +101,7 @@ def _text(title: str, figures: dict[str, Any]) -> str:
     changed = ", ".join(f"{key} = {value:g}" for key, value in figures["changed"].items())
     parts = [title, table(["figure", "value"], rows)]
     if changed:
-        parts.append(f"as the file leaves them out, and the pair does not run with what they start from: {changed}")
+        parts.append(f"the pair does not run with the values that keys left out start from; changed for it: {changed}")
     for side in ("drive", "coast"):
         parts.append(_side(side, figures[side]))
     return "\n\n".join(parts)

@@ -1,4 +1,4 @@
-"""Exact contact of both sides of a pair, and its ease-off map; beside the seven equations solved position by position.
+"""Exact contact of both sides of a pair, its ease-off map, and a design; beside seven equations solved one by one.
 
 The peer is scipy.optimize.fsolve on the same equations from Python, each position from the one before, within the
 flanks only: no edges, no corners, no neighboring teeth.
@@ -15,7 +15,9 @@ from scipy.optimize import fsolve
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.places import places
 from gearmath.bevel.contact.report import SIDES, side_system
+from gearmath.bevel.design.route import design
 from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.design import load_design
 from gearmath.specs.toml import bundled
 
 POSITIONS = 60
@@ -58,3 +60,9 @@ def test_seven_equations_by_fsolve_within_the_flanks(benchmark, systems) -> None
 def test_ease_off_map_of_15_by_15_points(benchmark, systems) -> None:
     found = benchmark(places, systems[0], STILL, 15, 15)
     assert np.isfinite(found.error).all()
+
+
+@pytest.mark.benchmark(group="design of both flanks")
+def test_design_of_the_bundled_7x43_pair(benchmark) -> None:
+    asked = load_design(bundled("design_7x43.toml"))
+    assert benchmark(design, asked).flanks.keys() == set(SIDES)

@@ -49,6 +49,19 @@ def test_set_that_is_written_is_a_pair_with_the_figures_of_the_json(command, tmp
         assert contact[side]["peak_to_peak_arcsec"] == pytest.approx(found[side]["peak_to_peak_arcsec"], abs=1e-3)
 
 
+def test_what_was_changed_where_the_file_leaves_it_out_is_said(command, tmp_path):
+    """A 7 x 30 pair that runs on edges with the path that is taken where none is asked for."""
+    path = tmp_path / "design.toml"
+    path.write_text(
+        'title = "7 x 30"\npinion_teeth = 7\nwheel_teeth = 30\nouter_transverse_module = 2.985\nface_width = 13.795\n'
+        "mean_spiral_angle = 36.49\n[cutter]\ncutter_radius = 35.12\n",
+        "utf-8",
+    )
+    status, out, err = command("design", path, "-o", tmp_path / "set.toml")
+    assert (status, err) == (0, "")
+    assert "changed for it: drive.path_angle = 35, coast.path_angle = 145" in out
+
+
 def test_7x43_pair_is_what_the_data_ask_for(command, tmp_path):
     """No undercut (the set is a pair), top land, backlash, parabola within 5 %, path within the flank, rounded."""
     status, out, _ = command("design", "design_7x43.toml", "-o", tmp_path / "set.toml", "--json")
