@@ -318,7 +318,7 @@ def all_of(judged, random):
             yield from ((kind, number, new) for kind, new in mutants(line, random))
 
 
-#: Mutants in CI of each program; the others were tried once, as CHANGELOG and commit message count.
+#: Mutants in CI of each program; the others were tried once, as the commit message counts.
 SAMPLED = {"pitch": 25, "ring": 40}
 
 
