@@ -15,17 +15,17 @@ class ComputationError(RuntimeError):
 
 @contextmanager
 def about(file: Path | None) -> Iterator[None]:
-    """Names the file that is to blame for bad input, where what computes with its content cannot know it.
+    """Names the file that an error is about, where what computes with its content cannot know it.
 
     Nothing is named where the content came out of no file.
     """
     try:
         yield
-    except InputError as error:
-        if file is None:
+    except (InputError, ComputationError) as error:
+        words, kind = str(error), InputError if isinstance(error, InputError) else ComputationError
+        if file is None or words.startswith((f"{file}: ", f"{file}, ")):
             raise
-        words = str(error)
-        raise InputError(words if words.startswith((f"{file}: ", f"{file}, ")) else f"{file}: {words}") from error
+        raise kind(f"{file}: {words}") from error
 
 
 def counted(count: int, noun: str) -> str:
