@@ -450,9 +450,10 @@ def mirrored(member: Member) -> Member:
 
 
 @pytest.fixture(scope="session")
-def browser():
-    """How to start a browser without a window."""
+def browser(tmp_path_factory):
+    """How to start a browser without a window, and with a profile of its own: a second one of the same waits for it."""
+    profile = f"--user-data-dir={tmp_path_factory.mktemp('profile')}"
     for name in ("chromium", "chromium-browser", "google-chrome"):
         if path := shutil.which(name):
-            return [path, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage"]
+            return [path, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", profile]
     return pytest.skip("needs chromium")

@@ -100,7 +100,7 @@ def live() -> Iterator[Start]:
                 stderr=log,
             )
         running.append(LiveLinuxCnc(folder, folder / f"{name}.ini", process))
-        running[-1].wait("ready", 40)
+        running[-1].wait("ready", 120)
         return running[-1]
 
     # there is one realtime memory on a computer: tests that run side by side take turns

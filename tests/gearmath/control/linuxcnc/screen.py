@@ -67,7 +67,7 @@ for step in (linuxcnc.STATE_ESTOP_RESET, linuxcnc.STATE_ON):
 command.mode(linuxcnc.MODE_MANUAL)
 command.wait_complete()
 command.home(-1)
-until(lambda: all(stat.homed[: stat.joints]), 20)
+until(lambda: all(stat.homed[: stat.joints]), 60)
 command.mode(linuxcnc.MODE_AUTO)
 command.wait_complete()
 program = next(name for name in sorted(os.listdir(".")) if name.endswith(".ngc"))

@@ -55,7 +55,7 @@ def test_the_flanks_are_within_the_tolerance_of_the_path_mode(live: Start) -> No
     text = program_of(plan, "SPACE")
     control = live("SPACE", text, machine, tools_of(plan))
     control.start()
-    ended = control.wait("ended", 120)
+    ended = control.wait("ended", 600)
     control.leave()
     assert ended["heard"] == ["section 1 of 1: space 0 concave and convex"]
 

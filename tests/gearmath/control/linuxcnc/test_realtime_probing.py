@@ -244,11 +244,11 @@ def test_touches_are_stored_before_they_are_acknowledged_and_an_aborted_run_goes
         run = store.begin_run(start)
         with pytest.raises(ComputationError, match=rf"{STOP} of 10 touches.*--resume {run.id}"):
             asyncio.run(measured(control, run, parts, database, STOP))
-        control.wait("ended", 30)
+        control.wait("ended", 120)
         run = store.resume_run(run.id)
         assert resumed(run) == [(STOP + 1, 10)]
         again = asyncio.run(measured(control, run, resumed(run), database))
-    control.wait("ended", 30)
+    control.wait("ended", 120)
     result = (control.folder / "POINTS_T.csv").read_text()
     control.leave()
 
@@ -288,7 +288,7 @@ def test_offsets_and_tool_lengths_are_in_the_touches_and_a_point_that_is_not_the
         run = store.begin_run(start)
         with pytest.raises(ComputationError, match=r"before point 4 \(alarm 1: point 4: touched nothing\); 3 of 4"):
             asyncio.run(measured(control, run, parts, database))
-        control.wait("ended", 30)
+        control.wait("ended", 120)
         control.leave()
         assert [alarm.text for alarm in run.alarms()] == ["point 4: touched nothing"]
         touches = np.array([touch[1:6] for touch in run.touches().values()])
