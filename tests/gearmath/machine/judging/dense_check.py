@@ -77,10 +77,10 @@ class Words:
         if "M6" in codes:
             self.now, self.spindle = {}, 0.0
         moved = False
-        for key in ("X", "Y", "Z", "A=DC(", "B"):
+        for key in ("X", "Y", "Z", "A", "A=DC(", "B"):
             if words.get(key):
                 value = float(words[key])
-                if key[0] == "A" and "A" in self.now:
+                if key == "A=DC(" and "A" in self.now:
                     value += 360.0 * round((self.now["A"] - value) / 360.0)
                 self.now[key[0]], moved = value, True
         if not moved or len(self.now) < 5:
@@ -91,9 +91,38 @@ class Words:
         return Row(self.rapid, at, float(seconds), self.spindle, number, self.tool)
 
 
-def rows_of(lines, states=None):
+@dataclass
+class NgcWords(Words):
+    """The same for LinuxCNC, where A counts on and tools are numbers, which the head names.
+
+    Of its conditions ``o1 if [..]`` only those hold that ask for a part of the program.
+    """
+
+    names: dict = field(default_factory=dict)
+
+    def read(self, line, number):
+        if named := re.match(r"; tool T(\d+): (\w+)", line):
+            self.names[named[1]] = named[2]
+        if line.startswith(("(", "#")):
+            return None
+        if line.startswith("o"):
+            if " if " in line:
+                self.skipping += bool(self.skipping or not re.search(r" if \[\[#3090 LE ", line))
+            elif "endif" in line:
+                self.skipping = max(self.skipping - 1, 0)
+            return None
+        if selected := re.match(r"T(\d+)", line):
+            self.tool = self.names.get(selected[1], line)
+        inverse = self.inverse
+        row = super().read(line, number)
+        if self.inverse != inverse and not re.search(r"F[0-9]", line):
+            self.feed = 0.0
+        return row
+
+
+def rows_of(lines, states=None, words=Words):
     """The motion of a program by its words alone; ``states`` gets what is in force before every line."""
-    words, rows = Words(), []
+    words, rows = words(), []
     for number, line in enumerate(lines, start=1):
         if states is not None:
             states.append(replace(words, now=dict(words.now)))
@@ -110,6 +139,7 @@ class Dense:
     member: str
     witness: object
     lines: list[str]
+    words: type[Words] = Words
     points: dict = field(default_factory=dict)
     above: dict = field(default_factory=dict)
     under: dict = field(default_factory=dict)
@@ -119,7 +149,7 @@ class Dense:
 
     def __post_init__(self):
         self.states = []
-        self.rows = rows_of(self.lines, self.states)
+        self.rows = rows_of(self.lines, self.states, self.words)
         self.place = {row.line: k for k, row in enumerate(self.rows)}
         spec = load_bevel_set(bundled(f"{self.name}.toml")).member(self.member)
         self.spec, self.height = spec, MACHINE.gauge_line_height + MACHINE.tool_length
@@ -231,7 +261,7 @@ class Dense:
 
     def harm_of_text(self, text, machine=True):
         """The same for a whole text: what differs from the right one."""
-        rows = rows_of(text.split("\n"))
+        rows = rows_of(text.split("\n"), words=self.words)
         same = [replace(row, line=0) for row in rows]
         right = [replace(row, line=0) for row in self.rows]
         first = next(

@@ -11,6 +11,7 @@ import copy
 import re
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -108,18 +109,21 @@ class Whole:
     name: str
     member: str
     spaces: tuple[int, ...]
+    roll: ClassVar[re.Pattern] = ROLL
 
     def __post_init__(self):
         bevel_set = load_bevel_set(bundled(f"{self.name}.toml"))
         self.spec = bevel_set.member(self.member)
-        self.text = cutting_program(
-            bevel_set, self.member, MACHINE, "CUT", CuttingJob(self.spaces or range(self.spec.teeth))
-        )
+        self.text = self.written(bevel_set, CuttingJob(self.spaces or range(self.spec.teeth)))
         self.lines = self.text.split("\n")
         self.space = tooth_space(self.spec, self.member, 7)
         self.stated = Stated.of(self.text)
         self.path = execute(self.text, "CUT", Setup.of(MACHINE))
         self._run_right()
+
+    def written(self, bevel_set, job):
+        """The text of the right program."""
+        return cutting_program(bevel_set, self.member, MACHINE, "CUT", job)
 
     def with_lines(self, line, new):
         return "\n".join([*self.lines[: line - 1], *new, *self.lines[line:]])
@@ -280,7 +284,7 @@ class Whole:
         found, lines, numbers = [], [], []
         for mutant in some:
             line, new = changed[mutant]
-            words = ROLL.fullmatch(new[0]) if len(new) == 1 and line in self.rolls else None
+            words = self.roll.fullmatch(new[0]) if len(new) == 1 and line in self.rolls else None
             if words is not None:
                 found.append(mutant)
                 lines.append(self.rolls[line])
@@ -288,15 +292,20 @@ class Whole:
         if not found:
             return np.zeros(0, int), np.zeros(0, int), np.zeros((0, 6))
         found, at, values = np.array(found), np.array(lines), np.array(numbers, float)
-        turn, right = 2 * np.pi, self.path.axes
         values[:, 3:5] = np.radians(values[:, 3:5])
+        fit = self.turn(values, at)
+        return found[fit], at[fit], values[fit]
+
+    def turn(self, values, at):
+        """Count A of :meth:`numbers` on from the rows before ``at``; which (m,) need not be left to the control."""
+        turn, right = 2 * np.pi, self.path.axes
         turns = (right[at - 1, 3] - values[:, 3]) / turn
         angle = values[:, 3] + turn * np.round(turns)
         back = (angle - right[at + 1, 3]) / turn
         fit = (values[:, 5] > 0.0) & (values[:, 3] >= 0.0) & (values[:, 3] < turn - 1e-9)
         fit &= (np.abs(back) < 0.499) & (np.abs(np.abs(turns - np.floor(turns)) - 0.5) > 1e-3)
         values[:, 3] = angle
-        return found[fit], at[fit], values[fit]
+        return fit
 
     def beside(self, changed):
         """Changes, by number, of blocks that roll, whose end :func:`beside_the_path` sees, by the changed end alone.
@@ -409,7 +418,7 @@ class Whole:
     @cached_property
     def rolls(self):
         """The row of every block, by line, that rolls on to another one."""
-        rolling = [ROLL.fullmatch(self.lines[line - 1]) is not None for line in self.path.line]
+        rolling = [self.roll.fullmatch(self.lines[line - 1]) is not None for line in self.path.line]
         tool, line = self.path.tool, self.path.line
         return {
             int(line[k]): k
