@@ -240,6 +240,14 @@ class Operator:
         """Press a button."""
         self.page.get_by_role("button", name=label, exact=True).click()
 
+    def press_until(self, label: str, sign: Locator) -> None:
+        """Press a button until its sign is there: once more where the server fell silent just then."""
+        for _ in range(10):
+            self.press(label)
+            with suppress(TimeoutError):
+                return sign.wait_for(timeout=_SHORT)
+        raise AssertionError(f"{label} is pressed and nothing comes of it; console: {self.complaints}")
+
     def tab_to(self, label: str) -> None:
         """Press Tab until the cursor is on the button or field of this label, and the server hears what comes next.
 

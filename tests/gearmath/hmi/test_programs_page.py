@@ -77,8 +77,7 @@ def test_a_number_out_of_range_stays_as_it_was_typed_and_is_refused_with_its_lim
 def test_a_cutting_program_is_written_and_milled_with_progress(page: Served, operator: Callable[..., Operator]) -> None:
     one = operator(page, "programs", language="de", dark=True, size=(800, 1280))
     panel = one.panel("Fräsprogramm")
-    panel.get_by_role("button", name="Fräsprogramm schreiben").click()
-    panel.get_by_role("progressbar").wait_for()
+    one.press_until("Fräsprogramm schreiben", panel.get_by_role("progressbar"))
     one.sees(re.compile("CUT_PINION.MPF: \\d+ Sätze, .* keine Kollision, Grenzen und Toleranz eingehalten"), panel)
     one.choose("Programm", "CUT_PINION.MPF")
     one.press("Virtuell fräsen")
