@@ -151,6 +151,6 @@ def _check_of(given: BevelSet, pinion: Member, gear: Member, name: str) -> None:
     ):
         if of_data != of_set:
             raise InputError(f"{name}: {key} = {of_data!r}: must be {of_set!r}, as the set has it")
-    width, of_set = pinion.blank.face_width, set_pinion.blank.face_width
-    if not math.isclose(width, of_set, rel_tol=_SAME_WIDTH):
-        raise InputError(f"{name}: face_width of {width:g} mm: must be {of_set:g} mm, as the set has it")
+    width, set_width = pinion.blank.face_width, set_pinion.blank.face_width
+    if not math.isclose(width, set_width, rel_tol=_SAME_WIDTH):
+        raise InputError(f"{name}: face_width of {width:g} mm: must be {set_width:g} mm, as the set has it")
