@@ -25,6 +25,9 @@ from gearmath.specs.blank_data import BlankData
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
 
+#: Face widths are the same within this, for sheets in inches are rounded.
+_SAME_WIDTH = 1e-3
+
 Flanks = dict[str, PinionFlank | DesignedFlank]
 
 
@@ -68,7 +71,8 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
     pinion, gear = (_with_edge(start.member(member), rounds[member]) for member in ("pinion", "gear"))
     gear = rounded_gear(gear, data.shop)
     if given is not None:
-        pinion, gear = _on_blank_of(given.member("pinion"), pinion, name), given.member("gear")
+        _check_of(given, pinion, gear, name)
+        pinion, gear = pinion.model_copy(update={"blank": given.member("pinion").blank}), given.member("gear")
         if data.backlash is None:
             backlash = mean_backlash(given.member("pinion"), gear)
     requests = {side: _asked(data, side, pinion, gear, start.shaft_angle, along) for side in OWN}
@@ -135,9 +139,18 @@ def _with_edge(member: Member, radius: float) -> Member:
     return member.model_copy(update=edged)
 
 
-def _on_blank_of(given: Member, start: Member, name: str) -> Member:
-    """The crown gear's pinion on the blank of a given one. Raises InputError where the data are of another pair."""
-    for key, of_data, of_set in (("pinion_teeth", start.teeth, given.teeth), ("hand", start.hand, given.hand)):
+def _check_of(given: BevelSet, pinion: Member, gear: Member, name: str) -> None:
+    """Raises InputError where the data, of which the crown gear's members are, say something else than a given set."""
+    set_pinion, set_gear = given.member("pinion"), given.member("gear")
+    for key, of_data, of_set in (
+        ("pinion_teeth", pinion.teeth, set_pinion.teeth),
+        ("wheel_teeth", gear.teeth, set_gear.teeth),
+        ("hand", pinion.hand, set_pinion.hand),
+        ("cutter.process", gear.process, set_gear.process),
+        ("gear.generation", gear.generation, set_gear.generation),
+    ):
         if of_data != of_set:
             raise InputError(f"{name}: {key} = {of_data!r}: must be {of_set!r}, as the set has it")
-    return start.model_copy(update={"blank": given.blank})
+    width, set_width = pinion.blank.face_width, set_pinion.blank.face_width
+    if not math.isclose(width, set_width, rel_tol=_SAME_WIDTH):
+        raise InputError(f"{name}: face_width of {width:g} mm: must be {set_width:g} mm, as the set has it")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
@@ -113,8 +114,30 @@ def test_what_cannot_be_is_refused_with_what_binds(refused, written, tmp_path, m
     assert not target.exists()
 
 
-def test_gear_of_another_pair_is_refused(refused, written, tmp_path):
-    refused(r"pinion_teeth = 12: must be 7", "design", written(), "--from", "spiral_7x43.toml", "-o", tmp_path / "s")
+@pytest.mark.parametrize(
+    ("of_set", "other", "sentence"),
+    [
+        ("spiral_7x43.toml", None, "pinion_teeth = 12: must be 7"),
+        ("nasa_tp3096_12x36.toml", ("wheel_teeth = 36", "wheel_teeth = 37"), "wheel_teeth = 37: must be 36"),
+        ("nasa_tp3096_12x36.toml", ("face_width = 25.4", "face_width = 20"), "face_width of 20 mm: must be 25.4 mm"),
+        (
+            "nasa_tp3096_12x36.toml",
+            ("[cutter]", '[gear]\ngeneration = "formate"\n[cutter]'),
+            "gear.generation = 'formate': must be 'generated'",
+        ),
+        (
+            "nasa_tp3096_12x36.toml",
+            ("[cutter]", '[pinion]\ncutting = "completing"\n[cutter]\nprocess = "face_hobbing"\nblade_groups = 11'),
+            "cutter.process = 'face_hobbing': must be 'face_milling'",
+        ),
+    ],
+)
+def test_gear_of_another_pair_is_refused(refused, written, tmp_path, of_set, other, sentence):
+    """What the file says of the pair and the set has otherwise would be left out without a word."""
+    path = written()
+    if other:
+        path.write_text(path.read_text("utf-8").replace(*other), "utf-8")
+    refused(re.escape(sentence), "design", path, "--from", of_set, "-o", tmp_path / "s")
 
 
 def test_cutter_nearest_to_the_mean_cone_distance_is_chosen_from_the_list(command, written, tmp_path):
