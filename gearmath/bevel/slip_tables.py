@@ -101,11 +101,7 @@ def of_counts(values: Values) -> Iterator[Slip]:
     """Tooth counts, the shaft angle, and how a member is cut."""
     for name in MEMBERS:
         teeth = values.get(name, {}).get("teeth")
-        if (
-            isinstance(teeth, int)
-            and 0 < teeth < _MOST_TEETH
-            and len([each for each in MEMBERS if each in values]) == len(MEMBERS)
-        ):
+        if isinstance(teeth, int) and 0 < teeth < _MOST_TEETH and all(each in values for each in MEMBERS):
             for other in dict.fromkeys((teeth + 1, teeth - 1, int(str(teeth)[::-1]))):
                 yield f"{name}.teeth = {other}, not {teeth}", changed(values, ((name, "teeth"), other))
     if is_number(values.get("shaft_angle")) and values["shaft_angle"] != 90:

@@ -20,7 +20,7 @@ from gearmath.quality.uncertainty.corrected import uncertain_correction
 from gearmath.quality.uncertainty.figures import figures_of
 from gearmath.quality.uncertainty.propagation import Uncertain, uncertain_figures
 from gearmath.quality.uncertainty.source import covariance_of
-from gearmath.specs.point_text import PointText, read_point_text
+from gearmath.specs.point_text import PointText
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -196,19 +196,3 @@ def foreign_points(
     pair, name = member.gear_set.spec, member.name
     found = foreign_file(parts, frame or Frame(), pair, name, phase, progress, leave_out)
     return ForeignPoints(Measurement(member, found.file), found)
-
-
-def load_points(
-    paths: Mapping[tuple[str, int], str | Path],
-    member: Member,
-    unit: str = "mm",
-    frame: Frame | None = None,
-    phase: Phase = "common",
-    leave_out: bool = False,
-) -> Measurement:
-    """Points of another measuring machine; see :meth:`gearmath.Measurement.from_points`."""
-    texts = {where: read_point_text(Path(path), unit) for where, path in paths.items()}
-    made = foreign_points(texts, member, frame, phase, leave_out)
-    if made.found.gaps and not leave_out:
-        raise InputError(f"{made.found.gaps[0]}; leave_out takes the other points")
-    return made.measurement

@@ -60,9 +60,11 @@ class Measurement:
 
         By default those of the last run, which must be whole. Raises InputError naming file and point.
         """
-        from gearmath.front.probing import load_touches
+        from gearmath.front.machines import load_machine, load_probe
+        from gearmath.quality.evaluation.measured_run import measured_run
 
-        return load_touches(path, pair, machine, probe, run)
+        made = measured_run(Path(path), pair.spec, (machine or load_machine()).spec, probe or load_probe(), run)
+        return Measurement(pair.member(made.touches.member), made.file)
 
     @staticmethod
     def from_points(
@@ -79,9 +81,14 @@ class Measurement:
         turned in common, each, or kept; ``leave_out`` takes files with gaps; docs/files.md. Raises InputError naming
         file and line.
         """
-        from gearmath.front.judged import load_points
+        from gearmath.front.judged import foreign_points
+        from gearmath.specs.point_text import read_point_text
 
-        return load_points(paths, member, unit, frame, phase, leave_out)
+        texts = {where: read_point_text(Path(path), unit) for where, path in paths.items()}
+        made = foreign_points(texts, member, frame, phase, leave_out)
+        if made.found.gaps and not leave_out:
+            raise InputError(f"{made.found.gaps[0]}; leave_out takes the other points")
+        return made.measurement
 
     @property
     def deviation(self) -> np.ndarray:

@@ -14,7 +14,6 @@ from gearmath.front.machines import Machine, load_machine, load_probe
 from gearmath.front.measured import Measurement
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
-from gearmath.front.sets import GearSet
 from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import readable
@@ -32,7 +31,6 @@ from gearmath.quality.calibration.axes import AxisCalibration
 from gearmath.quality.calibration.tip import Tip
 from gearmath.quality.evaluation.calibrated_run import calibrated_run
 from gearmath.quality.evaluation.file_checks import check_belongs, check_points
-from gearmath.quality.evaluation.measured_run import measured_run
 from gearmath.quality.evaluation.nominal import nominal_rows
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.measurement import MOST_TOUCHES
@@ -197,19 +195,6 @@ def calibrating(
     found = judge_calibration(read, target, machine.spec, probe, progress)
     refuse_faults(found, target, "the program is not written")
     return ProbingProgram(None, machine, probe, name, text, cycle=cycle)
-
-
-def load_touches(
-    path: str | Path,
-    pair: GearSet,
-    machine: Machine | None = None,
-    probe: Calibration | None = None,
-    run: int | None = None,
-) -> Measurement:
-    """Raw touches as a measurement; see :meth:`gearmath.Measurement.from_touches`."""
-    machine, probe = machine or load_machine(), probe or load_probe()
-    made = measured_run(Path(path), pair.spec, machine.spec, probe, run)
-    return Measurement(pair.member(made.touches.member), made.file)
 
 
 def calibrate(

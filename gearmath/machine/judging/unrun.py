@@ -19,8 +19,8 @@ from gearmath.machine.judging.faults import Fault
 _SKIP = re.compile(r"[ \t]*/")
 _SAYING = frozenset(("MSG", "SETAL", "STOPRE"))
 #: What a block may do that is not run, and one that is left out at times, where the program stops and elsewhere.
-_STOPPING, _WAITING = {"N", "program stop", "program end"}, {"N", "program stop"}
-_NOTHING = {"N"}
+_ENDS = {"program stop", "program end"}
+_STOPPING, _WAITING, _NOTHING = {"N", *_ENDS}, {"N", "program stop"}, {"N"}
 _LINUXCNC_STOPS = frozenset(("", "M0", "M2", "M30"))
 
 
@@ -62,7 +62,7 @@ def _flat(body: Iterable[Statement], inside: bool) -> Iterator[tuple[Statement, 
     for part in body:
         if isinstance(part, Branch):
             for some in (part.then, part.otherwise):
-                stops = any(isinstance(one, Block) and {"program stop", "program end"} & set(one.words) for one in some)
+                stops = any(isinstance(one, Block) and _ENDS & set(one.words) for one in some)
                 yield from _flat(some, inside or stops)
         elif isinstance(part, Loop):
             yield from _flat(part.body, inside)
@@ -73,7 +73,7 @@ def _flat(body: Iterable[Statement], inside: bool) -> Iterator[tuple[Statement, 
 def _only(part: Statement, words: set[str]) -> bool:
     """Whether a statement does nothing but what ``words`` do, or says something."""
     if isinstance(part, Command):
-        return part.name in _SAYING and (part.name != "SETAL" or words is _STOPPING)
+        return part.name in _SAYING and (part.name != "SETAL" or words >= _ENDS)
     if not isinstance(part, Block) or part.assignments:
         return False
     return set(part.words) <= words | ({"dwell", "F"} if "dwell" in part.words else set())

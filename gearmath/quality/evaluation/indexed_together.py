@@ -1,7 +1,7 @@
 """Neighboring teeth that are indexed wrong by the same arc.
 
-A quarter of a turn that stands off the rest draws mean and first harmonic towards itself, so that no tooth of it looks
-off by itself. So every run of neighbors is fitted with the harmonic as one step; nothing is left out for it.
+Where they are many, a quarter of all teeth, they shift mean and first harmonic, and none of them shows as an outlier.
+So a step over each run of neighbors is fitted together with mean and harmonic; no tooth is left out.
 """
 
 from __future__ import annotations

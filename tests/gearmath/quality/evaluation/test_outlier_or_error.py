@@ -116,7 +116,7 @@ def test_neighbors_indexed_by_the_same_arc_are_named(gear_set, measured, places,
 
 
 def test_no_neighbors_are_named_of_an_uneven_pitch(gear_set, measured):
-    """Random arcs of 25 um, or a second harmonic of 60 um: no run of teeth stands off a rest that is even."""
+    """Random arcs of 25 um, or a second harmonic of 60 um: no run of teeth is shifted by a step."""
     rng = np.random.default_rng(3)
     turns = 2 * math.pi * np.arange(36) / 36
     for arcs in (25 * UM * rng.standard_normal(36), 60 * UM * np.sin(2 * turns)):
