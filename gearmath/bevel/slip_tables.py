@@ -77,16 +77,12 @@ def _of_units(values: Values) -> Iterator[Slip]:
     """All lengths or angles of blanks, of settings or of a whole member in another unit, of both members or of one."""
     of_all = tuple(name for name in MEMBERS if isinstance(values.get(name), dict))
     machine = ("the settings of the machine and the blade radius", FLANKS, SETTINGS)
-    parts = (("the settings", FLANKS, None), machine, ("the blanks", ("blank",), None))
-    one = (
-        ("the settings", FLANKS, None),
-        machine,
-        ("the blank", ("blank",), None),
-        ("all tables", ("blank", *FLANKS), None),
-    )
     for members in (of_all, *((name,) for name in of_all if len(of_all) > 1)):
         where = "" if members == of_all else f" of the {members[0]}"
-        for (unit, what, factor, how), (words, names, keys) in itertools.product(_UNITS, parts if not where else one):
+        blank = ("the blank" if where else "the blanks", ("blank",), None)
+        whole = (("all tables", ("blank", *FLANKS), None),) if where else ()  # of both: that is the key unit
+        parts = (("the settings", FLANKS, None), machine, blank, *whole)
+        for (unit, what, factor, how), (words, names, keys) in itertools.product(_UNITS, parts):
             places = [
                 ((*place, key), value * factor)
                 for place, table in tables_of({name: values[name] for name in members}, *names)
