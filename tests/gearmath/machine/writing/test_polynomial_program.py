@@ -50,17 +50,26 @@ def made(name, member, machine, job):
 
 def rolls(text):
     """Each roll of a text: its start X Y Z A B, and for every block the values of PO by axis, and its time."""
-    found, now = [], {}
+    found, now, inverse = [], {}, False
     for line in text.splitlines():
-        if "G93 POLY " in line:
+        inverse = (inverse or "G93" in line.split()) and "G94" not in line.split()
+        if " POLY " in line and not line.startswith(";"):
             written = {a or b: [float(v) for v in values.split(",")] for a, b, values in WORD.findall(line)}
-            found[-1][1].append((written, 60.0 / float(re.search(r" F([0-9.]+)", line)[1])))
+            feed, (start, blocks) = float(re.search(r" F([0-9.]+)", line)[1]), found[-1]
+            way = 1.0 if inverse else way_of_last(start, [*blocks, (written, 0.0)])
+            blocks.append((written, 60.0 * way / feed))
             continue
         for axis, value in re.findall(r"\b([XYZAB])(?:=DC\()?(-?[0-9.]+)", line):
             now[axis] = float(value)
         if "G94 G1 Z" in line:
-            found.append(([now[axis] for axis in "XYZAB"], []))
-    return [(np.array(start), blocks) for start, blocks in found if blocks]
+            found.append((np.array([now[axis] for axis in "XYZAB"]), []))
+    return [(start, blocks) for start, blocks in found if blocks]
+
+
+def way_of_last(start, blocks):
+    """How long [mm] the last block of a roll is, to a feed in mm/min: a degree counts as 1 mm."""
+    way = positions_of(start, blocks, np.linspace(0.0, 1.0, 201))[-201:] * [1, 1, 1, 180 / math.pi, 180 / math.pi]
+    return float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
 
 
 def positions_of(start, blocks, u):
