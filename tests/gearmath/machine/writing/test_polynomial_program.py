@@ -49,12 +49,20 @@ def made(name, member, machine, job):
 
 
 def rolls(text):
-    """Each roll of a text: its start X Y Z A B, and for every block the values of PO by axis, and its time."""
-    found, now, inverse = [], {}, False
+    """Each roll of a text: its start X Y Z A B, and for every block the values of PO by axis, and its time.
+
+    POLY and G93 stay in force; where POLY is not, only the ends of PO count.
+    """
+    found, now, inverse, bent = [], {}, False, False
     for line in text.splitlines():
-        inverse = (inverse or "G93" in line.split()) and "G94" not in line.split()
-        if " POLY " in line and not line.startswith(";"):
+        if line.startswith(";"):
+            continue
+        words = set(line.split())
+        inverse = (inverse or "G93" in words) and "G94" not in words
+        bent = (bent or "POLY" in words) and not words & {"G0", "G1"}
+        if WORD.search(line):
             written = {a or b: [float(v) for v in values.split(",")] for a, b, values in WORD.findall(line)}
+            written = written if bent else {axis: values[:1] for axis, values in written.items()}
             feed, (start, blocks) = float(re.search(r" F([0-9.]+)", line)[1]), found[-1]
             way = 1.0 if inverse else way_of_last(start, [*blocks, (written, 0.0)])
             blocks.append((written, 60.0 * way / feed))
