@@ -1,7 +1,7 @@
 """Every wrong digit, sign, word and block of the programs of the mutation test, which itself tries a sample of them.
 
 ``python tests/all_mutants.py FILE.jsonl [SET-MEMBER ...]`` adds a line of counts for every batch to the file, goes on
-behind the last one, and prints the sums. All of them take about half an hour of CPU time.
+behind the last one, and prints the sums. All of them, 1.3 million, take about a quarter of an hour of CPU time.
 """
 
 from __future__ import annotations

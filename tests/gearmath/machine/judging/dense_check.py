@@ -131,6 +131,31 @@ def rows_of(lines, states=None, words=Words):
     return rows
 
 
+@dataclass(frozen=True)
+class Blade:
+    """One cone of a cutter, outer (1) or inner (-1): point radius, tangent of the pressure angle, and edge radius."""
+
+    side: int
+    radius: float
+    slope: float
+    edge: float
+
+    @property
+    def straight(self):
+        """How far above the tip its straight part begins, and how far along the cone that is from its end."""
+        tangent = self.edge * (np.hypot(1.0, self.slope) - self.slope)
+        return tangent / np.hypot(1.0, self.slope), tangent
+
+    def reach(self, height):
+        """Radii that it reaches at heights over the tip."""
+        found = self.radius + self.side * self.slope * height
+        low = height < self.straight[0]
+        if low.any():
+            arc = np.sqrt(np.maximum(self.edge**2 - (self.edge - height[low]) ** 2, 0.0))
+            found[low] = self.radius - self.side * (self.straight[1] - arc)
+        return found
+
+
 @dataclass
 class Dense:
     """What a right program does, and whether another one that differs in a few blocks does harm."""
@@ -160,8 +185,11 @@ class Dense:
                 np.concatenate([one.point for one in found]),
                 np.concatenate([one.normal for one in found]),
             )
-            # what lies beyond the ends of the blades is no flank: the sharp tip alone comes there, in narrow scallops
-            reached = np.concatenate([one.contact[:, 0] >= 0.0 for one in found])
+            # what lies beyond the ends of the blades is no flank: the edge alone comes there, in narrow scallops
+            straight = {flank: self.blade(flank).straight[1] for flank in cut.flanks}
+            reached = np.concatenate(
+                [one.contact[:, 0] >= straight[flank] for flank, one in zip(cut.flanks, found, strict=True)]
+            )
             point, normal = self.points[cut.tool]
             self.above[cut.tool] = (point + 1.1 * TOLERANCE * normal)[reached]
         for tool, (point, normal) in self.points.items():  # of the space and of both of its neighbors
@@ -181,16 +209,18 @@ class Dense:
         self.face = np.stack([np.outer(r, np.cos(turn)), np.outer(r, np.sin(turn)), np.outer(z, turn * 0 + 1)], -1)
         self.face = self.face.reshape(-1, 3)
 
+    def blade(self, flank):
+        spec = self.spec.flank(flank)
+        slope = float(np.tan(np.radians(spec.blade_pressure_angle)))
+        return Blade(SIDES[flank], spec.blade_point_radius, slope, spec.blade_edge_radius or 0.0)
+
     def blades(self, tool):
-        """Outer and inner cone: point radius and tangent of the pressure angle; of one flank only, a narrow one."""
+        """Outer and inner cone; of one flank only, a narrow one."""
         cut = next(cut for cut in Cut.of(self.spec, self.member) if cut.tool == tool)
-        sides = {SIDES[flank]: self.spec.flank(flank) for flank in cut.flanks}
-        given = {
-            side: (one.blade_point_radius, np.tan(np.radians(one.blade_pressure_angle))) for side, one in sides.items()
-        }
+        given = {SIDES[flank]: self.blade(flank) for flank in cut.flanks}
         if len(given) == 1:
-            ((side, (radius, slope)),) = given.items()
-            given[-side] = radius - side * 0.1, slope
+            ((side, own),) = given.items()
+            given[-side] = Blade(-side, own.radius - side * 0.1, own.slope, 0.0)
         return given[1], given[-1]
 
     def inside(self, poses, tool, points, up=0.0):
@@ -201,28 +231,30 @@ class Dense:
         pose, point = np.nonzero(found)
         height, away = height[pose, point], points[point] - centre[pose]
         radius = np.sqrt(np.maximum(np.einsum("nk,nk->n", away, away) - height**2, 0.0))
-        (r, slope), (hole, inner) = self.blades(tool)
-        found[pose, point] = (radius < r + slope * height) & (radius > hole - inner * height)
+        outer, inner = self.blades(tool)
+        found[pose, point] = (radius < outer.reach(height)) & (radius > inner.reach(height))
         return found
 
     def gaps(self, poses, tool, points):
-        """How far points (p,3) are out of the blades at poses (m,5), in height or radius; negative inside (m,p)."""
+        """How far points (p,3) are out of the cones of the blades at poses (m,5), in height or radius; negative inside
+        (m,p). What is out of them is out of the blades, whose edges are rounded within them."""
         centre, axis = self.witness.vertical_pose(poses, self.height)
         height = (centre * axis).sum(axis=1)[:, None] - axis @ points.T
         # squares of 1e4 mm2 lose 1e-12 mm2: nothing at the blades, which are far from the axis
         square = (points**2).sum(axis=1) - 2 * centre @ points.T + (centre**2).sum(axis=1)[:, None] - height**2
         radius = np.sqrt(np.maximum(square, 0.0))
-        (r, slope), (hole, inner) = self.blades(tool)
-        return np.maximum(-height, np.maximum(radius - r - slope * height, hole - inner * height - radius))
+        outer, inner = self.blades(tool)
+        out = radius - outer.radius - outer.slope * height, inner.radius - inner.slope * height - radius
+        return np.maximum(-height, np.maximum(*out))
 
     def comes(self, tool, off):
         """By how much :meth:`gaps` change, at most, where the ends of blocks go ``off`` (m,5).
 
         A pose moves a point, as the cutter sees it, by no more than X Y Z and its distance from the axes times A and B.
         """
-        off, ((_, slope), (_, inner)) = np.abs(off).max(axis=0), self.blades(tool)
+        off, slope = np.abs(off).max(axis=0), max(blade.slope for blade in self.blades(tool))
         away = float(np.linalg.norm(self.under[tool], axis=1).max())
-        return (off[:3].sum() + off[3:].sum() * away) * (1.0 + max(slope, inner))
+        return (off[:3].sum() + off[3:].sum() * away) * (1.0 + slope)
 
     def within_reach(self, ends, tool, turn, right):
         """The points under the flanks that the blades can get to in a block, in place of the one to row ``right``."""
@@ -409,12 +441,24 @@ class Dense:
             there = right.get(id(b))
             if there is not None and self.space_of(self.rows[there]) != space:
                 there = None
-            some = self.within_reach(ends, tool, turn, there)
-            steps = int(np.clip(way / 0.04, 9, 400))
-            poses = ends[0] + np.linspace(0, 1, steps)[:, None] * (ends[1] - ends[0]) - turn
-            if len(some) and self.inside(poses, tool, some).any():
+            if self.gouges(ends, tool, turn, there, int(np.clip(way / 0.04, 9, 400))):
                 return "gouge"
         return None if standing else self.left(new, first, behind)
+
+    def gouges(self, ends, tool, turn, right, steps):
+        """Whether a block with ``ends`` (2,5), in the place of the one to row ``right``, cuts under the flanks."""
+        some = self.within_reach(ends, tool, turn, right)
+        poses = ends[0] + np.linspace(0, 1, steps)[:, None] * (ends[1] - ends[0]) - turn
+        return bool(len(some)) and bool(self.inside(poses, tool, some).any())
+
+    def gouging(self, steps=FINE_POSES):
+        """The lines of the right program whose blocks cut under the flanks: none, or this check takes harmless changes
+        for harm."""
+        for right, (a, b) in enumerate(itertools.pairwise(self.rows), start=1):
+            if not b.rapid and a.tool == b.tool:
+                ends, turn = self.axes[right - 1 : right + 1], self.turn_of(self.space_of(b))
+                if self.gouges(ends, b.tool, turn, right, steps):
+                    yield b.line
 
     def left(self, new, first, behind):
         """Whether metal stays that the blocks from ``first`` to ``behind`` took away: 8 blocks around are looked at."""

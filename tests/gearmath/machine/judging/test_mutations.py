@@ -23,7 +23,7 @@ from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.toml import bundled
-from tests.gearmath.machine.judging.dense_check import MACHINE, TOLERANCE, Dense
+from tests.gearmath.machine.judging.dense_check import MACHINE, TOLERANCE, Blade, Dense
 from tests.gearmath.machine.judging.mutants import others, sample_of, trial, wrong_digits
 from tests.gearmath.machine.judging.whole_program import Whole
 
@@ -55,6 +55,28 @@ def test_no_wrong_word_of_a_whole_program_is_left_unseen(case):
     print("; ".join(f"{kind} {count[kind, 'seen']} + {count[kind, 'harmless']}" for kind in kinds))
     assert unseen == []
     assert sum(count[kind, "seen"] for kind in kinds) > 100
+
+
+@pytest.mark.slow
+def test_dense_check_finds_no_harm_in_the_right_program(case):
+    """Where the edges of blades are rounded, a sharp cutter would cut under the foot of the flank, in the fillet."""
+    _, dense = case
+    assert list(dense.gouging()) == []
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_edges_of_dense_check_touch_tip_plane_and_cone(side):
+    """The circle in the corner of two lines lies as far from each as from the other, and touches where it ends."""
+    angle, edge = np.radians(15.75), 0.5
+    blade = Blade(side, 115.9, np.tan(angle), edge)
+    height = np.linspace(0.0, 1.0, 2001)
+    within = side * (115.9 - blade.reach(height))  # from the end of the cone into the blade
+    corner = (np.pi / 2 + angle) / 2  # half of the angle between tip plane and cone, in the blade
+    arc = height < edge * (1 - np.sin(angle))
+    away = np.hypot(within[arc] - edge / np.tan(corner), height[arc] - edge)
+    np.testing.assert_allclose(away, edge, atol=1e-12)
+    np.testing.assert_allclose(within[~arc], -height[~arc] * np.tan(angle), atol=1e-12)
+    assert np.abs(np.diff(within, 2)[100:]).max() < 1e-5
 
 
 def moved(whole, dense, line, new):

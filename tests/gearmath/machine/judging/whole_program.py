@@ -26,14 +26,13 @@ from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.state import Setup
 from gearmath.machine.control.tree import Block, Branch, Command
 from gearmath.machine.judging.alike import alike
-from gearmath.machine.judging.block_check import _height as height_on_blade
-from gearmath.machine.judging.block_check import watched_flanks
 from gearmath.machine.judging.collision import collisions, rapid_approaches, standing_retracts
 from gearmath.machine.judging.cut import beside_limit, beside_the_path, distances_aside, metal_left, off_the_path
 from gearmath.machine.judging.feed import feed_limits, feeds
 from gearmath.machine.judging.motion import speeds, spindle, travel
 from gearmath.machine.judging.program import faults_of
 from gearmath.machine.judging.stated import Stated
+from gearmath.machine.judging.watched_lines import height_on_blade, watched_flanks
 from gearmath.machine.milling.mill import expose
 from gearmath.machine.milling.removal import entry_along_block
 from gearmath.machine.milling.run import runs_of

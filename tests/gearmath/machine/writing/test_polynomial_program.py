@@ -49,18 +49,35 @@ def made(name, member, machine, job):
 
 
 def rolls(text):
-    """Each roll of a text: its start X Y Z A B, and for every block the values of PO by axis, and its time."""
-    found, now = [], {}
+    """Each roll of a text: its start X Y Z A B, and for every block the values of PO by axis, and its time.
+
+    POLY and G93 stay in force; where POLY is not, only the ends of PO count.
+    """
+    found, now, inverse, bent = [], {}, False, False
     for line in text.splitlines():
-        if "G93 POLY " in line:
+        if line.startswith(";"):
+            continue
+        words = set(line.split())
+        inverse = (inverse or "G93" in words) and "G94" not in words
+        bent = (bent or "POLY" in words) and not words & {"G0", "G1"}
+        if WORD.search(line):
             written = {a or b: [float(v) for v in values.split(",")] for a, b, values in WORD.findall(line)}
-            found[-1][1].append((written, 60.0 / float(re.search(r" F([0-9.]+)", line)[1])))
+            written = written if bent else {axis: values[:1] for axis, values in written.items()}
+            feed, (start, blocks) = float(re.search(r" F([0-9.]+)", line)[1]), found[-1]
+            way = 1.0 if inverse else way_of_last(start, [*blocks, (written, 0.0)])
+            blocks.append((written, 60.0 * way / feed))
             continue
         for axis, value in re.findall(r"\b([XYZAB])(?:=DC\()?(-?[0-9.]+)", line):
             now[axis] = float(value)
         if "G94 G1 Z" in line:
-            found.append(([now[axis] for axis in "XYZAB"], []))
-    return [(np.array(start), blocks) for start, blocks in found if blocks]
+            found.append((np.array([now[axis] for axis in "XYZAB"]), []))
+    return [(start, blocks) for start, blocks in found if blocks]
+
+
+def way_of_last(start, blocks):
+    """How long [mm] the last block of a roll is, to a feed in mm/min: a degree counts as 1 mm."""
+    way = positions_of(start, blocks, np.linspace(0.0, 1.0, 201))[-201:] * [1, 1, 1, 180 / math.pi, 180 / math.pi]
+    return float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
 
 
 def positions_of(start, blocks, u):
@@ -346,7 +363,6 @@ class RightProgram:
         flanks = [(cut,) if isinstance(cut, str) else cut for cut in self.cuts]
         self.points = {flank: self._points(flank) for some in flanks for flank in some}
         self.flanks = flanks
-        self.right = rolls(self.text)
         assert self.harm(self.text) is None
 
     def _points(self, flank):
@@ -357,10 +373,8 @@ class RightProgram:
     def harm(self, text):
         """What is wrong with a text, or None; what cannot be read is wrong."""
         try:
-            passes = rolls(text)
-            if [len(blocks) for _, blocks in passes] != [len(blocks) for _, blocks in self.right]:
-                return "number of blocks"
-            for (start, blocks), flanks in zip(passes, self.flanks, strict=True):
+            # a block that is there twice goes out and back to its end: what that cuts is asked like the rest
+            for (start, blocks), flanks in zip(rolls(text), self.flanks, strict=True):
                 every = self.poses(start, blocks)
                 for axes, (_, seconds) in zip(every, blocks, strict=True):
                     if found := self.too_fast(axes, seconds):
