@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 
 from gearmath.bevel.design.start import TENTH
-from gearmath.bevel.ridge import RIDGE, ridge_of_tips
+from gearmath.bevel.ridge import ridge_of_tips
 from gearmath.specs.bevel_set import FLANKS, Member
+
+#: A ridge so low, in parts of the clearance, costs the mate nothing.
+_LOW = 0.1
 
 
 def with_edge(member: Member, radius: float) -> Member:
@@ -17,13 +20,13 @@ def with_edge(member: Member, radius: float) -> Member:
 
 def with_room_for_tips(member: Member) -> Member:
     """A hobbed member with the largest edge radius, in tenths of a millimetre and not above its own, with which its
-    tips leave no ridge in the root, or else the least one: sharp edges leave scallops in their fillets."""
+    tips leave next to no ridge in the root, or else the least one: sharp edges leave scallops in their fillets."""
     best, lowest = member, math.inf
     for tenths in range(round(member.concave.blade_edge_radius / TENTH), 0, -1):
         tried = with_edge(member, tenths * TENTH)
         height = ridge_of_tips(tried)
         if height <= lowest:
             best, lowest = tried, height
-        if lowest <= RIDGE:
+        if lowest <= _LOW * member.blank.clearance:
             break
     return best
