@@ -8,8 +8,10 @@ from gearmath.bevel.design.start import TENTH
 from gearmath.bevel.ridge import ridge_of_tips
 from gearmath.specs.bevel_set import FLANKS, Member
 
-#: A ridge so low, in parts of the clearance, costs the mate nothing.
-_LOW = 0.1
+#: Highest ridge that the tips may leave in the root, in parts of the clearance; and one that costs the mate nothing.
+HIGHEST_RIDGE, _LOW = 0.5, 0.1
+#: Tenths below which an edge leaves scallops of a micrometre in its fillet: only where the ridge would be too high.
+_SHARP = 2
 
 
 def with_edge(member: Member, radius: float) -> Member:
@@ -20,13 +22,13 @@ def with_edge(member: Member, radius: float) -> Member:
 
 def with_room_for_tips(member: Member) -> Member:
     """A hobbed member with the largest edge radius, in tenths of a millimetre and not above its own, with which its
-    tips leave next to no ridge in the root, or else the least one: sharp edges leave scallops in their fillets."""
+    tips leave next to no ridge in the root, or else a sharper one with which the ridge is accepted."""
     best, lowest = member, math.inf
     for tenths in range(round(member.concave.blade_edge_radius / TENTH), 0, -1):
         tried = with_edge(member, tenths * TENTH)
         height = ridge_of_tips(tried)
         if height <= lowest:
             best, lowest = tried, height
-        if lowest <= _LOW * member.blank.clearance:
+        if lowest <= (_LOW if tenths > _SHARP else HIGHEST_RIDGE) * member.blank.clearance:
             break
     return best

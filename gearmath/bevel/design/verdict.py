@@ -15,6 +15,7 @@ from gearmath.bevel.contact.report import ARCSEC, side_mesh
 from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
 from gearmath.bevel.design.route import Designed
+from gearmath.bevel.design.tip_edges import HIGHEST_RIDGE
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.ridge import ridge
 from gearmath.bevel.tooth import mean_backlash, space_widths, tooth_space
@@ -24,8 +25,6 @@ from gearmath.specs.bevel_set import Member
 
 #: Least top land, in mean normal modules.
 LEAST_LAND = 0.2
-#: Highest ridge that the tips of hobbing blades may leave in the root, in parts of the clearance.
-HIGHEST_RIDGE = 0.5
 #: Second derivative of the transmission error at the vertex: what it may be off, unless the shop's steps make it so.
 PARABOLA = 0.02
 _PLACES = ("toe", "mean", "heel")
