@@ -120,7 +120,7 @@ def _between(one: np.ndarray, up: np.ndarray, other: np.ndarray, up_other: np.nd
     at = np.linspace(0.0, across_other[0], _FINE)
     left = np.interp(at, across, up, right=math.inf)
     left_by_other = np.interp(-at, -across_other, up_other, right=math.inf)
-    return float(np.minimum(left, left_by_other).max()) - max(up[0], up_other[0])
+    return float(np.minimum(left, left_by_other).max() - max(up[0], up_other[0]))
 
 
 def _far_edge(member: Member, flank: str, width: float) -> tuple[np.ndarray, np.ndarray]:
