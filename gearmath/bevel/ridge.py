@@ -15,6 +15,7 @@ from gearmath.bevel.check_blade import tip_taken
 from gearmath.bevel.generation import solve_curve, solve_section
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.root import ACROSS, ENDS, Widths, above_root, cone_distances, mean_place, root_trace
+from gearmath.bevel.tip_room import corner_wall, tip_lengths
 from gearmath.bevel.tooth import ToothSpace, sharp_edged
 from gearmath.bevel.turning import half_turn
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
@@ -67,17 +68,33 @@ def other_side(member: Member, flank: str, width: float) -> Flank:
     )
 
 
-def ridge(member: Member, space: ToothSpace) -> float:
+def ridge(member: Member, space: ToothSpace | None) -> float:
     """Height [mm] over the root beside it of the highest ridge between the cuts of both flanks, from toe to heel.
 
-    0 where the flats of both tips meet, and where one cutter cuts both flanks; infinite where the rounded edges do not
-    meet either, and a fin stays. ``space`` is the nominal space of the member, for which point widths are chosen.
+    0 where the flats of both tips meet, and where one milling cutter cuts both flanks; infinite where what the tips
+    end in does not meet either, and a fin stays. ``space`` is the nominal space of a member that is cut flank by flank,
+    for which point widths are chosen.
     """
-    if member.cutting != "fixed_setting":
+    if member.process == "face_hobbing":
+        return ridge_of_tips(member)
+    if member.cutting != "fixed_setting" or space is None:
         return 0.0
     uncorrected = {flank: member.flank(flank).model_copy(update={"design": None}) for flank in FLANKS}
     as_cut = member.model_copy(update=uncorrected)
     edges = {flank: _far_edge(as_cut, flank, point_width(member, flank, space.slots[flank])) for flank in FLANKS}
+    return _highest(edges)
+
+
+def ridge_of_tips(member: Member) -> float:
+    """The same of a face hobbed member: between what the ends of outer and inner tips leave."""
+    nominal = {flank: member.flank(flank).model_copy(update={"design": None}) for flank in FLANKS}
+    as_cut = member.model_copy(update={flank: sharp_edged(spec) for flank, spec in nominal.items()})
+    lengths = tip_lengths(as_cut, "member")
+    return _highest({flank: corner_wall(as_cut, flank, lengths[flank]) for flank in FLANKS})
+
+
+def _highest(edges: dict[str, tuple[np.ndarray, np.ndarray]]) -> float:
+    """The highest ridge of all places from toe to heel."""
     highest = 0.0
     for place in range(ENDS[0], ENDS[-1] + 1):
         (one, other), (up, up_other) = ([edges[flank][kind][:, place] for flank in FLANKS] for kind in (0, 1))
@@ -103,7 +120,7 @@ def _between(one: np.ndarray, up: np.ndarray, other: np.ndarray, up_other: np.nd
     at = np.linspace(0.0, across_other[0], _FINE)
     left = np.interp(at, across, up, right=math.inf)
     left_by_other = np.interp(-at, -across_other, up_other, right=math.inf)
-    return float(np.minimum(left, left_by_other).max()) - max(up[0], up_other[0])
+    return float(np.minimum(left, left_by_other).max() - max(up[0], up_other[0]))
 
 
 def _far_edge(member: Member, flank: str, width: float) -> tuple[np.ndarray, np.ndarray]:

@@ -136,6 +136,11 @@ def cone_distances(blank: Blank) -> tuple[tuple[float, float], np.ndarray]:
     return _along(blank), _heights(blank)[0]
 
 
+def root_height(blank: Blank) -> np.ndarray:
+    """Heights (13,) [mm] of the root of the blank over the pitch cone, at the places ``ACROSS``."""
+    return _heights(blank)[1]
+
+
 def _across(blank: Blank, one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Widths (25,) between two traces (13,3), toe to heel: from points of one to the nearest of the other, counted at
     the cone distance of the middle between both."""

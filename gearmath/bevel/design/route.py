@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gearmath.bevel.blank import BevelBlank
+from gearmath.bevel.check_blank import check_blank
 from gearmath.bevel.contact.report import SIDES as OWN
 from gearmath.bevel.contact.surface import nominal_surface
 from gearmath.bevel.crown_gear import Method, crown_gear_set
@@ -16,6 +17,7 @@ from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, settings_tab
 from gearmath.bevel.design.request import Request, gear_flank, request
 from gearmath.bevel.design.rounding import rounded_completing, rounded_gear, rounded_pinion
 from gearmath.bevel.design.start import blank_for, edge_radius
+from gearmath.bevel.design.tip_edges import with_edge, with_room_for_tips
 from gearmath.bevel.design.tip_heights import with_tip_heights
 from gearmath.bevel.slots import slots_of
 from gearmath.bevel.tooth import mean_backlash
@@ -62,14 +64,18 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
         Method("completing", data.gear.generation, alternating=True),
         data.hand,
     )
+    for member in ("pinion", "gear"):
+        check_blank(start.member(member), member)  # before anything is computed for it
     backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
     given_edges = {"pinion": data.pinion.blade_edge_radius, "gear": data.gear.blade_edge_radius}
     rounds = {
-        member: edge_radius(given_edges[member], own, blank.clearance, data.cutter.process == "face_hobbing")
+        member: edge_radius(given_edges[member], own, blank.clearance)
         for member, own in (("pinion", slots.pinion), ("gear", slots.wheel))
     }
-    pinion, gear = (_with_edge(start.member(member), rounds[member]) for member in ("pinion", "gear"))
+    pinion, gear = (with_edge(start.member(member), rounds[member]) for member in ("pinion", "gear"))
     gear = rounded_gear(gear, data.shop)
+    if gear.process == "face_hobbing" and data.gear.blade_edge_radius is None:
+        gear = with_room_for_tips(gear)
     if given is not None:
         _check_of(given, pinion, gear, name)
         pinion, gear = pinion.model_copy(update={"blank": given.member("pinion").blank}), given.member("gear")
@@ -115,6 +121,8 @@ def _at_once(
     found = completing_backlash(checked(values, Member, "pinion"), gear, backlash, data.shop)
     if found.process == "face_hobbing":
         found = with_tip_heights(found, "pinion", data.shop.length_step)
+        if data.pinion.blade_edge_radius is None:
+            found = with_room_for_tips(found)
     return found, dict(flanks)
 
 
@@ -131,12 +139,6 @@ def _tilt(data: DesignData, blank: BevelBlank) -> float:
     if data.pinion.cutter_tilt is not None:
         return data.pinion.rad("cutter_tilt")
     return blank.dedendum_angle_sum if data.gear.generation == "formate" else 0.0
-
-
-def _with_edge(member: Member, radius: float) -> Member:
-    """The member with an edge radius [mm] on the blades of both flanks."""
-    edged = {flank: member.flank(flank).model_copy(update={"blade_edge_radius": radius}) for flank in FLANKS}
-    return member.model_copy(update=edged)
 
 
 def _check_of(given: BevelSet, pinion: Member, gear: Member, name: str) -> None:

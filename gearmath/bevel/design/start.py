@@ -18,10 +18,7 @@ _SHORTER, _TRIALS = 0.015, 8
 #: Most that the thickness factor may be changed for it, and the least thickness left to the gear, in modules.
 _MOST, _THINNEST = 0.15, 0.95
 #: Edge radii come in tenths [mm], and take at most these parts of the narrowest slot and of the clearance.
-_TENTH, _OF_SLOT, _OF_CLEARANCE = 0.1, 0.4, 0.6
-#: A blade of a hobbing cutter cuts more than half of the widest root with the flat of its tip, and must pass the fillet
-#: of the other where the space is narrowest; a rounded edge takes no more of the tip than this part of its radius.
-_FLAT, _TAKEN = 0.57, 0.8
+TENTH, _OF_SLOT, _OF_CLEARANCE = 0.1, 0.4, 0.6
 
 
 def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
@@ -63,12 +60,10 @@ def chosen_radius(data: DesignData, name: str) -> float:
     return min(data.cutter.radii, key=lambda radius: abs(radius - distance))
 
 
-def edge_radius(asked: float | None, slots: MemberSlots, clearance: float, hobbed: bool) -> float:
+def edge_radius(asked: float | None, slots: MemberSlots, clearance: float) -> float:
     """Edge radius of a member's blades [mm]: as asked, or the largest in tenths that AGMA 929 and clearance allow.
 
     A cutter for one flank takes little more than half of the slot, and its edge must fit on that.
     """
     largest = min(slots.maximum_edge_radius, _OF_CLEARANCE * clearance, _OF_SLOT * min(slots.slot_width))
-    if hobbed:
-        largest = min(largest, (min(slots.slot_width) - _FLAT * max(slots.slot_width)) / _TAKEN)
-    return max(math.floor(largest / _TENTH) * _TENTH, 0.0) if asked is None else asked
+    return max(math.floor(largest / TENTH) * TENTH, 0.0) if asked is None else asked

@@ -15,9 +15,10 @@ from gearmath.bevel.contact.report import ARCSEC, side_mesh
 from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
 from gearmath.bevel.design.route import Designed
+from gearmath.bevel.design.tip_edges import HIGHEST_RIDGE
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.ridge import ridge
-from gearmath.bevel.tooth import mean_backlash, tooth_space
+from gearmath.bevel.tooth import mean_backlash, space_widths, tooth_space
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import Member
@@ -111,13 +112,17 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
                 f"{name}: top land of {land[place]:.3g} mm at the {place}: must be at least {LEAST_LAND * module:.3g} "
                 f"mm, {LEAST_LAND:g} of the mean normal module; thickness_factor or mean_addendum_factor must change"
             )
+    ridges = {name: ridge(made.pair.member(name), tooth_space(made.pair.member(name), name)) for name in lands}
+    for name, height in ridges.items():
+        if made.pair.member(name).process == "face_hobbing":
+            _check_tips(made.pair.member(name), name, height)
     figures: dict[str, Any] = {
         "cutter_radius_mm": made.blank_data.cutter.cutter_radius,
         "mean_normal_module_mm": module,
         "data_type_2": None if made.blank_data.data_type_2 is None else made.blank_data.data_type_2.model_dump(),
         "backlash_mm": {"asked": made.backlash, "found": mean_backlash(pinion, gear)},
         "top_land_mm": lands,
-        "root_ridge_um": {name: _root_ridge(made.pair.member(name), name) for name in lands},
+        "root_ridge_um": {name: 1000 * one if math.isfinite(one) else None for name, one in ridges.items()},
     }
     stepped = any(made.data.shop.model_dump().values())
     for side, run in runs.items():
@@ -125,10 +130,18 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
     return figures, runs
 
 
-def _root_ridge(member: Member, name: str) -> float | None:
-    """The ridge [um] that cuts of single flanks leave in the root, None where a fin stays."""
-    height = 1000 * ridge(member, tooth_space(member, name))
-    return height if math.isfinite(height) else None
+def _check_tips(member: Member, name: str, height: float) -> None:
+    """Refuse a hobbed member whose tips leave more between them than the mate passes: a ridge [mm], or a fin."""
+    most, root = HIGHEST_RIDGE * member.blank.clearance, space_widths(member, name)[0]
+    if height > most:
+        left = f"a ridge of {1000 * height:.0f} um" if math.isfinite(height) else "a fin"
+        raise InputError(
+            f"{name}: {left} stays in the middle of the root, which may be at most {1000 * most:.0f} um high, "
+            f"{HIGHEST_RIDGE:g} of the clearance: the root is {root.toe:.3g} mm wide at the toe and {root.heel:.3g} mm "
+            f"at the heel, and tips with edges of {member.concave.blade_edge_radius:g} mm that pass the fillets at the "
+            "toe do not meet at the heel; a smaller face_width, another thickness_factor or smaller blade_edge_radius "
+            "is needed"
+        )
 
 
 def mean_module(made: Designed) -> float:

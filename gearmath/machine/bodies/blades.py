@@ -15,11 +15,11 @@ import casadi as ca
 import numpy as np
 
 from derivations import Quantity, notation
-from gearmath.bevel.check_blade import tip_taken
 from gearmath.bevel.generation import Section
 from gearmath.bevel.method import blade_sections
 from gearmath.bevel.newton import newton_step
 from gearmath.bevel.root import Widths, tip_radius
+from gearmath.bevel.tip_room import tip_lengths
 from gearmath.bevel.tooth import space_widths
 from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
@@ -28,8 +28,6 @@ from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 NEWTON_STEPS = 6
 #: Largest change of u [mm or rad], of the fraction of a block, and of the distance [mm] in one step.
 _STEP_LIMITS = {False: (6.0, 0.15, 6.0), True: (0.5, 0.15, 6.0)}
-#: A tip reaches beyond the middle of the point width by this part of it.
-_TIP_OVERLAP = 0.03
 
 
 @dataclass(frozen=True)
@@ -104,16 +102,11 @@ def blades_of(member: Member, edge_radius: float = 0.0) -> Blades:
     own = {flank: _as_cut(member.flank(flank), edge_radius) for flank in FLANKS}
     sections = {flank: blade_sections(own[flank], SIDES[flank]) for flank in FLANKS}
     phases = {"concave": 0.0, "convex": blade_phase(member)}
-    slots = slots_between(member)
+    lengths = tip_lengths(member.model_copy(update=own), "member")
     edges: list[Edge] = []
     for flank in FLANKS:
         parts = [_edge(own[flank], flank, part, section) for part, section in sections[flank].items()]
-        other = FLANKS[1 - FLANKS.index(flank)]
-        slot = slots[flank]
-        # beyond the middle of the widest place; not into the fillet of the other blade at the narrowest
-        room = slot.least - tip_taken(own[other], SIDES[other])
-        length = min((0.5 + _TIP_OVERLAP) * slot.most, (0.5 * slot.most + room) / 2)
-        parts.append(_tip(own[flank], flank, next(iter(sections[flank].values())), length))
+        parts.append(_tip(own[flank], flank, next(iter(sections[flank].values())), lengths[flank]))
         edges += [replace(edge, phase=phases[flank]) for edge in parts]
     return Blades(member.blade_groups or 1, member.teeth, tuple(edges))
 

@@ -6,7 +6,9 @@ import numpy as np
 
 from gearmath.bevel.generation import solve_curve, solve_section
 from gearmath.bevel.method import blade_sections, generation_of
-from gearmath.bevel.root import cone_distances, mean_place, tip_plane, tip_radius
+from gearmath.bevel.ridge import ridge_of_tips
+from gearmath.bevel.root import cone_distances, mean_place, root_height, tip_plane, tip_radius
+from gearmath.bevel.tip_room import corner_wall, tip_lengths
 from gearmath.bevel.turning import half_turn
 from gearmath.machine.bodies.blades import blades_of
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
@@ -21,7 +23,8 @@ def root_of_tips(member: Member, point: np.ndarray, normal: np.ndarray) -> tuple
     """Points (n,3) of a root in space 0 moved along their normals to where the deeper of both tips leaves it, and which
     (n,) of them are no step of it.
 
-    Points that no tip passes stay. The root has a step where a tip ends, whose corner sweeps a little beyond it.
+    The root has a step where a tip ends, up the wall that the corner of the tip sweeps. Points that no tip passes stay,
+    and are a ridge where these walls meet.
     """
     along = np.array(cone_distances(member.blank)[0])
     for _ in range(_STEPS):
@@ -30,16 +33,21 @@ def root_of_tips(member: Member, point: np.ndarray, normal: np.ndarray) -> tuple
         rising = np.stack([normal[:, 2], outwards], axis=1) @ (-along[1], along[0])
         place = np.stack([point[:, 2], radius], axis=1)
         distance, azimuth = place @ along, np.arctan2(point[:, 1], point[:, 0])
-        (one, away), (other, away_too) = (_left_by(member, flank, distance, azimuth) for flank in FLANKS)
+        level = place @ (-along[1], along[0])
+        (one, steep), (other, steep_too) = (_left_by(member, flank, distance, azimuth, level) for flank in FLANKS)
         height = np.fmin(one, other)
-        missing = (height - place @ (-along[1], along[0])) / rising
+        missing = (height - level) / rising
         point = point + np.where(np.isfinite(missing), missing, 0.0)[:, None] * normal
-    return point, ~(np.fmin(away, away_too) <= _STEP)
+    on_ridge = np.isnan(height) & np.isfinite(ridge_of_tips(member))
+    return point, ~(steep | steep_too | on_ridge)
 
 
-def _left_by(member: Member, flank: str, distance: np.ndarray, azimuth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _left_by(
+    member: Member, flank: str, distance: np.ndarray, azimuth: np.ndarray, level: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Heights (n,) [mm] above the pitch cone that the tip of one kind of blade leaves at cone distances and azimuths
-    (n,), NaN beside it; and how far (n,) each lies from its end, in parts of its length."""
+    (n,), NaN beside it; and which points (n,) at heights ``level`` lie at its end, or between that and the wall there.
+    """
     spec, side, how = member.flank(flank), SIDES[flank], generation_of(member, flank)
     (tip,) = (edge for edge in blades_of(member).edges if (edge.flank, edge.part) == (flank, "tip"))
     (direction, _), count = cone_distances(member.blank), len(distance)
@@ -60,4 +68,20 @@ def _left_by(member: Member, flank: str, distance: np.ndarray, azimuth: np.ndarr
         order = np.argsort(across[:, k])
         if np.isfinite(across[:, k]).all():
             height[k] = np.interp(0.0, across[order, k], up[order, k], left=np.nan, right=np.nan)
-    return height, np.abs(across[-1]) / np.abs(across[-1] - across[0])
+    length = across[-1] - across[0]
+    wall = half_turn(_wall(member, flank, distance, level) - azimuth - across[-1]) / length
+    past = -across[-1] / length
+    return height, (past > -_STEP) & (past < _STEP + np.maximum(wall, 0.0))
+
+
+def _wall(member: Member, flank: str, distance: np.ndarray, level: np.ndarray) -> np.ndarray:
+    """Angles (n,) [rad] about the axis of what the end of a tip leaves at cone distances and heights (n,)."""
+    angles, heights = corner_wall(member, flank, tip_lengths(member, "member")[flank])
+    heights = heights + root_height(member.blank)
+    at, found = cone_distances(member.blank)[1], np.empty(len(distance))
+    for k, (one, high) in enumerate(zip(distance, level, strict=True)):
+        angle, up = (np.array([np.interp(one, at, row) for row in rows]) for rows in (angles, heights))
+        there = np.isfinite(angle)
+        order = np.argsort(up[there])
+        found[k] = np.interp(high, up[there][order], angle[there][order])
+    return found

@@ -112,7 +112,7 @@ class SetupFacts:
         member, machine = plan.member, plan.machine
         chips = chip_loads(member, plan.name, machine, plan.passes, plan.job.spindle_rpm, plunge_feed)
         tools = tools_of(member, plan.name, plan.space)
-        left = 0.0 if plan.space is None else ridge(member, plan.space)
+        left = ridge(member, plan.space)
         return SetupFacts(plan, BlankSizes.of(member, machine), tools, chips, tuple(_sections(plan)), left)
 
     @property

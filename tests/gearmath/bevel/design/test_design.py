@@ -15,6 +15,7 @@ from gearmath.bevel.design.route import Designed, design
 from gearmath.bevel.design.verdict import verdict
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.tooth import mean_pitch_radius, mean_tooth_thickness
+from gearmath.errors import InputError
 from gearmath.specs.bevel_set import SETTINGS, load_bevel_set
 from gearmath.specs.cut import ANGULAR
 from gearmath.specs.design import DesignData, load_design
@@ -225,3 +226,18 @@ def test_what_is_held_at_the_mean_point_does_not_give_way_to_the_whole_flank() -
     assert free.fitted.rms < held.fitted.rms
     assert abs(free.x[NAMES.index("blade_pressure_angle")] - held.x[NAMES.index("blade_pressure_angle")]) > 1e-3
     assert np.abs(free.request.curvature - held.request.curvature).max() < 1e-12
+
+
+def test_too_wide_a_face_is_refused_before_anything_is_computed_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A set may have 0.35 of the outer cone distance, 57.07 mm / (1 - 0.35 / 2) here."""
+    monkeypatch.setattr("gearmath.bevel.design.route.request", None)
+    data = {
+        "title": "too wide",
+        "pinion_teeth": 11,
+        "wheel_teeth": 33,
+        "outer_transverse_module": 4.0,
+        "face_width": 25.0,
+        "cutter": {"cutter_radius": 70.0},
+    }
+    with pytest.raises(InputError, match=r"^pinion\.blank\.face_width = 25: must lie between 6\.007 and 24\.21 mm"):
+        design(checked(data, DesignData, "wide"))

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 
 from gearmath.bevel.check_blade import check_blades
+from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.design.route import design
+from gearmath.bevel.design.verdict import verdict
 from gearmath.bevel.method import blade_sections
+from gearmath.bevel.ridge import ridge_of_tips
 from gearmath.bevel.tooth import space_widths, tooth_space
 from gearmath.errors import InputError
 from gearmath.machine.bodies.blades import blades_of
 from gearmath.machine.control.executor import MachinePath, execute
 from gearmath.machine.milling.hobbed_root import root_of_tips
+from gearmath.machine.milling.run import runs_of
 from gearmath.machine.milling.surfaces import nominal_surfaces, surface_states
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.writing.cutting import cutting_program
@@ -33,6 +38,25 @@ TILTED = {
     "cutter": {"cutter_radius": 88.0, "process": "face_hobbing", "blade_groups": 13},
     "pinion": {"cutting": "completing"},
 }
+#: A tilted cutter leaves the tips at unlike depths, and few teeth a space that is half as wide at the toe.
+NARROW = (
+    {
+        "title": "13 x 38",
+        "pinion_teeth": 13,
+        "wheel_teeth": 38,
+        "cutter": {"cutter_radius": 85.0, "process": "face_hobbing", "blade_groups": 13},
+        "gear": {"generation": "formate"},
+    },
+    {
+        "title": "9 x 40",
+        "pinion_teeth": 9,
+        "wheel_teeth": 40,
+        "outer_transverse_module": 4.0,
+        "face_width": 22.0,
+        "cutter": {"cutter_radius": 80.0, "process": "face_hobbing", "blade_groups": 9},
+        "gear": {"generation": "formate"},
+    },
+)
 FLANKS = ("concave", "convex")
 
 
@@ -49,8 +73,12 @@ def machine() -> MillingMachine:
 @cache
 def path() -> MachinePath:
     """The blades' way is of the machine's settings alone: their heights are no part of it."""
-    job = CuttingJob(range(15), tolerance=5e-4)
-    return execute(cutting_program(pair(), "pinion", machine(), "HOB", job), "HOB.MPF")
+    return path_of(pair())
+
+
+def path_of(cut: BevelSet) -> MachinePath:
+    job = CuttingJob(range(cut.member("pinion").teeth), tolerance=5e-4)
+    return execute(cutting_program(cut, "pinion", machine(), "HOB", job), "HOB.MPF")
 
 
 def level(member: Member) -> Member:
@@ -93,20 +121,54 @@ def test_tips_of_one_height_part_in_the_middle_of_the_space() -> None:
     assert step(member) < 0.05
 
 
-def test_tips_cover_the_root_and_stay_off_the_fillet_of_the_other_blade() -> None:
+@pytest.mark.parametrize("changes", NARROW, ids=lambda changes: str(changes["title"]))
+def test_tips_of_a_space_that_narrows_towards_the_toe_stay_off_the_other_fillet(changes: dict[str, object]) -> None:
+    """By the crossings of single blades, as above; a tip that is a tenth of a millimetre longer cuts into it."""
+    made = accepted(checked(TILTED | changes, DesignData, "narrow"))[0].pair
+    member = made.member("pinion")
+    space = tooth_space(member, "pinion", 7)
+    runs = runs_of(path_of(made), member, "pinion", machine(), None, space)
+    (run,) = runs
+    for state in surface_states(None, member, "pinion", machine(), spaces=(2,), runs=runs, space=space):
+        assert state.unmet == 0, state
+        assert state.lowest > -1e-4, state
+        assert state.highest < 2e-3, state
+    longer = tuple(
+        replace(edge, upper=edge.upper + 0.1) if (edge.flank, edge.part) == ("convex", "tip") else edge
+        for edge in run.blades.edges
+    )
+    runs = [replace(run, blades=replace(run.blades, edges=longer))]
+    states = surface_states(None, member, "pinion", machine(), spaces=(2,), runs=runs, space=space)
+    assert min(state.lowest for state in states if state.surface == "concave fillet") < -5e-3
+
+
+def test_tips_cover_the_root_from_toe_to_heel() -> None:
     """What a round takes of a tip is r (1 - sin α) / cos α."""
     member = pair().member("pinion")
     _, slots = space_widths(member, "pinion")
-    taken = {}
+    tips = {edge.flank: edge.upper - edge.lower for edge in blades_of(member).edges if edge.part == "tip"}
+    reach = 0.0
     for flank in FLANKS:
         spec = member.flank(flank)
-        taken[flank] = spec.blade_edge_radius * (1 - math.sin(spec.alpha)) / math.cos(spec.alpha)
-    tips = [edge for edge in blades_of(member).edges if edge.part == "tip"]
-    assert [tip.flank for tip in tips] == list(FLANKS)
-    for tip in tips:
-        reach = taken[tip.flank] + tip.upper - tip.lower
-        assert reach > slots[tip.flank].most / 2
-        assert reach < slots[tip.flank].least - taken[FLANKS[1 - FLANKS.index(tip.flank)]]
+        reach += tips[flank] + spec.blade_edge_radius * (1 - math.sin(spec.alpha)) / math.cos(spec.alpha)
+    assert reach > max(slots[flank].most for flank in FLANKS)
+    assert ridge_of_tips(member) == 0.0
+
+
+def test_design_whose_tips_do_not_meet_at_the_heel_is_refused() -> None:
+    data = {
+        "title": "10 x 37",
+        "pinion_teeth": 10,
+        "wheel_teeth": 37,
+        "outer_transverse_module": 3.0,
+        "face_width": 18.0,
+        "cutter": {"cutter_radius": 60.0, "process": "face_hobbing", "blade_groups": 11},
+    }
+    made = design(checked(TILTED | data, DesignData, "short"))
+    with pytest.raises(
+        InputError, match=r"^pinion: a ridge of \d+ um stays .* may be at most \d+ um high, 0\.5 of the"
+    ):
+        verdict(made)
 
 
 @pytest.mark.parametrize("toprem", [{}, {"toprem_angle": 18.0, "toprem_height": 0.9}])
