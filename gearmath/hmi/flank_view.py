@@ -26,8 +26,8 @@ _SHADES = [[0.0, LESS], [0.5, "#dcdcdc"], [1.0, MORE]]
 _LINES = "#7d7d7d"
 #: Rows and columns of the flanks of settings: in space, and flat, where every point has its number.
 _FINE, _PLAIN = (9, 17), (5, 9)
-#: The tooth a little from above, with room for the words of the axes below.
-_CAMERA = {"eye": {"x": 1.4, "y": 1.2, "z": 0.55}, "center": {"x": 0.0, "y": 0.0, "z": -0.16}}
+#: The tooth a little from above, with room for its tip above and for the words of the axes below.
+_CAMERA = {"eye": {"x": 1.75, "y": 1.5, "z": 0.69}, "center": {"x": 0.0, "y": 0.0, "z": -0.12}}
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def space_figure(view: FlankView, name: str, names: Mapping[str, str], dark: boo
                 "intensity": deviation,
                 "colorscale": _SHADES,
                 **{"cmin": -bound, "cmax": bound, "showscale": not traces},
-                "colorbar": {"title": {"text": "µm"}, "thickness": 14, "len": 0.8},
+                "colorbar": {"ticksuffix": " µm", "thickness": 14, "len": 0.8},
                 "customdata": deviation,
                 "hovertemplate": f"{names[flank]}<br>%{{customdata:.1f}} µm<extra></extra>",
                 "lighting": {"ambient": 0.75, "diffuse": 0.4, "specular": 0.05},
