@@ -26,8 +26,8 @@ _SHADES = [[0.0, LESS], [0.5, "#dcdcdc"], [1.0, MORE]]
 _LINES = "#7d7d7d"
 #: Rows and columns of the flanks of settings: in space, and flat, where every point has its number.
 _FINE, _PLAIN = (9, 17), (5, 9)
-#: The tooth a little from above, with room for the words of the axes below.
-_CAMERA = {"eye": {"x": 1.4, "y": 1.2, "z": 0.55}, "center": {"x": 0.0, "y": 0.0, "z": -0.16}}
+#: The tooth a little from above, with room for its tip above and for the words of the axes below.
+_CAMERA = {"eye": {"x": 1.75, "y": 1.5, "z": 0.69}, "center": {"x": 0.0, "y": 0.0, "z": -0.12}}
 
 
 @dataclass(frozen=True)
@@ -74,19 +74,22 @@ def space_figure(view: FlankView, name: str, names: Mapping[str, str], dark: boo
     # the tooth upright: its axis of symmetry along x
     azimuth = float(np.arctan2(middle[1], middle[0]))
     traces: list[dict[str, Any]] = []
-    for k, (flank, one) in enumerate(view.flanks.items()):
+    for flank, one in view.flanks.items():
         lifted = one.point + (np.nan_to_num(one.deviation) * view.times / 1000)[..., None] * one.normal
-        x, y, z = (_numbers(part) for part in np.moveaxis(turned(lifted, -azimuth), -1, 0))
+        x, y, z = (_numbers(part) for part in turned(lifted, -azimuth).reshape(-1, 3).T)
+        i, j, k = _triangles(one.deviation).T.tolist()
+        deviation = _numbers(one.deviation.ravel())
         traces.append(
             {
-                "type": "surface",
+                # not a surface: of that plotly makes 128 rows and more, seconds where no graphics card draws them
+                "type": "mesh3d",
                 "name": names[flank],
-                **{"x": x, "y": y, "z": z},
-                "surfacecolor": _numbers(one.deviation),
+                **{"x": x, "y": y, "z": z, "i": i, "j": j, "k": k},
+                "intensity": deviation,
                 "colorscale": _SHADES,
-                **{"cmin": -bound, "cmax": bound, "showscale": k == 0},
-                "colorbar": {"title": {"text": "µm"}, "thickness": 14, "len": 0.8},
-                "customdata": _numbers(one.deviation),
+                **{"cmin": -bound, "cmax": bound, "showscale": not traces},
+                "colorbar": {"ticksuffix": " µm", "thickness": 14, "len": 0.8},
+                "customdata": deviation,
                 "hovertemplate": f"{names[flank]}<br>%{{customdata:.1f}} µm<extra></extra>",
                 "lighting": {"ambient": 0.75, "diffuse": 0.4, "specular": 0.05},
             }
@@ -113,6 +116,15 @@ def flat_figures(view: FlankView) -> dict[str, Figure]:
     """The same flanks as the plane net of a chart, one for each flank, at one scale."""
     scale = um_per_row(view.forms.values())
     return {flank: topography_chart(form, scale, None) for flank, form in view.forms.items()}
+
+
+def _triangles(deviation: np.ndarray) -> np.ndarray:
+    """Two triangles in each mesh of a grid (rows, columns), by numbers of points; none at a point that is missing."""
+    number = np.arange(deviation.size).reshape(deviation.shape)
+    low, right, left, far = number[:-1, :-1], number[:-1, 1:], number[1:, :-1], number[1:, 1:]
+    corners = np.stack([[low, right, far], [low, far, left]], axis=-1).reshape(3, -1, 2)
+    found = corners.transpose(1, 2, 0).reshape(-1, 3)
+    return found[np.isfinite(deviation.ravel()[found]).all(axis=1)]
 
 
 def _net(point: np.ndarray) -> dict[str, Any]:

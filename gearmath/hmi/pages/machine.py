@@ -22,10 +22,7 @@ def build(shared: Shared, text: Text) -> None:
         values = {name: widgets.fact(text(f"machine.{name}")) for name in _FACTS}
     with widgets.panel(text("machine.positions")) as panel:
         stale = widgets.Message()
-        axes = [
-            widgets.fact(text("machine.axis", name=name), "–", text("machine.degrees") if name in "AB" else "mm")
-            for name in AXES
-        ]
+        axes = [widgets.fact(text("machine.axis", name=name), "–", "°" if name in "AB" else "mm") for name in AXES]
         panel.classes("gm-positions")
 
     def look() -> None:

@@ -7,10 +7,11 @@ import re
 import shutil
 import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import TimeoutError, expect
 
 import gearmath as gm
 from gearmath.hmi.messages import Text
@@ -84,6 +85,14 @@ def test_flanks_are_shown_in_space(served: Served, operator: Callable[..., Opera
             one.go("gear")
             drawn.wait_for(timeout=PATIENCE)
     drawn.scroll_into_view_if_needed()
+    where, said = drawn.bounding_box(), one.page.locator(".gm-space .hovertext")
+    assert where is not None
+    for right, down in ((0.45, 0.4), (0.5, 0.5), (0.4, 0.3), (0.55, 0.6)):  # wherever a flank lies in it
+        one.page.mouse.move(where["x"] + right * where["width"], where["y"] + down * where["height"], steps=4)
+        with suppress(TimeoutError):
+            said.wait_for(timeout=2_000)
+            break
+    assert re.fullmatch(r"(concave|convex)\s*-?\d+\.\d µm", said.text_content() or "")
     one.picture("gear_space")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -97,14 +98,38 @@ def test_the_figure_in_space_is_json_and_lifts_each_point_by_its_deviation(pinio
     figure = space_figure(view, "pinion", NAMES, dark=True)
     assert json.loads(json.dumps(figure, allow_nan=False))["layout"]["uirevision"] == "pinion"
     surface, net = figure["data"][:2]
-    lifted = np.stack([np.array(surface[key], dtype=float) for key in "xyz"], axis=-1)
+    lifted = np.stack([np.array(surface[key], dtype=float) for key in "xyz"], axis=-1).reshape(9, 17, 3)
     lines = np.stack([np.array([np.nan if v is None else v for v in net[key]]) for key in "xyz"], axis=-1)
     rows, columns = lifted.shape[:2]
     nominal = lines[: rows * (columns + 1)].reshape(rows, columns + 1, 3)[:, :columns]
     away = np.linalg.norm(lifted - nominal, axis=-1) * 1000 / view.times
     deviation = measured.file.select("concave").deviation.reshape(rows, columns) * 1000
     np.testing.assert_allclose(away, np.abs(deviation), atol=0.02)
-    np.testing.assert_allclose(np.array(surface["surfacecolor"], dtype=float), deviation, atol=1e-4)
+    for shown in ("intensity", "customdata"):
+        np.testing.assert_allclose(np.array(surface[shown], dtype=float), deviation.ravel(), atol=1e-4)
+
+
+def test_the_flank_in_space_is_whole_and_has_a_hole_where_a_point_is_missing(pinion: gm.Member) -> None:
+    view = view_of_settings(pinion)
+    concave = view.flanks["concave"]
+    missing = concave.deviation.copy()
+    missing[4, 8] = np.nan
+    holed = replace(view, flanks={**view.flanks, "concave": replace(concave, deviation=missing)})
+    areas = []
+    for one in (view, holed):
+        surface = space_figure(one, "pinion", NAMES, dark=False)["data"][0]
+        at = np.stack([np.array(surface[key]) for key in "xyz"], axis=-1)
+        corners = [at[surface[key]] for key in "ijk"]
+        normals = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        assert (normals @ normals.sum(axis=0) > 0).all()  # all seen from the same side
+        areas.append((np.linalg.norm(normals, axis=1) / 2).sum())
+    # by the parallelogram of the diagonals of each mesh of the net
+    net = concave.point
+    across = np.cross(net[1:, 1:] - net[:-1, :-1], net[1:, :-1] - net[:-1, 1:])
+    mesh = np.linalg.norm(across, axis=-1) / 2
+    np.testing.assert_allclose(areas[0], mesh.sum(), rtol=1e-3)
+    triangles = 6  # of the 8 in the four meshes around a point, two do not touch it
+    assert (areas[0] - areas[1]) / mesh[3:5, 7:9].sum() == pytest.approx(triangles / 8, abs=0.02)
 
 
 def test_the_flat_picture_has_both_flanks_at_one_scale(pinion: gm.Member) -> None:

@@ -29,7 +29,7 @@ def test_it_shows_what_the_control_shows_each_number_with_its_unit(
     for value in ("1.250", "-2.500", "100.063", "350.500", "45.000"):
         one.sees(value, one.panel("Axis positions"))
     rows = one.panel("Axis positions").locator(".gm-fact").all_inner_texts()
-    assert [row.split("\n")[-1] for row in rows] == ["mm", "mm", "mm", "degrees", "degrees"]
+    assert [row.split("\n")[-1] for row in rows] == ["mm", "mm", "mm", "°", "°"]
     for words in ("automatic", "reset", "TEN.MPF", "point <b>7</b>", "free"):
         one.sees(words, one.panel("Control"))
 

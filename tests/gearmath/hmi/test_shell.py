@@ -21,6 +21,15 @@ def served(serve: Callable[..., Served]) -> Served:
     return serve()
 
 
+#: Words that begin on one line and go on in the next.
+_CUT = """() => { const cut = [], texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) for (const word of texts.currentNode.data.matchAll(/[\\p{L}\\p{N}]+/gu)) {
+    const range = document.createRange();
+    range.setStart(texts.currentNode, word.index);
+    range.setEnd(texts.currentNode, word.index + word[0].length);
+    if (new Set([...range.getClientRects()].map(box => Math.round(box.top))).size > 1) cut.push(word[0]);
+  }
+  return cut; }"""
 LOOKS = [("en", False, (1280, 800)), ("de", True, (800, 1280))]
 
 
@@ -49,6 +58,7 @@ def test_every_page_shows_itself_without_serious_violation_of_accessibility(
               .filter(([box]) => box.height < 43.5 || box.width < 43.5).map(([box, html]) => html)"""
         )
         assert small == [], name
+        assert one.page.evaluate(_CUT) == [], name
 
 
 def test_the_address_that_is_shown_lets_the_browser_in(served: Served, operator: Callable[..., Operator]) -> None:
