@@ -79,7 +79,8 @@ def _outputs(machine: HobbingMachine) -> int:
 
 def _bypass(found: Netlist, chip: str, net: str) -> None:
     """100 nF between the supply pins of a chip."""
-    name = found.part(f"CB{chip[1:]}", "100 nF, ceramic", f"between the supply pins of {chip}, as near as possible")
+    pins = "OUT and GND" if chip == "U2" else "the supply pins"
+    name = found.part(f"CB{chip[1:]}", "100 nF, ceramic", f"between {pins} of {chip}, as near as possible")
     found.join(net, (name, "1"))
     found.join(GROUND, (name, "2"))
 

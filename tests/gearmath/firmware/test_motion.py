@@ -5,13 +5,16 @@ damping and friction, and it stalls two full steps from where it should be. The 
 steps and the place that the table should have are computed apart from the core.
 """
 
+import re
 from fractions import Fraction
 from functools import partial
 
 import numpy as np
 import pytest
 
+from gearmath.export.guide import guide
 from gearmath.gearbox.kernels import evaluate
+from gearmath.specs.hobbing import find_hobbing_machine
 from tests.gearmath.firmware.motor import MOTORS, QUICK, replay, run_motor
 
 IDLE, RUN, MOVE, FAULT = range(4)
@@ -71,6 +74,19 @@ PLANNED = {
 def turned(speed: np.ndarray) -> np.ndarray:
     """Edges per tick of a hob with these speeds [counts/s]."""
     return np.diff(np.floor(np.cumsum(speed) * TICK), prepend=0).astype(np.int8)
+
+
+@pytest.mark.parametrize(("name", "steps"), [("hobbing_default", 444), ("lathe_example", 15118)])
+def test_jog_on_the_oscilloscope_has_the_shortest_interval_that_the_readme_tells(new_core, name, steps):
+    """10 degrees of 16000 steps a turn; 10 mm of 4800 steps a turn of a lead screw of 8 tpi."""
+    machine = find_hobbing_machine(f"{name}.toml")
+    told = int(re.search(r"intervals fall to (\d+) us", guide(machine, name))[1])
+    limits = {"GM_MOVE_MAX_RATE": machine.move_max_rate, "GM_MOVE_ACCELERATION": machine.limits.acceleration_hz_per_s}
+    core = new_core(**{key: int(value) for key, value in limits.items()})
+    assert core.move(steps) == 0
+    record = core.play(0, 500_000)
+    assert record.position[-1] == steps
+    assert np.diff(np.flatnonzero(np.diff(record.position))).min() * 5 == pytest.approx(told, rel=0.02, abs=5)
 
 
 @pytest.mark.parametrize("rate", [4000.0, 20_000.0, 50_000.0])
