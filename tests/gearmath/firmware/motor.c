@@ -113,13 +113,12 @@ static void check_acceleration(void)
 /* From step to step: the speeds before and after differ by the acceleration in that time, and the rounding to ticks. */
 static void check_steps(int64_t before, int dir)
 {
-  static int64_t last;
   static int last_dir;
   const long apart = ticks - last_step;
-  (void)last;
+  if (core.locked) runs = 0; /* however shortly, between two steps: those in phase come with the edges */
   if (core.position == before) return;
   last_step = ticks;
-  if (core.locked || dir != last_dir) runs = 0;
+  if (dir != last_dir) runs = 0;
   last_dir = dir;
   if (++runs > 4) {
     const double v = 1.0 / (apart * tick), u = 1.0 / (steps_apart[0] * tick), faster = v > u ? v : u;
