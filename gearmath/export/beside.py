@@ -32,6 +32,12 @@ def beside(machine: HobbingMachine, found: Netlist) -> Iterator[tuple[str, str, 
         yield f"X{name}", f"socket DIP-{pins}", name
     if (sink := heat_sink(found.current, _SUPPLY)) is not None:
         yield "HS2", f"heat sink for TO-220 of at most {sink} K/W, with pad and screw", "U2"
+    pull_ups = sum(name.startswith(("encoder_", "index", "feed_")) for name, _ in machine.pins.used())
+    yield (
+        "-",
+        f"{pull_ups} resistors 1 kOhm, where the encoder has open collectors, such as an E6B2-CWZ6C",
+        "from each channel to +5 V: see Outputs of encoders",
+    )
     yield "-", f"coupling or toothed belt without play or slip; {_turns(machine.encoder.belt, 'B1', leading)}", "B1"
     yield "-", f"what drives the {driven}: {_turns(reduction, 'M1', driven)}", "M1"
     yield "-", "strip board, 100 x 160 mm, or a printed one; screw terminals of 5.08 mm", "all but A2, B, S, H, G and M"

@@ -71,7 +71,7 @@ def encoder_outputs(machine: HobbingMachine) -> Iterator[str]:
     yield ""
     yield from paragraph(f"What the label on the encoder says, and what stands between it and the {chip}:")
     rows = [
-        ("voltage output, TTL, push-pull, 5 V", "nothing: A, B and Z straight"),
+        ("voltage output (E6B2-CWZ3E), TTL, push-pull, fed with 5 V", "nothing: A, B and Z straight"),
         (
             "open collector, NPN (E6B2-CWZ6C), fed with 5 V",
             "1 kOhm from each of A, B, Z to +5 V; 5 mA, quick enough for 100 kHz on 3 m of cable",

@@ -40,9 +40,9 @@ def _standing(machine: HobbingMachine) -> Iterator[str]:
 def _moving(machine: HobbingMachine) -> Iterator[str]:
     """What is tried with power on the motor."""
     lathe, leading = machine.profile == "lathe", _leading(machine)
-    driven = "lead screw" if lathe else "table"
+    driven, free = ("lead screw", "half nut open") if lathe else ("table", "nothing clamped")
     yield (
-        f"Motor power on, nothing clamped. `test one turn`: mark the {driven}, answer yes; "
+        f"Motor power on, {free}. `test one turn`: mark the {driven}, answer yes; "
         f"{round(machine.motor_steps)} steps must bring the mark back exactly. If not, full steps, microsteps"
         f"{' or belt' if lathe else ', belt or worm'} of the machine file are not those of the machine."
     )

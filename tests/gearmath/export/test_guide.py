@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from fnmatch import fnmatch
 from fractions import Fraction
 from importlib import resources
@@ -171,6 +172,17 @@ def test_every_part_with_a_right_way_round_is_told_which(name: str) -> None:
         for sign, words in kinds.items():
             if sign in part.what:
                 assert words in ways, part.name
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_trial_of_the_motor_is_a_machine_file_that_is_accepted_and_twice_as_hard(name: str) -> None:
+    given, text = machine(name), " ".join(chapter(guide(machine(name), "gearbox"), "Commissioning").split())
+    trial = {key: float(re.search(rf"`{key} = (\d+)`", text)[1]) for key in ("acceleration_hz_per_s", "move_rate_hz")}
+    assert trial["acceleration_hz_per_s"] == 2 * given.limits.acceleration_hz_per_s
+    data = tomllib.loads(bundled(f"{name}.toml").read_text("utf-8"))
+    tried = HobbingMachine.model_validate({**data, "limits": {**data["limits"], **trial}})
+    way = trial["move_rate_hz"] ** 2 / trial["acceleration_hz_per_s"]  # up to that speed and down again, in a turn
+    assert way <= tried.motor_steps + 1
 
 
 def test_readme_of_a_lathe_speaks_of_no_hob_but_in_the_words_of_the_display() -> None:
