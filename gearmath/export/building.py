@@ -100,9 +100,8 @@ def encoder_outputs(machine: HobbingMachine) -> Iterator[str]:
             "Cable: shielded, twisted, not in one duct with that of the motor; 100 mm away at least, crossings "
             "at right "
             "angles. The shield goes to 0 V at the end of the board only, the other end stays open and taped.",
-            "The frame of the motor, the table and the cabinet go to the protective earth, 0 V of the logic to "
-            "it at one "
-            "point: the terminal of U2.",
+            "The frame of the motor, the machine and the cabinet go to the protective earth, 0 V of the logic to it at "
+            "one point: the terminal of U2.",
             "The cable of the motor: shielded too, its shield on the frame of the driver.",
         )
     )
