@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from fractions import Fraction
 
 from gearmath.export.netlist import Netlist
 from gearmath.specs.hobbing import HobbingMachine
@@ -21,6 +22,8 @@ _ROWS = {"teensy32": 14, "teensy40": 14, "teensy41": 24}
 
 def beside(machine: HobbingMachine, found: Netlist) -> Iterator[tuple[str, str, str]]:
     """Part, what to buy, what for. What nobody states in the machine file is to be taken from a data sheet."""
+    leading, driven = ("spindle", "lead screw") if machine.profile == "lathe" else ("hob", "table")
+    reduction = machine.motor_steps / machine.drive.pulses_per_turn
     yield "KM1", "contactor with an auxiliary contact 13-14, coil for the control circuit", "power of the spindle"
     yield "F1", "fuse 1 A, with holder", "control circuit of KM1"
     yield "S3, S4", "push buttons: stop, normally closed, red; start, normally open, green", "control circuit of KM1"
@@ -29,9 +32,26 @@ def beside(machine: HobbingMachine, found: Netlist) -> Iterator[tuple[str, str, 
         yield f"X{name}", f"socket DIP-{pins}", name
     if (sink := heat_sink(found.current, _SUPPLY)) is not None:
         yield "HS2", f"heat sink for TO-220 of at most {sink} K/W, with pad and screw", "U2"
+    pull_ups = sum(name.startswith(("encoder_", "index", "feed_")) for name, _ in machine.pins.used())
+    yield (
+        "-",
+        f"{pull_ups} resistors 1 kOhm, where the encoder has open collectors, such as an E6B2-CWZ6C",
+        "from each channel to +5 V: see Outputs of encoders",
+    )
+    yield "-", f"coupling or toothed belt without play or slip; {_turns(machine.encoder.belt, 'B1', leading)}", "B1"
+    yield "-", f"what drives the {driven}: {_turns(reduction, 'M1', driven)}", "M1"
     yield "-", "strip board, 100 x 160 mm, or a printed one; screw terminals of 5.08 mm", "all but A2, B, S, H, G and M"
     yield "-", "wire: 0.14 to 0.25 mm2 for signals, 0.5 mm2 for supplies and 0 V; resistors of 1/4 W", "the circuit"
     yield "-", "cabinet of metal, cable glands, shielded twisted cables for encoder and motor", "all of it"
+
+
+def _turns(ratio: Fraction, one: str, other: str) -> str:
+    """How often one shaft turns for the other, in words."""
+    if ratio == 1:
+        return f"{one} turns once for a turn of the {other}"
+    if ratio.denominator == 1:
+        return f"{one} turns {ratio} times for a turn of the {other}"
+    return f"{one} turns {ratio.numerator} times for {ratio.denominator} turns of the {other}"
 
 
 def heat_sink(current: int, volts: float) -> int | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from gearmath.export.beside import BARE_WATTS, ROOM, beside, heat_sink
@@ -20,7 +21,7 @@ def order(machine: HobbingMachine) -> Iterator[str]:
         (
             "Parts: buy them, every one is in the list.",
             "Wiring: solder by the diagram, tick off every connection, measure. U1 and the chips are not in their "
-            "sockets yet: with 9 V on, that of U1 must have 5 V between Vin and GND.",
+            "sockets yet: with 9 V on, that of U1 must have 4.8 to 5.2 V from Vin (+) to GND.",
             "Encoder and decoder: the resistor of the LS7184N, the mode jumper, the output of your encoder."
             if machine.encoder.has_ls7184
             else "Encoder and decoder: the output of your encoder.",
@@ -70,7 +71,7 @@ def encoder_outputs(machine: HobbingMachine) -> Iterator[str]:
     yield ""
     yield from paragraph(f"What the label on the encoder says, and what stands between it and the {chip}:")
     rows = [
-        ("voltage output, TTL, push-pull, 5 V", "nothing: A, B and Z straight"),
+        ("voltage output (E6B2-CWZ3E), TTL, push-pull, fed with 5 V", "nothing: A, B and Z straight"),
         (
             "open collector, NPN (E6B2-CWZ6C), fed with 5 V",
             "1 kOhm from each of A, B, Z to +5 V; 5 mA, quick enough for 100 kHz on 3 m of cable",
@@ -99,9 +100,8 @@ def encoder_outputs(machine: HobbingMachine) -> Iterator[str]:
             "Cable: shielded, twisted, not in one duct with that of the motor; 100 mm away at least, crossings "
             "at right "
             "angles. The shield goes to 0 V at the end of the board only, the other end stays open and taped.",
-            "The frame of the motor, the table and the cabinet go to the protective earth, 0 V of the logic to "
-            "it at one "
-            "point: the terminal of U2.",
+            "The frame of the motor, the machine and the cabinet go to the protective earth, 0 V of the logic to it at "
+            "one point: the terminal of U2.",
             "The cable of the motor: shielded too, its shield on the frame of the driver.",
         )
     )
@@ -109,7 +109,7 @@ def encoder_outputs(machine: HobbingMachine) -> Iterator[str]:
 
 def chain(machine: HobbingMachine) -> Iterator[str]:
     """The circuit of the contactor, which holds the power of the spindle."""
-    pins = machine.pins
+    pins, (leading, driven) = machine.pins, _shafts(machine)
     yield "### Contactor, latch and emergency stop"
     yield ""
     relay, stop = pins.healthy is not None, pins.estop is not None
@@ -137,8 +137,7 @@ def chain(machine: HobbingMachine) -> Iterator[str]:
     if stop:
         what.append(
             "S2 opens the chain by itself, whatever the board does. Its contact 21-22 only tells the board, so "
-            "that the "
-            "table follows until the hob stands; the driver of the step motor keeps its power."
+            f"that the {driven} follows until the {leading} stands; the driver of the step motor keeps its power."
         )
     if relay:
         what.append(
@@ -153,13 +152,15 @@ def chain(machine: HobbingMachine) -> Iterator[str]:
     yield from bullets(what)
 
 
-#: Of a driver that does not watch where its motor stands.
-_HOLDS = "Half current at standstill: off. The table has to hold against the hob."
+def _shafts(machine: HobbingMachine) -> tuple[str, str]:
+    """What the encoder is on, and what the motor turns."""
+    return ("spindle", "lead screw") if machine.profile == "lathe" else ("hob", "table")
 
 
 def switches(machine: HobbingMachine) -> Iterator[str]:
     """Motor, its supply, and the switches of the driver."""
-    drive = machine.drive
+    drive, (_, driven) = machine.drive, _shafts(machine)
+    rpm = machine.max_step_rate * 60 / drive.pulses_per_turn
     yield "### Motor, supply and switches of the driver"
     yield ""
     pulses = drive.pulses_per_turn
@@ -173,12 +174,21 @@ def switches(machine: HobbingMachine) -> Iterator[str]:
             f"Set the driver to {steps}. The table is printed on the housing; names of the switches differ "
             "between makes. "
             "`test one turn` below shows whether it is right.",
+            "Input of the driver: pulse and direction (PUL/DIR), not CW/CCW, where there is a switch or jumper for it.",
             "Current: what the plate of the motor says per phase. A driver that is set in peak current wants 1.4 times "
             "the RMS value.",
-            *(() if machine.driver.timing.closed_loop else (_HOLDS,)),
+            *(
+                ()
+                if machine.driver.timing.closed_loop
+                else (f"Half current at standstill: off. The {driven} has to hold against the cut.",)
+            ),
             "Supply of the motor: near the highest voltage of the driver less 10 %, since motors of deep "
             "inductance lose "
             "their torque with speed; never the supply of the logic. Its minus goes to the driver only.",
+            f"Torque: at {machine.max_step_rate} steps/s the motor turns at {float(rpm):.0f} rpm. What the {driven} "
+            "needs is found with a cord round a pulley on the motor's shaft and a spring balance, force times radius; "
+            "the torque curve of the motor, for the voltage of G2, must show at least twice that at this speed. If it "
+            "does not, lower `step_rate_hz` to a speed where it does: the highest speed of each job falls with it.",
             "Never plug the motor in or out under power: it destroys the driver.",
         )
     )
@@ -192,12 +202,15 @@ def scope(machine: HobbingMachine) -> Iterator[str]:
     yield "### STEP and DIR on an oscilloscope"
     yield ""
     unit = "mm" if machine.profile == "lathe" else "degrees"
+    way = 10 * machine.motor_steps / (machine.lead_screw_pitch if machine.profile == "lathe" else 360)
+    # up with the acceleration, down with 15/16 of it
+    peak = math.sqrt(machine.limits.acceleration_hz_per_s * float(way) * 2 * 15 / 31)
     rest = f"A logic analyzer does as well. Motor power off, jog armed, one detent at a time of 10 {unit}."
     yield from paragraph(f"Probes on {at}, ground at its GND. {rest}")
     rows = [
         ("STEP", f"{step} for {high:g} us, then the other level for {low:g} us at least"),
         ("DIR", f"changes {setup:g} us at least before the first pulse, and {hold:g} us at least after the last one"),
         ("levels", "0 V and 3.3 V; at the driver, behind a transistor, 5 V and below 0.4 V, and upside down"),
-        ("jog", f"intervals fall to {1e6 / machine.move_max_rate:.0f} us and rise again: a ramp, no jump"),
+        ("jog", f"intervals fall to {1e6 / min(machine.move_max_rate, peak):.0f} us and rise again: a ramp, no jump"),
     ]
     yield from table(("signal", "must be"), rows)

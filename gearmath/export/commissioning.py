@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from gearmath.export.markdown import bullets
@@ -39,11 +40,21 @@ def _standing(machine: HobbingMachine) -> Iterator[str]:
 def _moving(machine: HobbingMachine) -> Iterator[str]:
     """What is tried with power on the motor."""
     lathe, leading = machine.profile == "lathe", _leading(machine)
-    driven = "lead screw" if lathe else "table"
+    driven, free = ("lead screw", "half nut open") if lathe else ("table", "nothing clamped")
     yield (
-        f"Motor power on, nothing clamped. `test one turn`: mark the {driven}, answer yes; "
+        f"Motor power on, {free}. `test one turn`: mark the {driven}, answer yes; "
         f"{round(machine.motor_steps)} steps must bring the mark back exactly. If not, full steps, microsteps"
         f"{' or belt' if lathe else ', belt or worm'} of the machine file are not those of the machine."
+    )
+    # from rest to twice the acceleration the motor swings to 3.5 times it; from braking to full acceleration to 2.5
+    twice = min(2.0 * machine.limits.acceleration_hz_per_s, 1e7)
+    reached = int(min(machine.max_step_rate, math.sqrt(twice * float(machine.motor_steps))))
+    yield (
+        f"What the motor carries: with `acceleration_hz_per_s = {twice:g}` and `move_rate_hz = {reached}` in a copy of "
+        "the machine file, exported and flashed, repeat `test one turn` ten times; the mark must come back each time. "
+        "Then flash this folder again. A motor that passes has the reserve that it needs where the "
+        f"{leading} stops at once while it is being caught up. If it loses steps, halve `acceleration_hz_per_s` of the "
+        "machine file, export again, and repeat."
     )
     right = (
         "With a right-hand thread and the half nut closed the carriage must go to the headstock. If it goes away from "
@@ -92,7 +103,8 @@ def _leading(machine: HobbingMachine) -> str:
 _GEAR = (
     "Take brass or a hard plastic, 30 to 60 teeth, and a blank of the diameter that the page `Blank` shows, on an "
     "arbor that runs true: what the blank runs out, its teeth run out too.",
-    "A hob of 25 mm turns at 600 to 800 rpm in aluminum, at 300 to 350 rpm in steel.",
+    "A hob of 25 mm turns at 600 to 800 rpm in aluminum, at 300 to 350 rpm in steel; one of 50 mm at half of that, "
+    "and so on. Cutting oil for steel and aluminum, brass dry.",
     "Swivel the hob head by the lead angle of the hob (stamped on it), for helical teeth by helix less lead angle "
     "where both have one hand, by their sum where not. Which way: so that the thread of the hob, on the side of the "
     "blank, lies along the teeth to be cut; for a spur gear that is along the axis of the blank.",

@@ -9,7 +9,7 @@ from gearmath.export.building import chain, encoder_outputs, order, parts_chapte
 from gearmath.export.commissioning import commissioning, first_cut
 from gearmath.export.connecting import connections, underside
 from gearmath.export.header import versions
-from gearmath.export.machine_header import PIN_SENTENCES
+from gearmath.export.machine_header import pin_sentence
 from gearmath.export.markdown import bullets, escaped, paragraph, table
 from gearmath.export.memory import memory
 from gearmath.export.screens import faults, screens
@@ -105,7 +105,7 @@ def _pins(machine: HobbingMachine) -> Iterator[str]:
     yield ""
     used = sorted(machine.pins.used(), key=lambda pin: pin[1])
     leading = "spindle" if machine.profile == "lathe" else "hob"
-    rows = [(str(number), f"`{name}`", PIN_SENTENCES[name].replace("hob", leading)) for name, number in used]
+    rows = [(str(number), f"`{name}`", pin_sentence(machine, name).replace("hob", leading)) for name, number in used]
     yield from table(("pin", "name in the machine file", "what hangs on it"), rows)
     title = machine.hardware.title
     yield from underside(machine)

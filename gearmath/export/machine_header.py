@@ -70,7 +70,10 @@ def _sections(machine: HobbingMachine) -> Iterator[tuple[str, list[Macro]]]:
     yield "the driver", _driver(machine)
     yield "limits", _limits(machine)
     yield "what is wired", _wired(machine)
-    yield "pins", [(f"GM_PIN_{name.upper()}", number, PIN_SENTENCES[name]) for name, number in machine.pins.used()]
+    yield (
+        "pins",
+        [(f"GM_PIN_{name.upper()}", number, pin_sentence(machine, name)) for name, number in machine.pins.used()],
+    )
 
 
 def _board(machine: HobbingMachine) -> list[Macro]:
@@ -187,26 +190,32 @@ def _counter(axis: str, reached: Counter | None, filter_value: int) -> list[Macr
     return macros
 
 
-#: What hangs on each pin; the README's table says the same.
-PIN_SENTENCES = {
+_PIN_SENTENCES = {
     "knob_a": "knob, channel A",
     "knob_b": "knob, channel B",
     "button": "button of the knob, to ground",
-    "encoder_step": "hob encoder: pulse of the LS7184, or channel A",
-    "encoder_dir": "hob encoder: direction of the LS7184, or channel B",
+    "encoder_step": "hob encoder: {first}",
+    "encoder_dir": "hob encoder: {second}",
     "dir_out": "DIR to the driver",
     "step_out": "STEP to the driver",
     "sda": "display, data",
     "scl": "display, clock",
     "index": "index pulse of the hob",
-    "feed_step": "feed encoder: pulse of the LS7184, or channel A",
-    "feed_dir": "feed encoder: direction of the LS7184, or channel B",
+    "feed_step": "feed encoder: {first}",
+    "feed_dir": "feed encoder: {second}",
     "enable": "enable of the driver",
     "estop": "emergency stop, normally closed to ground",
     "alarm": "alarm output of the driver, with a pull-up in the board",
     "reset": "reset of the driver, high for 0.2 s when its alarm is acknowledged",
     "healthy": "fail-safe output, a square wave of 1 kHz while all is well",
 }
+
+
+def pin_sentence(machine: HobbingMachine, name: str) -> str:
+    """What hangs on a pin of this machine; the README's table says the same."""
+    chip = machine.encoder.has_ls7184
+    first, second = ("pulse of its LS7184", "direction of its LS7184") if chip else ("channel A", "channel B")
+    return _PIN_SENTENCES[name].format(first=first, second=second)
 
 
 def _hobs(machine: HobbingMachine) -> str:

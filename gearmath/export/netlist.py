@@ -79,7 +79,8 @@ def _outputs(machine: HobbingMachine) -> int:
 
 def _bypass(found: Netlist, chip: str, net: str) -> None:
     """100 nF between the supply pins of a chip."""
-    name = found.part(f"CB{chip[1:]}", "100 nF, ceramic", f"between the supply pins of {chip}, as near as possible")
+    pins = "OUT and GND" if chip == "U2" else "the supply pins"
+    name = found.part(f"CB{chip[1:]}", "100 nF, ceramic", f"between {pins} of {chip}, as near as possible")
     found.join(net, (name, "1"))
     found.join(GROUND, (name, "2"))
 
@@ -176,7 +177,8 @@ def _decoder(found: Netlist, machine: HobbingMachine, encoder: str, chip: str, b
 
 def _operator(found: Netlist, machine: HobbingMachine) -> None:
     pins = machine.pins
-    found.part("S1", "rotary knob with button, 20 detents, 4 edges a detent (PEC11R-4220F)", "the operator's knob")
+    knob = "rotary knob with button, 24 detents and 24 pulses a turn, 4 edges a detent (PEC11R-4220F-S0024)"
+    found.part("S1", knob, "the operator's knob")
     for net, end, pin in (("knob A", "A", pins.knob_a), ("knob B", "B", pins.knob_b), ("button", "D", pins.button)):
         found.join(net, ("S1", end), _board(pin))
     found.join(GROUND, ("S1", "C"), ("S1", "E"))

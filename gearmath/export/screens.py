@@ -95,13 +95,17 @@ def screens(machine: HobbingMachine) -> Iterator[str]:
 
 def _helps(machine: HobbingMachine) -> Iterator[str]:
     """What else the pages do for the worker."""
-    yield (
-        "`Only set the phase`, the third answer to `Start?`, lets nothing move. So a thread or a gear is picked "
-        "up after the "
-        "power was off: jog the tool (the hob) into the groove with the spindle standing, enter the same job, and set "
-        "the phase there. Draw the tool out, jog clear, and `run on`."
+    lathe = machine.profile == "lathe"
+    picked_up = (
+        "So a thread is picked up after the power was off: with the spindle standing jog the tool into the groove, "
+        "enter the same job, and set the phase there. Draw the tool out, jog clear, and `run on`."
+        if lathe
+        else "So a gear is picked up after the power was off: with the hob standing jog the table until a tooth of the "
+        "hob fits into a gap of the gear as it is fed in by hand, enter the same job, and set the phase there. Feed "
+        "clear, and `run on`."
     )
-    if machine.profile == "lathe":
+    yield f"`Only set the phase`, the third answer to `Start?`, lets nothing move. {picked_up}"
+    if lathe:
         yield (
             "`shoulder is here`, with the carriage jogged there after `Stop?`: each pass brakes so that it ends "
             "just before "

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from fnmatch import fnmatch
 from fractions import Fraction
 from importlib import resources
@@ -14,7 +15,7 @@ from gearmath.export.markdown import escaped
 from gearmath.export.netlist import netlist
 from gearmath.export.teensy import teensy_files
 from gearmath.export.wiring import wiring_svg
-from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
+from gearmath.specs.hobbing import HobbingMachine, Limits, load_hobbing_machine
 from gearmath.specs.toml import bundled
 
 MACHINES = (
@@ -55,7 +56,9 @@ def test_every_label_and_page_that_is_explained_exists_on_the_display(name: str)
     text = guide(machine(name), "gearbox")
     explained = re.findall(r"`([^`]+)`", text[text.index("## Commissioning") :])
     for label in explained:
-        assert label in screen() or label in ("invert_direction", "gearmath gearbox plan"), label
+        key = label.split(" = ")[0]  # of the machine file
+        known = key in {*Limits.model_fields, "invert_direction"} or label == "gearmath gearbox plan"
+        assert known or label in screen(), label
 
 
 def test_every_number_on_the_display_is_explained() -> None:
@@ -171,18 +174,34 @@ def test_every_part_with_a_right_way_round_is_told_which(name: str) -> None:
                 assert words in ways, part.name
 
 
+@pytest.mark.parametrize("name", MACHINES)
+def test_trial_of_the_motor_is_a_machine_file_that_is_accepted_and_twice_as_hard(name: str) -> None:
+    given, text = machine(name), " ".join(chapter(guide(machine(name), "gearbox"), "Commissioning").split())
+    trial = {key: float(re.search(rf"`{key} = (\d+)`", text)[1]) for key in ("acceleration_hz_per_s", "move_rate_hz")}
+    assert trial["acceleration_hz_per_s"] == 2 * given.limits.acceleration_hz_per_s
+    data = tomllib.loads(bundled(f"{name}.toml").read_text("utf-8"))
+    tried = HobbingMachine.model_validate({**data, "limits": {**data["limits"], **trial}})
+    way = trial["move_rate_hz"] ** 2 / trial["acceleration_hz_per_s"]  # up to that speed and down again, in a turn
+    assert way <= tried.motor_steps + 1
+
+
 def test_readme_of_a_lathe_speaks_of_no_hob_but_in_the_words_of_the_display() -> None:
     text = guide(machine("lathe_example"), "gearbox")
-    assert "hob" not in re.sub(r"`[^`]*`", "", chapter(text, "Pins") + chapter(text, "Commissioning"))
+    assert "hob" not in re.sub(r"`[^`]*`", "", text)
     assert "FAULT hob turned" not in text  # its spindle may turn in a jog
     assert "MODE jumper" not in text
 
 
-def test_memory_with_the_core_is_the_sum_of_a_published_build_and_the_own_files() -> None:
+def test_memory_with_the_core_is_the_sum_of_a_published_build_the_libraries_and_the_own_files() -> None:
     # 9252 + 3016 bytes of code and data, 3520 of variables; 25.5 kB and 0.9 kB of the folder for a Teensy 4.0
-    text = chapter(guide(machine("lathe_example"), "gearbox"), "Flashing")
-    assert "38 kB and 4.4 kB are to be expected" in text
-    assert "to be expected" not in guide(machine("hobbing_plewes"), "gearbox")
+    for name, flash, ram in (
+        ("lathe_example", 25.5 + 9.252 + 3.016 + 6.0, 0.9 + 3.520 + 0.8),
+        ("hobbing_plewes", 25.0 + 8.840 + 6.0, 0.9 + 3.436 + 0.6),
+    ):
+        text = " ".join(chapter(guide(machine(name), "gearbox"), "Flashing").split())
+        stated = re.search(r"estimate: (\d+) kB of flash and ([\d.]+) kB of RAM are to be expected", text)
+        assert float(stated[1]) == pytest.approx(flash, abs=0.51)
+        assert float(stated[2]) == pytest.approx(ram, abs=0.051)
 
 
 def test_index_of_an_encoder_behind_a_belt_counts_turns_of_the_encoder() -> None:

@@ -20,7 +20,16 @@ import numpy as np
 import pytest
 from capstone import CS_ARCH_ARM, CS_MODE_MCLASS, CS_MODE_THUMB, Cs
 from elftools.elf.elffile import ELFFile
-from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
+from unicorn import (
+    UC_ARCH_ARM,
+    UC_HOOK_BLOCK,
+    UC_MODE_MCLASS,
+    UC_MODE_THUMB,
+    UC_PROT_EXEC,
+    UC_PROT_READ,
+    UC_PROT_WRITE,
+    Uc,
+)
 from unicorn.arm_const import (
     UC_ARM_REG_LR,
     UC_ARM_REG_PC,
@@ -171,6 +180,21 @@ void probe_play(long ticks, const int8_t *hob, const int8_t *feed, const uint8_t
     fault[k] = (uint8_t)core.fault;
     if (resets) reset_here();
   }
+}
+
+/* How many ticks of a tape of hob edges give its steps. */
+long probe_follow(long ticks, const int8_t *hob, const int8_t *steps)
+{
+  long k;
+  int n;
+  for (k = 0; k < ticks; ++k) {
+    const int64_t before = core.position;
+    for (n = hob[k]; n > 0; --n) gm_core_edge(&core, GM_HOB, 1);
+    for (n = hob[k]; n < 0; ++n) gm_core_edge(&core, GM_HOB, -1);
+    (void)gm_core_tick(&core, GM_IN_ESTOP_OK);
+    if (core.position - before != steps[k]) break;
+  }
+  return k;
 }
 """
 
@@ -370,8 +394,9 @@ class Target:
     def __init__(self, elf: Path, processor: str) -> None:
         self._core = Uc(UC_ARCH_ARM, UC_MODE_THUMB | UC_MODE_MCLASS)
         self._core.ctl_set_cpu_model(PROCESSORS[processor])
-        for address, size in ((CODE, 0x10_0000), (DATA, 0x200_0000), (STACK, 0x1_0000)):
-            self._core.mem_map(address, size)
+        self._core.mem_map(CODE, 0x10_0000, UC_PROT_READ | UC_PROT_EXEC)
+        for address, size in ((DATA, 0x200_0000), (STACK, 0x1_0000)):  # no code, so that writing is cheap
+            self._core.mem_map(address, size, UC_PROT_READ | UC_PROT_WRITE)
         self.symbols: dict[str, int] = {}
         self._lengths: dict[tuple[int, int], int] = {}
         self._decoder = Cs(CS_ARCH_ARM, CS_MODE_THUMB | CS_MODE_MCLASS)
@@ -463,6 +488,24 @@ class EmulatedCore:
         read = zip(places[4:], sizes[4:], kinds, strict=True)
         return Record(*(np.frombuffer(self._target.read(place, size), kind) for place, size, kind in read))
 
+    def follow(self, hob: np.ndarray, steps: np.ndarray) -> int:
+        """How many ticks of a tape of hob edges give its steps; compared on the processor, which costs least."""
+        tapes = [self._ARRAYS, self._ARRAYS + -(-len(hob) // 8) * 8]
+        for place, tape in zip(tapes, (hob, steps), strict=True):
+            self._target.write(place, tape.astype(np.int8).tobytes())
+        return self._target.call("probe_follow", len(hob), *tapes)
+
+    @property
+    def status(self) -> Status:
+        self._target.call("probe_get", self._ARRAYS)
+        return Status.from_buffer_copy(self._target.read(self._ARRAYS, ctypes.sizeof(Status)))
+
+
+def emulate(processor: str, wide: bool, changes: Mapping[str, int | None], folder: Path) -> EmulatedCore:
+    """A core after power-up on "cortex-m4" or "cortex-m7", built in a folder."""
+    files = core_files(wide, changes) | {"probe.c": PROBE}
+    return EmulatedCore(_build(files, "probe_play", folder, processor))
+
 
 def _build(files: Mapping[str, str], entry: str, folder: Path, processor: str = "cortex-m4") -> Target:
     files = {**files, "freestanding.c": FREESTANDING}
@@ -507,8 +550,7 @@ def emulated_core(arm_gcc, tmp_path_factory) -> Callable[..., EmulatedCore]:
     """``emulated_core("cortex-m7", wide, GM_...=...)``: a core after power-up on "cortex-m4" or "cortex-m7"."""
 
     def make(processor: str, wide: bool, **changes: int | None) -> EmulatedCore:
-        files = core_files(wide, changes) | {"probe.c": PROBE}
-        return EmulatedCore(_build(files, "probe_play", tmp_path_factory.mktemp("core"), processor))
+        return emulate(processor, wide, changes, tmp_path_factory.mktemp("core"))
 
     return make
 

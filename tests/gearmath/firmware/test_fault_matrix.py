@@ -13,7 +13,8 @@ from gearmath.export.screens import BRAKES, FAULT_MATRIX, FOLLOWS, STANDS, STOPS
 
 IDLE, RUN, MOVE, FAULT = range(4)
 ESTOP, LAG, OVERSPEED, ENCODER, HOB_MOVED, ALARM = range(1, 7)
-OK, ALARM_INPUT, ENABLE, HEALTHY = 1, 2, 4, 8
+OK, ALARM_INPUT = 1, 2
+STEP, ENABLE, HEALTHY = 1, 4, 8
 TICK, ACCELERATION = 5e-6, 20_000
 
 MACHINE = {
@@ -38,23 +39,25 @@ def ramp(seconds: float, first: float, last: float) -> np.ndarray:
     return np.diff(np.floor(np.cumsum(speeds) * TICK), prepend=0).astype(np.int8)
 
 
-def trigger(core, fault: int, turning: bool) -> None:
-    """Lets the fault come, the hob standing or turning at SPEED."""
+def trigger(core, fault: int, turning: bool) -> np.ndarray:
+    """Lets the fault come, the hob standing or turning at SPEED; the levels of the outputs meanwhile."""
     hob = at_speed(0.02) if turning else np.zeros(4000, np.int8)
     if fault == ESTOP:
-        core.play(hob, inputs=0)
+        records = [core.play(hob, inputs=0)]
     elif fault == ALARM:
-        core.play(hob, inputs=OK | ALARM_INPUT)
+        records = [core.play(hob, inputs=OK | ALARM_INPUT)]
     elif fault == OVERSPEED:
         quick = np.concatenate([ramp(0.1, SPEED, 23_000.0), ramp(0.1, 23_000.0, SPEED)])
-        core.play(quick if turning else at_speed(0.004, 200_000.0))
+        records = [core.play(quick if turning else at_speed(0.004, 200_000.0))]
     elif fault == LAG:
-        core.play(np.where(np.arange(200) < 160, 2, 0))
+        records = [core.play(np.where(np.arange(200) < 160, 2, 0))]
     elif fault == ENCODER:
-        for shift in (0, 700, 900):  # index pulses that are no whole turn apart
-            core.play(at_speed((4096 + shift) / SPEED), index=np.arange(int((4096 + shift) / SPEED / TICK)) == 50)
-    elif fault == HOB_MOVED:
-        core.play(at_speed(0.003))
+        turns = [(4096 + shift) / SPEED for shift in (0, 700, 900)]  # index pulses that are no whole turn apart
+        records = [core.play(at_speed(one), index=np.arange(int(one / TICK)) == 50) for one in turns]
+    else:
+        assert fault == HOB_MOVED
+        records = [core.play(at_speed(0.003))]
+    return np.concatenate([record.levels for record in records])
 
 
 CASES = [
@@ -81,7 +84,7 @@ def test_fault_does_what_the_table_of_the_readme_says(new_core, row: FaultRow, m
         core.play(0, 40_000)
         assert core.status.mode == MOVE
     assert core.arm() == 0
-    trigger(core, row.fault, turning=mode == "following")
+    levels = trigger(core, row.fault, turning=mode == "following")
     assert core.status.fault == row.fault
     outcome, turning = getattr(row, mode), mode == "following"
     before = core.status.position
@@ -100,7 +103,13 @@ def test_fault_does_what_the_table_of_the_readme_says(new_core, row: FaultRow, m
         assert 0 <= went <= 4000
         assert (np.diff(record.position[-20_000:]) == 0).all()
     assert not (record.levels & HEALTHY).any()
-    assert (record.levels & ENABLE).all()
+    levels = np.concatenate([levels, record.levels])
+    assert (levels & ENABLE).all()
+    pulse = np.diff((levels & STEP) != 0)  # before and after the fault a step is as long as the driver asks
+    first = int(levels[0] & STEP != 0)
+    begins, ends = np.flatnonzero(pulse)[first::2], np.flatnonzero(pulse)[1 + first :: 2]
+    assert set(ends - begins[: len(ends)]) <= {2}
+    assert len(begins) == len(ends) or outcome == FOLLOWS
     core.play(0, 60_000, inputs=inputs)
     assert core.status.mode == FAULT
     assert not (core.play(0, 5000).levels & HEALTHY).any()  # the cause is gone: nothing comes back by itself

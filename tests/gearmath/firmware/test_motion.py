@@ -5,127 +5,59 @@ damping and friction, and it stalls two full steps from where it should be. The 
 steps and the place that the table should have are computed apart from the core.
 """
 
-import subprocess
-from collections.abc import Iterator
+import re
 from fractions import Fraction
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 import pytest
 
+from gearmath.export.guide import guide
 from gearmath.gearbox.kernels import evaluate
+from gearmath.specs.hobbing import find_hobbing_machine
+from tests.gearmath.firmware.motor import MOTORS, QUICK, replay, run_motor
 
 IDLE, RUN, MOVE, FAULT = range(4)
 NO_FAULT, ESTOP, LAG, OVERSPEED = range(4)
 TICK = 5e-6
 
-QUICK = {
-    "GM_ACCELERATION": 100_000,
-    "GM_MOVE_ACCELERATION": 100_000,
-    "GM_MOVE_MAX_RATE": 8000,
-    "GM_MAX_STEP_RATE": 60_000,
-    "GM_MAX_EDGE_RATE": 60_000,
-    "GM_STEP_HIGH_TICKS": 1,
-    "GM_STEP_LOW_TICKS": 1,
-    "GM_DIR_SETUP_TICKS": 1,
-    "GM_DIR_HOLD_TICKS": 1,
-    "GM_HAS_ESTOP": 0,
-    "GM_PROFILE_HOBBING": None,
-    "GM_PROFILE_LATHE": 1,
-}
-
 
 @pytest.fixture
-def drive_motor(core_text, gcc, tmp_path):
-    """``drive_motor(microsteps, acceleration, given, sequences)``: status and words of the program motor.c, whose motor
-    allows ``acceleration`` and whose core is told to give ``given``; with ``seed`` it writes its trace."""
-
-    def drive(microsteps: int, acceleration: int, given: int, sequences: int, seed: int | None = None):
-        files = core_text(True, **{**QUICK, "GM_ACCELERATION": given, "GM_MOVE_ACCELERATION": given})
-        del files["probe.c"]
-        files["motor.c"] = (Path(__file__).parent / "motor.c").read_text("utf-8")
-        for name, text in files.items():
-            (tmp_path / name).write_text(text, "utf-8")
-        given_names = {"MICROSTEPS": microsteps, "MARGIN": 4.0, "ACCELERATION": float(acceleration)}
-        given_names |= {"SEQUENCES": sequences, "SEED": f"{1 if seed is None else seed}u"}
-        if seed is not None:
-            given_names["TRACE"] = '"trace"'
-        defines = [f"-D{name}={value}" for name, value in given_names.items()]
-        sources = [name for name in files if name.endswith(".c")]
-        subprocess.run([gcc, "-std=gnu99", "-O2", *defines, *sources, "-o", "motor", "-lm"], cwd=tmp_path, check=True)
-        done = subprocess.run(["./motor"], cwd=tmp_path, capture_output=True, text=True, check=False)
-        return done.returncode, done.stdout
-
-    return drive
+def drive_motor(gcc, tmp_path):
+    """``drive_motor(motor, given, sequences)``: status and words of the program motor.c, whose core is told to give
+    ``given`` and whose motor allows what it allows; with ``seed`` it writes its trace."""
+    return partial(run_motor, gcc, tmp_path)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("microsteps", "acceleration"), [(8, 100_000), (4, 20_000)])
-def test_motor_is_never_stalled_and_in_phase_is_true_in_ten_thousand_sequences(drive_motor, microsteps, acceleration):
+@pytest.mark.parametrize("motor", MOTORS)
+def test_motor_is_never_stalled_and_in_phase_is_true_in_ten_thousand_sequences(drive_motor, motor):
     """Jobs engaged at any speed and phase, stops, restarts, moves, feed holds; the hob as quick as it follows."""
-    assert drive_motor(microsteps, acceleration, acceleration, 5000) == (0, "")
+    assert drive_motor(motor, motor.acceleration, 5000) == (0, "")
 
 
 def test_that_motor_stalls_or_the_acceleration_is_noticed_where_the_core_gives_more(drive_motor):
     for given in (10_000_000, 300_000, 130_000):
-        status, words = drive_motor(8, 100_000, given, 400)
+        status, words = drive_motor(MOTORS[0], given, 400)
         assert status == 1
         assert "stalls" in words or "acceleration over" in words or "from step to step" in words
 
 
 # --- the same motor beside the core on the processors of the boards ---------------------------------------------------
 
-INIT, JOB, MOVE_BY, RUN_ON, STOP, ACKNOWLEDGE, PLAY = range(7)
 
-
-def traced(file: Path) -> Iterator[tuple[int, list[int], np.ndarray, np.ndarray]]:
-    """The entries of a trace of motor.c: what was done, its numbers; of a play its edges and steps, tick by tick."""
-    data, place = file.read_bytes(), 0
-    while place < len(data):
-        what, *numbers = np.frombuffer(data, np.int64, 4, place).tolist()
-        n, place = numbers[0] if what == PLAY else 0, place + 32
-        tapes = np.frombuffer(data, np.int8, 2 * n, place).reshape(2, n)
-        place += 2 * n
-        yield what, numbers, tapes[0], tapes[1]
-
-
-def replay(core, file: Path) -> int:
-    """Do to a core what a trace tells, and compare every step of it; the number of sequences."""
-    plays, position = 0, 0
-    for what, numbers, edges, steps in traced(file):
-        if what == INIT:
-            core.init()
-            position = 0
-        elif what == JOB:
-            assert core.job(numbers[0], numbers[1]) == 0
-            position = 0
-        elif what == MOVE_BY:
-            core.move(numbers[0])
-        elif what == RUN_ON:
-            core.run()
-        elif what == STOP:
-            core.stop()
-        elif what == ACKNOWLEDGE:
-            core.acknowledge()
-        else:
-            record = core.play(edges)
-            np.testing.assert_array_equal(np.diff(record.position, prepend=position), steps)
-            position = int(record.position[-1])
-            at_end = int(record.pending[-1]), int(record.mode[-1]) * 16 + int(record.fault[-1])
-            assert at_end == (numbers[1], numbers[2])
-            plays += 1
-    return plays
-
-
-@pytest.mark.parametrize(("processor", "seed"), [("cortex-m4", 2), ("cortex-m7", 3)])
-def test_core_on_the_processors_of_the_boards_turns_that_motor_by_the_same_steps(
-    drive_motor, emulated_core, tmp_path, processor, seed
+def test_cores_on_the_processors_of_the_boards_turn_that_motor_by_the_steps_of_the_host_s(
+    drive_motor, emulated_core, tmp_path
 ):
-    """The motor beside the host's core does not stall, and each step of the emulated core is at the same tick. A motor
-    gives nothing back to the core: it is the same motor, with the same margins."""
-    sequences = 20
-    assert drive_motor(8, 100_000, 100_000, sequences, seed) == (0, "")
-    assert replay(emulated_core(processor, True, **QUICK), tmp_path / "trace") == sequences + sequences // 10
+    """The motor beside the host's core does not stall, and each step of the emulated cores is at the same tick. A motor
+    gives nothing back to the core: it is the same motor, with the same margins. ``python tests/motor_on_the_boards.py``
+    runs ten thousand sequences on either processor."""
+    assert drive_motor(MOTORS[0], MOTORS[0].acceleration, 30, seed=2) == (0, "")
+    for processor in ("cortex-m4", "cortex-m7"):
+        assert replay(emulated_core(processor, True, **QUICK), tmp_path / "trace") == 33
+    slower = emulated_core("cortex-m4", True, **{**QUICK, "GM_ACCELERATION": QUICK["GM_ACCELERATION"] - 1})
+    with pytest.raises(AssertionError):
+        replay(slower, tmp_path / "trace")
 
 
 # --- what the plan says ---------------------------------------------------------------------------------------------
@@ -142,6 +74,19 @@ PLANNED = {
 def turned(speed: np.ndarray) -> np.ndarray:
     """Edges per tick of a hob with these speeds [counts/s]."""
     return np.diff(np.floor(np.cumsum(speed) * TICK), prepend=0).astype(np.int8)
+
+
+@pytest.mark.parametrize(("name", "steps"), [("hobbing_default", 444), ("lathe_example", 15118)])
+def test_jog_on_the_oscilloscope_has_the_shortest_interval_that_the_readme_tells(new_core, name, steps):
+    """10 degrees of 16000 steps a turn; 10 mm of 4800 steps a turn of a lead screw of 8 tpi."""
+    machine = find_hobbing_machine(f"{name}.toml")
+    told = int(re.search(r"intervals fall to (\d+) us", guide(machine, name))[1])
+    limits = {"GM_MOVE_MAX_RATE": machine.move_max_rate, "GM_MOVE_ACCELERATION": machine.limits.acceleration_hz_per_s}
+    core = new_core(**{key: int(value) for key, value in limits.items()})
+    assert core.move(steps) == 0
+    record = core.play(0, 500_000)
+    assert record.position[-1] == steps
+    assert np.diff(np.flatnonzero(np.diff(record.position))).min() * 5 == pytest.approx(told, rel=0.02, abs=5)
 
 
 @pytest.mark.parametrize("rate", [4000.0, 20_000.0, 50_000.0])

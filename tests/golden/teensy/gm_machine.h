@@ -81,8 +81,8 @@ typedef struct {
 #define GM_PIN_KNOB_A 2 /* knob, channel A */
 #define GM_PIN_KNOB_B 3 /* knob, channel B */
 #define GM_PIN_BUTTON 4 /* button of the knob, to ground */
-#define GM_PIN_ENCODER_STEP 6 /* hob encoder: pulse of the LS7184, or channel A */
-#define GM_PIN_ENCODER_DIR 7 /* hob encoder: direction of the LS7184, or channel B */
+#define GM_PIN_ENCODER_STEP 6 /* hob encoder: pulse of its LS7184 */
+#define GM_PIN_ENCODER_DIR 7 /* hob encoder: direction of its LS7184 */
 #define GM_PIN_DIR_OUT 8 /* DIR to the driver */
 #define GM_PIN_STEP_OUT 13 /* STEP to the driver */
 #define GM_PIN_SDA 18 /* display, data */

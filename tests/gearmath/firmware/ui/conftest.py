@@ -115,6 +115,18 @@ void board_run_page(int view, int teeth, uint32_t rate, int64_t edges, int64_t p
   gm_screen_draw(&ui, &status);
 }
 
+/* The page of a fault as the core would report it, with and without the phase. */
+void board_fault_page(int fault, int kept)
+{
+  gm_status status;
+  status_of(&status);
+  status.mode = GM_FAULT;
+  status.fault = (gm_fault)fault;
+  ui.page = GM_PAGE_FAULT;
+  ui.phase = (uint8_t)kept;
+  gm_screen_draw(&ui, &status);
+}
+
 int job_make(const gm_settings *settings, int64_t *denominator, int64_t *increments, int32_t *bases, uint32_t *rpm)
 {
   gm_job job;

@@ -6,6 +6,8 @@ from fractions import Fraction
 
 import pytest
 
+from gearmath.export.screens import FAULT_MATRIX
+
 IDLE, RUN, MOVE, FAULT = range(4)
 SAVE = 1
 
@@ -413,6 +415,18 @@ def test_a_hob_that_turns_in_a_move_is_a_fault(panel):
     p.short()
     p.edges(20, ticks=1000)
     shows(p, "FAULT hob turned", "Lock it for moves", "Hob was switched off", "Hold: acknowledge")
+
+
+@pytest.mark.parametrize(
+    ("machine", "stops"), [("hobbing_plewes", "YOU MUST STOP HOB!"), ("hobbing_default", "Hob was switched off")]
+)
+@pytest.mark.parametrize("row", FAULT_MATRIX, ids=lambda row: row.page)
+def test_every_fault_of_the_table_of_the_readme_shows_its_page_and_what_is_kept(panel, row, machine, stops):
+    p = panel(machine)
+    p.library.board_fault_page(row.fault, int(row.kept))
+    rows = [line.rstrip() for line in p.screen.split("\n")]
+    assert (rows[0], rows[2]) == (row.page, stops)
+    assert rows[3] == ("Phase kept. Hold: on" if row.kept else "Hold: acknowledge")
 
 
 def test_the_press_that_meets_a_fault_is_not_taken_for_another_page(panel):
