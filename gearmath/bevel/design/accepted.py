@@ -15,8 +15,9 @@ from gearmath.specs.design import ContactRequest, DesignData
 
 #: Where a pair runs on edges: a path nearer to the length of the tooth lasts longer. [degree]
 _LONGER_PATH = {"drive": 35.0, "coast": 145.0}
-#: And with uniform depth the toe of a small pinion is undercut: the vertex lies so far from toe (0) to heel (1).
-_ALONG, _NEARER_TO_THE_HEEL = 0.5, 0.65
+#: And with uniform depth the toe of a small pinion is undercut: the vertex lies so far from toe (0) to heel (1), and
+#: farther where that is not enough.
+_ALONG, _NEARER_TO_THE_HEEL = 0.5, (0.65, 0.68)
 #: Where teeth are undercut, or no settings are found. [degree]
 _PRESSURE_ANGLE = 22.5
 
@@ -61,11 +62,10 @@ def _on_edges(data: DesignData) -> Iterator[Changed]:
     path = _with_paths(data)
     if path.values:
         yield path
-    free = {side: data.contact(side).position is None for side in _LONGER_PATH}
-    if data.cutter.process == "face_hobbing" and any(free.values()):
-        yield Changed(
-            data, {f"{side}.position[0]": _NEARER_TO_THE_HEEL for side in free if free[side]}, _NEARER_TO_THE_HEEL
-        )
+    free = [side for side in _LONGER_PATH if data.contact(side).position is None]
+    if data.cutter.process == "face_hobbing" and free:
+        for along in _NEARER_TO_THE_HEEL:
+            yield Changed(data, {f"{side}.position[0]": along for side in free}, along)
 
 
 def _not_cut(data: DesignData, given: BevelSet | None) -> Iterator[Changed]:
