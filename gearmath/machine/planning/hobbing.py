@@ -151,7 +151,7 @@ def hobbing_pass(
     _check(name, machine, tolerance, feed, rpm)
     drive, spec, limits = _Drive.of(member, machine), member.flank(cut.flanks[0]), machine.limits(6)
     pivot, per_turn = (machine.pivot_height, machine.pivot), drive.seconds_per_turn(limits, rpm)
-    start, end, turns = _roll(member, cut, drive, (1 - _CHORD_SHARE) * tolerance - ROUNDING - C_ROUNDING)
+    start, end, turns = _roll(member, name, cut, drive, tolerance)
     if end > start:
         way = _way_past(spec, np.linspace(start, end, 200), tooth, pivot)
         turns = max(turns, way / min(feed * per_turn / 60.0, _ROLL_PER_TURN))
@@ -193,10 +193,20 @@ def _check(name: str, machine: MillingMachine, tolerance: float, feed: float, rp
     check_tolerance(tolerance, ROUNDING + C_ROUNDING)
 
 
-def _roll(member: Member, cut: Cut, drive: _Drive, scallop: float) -> tuple[float, float, float]:
-    """Cradle rotations of start and end, half a turn's roll beyond what generates the flanks; turns of the work."""
+def _roll(member: Member, name: str, cut: Cut, drive: _Drive, tolerance: float) -> tuple[float, float, float]:
+    """Cradle rotations of start and end, half a turn's roll beyond what generates the flanks; turns of the work.
+
+    Raises InputError for a tolerance [mm] of which blocks and decimals leave nothing to the scallops.
+    """
     if member.generation == "formate":
         return 0.0, 0.0, _FORMATE_TURNS
+    scallop = (1 - _CHORD_SHARE) * tolerance - ROUNDING - C_ROUNDING
+    if scallop <= 0.0:
+        least = (ROUNDING + C_ROUNDING) / (1 - _CHORD_SHARE)
+        raise InputError(
+            f"{name}: tolerance = {tolerance * 1000:g} um: must be more than {least * 1000:.4f} um, or straight blocks "
+            "and printed decimals leave nothing to the scallops of the roll"
+        )
     curvature = max(float(approach_curvature(member, flank, drive.index_ratio).max()) for flank in FLANKS)
     (step,) = kernel("roll_per_turn")(scallop, curvature * _PARABOLA_MARGIN)
     low, high = roll_range(member, cut)
