@@ -72,7 +72,7 @@ def test_pair_that_runs_on_edges_gets_a_path_that_lasts_longer_where_none_is_ask
 
 def test_small_hobbed_pinion_has_its_contact_nearer_to_the_heel_where_its_path_is_given() -> None:
     """10 x 35: with the vertex in the middle of the face width it runs on an edge, as its toe is undercut."""
-    made, figures, _ = accepted(drawn(4, drive={"path_angle": 50.0}, coast={"path_angle": 130.0}))
+    made, figures, _ = accepted(drawn(4, drive={"path_angle": 45.0}, coast={"path_angle": 135.0}))
     assert figures["changed"] == {"drive.position[0]": 0.65, "coast.position[0]": 0.65}
     gear = made.pair.member("gear").blank
     for side in SIDES:
