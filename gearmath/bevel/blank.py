@@ -13,8 +13,9 @@ from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import Blank
 from gearmath.specs.blank_data import BlankData
 
-#: Largest part of the outer cone distance that the face width may take; ISO 23509 advises 0.30.
-WIDEST_FACE = 0.4
+#: Largest part of the outer cone distance that the face width may take, of blanks designed here and of those in a set;
+#: ISO 23509 advises 0.30, a third has been published (9 x 33 of Litvin).
+WIDEST_FACE = 0.35
 #: Largest pitch angle: beyond it a member comes close to a flat or an internal gear.
 FLATTEST_PITCH = math.radians(87)
 

@@ -18,8 +18,11 @@ _LONGER_PATH = {"drive": 35.0, "coast": 145.0}
 #: And with uniform depth the toe of a small pinion is undercut: the vertex lies so far from toe (0) to heel (1), and
 #: farther where that is not enough.
 _ALONG, _NEARER_TO_THE_HEEL = 0.5, (0.65, 0.68)
-#: Where teeth are undercut, or no settings are found. [degree]
+#: Where teeth are undercut, also in a pair that runs, or no settings are found. [degree]
 _PRESSURE_ANGLE = 22.5
+
+#: A pair, its figures, and the contact of both sides.
+_Judged = tuple[Designed, dict[str, Any], dict[str, Mesh]]
 
 
 @dataclass(frozen=True)
@@ -31,16 +34,14 @@ class Changed:
     along: float = _ALONG
 
 
-def accepted(
-    data: DesignData, name: str = "design data", given: BevelSet | None = None
-) -> tuple[Designed, dict[str, Any], dict[str, Mesh]]:
+def accepted(data: DesignData, name: str = "design data", given: BevelSet | None = None) -> _Judged:
     """A pair from the data of a design as :func:`design` makes it, its figures, and the contact of both sides.
 
     The figures tell under ``changed`` which keys that the file leaves out have other values than they start from.
     Raises InputError and ComputationError as :func:`design` and :func:`verdict` do, those of the first trial.
     """
     try:
-        return _judged(Changed(data), name, given)
+        return _clear_of_undercut(_judged(Changed(data), name, given), data, name, given)
     except (InputError, ComputationError) as error:
         first = error
     for changed in _on_edges(data) if isinstance(first, EdgeContact) else _not_cut(data, given):
@@ -51,10 +52,23 @@ def accepted(
     raise first
 
 
-def _judged(changed: Changed, name: str, given: BevelSet | None) -> tuple[Designed, dict[str, Any], dict[str, Mesh]]:
+def _judged(changed: Changed, name: str, given: BevelSet | None) -> _Judged:
     made = design(changed.data, name, given, changed.along)
     figures, runs = verdict(made)
     return made, {"changed": changed.values, **figures}, runs
+
+
+def _clear_of_undercut(found: _Judged, data: DesignData, name: str, given: BevelSet | None) -> _Judged:
+    """A pair that runs, or, where its flanks are undercut, the first one that is not, with what may help it."""
+    if any(found[1]["undercut_mm"].values()):
+        for changed in _not_cut(data, given):
+            try:
+                other = _judged(changed, name, given)
+            except (InputError, ComputationError):
+                continue
+            if not any(other[1]["undercut_mm"].values()):
+                return other
+    return found
 
 
 def _on_edges(data: DesignData) -> Iterator[Changed]:

@@ -122,12 +122,26 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
         "data_type_2": None if made.blank_data.data_type_2 is None else made.blank_data.data_type_2.model_dump(),
         "backlash_mm": {"asked": made.backlash, "found": mean_backlash(pinion, gear)},
         "top_land_mm": lands,
+        "undercut_mm": {name: undercut(made.pair.member(name), name) for name in lands},
         "root_ridge_um": {name: 1000 * one if math.isfinite(one) else None for name, one in ridges.items()},
     }
     stepped = any(made.data.shop.model_dump().values())
     for side, run in runs.items():
         figures[side] = _side(made, side, run, stepped)
     return figures, runs
+
+
+def undercut(member: Member, name: str) -> float:
+    """How far above the reach of the mate's tip [mm] a flank folds back on itself, at the most, up to toe and heel.
+
+    Contact ends at the fold, but what the blade cuts beyond it takes metal from the flank above it, too.
+    """
+    space, blank = tooth_space(member, name), member.blank
+    points = np.concatenate([surface.point[surface.undercut] for surface in (space.concave, space.convex)])
+    along, deep = kernel("root_place")(points, blank.delta)
+    taper = blank.delta - blank.delta_f
+    reach = blank.mean_dedendum - blank.clearance + (along - blank.mean_cone_distance) * math.tan(taper)
+    return float(np.max(reach - deep, initial=0.0))
 
 
 def _check_tips(member: Member, name: str, height: float) -> None:

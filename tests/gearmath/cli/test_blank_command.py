@@ -160,5 +160,5 @@ def test_bad_input_is_one_line(refused, arguments, sentence):
 def test_impossible_blank_is_refused_by_file_key_value_and_limit(refused, tmp_path):
     own = tmp_path / "own.toml"
     own.write_text(bundled(SAMPLE).read_text("utf-8").replace("face_width = 25.4", "face_width = 60"), "utf-8")
-    refused(r"own\.toml: face_width = 60: must be at most 0\.4 of the outer cone distance, 37\.59 mm", "blank", own)
+    refused(r"own\.toml: face_width = 60: must be at most 0\.35 of the outer cone distance, 32\.89 mm", "blank", own)
     assert [path.name for path in tmp_path.iterdir()] == ["own.toml"]

@@ -19,6 +19,7 @@ from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.exchange.body import space_grids
 from gearmath.exchange.spline import basis, through
 from gearmath.specs.bevel_set import SIDES, BevelSet
+from tests.gearmath.exchange.step_shapes import distances, read_step, solids_of
 
 pytest.importorskip("OCP", reason="the extra cad is not installed")
 
@@ -55,12 +56,7 @@ def pinion(tmp_path_factory) -> tuple[Path, float]:
 
 @pytest.fixture(scope="module")
 def read(pinion: tuple[Path, float]):
-    from OCP.STEPControl import STEPControl_Reader
-
-    reader = STEPControl_Reader()
-    assert reader.ReadFile(str(pinion[0])) is not None
-    reader.TransferRoots()
-    return reader.OneShape()
+    return read_step(pinion[0])
 
 
 @pytest.mark.slow
@@ -68,14 +64,8 @@ def test_solid_that_is_read_back_is_closed_valid_and_has_the_volume(read, pinion
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
-    from OCP.TopAbs import TopAbs_ShapeEnum
-    from OCP.TopExp import TopExp_Explorer
 
-    explorer, solids = TopExp_Explorer(read, TopAbs_ShapeEnum.TopAbs_SOLID), 0
-    while explorer.More():
-        solids += 1
-        explorer.Next()
-    assert solids == 1
+    assert len(solids_of(read)) == 1
     assert BRepCheck_Analyzer(read).IsValid()
     found = GProp_GProps()
     BRepGProp.VolumeProperties_s(read, found)
@@ -83,33 +73,6 @@ def test_solid_that_is_read_back_is_closed_valid_and_has_the_volume(read, pinion
     space = tooth_space(gear_set.pinion, "pinion", 49, (("main", 33), ("toprem", 5), ("edge", 17)))
     assert found.Mass() == pytest.approx(volume(member_triangles(gear_set.pinion, space)), rel=1e-4)
     assert found.Mass() == pytest.approx(pinion[1], rel=1e-9)
-
-
-def distances(shape, points: np.ndarray) -> np.ndarray:
-    """Of points (n,3) from the nearest surface of a shape [mm], never too small: from a foot of the CAD kernel."""
-    from OCP.Bnd import Bnd_Box
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepBndLib import BRepBndLib
-    from OCP.gp import gp_Pnt
-    from OCP.ShapeAnalysis import ShapeAnalysis_Surface
-    from OCP.TopAbs import TopAbs_ShapeEnum
-    from OCP.TopExp import TopExp_Explorer
-    from OCP.TopoDS import TopoDS
-
-    explorer, faces = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE), []
-    while explorer.More():
-        face, box = TopoDS.Face(explorer.Current()), Bnd_Box()
-        BRepBndLib.Add_s(face, box)
-        box.Enlarge(0.001)
-        faces.append((box, ShapeAnalysis_Surface(BRep_Tool.Surface_s(face))))
-        explorer.Next()
-
-    def gap(surface, at) -> float:
-        surface.ValueOfUV(at, 1e-9)
-        return surface.Gap()
-
-    places = [gp_Pnt(*map(float, point)) for point in points]
-    return np.array([min(gap(surface, at) for box, surface in faces if not box.IsOut(at)) for at in places])
 
 
 @pytest.mark.slow

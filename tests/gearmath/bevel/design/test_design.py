@@ -229,7 +229,7 @@ def test_what_is_held_at_the_mean_point_does_not_give_way_to_the_whole_flank() -
 
 
 def test_too_wide_a_face_is_refused_before_anything_is_computed_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A set may have 0.35 of the outer cone distance, 57.07 mm / (1 - 0.35 / 2) here."""
+    """0.35 of the outer cone distance are allowed, as in a set: it is 66 mm / sin(71.565 degrees) = 69.57 mm here."""
     monkeypatch.setattr("gearmath.bevel.design.route.request", None)
     data = {
         "title": "too wide",
@@ -239,5 +239,7 @@ def test_too_wide_a_face_is_refused_before_anything_is_computed_for_it(monkeypat
         "face_width": 25.0,
         "cutter": {"cutter_radius": 70.0},
     }
-    with pytest.raises(InputError, match=r"^pinion\.blank\.face_width = 25: must lie between 6\.007 and 24\.21 mm"):
+    with pytest.raises(
+        InputError, match=r"^design data: face_width = 25: must be at most 0\.35 of the outer cone distance, 24\.35 mm"
+    ):
         design(checked(data, DesignData, "wide"))

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 from gearmath.bevel.contact.report import SIDES
 from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.design.verdict import LEAST_LAND, EdgeContact
+from gearmath.bevel.tooth import space_figures, tooth_space
 from gearmath.errors import ComputationError, InputError
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
@@ -85,6 +88,34 @@ def test_undercut_pair_gets_larger_pressure_angles_where_none_are_asked_for() ->
     assert figures["changed"]["pressure_angle_drive"] == figures["changed"]["pressure_angle_coast"] == 22.5
     with pytest.raises(InputError, match="undercut"):
         accepted(drawn(36, pressure_angle_drive=20.0))
+
+
+def test_pair_that_runs_but_is_undercut_at_its_toe_gets_larger_pressure_angles_where_none_are_asked_for() -> None:
+    """12 x 36, hobbed: the concave flank folds at toe and root; milling finds the flank above it cut by 1.2 um."""
+    cutter = {"process": "face_hobbing", "blade_groups": 13, "cutter_radius": 88.0}
+    data = {
+        "title": "12 x 36",
+        "pinion_teeth": 12,
+        "wheel_teeth": 36,
+        "outer_transverse_module": 6.0,
+        "face_width": 30.0,
+        "mean_spiral_angle": 30.0,
+        "cutter": cutter,
+        "gear": {"generation": "formate"},
+        "pinion": {"cutting": "completing"},
+    }
+    made, figures, _ = accepted(checked(data, DesignData, "12 x 36"))
+    assert figures["changed"] == {"pressure_angle_drive": 22.5, "pressure_angle_coast": 22.5}
+    assert figures["undercut_mm"] == {"pinion": 0.0, "gear": 0.0}
+    assert space_figures(made.pair.pinion, tooth_space(made.pair.pinion, "pinion"))["undercut_points"] == 0
+    kept, stated, _ = accepted(checked(data | {"pressure_angle_drive": 20.0}, DesignData, "20 degrees asked for"))
+    space = tooth_space(kept.pair.pinion, "pinion")
+    # the fold lies above the reach of the mate at most as far as the lowest row before it
+    radial, axial = np.hypot(*space.concave.point[-10, 0, :2]), space.concave.point[-10, 0, 2]
+    delta = math.radians(kept.pair.pinion.blank.pitch_angle)
+    height = radial * math.cos(delta) - axial * math.sin(delta)
+    blank = kept.pair.pinion.blank
+    assert 0 < stated["undercut_mm"]["pinion"] < height + blank.mean_dedendum - blank.clearance
 
 
 def test_hobbed_pinion_to_a_formate_gear_is_cut_with_a_tilted_cutter_and_a_level_work_axis() -> None:
