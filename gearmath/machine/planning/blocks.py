@@ -188,9 +188,9 @@ class ExactPass:
         return distance, np.minimum(distance, distance + (slope + curvature * change / 2) * change), change
 
 
-def check_tolerance(tolerance: float, decimals: float = ROUNDING) -> None:
+def check_tolerance(tolerance: float, decimals: float = ROUNDING, low: float = TOLERANCES[0]) -> None:
     """Raises InputError for a tolerance [mm] out of range; ``decimals`` [mm] is what printed ones may take of it."""
-    low, high = TOLERANCES
+    high = TOLERANCES[1]
     if not low <= tolerance <= high:
         raise InputError(
             f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "

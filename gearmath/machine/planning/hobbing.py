@@ -28,6 +28,8 @@ _MOST_TURN = math.radians(170.0)
 _CHORD_SHARE = 0.1
 #: What six decimals of C may do at the blade. [mm]
 C_ROUNDING = math.radians(0.5e-6) * 250.0
+#: With less, decimals and chords leave nothing for the scallops. [mm]
+_LEAST_TOLERANCE = 1.5e-5
 #: The approach of a blade to its contact is measured this far before and behind it. [rad]
 _BESIDE = 2e-3
 #: Most that the cutter goes down, and past the tooth, in a turn of the work: a blade cuts each space once. [mm]
@@ -214,7 +216,7 @@ def _check(name: str, machine: MillingMachine, tolerance: float, feed: float, rp
     for what, value, unit in (("feed", feed, "mm/min"), ("spindle speed", rpm, "rpm")):
         if not (math.isfinite(value) and value > 0):
             raise InputError(f"{name}: {what} = {value} {unit}: must be greater than 0")
-    check_tolerance(tolerance, ROUNDING + C_ROUNDING)
+    check_tolerance(tolerance, ROUNDING + C_ROUNDING, _LEAST_TOLERANCE)
 
 
 def _roll(member: Member, cut: Cut, drive: Drive, scallop: float) -> tuple[float, float, float]:
